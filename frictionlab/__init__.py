@@ -1,0 +1,39 @@
+"""Average-friction curves of vibrated sliding bodies, every point with a true error."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.metadata import version
+from typing import Any
+
+__version__ = version("frictionlab")
+
+_HOMES = {
+    "Coulomb": "frictionlab.laws.coulomb",
+    "Drive": "frictionlab.scene",
+    "FrictionLaw": "frictionlab.laws.base",
+    "Initial": "frictionlab.scene",
+    "Load": "frictionlab.scene",
+    "Scene": "frictionlab.scene",
+    "Slip": "frictionlab.scene",
+    "SlidingLaw": "frictionlab.laws.base",
+    "SteadyState": "frictionlab.runner",
+    "Transverse": "frictionlab.scene",
+    "TransverseSlip": "frictionlab.scene",
+    "curve": "frictionlab.runner",
+    "run": "frictionlab.runner",
+    "steady_state": "frictionlab.runner",
+}
+
+__all__ = ["__version__", *sorted(_HOMES)]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first asked for: ``import frictionlab`` itself stays quick."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'frictionlab' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,281 @@
+"""Figures of a result table: mean friction, velocity response and energies, for the page of a journal.
+
+One colour per law, from dark to light along a swept input; one line style per method; a marker per law and
+swept value, so that black and white print tells curves apart too. A point without a number is a mark on the
+axis and a line in the legend: nothing is dropped in silence.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from frictionlab.families import BELT_SPEED, Curve, Family, Setting, family_of, is_logarithmic, kinks
+from frictionlab.symbols import word
+
+FIGURES = {
+    "mean_friction": ["mean_friction"],
+    "velocity": ["velocity_amplitude", "transverse_velocity_amplitude"],
+    "energies": ["energy_input", "energy_viscous", "energy_friction", "energy_contact"],
+}
+
+COLUMN, PAGE = 85 / 25.4, 170 / 25.4  # widths of a journal's column and page [inch]
+PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
+SHADES = ("Blues", "Oranges", "Greens", "Purples", "Reds", "Greys")
+MARKERS = "os^Dvph<>d"
+LINES = ("solid", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
+WITHOUT_NUMBER = {"failed": "x", "killed": "x", "refused": "|"}
+LEGEND_MARKS = WITHOUT_NUMBER | {"not_unique": r"$\mathrm{I}$"}
+MOST_VALUES_IN_LEGEND = 8
+LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
+
+STYLE: Any = {
+    "font.family": "sans-serif",
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.6,
+    "lines.linewidth": 1.1,
+    "lines.markersize": 3.5,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "legend.fontsize": 7,
+    "legend.title_fontsize": 7,
+    "legend.frameon": False,
+    "svg.hashsalt": "frictionlab",
+    "savefig.dpi": 300,
+}
+
+
+class Data(NamedTuple):
+    """One curve of one quantity as arrays: where, how much, and the shape it is drawn in."""
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    rows: pd.DataFrame
+    color: Any
+
+
+def draw(table: pd.DataFrame, title: str, folder: Path) -> list[Path]:
+    """Draw every figure of a result table into a folder; the files written.
+
+    A table without a sweep has no figure, nor has a quantity that applies nowhere. Raises OSError where the
+    folder cannot be written.
+    """
+    family = family_of(table)
+    if family is None:
+        return []
+    folder.mkdir(parents=True, exist_ok=True)
+    files = []
+    with mpl.rc_context(STYLE):
+        for name, wanted in FIGURES.items():
+            columns = [column for column in wanted if table[column].notna().any()]
+            if columns:
+                files += _save(_figure(family, columns, title), folder / name)
+    return files
+
+
+def _save(figure: Figure, path: Path) -> list[Path]:
+    svg, png = path.with_suffix(".svg"), path.with_suffix(".png")
+    figure.savefig(svg, metadata={"Date": None})
+    figure.set_layout_engine("none")  # the layout found for the first file serves the second
+    figure.savefig(png, metadata={"Software": None})
+    return [svg, png]
+
+
+def _figure(family: Family, columns: Sequence[str], title: str) -> Figure:
+    pictures = [(panel, column) for panel in family.panels for column in columns]
+    wide = min(2, len(pictures))
+    high = -(-len(pictures) // wide)
+    width = (COLUMN, PAGE)[wide - 1]
+    figure = Figure(figsize=(width, high * PANEL_HEIGHT), layout="constrained")
+    FigureCanvasAgg(figure)
+    lines = textwrap.wrap(title, round(width * 13))
+    figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight="bold")
+    figure.set_figheight(high * PANEL_HEIGHT + LINE * (len(lines) + _add_legend(figure, family)))
+    for place, (panel, column) in enumerate(pictures, start=1):
+        _draw_panel(figure.add_subplot(high, wide, place), family, panel, column)
+    return figure
+
+
+def _draw_panel(axes: Axes, family: Family, panel: tuple[Setting, ...], column: str) -> None:
+    curves = [curve for curve in family.curves if curve.panel == panel]
+    for curve in curves:
+        _draw_curve(axes, family, curve, column)
+    axes.set_xlabel(word(family.abscissa))
+    axes.set_ylabel(word(column, 28))
+    if panel:
+        axes.set_title(", ".join(_sentence(setting) for setting in panel), loc="left")
+    axes.margins(x=0.02)
+    if is_logarithmic(
+        np.concatenate([curve.rows[family.abscissa].to_numpy(dtype=float) for curve in curves])
+    ):
+        axes.set_xscale("log")
+    _scale_upwards(axes, [curve.rows[column] for curve in curves], column)
+    if family.abscissa == BELT_SPEED:
+        _mark_kinks(axes, [speed for curve in curves for speed in kinks(curve)])
+
+
+def _scale_upwards(axes: Axes, curves: Sequence[pd.Series], column: str) -> None:
+    """A foot at zero for what is not negative; logarithmic where whole curves lie decades apart."""
+    levels = [curve.median() for curve in curves if curve.notna().any()]
+    lowest = min((curve.min() for curve in curves), default=0.0)
+    if column != "mean_friction" and levels and lowest > 0.2 * min(levels) and max(levels) > 30 * min(levels):
+        axes.set_yscale("log")
+        return
+    low, high = axes.get_ylim()
+    if -0.06 * high < low:  # nothing but the margin below zero, so zero itself is the natural foot
+        axes.set_ylim(0.0, max(high, 1.05 * axes.dataLim.y1))
+
+
+def _draw_curve(axes: Axes, family: Family, curve: Curve, column: str) -> None:
+    x, y = (curve.rows[name].to_numpy(dtype=float) for name in (family.abscissa, column))
+    look = _look(family, curve)
+    axes.plot(x, y, markevery=_marked(y, curve, family), **look)
+    data = Data(x, y, curve.rows, look["color"])
+    if column == "mean_friction":
+        _draw_error(axes, data)
+        _draw_ranges(axes, data)
+    _mark_missing(axes, data)
+
+
+def _look(family: Family, curve: Curve) -> dict[str, Any]:
+    """Colour, line and marker. Of several methods the first is broad and pale, the last lies thin on top."""
+    law, member, method = curve.place
+    _, members, methods = family.sizes
+    shade = 0.8 if members == 1 else 1.0 - 0.6 * member / (members - 1)
+    return {
+        "color": mpl.colormaps[SHADES[law % len(SHADES)]](shade),
+        "linestyle": LINES[method % len(LINES)],
+        "linewidth": (1.1 if members <= MOST_VALUES_IN_LEGEND else 0.6) + 0.9 * (methods - 1 - method),
+        "gapcolor": "white" if method % len(LINES) else None,
+        "marker": MARKERS[(law * members + member) % len(MARKERS)],
+        "markeredgecolor": "white",
+        "markeredgewidth": 0.4,
+    }
+
+
+def _marked(y: NDArray[np.float64], curve: Curve, family: Family) -> list[int]:
+    """The points that get a marker: about ten of a curve with neighbours, and all that no line reaches."""
+    known = np.isfinite(y)
+    neighbours = np.concatenate([known[1:], [False]]) | np.concatenate([[False], known[:-1]])
+    marks = known & ~neighbours
+    laws, members, _ = family.sizes
+    if laws * members > 1 and curve.place[1] in _shown(family):
+        step = max(1, len(y) // 10)
+        marks[step * (curve.place[1] + curve.place[0]) // (laws + members) % step :: step] = True
+    return [int(place) for place in np.flatnonzero(marks & known)]
+
+
+def _draw_error(axes: Axes, data: Data) -> None:
+    """The error as a band, where it is wide enough to be seen at all."""
+    error = data.rows["error"].to_numpy(dtype=float)
+    seen = np.nan_to_num(error) > LEAST_VISIBLE * np.ptp(axes.get_ylim())
+    if seen.any():
+        axes.fill_between(data.x, data.y - error, data.y + error, color=data.color, alpha=0.25, linewidth=0)
+
+
+def _draw_ranges(axes: Axes, data: Data) -> None:
+    """A bar from mean_low to mean_high where the steady state is not unique."""
+    rows = (data.rows["status"] == "not_unique").to_numpy()
+    if not rows.any():
+        return
+    low, high = (data.rows[name].to_numpy(dtype=float)[rows] for name in ("mean_low", "mean_high"))
+    centre = 0.5 * (low + high)
+    axes.errorbar(data.x[rows], centre, yerr=high - centre, fmt="none", color=data.color, capsize=1.5)
+
+
+def _mark_missing(axes: Axes, data: Data) -> None:
+    """A mark on the axis for every point without a number; a curve refused as a whole is only counted."""
+    if (data.rows["status"] == "refused").all():
+        return
+    for status, mark in WITHOUT_NUMBER.items():
+        x = data.x[(data.rows["status"] == status).to_numpy()]
+        where = axes.get_xaxis_transform()
+        if len(x):
+            axes.plot(x, 0.0 * x, mark, color=data.color, ms=4, clip_on=False, transform=where, zorder=5)
+
+
+def _mark_kinks(axes: Axes, speeds: Sequence[float]) -> None:
+    """A thin line at every V_lin, named on a scale of its own above the picture where there is room."""
+    low, high = axes.get_xlim()
+    named: list[float] = []
+    for speed in sorted(set(speeds)):
+        axes.axvline(speed, color="0.45", linewidth=0.5, zorder=0)
+        if not named or speed - named[-1] > 0.12 * (high - low):
+            named.append(speed)
+    above = axes.secondary_xaxis("top")
+    above.spines["top"].set_visible(False)
+    above.set_xticks(named, [r"$V_\mathrm{lin}$" if speed > 0 else r"$-V_\mathrm{lin}$" for speed in named])
+    above.tick_params(length=0, pad=1)
+
+
+def _add_legend(figure: Figure, family: Family) -> int:
+    """Name what tells curves apart, and count what has no number, below the pictures; the lines it takes."""
+    entries = _curve_entries(family) + _status_entries(family)
+    if not entries:
+        return 0
+    longest = max(len(str(entry.get_label())) for entry in entries)
+    lines = math.ceil(len(entries) * (longest + 8) / (16 * figure.get_figwidth()))
+    abreast = math.ceil(len(entries) / lines)
+    title = word(family.member) if family.member else None
+    figure.legend(handles=entries, loc="outside lower center", ncols=abreast, title=title)
+    return math.ceil(len(entries) / abreast) + (title is not None)
+
+
+def _curve_entries(family: Family) -> list[Line2D]:
+    """One entry per look that is drawn; of a long family only values spread over it."""
+    if math.prod(family.sizes) == 1:
+        return []
+    shown = _shown(family)
+    drawn = [curve for curve in family.curves if (curve.rows["status"] == "ok").any()]
+    looks = {curve.place: curve for curve in drawn if curve.place[1] in shown}
+    chosen = [looks[place] for place in sorted(looks)]
+    return [Line2D([], [], label=_label(family, curve), **_look(family, curve)) for curve in chosen]
+
+
+def _shown(family: Family) -> set[int]:
+    """The members that get markers and a place in the legend: all of a few, else a few from first to last."""
+    members = family.sizes[1]
+    return set(np.linspace(0, members - 1, min(members, MOST_VALUES_IN_LEGEND)).round().astype(int).tolist())
+
+
+def _label(family: Family, curve: Curve) -> str:
+    laws, _, methods = family.sizes
+    value = curve.member[1] if curve.member is not None else None
+    law, method = [curve.law] * (laws > 1), [curve.method] * (methods > 1)
+    return ", ".join(law + method + [f"{value:.5g}"] if value is not None else law + method)
+
+
+def _status_entries(family: Family) -> list[Line2D]:
+    """One entry per method and status that gives no number, with how many points it has."""
+    several = family.sizes[2] > 1
+    entries = []
+    for method in dict.fromkeys(curve.method for curve in family.curves):
+        rows = pd.concat([curve.rows["status"] for curve in family.curves if curve.method == method])
+        for status, mark in LEGEND_MARKS.items():
+            if count := int((rows == status).sum()):
+                points = "1 point" if count == 1 else f"{count} points"
+                label = f"{points} {status.replace('_', ' ')}" + (f" ({method})" if several else "")
+                entries.append(Line2D([], [], color="0.3", linestyle="none", marker=mark, label=label))
+    return entries
+
+
+def _sentence(setting: Setting) -> str:
+    name, value = setting
+    return f"no {word(name)}" if value is None else f"{word(name)} = {value:.5g}"

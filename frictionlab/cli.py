@@ -1,0 +1,333 @@
+"""The command line. Nothing heavy is imported before a command needs it: ``--help`` answers at once."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import click
+
+if TYPE_CHECKING:
+    from frictionlab.batch import Job
+    from frictionlab.plan import Planned
+    from frictionlab.runner import Run
+
+OK, BUG, WRONG, FAILED, BROKEN_PLUGIN, INTERRUPTED = 0, 1, 2, 3, 4, 130
+
+overrides_option = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="PATH=VALUE",
+    help="Replace a value of the study; may be repeated.",
+)
+json_option = click.option("--json", "as_json", is_flag=True, help="Print a list of records instead of text.")
+
+
+class CommandError(Exception):
+    """A command that ends here, with an exit code and a message."""
+
+    def __init__(self, code: int, message: str) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command; its exit code. Only our own bugs show a traceback."""
+    try:
+        code = _quietly(arguments)
+    except BaseException as problem:
+        code = _explained(problem)
+    code = _flushed(code)
+    if code == INTERRUPTED and threading.active_count() > 1:
+        os._exit(code)  # a worker deep in a kernel cannot be stopped, and would be waited for
+    return code
+
+
+def _quietly(arguments: Sequence[str] | None) -> int:
+    result = cli.main(None if arguments is None else list(arguments), "frictionlab", standalone_mode=False)
+    return result if isinstance(result, int) else OK
+
+
+def _explained(problem: BaseException) -> int:
+    """Print what went wrong, and choose the exit code."""
+    if isinstance(problem, click.ClickException):
+        problem.show()
+        return problem.exit_code
+    if isinstance(problem.__context__, BrokenPipeError):
+        return _deaf(OK)  # the reader of a help text had enough: click's way to say so
+    if isinstance(problem, click.Abort | KeyboardInterrupt):
+        _tell("interrupted")
+        return INTERRUPTED
+    code, message = _classified(problem)
+    _tell(message)
+    return code
+
+
+def _classified(problem: BaseException) -> tuple[int, str]:
+    from frictionlab.failures import FolderError, SaveError
+    from frictionlab.registry import BrokenPlugin
+    from frictionlab.study import StudyError
+
+    if isinstance(problem, CommandError):
+        return problem.code, str(problem)
+    if isinstance(problem, StudyError | FolderError):
+        return WRONG, str(problem)
+    if isinstance(problem, SaveError):
+        return FAILED, str(problem)
+    if isinstance(problem, BrokenPlugin):
+        return BROKEN_PLUGIN, str(problem)
+    if isinstance(problem, OSError) and problem.errno in (errno.ENOSPC, errno.EDQUOT):
+        return FAILED, f"cannot write the output: {problem.strerror}"
+    text = "".join(traceback.format_exception(problem))
+    return BUG, f"{text}\nThis is a bug of frictionlab; please report it with the lines above and the study."
+
+
+def _tell(message: str) -> None:
+    """A message, on stderr; a closed stderr is nobody's trouble."""
+    with suppress(OSError):
+        click.echo(message, err=True)
+
+
+def _print(text: str) -> None:
+    """A result, on stdout; a reader may have enough of it."""
+    try:
+        click.echo(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _deaf(OK)
+
+
+def _flushed(code: int) -> int:
+    """Flush stdout while its errors can still be told."""
+    try:
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:
+        return _deaf(code)
+    except OSError as problem:
+        _tell(f"cannot write the output: {problem.strerror}")
+        return _deaf(code or FAILED)
+
+
+def _deaf(code: int) -> int:
+    """Let nothing more be written to a stdout that takes nothing."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return code
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="frictionlab", message="%(prog)s %(version)s")
+def cli() -> None:
+    """Average-friction curves of vibrated sliding bodies, every point with a true error.
+
+    Exit codes: 0 ok; 1 a bug of frictionlab; 2 wrong command or study; 3 some points failed or were killed,
+    an expectation failed, or the results could not be written; 4 a plugin is broken; 130 interrupted, the
+    same command continues.
+    """
+
+
+@cli.command()
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "out",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Where to; runs/<study name> if left out.",
+)
+@overrides_option
+@click.option(
+    "-j", "workers", type=click.IntRange(min=1), metavar="N", help="Threads; all cores if left out."
+)
+@json_option
+@click.option("--force", is_flag=True, help="Replace the results of another study or version in DIR.")
+def run(**options: Any) -> int:
+    """Run STUDY, a file or a folder of studies, and write its table and figures to DIR.
+
+    The same study into the same DIR takes over the points that are finished.
+    """
+    from frictionlab import batch  # with pandas
+
+    given = RunOptions(**options)
+    jobs = batch.jobs(given.study, given.out, given.overrides)
+    batch.check_folders(jobs, given.existing)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    done = [_run(job, given) for job in jobs]
+    if given.as_json:
+        _print_records(
+            [record for job, result in zip(jobs, done, strict=True) for record in _rows(job, result, given)]
+        )
+    return max(_code(result) for result in done)
+
+
+class RunOptions(NamedTuple):
+    """The options of ``run``."""
+
+    study: Path
+    out: Path | None
+    overrides: tuple[str, ...]
+    workers: int | None
+    as_json: bool
+    force: bool
+
+    @property
+    def existing(self) -> Literal["reuse", "replace"]:
+        """What becomes of results already in the folder."""
+        return "replace" if self.force else "reuse"
+
+
+def _run(job: Job, given: RunOptions) -> Run:
+    """Run one study, print what it found, then draw it: figures wait for nobody's table."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    from frictionlab import runner
+    from frictionlab.failures import SaveError
+    from frictionlab.progress import Meter
+
+    meter = Meter(sys.stderr)
+    pool = ThreadPoolExecutor(given.workers or os.cpu_count())
+    try:
+        result = runner.run(job.study, job.out, given.overrides, given.existing, pool, meter)
+    except runner.Interrupted as problem:
+        raise CommandError(INTERRUPTED, _how_far(problem.run)) from problem
+    except runner.UnsavedError as problem:
+        _print_records(_rows(job, problem.run, given)) if given.as_json else _show(problem.run)
+        raise
+    finally:
+        meter.close()
+        pool.shutdown(wait=False, cancel_futures=True)
+    _show_failed(result) if given.as_json else _show(result)
+    try:
+        _draw(job, result)
+    except OSError as problem:
+        raise SaveError(f"cannot write the figures in {job.out}: {problem.strerror or problem}") from problem
+    return result
+
+
+def _how_far(result: Run) -> str:
+    done = len(result.table) - result.counts.get("killed", 0)
+    kept = f"kept in {result.folder}" if result.folder else "lost"
+    return (
+        f"interrupted: {done} of {len(result.table)} points are done and {kept}; the same command continues"
+    )
+
+
+def _show(result: Run) -> None:
+    from frictionlab.summary import summary
+
+    _print(summary(result))
+
+
+def _show_failed(result: Run) -> None:
+    """What was expected and is not so, beside the records."""
+    from frictionlab.summary import verdict_line
+
+    for verdict in result.verdicts:
+        if not verdict.passed:
+            _tell(verdict_line(verdict))
+
+
+def _draw(job: Job, result: Run) -> None:
+    from frictionlab.charts import draw  # with matplotlib, which takes a second
+
+    if draw(result.table, job.study.title or job.name, job.out / "figures"):
+        _tell(f"figures in {job.out / 'figures'}")
+
+
+def _rows(job: Job, result: Run, given: RunOptions) -> list[dict[str, Any]]:
+    from frictionlab.table import records
+
+    whose = {"study": job.name} if given.study.is_dir() else {}
+    return [whose | record for record in records(result.table)]
+
+
+def _print_records(records: list[dict[str, Any]]) -> None:
+    """One record a line, null for an empty cell."""
+    lines = ",\n".join(json.dumps(record, allow_nan=False) for record in records)
+    _print(f"[\n{lines}\n]")
+
+
+def _code(result: Run) -> int:
+    bad = result.counts.keys() & {"failed", "killed"}
+    return FAILED if bad or not all(verdict.passed for verdict in result.verdicts) else OK
+
+
+@cli.command()
+@click.argument("study", type=click.Path(path_type=Path))
+@overrides_option
+@json_option
+def check(study: Path, overrides: tuple[str, ...], as_json: bool) -> None:
+    """Check STUDY and tell what it will take: models, refusals, cost. Nothing is computed."""
+    from frictionlab import batch
+    from frictionlab.plan import plan
+
+    planned = [(job.name, plan(job.study)) for job in batch.jobs(study, None, overrides)]
+    if as_json:
+        _print_records([{"study": name, **entry.record()} for name, entries in planned for entry in entries])
+    else:
+        lines = [line for name, entries in planned for line in _planned_lines(name, entries)]
+        _print("\n".join([*lines, *_cost_lines([entry for _, entries in planned for entry in entries])]))
+
+
+def _planned_lines(name: str, planned: Sequence[Planned]) -> list[str]:
+    lines = [name]
+    for entry in planned:
+        lines.append(f"  {entry.law} by {entry.method}: points {entry.points}, curves {entry.curves}")
+        lines += [f"    {count} by {model}" for model, count in entry.models.items()]
+        lines += [f"    {count} refused: {reason}" for reason, count in entry.refused.items()]
+    return lines
+
+
+def _cost_lines(planned: Sequence[Planned]) -> list[str]:
+    kernel, cores = sum(entry.seconds for entry in planned), os.cpu_count() or 1
+    return [
+        f"about {_time(kernel)} of kernel time, {_time(kernel / cores)} on {cores} cores",
+        "the first run with a law also compiles its kernels: some seconds, once",
+    ]
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds * 1e3:.3g} ms" if seconds < 1.0 else f"{seconds:.3g} s"
+
+
+@cli.command()
+@click.argument("name", required=False)
+@json_option
+def laws(name: str | None, as_json: bool) -> None:
+    """List the installed laws, or tell all about the law NAME."""
+    from frictionlab import registry
+    from frictionlab.listing import details, law_record, one_line_each
+
+    if name is not None and name not in registry.law_names():
+        raise click.UsageError(f"no law '{name}'; there are {', '.join(registry.law_names())}")
+    records = [law_record(each) for each in ([name] if name else registry.law_names())]
+    _print_records(records) if as_json else _print(details(records[0]) if name else one_line_each(records))
+
+
+@cli.command()
+@json_option
+def methods(as_json: bool) -> None:
+    """List the installed methods and what they refuse."""
+    from frictionlab import registry
+    from frictionlab.listing import method_record, one_line_each
+
+    records = [method_record(each) for each in registry.method_names()]
+    _print_records(records) if as_json else _print(one_line_each(records))
+
+
+@cli.command()
+def schema() -> None:
+    """Print the JSON Schema of a study file."""
+    from frictionlab.study.schema import schema as study_schema
+
+    _print(json.dumps(study_schema(), indent=2))

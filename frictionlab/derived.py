@@ -1,0 +1,43 @@
+"""Columns that follow from a point's inputs and its mean friction, whatever the method."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Floats
+from frictionlab.scene import Scene
+from frictionlab.theory import friction_free_velocity
+
+
+def derived_columns(scenes: Sequence[Scene], law: FrictionLaw, mean_friction: Floats) -> dict[str, Floats]:
+    """Mean friction, belt speed, friction force against their natural scales; NaN where a scale is zero.
+
+    ``presliding_ratio`` stays empty for laws without a presliding length.
+    """
+    speed = np.array([scene.belt_speed for scene in scenes])
+    sliding = np.array([law.sliding_friction(abs(scene.belt_speed)) for scene in scenes])
+    limit = np.array(
+        [(scene.normal_load or 0.0) * value for scene, value in zip(scenes, sliding, strict=True)]
+    )
+    return {
+        "normalized_friction": _ratio(mean_friction, sliding * np.sign(speed)),
+        "velocity_ratio": _ratio(speed, np.array([friction_free_velocity(scene) for scene in scenes])),
+        "friction_to_drive": _ratio(limit, np.array([force_amplitude(scene) for scene in scenes])),
+    }
+
+
+def force_amplitude(scene: Scene) -> float:
+    """Of the drive along x1, else of the load along x2 [K_1 L]; 0 where nothing pushes."""
+    load = scene.transverse.load if scene.transverse is not None else None
+    forces = [abs(force.phasor(scene.frequency)) for force in (scene.drive, load) if force is not None]
+    return next((force for force in forces if force > 0.0), 0.0)
+
+
+def _ratio(above: Floats, below: Floats) -> Floats:
+    """Their quotient; NaN where the scale below is zero or infinite."""
+    usable = np.isfinite(below) & (below != 0.0)
+    quotient: Floats = np.divide(above, below, out=np.full(len(below), np.nan), where=usable)
+    return quotient

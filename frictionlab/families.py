@@ -1,0 +1,126 @@
+"""A result table taken apart into curves: what runs along the axis, what tells neighbours apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+BELT_SPEED = "scene.belt_speed"
+
+Setting = tuple[str, float | None]  # a swept input and its value; None where a law has no such parameter
+
+
+@dataclass(frozen=True)
+class Curve:
+    """The rows of one law and method whose inputs differ in the abscissa alone, sorted along it.
+
+    member: the setting that tells the curve from its neighbours, if any; panel: those that give it a picture
+    of its own. place: the numbers of its law, member and method among those of the table.
+    """
+
+    law: str
+    method: str
+    panel: tuple[Setting, ...]
+    member: Setting | None
+    place: tuple[int, int, int]
+    rows: pd.DataFrame
+
+
+@dataclass(frozen=True)
+class Family:
+    """Every curve of a table, the input along the axis, and the input that tells neighbours apart."""
+
+    abscissa: str
+    member: str | None
+    curves: list[Curve]
+
+    @property
+    def panels(self) -> list[tuple[Setting, ...]]:
+        """The pictures the curves belong to, in order."""
+        return list(dict.fromkeys(curve.panel for curve in self.curves))
+
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """How many laws, members and methods there are."""
+        laws, members, methods = zip(*(curve.place for curve in self.curves), strict=True)
+        return max(laws) + 1, max(members) + 1, max(methods) + 1
+
+
+def family_of(table: pd.DataFrame) -> Family | None:
+    """The curves of a table; None where nothing is swept.
+
+    Along the axis: belt speed, or the swept input of most values where belt speed is not swept. Of the others
+    the one of most values tells neighbours apart; each further one sets up panels.
+    """
+    swept = sorted(_swept_inputs(table), key=lambda name: table[name].nunique())
+    if not swept:
+        return None
+    abscissa = BELT_SPEED if BELT_SPEED in swept else swept[-1]
+    others = [name for name in swept if name != abscissa]
+    curves = _curves(table, abscissa, others)
+    return Family(abscissa, others[-1] if others else None, curves)
+
+
+def _swept_inputs(table: pd.DataFrame) -> list[str]:
+    """Inputs of more than one value; a law's parameter counts only where it varies within one law."""
+    numbers = table.select_dtypes("number").columns
+    scene = [name for name in numbers if name.startswith("scene.") and table[name].nunique() > 1]
+    parameters = [name for name in numbers if name.startswith("law.")]
+    return scene + [name for name in parameters if table.groupby("law")[name].nunique().max() > 1]
+
+
+def _curves(table: pd.DataFrame, abscissa: str, others: list[str]) -> list[Curve]:
+    laws, methods = table["law"].unique().tolist(), table["method"].unique().tolist()
+    members = sorted(table[others[-1]].dropna().unique().tolist()) if others else []
+    curves = []
+    for (law, method, *values), rows in table.groupby(["law", "method", *others], sort=False, dropna=False):
+        settings = [_setting(name, value) for name, value in zip(others, values, strict=True)]
+        member = settings.pop() if settings else None
+        place = laws.index(law), _index(members, member), methods.index(method)
+        curves.append(Curve(law, method, tuple(settings), member, place, rows.sort_values(abscissa)))
+    return sorted(curves, key=_order)
+
+
+def _setting(name: str, value: Any) -> Setting:
+    return name, None if pd.isna(value) else float(value)
+
+
+def _index(members: list[float], member: Setting | None) -> int:
+    return 0 if member is None or member[1] is None else members.index(member[1])
+
+
+def _order(curve: Curve) -> tuple[Any, ...]:
+    return [(value is not None, value or 0.0) for _, value in curve.panel], curve.place
+
+
+def kinks(curve: Curve) -> list[float]:
+    """V_lin, and its mirror image, inside the belt speeds of a curve that has its closed-form kink there.
+
+    That is a curve whose body moves along the belt alone and whose friction of steady sliding is the same at
+    every speed: from V_lin on slip no longer reverses. V_lin is read from velocity_ratio.
+    """
+    rows = curve.rows[curve.rows["velocity_ratio"].abs() > 0]
+    sliding = (rows["mean_friction"] / rows["normalized_friction"]).dropna().abs()
+    across = rows["transverse_velocity_amplitude"].abs().max() > 0
+    if across or sliding.empty or sliding.max() - sliding.min() > 1e-9 * sliding.max():
+        return []
+    limit = float((rows[BELT_SPEED] / rows["velocity_ratio"]).median())
+    low, high = curve.rows[BELT_SPEED].min(), curve.rows[BELT_SPEED].max()
+    return [speed for speed in (-limit, limit) if low < speed < high]
+
+
+def is_logarithmic(values: NDArray[np.float64]) -> bool:
+    """Whether the distinct values are spaced evenly in their logarithms rather than in themselves."""
+    steps = np.unique(values)
+    if len(steps) < 3 or steps[0] <= 0 or steps[-1] < 5 * steps[0]:
+        return False
+    return _unevenness(np.log(steps)) < _unevenness(steps)
+
+
+def _unevenness(steps: NDArray[np.float64]) -> float:
+    gaps = np.diff(steps)
+    return float(gaps.std() / gaps.mean())

@@ -1,0 +1,241 @@
+"""The only place that configures numba: how kernels are compiled, how they see a law, how they are cached.
+
+A kernel takes a law as its first argument and calls its methods, ``law.sliding_vector(v)``. Interpreted, that is
+the law itself; compiled, it is a named tuple of the law's numbers whose *type* tells numba which law's methods to
+compile. numba's own cache misses an edit in another file, so the disk-cached entry of a kernel lives in a small
+module named by a hash of every piece of code and every constant the kernel and the law can reach.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import inspect
+import os
+import platform
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from functools import cache, partial
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import llvmlite
+import numba
+import numpy as np
+from numba.core.errors import NumbaError
+from numba.extending import overload, overload_method
+
+from frictionlab.laws.base import FrictionLaw
+
+_COMMON = {"nogil": True, "error_model": "numpy"}
+_INNER = _COMMON | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+def njit(function: Callable[..., Any]) -> Any:
+    """Compile a kernel function; it runs without the interpreter lock and divides as IEEE 754 says."""
+    return numba.njit(**_COMMON)(function)
+
+
+def inner(function: Callable[..., Any]) -> Any:
+    """The same for a function only other kernels call: it gets no entry from Python and compiles faster."""
+    return numba.njit(**_INNER)(function)
+
+
+def fast(function: Callable[..., Any]) -> Any:
+    """The same for inner arithmetic that never meets NaN or infinity on purpose."""
+    return numba.njit(fastmath=True, **_INNER)(function)
+
+
+class CannotCompile(Exception):
+    """A law that runs interpreted but not compiled; the message names the law, the kernel and the remedy."""
+
+
+_law_of_numbers: dict[type, type[FrictionLaw]] = {}
+
+
+def _open_door(method: str) -> None:
+    """Let kernels call this method on a law's numbers."""
+
+    def resolve(self: Any, *_: Any) -> Any:
+        law = _law_of_numbers.get(self.instance_class)
+        return None if law is None else getattr(law, method)
+
+    resolve.__signature__ = inspect.signature(getattr(FrictionLaw, method))  # type: ignore[attr-defined]
+    for kind in (numba.types.NamedTuple, numba.types.NamedUniTuple):
+        overload_method(kind, method, strict=False)(resolve)
+
+
+for _method in ("sliding_friction", "sliding_vector"):
+    _open_door(_method)
+
+
+def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
+    """A kernel function with two bodies, chosen by the type of its last argument: ``float`` or ``complex``.
+
+    numba types a branch it never takes; this keeps the other dimension's code out. Both bodies are plain
+    functions of the same signature.
+    """
+
+    def chosen(*arguments: Any) -> Any:
+        return (in_the_plane if isinstance(arguments[-1], complex) else on_the_line)(*arguments)
+
+    def resolve(*types: Any) -> Any:
+        return in_the_plane if isinstance(types[-1], numba.types.Complex) else on_the_line
+
+    chosen.bodies = (on_the_line, in_the_plane)  # type: ignore[attr-defined]
+    resolve.__signature__ = inspect.signature(on_the_line)  # type: ignore[attr-defined]
+    overload(chosen, jit_options=_INNER | {"fastmath": True}, strict=False)(resolve)
+    return chosen
+
+
+def compiled(kernel: Any, law: FrictionLaw | None = None) -> Callable[..., Any]:
+    """The disk-cached entry of a kernel; with a law, the kernel's first argument is already filled in.
+
+    Raises CannotCompile, when called, where numba cannot compile the law's methods.
+    """
+    if law is None:
+        return _entry(kernel, None, ())[0]
+    numbers = law.numbers()
+    entry, numbers_type = _entry(kernel, type(law), tuple(numbers))
+    return partial(_guarded, entry, type(law), numbers_type(**numbers))
+
+
+def _guarded(entry: Callable[..., Any], law: type[FrictionLaw], *arguments: Any) -> Any:
+    try:
+        return entry(*arguments)
+    except NumbaError as problem:
+        raise CannotCompile(
+            f"law {law.__name__} ({law.__module__}) cannot be compiled by numba for this method: "
+            f"{str(problem).strip()}\nUse only float and complex arithmetic and the math module in its methods."
+        ) from problem
+
+
+@cache
+def _entry(kernel: Any, law: type[FrictionLaw] | None, fields: tuple[str, ...]) -> tuple[Any, Any]:
+    """The compiled entry and the type of the law's numbers (None without a law)."""
+    parameters = ", ".join(inspect.signature(kernel.py_func).parameters)
+    source = (
+        '"""A compiled kernel entry of frictionlab, named by its content; safe to delete."""\n'
+        "from typing import NamedTuple\n"
+        "from numba import njit\n\n\n"
+        "class Numbers(NamedTuple):\n    "
+        + "\n    ".join(f"{name}: float" for name in fields or ("none",))
+        + "\n\n\n"
+        '@njit(nogil=True, error_model="numpy", cache=True)\n'
+        f"def entry({parameters}):\n    return kernel({parameters})\n"
+    )
+    name = f"frictionlab_{kernel.py_func.__name__}_{_fingerprint(source, kernel, law)}"
+    module = _load(name, source, kernel)
+    if law is not None:
+        _law_of_numbers[module.Numbers] = law
+    return module.entry, module.Numbers if law is not None else None
+
+
+def _load(name: str, source: str, kernel: Any) -> ModuleType:
+    path = _written(cache_folder() / f"{name}.py", source)
+    if path is None:  # nowhere to write: compile afresh in every process
+        path = Path(tempfile.mkdtemp(prefix="frictionlab-")) / f"{name}.py"
+        path.write_text(source)
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    module.kernel = kernel  # type: ignore[attr-defined]
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _written(path: Path, source: str) -> Path | None:
+    """The module file, written once and whole, or None where that is not possible."""
+    try:
+        if not path.exists():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+            with os.fdopen(handle, "w") as file:
+                file.write(source)
+            os.replace(temporary, path)
+    except OSError:
+        return None
+    return path
+
+
+def cache_folder() -> Path:
+    """Where compiled entries are kept: $FRICTIONLAB_CACHE, else the user's cache folder."""
+    if chosen := os.environ.get("FRICTIONLAB_CACHE"):
+        return Path(chosen)
+    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"
+    return Path(base) / "frictionlab"
+
+
+def _fingerprint(*roots: Any) -> str:
+    """A hash of everything the roots can reach: code, constants, helpers in any file, and the compiler."""
+    versions = (sys.version, platform.machine(), numba.__version__, llvmlite.__version__, np.__version__)
+    digest = hashlib.sha256(repr(versions).encode())
+    digest.update(Path(__file__).read_bytes())
+    for piece in _pieces(roots, set()):
+        digest.update(piece.encode())
+        digest.update(b"\0")
+    return digest.hexdigest()[:24]
+
+
+_FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "typing", "pydantic", "abc"}
+
+
+def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
+    """Text that changes whenever what these values compute changes; each object is visited once."""
+    for value in values:
+        value = getattr(value, "py_func", value)
+        if id(value) in seen:
+            continue
+        if isinstance(value, FunctionType | type | ModuleType):
+            seen.add(id(value))
+            yield from _pieces_of_code(value, seen)
+        elif isinstance(value, np.ndarray):
+            yield f"{value.dtype}{value.shape}{value.tobytes()!r}"
+        else:
+            yield repr(value)
+
+
+def _pieces_of_code(value: Any, seen: set[int]) -> Iterator[str]:
+    home = getattr(value, "__module__", None) or getattr(value, "__name__", "")
+    yield f"{home}.{getattr(value, '__qualname__', '')}"
+    if home.partition(".")[0] in _FOREIGN or isinstance(value, ModuleType):
+        return
+    if isinstance(value, type):
+        yield repr(getattr(value, "_fields", ()))
+        yield from _pieces([base for base in value.__mro__[1:] if base is not object], seen)
+        yield from _pieces([m for m in vars(value).values() if isinstance(m, FunctionType)], seen)
+        return
+    yield from _pieces_of_bytecode(value.__code__)
+    cells = [cell.cell_contents for cell in value.__closure__ or ()]
+    yield from _pieces([*(value.__defaults__ or ()), *cells, *_globals_used(value)], seen)
+
+
+def _pieces_of_bytecode(code: CodeType) -> Iterator[str]:
+    yield repr((code.co_code, code.co_names, code.co_varnames))
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _pieces_of_bytecode(constant)
+        else:
+            yield repr(constant)
+
+
+def _globals_used(function: FunctionType) -> Iterator[Any]:
+    """The globals a function names, and what it takes from the modules among them."""
+    names = list(_names(function.__code__))
+    for name in names:
+        if name in function.__globals__:
+            value = function.__globals__[name]
+            yield value
+            if isinstance(value, ModuleType) and value.__name__.partition(".")[0] not in _FOREIGN:
+                yield from (getattr(value, attribute) for attribute in names if hasattr(value, attribute))
+
+
+def _names(code: CodeType) -> Iterator[str]:
+    yield from code.co_names
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _names(constant)

@@ -1,0 +1,1 @@
+"""Ways to find a steady state, one per file."""

@@ -1,0 +1,73 @@
+"""What every steady-state method is: it says what it accepts, refuses the rest with a reason, solves curves."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.quantities import Record
+from frictionlab.scene import Scene
+
+Status = Literal["ok", "refused", "failed", "not_unique", "killed"]
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """One period of a steady state in smooth pieces, each sampled at the same Gauss-Lobatto nodes.
+
+    tau [panels, nodes] increases; x, v, friction [panels, nodes] are complex (x1 + i x2), friction being the
+    coefficient along the slip velocity (what resists); stick [panels] marks pieces at rest on the belt.
+    """
+
+    tau: Floats
+    x: NDArray[np.complex128]
+    v: NDArray[np.complex128]
+    friction: NDArray[np.complex128]
+    stick: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What a method found on n scenes that differ in belt speed alone, one entry per scene.
+
+    columns: table column -> n floats, NaN where the column does not apply. orbit(i): the orbit of scene i, made
+    when asked for; None without one.
+    """
+
+    status: list[Status]
+    reason: list[str]
+    model: list[str]
+    error_kind: list[str]
+    columns: dict[str, Floats]
+    orbit: Callable[[int], Orbit | None] = field(repr=False)
+
+
+class Method(Record, ABC):
+    """A way to find steady states; its fields are the parameters a study may set."""
+
+    name: ClassVar[str]
+
+    @abstractmethod
+    def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
+        """Why this method cannot do this scene and law, as a sentence; None when it can."""
+
+    @abstractmethod
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        """Answer scenes that differ in belt speed alone, in ascending order; none of them refused."""
+
+    @abstractmethod
+    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
+        """Expected kernel time per point [s], once compiled; for planning only."""
+
+
+def refused(reasons: Sequence[str]) -> Answers:
+    """The answers of a method that cannot do these scenes."""
+    n = len(reasons)
+    return Answers(["refused"] * n, list(reasons), [""] * n, [""] * n, {}, lambda i: None)  # noqa: ARG005

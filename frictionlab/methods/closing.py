@@ -1,0 +1,321 @@
+"""Closing an orbit: the fixed point of a period map, and how far from it the answer is.
+
+States are vectors z whose Euclidean norm is that of energy: sqrt(stiffness)*y, u along x1, then along x2. In it
+no two orbits of a monotone law move apart (Leine & van de Wouw, 2008), which makes a Picard step always safe and
+turns a distance of states into a bound on the mean friction.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.kernel import by_dimension, inner
+from frictionlab.methods.sliding_map import Mapped, period_map, track_of
+from frictionlab.scene import Body
+
+MOST_MAPS = 600
+FINER = 16.0
+"""How much finer the last map is; of order eight, its own error is then a small part of what it measures."""
+
+
+def _pack_line(body: Body, z: Any, y: float, u: float) -> None:
+    z[0], z[1] = math.sqrt(body.stiffness_mean) * y, u
+
+
+def _pack_plane(body: Body, z: Any, y: complex, u: complex) -> None:
+    z[0], z[1] = math.sqrt(body.stiffness_mean + body.stiffness_split) * y.real, u.real
+    z[2], z[3] = math.sqrt(body.stiffness_mean - body.stiffness_split) * y.imag, u.imag
+
+
+pack = by_dimension(_pack_line, _pack_plane)
+
+
+def _unpack_line(body: Body, z: Any, like: float) -> Any:
+    return z[0] / math.sqrt(body.stiffness_mean), z[1]
+
+
+def _unpack_plane(body: Body, z: Any, like: complex) -> Any:
+    y = complex(
+        z[0] / math.sqrt(body.stiffness_mean + body.stiffness_split),
+        z[2] / math.sqrt(body.stiffness_mean - body.stiffness_split),
+    )
+    return y, complex(z[1], z[3])
+
+
+unpack = by_dimension(_unpack_line, _unpack_plane)
+
+
+def _size_line(like: float) -> int:
+    return 2
+
+
+def _size_plane(like: complex) -> int:
+    return 4
+
+
+size_of = by_dimension(_size_line, _size_plane)
+
+
+@inner
+def mapped(
+    law: Any, body: Body, belt_speed: float, z: Any, residual: Any, accuracy: float, like: Any
+) -> Mapped:
+    """One period map from z; leaves image - z in residual."""
+    y, u = unpack(body, z, like)
+    image = period_map(law, body, belt_speed, y, u, accuracy, track_of(0))
+    pack(body, residual, image.y - y, image.u - u)
+    return image
+
+
+@inner
+def _norm(z: Any) -> float:
+    total = 0.0
+    for value in z:
+        total += value * value
+    return math.sqrt(total)
+
+
+@inner
+def _times(matrix: Any, z: Any, out: Any) -> None:
+    for row in range(z.size):
+        total = 0.0
+        for column in range(z.size):
+            total += matrix[row, column] * z[column]
+        out[row] = total
+
+
+@inner
+def inverted(matrix: Any, inverse: Any) -> bool:
+    """Gauss-Jordan elimination with row pivots; False where the matrix is singular to rounding."""
+    n = matrix.shape[0]
+    work = matrix.copy()
+    for row in range(n):
+        for column in range(n):
+            inverse[row, column] = 1.0 if row == column else 0.0
+    for pivot in range(n):
+        best = pivot
+        for row in range(pivot + 1, n):
+            if abs(work[row, pivot]) > abs(work[best, pivot]):
+                best = row
+        if not abs(work[best, pivot]) > 1e-13:
+            return False
+        for column in range(n):
+            work[pivot, column], work[best, column] = work[best, column], work[pivot, column]
+            inverse[pivot, column], inverse[best, column] = inverse[best, column], inverse[pivot, column]
+        scale = 1.0 / work[pivot, pivot]
+        for column in range(n):
+            work[pivot, column] = work[pivot, column] * scale
+            inverse[pivot, column] = inverse[pivot, column] * scale
+        for row in range(n):
+            if row != pivot:
+                factor = work[row, pivot]
+                for column in range(n):
+                    work[row, column] = work[row, column] - factor * work[pivot, column]
+                    inverse[row, column] = inverse[row, column] - factor * inverse[pivot, column]
+    return True
+
+
+@inner
+def _free_block(damping: float, stiffness: float, period: float, jacobian: Any, at: int) -> None:
+    """Monodromy minus identity of one friction-free direction, in the norm of energy."""
+    s, half = math.sqrt(stiffness), 0.5 * damping
+    square = stiffness - half * half
+    root = math.sqrt(abs(square)) * period
+    if square > 0.0:
+        c, sn = math.cos(root), period * (math.sin(root) / root if root > 0.0 else 1.0)
+    else:
+        c, sn = (
+            math.cosh(min(root, 300.0)),
+            period * (math.sinh(min(root, 300.0)) / root if root > 0.0 else 1.0),
+        )
+    decay = math.exp(-half * period)
+    jacobian[at, at] = decay * (c + sn * half) - 1.0
+    jacobian[at, at + 1] = decay * sn * s
+    jacobian[at + 1, at] = -decay * sn * s
+    jacobian[at + 1, at + 1] = decay * (c - sn * half) - 1.0
+
+
+@inner
+def free_inverse(body: Body, rubbing: float, inverse: Any) -> None:
+    """Inverse of (monodromy - identity) of the body with friction as a dashpot of this coefficient."""
+    n = inverse.shape[0]
+    period = 2.0 * math.pi / body.frequency
+    jacobian = np.zeros((n, n))
+    damping, stiffness = body.damping_mean + body.damping_split, body.stiffness_mean + body.stiffness_split
+    _free_block(damping + rubbing, stiffness, period, jacobian, 0)
+    if n == 4:
+        damping, stiffness = (
+            body.damping_mean - body.damping_split,
+            body.stiffness_mean - body.stiffness_split,
+        )
+        _free_block(damping + rubbing, stiffness, period, jacobian, 2)
+    inverted(jacobian, inverse)
+
+
+@inner
+def monodromy(
+    law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, matrix: Any, like: Any
+) -> int:
+    """The derivative of the period map by central differences [n, n]; returns the maps it took."""
+    n = z.size
+    shift = 1e-4 * (1.0 + _norm(z)) if accuracy > 1e-9 else 1e-5 * (1.0 + _norm(z))
+    ahead, behind, trial = np.empty(n), np.empty(n), np.empty(n)
+    for column in range(n):
+        for row in range(n):
+            trial[row] = z[row] + (shift if row == column else 0.0)
+        mapped(law, body, belt_speed, trial, ahead, accuracy, like)
+        trial[column] = z[column] - shift
+        mapped(law, body, belt_speed, trial, behind, accuracy, like)
+        for row in range(n):
+            matrix[row, column] = (ahead[row] - behind[row]) / (2.0 * shift) + (1.0 if row == column else 0.0)
+    return 2 * n
+
+
+@inner
+def _newton_inverse(
+    law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, inverse: Any, like: Any
+) -> bool:
+    n = z.size
+    matrix = np.empty((n, n))
+    monodromy(law, body, belt_speed, z, accuracy, matrix, like)
+    for row in range(n):
+        matrix[row, row] = matrix[row, row] - 1.0
+    return inverted(matrix, inverse)
+
+
+@inner
+def _broyden(inverse: Any, step: Any, change: Any, work: Any) -> None:
+    """Broyden's update of the inverse (1965, by the Sherman-Morrison formula)."""
+    n = step.size
+    _times(inverse, change, work)
+    scale = 0.0
+    for i in range(n):
+        scale += step[i] * work[i]
+    if abs(scale) < 1e-3 * _norm(step) ** 2:
+        return
+    for column in range(n):
+        row_sum = 0.0
+        for i in range(n):
+            row_sum += step[i] * inverse[i, column]
+        change[column] = row_sum / scale
+    for row in range(n):
+        for column in range(n):
+            inverse[row, column] = inverse[row, column] + (step[row] - work[row]) * change[column]
+
+
+class Closed(NamedTuple):
+    """A closed orbit's integral of friction [periods], error of the mean, and what it took; maps < 0: gave up."""
+
+    rubbed: Any
+    error: float
+    maps: int
+    stuck: float
+    closest: float
+
+
+@inner
+def mean_error(body: Body, residual: Any, distance: float) -> float:
+    """Bound on the error of the mean friction of an orbit that closes up to the residual.
+
+    Integrate the equation of motion along x1 over the period for the orbit and for the true one: the friction
+    impulses differ by the change of du + damping*dy, which the residual is, plus the integral of dx, which the
+    distance of the states bounds because orbits of a monotone law never move apart.
+    """
+    period = 2.0 * math.pi / body.frequency
+    ends = abs(residual[1]) + (body.damping_mean + body.damping_split) * abs(residual[0])
+    return (distance + ends / period) / body.normal_load
+
+
+@inner
+def close(
+    law: Any, body: Body, belt_speed: float, z: Any, inverse: Any, tolerance: float, like: Any
+) -> Closed:
+    """Find the fixed point from the guess z with the guess of the inverse of (monodromy - identity).
+
+    Broyden steps with maps as accurate as the residual deserves; where the residual stops falling, Newton with
+    a difference Jacobian, then Picard. One criterion ends it: a map much finer than those the orbit was found
+    with leaves a residual whose bound on the mean is below the tolerance.
+    """
+    n = z.size
+    residual, trial, fresh, step, work = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    finest = 0.1 * tolerance * body.normal_load
+    floor = 2e-15 * (1.0 + _norm(z) + abs(belt_speed))
+    finest = max(finest, floor)
+    coarse = max(finest, 1e-4 * body.normal_load)
+    accuracy = coarse
+    image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+    maps, stalls, boost = 1, 0, 1.0
+    rubbed, best_error = image.rubbed, 1e300
+    period = 2.0 * math.pi / body.frequency
+    while maps < MOST_MAPS:
+        length = _norm(residual)
+        if image.steps < 0 or not length < 1e300:
+            return Closed(image.rubbed, best_error, -maps, image.stuck, image.closest)
+        if image.stuck >= period * (1.0 - 1e-9) and belt_speed != 0.0:
+            for i in range(n):  # carried by the belt all the time: go on by many periods at once
+                z[i] = z[i] + boost * residual[i]
+            boost *= 2.0
+            image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+            maps += 1
+            continue
+        _times(inverse, residual, step)
+        if accuracy <= finest and mean_error(body, residual, _norm(step)) <= 2.0 * tolerance:
+            for i in range(n):
+                trial[i] = z[i] - step[i]
+            image = mapped(law, body, belt_speed, trial, fresh, finest / FINER, like)
+            maps += 1
+            _times(inverse, fresh, work)
+            error = 2.0 * mean_error(body, fresh, _norm(work)) + floor / body.normal_load
+            if error < best_error:
+                best_error, rubbed = error, image.rubbed
+                for i in range(n):
+                    z[i] = trial[i]
+            if error <= tolerance or finest <= floor:
+                return Closed(rubbed, best_error, maps, image.stuck, image.closest)
+            finest = max(floor, finest / FINER)
+            accuracy = finest
+            for i in range(n):
+                residual[i] = fresh[i]
+            stalls += 1
+            if stalls > 3:
+                _newton_inverse(law, body, belt_speed, z, finest, inverse, like)
+                maps += 2 * n
+                stalls = 0
+                image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+            continue
+        finer = max(finest, min(accuracy, 1e-2 * length))
+        for i in range(n):
+            trial[i] = z[i] - step[i]
+        image = mapped(law, body, belt_speed, trial, fresh, finer, like)
+        maps += 1
+        if _norm(fresh) < 0.7 * length or (accuracy > finer and _norm(fresh) < 0.9 * length):
+            stalls = 0
+        else:
+            stalls += 1
+        if _norm(fresh) <= 1.5 * length:
+            for i in range(n):
+                step[i] = -step[i]
+                work[i] = fresh[i] - residual[i]
+                z[i] = trial[i]
+                residual[i] = fresh[i]
+            change = work.copy()
+            _broyden(inverse, step, change, work)
+        else:
+            stalls += 1
+        accuracy = finer
+        if stalls >= 3:
+            good = _newton_inverse(law, body, belt_speed, z, max(finest, 1e-9), inverse, like)
+            maps += 2 * n
+            image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+            maps += 1
+            if not good or stalls >= 5:
+                for _ in range(4):
+                    for i in range(n):
+                        z[i] = z[i] + residual[i]
+                    image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+                    maps += 1
+            stalls = 1 if stalls < 5 else 0
+    return Closed(rubbed, best_error, -maps, image.stuck, image.closest)

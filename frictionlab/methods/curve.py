@@ -1,0 +1,128 @@
+"""Kernels of shooting: the orbits of one curve, closed by continuation in belt speed, and what is read from them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.kernel import inner
+from frictionlab.methods.closing import close, free_inverse, mapped, monodromy, pack, size_of, unpack
+from frictionlab.methods.sliding_map import Track, period_map, track_of
+from frictionlab.orbit import READ, read
+from frictionlab.scene import Body, Mass
+
+
+@inner
+def _first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
+    """The spring deflection by the mean friction of a harmonic slip; returns friction's coefficient as a dashpot."""
+    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine))
+    ratio = abs(belt_speed) / (swing + 1e-300)
+    mean = law.sliding_friction(swing + abs(belt_speed)) * (
+        math.asin(ratio) * 2.0 / math.pi if ratio < 1.0 else 1.0
+    )
+    for i in range(z.size):
+        z[i] = 0.0
+    stiffness = body.stiffness_mean + body.stiffness_split
+    z[0] = math.copysign(body.normal_load * mean / math.sqrt(stiffness), belt_speed)
+    return body.normal_load * law.sliding_friction(swing) / (swing + abs(belt_speed) + 1e-3)
+
+
+@inner
+def _predicted(states: Any, belt_speeds: Any, i: int, known: int, z: Any) -> None:
+    """Extrapolate the last known states, three at most, to belt speed i."""
+    for row in range(z.size):
+        z[row] = 0.0
+    for a in range(i - known, i):
+        weight = 1.0
+        for b in range(i - known, i):
+            if a != b:
+                weight *= (belt_speeds[i] - belt_speeds[b]) / (belt_speeds[a] - belt_speeds[b])
+        for row in range(z.size):
+            z[row] = z[row] + weight * states[a, row]
+
+
+@inner
+def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, tolerance: float, like: Any) -> Any:
+    """States [n, size] and results [n, 6] at rising belt speeds: mean friction, across, error, maps, stuck, closest."""
+    size, n = size_of(like), belt_speeds.size
+    states, results = np.zeros((n, size)), np.empty((n, 6))
+    z, inverse = np.empty(size), np.empty((size, size))
+    known = 0
+    for i in range(n):
+        if i == 0 and guess.shape[0] > 0:
+            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse)
+            for row in range(size):
+                z[row] = guess[0, row]
+        elif known == 0:
+            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse)
+        else:
+            _predicted(states, belt_speeds, i, known, z)
+        closed = close(law, body, belt_speeds[i], z, inverse, tolerance, like)
+        if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
+            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse)
+            closed = close(law, body, belt_speeds[i], z, inverse, tolerance, like)
+        for row in range(size):
+            states[i, row] = z[row]
+        known = min(known + 1, 3) if closed.maps > 0 else 0
+        period = 2.0 * math.pi / body.frequency
+        results[i, 0], results[i, 1] = -closed.rubbed.real / period, -closed.rubbed.imag / period
+        results[i, 2], results[i, 3] = closed.error, closed.maps
+        results[i, 4], results[i, 5] = closed.stuck / period, closed.closest
+    return states, results
+
+
+@inner
+def tracked(law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, like: Any) -> Track:
+    """The closed orbit from z, piece by piece."""
+    y, u = unpack(body, z, like)
+    steps = period_map(law, body, belt_speed, y, u, accuracy, track_of(0)).steps
+    track = track_of(4 * steps + 16)
+    period_map(law, body, belt_speed, y, u, accuracy, track)
+    n = track.filled[0]
+    return Track(track.tau[:n], track.x[:n], track.v[:n], track.friction[:n], track.stick[:n], track.filled)
+
+
+class Curve(NamedTuple):
+    """States [n, size], results [n, 6] of ``solve_curve``, READ columns [n, 17], monodromies, the last orbit."""
+
+    states: Any
+    results: Any
+    columns: Any
+    matrices: Any
+    last: Track
+
+
+@inner
+def answer_curve(
+    law: Any, body: Body, mass: Mass, belt_speeds: Any, guess: Any, tolerance: float, like: Any
+) -> Curve:
+    """Close the orbits of a curve and read them; guess [0 or 1, size] is a state to start from."""
+    states, results = solve_curve(law, body, belt_speeds, guess, tolerance, like)
+    n, size = states.shape
+    accuracy = max(0.01 * tolerance * body.normal_load, 1e-13)
+    columns, matrices = np.empty((n, len(READ))), np.empty((n, size, size))
+    track = track_of(0)
+    for i in range(n):
+        track = tracked(law, body, belt_speeds[i], states[i], accuracy, like)
+        row = read(track.tau, track.x, track.v, track.friction, track.stick, mass, belt_speeds[i])
+        for k in range(row.size):
+            columns[i, k] = row[k]
+        monodromy(law, body, belt_speeds[i], states[i], accuracy, matrices[i], like)
+    return Curve(states, results, columns, matrices, track)
+
+
+@inner
+def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
+    """The state after period upon period from position x and velocity v on a belt at rest, once it stays put."""
+    z, residual = np.empty(size_of(x)), np.empty(size_of(x))
+    pack(body, z, x - body.reference_cosine, v - body.frequency * body.reference_sine)
+    period = 2.0 * math.pi / body.frequency
+    for _ in range(100_000):
+        image = mapped(law, body, 0.0, z, residual, accuracy, x)
+        for row in range(z.size):
+            z[row] = z[row] + residual[row]
+        if image.stuck >= period * (1.0 - 1e-12):
+            break
+    return z

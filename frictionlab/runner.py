@@ -1,0 +1,238 @@
+"""Studies, curves and single steady states from Python: solved in chunks, gathered in one table."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from math import isfinite
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from frictionlab import __version__, registry
+from frictionlab.chunks import Chunk, Task, chunks
+from frictionlab.collecting import collect
+from frictionlab.expect import Verdict, judge
+from frictionlab.failures import SaveError
+from frictionlab.gathering import Gathering
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
+from frictionlab.output import Existing, Identity, RunFolder
+from frictionlab.progress import Progress, silent
+from frictionlab.scene import Scene
+from frictionlab.solving import answer, parts
+from frictionlab.state import SteadyState
+from frictionlab.study import Case, Study, load_study, parse_study
+from frictionlab.table import headings, inputs
+
+if TYPE_CHECKING:
+    from frictionlab.orbit import Samples
+
+
+@dataclass(frozen=True)
+class Run:
+    """A study and what came of it: its table, its kept orbits, and the verdicts on what it expects."""
+
+    study: Study
+    table: pd.DataFrame
+    orbits: pd.DataFrame | None
+    verdicts: tuple[Verdict, ...]
+    folder: Path | None
+    computed: int
+
+    @property
+    def table_file(self) -> Path | None:
+        """Where the table is, if it was written."""
+        return self.folder / "results.parquet" if self.folder is not None else None
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many rows have each status."""
+        return {str(name): int(count) for name, count in self.table["status"].value_counts().items()}
+
+
+class Interrupted(KeyboardInterrupt):
+    """A run was stopped; ``run`` is what it had found, already saved where it has a folder."""
+
+    def __init__(self, run: Run) -> None:
+        super().__init__("interrupted")
+        self.run = run
+
+
+class UnsavedError(SaveError):
+    """A run whose results could not be written; ``run`` holds them."""
+
+    def __init__(self, problem: SaveError, run: Run) -> None:
+        super().__init__(str(problem))
+        self.run = run
+
+
+def run(
+    study: str | PathLike[str] | Mapping[str, Any] | Study,
+    out: str | PathLike[str] | None = None,
+    overrides: Sequence[str] = (),
+    existing: Existing = "reuse",
+    executor: Executor | None = None,
+    progress: Progress = silent,
+) -> Run:
+    """Solve every case of a study. Writes only with ``out``, the folder for results.
+
+    overrides: ``path=value`` as for ``--set``; a ``Study`` holds its own already, they are for the record.
+    existing: take over finished points of the same study in ``out``, or replace whatever results it holds.
+    executor: any; threads of this process by default.
+    Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin.
+    """
+    ready = _loaded(study, overrides)
+    folder = run_folder(ready, Path(out)) if out is not None else None
+    if folder is not None:
+        folder.check(existing)
+    gathering = Gathering(inputs(headings(ready)), folder, progress, overrides)
+    task = Task(ready.tolerance, ready.keep_orbit or 0)
+    gathering.resume(existing, task.samples)
+    left = [] if gathering.complete else chunks(ready.cases(), task, gathering.finished)
+    if folder is not None:
+        folder.open(existing)
+    stopped = _solve(gathering, left, executor)
+    return _finished(ready, gathering, folder, stopped)
+
+
+def _loaded(study: str | PathLike[str] | Mapping[str, Any] | Study, overrides: Sequence[str]) -> Study:
+    if isinstance(study, Study):
+        return study
+    return parse_study(study, overrides) if isinstance(study, Mapping) else load_study(study, overrides)
+
+
+def run_folder(study: Study, out: Path) -> RunFolder:
+    """The output folder of a study."""
+    return RunFolder(out, Identity(study.resolved(), study.digest(), __version__))
+
+
+def _solve(gathering: Gathering, left: list[Chunk], executor: Executor | None) -> bool:
+    """Solve what is left and put it in the table; True when that was interrupted."""
+    if not left:
+        return False
+    gathering.describe()
+    try:
+        with _workers(executor) as pool:
+            collect(left, pool, gathering.take, gathering.tick)
+    except KeyboardInterrupt:
+        gathering.unfinished("interrupted")
+        return True
+    except BrokenExecutor as problem:
+        gathering.unfinished(f"a worker died: {problem}")
+    return False
+
+
+@contextmanager
+def _workers(executor: Executor | None) -> Iterator[Executor]:
+    """The caller's executor, or threads of our own that nobody waits for after an interrupt."""
+    if executor is not None:
+        yield executor
+        return
+    pool = ThreadPoolExecutor(os.cpu_count())
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _finished(study: Study, gathering: Gathering, folder: RunFolder | None, stopped: bool) -> Run:
+    """The run, saved and judged. Raises Interrupted or UnsavedError, both with the run."""
+    table, orbits = gathering.table, gathering.orbits
+    unsaved = _saved(gathering, table, orbits)
+    verdicts = () if stopped else tuple(judge(expectation, table) for expectation in study.expect)
+    path = folder.path if folder is not None and unsaved is None else None
+    done = Run(study, table, orbits, verdicts, path, gathering.computed)
+    if unsaved is not None:
+        raise UnsavedError(unsaved, done) from unsaved
+    if stopped:
+        raise Interrupted(done)
+    return done
+
+
+def _saved(gathering: Gathering, table: pd.DataFrame, orbits: pd.DataFrame | None) -> SaveError | None:
+    """Save the run; what kept it from being saved, to be raised once the run is whole."""
+    try:
+        gathering.save_all(table, orbits)
+    except SaveError as problem:
+        return problem
+    return None
+
+
+def curve(
+    scene: Scene,
+    law: FrictionLaw,
+    belt_speed: ArrayLike,
+    method: str | Method = "auto",
+    tolerance: float = 1e-8,
+) -> pd.DataFrame:
+    """The result table of one law over belt speeds, in the order given.
+
+    belt_speed [scene velocity]: one-dimensional. tolerance [-]: absolute, on mean_friction.
+    Raises ValueError for values that make no sense, BrokenPlugin.
+    """
+    speeds = np.atleast_1d(np.asarray(belt_speed, dtype=float))
+    if speeds.ndim != 1 or not speeds.size or not np.isfinite(speeds).all():
+        raise ValueError("belt_speed must be a list of finite numbers")
+    ready, kind, task = _method(method), _kind(law), Task(_checked(tolerance))
+    different, places = np.unique(speeds, return_inverse=True)  # a method is never given a belt speed twice
+    scenes = [scene.model_copy(update={"belt_speed": float(speed)}) for speed in different]
+    cases = [Case(kind, kind, law, ready.name, ready, each) for each in scenes]
+    gathering = Gathering(inputs(cases))
+    with _workers(None) as pool:
+        collect(chunks(cases, task), pool, gathering.take, gathering.tick)
+    return gathering.table.iloc[places].reset_index(drop=True)
+
+
+def steady_state(
+    scene: Scene, law: FrictionLaw, method: str | Method = "auto", tolerance: float = 1e-8
+) -> SteadyState:
+    """The steady state of one scene, refused and failed ones included: see ``status`` and ``reason``.
+
+    tolerance [-]: absolute, on mean_friction. Raises ValueError for values that make no sense, BrokenPlugin.
+    """
+    chunk = Chunk((0,), (scene,), law, _method(method), Task(_checked(tolerance)))
+    (piece,) = answer(chunk)
+    (part,) = parts(chunk, [piece])
+    numbers = {name: float(column[0]) for name, column in part.numbers.items()}
+    words = {name: column[0] for name, column in part.text.items()}
+
+    def sampled(n: int) -> Samples | None:
+        orbit = piece.answers.orbit(0)
+        if orbit is None:
+            return None
+        from frictionlab.orbit import sample  # brings numba: only where it is needed
+
+        return sample(orbit, scene, n)
+
+    return SteadyState(**words, **numbers, sampled=sampled)  # type: ignore[arg-type]
+
+
+def _method(method: str | Method) -> Method:
+    if isinstance(method, Method):
+        return method
+    if method not in registry.method_names():
+        raise ValueError(f"no method '{method}'; there are {', '.join(registry.method_names())}")
+    return registry.method_class(method)()
+
+
+def _kind(law: FrictionLaw) -> str:
+    """The registered name of a law; its class's where it is not registered."""
+    for name in registry.law_names():
+        with suppress(registry.BrokenPlugin):  # another law's trouble
+            if registry.law_class(name) is type(law):
+                return name
+    return type(law).__name__
+
+
+def _checked(tolerance: float) -> float:
+    if not (isfinite(tolerance) and tolerance > 0.0):
+        raise ValueError(f"tolerance must be a positive number, not {tolerance!r}")
+    return float(tolerance)

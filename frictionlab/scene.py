@@ -1,0 +1,314 @@
+"""The mass, its springs and dashpots, its loads and the belt it slides on: none, one or two degrees of freedom.
+
+Everything is nondimensional, in the scales of Sulollari, van Dalen & Cabboi, Eq. 2: time 1/omega_1, a length
+L, force K_1 L, velocity omega_1 L, energy K_1 L^2. The equations of motion are their Eq. 1,
+
+    x1'' + 2 damping_ratio x1' + x1 + normal_load T1 = load along x1,
+    x2'' + 2 damping_ratio_2 omega_r x2' + omega_r^2 x2 + normal_load T2 = load along x2,
+
+with T the friction coefficient of a law at the slip velocity (x1' - belt_speed, x2').
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Any, ClassVar, NamedTuple
+
+from pydantic import model_validator
+
+from frictionlab.quantities import Finite, NonNegative, Positive, Record
+
+
+class _Part(Record):
+    """A part of a scene; names the keys whose time has not come instead of calling them unknown."""
+
+    not_available_yet: ClassVar[frozenset[str]] = frozenset()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_what_has_not_come(cls, data: Any) -> Any:
+        for key in sorted(cls.not_available_yet & set(data)) if isinstance(data, dict) else ():
+            raise ValueError(f"{key}: not available yet")
+        return data
+
+
+class _Force(_Part):
+    """A harmonic force given by an unbalance or by its amplitude."""
+
+    unbalance: NonNegative | None = None
+    amplitude: NonNegative | None = None
+    phase: Finite = 0.0
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> _Force:
+        if (self.unbalance is None) == (self.amplitude is None):
+            raise ValueError("give exactly one of unbalance and amplitude")
+        return self
+
+    def phasor(self, frequency: float) -> complex:
+        """F of the force Im(F exp(i frequency tau)) [force scale K_1 L]."""
+        size = self.amplitude if self.unbalance is None else self.unbalance * frequency**2
+        assert size is not None
+        return cmath.rect(size, math.radians(self.phase))
+
+
+class Drive(_Force):
+    """The force along x1: unbalance*frequency^2 (or amplitude) times sin(frequency*tau + phase).
+
+    unbalance [L] or amplitude [K_1 L], >= 0; frequency [omega_1], > 0; phase [degrees].
+    """
+
+    not_available_yet: ClassVar[frozenset[str]] = frozenset({"waveform", "direction"})
+
+    frequency: Positive
+
+
+class Load(_Force):
+    """The force along x2, at the frequency of the drive. Units as for ``Drive``."""
+
+    not_available_yet: ClassVar[frozenset[str]] = frozenset({"waveform", "frequency"})
+
+
+class Transverse(_Part):
+    """The motion along x2, across the belt: natural_frequency [omega_1] > 0, damping_ratio >= 0, its load."""
+
+    natural_frequency: Positive
+    damping_ratio: NonNegative
+    load: Load | None = None
+
+
+class Slip(_Part):
+    """Prescribed oscillation along x1: velocity_amplitude*sin(frequency*tau + phase). Phase in degrees."""
+
+    velocity_amplitude: NonNegative
+    frequency: Positive
+    phase: Finite = 0.0
+
+
+class TransverseSlip(_Part):
+    """Prescribed oscillation along x2; a frequency of its own only where there is none along x1."""
+
+    velocity_amplitude: NonNegative
+    phase: Finite = 0.0
+    frequency: Positive | None = None
+
+
+class Initial(_Part):
+    """Where the mass starts, for scenes whose steady state depends on it: positions [L], velocities."""
+
+    x: Finite = 0.0
+    velocity: Finite = 0.0
+    x2: Finite = 0.0
+    velocity2: Finite = 0.0
+
+
+class Mass(NamedTuple):
+    """A scene's numbers as kernels see them; every force is Im(phasor exp(i frequency tau))."""
+
+    damping: float
+    stiffness: float
+    transverse_damping: float
+    transverse_stiffness: float
+    normal_load: float
+    frequency: float
+    force: complex
+    transverse_force: complex
+
+
+class Body(NamedTuple):
+    """A free scene's numbers for one source on the line (``float``) and in the plane (``complex``: x1 + i x2).
+
+    A direction-dependent constant acts as mean*x + split*conj(x). The motion is split into a harmonic reference,
+    the friction-free response where it is bounded, and the deviation from it: ``force`` is what drives the
+    deviation besides friction. A sine/cosine pair stands for sine*sin(Omega tau) + cosine*cos(Omega tau).
+    """
+
+    damping_mean: float
+    damping_split: float
+    stiffness_mean: float
+    stiffness_split: float
+    normal_load: float
+    frequency: float
+    force_sine: Any
+    force_cosine: Any
+    reference_sine: Any
+    reference_cosine: Any
+
+
+def on_the_line(mass: Mass) -> Body:
+    """The body with motion along the belt alone."""
+    reference = _friction_free(mass.damping, mass.stiffness, mass.frequency, mass.force)
+    rest = (
+        mass.force if reference == 0 else 0j
+    )  # the reference balances all of it, but for undamped resonance
+    return Body(
+        damping_mean=mass.damping,
+        damping_split=0.0,
+        stiffness_mean=mass.stiffness,
+        stiffness_split=0.0,
+        normal_load=mass.normal_load,
+        frequency=mass.frequency,
+        force_sine=rest.real,
+        force_cosine=rest.imag,
+        reference_sine=reference.real,
+        reference_cosine=reference.imag,
+    )
+
+
+def in_the_plane(mass: Mass) -> Body:
+    """The body with both motions."""
+    along = mass.damping, mass.stiffness, mass.frequency, mass.force
+    across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
+    reference, reference_2 = _friction_free(*along), _friction_free(*across)
+    rest = mass.force if reference == 0 else 0j
+    rest_2 = mass.transverse_force if reference_2 == 0 else 0j
+    return Body(
+        damping_mean=0.5 * (mass.damping + mass.transverse_damping),
+        damping_split=0.5 * (mass.damping - mass.transverse_damping),
+        stiffness_mean=0.5 * (mass.stiffness + mass.transverse_stiffness),
+        stiffness_split=0.5 * (mass.stiffness - mass.transverse_stiffness),
+        normal_load=mass.normal_load,
+        frequency=mass.frequency,
+        force_sine=complex(rest.real, rest_2.real),
+        force_cosine=complex(rest.imag, rest_2.imag),
+        reference_sine=complex(reference.real, reference_2.real),
+        reference_cosine=complex(reference.imag, reference_2.imag),
+    )
+
+
+def _friction_free(damping: float, stiffness: float, frequency: float, force: complex) -> complex:
+    """Phasor of the friction-free response; 0 at undamped resonance, where it has no bound."""
+    dynamic = complex(stiffness - frequency**2, damping * frequency)
+    return force / dynamic if dynamic != 0 else 0j
+
+
+def restoring_force(body: Body, x: Any, v: Any) -> Any:
+    """Springs and dashpots: what they take from the acceleration."""
+    damping = body.damping_mean * v + body.damping_split * v.conjugate()
+    return damping + body.stiffness_mean * x + body.stiffness_split * x.conjugate()
+
+
+class Motion(NamedTuple):
+    """Prescribed slip as kernels see it: velocities Im(phasor exp(i frequency tau))."""
+
+    normal_load: float
+    frequency: float
+    velocity: complex
+    transverse_velocity: complex
+
+
+class Scene(_Part):
+    """A body on a moving belt, shaken: damping_ratio and drive, or a prescribed slip instead of both.
+
+    damping_ratio (>= 0, may exceed 1), normal_load (gamma^2 > 0; 1 by default for prescribed slip), belt_speed.
+    Leave ``transverse`` out for one degree of freedom.
+    """
+
+    not_available_yet: ClassVar[frozenset[str]] = frozenset({"dimensional"})
+
+    damping_ratio: NonNegative | None = None
+    normal_load: Positive | None = None
+    belt_speed: Finite
+    drive: Drive | None = None
+    transverse: Transverse | None = None
+    slip: Slip | None = None
+    transverse_slip: TransverseSlip | None = None
+    initial: Initial | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _normal_load_of_a_prescribed_slip(cls, data: Any) -> Any:
+        if isinstance(data, dict) and {"slip", "transverse_slip"} & set(data):
+            return {"normal_load": 1.0, **data}
+        return data
+
+    @model_validator(mode="after")
+    def _one_kind_of_scene(self) -> Scene:
+        prescribed = self.slip is not None or self.transverse_slip is not None
+        problems = self._prescribed_problems() if prescribed else self._free_problems()
+        if problems:
+            raise ValueError("; ".join(problems))
+        return self
+
+    def _prescribed_problems(self) -> list[str]:
+        for name in ("damping_ratio", "drive", "transverse", "initial"):
+            if getattr(self, name) is not None:
+                return [f"{name}: leave it out with a prescribed slip"]
+        own = self.transverse_slip.frequency if self.transverse_slip is not None else None
+        if self.slip is not None and own is not None:
+            return ["transverse_slip.frequency: leave it out, slip.frequency holds for both"]
+        if self.slip is None and own is None:
+            return ["transverse_slip.frequency: required where slip is left out"]
+        return []
+
+    def _free_problems(self) -> list[str]:
+        missing = [name for name in ("damping_ratio", "normal_load") if getattr(self, name) is None]
+        problems = [f"{name}: required" for name in missing]
+        if self.drive is None:
+            problems.append("drive: required (undriven scenes: not available yet)")
+        if self.initial is not None and self.transverse is None:
+            stray = {"x2", "velocity2"} & self.initial.model_fields_set
+            problems += [f"initial.{name}: needs transverse" for name in sorted(stray)]
+        return problems
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """0 for a prescribed slip, 1 along the belt alone, 2 in the plane."""
+        if self.slip is not None or self.transverse_slip is not None:
+            return 0
+        return 1 if self.transverse is None else 2
+
+    @property
+    def frequency(self) -> float:
+        """Of the drive, or of the prescribed slip [omega_1]."""
+        part = self.drive or self.slip or self.transverse_slip
+        assert part is not None
+        assert part.frequency is not None
+        return part.frequency
+
+    @property
+    def load_along_belt_only(self) -> bool:
+        """Whether nothing pushes across the belt: then x2 dies out from every start (isotropic friction)."""
+        if self.degrees_of_freedom == 0:
+            return self.transverse_slip is None or self.transverse_slip.velocity_amplitude == 0
+        load = self.transverse.load if self.transverse is not None else None
+        return load is None or load.phasor(self.frequency) == 0
+
+    def mass(self) -> Mass:
+        """The numbers of a free scene."""
+        assert self.drive is not None
+        assert self.damping_ratio is not None
+        assert self.normal_load is not None
+        across = self.transverse or Transverse(natural_frequency=1.0, damping_ratio=0.0)
+        omega_r = across.natural_frequency
+        return Mass(
+            damping=2.0 * self.damping_ratio,
+            stiffness=1.0,
+            transverse_damping=2.0 * across.damping_ratio * omega_r,
+            transverse_stiffness=omega_r**2,
+            normal_load=self.normal_load,
+            frequency=self.frequency,
+            force=self.drive.phasor(self.frequency),
+            transverse_force=across.load.phasor(self.frequency) if across.load is not None else 0j,
+        )
+
+    def motion(self) -> Motion:
+        """The numbers of a prescribed slip."""
+        assert self.normal_load is not None
+        phasors = [
+            cmath.rect(part.velocity_amplitude, math.radians(part.phase)) if part is not None else 0j
+            for part in (self.slip, self.transverse_slip)
+        ]
+        return Motion(self.normal_load, self.frequency, *phasors)
+
+    def values(self) -> dict[str, float]:
+        """Every number of the scene by its dotted path, without the leading ``scene.``."""
+        return _flat(self.model_dump(exclude_none=True))
+
+
+def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, float]:
+    flat: dict[str, float] = {}
+    for key, value in tree.items():
+        flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+    return flat

@@ -1,0 +1,131 @@
+"""The laws and methods a study chooses, each under a label of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+from frictionlab import registry
+from frictionlab.study.fields import built
+from frictionlab.study.mistakes import Path, described, did_you_mean
+from frictionlab.study.notes import Notes
+from frictionlab.study.record import LawChoice, MethodChoice
+
+LAWS_TO_COME = ("stribeck", "dahl", "jenkins", "lugre", "elasto-plastic", "dupont")
+METHODS_TO_COME = ("mdsm", "harmonic_balance", "march")
+
+
+def items(given: Any, path: Path, example: str, notes: Notes) -> list[Any]:
+    """The items of a list that may not be empty."""
+    if not isinstance(given, list):
+        notes.add(path, f"must be a list such as {example}, got {described(given)}")
+        return []
+    if not given:
+        notes.add(path, f"the list is empty; give at least one, such as {example}")
+    return given
+
+
+def law_choice(given: Any, path: Path, notes: Notes) -> LawChoice | None:
+    """One law; None, noted, where there is a mistake."""
+    if not isinstance(given, dict):
+        notes.add(path, f"must be a mapping such as {{kind: coulomb, mu: 0.4}}, got {described(given)}")
+        return None
+    kind = _kind(given, path, _named("law", registry.law_names(), LAWS_TO_COME, notes), notes)
+    label = _label(given, kind, path, notes)
+    if kind is None or notes.mapping(given, path) is None:
+        return None
+    parameters = {key: value for key, value in given.items() if key not in ("kind", "label")}
+    law = built(registry.law_class(kind), parameters, path, notes)
+    return None if law is None else LawChoice(label, kind, law.model_dump(exclude_none=True))
+
+
+def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:
+    """One method, by its name or with parameters; None, noted, where there is a mistake."""
+    named = _named("method", registry.method_names(), METHODS_TO_COME, notes)
+    if not isinstance(given, dict):
+        name = named(given, path)
+        return None if name is None else MethodChoice(name, name, {})
+    name = _kind(given, path, named, notes)
+    label = _label(given, name, path, notes)
+    parameters = {key: value for key, value in given.items() if key not in ("kind", "label")}
+    if name is None:
+        return None
+    if not parameters:
+        return MethodChoice(label, name, {})
+    method = built(registry.method_class(name), parameters, path, notes)
+    return None if method is None else MethodChoice(label, name, method.model_dump(exclude_unset=True))
+
+
+def label_of(given: Any) -> str | None:
+    """The label an item asks for, right or wrong in all else."""
+    label = given.get("label", given.get("kind")) if isinstance(given, dict) else given
+    return label if isinstance(label, str) else None
+
+
+def sure_labels(given: Any, installed: Iterable[str]) -> tuple[str, ...] | None:
+    """The labels of a list of laws or methods; None where a mistake makes them a matter of guessing.
+
+    What refers to a label is then left unchecked: one mistake should not look like many.
+    """
+    names = list(installed)
+    labels = [label_of(item) for item in given] if isinstance(given, list) else []
+    kinds = [item.get("kind") if isinstance(item, dict) else item for item in given] if labels else []
+    right = all(label and label.isprintable() for label in labels) and all(kind in names for kind in kinds)
+    unique = len(set(labels)) == len(labels) > 0
+    return tuple(str(label) for label in labels) if right and unique else None
+
+
+def sure_law_labels(given: Any) -> tuple[str, ...] | None:
+    """The labels of a list of laws; None where they are a matter of guessing."""
+    mappings = isinstance(given, list) and all(isinstance(item, dict) for item in given)
+    return sure_labels(given, registry.law_names()) if mappings else None
+
+
+def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:
+    """Note every item whose label an earlier one has."""
+    first: dict[str, int] = {}
+    for index, item in enumerate(given):
+        label = label_of(item)
+        if label is not None and first.setdefault(label, index) != index:
+            own = isinstance(item, dict) and "label" in item
+            path: Path = (head, index, "label") if own else (head, index)
+            notes.add(path, f"{head}[{first[label]}] has the label '{label}' too; give each its own label")
+
+
+def _named(
+    what: str, installed: Iterable[str], to_come: Sequence[str], notes: Notes
+) -> Callable[[Any, Path], str | None]:
+    """A reader of a registered name."""
+    names = list(installed)
+
+    def name(given: Any, path: Path) -> str | None:
+        if isinstance(given, str) and given in names:
+            return given
+        if given in to_come:
+            notes.add(path, f"{given}: not available yet")
+        elif isinstance(given, str):
+            hint = did_you_mean(given, names)
+            notes.add(path, f"unknown {what} '{given}'; installed: {', '.join(names)}", hint)
+        else:
+            notes.add(path, f"must be the name of a {what}, got {described(given)}")
+        return None
+
+    return name
+
+
+def _kind(
+    given: dict[str, Any], path: Path, named: Callable[[Any, Path], str | None], notes: Notes
+) -> str | None:
+    if "kind" not in given:
+        notes.add((*path, "kind"), "required key is missing")
+        return None
+    return named(given["kind"], (*path, "kind"))
+
+
+def _label(given: dict[str, Any], kind: str | None, path: Path, notes: Notes) -> str:
+    if "label" not in given:
+        return kind or ""
+    label = notes.text(given["label"], (*path, "label"))
+    if isinstance(given["label"], str) and (not label.strip() or not label.isprintable()):
+        notes.add((*path, "label"), "must be one line of visible text")
+    return label

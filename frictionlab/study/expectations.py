@@ -1,0 +1,143 @@
+"""The ``expect`` lines of a study, read and checked against what its table will hold."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from frictionlab import columns
+from frictionlab.study.mistakes import Path, described, did_you_mean
+from frictionlab.study.notes import Notes
+from frictionlab.study.record import Expectation
+
+KEYS = ("where", "column", "equals", "below", "above", "within", "status", "max_difference", "because")
+_NOT_YET = ("shape", "measure")
+_COMPARISONS = ("equals", "below", "above")
+
+
+@dataclass(frozen=True)
+class Table:
+    """What the table of a study will hold: text columns with their values, number columns by name.
+
+    The values of a text column are None where they are not known for certain.
+    """
+
+    texts: Mapping[str, tuple[str, ...] | None]
+    numbers: tuple[str, ...]
+
+
+def expectations(given: Any, table: Table, notes: Notes) -> tuple[Expectation, ...]:
+    """Every expectation; those with mistakes are noted and left out."""
+    if not isinstance(given, list):
+        notes.add(("expect",), f"must be a list, got {described(given)}")
+        return ()
+    read = [_expectation(item, ("expect", index), table, notes) for index, item in enumerate(given)]
+    return tuple(expectation for expectation in read if expectation is not None)
+
+
+def _expectation(given: Any, path: Path, table: Table, notes: Notes) -> Expectation | None:
+    if notes.mapping(given, path) is None:
+        return None
+    for key in given:
+        if key in _NOT_YET:
+            notes.on_key((*path, key), "not available yet")
+        elif key not in KEYS:
+            notes.unknown_key((*path, key), KEYS)
+    where = _where(given.get("where", {}), (*path, "where"), table, notes)
+    said = _claim(given, path, table, notes) if not any(key in given for key in _NOT_YET) else {}
+    if "because" in given:
+        said["because"] = notes.text(given["because"], (*path, "because"))
+    return None if notes.below(path) else Expectation(where=where, **said)
+
+
+def _where(given: Any, path: Path, table: Table, notes: Notes) -> dict[str, str | float]:
+    """Which rows: input columns and their values."""
+    where: dict[str, str | float] = {}
+    for key, value in (notes.mapping(given, path) or {}).items():
+        if key in table.texts:
+            found: str | float | None = _known_text(value, (*path, key), table.texts[key], notes)
+        elif key in table.numbers:
+            found = notes.number(value, (*path, key))
+        else:
+            names = (*table.texts, *table.numbers)
+            hint = did_you_mean(key, names)
+            notes.on_key((*path, key), "is no input column of this study's table", hint)
+            continue
+        if found is not None:
+            where[key] = found
+    return where
+
+
+def _known_text(value: Any, path: Path, known: tuple[str, ...] | None, notes: Notes) -> str | None:
+    return notes.text(value, path) if known is None else notes.one_of(value, path, known)
+
+
+def _claim(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
+    """What is claimed of the rows: a number, a status, or a difference of two methods."""
+    if "status" in given:
+        return _status(given, path, notes)
+    if "max_difference" in given:
+        return _difference(given, path, table, notes)
+    return _comparison(given, path, notes)
+
+
+def _status(given: dict[str, Any], path: Path, notes: Notes) -> dict[str, Any]:
+    _only(given, ("status",), path, notes)
+    statuses = tuple(status for status in columns.STATUSES if status != "killed")
+    return {"status": notes.one_of(given["status"], (*path, "status"), statuses)}
+
+
+def _difference(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
+    _only(given, ("max_difference", "below"), path, notes)
+    pair, at = given["max_difference"], (*path, "max_difference")
+    below = _positive(given, "below", path, notes)
+    if not (isinstance(pair, list) and len(pair) == 2):
+        notes.add(at, f"must be a list of two method labels, got {described(pair)}")
+        return {}
+    labels = [_known_text(label, (*at, i), table.texts["method"], notes) for i, label in enumerate(pair)]
+    if labels[0] is not None and labels[0] == labels[1]:
+        notes.add((*at, 1), "is the same method: give two different ones")
+    return {"max_difference": tuple(labels), "below": below}
+
+
+def _comparison(given: dict[str, Any], path: Path, notes: Notes) -> dict[str, Any]:
+    column = None
+    if "column" not in given:
+        notes.add((*path, "column"), "required key is missing (or give status, or max_difference)")
+    else:
+        column = _column(given["column"], (*path, "column"), notes)
+    chosen = [key for key in _COMPARISONS if key in given]
+    if len(chosen) != 1:
+        notes.add(path, f"give exactly one of equals, below and above, got {' and '.join(chosen) or 'none'}")
+    said: dict[str, Any] = {key: notes.number(given[key], (*path, key)) for key in chosen}
+    if "within" in given or "equals" in given:
+        said["within"] = _positive(given, "within", path, notes)
+    return {"column": column, **said}
+
+
+def _column(given: Any, path: Path, notes: Notes) -> str | None:
+    if not isinstance(given, str) or given not in columns.RESULTS:
+        hint = did_you_mean(given, columns.RESULTS) if isinstance(given, str) else ""
+        notes.add(path, f"must be a result column, got {described(given)}", hint)
+        return None
+    if given in columns.TEXT:
+        notes.add(path, f"'{given}' holds text; only numbers can be compared")
+    return given
+
+
+def _positive(given: dict[str, Any], key: str, path: Path, notes: Notes) -> float | None:
+    if key not in given:
+        notes.add((*path, key), "required key is missing")
+        return None
+    value = notes.number(given[key], (*path, key))
+    if value is not None and value <= 0:
+        notes.add((*path, key), f"must be > 0, got {described(given[key])}")
+    return value
+
+
+def _only(given: dict[str, Any], own: tuple[str, ...], path: Path, notes: Notes) -> None:
+    """Note the keys that belong to another kind of expectation."""
+    for key in given:
+        if key in KEYS and key not in (*own, "where", "because"):
+            notes.on_key((*path, key), f"does not go with {own[0]}")

@@ -1,0 +1,177 @@
+"""Sweeps put to work: which values can be swept, and whether every point of the grid can be built."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from frictionlab import registry
+from frictionlab.scene import Scene
+from frictionlab.study.choices import label_of, sure_law_labels
+from frictionlab.study.fields import number_paths, record_at, wrong_value
+from frictionlab.study.mistakes import Path, did_you_mean
+from frictionlab.study.notes import Notes
+from frictionlab.study.record import Study
+from frictionlab.study.sweep import LARGEST_GRID, sweep_values
+
+_ALTERNATIVE = {"unbalance": "amplitude", "amplitude": "unbalance"}
+
+
+@dataclass
+class Swept:
+    """The sweeps of a study, and where their first values stand in for what the study left out."""
+
+    sweep: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    stand_ins: dict[Path, Path] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class _Target:
+    """What one sweep varies: ``key`` of the mapping at ``parent``, a field of ``record``."""
+
+    parent: Path
+    key: str
+    record: type[BaseModel]
+
+
+def swept(tree: dict[str, Any], notes: Notes) -> Swept:
+    """Read the sweeps; a swept value that the study leaves out is put into the tree."""
+    found = Swept()
+    given = notes.mapping(tree.get("sweep", {}), ("sweep",)) or {}
+    for key, range_ in given.items():
+        values = sweep_values(range_, ("sweep", key), notes)
+        if target := _target(tree, key, notes):
+            _check_values(values, target, ("sweep", key), notes)
+            _stand_in(tree, target, values, found.stand_ins, key)
+        found.sweep[key] = values
+    return found
+
+
+def _target(tree: dict[str, Any], key: str, notes: Notes) -> _Target | None:
+    head, *steps = key.split(".")
+    if head == "scene" and key.removeprefix("scene.") in number_paths(Scene):
+        return _scene_target(tree, steps, ("sweep", key), notes)
+    if head == "laws":
+        return _law_target(tree, key, notes)
+    known = _sweepable(tree)
+    what = "only scene.<value> and laws.<label>.<parameter> can be swept"
+    what = "no such value in a scene" if head == "scene" else what
+    notes.on_key(("sweep", key), what, did_you_mean(key, known))
+    return None
+
+
+def _scene_target(tree: dict[str, Any], steps: list[str], path: Path, notes: Notes) -> _Target | None:
+    parent: Path = ("scene", *steps[:-1])
+    within = _at(tree, parent)
+    name = ".".join(map(str, parent))
+    other = _ALTERNATIVE.get(steps[-1])
+    if not isinstance(within, dict):
+        if within is None:
+            notes.on_key(path, f"the study has no {name}")
+        return None
+    if other in within and steps[-1] not in within:
+        notes.on_key(path, f"{name} gives {other}, so {steps[-1]} cannot be swept")
+        return None
+    record = record_at(Scene, tuple(steps[:-1]))
+    return _Target(parent, steps[-1], record) if record else None
+
+
+def _law_target(tree: dict[str, Any], key: str, notes: Notes) -> _Target | None:
+    label, _, parameter = key.removeprefix("laws.").rpartition(".")
+    index = _labels(tree).get(label)
+    if index is None and sure_law_labels(tree.get("laws")) is None:
+        return None
+    if index is None:
+        what = f"no law is labelled '{label}'" if label else "write laws.<label>.<parameter>"
+        notes.on_key(("sweep", key), what, did_you_mean(key, _sweepable(tree)))
+        return None
+    kind = tree["laws"][index].get("kind")
+    if kind not in registry.law_names():
+        return None
+    law = registry.law_class(kind)
+    if parameter not in number_paths(law):
+        hint = did_you_mean(parameter, number_paths(law))
+        notes.on_key(("sweep", key), f"the law '{label}' has no parameter '{parameter}' to sweep", hint)
+        return None
+    return _Target(("laws", index), parameter, law)
+
+
+def _labels(tree: dict[str, Any]) -> dict[str, int]:
+    laws = tree.get("laws")
+    laws = laws if isinstance(laws, list) else []
+    found = {label_of(law): index for index, law in enumerate(laws) if isinstance(law, dict)}
+    return {label: index for label, index in found.items() if label is not None}
+
+
+def _sweepable(tree: dict[str, Any]) -> list[str]:
+    paths = [f"scene.{path}" for path in number_paths(Scene)]
+    for label, index in _labels(tree).items():
+        kind = tree["laws"][index].get("kind")
+        if kind in registry.law_names():
+            paths += [f"laws.{label}.{name}" for name in number_paths(registry.law_class(kind))]
+    return paths
+
+
+def _at(tree: Any, path: Path) -> Any:
+    """What the tree holds at this path, None for nothing; where it ends early, the value it ends in."""
+    for step in path:
+        if isinstance(tree, list) and isinstance(step, int):
+            tree = tree[step]
+        elif isinstance(tree, dict):
+            tree = tree.get(step)
+        else:
+            return tree
+    return tree
+
+
+def _check_values(values: Iterable[float], target: _Target, path: Path, notes: Notes) -> None:
+    """Every value alone, so that a mistake points at it and not at a point of the grid."""
+    for index, value in enumerate(values):
+        if what := wrong_value(target.record, target.key, value):
+            notes.add((*path, index), what)
+
+
+def _stand_in(
+    tree: dict[str, Any], target: _Target, values: tuple[float, ...], stand_ins: dict[Path, Path], key: str
+) -> None:
+    """A swept value need not be given a second time: its first value completes the scene or law."""
+    within = _at(tree, target.parent)
+    if isinstance(within, dict) and target.key not in within:
+        good = [value for value in values if wrong_value(target.record, target.key, value) is None]
+        within[target.key] = good[0] if good else 1.0
+        stand_ins[(*target.parent, target.key)] = ("sweep", key)
+
+
+def note_impossible_points(study: Study, notes: Notes) -> None:
+    """Build the whole grid and note what cannot be built, or is too large to be."""
+    size = grid_size(study)
+    if size > LARGEST_GRID:
+        notes.add(("sweep",), f"the grid has {size} points, more than {LARGEST_GRID}")
+        return
+    _build(lambda: study.scenes, study.sweep, "scene.", notes)
+    for choice in study.laws:
+        _build(lambda law=choice: study.laws_of(law), study.sweep, f"laws.{choice.label}.", notes)  # type: ignore[misc]
+
+
+def grid_size(study: Study) -> int:
+    """The number of rows of the table."""
+    scenes = math.prod(len(v) for path, v in study.sweep.items() if path.startswith("scene."))
+    laws = (
+        math.prod(len(v) for path, v in study.sweep.items() if path.rpartition(".")[0] == f"laws.{law.label}")
+        for law in study.laws
+    )
+    return scenes * sum(laws) * len(study.methods)
+
+
+def _build(build: Callable[[], Any], sweep: Mapping[str, Any], prefix: str, notes: Notes) -> None:
+    """Values that are right one by one may still not go together."""
+    try:
+        build()
+    except ValidationError as problem:
+        error = problem.errors(include_url=False)[0]
+        own = [path for path in sweep if path.startswith(prefix)]
+        notes.on_key(("sweep", own[-1]), f"a point of the grid cannot be built: {error['msg']}")

@@ -1,0 +1,136 @@
+"""A mistake in a study: found by its path, located in the file or command line, shown with a caret."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+Path = tuple[str | int, ...]
+
+_WIDTH = 100
+
+
+class Place(NamedTuple):
+    """A position in a text, both counted from 1."""
+
+    line: int
+    column: int
+
+
+@dataclass(frozen=True)
+class Note:
+    """A mistake as it is found: by path, not yet located.
+
+    on_key: the mistake is the key itself, not its value. place: given where the path alone does not tell it.
+    """
+
+    path: Path
+    what: str
+    hint: str = ""
+    on_key: bool = False
+    place: Place | None = None
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A located mistake. origin: the file, or the ``--set`` that is at fault; place: None for the latter."""
+
+    origin: str
+    place: Place | None
+    path: str
+    what: str
+    hint: str = ""
+    line: str = ""
+
+    def __str__(self) -> str:
+        """Where, what, the source line with a caret, and what was perhaps meant."""
+        where = f"{self.origin}:{self.place.line}:{self.place.column}" if self.place else self.origin
+        shown = [": ".join(part for part in (where, self.path, self.what) if part)]
+        if self.place:
+            shown += _with_caret(self.line, self.place.column)
+        if self.hint:
+            shown.append(f"    {self.hint}")
+        return "\n".join(shown)
+
+
+class StudyError(Exception):
+    """A study that cannot be run; ``mistakes`` holds every reason, in the order of the file."""
+
+    def __init__(self, mistakes: Sequence[Mistake]) -> None:
+        self.mistakes = tuple(mistakes)
+        super().__init__(self.mistakes)
+
+    def __str__(self) -> str:
+        """Every mistake as the command line prints it."""
+        return "\n".join(map(str, self.mistakes))
+
+
+def _with_caret(line: str, column: int) -> list[str]:
+    """The line, cut to a readable width around the column, and a caret below the column."""
+    start = max(0, min(column - 1 - _WIDTH // 2, len(line) - _WIDTH))
+    shown = line[start : start + _WIDTH]
+    before = "".join("\t" if letter == "\t" else " " for letter in shown[: column - 1 - start])
+    return [f"    {shown}".rstrip(), f"    {before}^"]
+
+
+def dotted(path: Path) -> str:
+    """A path as people write it: ``laws[0].mu``."""
+    text = ""
+    for step in path:
+        text += f"[{step}]" if isinstance(step, int) else f".{step}"
+    return text.removeprefix(".")
+
+
+def closest(name: str, among: Iterable[str]) -> str | None:
+    """The name most like this one, if any is close."""
+    names = list(among)
+    found = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1, cutoff=0.6)
+    return next((n for n in names if found and n.lower() == found[0]), None)
+
+
+def did_you_mean(name: str, among: Iterable[str]) -> str:
+    """``did you mean 'x'?``, or nothing where no name is close."""
+    found = closest(name, among)
+    return f"did you mean '{found}'?" if found is not None else ""
+
+
+def number_text(value: float) -> str:
+    """A number as a study would write it: 5, 0.1, 1e-08, .nan."""
+    if value != value:
+        return ".nan"
+    if value in (float("inf"), float("-inf")):
+        return ".inf" if value > 0 else "-.inf"
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e16:
+        return str(int(value))
+    return repr(value)
+
+
+def described(value: Any) -> str:
+    """What was given, in words, for ``got ...``; with advice where a text is nearly a number."""
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (int, float)):
+        return number_text(value)
+    if isinstance(value, str):
+        return f"the text {_short(value)!r}{_advice(value)}"
+    if isinstance(value, (dict, list, tuple)):
+        return "a mapping" if isinstance(value, dict) else "a list"
+    return _short(str(value))
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 40 else f"{text[:37]}..."
+
+
+def _advice(text: str) -> str:
+    for candidate, advice in ((text, "remove the quotes"), (text.replace(",", "."), "use a decimal point")):
+        try:
+            value = float(candidate)
+        except ValueError:
+            continue
+        return f" ({advice})" if abs(value) < float("inf") else ""
+    return ""

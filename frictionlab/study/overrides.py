@@ -1,0 +1,121 @@
+"""``--set path=value``: a value of the study replaced from the command line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from frictionlab.study.mistakes import Note, Path, StudyError, did_you_mean
+from frictionlab.study.source import Source, read_text
+
+_RANGE = ("start", "stop", "num", "spacing")
+
+
+def overridden(source: Source, overrides: Iterable[str]) -> None:
+    """Put every override into the source's values; what cannot be is noted there."""
+    for text in overrides:
+        _Override(source, text).apply()
+
+
+class _Override:
+    """One ``path=value``."""
+
+    def __init__(self, source: Source, text: str) -> None:
+        self._source = source
+        self._origin = f"--set {text}"
+        self._target, self._equals, self._written = text.partition("=")
+
+    def apply(self) -> None:
+        target = self._target.strip()
+        if not self._equals or not target:
+            return self._refuse((), "write path=value, for example scene.belt_speed=5")
+        try:
+            value = read_text(self._written, self._origin).tree if self._written.strip() else None
+        except StudyError as problem:
+            return self._refuse((), f"the value is {problem.mistakes[0].what}")
+        path = self._path(target)
+        if path is not None and any(set_[: len(path)] == path for set_ in self._source.origins):
+            return self._refuse(path, "set twice")
+        return None if path is None else self._put(path, value)
+
+    def _refuse(self, path: Path, what: str, hint: str = "") -> None:
+        # A path of its own, so that this note is never taken for one about the study's value.
+        key: Path = ("", self._origin)
+        self._source.origins[key] = self._origin
+        self._source.refused[key] = path
+        self._source.notes.append(Note(key, what, hint))
+
+    def _path(self, target: str) -> Path | None:
+        head, _, rest = target.partition(".")
+        if head == "sweep" and rest:
+            return self._sweep(rest)
+        if head in ("laws", "methods") and rest:
+            return self._labelled(head, rest)
+        steps: list[str | int] = []
+        for part in target.split("."):
+            if not (found := re.fullmatch(r"([^\[\]]+)((?:\[\d{1,6}\])*)", part)):
+                self._refuse((), f"'{target}' is no path such as scene.belt_speed or laws[0].mu")
+                return None
+            steps += [found[1], *map(int, re.findall(r"\d+", found[2]))]
+        return tuple(steps)
+
+    def _sweep(self, rest: str) -> Path:
+        """A swept path is one key, points and all; the parts of a range are keys below it."""
+        key, _, part = rest.rpartition(".")
+        return ("sweep", key, part) if part in _RANGE and key in self._under("sweep") else ("sweep", rest)
+
+    def _under(self, key: str) -> Any:
+        found = self._source.tree.get(key)
+        return found if isinstance(found, (dict, list)) else ()
+
+    def _labelled(self, head: str, rest: str) -> Path | None:
+        label, _, key = rest.rpartition(".")
+        labels = [_label(item) for item in self._under(head)]
+        if key and label in labels:
+            return (head, labels.index(label), key)
+        given = label or rest
+        self._refuse((), f"no {head[:-1]} is labelled '{given}'; there are {', '.join(labels) or 'none'}",
+                     did_you_mean(given, labels))  # fmt: skip
+        return None
+
+    def _put(self, path: Path, value: Any) -> None:
+        at = self._source.tree
+        for length, step in enumerate(path[:-1]):
+            at = self._stepped(at, path[: length + 1], step)
+            if at is None:
+                return
+        if isinstance(path[-1], int) and not (isinstance(at, list) and path[-1] < len(at)):
+            return self._refuse(path, f"there is no item [{path[-1]}]")
+        if isinstance(path[-1], str) and not isinstance(at, dict):
+            return self._refuse(path, "there is no mapping to set it in")
+        at[path[-1]] = value
+        self._forget(path)
+        self._source.origins[path] = self._origin
+
+    def _stepped(self, at: Any, path: Path, step: str | int) -> Any:
+        """One step down; a mapping the study does not have yet is made."""
+        if isinstance(at, dict) and isinstance(step, str):
+            if step not in at:
+                at[step] = {}
+                self._source.origins[path] = self._origin
+            return at[step]
+        if isinstance(at, list) and isinstance(step, int) and step < len(at):
+            return at[step]
+        what = f"there is no item [{step}]" if isinstance(step, int) else f"there is no '{step}' to set it in"
+        return self._refuse(path, what)
+
+    def _forget(self, path: Path) -> None:
+        """What was written there in the file counts no more, nor do the mistakes in it."""
+        source = self._source
+        for places in (source.keys, source.values):
+            for known in [known for known in places if known[: len(path)] == path]:
+                del places[known]
+        source.notes[:] = [note for note in source.notes if note.path[: len(path)] != path]
+
+
+def _label(item: Any) -> str:
+    """The label of a law or method as the file has it, checked or not."""
+    if isinstance(item, dict):
+        return str(item.get("label", item.get("kind", "")))
+    return str(item)

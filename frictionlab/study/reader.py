@@ -1,0 +1,168 @@
+"""From a study file (or a mapping of the same shape) to a frozen Study, or to every mistake in it at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+
+from frictionlab import columns, registry
+from frictionlab.scene import Scene
+from frictionlab.study.choices import (
+    items,
+    label_of,
+    law_choice,
+    method_choice,
+    note_equal_labels,
+    sure_labels,
+    sure_law_labels,
+)
+from frictionlab.study.expectations import Table, expectations
+from frictionlab.study.fields import built, number_paths
+from frictionlab.study.grid import Swept, note_impossible_points, swept
+from frictionlab.study.mistakes import Path, StudyError, described
+from frictionlab.study.notes import Notes
+from frictionlab.study.overrides import overridden
+from frictionlab.study.record import SCHEMA, LawChoice, MethodChoice, Study
+from frictionlab.study.source import Odd, Source, plain_number, read_file
+
+KEYS = ("schema", "title", "source", "scene", "laws", "methods", "tolerance", "sweep", "expect", "keep")
+REQUIRED = ("schema", "scene", "laws")
+NOT_YET = ("plugins", "dimensional")
+DEFAULT_TOLERANCE = 1e-8
+DEFAULT_METHODS = ("auto",)
+
+
+def load_study(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Study:
+    """The study of this file, with ``path=value`` overrides. Raises StudyError with every mistake."""
+    file = FilePath(path)
+    return replace(_study(read_file(file), overrides), path=file)
+
+
+def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name: str = "study") -> Study:
+    """The study of a mapping shaped like a study file. Raises StudyError with every mistake."""
+    return _study(Source(name, tree=_plain(mapping)), overrides)
+
+
+def _study(source: Source, overrides: Sequence[str]) -> Study:
+    if isinstance(source.tree, dict):
+        overridden(source, overrides)
+    notes = Notes(source.notes)
+    study = _Reading(source, notes).study()
+    if study is None or notes.all:
+        raise StudyError(source.located(notes.all))
+    return study
+
+
+class _Reading:
+    """One pass over a study's values, in an order in which each step knows what it needs."""
+
+    def __init__(self, source: Source, notes: Notes) -> None:
+        self._source, self._notes = source, notes
+        self._tree: dict[str, Any] = source.tree
+
+    def study(self) -> Study | None:
+        if self._notes.mapping(self._tree, ()) is None:
+            return None
+        self._keys()
+        sweep = self._sweep()
+        laws, methods = self._laws(), self._methods()
+        scene = built(Scene, self._tree["scene"], ("scene",), self._notes) if "scene" in self._tree else None
+        told = self._plain_values()
+        told["expect"] = self._expect(scene)
+        if self._notes.all or scene is None:
+            return None
+        study = Study(scene=scene, laws=laws, methods=methods, sweep=sweep.sweep, **told)
+        note_impossible_points(study, self._notes)
+        return study
+
+    def _keys(self) -> None:
+        for key in self._tree:
+            if key in NOT_YET:
+                self._notes.on_key((key,), "not available yet")
+            elif key not in KEYS:
+                self._notes.unknown_key((key,), KEYS)
+        for key in REQUIRED:
+            if key not in self._tree:
+                self._notes.add((key,), "required key is missing")
+        given = self._tree.get("schema", SCHEMA)
+        if isinstance(given, bool) or given != SCHEMA:
+            self._notes.add(("schema",), f"must be {SCHEMA}, got {described(given)}")
+
+    def _sweep(self) -> Swept:
+        found = swept(self._tree, self._notes)
+        for missing, sweep in found.stand_ins.items():
+            if sweep in self._source.origins:
+                self._source.origins[missing] = self._source.origins[sweep]
+            elif place := self._source.keys.get(sweep):
+                self._source.values[missing] = place
+        for path in self._source.origins:
+            if (name := self._swept_name(path)) in found.sweep and path not in found.stand_ins:
+                self._notes.add(path, f"the study sweeps {name}: set sweep.{name} instead")
+        return found
+
+    def _swept_name(self, path: Path) -> str:
+        """The name under which a sweep would vary the value at this path."""
+        if len(path) == 3 and path[0] == "laws" and isinstance(path[1], int):
+            return f"laws.{label_of(self._tree['laws'][path[1]])}.{path[2]}"
+        return ".".join(map(str, path))
+
+    def _laws(self) -> tuple[LawChoice, ...]:
+        if "laws" not in self._tree:
+            return ()
+        given = items(self._tree["laws"], ("laws",), "[{kind: coulomb, mu: 0.4}]", self._notes)
+        note_equal_labels(given, "laws", self._notes)
+        read = [law_choice(item, ("laws", index), self._notes) for index, item in enumerate(given)]
+        return tuple(choice for choice in read if choice is not None)
+
+    def _methods(self) -> tuple[MethodChoice, ...]:
+        given = items(self._tree.get("methods", list(DEFAULT_METHODS)), ("methods",), "[auto]", self._notes)
+        note_equal_labels(given, "methods", self._notes)
+        read = [method_choice(item, ("methods", index), self._notes) for index, item in enumerate(given)]
+        return tuple(choice for choice in read if choice is not None)
+
+    def _plain_values(self) -> dict[str, Any]:
+        tree, notes = self._tree, self._notes
+        words = [key for key in ("title", "source") if key in tree]
+        told: dict[str, Any] = {key: notes.text(tree[key], (key,)) for key in words}
+        told["tolerance"] = notes.number(tree.get("tolerance", DEFAULT_TOLERANCE), ("tolerance",))
+        if told["tolerance"] is not None and told["tolerance"] <= 0:
+            notes.add(("tolerance",), f"must be > 0, got {described(tree['tolerance'])}")
+        keep = notes.mapping(tree.get("keep", {}), ("keep",), ("orbit",)) or {}
+        if "orbit" in keep:
+            told["keep_orbit"] = notes.whole_number(keep["orbit"], ("keep", "orbit"), 2)
+        return told
+
+    def _expect(self, scene: Scene | None) -> Any:
+        given = self._tree.get("expect", [])
+        return expectations(given, self._table(scene), self._notes)
+
+    def _table(self, scene: Scene | None) -> Table:
+        """What ``where`` may name; where the scene or a law has mistakes, whatever one could hold."""
+        paths = list(scene.values()) if scene is not None else number_paths(Scene)
+        laws = sure_law_labels(self._tree.get("laws"))
+        methods = sure_labels(self._tree.get("methods", list(DEFAULT_METHODS)), registry.method_names())
+        kinds = tuple(dict.fromkeys(law["kind"] for law in self._tree["laws"])) if laws else None
+        known = registry.law_names() if kinds is None else kinds
+        parameters = {
+            f"law.{name}": None for kind in known for name in number_paths(registry.law_class(kind))
+        }
+        texts = dict(zip(columns.INPUTS, (laws, kinds, methods), strict=True))
+        return Table(texts, (*(f"scene.{path}" for path in paths), *parameters))
+
+
+def _plain(value: Any) -> Any:
+    """A Python value as YAML would have given it."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (np.ndarray, np.generic)):
+        return _plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return plain_number(value)
+    return value if value is None or isinstance(value, (str, bool)) else Odd(f"a {type(value).__name__}")

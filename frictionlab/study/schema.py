@@ -1,0 +1,123 @@
+"""The JSON Schema of a study file, put together from what is installed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+
+from frictionlab import columns, registry
+from frictionlab.scene import Scene
+from frictionlab.study import reader
+from frictionlab.study.record import SCHEMA
+from frictionlab.study.sweep import LARGEST_GRID
+
+_NUMBER = {"type": "number"}
+_TEXT = {"type": "string"}
+# A bound behind a validator of our own keeps pydantic's name for it.
+_BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
+
+
+def schema() -> dict[str, Any]:
+    """JSON Schema (draft 2020-12) of a study; what depends on several keys at once is left to ``check``."""
+    definitions: dict[str, Any] = {}
+    scene = _record(Scene, definitions)
+    properties = {
+        "schema": {"const": SCHEMA},
+        "title": _TEXT,
+        "source": _TEXT,
+        "scene": scene,
+        "laws": {"type": "array", "minItems": 1, "items": {"oneOf": _laws(definitions)}},
+        "methods": {
+            "type": "array",
+            "minItems": 1,
+            "items": {"oneOf": _methods(definitions)},
+            "default": list(reader.DEFAULT_METHODS),
+        },
+        "tolerance": {"type": "number", "exclusiveMinimum": 0, "default": reader.DEFAULT_TOLERANCE},
+        "sweep": _sweep(),
+        "expect": {"type": "array", "items": {"oneOf": _expectations()}},
+        "keep": _closed({"orbit": {"type": "integer", "minimum": 2}}, []),
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A frictionlab study",
+        **_closed(properties, list(reader.REQUIRED)),
+        "$defs": definitions,
+    }
+
+
+def _closed(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:
+    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
+
+
+def _record(record: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:
+    """The schema of a record; the records inside it join the definitions."""
+    made: dict[str, Any] = _as_written(record.model_json_schema(ref_template="#/$defs/{model}"))
+    definitions.update(made.pop("$defs", {}))
+    return made
+
+
+def _as_written(schema: Any) -> Any:
+    """A record's schema for a study: a key may be left out (a sweep can give it), but not be null."""
+    if isinstance(schema, list):
+        return [_as_written(item) for item in schema]
+    if not isinstance(schema, dict):
+        return schema
+    kept = {
+        _BOUNDS.get(key, key) if isinstance(item, (int, float)) else key: _as_written(item)
+        for key, item in schema.items()
+        if key != "required" and not (key == "default" and item is None)
+    }
+    choices = [item for item in kept.pop("anyOf", []) if item != {"type": "null"}]
+    return kept | (choices[0] if len(choices) == 1 else {"anyOf": choices} if choices else {})
+
+
+def _laws(definitions: dict[str, Any]) -> list[dict[str, Any]]:
+    return [_kind(name, _record(registry.law_class(name), definitions)) for name in registry.law_names()]
+
+
+def _methods(definitions: dict[str, Any]) -> list[dict[str, Any]]:
+    names = registry.method_names()
+    records = [_kind(name, _record(registry.method_class(name), definitions)) for name in names]
+    return [{"enum": names}, *records]
+
+
+def _kind(name: str, record: dict[str, Any]) -> dict[str, Any]:
+    """A law or method: its own keys, its registered name and a label."""
+    own = {"kind": {"const": name}, "label": _TEXT}
+    closed = _closed({**own, **record.get("properties", {})}, ["kind"])
+    return {"title": name, "description": record.get("description", ""), **closed}
+
+
+def _sweep() -> dict[str, Any]:
+    listed = {"type": "array", "minItems": 1, "uniqueItems": True, "items": _NUMBER}
+    ranged = _closed(
+        {
+            "start": _NUMBER,
+            "stop": _NUMBER,
+            "num": {"type": "integer", "minimum": 2, "maximum": LARGEST_GRID},
+            "spacing": {"enum": ["linear", "log"], "default": "linear"},
+        },
+        ["start", "stop", "num"],
+    )
+    names = {"pattern": r"^(scene\..+|laws\..+\..+)$"}
+    return {"type": "object", "propertyNames": names, "additionalProperties": {"oneOf": [listed, ranged]}}
+
+
+def _expectations() -> list[dict[str, Any]]:
+    """A column against a number, a status, or the difference of two methods."""
+    where = {"type": "object", "additionalProperties": {"type": ["string", "number"]}}
+    shared: dict[str, Any] = {"where": where, "because": _TEXT}
+    numeric = [name for name in columns.RESULTS if name not in columns.TEXT]
+    positive = {"type": "number", "exclusiveMinimum": 0}
+    column = {"column": {"enum": numeric}, "within": positive}
+    statuses = [status for status in columns.STATUSES if status != "killed"]
+    pair = {"type": "array", "minItems": 2, "maxItems": 2, "uniqueItems": True, "items": _TEXT}
+    return [
+        _closed({**shared, **column, "equals": _NUMBER}, ["column", "equals", "within"]),
+        _closed({**shared, **column, "below": _NUMBER}, ["column", "below"]),
+        _closed({**shared, **column, "above": _NUMBER}, ["column", "above"]),
+        _closed({**shared, "status": {"enum": statuses}}, ["status"]),
+        _closed({**shared, "max_difference": pair, "below": positive}, ["max_difference", "below"]),
+    ]

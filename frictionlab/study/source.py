@@ -1,0 +1,232 @@
+"""Where a study comes from: YAML text read to plain values, with the place of every key and value."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path as FilePath
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+
+from frictionlab.study.mistakes import Mistake, Note, Path, Place, StudyError, dotted
+
+LARGEST_FILE = 5_000_000
+MOST_NODES = 300_000
+
+_TAG = "tag:yaml.org,2002:"
+_CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ufffe\uffff]")
+
+
+@dataclass(frozen=True)
+class Odd:
+    """A value no study has a use for, such as a date, in words."""
+
+    words: str
+
+    def __str__(self) -> str:
+        """The words."""
+        return self.words
+
+
+@dataclass
+class Source:
+    """A study's values with their places; notes: the mistakes of the YAML itself.
+
+    keys, values: path -> place. origins: path -> the ``--set`` that put the value there. refused: stand-in
+    path of a ``--set`` that could not be carried out -> the path it is about.
+    """
+
+    name: str
+    text: str = ""
+    tree: Any = None
+    keys: dict[Path, Place] = field(default_factory=dict)
+    values: dict[Path, Place] = field(default_factory=dict)
+    origins: dict[Path, str] = field(default_factory=dict)
+    refused: dict[Path, Path] = field(default_factory=dict)
+    notes: list[Note] = field(default_factory=list)
+
+    def located(self, notes: Iterable[Note]) -> list[Mistake]:
+        """The notes as mistakes, in the order of the file, those of the command line last."""
+        found = dict.fromkeys(self._located(note) for note in notes)
+        return sorted(found, key=lambda mistake: mistake.place or (float("inf"), 0))
+
+    def _located(self, note: Note) -> Mistake:
+        origin, place = (self.name, note.place) if note.place else self._where(note)
+        lines = re.split("\r\n|[\r\n]", self.text)
+        line = lines[place.line - 1] if place and place.line <= len(lines) else ""
+        path = dotted(self.refused.get(note.path, note.path))
+        return Mistake(origin, place, path, note.what, note.hint, line)
+
+    def _where(self, note: Note) -> tuple[str, Place | None]:
+        """The path's own place, or that of the nearest thing around it which the study does have."""
+        for length in range(len(note.path), -1, -1):
+            path = note.path[:length]
+            if path in self.origins:
+                return self.origins[path], None
+            first, second = (self.keys, self.values) if note.on_key else (self.values, self.keys)
+            if place := first.get(path) or second.get(path):
+                return self.name, place
+        return self.name, None
+
+
+def read_file(path: FilePath) -> Source:
+    """The YAML file of this path. Raises StudyError for what is no readable YAML text."""
+    return read_text(_text_of(path), str(path))
+
+
+def read_text(text: str, name: str) -> Source:
+    """YAML text as a source. Raises StudyError where it is not YAML or empty."""
+    source = Source(name, text)
+    node = _composed(source)
+    if node is None:
+        raise _unreadable(source, "the study is empty", Place(1, 1))
+    source.tree = _Reading(source).value(node, ())
+    return source
+
+
+def _text_of(path: FilePath) -> str:
+    nothing = Source(str(path))
+    try:
+        if path.is_dir():
+            raise _unreadable(nothing, "is a folder; a study is a file")
+        if path.exists() and not path.is_file():
+            raise _unreadable(nothing, "is not an ordinary file")
+        if path.exists() and path.stat().st_size > LARGEST_FILE:
+            raise _unreadable(nothing, f"is larger than {LARGEST_FILE // 10**6} MB; a study is a short text")
+        return path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        raise _unreadable(nothing, "no such file") from None
+    except UnicodeDecodeError as problem:
+        raise _unreadable(nothing, f"is not UTF-8 text (byte {problem.start + 1})") from None
+    except (OSError, ValueError) as problem:
+        reason = problem.strerror if isinstance(problem, OSError) else str(problem)
+        raise _unreadable(nothing, f"cannot be read: {reason}") from None
+
+
+def _unreadable(source: Source, what: str, place: Place | None = None) -> StudyError:
+    return StudyError(source.located([Note((), what, place=place)]))
+
+
+def _composed(source: Source) -> Node | None:
+    """The YAML node of the text; nodes, not values, because they know their places and keep double keys."""
+    if odd := _CONTROL.search(source.text):
+        before = source.text[: odd.start()].split("\n")
+        place = Place(len(before), len(before[-1]) + 1)
+        raise _unreadable(source, f"is not text: character {odd.group()!r}", place)
+    try:
+        node: Node | None = YAML(typ="rt").compose(source.text)
+        return node
+    except MarkedYAMLError as problem:
+        mark = problem.problem_mark or problem.context_mark
+        what = " ".join(str(part).strip() for part in (problem.context, problem.problem) if part)
+        at = Place(mark.line + 1, mark.column + 1) if mark else None
+        raise _unreadable(source, f"not YAML: {what}", at) from None
+    except RecursionError:
+        raise _unreadable(source, "not a study: nested too deeply") from None
+    except (YAMLError, ValueError, AttributeError, TypeError, LookupError, AssertionError) as problem:
+        # The parser answers some broken texts with its own accidents.
+        raise _unreadable(source, f"not YAML: {str(problem).splitlines()[0] or 'unreadable'}") from None
+
+
+class _Reading:
+    """One pass over the nodes of a source."""
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self._open: set[int] = set()
+        self._count = 0
+
+    def value(self, node: Node, path: Path) -> Any:
+        """The node as a plain value; its place and those of all below are entered."""
+        place = Place(node.start_mark.line + 1, node.start_mark.column + 1)
+        self._source.values.setdefault(path, place)
+        self._count += 1
+        if self._count > MOST_NODES:
+            raise _unreadable(self._source, f"has more than {MOST_NODES} values", place)
+        if isinstance(node, ScalarNode):
+            return self._scalar(node, path)
+        if id(node) in self._open:
+            return self._odd(path, "contains itself")
+        if not str(node.tag).startswith((_TAG + "map", _TAG + "seq")):
+            return self._odd(path, f"the YAML tag {node.tag} has no meaning here")
+        self._open.add(id(node))
+        read = self._mapping(node, path) if isinstance(node, MappingNode) else self._list(node, path)
+        self._open.discard(id(node))
+        return read
+
+    def _list(self, node: Node, path: Path) -> list[Any]:
+        return [self.value(item, (*path, index)) for index, item in enumerate(node.value)]
+
+    def _mapping(self, node: MappingNode, path: Path) -> dict[str, Any]:
+        read: dict[str, Any] = {}
+        for key, item in node.value:
+            place = Place(key.start_mark.line + 1, key.start_mark.column + 1)
+            if (name := self._key(key, path, place)) is None:
+                continue
+            below = (*path, name)
+            if name in read:
+                what = f"given twice, first in line {self._source.keys[below].line}"
+                self._source.notes.append(Note(below, what, place=place))
+                continue
+            self._source.keys[below] = place
+            read[name] = self.value(item, below)
+            if isinstance(item, (MappingNode, SequenceNode)) or read[name] is None:
+                # What is wrong with a whole mapping or list, or with nothing, is best shown at its key.
+                self._source.values[below] = place
+        return read
+
+    def _key(self, key: Node, path: Path, place: Place) -> str | None:
+        if not isinstance(key, ScalarNode):
+            self._source.notes.append(Note(path, "a key must be a name", place=place))
+        elif key.tag == _TAG + "merge":
+            self._source.notes.append(Note(path, "merge keys (<<) are not used here", place=place))
+        else:
+            return str(key.value)
+        return None
+
+    def _scalar(self, node: ScalarNode, path: Path) -> Any:
+        kind = str(node.tag).removeprefix(_TAG)
+        if kind == "timestamp":
+            return Odd(f"the date {node.value}")
+        if kind not in _SCALARS:
+            return self._odd(path, f"the YAML tag {node.tag} has no meaning here")
+        try:
+            return _SCALARS[kind](str(node.value))
+        except ValueError:
+            return str(node.value)
+
+    def _odd(self, path: Path, what: str) -> Odd:
+        self._source.notes.append(Note(path, what))
+        return Odd(what)
+
+
+def _integer(text: str) -> int | float:
+    digits = text.replace("_", "").lower()
+    base = {"0x": 16, "0o": 8, "0b": 2}.get(digits.lstrip("+-")[:2], 10)
+    return plain_number(int(digits, base)) if len(digits) < 400 else float(digits)
+
+
+def _real(text: str) -> float:
+    return float(text.replace("_", "").lower().replace(".inf", "inf").replace(".nan", "nan"))
+
+
+def plain_number(value: int | float) -> int | float:
+    """The number; infinity for an integer that no float can hold."""
+    try:
+        float(value)
+    except OverflowError:
+        return float("inf") if value > 0 else float("-inf")
+    return value
+
+
+_SCALARS: dict[str, Any] = {
+    "str": str,
+    "int": _integer,
+    "float": _real,
+    "bool": lambda text: text.lower() in ("true", "yes", "on", "y"),
+    "null": lambda _text: None,
+}

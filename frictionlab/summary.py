@@ -1,0 +1,89 @@
+"""A run in a few lines of text: one per curve, then what was expected, then where the table is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import pandas as pd
+
+from frictionlab.expect import Verdict
+from frictionlab.runner import Run
+
+MOST_REASONS = 10
+
+
+def summary(run: Run) -> str:
+    """What a run found, for reading: curves, reasons, verdicts."""
+    parts = [
+        [run.study.title] if run.study.title else [],
+        [f"{len(run.table)} points: {statuses(run.table)}"],
+        ["", *columns([_HEAD, *_curve_lines(run.table)])],
+        [f"model {number}: {model}" for model, number in _models(run.table).items()],
+        _reasons(run.table),
+        [verdict_line(verdict) for verdict in run.verdicts],
+        [f"table in {run.table_file}"] if run.table_file else [],
+    ]
+    return "\n".join(line for part in parts for line in part)
+
+
+_HEAD = ("law", "method", "curve", "points", "mean_friction", "largest error", "model")
+
+
+def _curve_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
+    """One line per curve: everything equal but belt speed."""
+    told = [
+        name for name in table.columns if name.startswith(("scene.", "law.")) and name != "scene.belt_speed"
+    ]
+    told = [name for name in told if table[name].nunique(dropna=False) > 1]
+    keys = ["law", "method", *told]
+    groups = table.groupby(keys, sort=False, dropna=False)
+    models = _models(table)
+    return [_curve_line(dict(zip(keys, key, strict=True)), rows, models) for key, rows in groups]
+
+
+def _models(table: pd.DataFrame) -> dict[str, int]:
+    """Numbers for the models, whose sentences are too long for a line per curve."""
+    return {model: number for number, model in enumerate(table["model"].dropna().unique(), 1)}
+
+
+def _curve_line(inputs: dict[str, Any], rows: pd.DataFrame, models: dict[str, int]) -> tuple[str, ...]:
+    law, method = str(inputs.pop("law")), str(inputs.pop("method"))
+    where = ", ".join(f"{name.removeprefix('scene.')} {_short(x)}" for name, x in inputs.items() if x == x)
+    found = rows["mean_friction"].dropna()
+    span = dict.fromkeys(f"{value:.6g}" for value in (found.min(), found.max())) if len(found) else {}
+    error = f"{rows['error'].max():.1e}" if rows["error"].notna().any() else ""
+    used = ", ".join(str(models[model]) for model in rows["model"].dropna().unique())
+    return law, method, where, statuses(rows), " ... ".join(span), error, used
+
+
+def statuses(rows: pd.DataFrame) -> str:
+    """How many rows have each status, in words."""
+    return ", ".join(f"{count} {status}" for status, count in rows["status"].value_counts().items())
+
+
+def _short(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def columns(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows of words as lines with aligned columns; columns without a word below their head are left out."""
+    kept = [column for column in zip(*rows, strict=True) if any(column[1:]) or len(rows) == 1]
+    padded = [[cell.ljust(max(map(len, column))) for cell in column] for column in kept]
+    return ["  ".join(line).rstrip() for line in zip(*padded, strict=True)]
+
+
+def _reasons(table: pd.DataFrame) -> list[str]:
+    """Why points that are not ok are not, the commonest reasons first."""
+    rest = table[table["status"] != "ok"]
+    counts = (
+        rest.groupby(["status", "reason"], dropna=False).size().sort_values(ascending=False, kind="stable")
+    )
+    lines = [f"{status} ({count}): {reason}" for (status, reason), count in counts.items()]
+    more = [f"... and {len(lines) - MOST_REASONS} more reasons"] if len(lines) > MOST_REASONS else []
+    return ["", *lines[:MOST_REASONS], *more] if lines else []
+
+
+def verdict_line(verdict: Verdict) -> str:
+    """A verdict as a line."""
+    return f"expect {'passed' if verdict.passed else 'FAILED'}: {verdict.sentence}"

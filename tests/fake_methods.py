@@ -1,0 +1,78 @@
+"""Methods for tests of what stands around methods: quick or slow, refusing, failing and breaking as told."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from typing import ClassVar
+
+import numpy as np
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Answers, Method, Orbit
+from frictionlab.quantities import NonNegative
+from frictionlab.registry import BrokenPlugin
+from frictionlab.scene import Scene
+
+
+def breaks_down() -> None:
+    """As arithmetic does."""
+    raise ZeroDivisionError("float division by zero")
+
+
+def is_wrong() -> None:
+    """As a program does."""
+    raise TypeError("no such operand")
+
+
+def is_broken() -> None:
+    """As a plugin does."""
+    raise BrokenPlugin("law 'x' does not compile")
+
+
+class Fake(Method):
+    """Mean friction mu tanh(belt speed), with trouble at the belt speeds named in ``troubles``."""
+
+    name: ClassVar[str] = "fake"
+    refused_at: ClassVar[frozenset[float]] = frozenset({13.0})
+    nothing_at: ClassVar[frozenset[float]] = frozenset({17.0})
+    troubles: ClassVar[dict[float, Callable[[], None]]] = {}
+
+    pause: NonNegative = 0.0
+
+    def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
+        return "thirteen, of all numbers" if scene.belt_speed in self.refused_at else None
+
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        time.sleep(self.pause)
+        speeds = [scene.belt_speed for scene in scenes]
+        assert sorted(set(speeds)) == speeds
+        for speed in speeds:
+            self.troubles.get(speed, lambda: None)()
+        mean = np.array([law.sliding_friction(abs(v)) * math.tanh(v) / 3.0 for v in speeds])
+        mean[[speed in self.nothing_at for speed in speeds]] = np.nan
+        n = len(scenes)
+        columns = {"mean_friction": mean, "error": np.full(n, tolerance)}
+        return Answers(
+            ["ok"] * n, [""] * n, ["fake"] * n, ["estimated"] * n, columns, lambda i: _orbit(speeds[i])
+        )
+
+    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
+        return 0.25
+
+
+class Another(Fake):
+    """The same under another name."""
+
+    name: ClassVar[str] = "another"
+
+
+def _orbit(belt_speed: float) -> Orbit | None:
+    """One panel of rest; none at belt speed 0."""
+    if belt_speed == 0.0:
+        return None
+    nodes = np.zeros((1, 10), dtype=complex)
+    return Orbit(
+        np.linspace(0.0, 2.0 * math.pi, 10)[None, :], nodes, nodes + belt_speed, nodes, np.array([True])
+    )

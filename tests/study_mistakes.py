@@ -1,0 +1,168 @@
+# ruff: noqa: E501
+"""A study without mistakes, and single mistakes to put into it: what to replace, by what, and the message."""
+
+from __future__ import annotations
+
+GOOD = """\
+schema: 1
+title: Two loads
+source: Fig. 9b
+scene:
+  damping_ratio: 0.1
+  normal_load: 10
+  belt_speed: 5
+  drive: {unbalance: 10, frequency: 1}
+  transverse:
+    natural_frequency: 0.5
+    damping_ratio: 0.1
+    load: {unbalance: 10}
+laws:
+  - {kind: coulomb, mu: 0.4}
+  - {kind: coulomb, mu: 0.3, label: soft}
+methods: [auto, {kind: shooting, label: second}]
+tolerance: 1e-6
+sweep:
+  scene.belt_speed: {start: 0.5, stop: 60, num: 120}
+  laws.soft.mu: [0.1, 0.2]
+keep: {orbit: 200}
+expect:
+  - {where: {law: coulomb, scene.belt_speed: 5}, column: error, below: 1, because: Fig. 9b}
+"""
+
+# fmt: off
+EDITS = [
+    # top level
+    ("title: Two loads", "titel: Two loads", "2:1: titel: unknown key; allowed: schema, title,"),
+    ("title: Two loads", "title: 2024", "2:8: title: must be text, got 2024 (put it in quotes)"),
+    ("title: Two loads", "title:", "2:1: title: must be text, got null"),
+    ("title: Two loads", "title: 2020-01-01", "2:8: title: must be text, got the date 2020-01-01 (put it in"),
+    ("title: Two loads", "title: !foo x", "2:8: title: the YAML tag !foo has no meaning here"),
+    ("title: Two loads", "schema: 1", "2:1: schema: given twice, first in line 1"),
+    ("title: Two loads", "plugins: [a.py]", "2:1: plugins: not available yet"),
+    ("title: Two loads", "dimensional: {}", "2:1: dimensional: not available yet"),
+    ("title: Two loads", "? [1, 2]\n: 3", "2:3: a key must be a name"),
+    ("title: Two loads", "3: x", "2:1: 3: unknown key"),
+    ("title: Two loads", "<<: {title: x}", "2:1: merge keys (<<) are not used here"),
+    ("schema: 1\n", "", "1:1: schema: required key is missing"),
+    ("schema: 1", "schema: '1'", "1:9: schema: must be 1, got the text '1' (remove the quotes)"),
+    ("schema: 1", "schema: true", "1:9: schema: must be 1, got true"),
+    ("schema: 1", "schema: 2", "1:9: schema: must be 1, got 2"),
+    ("tolerance: 1e-6", "tolerance: 0", "17:12: tolerance: must be > 0, got 0"),
+    ("tolerance: 1e-6", "tolerance: '1e-6'", "17:12: tolerance: must be a number, got the text '1e-6' (remove"),
+    ("tolerance: 1e-6", "tolerance: true", "17:12: tolerance: must be a number, got true"),
+    ("keep: {orbit: 200}", "keep: {orbit: 1}", "21:15: keep.orbit: must be >= 2, got 1"),
+    ("keep: {orbit: 200}", "keep: {orbit: 2.5}", "21:15: keep.orbit: must be a whole number >= 2, got 2.5"),
+    ("keep: {orbit: 200}", "keep: {orbits: 2}", "21:8: keep.orbits: unknown key; allowed: orbit"),
+    ("keep: {orbit: 200}", "keep: 200", "21:7: keep: must be a mapping (key: value), got 200"),
+    # scene
+    ("damping_ratio: 0.1\n  n", "n", "4:1: scene.damping_ratio: required key is missing"),
+    ("damping_ratio: 0.1\n  n", "damping_ratio:\n  n", "5:3: scene.damping_ratio: must be a number, got null"),
+    ("damping_ratio: 0.1\n  n", "damping_ratio: '0.1'\n  n", "5:18: scene.damping_ratio: must be a number, got the"),
+    ("damping_ratio: 0.1\n  n", "damping_ratio: 0,1\n  n",
+     "5:18: scene.damping_ratio: must be a number, got the text '0,1' (use a decimal point)"),
+    ("damping_ratio: 0.1\n  n", "damping_ratio: .nan\n  n", "5:18: scene.damping_ratio: must be a finite number, got .nan"),
+    ("damping_ratio: 0.1\n  n", "damping_ratio: -.inf\n  n", "5:18: scene.damping_ratio: must be a finite number, got -.inf"),
+    ("damping_ratio: 0.1\n  n", "damping_ratio: 1e999\n  n", "5:18: scene.damping_ratio: must be a finite number, got .inf"),
+    ("damping_ratio: 0.1\n  n", f"damping_ratio: 1{'0' * 320}\n  n", "5:18: scene.damping_ratio: must be a finite number"),
+    ("damping_ratio: 0.1\n  n", "damping_ratio: [1]\n  n", "5:3: scene.damping_ratio: must be a number, got a list"),
+    ("damping_ratio: 0.1\n  n", "damping_ratio: 2020-01-01\n  n",
+     "5:18: scene.damping_ratio: must be a number, got the date 2020-01-01"),
+    ("damping_ratio: 0.1\n  n", "damping_ratio: !!binary aGk=\n  n",
+     "5:18: scene.damping_ratio: the YAML tag tag:yaml.org,2002:binary has no meaning here"),
+    ("normal_load: 10", "normal_load: 0", "6:16: scene.normal_load: must be > 0, got 0"),
+    ("drive: {unbalance: 10, frequency: 1}", "drive: {frequency: 1}",
+     "8:3: scene.drive: give exactly one of unbalance and amplitude"),
+    ("drive: {unbalance: 10, frequency: 1}", "drive: 5", "8:10: scene.drive: must be a mapping (key: value), got 5"),
+    ("drive: {unbalance: 10, frequency: 1}", "drive:", "8:3: scene.drive: must be a mapping, got null"),
+    ("drive: {unbalance: 10, frequency: 1}", "drive: {unbalance: 10, frequency: 1, waveform: sine}",
+     "8:40: scene.drive.waveform: not available yet"),
+    ("  drive: {unbalance: 10, frequency: 1}\n", "",
+     "4:1: scene.drive: required key is missing (undriven scenes: not available yet)"),
+    ("load: {unbalance: 10}", "load: {unbalance: 10, frequency: 2}", "12:27: scene.transverse.load.frequency: not available"),
+    ("  transverse:\n", "  initial: {x2: x}\n  transverse:\n", "9:17: scene.initial.x2: must be a number, got the text 'x'"),
+    ("  transverse:\n", "  dimensional: {}\n  transverse:\n", "9:3: scene.dimensional: not available yet"),
+    # laws
+    ("mu: 0.4", "mu: -1", "14:25: laws[0].mu: must be > 0, got -1"),
+    (", mu: 0.4", "", "14:5: laws[0].mu: required key is missing"),
+    ("mu: 0.4", "mu: 0.4, mu_static: 1", "14:30: laws[0].mu_static: not available yet"),
+    ("mu: 0.4", "mu: 0.4, mv: 1", "14:30: laws[0].mv: unknown key; allowed: mu"),
+    ("kind: coulomb, mu: 0.4", "kind: colomb, mu: 0.4", "14:12: laws[0].kind: unknown law 'colomb'; installed: coulomb"),
+    ("kind: coulomb, mu: 0.4", "kind: dahl, mu: 0.4", "14:12: laws[0].kind: dahl: not available yet"),
+    ("kind: coulomb, mu: 0.4", "kind: 3, mu: 0.4", "14:12: laws[0].kind: must be the name of a law, got 3"),
+    ("kind: coulomb, mu: 0.4", "kind: [], mu: 0.4", "14:6: laws[0].kind: must be the name of a law, got a list"),
+    ("kind: coulomb, mu: 0.4", "mu: 0.4", "14:5: laws[0].kind: required key is missing"),
+    ("label: soft", "label: coulomb", "15:37: laws[1].label: laws[0] has the label 'coulomb' too"),
+    ("label: soft", "label: ''", "15:37: laws[1].label: must be one line of visible text"),
+    ("label: soft", "label: 4", "15:37: laws[1].label: must be text, got 4"),
+    ("  - {kind: coulomb, mu: 0.4}", "  - coulomb", "14:5: laws[0]: must be a mapping such as {kind: coulomb, mu: 0.4}"),
+    ("laws:\n  - {kind: coulomb, mu: 0.4}\n  - {kind: coulomb, mu: 0.3, label: soft}", "laws: []",
+     "13:1: laws: the list is empty; give at least one, such as [{kind: coulomb, mu: 0.4}]"),
+    ("laws:\n  - {kind: coulomb, mu: 0.4}\n  - {kind: coulomb, mu: 0.3, label: soft}", "laws: {kind: coulomb}",
+     "13:1: laws: must be a list such as [{kind: coulomb, mu: 0.4}], got a mapping"),
+    # methods
+    ("methods: [auto, ", "methods: [autto, ", "16:11: methods[0]: unknown method 'autto'; installed: auto"),
+    ("methods: [auto, ", "methods: [march, ", "16:11: methods[0]: march: not available yet"),
+    ("methods: [auto, ", "methods: [mdsm, ", "16:11: methods[0]: mdsm: not available yet"),
+    ("methods: [auto, ", "methods: [harmonic_balance, ", "16:11: methods[0]: harmonic_balance: not available yet"),
+    ("methods: [auto, ", "methods: [auto, auto, ", "16:17: methods[1]: methods[0] has the label 'auto' too"),
+    ("methods: [auto, ", "methods: [5, ", "16:11: methods[0]: must be the name of a method, got 5"),
+    ("label: second", "steps: 5, label: second", "16:34: methods[1].steps: unknown key; allowed: none"),
+    ("kind: shooting, label", "label", "16:17: methods[1].kind: required key is missing"),
+    ("methods: [auto, {kind: shooting, label: second}]", "methods: auto", "16:10: methods: must be a list such as [auto]"),
+    # sweep
+    ("{start: 0.5, stop: 60, num: 120}", "[]", "19:3: sweep.scene.belt_speed: the list is empty"),
+    ("{start: 0.5, stop: 60, num: 120}", "5", "19:21: sweep.scene.belt_speed: must be a list or {start, stop, num, spac"),
+    ("{start: 0.5, stop: 60, num: 120}", "[1, '2']", "19:25: sweep.scene.belt_speed[1]: must be a number, got the text"),
+    ("{start: 0.5, stop: 60, num: 120}", "[1, .inf]", "19:25: sweep.scene.belt_speed[1]: must be a finite number, got .inf"),
+    ("{start: 0.5, stop: 60, num: 120}", "[1, 2, 1.0]", "19:28: sweep.scene.belt_speed[2]: 1 is in the list twice"),
+    ("stop: 60", "stop: 0.5", "19:40: sweep.scene.belt_speed.stop: must be > start = 0.5, got 0.5"),
+    ("start: 0.5, stop: 60", "start: 60, stop: 0.5", "19:39: sweep.scene.belt_speed.stop: must be > start = 60, got 0.5"),
+    ("num: 120", "num: 1", "19:49: sweep.scene.belt_speed.num: must be >= 2, got 1"),
+    ("num: 120", "num: 2.5", "19:49: sweep.scene.belt_speed.num: must be a whole number >= 2, got 2.5"),
+    ("num: 120", "num: true", "19:49: sweep.scene.belt_speed.num: must be a whole number >= 2, got true"),
+    ("num: 120", "num: 100000000", "19:49: sweep.scene.belt_speed.num: must be <= 1000000, got 100000000"),
+    ("num: 120", "num: 200000", "18:1: sweep: the grid has 1200000 points, more than 1000000"),
+    (", num: 120", "", "19:3: sweep.scene.belt_speed.num: required key is missing"),
+    ("num: 120", "num: 120, space: log", "19:54: sweep.scene.belt_speed.space: unknown key; allowed: start, stop, num"),
+    ("num: 120", "num: 120, spacing: logg", "19:63: sweep.scene.belt_speed.spacing: must be one of linear, log; got the"),
+    ("start: 0.5, stop: 60, num: 120", "start: 0, stop: 60, num: 120, spacing: log",
+     "19:29: sweep.scene.belt_speed.start: must be > 0 for log spacing, got 0"),
+    ("start: 0.5, stop: 60", "start: 1, stop: 1.000000000000001", "19:3: sweep.scene.belt_speed: there are no 120 different"),
+    ("start: 0.5", "start: .nan", "19:29: sweep.scene.belt_speed.start: must be a finite number, got .nan"),
+    ("  scene.belt_speed: {", "  scene.belt_sped: {", "19:3: sweep.scene.belt_sped: no such value in a scene"),
+    ("  scene.belt_speed: {", "  belt_speed: {", "19:3: sweep.belt_speed: only scene.<value> and laws.<label>.<parameter>"),
+    ("  scene.belt_speed: {", "  tolerance: {", "19:3: sweep.tolerance: only scene.<value> and laws.<label>.<parameter>"),
+    ("  scene.belt_speed: {", "  scene.drive: {", "19:3: sweep.scene.drive: no such value in a scene"),
+    ("  scene.belt_speed: {", "  scene.slip.phase: {", "19:3: sweep.scene.slip.phase: the study has no scene.slip"),
+    ("  scene.belt_speed: {", "  scene.drive.amplitude: {",
+     "19:3: sweep.scene.drive.amplitude: scene.drive gives unbalance, so amplitude cannot be swept"),
+    ("  scene.belt_speed: {start: 0.5", "  scene.normal_load: {start: 0", "19:3: sweep.scene.normal_load[0]: must be > 0, got 0"),
+    ("laws.soft.mu: [0.1, 0.2]", "laws.soft.mu: [0.1, -0.2]", "20:23: sweep.laws.soft.mu[1]: must be > 0, got -0.2"),
+    ("laws.soft.mu: [", "laws.sofd.mu: [", "20:3: sweep.laws.sofd.mu: no law is labelled 'sofd'"),
+    ("laws.soft.mu: [", "laws.soft.mv: [", "20:3: sweep.laws.soft.mv: the law 'soft' has no parameter 'mv' to sweep"),
+    ("laws.soft.mu: [", "laws.mu: [", "20:3: sweep.laws.mu: write laws.<label>.<parameter>"),
+    ("sweep:\n  scene.belt_speed: {start: 0.5, stop: 60, num: 120}\n  laws.soft.mu: [0.1, 0.2]", "sweep: []", "18:1: sweep: must be a mapping (key: value), got a list"),
+    # expect
+    ("law: coulomb, scene", "law: colomb, scene", "23:19: expect[0].where.law: must be one of coulomb, soft; got the text"),
+    ("scene.belt_speed: 5}", "scene.belt_sped: 5}", "23:28: expect[0].where.scene.belt_sped: is no input column"),
+    ("scene.belt_speed: 5}", "scene.slip.phase: 5}", "23:28: expect[0].where.scene.slip.phase: is no input column"),
+    ("scene.belt_speed: 5}", "scene.belt_speed: fast}", "23:46: expect[0].where.scene.belt_speed: must be a number, got"),
+    ("column: error, ", "", "23:5: expect[0].column: required key is missing"),
+    ("column: error", "column: model", "23:58: expect[0].column: 'model' holds text; only numbers can be compared"),
+    ("below: 1", "equals: 1", "23:5: expect[0].within: required key is missing"),
+    ("below: 1", "equals: 1, within: 0", "23:84: expect[0].within: must be > 0, got 0"),
+    ("below: 1", "below: 1, above: 0", "23:5: expect[0]: give exactly one of equals, below and above, got below and above"),
+    (", below: 1", "", "23:5: expect[0]: give exactly one of equals, below and above, got none"),
+    ("column: error, below: 1", "shape: concave", "23:50: expect[0].shape: not available yet"),
+    ("column: error, below: 1", "status: fine", "23:58: expect[0].status: must be one of ok, refused, failed, not_unique;"),
+    ("column: error, below: 1", "status: ok, below: 1", "23:62: expect[0].below: does not go with status"),
+    ("column: error, below: 1", "max_difference: [auto, third], below: 1",
+     "23:73: expect[0].max_difference[1]: must be one of auto, second; got the text 'third'"),
+    ("column: error, below: 1", "max_difference: [auto, auto], below: 1",
+     "23:73: expect[0].max_difference[1]: is the same method: give two different ones"),
+    ("column: error, below: 1", "max_difference: auto, below: 1", "23:66: expect[0].max_difference: must be a list of two"),
+    ("column: error, below: 1", "max_difference: [auto, second]", "23:5: expect[0].below: required key is missing"),
+    ("because: Fig. 9b}", "becaus: Fig. 9b}", "23:75: expect[0].becaus: unknown key; allowed: where, column"),
+    ("because: Fig. 9b}", "because: 9}", "23:84: expect[0].because: must be text, got 9 (put it in quotes)"),
+]
+# fmt: on

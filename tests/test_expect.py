@@ -1,0 +1,112 @@
+"""What a study expects, judged against a table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from frictionlab.expect import judge
+from frictionlab.study import Expectation
+
+TABLE = pd.DataFrame(
+    {
+        "law": ["coulomb"] * 4,
+        "kind": ["coulomb"] * 4,
+        "method": ["exact", "shooting"] * 2,
+        "scene.belt_speed": [0.3, 0.3, 2.0, 2.0],
+        "scene.transverse.natural_frequency": [np.nan] * 4,
+        "law.mu": [0.4] * 4,
+        "mean_friction": [0.1, 0.1 + 1e-9, 0.2, np.nan],
+        "status": ["ok", "ok", "ok", "refused"],
+        "reason": ["", "", "", "needs damping"],
+    }
+)
+SLOW = {"scene.belt_speed": 0.1 + 0.2}
+FAST = {"scene.belt_speed": 2.0}
+
+
+@pytest.mark.parametrize(
+    ("where", "claim", "passed"),
+    [
+        (SLOW, {"column": "mean_friction", "equals": 0.1, "within": 1e-6}, True),
+        (SLOW, {"column": "mean_friction", "equals": 0.1, "within": 1e-10}, False),
+        (SLOW, {"column": "mean_friction", "equals": -0.1, "within": 1e-6}, False),
+        (SLOW, {"column": "mean_friction", "below": 0.11}, True),
+        (SLOW, {"column": "mean_friction", "below": 0.1}, False),
+        (SLOW, {"column": "mean_friction", "below": 0.1, "within": 1e-6}, True),
+        (SLOW, {"column": "mean_friction", "above": 0.09}, True),
+        (SLOW, {"column": "mean_friction", "above": 0.1 + 5e-10}, False),
+        (SLOW, {"column": "mean_friction", "above": 0.1 + 5e-10, "within": 1e-9}, True),
+        (FAST, {"column": "mean_friction", "above": 0.0}, False),
+        (FAST | {"method": "exact"}, {"column": "mean_friction", "above": 0.0}, True),
+        (SLOW, {"status": "ok"}, True),
+        (FAST, {"status": "ok"}, False),
+        (FAST | {"method": "shooting"}, {"status": "refused"}, True),
+        (SLOW, {"max_difference": ("exact", "shooting"), "below": 2e-9}, True),
+        (SLOW, {"max_difference": ("exact", "shooting"), "below": 1e-10}, False),
+        (SLOW, {"max_difference": ("shooting", "exact"), "below": 1e-10}, False),
+        (FAST, {"max_difference": ("exact", "shooting"), "below": 1.0}, False),
+        ({}, {"max_difference": ("exact", "shooting"), "below": 1.0}, False),
+        (SLOW | {"method": "exact"}, {"max_difference": ("exact", "shooting"), "below": 1.0}, False),
+    ],
+)
+def test_an_expectation_holds_or_fails_for_all_its_rows(
+    where: dict[str, Any], claim: dict[str, Any], passed: bool
+) -> None:
+    assert judge(Expectation(where=where, **claim), TABLE).passed is passed
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        {"column": "mean_friction", "below": 9.0},
+        {"status": "ok"},
+        {"max_difference": ("exact", "shooting"), "below": 9.0},
+    ],
+)
+@pytest.mark.parametrize(
+    "where",
+    [
+        {"law": "dahl"},
+        {"scene.belt_speed": 0.3 * (1 + 1e-8)},
+        {"scene.transverse.natural_frequency": 1.0},
+        {"scene.slip.frequency": 1.0},
+    ],
+)
+def test_an_expectation_of_rows_that_are_not_there_fails_and_says_so(
+    claim: dict[str, Any], where: dict[str, Any]
+) -> None:
+    verdict = judge(Expectation(where=where, **claim), TABLE)
+
+    assert not verdict.passed
+    assert "no row of the table matches" in verdict.sentence
+
+
+def test_the_sentence_says_what_was_claimed_where_why_and_what_was_found() -> None:
+    claim = Expectation(
+        where=SLOW, column="mean_friction", equals=0.25, within=1e-3, because="Fig. 9b", below=None
+    )
+
+    assert judge(claim, TABLE).sentence == (
+        "mean_friction equals 0.25 within 0.001 where scene.belt_speed 0.3 (Fig. 9b): "
+        "0.1 in the worst of 2 rows"
+    )
+
+
+def test_an_empty_cell_is_told_with_the_reason_of_its_row() -> None:
+    verdict = judge(Expectation(where=FAST, column="mean_friction", above=0.0), TABLE)
+
+    assert verdict.sentence.endswith(
+        "mean_friction is empty in the row of coulomb by shooting at belt speed 2, refused: needs damping"
+    )
+
+
+@pytest.mark.parametrize("table", [TABLE, TABLE.iloc[:3]])
+def test_a_missing_partner_fails_and_is_told(table: pd.DataFrame) -> None:
+    verdict = judge(Expectation(where={}, max_difference=("exact", "shooting"), below=1.0), table)
+
+    assert not verdict.passed
+    assert "a mean is missing in 1 of 2 pairs" in verdict.sentence

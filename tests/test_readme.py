@@ -1,0 +1,123 @@
+"""What the README shows is what happens."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import frictionlab as fl
+from frictionlab.charts import FIGURES
+from frictionlab.columns import RESULTS
+from frictionlab.study import load_study
+
+PROJECT = Path(__file__).parent.parent
+README = (PROJECT / "README.md").read_text()
+DOCUMENTS = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md", *sorted((PROJECT / "docs").glob("*.md"))]
+
+
+def _block(name: str) -> str:
+    """The one fenced block below the comment of this name."""
+    (block,) = re.findall(rf"<!-- {name} -->\n```\w+\n(.*?)```", README, re.DOTALL)
+    return str(block)
+
+
+def test_the_study_runs_and_keeps_its_promise(tmp_path: Path) -> None:
+    study = tmp_path / "study.yaml"
+    study.write_text(_block("study"))
+
+    done = fl.run(study)
+
+    assert [verdict.passed for verdict in done.verdicts] == [True]
+    assert list(done.table["status"]) == ["ok"] * 120
+
+
+def test_the_study_is_about_ten_lines() -> None:
+    assert _block("study").count("\n") <= 11
+
+
+def test_the_python_call_gives_the_number_of_the_reference(capsys: pytest.CaptureFixture[str]) -> None:
+    names: dict[str, object] = {}
+    exec(_block("python"), names)
+
+    state, table = names["state"], names["table"]
+    assert isinstance(state, fl.SteadyState)
+    assert state.mean_friction == pytest.approx(0.0505839238363, abs=1e-8)  # reference/sdof_fig4b, v_b = 5
+    assert "+-" in capsys.readouterr().out
+    assert list(table["status"]) == ["ok"] * 120  # type: ignore[index]
+
+
+def test_each_command_is_one_line_that_starts_from_nothing() -> None:
+    for name in ("run", "test"):
+        (line,) = _block(name).splitlines()
+        assert line.startswith("python3 -m venv .venv && .venv/bin/pip install ")
+
+
+def test_the_main_command_runs_a_study_that_exists() -> None:
+    command, run, study = shlex.split(_block("run").rpartition("&&")[2])
+
+    assert (command, run) == (".venv/bin/frictionlab", "run")
+    assert (PROJECT / study).is_file()
+    assert f"`runs/{Path(study).stem}`" in README
+
+
+def test_the_checks_run_the_test_command_of_the_readme_word_for_word() -> None:
+    script = (PROJECT / ".ci" / "run").read_text()
+    (reading,) = [line for line in script.splitlines() if line.startswith("test_command=")]
+
+    shown = subprocess.run(
+        ["bash", "-c", f'set -euo pipefail; {reading}; echo "$test_command"'],
+        cwd=PROJECT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+
+    assert shown.stdout == _block("test")
+    assert 'eval "$test_command"' in script.splitlines()
+
+
+def test_the_checks_can_be_run() -> None:
+    assert (PROJECT / ".ci" / "run").stat().st_mode & 0o111
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_every_link_and_picture_of_a_document_leads_to_a_file(document: Path) -> None:
+    targets = re.findall(r"\]\(([^)#]+?)(?:#[^)]*)?\)", document.read_text())
+    local = [target for target in targets if not target.startswith("http")]
+
+    assert [target for target in local if not (document.parent / target).is_file()] == []
+
+
+def test_the_readme_shows_a_picture() -> None:
+    (picture,) = re.findall(r"!\[.+\]\((.+)\)", README)
+
+    assert (PROJECT / picture).read_text().lstrip().startswith("<?xml")
+
+
+REFERENCE = (PROJECT / "docs" / "study.md").read_text()
+
+
+def test_the_example_of_the_study_reference_is_a_study(tmp_path: Path) -> None:
+    (example,) = re.findall(r"```yaml\n(.*?)```", REFERENCE, re.DOTALL)
+    study = tmp_path / "study.yaml"
+    study.write_text(example)
+
+    assert len(load_study(study).cases()) == 8
+
+
+def test_the_study_reference_lists_the_columns_of_the_table_in_their_order() -> None:
+    rows = REFERENCE.partition("| column |")[2]
+    first_cells = [line.split("|")[1] for line in rows.splitlines()[2:] if line.startswith("|")]
+
+    assert [name for cell in first_cells for name in re.findall(r"`(\w+)`", cell)] == list(RESULTS)
+
+
+def test_the_nomenclature_has_every_symbol_of_a_figure_by_its_key() -> None:
+    listed = (PROJECT / "docs" / "nomenclature.md").read_text()
+
+    for column in (column for columns in FIGURES.values() for column in columns):
+        assert f"`{column.removeprefix('transverse_')}`" in listed

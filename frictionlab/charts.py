@@ -39,6 +39,7 @@ LINES = ("solid", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 WITHOUT_NUMBER = {"failed": "x", "killed": "x", "refused": "|"}
 LEGEND_MARKS = WITHOUT_NUMBER | {"not_unique": r"$\mathrm{I}$"}
 MOST_VALUES_IN_LEGEND = 8
+ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
 
 STYLE: Any = {
@@ -133,14 +134,22 @@ def _draw_panel(axes: Axes, family: Family, panel: tuple[Setting, ...], column: 
 
 def _scale_upwards(axes: Axes, curves: Sequence[pd.Series], column: str) -> None:
     """A foot at zero for what is not negative; logarithmic where whole curves lie decades apart."""
-    levels = [curve.median() for curve in curves if curve.notna().any()]
-    lowest = min((curve.min() for curve in curves), default=0.0)
-    if column != "mean_friction" and levels and lowest > 0.2 * min(levels) and max(levels) > 30 * min(levels):
+    if column != "mean_friction" and _lie_decades_apart(curves):
         axes.set_yscale("log")
         return
     low, high = axes.get_ylim()
     if -0.06 * high < low:  # nothing but the margin below zero, so zero itself is the natural foot
         axes.set_ylim(0.0, max(high, 1.05 * axes.dataLim.y1))
+
+
+def _lie_decades_apart(curves: Sequence[pd.Series]) -> bool:
+    """Whether every curve keeps to a level above rounding, and the levels are decades apart."""
+    known = [curve for curve in curves if curve.notna().any()]
+    if not known:
+        return False
+    levels = [float(curve.median()) for curve in known]
+    low, high = min(levels), max(levels)
+    return high > 30.0 * low > ROUNDING * high and min(float(curve.min()) for curve in known) > 0.2 * low
 
 
 def _draw_curve(axes: Axes, family: Family, curve: Curve, column: str) -> None:

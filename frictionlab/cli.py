@@ -43,6 +43,7 @@ class CommandError(Exception):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; its exit code. Only our own bugs show a traceback."""
+    _open_streams()
     try:
         code = _quietly(arguments)
     except BaseException as problem:
@@ -51,6 +52,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if code == INTERRUPTED and threading.active_count() > 1:
         os._exit(code)  # a worker deep in a kernel cannot be stopped, and would be waited for
     return code
+
+
+def _open_streams() -> None:
+    """Python has no stdout, or no stderr, where the caller closed it: what is said there is then for nobody."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))
 
 
 def _quietly(arguments: Sequence[str] | None) -> int:
@@ -216,10 +224,8 @@ def _run(job: Job, given: RunOptions) -> Run:
 
 def _how_far(result: Run) -> str:
     done = len(result.table) - result.counts.get("killed", 0)
-    kept = f"kept in {result.folder}" if result.folder else "lost"
-    return (
-        f"interrupted: {done} of {len(result.table)} points are done and {kept}; the same command continues"
-    )
+    kept = f" and kept in {result.folder}" if result.folder and done else ""
+    return f"interrupted: {done} of {len(result.table)} points are done{kept}; the same command continues"
 
 
 def _show(result: Run) -> None:
@@ -230,11 +236,10 @@ def _show(result: Run) -> None:
 
 def _show_failed(result: Run) -> None:
     """What was expected and is not so, beside the records."""
-    from frictionlab.summary import verdict_line
+    from frictionlab.summary import failed_lines
 
-    for verdict in result.verdicts:
-        if not verdict.passed:
-            _tell(verdict_line(verdict))
+    for line in failed_lines(result.verdicts):
+        _tell(line)
 
 
 def _draw(job: Job, result: Run) -> None:
@@ -292,7 +297,7 @@ def _cost_lines(planned: Sequence[Planned]) -> list[str]:
     kernel, cores = sum(entry.seconds for entry in planned), os.cpu_count() or 1
     return [
         f"about {_time(kernel)} of kernel time, {_time(kernel / cores)} on {cores} cores",
-        "the first run with a law also compiles its kernels: some seconds, once",
+        "not counted: compiling kernels, once per machine, which may take longer than all the rest",
     ]
 
 
@@ -309,7 +314,7 @@ def laws(name: str | None, as_json: bool) -> None:
     from frictionlab.listing import details, law_record, one_line_each
 
     if name is not None and name not in registry.law_names():
-        raise click.UsageError(f"no law '{name}'; there are {', '.join(registry.law_names())}")
+        raise click.UsageError(f"no law '{name}'; installed: {', '.join(registry.law_names())}")
     records = [law_record(each) for each in ([name] if name else registry.law_names())]
     _print_records(records) if as_json else _print(details(records[0]) if name else one_line_each(records))
 

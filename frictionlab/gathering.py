@@ -5,11 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
+from frictionlab.expect import Verdict
 from frictionlab.failures import SaveError
 from frictionlab.output import Existing, RunFolder
 from frictionlab.progress import Progress, silent
@@ -48,6 +50,7 @@ class Gathering:
             "computed": 0,
         }
         self._saved = 0
+        self._verdicts: list[dict[str, Any]] = []
         self.finished: frozenset[int] = frozenset()
 
     def resume(self, existing: Existing, samples: int) -> None:
@@ -88,6 +91,10 @@ class Gathering:
         """Say why the rows that are missing are missing."""
         self._results.unfinished(reason)
 
+    def judged(self, verdicts: Sequence[Verdict]) -> None:
+        """Enter what was expected and whether it is so, for the account."""
+        self._verdicts = [asdict(verdict) for verdict in verdicts]
+
     @property
     def complete(self) -> bool:
         """Whether an earlier run left nothing to do."""
@@ -126,7 +133,8 @@ class Gathering:
         if self._folder is not None:
             this = self._run | {"seconds": round(time.monotonic() - self._started, 3)}
             runs = self._runs if self.complete else [*self._runs, this]
-            self._folder.describe({"counts": self._results.counts(), "runs": runs})
+            found = {"counts": self._results.counts(), "expect": self._verdicts}
+            self._folder.describe(found | {"runs": runs})
 
 
 def _has_samples(orbits: pd.DataFrame | None, samples: int) -> bool:

@@ -19,6 +19,8 @@ from frictionlab.yaml_text import yaml_text
 
 PACKAGES = ("numpy", "numba", "llvmlite", "pandas", "pyarrow", "pydantic", "scipy")
 Existing = Literal["reuse", "replace"]
+MOST_DIFFERENCES = 2
+"""Lines shown of each of two studies that differ."""
 
 
 @dataclass(frozen=True)
@@ -101,8 +103,8 @@ class RunFolder:
         except (OSError, ValueError):
             return ""
         here = self.identity.text.splitlines()
-        lines = [f"  there: {line.strip()}" for line in there if line not in here][:3]
-        lines += [f"  here:  {line.strip()}" for line in here if line not in there][:3]
+        lines = [f"  there: {_brief(line)}" for line in there if line not in here][:MOST_DIFFERENCES]
+        lines += [f"  here:  {_brief(line)}" for line in here if line not in there][:MOST_DIFFERENCES]
         return ":\n" + "\n".join(lines) + "\n" if lines else ""
 
     def earlier(self, existing: Existing) -> pd.DataFrame | None:
@@ -169,6 +171,12 @@ class RunFolder:
 
 
 REMEDY = "choose another folder with -o, or replace what is there with --force"
+
+
+def _brief(line: str) -> str:
+    """The beginning of a line, which names what it is about."""
+    line = line.strip()
+    return line if len(line) <= 72 else f"{line[:68]} ..."
 
 
 def _platform() -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable
 from typing import TextIO
@@ -12,9 +13,22 @@ Progress = Callable[[int, int], None]
 QUIET = 2.0
 """Seconds a run may take without a word."""
 
+COMPILING = ", compiling kernels (once per machine)"
+
 
 def silent(done: int, total: int) -> None:
     """No progress."""
+
+
+def compiling() -> bool:
+    """Whether numba compiles at this moment, on whatever other thread: it then holds its one lock."""
+    module = sys.modules.get("numba.core.compiler_lock")
+    lock = getattr(getattr(module, "global_compiler_lock", None), "_lock", None)
+    if lock is None:
+        return False
+    if free := lock.acquire(blocking=False):
+        lock.release()
+    return not free
 
 
 class Meter:
@@ -24,24 +38,29 @@ class Meter:
         self._stream = stream
         self._updating = stream.isatty()
         self._interval = 0.2 if self._updating else 5.0
-        self._start = time.monotonic()
+        self._start = self._last = time.monotonic()
         self._next = self._start + QUIET
+        self._solving = 0.0
         self._first: int | None = None
         self._width = 0
 
     def __call__(self, done: int, total: int) -> None:
         """Tell how far the run is, if it is time to."""
-        now = time.monotonic()
+        now, waiting = time.monotonic(), compiling()
+        self._solving += 0.0 if waiting else now - self._last
+        self._last = now
         self._first = done if self._first is None else self._first
         if now < self._next:
             return
         self._next = now + self._interval
-        self._write(self._line(done, total, now - self._start))
+        news = COMPILING if waiting else self._time_left(done, total)
+        self._write(f"{done} of {total} points, {now - self._start:.0f} s{news}")
 
-    def _line(self, done: int, total: int, elapsed: float) -> str:
+    def _time_left(self, done: int, total: int) -> str:
+        """At the speed so far, compiling not counted: it does not come again."""
         fresh = done - (self._first or 0)
-        left = f", about {elapsed * (total - done) / fresh:.0f} s left" if fresh else ""
-        return f"{done} of {total} points, {elapsed:.0f} s{left}"
+        left = self._solving * (total - done) / fresh if fresh else 0.0
+        return f", about {left:.0f} s left" if left > 0.5 else ""
 
     def _write(self, line: str) -> None:
         if self._updating:

@@ -146,8 +146,9 @@ def _workers(executor: Executor | None) -> Iterator[Executor]:
 def _finished(study: Study, gathering: Gathering, folder: RunFolder | None, stopped: bool) -> Run:
     """The run, saved and judged. Raises Interrupted or UnsavedError, both with the run."""
     table, orbits = gathering.table, gathering.orbits
-    unsaved = _saved(gathering, table, orbits)
     verdicts = () if stopped else tuple(judge(expectation, table) for expectation in study.expect)
+    gathering.judged(verdicts)
+    unsaved = _saved(gathering, table, orbits)
     path = folder.path if folder is not None and unsaved is None else None
     done = Run(study, table, orbits, verdicts, path, gathering.computed)
     if unsaved is not None:

@@ -17,11 +17,11 @@ def summary(run: Run) -> str:
     """What a run found, for reading: curves, reasons, verdicts."""
     parts = [
         [run.study.title] if run.study.title else [],
-        [f"{len(run.table)} points: {statuses(run.table)}"],
+        [f"{_points(len(run.table))}: {statuses(run.table)}"],
         ["", *columns([_HEAD, *_curve_lines(run.table)])],
         [f"model {number}: {model}" for model, number in _models(run.table).items()],
         _reasons(run.table),
-        [verdict_line(verdict) for verdict in run.verdicts],
+        verdict_lines(run.verdicts),
         [f"table in {run.table_file}"] if run.table_file else [],
     ]
     return "\n".join(line for part in parts for line in part)
@@ -57,6 +57,10 @@ def _curve_line(inputs: dict[str, Any], rows: pd.DataFrame, models: dict[str, in
     return law, method, where, statuses(rows), " ... ".join(span), error, used
 
 
+def _points(count: int) -> str:
+    return "1 point" if count == 1 else f"{count} points"
+
+
 def statuses(rows: pd.DataFrame) -> str:
     """How many rows have each status, in words."""
     return ", ".join(f"{count} {status}" for status, count in rows["status"].value_counts().items())
@@ -84,6 +88,14 @@ def _reasons(table: pd.DataFrame) -> list[str]:
     return ["", *lines[:MOST_REASONS], *more] if lines else []
 
 
-def verdict_line(verdict: Verdict) -> str:
-    """A verdict as a line."""
-    return f"expect {'passed' if verdict.passed else 'FAILED'}: {verdict.sentence}"
+def verdict_lines(verdicts: Sequence[Verdict]) -> list[str]:
+    """How many expectations held, and each that did not in full."""
+    failed = [verdict for verdict in verdicts if not verdict.passed]
+    counts = {"passed": len(verdicts) - len(failed), "FAILED": len(failed)}
+    told = ", ".join(f"{count} {word}" for word, count in counts.items() if count)
+    return [f"expect: {told}", *failed_lines(failed)] if verdicts else []
+
+
+def failed_lines(verdicts: Sequence[Verdict]) -> list[str]:
+    """A line for each expectation that did not hold."""
+    return [f"expect FAILED: {verdict.sentence}" for verdict in verdicts if not verdict.passed]

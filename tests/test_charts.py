@@ -290,6 +290,15 @@ def test_curves_that_lie_decades_apart_are_drawn_on_a_logarithmic_scale(plane: p
     assert [axes.get_yscale() for axes in _figure(plane, *columns).axes] == ["log", "linear", "linear"]
 
 
+def test_an_energy_that_is_zero_but_for_rounding_is_drawn_as_zero(line: pd.DataFrame) -> None:
+    sliding = line["scene.belt_speed"] > 10
+    table = line.assign(energy_friction=line["energy_friction"].mask(sliding, 1e-14))
+    (axes, *_) = _figure(table, "energy_friction").axes
+
+    assert axes.get_yscale() == "linear"
+    assert axes.get_ylim()[0] == 0.0
+
+
 @pytest.mark.parametrize("values", [np.logspace(-2, 1, 7), [0.1, 1, 10]])
 def test_logarithmic_spacing_is_recognised(values: list[float]) -> None:
     assert is_logarithmic(np.asarray(values))

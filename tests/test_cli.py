@@ -73,7 +73,8 @@ def test_a_run_prints_curves_reasons_verdicts_and_where_the_table_is(frictionlab
     assert lines[1] == "4 points: 3 ok, 1 refused"
     assert any("coulomb" in line and "-0.128537 ... 0.133333" in line and "1.0e-08" in line for line in lines)
     assert "refused (1): thirteen, of all numbers" in lines
-    assert any(line.startswith("expect passed: ") and "it is so" in line for line in lines)
+    assert "expect: 1 passed" in lines
+    assert "it is so" not in said.out
     assert lines[-1] == "table in runs/study/results.parquet"
     assert len(pd.read_parquet("runs/study/results.parquet")) == 4
 
@@ -211,6 +212,7 @@ def test_an_expectation_that_fails_is_code_3(frictionlab: Any) -> None:
     said = frictionlab("run", study(expect=[{"column": "mean_friction", "above": 9}]))
 
     assert said.code == 3
+    assert "expect: 1 FAILED" in said.out
     assert "expect FAILED: " in said.out
     assert "expect FAILED: " in frictionlab("run", "study.yaml", "--json").err
 
@@ -271,6 +273,7 @@ def test_a_check_tells_curves_points_models_refusals_and_cost_and_computes_nothi
     assert "2 refused: thirteen, of all numbers" in said.out
     assert "8 by exact (" in said.out
     assert "about 1.5 s of kernel time" in said.out
+    assert "not counted: compiling kernels" in said.out
     assert sorted(path.name for path in Path().iterdir()) == ["study.yaml"]
 
 
@@ -353,7 +356,7 @@ def test_a_stopped_run_keeps_what_is_done_and_the_same_command_continues(
 
     assert process.returncode == 130, err
     assert "Traceback" not in err
-    assert "the same command continues" in err
+    assert " points are done and kept in out; the same command continues" in err
     left = pd.read_parquet("out/results.parquet")
     unfinished = int((left["status"] == "killed").sum())
     assert 0 < unfinished < len(left)
@@ -376,7 +379,7 @@ def test_an_interrupted_run_does_not_wait_for_a_method_that_takes_for_ever(
     said = frictionlab("run", study(methods=[{"kind": "fake", "pause": 1.0}]), "-o", "out")
 
     assert left == [130]
-    assert "interrupted: 0 of 4 points are done and kept in out" in said.err
+    assert "interrupted: 0 of 4 points are done; the same command continues" in said.err
 
 
 def test_a_reader_that_had_enough_sees_no_traceback(surroundings: dict[str, str]) -> None:
@@ -391,6 +394,15 @@ def test_a_reader_that_had_enough_sees_no_traceback(surroundings: dict[str, str]
     )
     assert "Traceback" not in done.stderr
     assert "BrokenPipe" not in done.stderr
+
+
+def test_a_command_whose_output_is_closed_runs_all_the_same(surroundings: dict[str, str]) -> None:
+    study()
+    text = " ".join(f"'{part}'" for part in COMMAND)
+    done = subprocess.run(f"{text} run study.yaml -o out >&- 2>&-", shell=True, env=surroundings)
+
+    assert done.returncode == 0
+    assert Path("out/results.parquet").exists()
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")

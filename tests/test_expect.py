@@ -96,6 +96,12 @@ def test_the_sentence_says_what_was_claimed_where_why_and_what_was_found() -> No
     )
 
 
+def test_the_verdict_on_one_row_gives_its_number_alone() -> None:
+    found = judge(Expectation(where={}, column="mean_friction", below=1.0), TABLE.iloc[:1]).sentence
+
+    assert found == "mean_friction below 1 everywhere: 0.1"
+
+
 def test_an_empty_cell_is_told_with_the_reason_of_its_row() -> None:
     verdict = judge(Expectation(where=FAST, column="mean_friction", above=0.0), TABLE)
 

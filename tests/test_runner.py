@@ -382,6 +382,16 @@ def test_another_study_is_refused_a_folder_that_is_taken(tmp_path: Path) -> None
     assert fl.run(other, out=tmp_path / "out").computed == 0
 
 
+def test_studies_that_differ_in_long_lines_are_told_apart_in_short_ones(tmp_path: Path) -> None:
+    fl.run(study(sweep=MANY), out=tmp_path / "out")
+
+    with pytest.raises(FolderError) as caught:
+        fl.run(study(), out=tmp_path / "out")
+    shown = str(caught.value).splitlines()[1:-1]
+    assert any("0.5989974937343359" in line for line in shown)
+    assert max(map(len, shown)) < 90
+
+
 def test_another_version_is_refused_a_folder_that_is_taken(tmp_path: Path, monkeypatch: Any) -> None:
     fl.run(study(), out=tmp_path / "out")
     monkeypatch.setattr(runner, "__version__", "99.0")
@@ -491,12 +501,16 @@ def test_asking_for_other_orbits_computes_them(tmp_path: Path) -> None:
     assert fl.run(study(keep={"orbit": 8}), out=tmp_path / "out").computed == 6
 
 
-def test_what_a_study_expects_is_judged() -> None:
+def test_what_a_study_expects_is_judged_and_every_verdict_is_in_the_account(tmp_path: Path) -> None:
     claims = [{"column": "mean_friction", "below": 0.2}, {"column": "mean_friction", "above": 0.2}]
     where = {"where": {"scene.belt_speed": 4}}
-    done = fl.run(study(expect=[where | claim for claim in claims]))
+    done = fl.run(study(expect=[where | claim for claim in claims]), out=tmp_path / "out")
+    account = json.loads((tmp_path / "out" / "provenance.json").read_text())
 
     assert [verdict.passed for verdict in done.verdicts] == [True, False]
+    assert account["expect"] == [
+        {"passed": verdict.passed, "sentence": verdict.sentence} for verdict in done.verdicts
+    ]
 
 
 def test_records_hold_null_where_the_table_is_empty() -> None:
@@ -603,6 +617,28 @@ def test_progress_is_told_after_two_seconds_and_not_before(
     meter.close()
     line = "200 of 400 points, 4 s, about 8 s left"
     assert told.getvalue() == ("\r" if stream is Screen else "") + line + "\n"
+
+
+def test_time_spent_compiling_is_named_and_not_held_against_the_points(monkeypatch: Any) -> None:
+    from numba.core.compiler_lock import global_compiler_lock
+
+    now = [100.0]
+    monkeypatch.setattr("frictionlab.progress.time.monotonic", lambda: now[0])
+    told = io.StringIO()
+    meter = Meter(told)
+    meter(0, 400)
+    with ThreadPoolExecutor(1) as elsewhere:
+        now[0] = 130.0
+        elsewhere.submit(global_compiler_lock.acquire).result()
+        meter(100, 400)
+        elsewhere.submit(global_compiler_lock.release).result()
+    now[0] = 136.0
+    meter(200, 400)
+
+    assert told.getvalue().splitlines() == [
+        "100 of 400 points, 30 s, compiling kernels (once per machine)",
+        "200 of 400 points, 36 s, about 6 s left",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -167,6 +167,12 @@ def test_aliases_and_every_way_to_write_a_number_are_read(written: Any) -> None:
     assert (scene.transverse.load.unbalance, scene.transverse.load.phase) == (10.0, -1e-3)
 
 
+def test_a_folded_text_is_one_line_of_words(written: Any) -> None:
+    folded = GOOD.replace("source: Fig. 9b", "source: >-\n  first words\n  and more\n  to the end")
+
+    assert load_study(written(folded)).source == "first words and more to the end"
+
+
 def test_a_study_with_a_byte_order_mark_and_windows_lines_is_the_same_study(written: Any) -> None:
     plain = load_study(written(GOOD))
 

@@ -70,4 +70,4 @@ class Method(Record, ABC):
 def refused(reasons: Sequence[str]) -> Answers:
     """The answers of a method that cannot do these scenes."""
     n = len(reasons)
-    return Answers(["refused"] * n, list(reasons), [""] * n, [""] * n, {}, lambda i: None)  # noqa: ARG005
+    return Answers(["refused"] * n, list(reasons), [""] * n, [""] * n, {}, lambda i: None)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.kernel import by_dimension, inner
-from frictionlab.methods.sliding_map import Mapped, period_map, track_of
+from frictionlab.methods.sliding_map import Mapped, period_map, periods_at_rest, track_of
 from frictionlab.scene import Body
 
 MOST_MAPS = 600
@@ -100,7 +100,7 @@ def inverted(matrix: Any, inverse: Any) -> bool:
         for row in range(pivot + 1, n):
             if abs(work[row, pivot]) > abs(work[best, pivot]):
                 best = row
-        if not abs(work[best, pivot]) > 1e-13:
+        if not abs(work[best, pivot]) > 1e-9:
             return False
         for column in range(n):
             work[pivot, column], work[best, column] = work[best, column], work[pivot, column]
@@ -206,6 +206,10 @@ def _broyden(inverse: Any, step: Any, change: Any, work: Any) -> None:
             inverse[row, column] = inverse[row, column] + (step[row] - work[row]) * change[column]
 
 
+ROUNDING = 2e-14
+"""What the sums of a period's friction lose to rounding, in the mean coefficient."""
+
+
 class Closed(NamedTuple):
     """A closed orbit's integral of friction [periods], error of the mean, and what it took; maps < 0: gave up."""
 
@@ -214,6 +218,7 @@ class Closed(NamedTuple):
     maps: int
     stuck: float
     closest: float
+    first: float  # residual of the guess
 
 
 @inner
@@ -230,92 +235,99 @@ def mean_error(body: Body, residual: Any, distance: float) -> float:
 
 
 @inner
+def _less(z: Any, step: Any, out: Any) -> None:
+    for i in range(z.size):
+        out[i] = z[i] - step[i]
+
+
+@inner
+def _copy(source: Any, out: Any) -> None:
+    for i in range(source.size):
+        out[i] = source[i]
+
+
+@inner
 def close(
-    law: Any, body: Body, belt_speed: float, z: Any, inverse: Any, tolerance: float, like: Any
+    law: Any,
+    body: Body,
+    belt_speed: float,
+    z: Any,
+    inverse: Any,
+    tolerance: float,
+    expected: float,
+    like: Any,
 ) -> Closed:
     """Find the fixed point from the guess z with the guess of the inverse of (monodromy - identity).
 
-    Broyden steps with maps as accurate as the residual deserves; where the residual stops falling, Newton with
-    a difference Jacobian, then Picard. One criterion ends it: a map much finer than those the orbit was found
-    with leaves a residual whose bound on the mean is below the tolerance.
+    Broyden steps with maps a little more accurate than the next residual (expected: the first one); where the
+    residual stops falling, Newton with a difference Jacobian, then Picard. One criterion ends it: a map much
+    finer than those the orbit was found with leaves a residual whose bound on the mean is below the tolerance.
     """
     n = z.size
     residual, trial, fresh, step, work = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    finest = 0.1 * tolerance * body.normal_load
-    floor = 2e-15 * (1.0 + _norm(z) + abs(belt_speed))
-    finest = max(finest, floor)
-    coarse = max(finest, 1e-4 * body.normal_load)
-    accuracy = coarse
-    image = mapped(law, body, belt_speed, z, residual, accuracy, like)
-    maps, stalls, boost = 1, 0, 1.0
-    rubbed, best_error = image.rubbed, 1e300
+    floor = 4e-15 * (1.0 + _norm(z) + abs(belt_speed))
+    finest = max(0.5 * tolerance * body.normal_load, floor)
+    accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
     period = 2.0 * math.pi / body.frequency
+    image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+    maps, stalls, checks, first = 1, 0, 0, _norm(residual)
     while maps < MOST_MAPS:
         length = _norm(residual)
         if image.steps < 0 or not length < 1e300:
-            return Closed(image.rubbed, best_error, -maps, image.stuck, image.closest)
+            break
         if image.stuck >= period * (1.0 - 1e-9) and belt_speed != 0.0:
+            y, _u = unpack(body, z, like)
+            many = periods_at_rest(law, body, belt_speed, y + period * belt_speed)
             for i in range(n):  # carried by the belt all the time: go on by many periods at once
-                z[i] = z[i] + boost * residual[i]
-            boost *= 2.0
+                z[i] = z[i] + many * residual[i]
             image = mapped(law, body, belt_speed, z, residual, accuracy, like)
             maps += 1
             continue
         _times(inverse, residual, step)
-        if accuracy <= finest and mean_error(body, residual, _norm(step)) <= 2.0 * tolerance:
-            for i in range(n):
-                trial[i] = z[i] - step[i]
-            image = mapped(law, body, belt_speed, trial, fresh, finest / FINER, like)
+        if accuracy <= finest and mean_error(body, residual, _norm(step)) <= 10.0 * tolerance:
+            _less(z, step, trial)
+            _copy(trial, z)
+            accuracy = finest / FINER
+            image = mapped(law, body, belt_speed, z, residual, accuracy, like)
             maps += 1
-            _times(inverse, fresh, work)
-            error = 2.0 * mean_error(body, fresh, _norm(work)) + floor / body.normal_load
-            if error < best_error:
-                best_error, rubbed = error, image.rubbed
-                for i in range(n):
-                    z[i] = trial[i]
-            if error <= tolerance or finest <= floor:
-                return Closed(rubbed, best_error, maps, image.stuck, image.closest)
-            finest = max(floor, finest / FINER)
-            accuracy = finest
-            for i in range(n):
-                residual[i] = fresh[i]
-            stalls += 1
-            if stalls > 3:
+            checks += 1
+            _times(inverse, residual, work)
+            error = 2.0 * mean_error(body, residual, _norm(work)) + floor / body.normal_load + ROUNDING
+            if error <= tolerance or (finest <= floor and checks > 3):
+                return Closed(image.rubbed, error, maps, image.stuck, image.closest, first)
+            finest = max(floor, accuracy)
+            if checks % 3 == 0:
                 _newton_inverse(law, body, belt_speed, z, finest, inverse, like)
                 maps += 2 * n
-                stalls = 0
-                image = mapped(law, body, belt_speed, z, residual, accuracy, like)
             continue
-        finer = max(finest, min(accuracy, 1e-2 * length))
-        for i in range(n):
-            trial[i] = z[i] - step[i]
+        finer = max(finest, min(accuracy, 1e-4 * length))
+        _less(z, step, trial)
         image = mapped(law, body, belt_speed, trial, fresh, finer, like)
         maps += 1
-        if _norm(fresh) < 0.7 * length or (accuracy > finer and _norm(fresh) < 0.9 * length):
-            stalls = 0
-        else:
-            stalls += 1
-        if _norm(fresh) <= 1.5 * length:
+        falls, usable = _norm(fresh) < 0.7 * length, _norm(fresh) <= 1.5 * length
+        if usable:
             for i in range(n):
                 step[i] = -step[i]
                 work[i] = fresh[i] - residual[i]
-                z[i] = trial[i]
-                residual[i] = fresh[i]
-            change = work.copy()
-            _broyden(inverse, step, change, work)
-        else:
-            stalls += 1
+            _copy(trial, z)
+            _copy(fresh, residual)
+            if accuracy <= 0.05 * length:
+                _broyden(inverse, step, work.copy(), work)
         accuracy = finer
-        if stalls >= 3:
-            good = _newton_inverse(law, body, belt_speed, z, max(finest, 1e-9), inverse, like)
-            maps += 2 * n
-            image = mapped(law, body, belt_speed, z, residual, accuracy, like)
-            maps += 1
-            if not good or stalls >= 5:
-                for _ in range(4):
-                    for i in range(n):
-                        z[i] = z[i] + residual[i]
-                    image = mapped(law, body, belt_speed, z, residual, accuracy, like)
-                    maps += 1
-            stalls = 1 if stalls < 5 else 0
-    return Closed(rubbed, best_error, -maps, image.stuck, image.closest)
+        stalls = 0 if falls else stalls + 1
+        if stalls == 0 or (stalls == 1 and usable):
+            continue
+        if accuracy <= finest and length <= 30.0 * accuracy and finest > floor:
+            finest = max(floor, finest / FINER)  # what is left is the error of the map itself
+        else:
+            regular = _newton_inverse(law, body, belt_speed, z, finest, inverse, like)
+            periods = 0 if regular and usable else 3
+            for _ in range(periods):
+                for i in range(n):
+                    z[i] = z[i] + residual[i]
+                image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+            if not regular:
+                free_inverse(body, body.normal_load, inverse)
+            maps += 2 * n + periods
+        stalls = 1
+    return Closed(image.rubbed, 1e300, -maps, image.stuck, image.closest, first)

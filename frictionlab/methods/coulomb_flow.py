@@ -18,6 +18,8 @@ from frictionlab.kernel import inner
 EPSILON = 2.0**-52
 TINY = 1e-300
 STICK = 0.0
+MOST_CREEPING = 1000
+"""Steps of rounding size before a leg is given up as NaN: there the motion is below the rounding of its position."""
 
 
 class Body(NamedTuple):
@@ -214,7 +216,7 @@ def slip_leg(body: Body, tau: float, x: float, w: float, sign: float, left: floa
     y0, z0 = x - u + friction, w + (body.belt_speed - speed)
     noise = slip_noise(body, y0, z0)
     y, z, r = y0, z0, 0.0
-    keep, turn, damp, event = 1.0, 0.0, 1.0, 0.0
+    keep, turn, damp, event, crept = 1.0, 0.0, 1.0, 0.0, 0
     while r < left:
         free = -2.0 * b * z - y
         forced = load - 2.0 * b * speed - u
@@ -231,12 +233,16 @@ def slip_leg(body: Body, tau: float, x: float, w: float, sign: float, left: floa
         bound = max(math.sqrt(third * third + fourth * fourth) + body.jolt, TINY)
         touches = g <= noise  # the zero the leg starts from, or a touch: look for the next one
         step = first_zero(0.0 if touches else g, max(slope, 0.0) if touches else slope, bend, bound)
-        least = EPSILON * (tau + r)
+        least = EPSILON * (tau + r + 1e-3 * body.period)
         if step < least:
             if slope < 0.0 and r > 0.0:
                 event = 1.0
                 break
-            step = 8.0 * least + 1e-300
+            step = 8.0 * least
+            crept = crept + 1
+            if crept > MOST_CREEPING:
+                y = math.nan
+                break
         r = min(r + step, left)
         load, load_rate, u, speed = load_and_response(body, tau + r)
         cosine, turn = decay(body, r)
@@ -272,8 +278,7 @@ def stick_leg(body: Body, tau: float, x: float, left: float) -> Leg:
     """Rest on the belt from x at tau until the net force exceeds friction, for at most ``left``."""
     noise = 4.0 * EPSILON * (body.friction + body.load + abs(x) + 2.0 * body.damping * body.belt_speed)
     bound = max(body.load * body.frequency**3, TINY)
-    r, event, side = 0.0, 0.0, 1.0
-    net = 0.0
+    r, event, side, net, crept = 0.0, 0.0, 1.0, 0.0, 0
     while True:
         angle = body.frequency * (tau + r)
         sine, cosine = math.sin(angle), math.cos(angle)
@@ -293,8 +298,11 @@ def stick_leg(body: Body, tau: float, x: float, left: float) -> Leg:
             step = min(step, first_zero(margin, rise, curve, bound))
         if event != 0.0:
             break
-        r = min(r + max(step, 4.0 * EPSILON * (tau + r) + 1e-300), left)
-    return Leg(r, x + body.belt_speed * r, 0.0, net, side * event, event, 1.0, 0.0, 0.0)
+        least = 8.0 * EPSILON * (tau + r + 1e-3 * body.period)
+        crept = crept + 1 if step < least else crept
+        r = left if crept > MOST_CREEPING else min(r + max(step, least), left)
+    x = math.nan if crept > MOST_CREEPING else x + body.belt_speed * r
+    return Leg(r, x, 0.0, net, side * event, event, 1.0, 0.0, 0.0)
 
 
 @inner

@@ -22,6 +22,7 @@ from frictionlab.methods.coulomb_flow import (
 )
 
 MOST_LEGS = 1_000_000
+"""A period of more legs is given up: motion lost in the rounding of its own position."""
 SHORTEST = 1e-6
 
 
@@ -120,6 +121,8 @@ def fixed_point(body: Body, x: float, w: float, most: int) -> Fixed:
             x, w, here, size = x_next, w_next, trial, trial_size
         else:
             share = 0.25 * share
+        if trial.legs >= MOST_LEGS or not trial_size < math.inf:
+            return Fixed(x, w, here, math.inf, maps)
         if size <= rounding(body, x, w) or maps >= most or stalled >= 4:
             return Fixed(x, w, here, size, maps)
         dx, dw = newton_step(here, x, w)

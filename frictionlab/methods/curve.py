@@ -29,9 +29,12 @@ def _first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
     return body.normal_load * law.sliding_friction(swing) / (swing + abs(belt_speed) + 1e-3)
 
 
+MOST_KNOWN = 6
+
+
 @inner
-def _predicted(states: Any, belt_speeds: Any, i: int, known: int, z: Any) -> None:
-    """Extrapolate the last known states, three at most, to belt speed i."""
+def _extrapolated(states: Any, belt_speeds: Any, i: int, known: int, z: Any) -> None:
+    """The polynomial through the known states before i, at i."""
     for row in range(z.size):
         z[row] = 0.0
     for a in range(i - known, i):
@@ -44,29 +47,47 @@ def _predicted(states: Any, belt_speeds: Any, i: int, known: int, z: Any) -> Non
 
 
 @inner
+def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) -> int:
+    """How many states before i would have predicted state i best: kinks of a curve want few, smooth parts many."""
+    best, least = 1, 1e300
+    for count in range(1, known + 1):
+        _extrapolated(states, belt_speeds, i, count, work)
+        miss = 0.0
+        for row in range(work.size):
+            miss += (work[row] - states[i, row]) ** 2
+        if miss < least:
+            best, least = count, miss
+    return best
+
+
+@inner
 def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, tolerance: float, like: Any) -> Any:
-    """States [n, size] and results [n, 6] at rising belt speeds: mean friction, across, error, maps, stuck, closest."""
+    """States [n, size] and results [n, 6]: mean friction, across, error, maps, share of stick, slowest slip."""
     size, n = size_of(like), belt_speeds.size
     states, results = np.zeros((n, size)), np.empty((n, 6))
-    z, inverse = np.empty(size), np.empty((size, size))
-    known = 0
+    z, work, inverse = np.empty(size), np.empty(size), np.empty((size, size))
+    period = 2.0 * math.pi / body.frequency
+    known, order, expected = 0, 1, 1e300
     for i in range(n):
-        if i == 0 and guess.shape[0] > 0:
+        if known == 0:
             free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse)
-            for row in range(size):
-                z[row] = guess[0, row]
-        elif known == 0:
-            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse)
+            if i == 0 and guess.shape[0] > 0:
+                for row in range(size):
+                    z[row] = guess[0, row]
         else:
-            _predicted(states, belt_speeds, i, known, z)
-        closed = close(law, body, belt_speeds[i], z, inverse, tolerance, like)
+            _extrapolated(states, belt_speeds, i, min(order, known), z)
+        closed = close(law, body, belt_speeds[i], z, inverse, tolerance, expected, like)
         if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
             free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse)
-            closed = close(law, body, belt_speeds[i], z, inverse, tolerance, like)
+            closed = close(law, body, belt_speeds[i], z, inverse, tolerance, 1e300, like)
         for row in range(size):
             states[i, row] = z[row]
-        known = min(known + 1, 3) if closed.maps > 0 else 0
-        period = 2.0 * math.pi / body.frequency
+        if closed.maps > 0 and known > 1:
+            order = min(_best_order(states, belt_speeds, i, known, work) + 1, MOST_KNOWN)
+        else:
+            order = known + 1
+        known = min(known + 1, MOST_KNOWN) if closed.maps > 0 else 0
+        expected = closed.first if known > 1 else 1e300
         results[i, 0], results[i, 1] = -closed.rubbed.real / period, -closed.rubbed.imag / period
         results[i, 2], results[i, 3] = closed.error, closed.maps
         results[i, 4], results[i, 5] = closed.stuck / period, closed.closest

@@ -116,7 +116,7 @@ class _Curve:
         if self.scenes[i].initial is not None and self._settles(i):
             return
         low, high = (
-            (-spread, spread)
+            (0.0 - spread, spread)
             if spread == spread
             else (math.copysign(self.coefficient, self.belt_speeds[i]),) * 2
         )
@@ -173,6 +173,8 @@ class _Curve:
             self._fail(
                 i, f"no damping, and friction does not attract: largest multiplier {row[curve.FLOQUET]:.9f}"
             )
+        elif not row[curve.ERROR] < math.inf:
+            self._fail(i, "the motion over one period is lost in the rounding of its own position")
         elif row[curve.ERROR] > self.tolerance:
             self.reason[i] = (
                 f"error {row[curve.ERROR]:.1e} above the tolerance: rounding is all that is left in it"

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from frictionlab.kernel import compiled
+from frictionlab.kernel import compiled, timed
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.methods.base import Answers, Floats, Method, Orbit, Status
 from frictionlab.methods.curve import Curve, answer_curve, settle
@@ -46,19 +45,15 @@ class Shooting(Method):
         found = Found.empty(len(scenes))
         resting = [i for i, scene in enumerate(scenes) if stays_at_rest(scene, law)]
         moving = [i for i in range(len(scenes)) if i not in resting]
-        start = time.perf_counter()
         if moving:
-            found.take(
-                moving, scenes[0], _answered([scenes[i] for i in moving], law, None, tolerance), tolerance
-            )
+            found.take(moving, scenes[0], *_answered([scenes[i] for i in moving], law, None, tolerance))
         for i in resting:
             if scenes[i].initial is None:
                 found.leave_open(i, resting_range(scenes[i], law))
             else:
-                state = _settled(scenes[i], law)
-                found.take([i], scenes[i], _answered([scenes[i]], law, state, tolerance), tolerance)
+                found.take([i], scenes[i], *_answered([scenes[i]], law, _settled(scenes[i], law), tolerance))
                 found.reason[i] = "the state reached from scene.initial; other starts come to rest elsewhere"
-        found.columns["seconds"][:] = (time.perf_counter() - start) / len(scenes)
+        found.judge(tolerance)
         return Answers(
             found.status,
             found.reason,
@@ -85,8 +80,9 @@ class Found:
         names += ["error", "mean_low", "mean_high", "window", "period", "floquet", "seconds"]
         return cls(["failed"] * n, [""] * n, [None] * n, {name: np.full(n, np.nan) for name in names})
 
-    def take(self, where: list[int], scene: Scene, curve: Curve, tolerance: float) -> None:
+    def take(self, where: list[int], scene: Scene, curve: Curve, seconds: float) -> None:
         """Take in the closed orbits of the scenes at these places."""
+        self.columns["seconds"][where] = seconds / len(where)
         multipliers = np.abs(np.linalg.eigvals(curve.matrices)).max(axis=1)
         for row, i in enumerate(where):
             maps, error = curve.results[row, 3], curve.results[row, 2]
@@ -98,7 +94,7 @@ class Found:
                 )
                 self._range(i, curve.results[row, 0], curve.results[row, 0])
             else:
-                self._put(i, curve, row, tolerance)
+                self._put(i, curve, row)
                 self.columns["floquet"][i] = (
                     multipliers[row] if curve.states.shape[1] == _size(scene) else np.nan
                 )
@@ -116,7 +112,7 @@ class Found:
         self.columns["mean_low"][i], self.columns["mean_high"][i] = low, high
         self.columns["window"][i] = 1.0
 
-    def _put(self, i: int, curve: Curve, row: int, tolerance: float) -> None:
+    def _put(self, i: int, curve: Curve, row: int) -> None:
         for name, value in zip(READ, curve.columns[row], strict=True):
             if name in self.columns:
                 self.columns[name][i] = value
@@ -124,7 +120,13 @@ class Found:
         self.columns["mean_friction"][i], self.columns["mean_friction_transverse"][i] = mean, across
         self.columns["error"][i], self.columns["period"][i] = error, 1.0
         self.status[i], self.states[i] = "ok", curve.states[row]
-        self.reason[i] = "" if error <= tolerance else f"the error is above the tolerance {tolerance:.1e}"
+
+    def judge(self, tolerance: float) -> None:
+        """Say where the error is above the tolerance."""
+        for i, error in enumerate(self.columns["error"]):
+            if self.status[i] == "ok" and not error <= tolerance:
+                said = f"the error is above the tolerance {tolerance:.1e}"
+                self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
 
 
 def stays_at_rest(scene: Scene, law: FrictionLaw) -> bool:
@@ -179,13 +181,14 @@ def _at_rest(curve: Curve, row: int) -> bool:
     return bool(curve.results[row, 4] > 1.0 - 1e-9)
 
 
-def _answered(scenes: Sequence[Scene], law: FrictionLaw, state: Floats | None, tolerance: float) -> Curve:
-    """The curve through these scenes, from a known state at the first where there is one."""
+def _answered(
+    scenes: Sequence[Scene], law: FrictionLaw, state: Floats | None, tolerance: float
+) -> tuple[Curve, float]:
+    """The curve through these scenes, from a known state at the first where there is one; and kernel time [s]."""
     body, like = _body(scenes[0])
     belt_speeds = np.array([scene.belt_speed for scene in scenes])
     guess = np.empty((0, 0)) if state is None else state[None, :]
-    answer = compiled(answer_curve, law)(body, scenes[0].mass(), belt_speeds, guess, tolerance, like)
-    return answer
+    return timed(compiled(answer_curve, law), body, scenes[0].mass(), belt_speeds, guess, tolerance, like)
 
 
 def _settled(scene: Scene, law: FrictionLaw) -> Floats:
@@ -206,5 +209,5 @@ def _model(scene: Scene) -> str:
 def _orbit(scene: Scene, law: FrictionLaw, state: Floats | None, tolerance: float) -> Orbit | None:
     if state is None:
         return None
-    track = _answered([scene], law, state, tolerance).last
+    track = _answered([scene], law, state, tolerance)[0].last
     return Orbit(track.tau, track.x, track.v, track.friction, track.stick)

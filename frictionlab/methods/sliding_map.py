@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.kernel import by_dimension, fast, inner
+from frictionlab.kernel import by_dimension, fast, inner, length
 from frictionlab.methods.steppers.dop853 import State, stepper
 from frictionlab.orbit import NODES
 from frictionlab.scene import Body
@@ -133,7 +133,7 @@ def _growth(body: Body, taken: Any, accuracy: float) -> float:
     if fifth == 0.0:
         return 6.0
     error = fifth / math.sqrt(fifth + 0.01 * third) / accuracy
-    return min(6.0, max(0.1, 0.9 * error**-0.125)) if error > 1.0 else min(6.0, max(1.0, 0.9 * error**-0.125))
+    return min(6.0, max(0.1 if error > 1.0 else 1.0, 0.9 / math.sqrt(math.sqrt(math.sqrt(error)))))
 
 
 # --- at rest on the belt ------------------------------------------------------------------------------------------
@@ -198,6 +198,23 @@ def _stick_end(body: Body, pull: Pull, tau: float, x: Any, belt: Any, limit: flo
         root = math.sqrt(slope * slope + 2.0 * bend * gap)
         tau = tau + (2.0 * gap / (slope + root) if slope + root > 0.0 else end)
     return min(tau, end)
+
+
+@inner
+def periods_at_rest(law: Any, body: Body, belt_speed: float, y: Any) -> float:
+    """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
+    pull, limit = _pull(body), body.normal_load * law.sliding_friction(0.0)
+    belt = belt_speed + 0.0 * y
+    period = 2.0 * math.pi / body.frequency
+    drift = abs(restoring_force(body, belt, 0.0 * belt)) * period
+    x, largest, samples = y + body.reference_cosine, 0.0, 128
+    for k in range(samples):
+        tau = k * period / samples
+        held, _rate, _bend = _held(body, pull, tau, x + tau * belt, belt)
+        largest = max(largest, abs(held))
+    curvature = body.frequency**2 * (abs(pull.sine) + abs(pull.cosine))
+    largest += 0.125 * curvature * (period / samples) ** 2
+    return max(1.0, math.floor((limit - largest) / drift))
 
 
 class Start(NamedTuple):
@@ -289,6 +306,7 @@ class Node(NamedTuple):
     tau: float
     state: State
     w: Any
+    speed: float
     rate: Any
 
 
@@ -349,7 +367,7 @@ def _lowest(problem: Problem, tau: float, state: State, h: float) -> float:
 @inner
 def _dips(w0: complex, rate0: complex, w1: complex, rate1: complex, h: float) -> bool:
     """Whether the slip comes much closer to rest between two nodes than at either (cubic Hermite, in the plane)."""
-    close = 0.0625 * min(abs(w0) ** 2, abs(w1) ** 2)
+    close = 0.0625 * min(w0.real**2 + w0.imag**2, w1.real**2 + w1.imag**2)
     for s in (0.25, 0.5, 0.75):
         r = 1.0 - s
         w = r * r * (1.0 + 2.0 * s) * w0 + s * s * (1.0 + 2.0 * r) * w1 + s * r * h * (r * rate0 - s * rate1)
@@ -365,7 +383,7 @@ def _before_on_the_line(problem: Problem, node: Node, accuracy: float, h: float,
 def _before_in_the_plane(problem: Problem, node: Node, accuracy: float, h: float, y: complex) -> Landing:
     """How far the step may go towards rest; where rest is nearer than the accuracy, go there."""
     body, w = problem.body, node.w
-    speed = abs(w)
+    speed = node.speed
     closing = -(node.rate * w.conjugate()).real / speed
     limit = body.normal_load * problem.law.sliding_friction(0.0)
     if speed < math.sqrt(accuracy * limit) or speed < 1e-2 * accuracy:
@@ -548,8 +566,9 @@ def period_map(
             h = 0.1 * reach
             continue
         problem = _anchored(law, body, belt_speed, problem.side, tau)
-        node = Node(tau, state, slip(problem, tau, state.v), _slip_rate(problem, tau, state.a))
-        closest = min(closest, abs(node.w))
+        w = slip(problem, tau, state.v)
+        node = Node(tau, state, w, length(w), _slip_rate(problem, tau, state.a))
+        closest = min(closest, node.speed)
         done = _before(problem, node, accuracy, min(h, reach, end - tau), state.x)
         if done.verdict == REST:
             if room > 0 and done.h > 0.0:

@@ -194,14 +194,20 @@ class _Reading:
             return Odd(f"the date {node.value}")
         if kind not in _SCALARS:
             return self._odd(path, f"the YAML tag {node.tag} has no meaning here")
+        text = _unmarked(node)
         try:
-            return _SCALARS[kind](str(node.value))
+            return _SCALARS[kind](text)
         except ValueError:
-            return str(node.value)
+            return text
 
     def _odd(self, path: Path, what: str) -> Odd:
         self._source.notes.append(Note(path, what))
         return Odd(what)
+
+
+def _unmarked(node: ScalarNode) -> str:
+    """The text; ruamel's round-trip reader marks with a BEL where a folded one wraps."""
+    return str(node.value).replace("\a", "") if node.style == ">" else str(node.value)
 
 
 def _integer(text: str) -> int | float:

@@ -65,9 +65,15 @@ def threads() -> None:
     """Print how two threads share 2,000 points of W1 in chunks of 125."""
     solve, mass = compiled(solve_curve), scene("W1", 1.0).mass()
     chunks = np.array_split(np.linspace(0.5, 49.9, 2000), 16)
-    one = least(lambda: [solve(mass, 0.4, chunk, np.zeros((chunk.size, 9))) for chunk in chunks], 30)
-    with ThreadPoolExecutor(2) as pool:
-        both = least(lambda: list(pool.map(lambda c: solve(mass, 0.4, c, np.zeros((c.size, 9))), chunks)), 60)
+
+    def all_chunks(pool: ThreadPoolExecutor) -> object:
+        return list(pool.map(lambda chunk: solve(mass, 0.4, chunk, np.zeros((chunk.size, 9))), chunks))
+
+    with ThreadPoolExecutor(1) as alone, ThreadPoolExecutor(2) as pair:
+        rounds = [
+            [least(lambda pool=pool: all_chunks(pool), 10) for pool in (alone, pair)] for _ in range(12)
+        ]
+    one, both = np.min(rounds, axis=0)
     print(
         f"2,000 points: one thread {1e3 * one:.2f} ms, two threads {1e3 * both:.2f} ms, ratio {one / both:.2f}"
     )

@@ -1,0 +1,68 @@
+"""What Hypothesis draws: laws, velocities, scenes. Sizes are log-uniform over decades."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from hypothesis import strategies as st
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.scene import Drive, Load, Scene, Transverse
+from frictionlab.theory import friction_free_velocity
+
+
+def sizes(low: float, high: float) -> st.SearchStrategy[float]:
+    """Positive numbers, log-uniform."""
+    return st.floats(math.log10(low), math.log10(high)).map(lambda exponent: 10.0**exponent)
+
+
+LAWS: dict[str, st.SearchStrategy[FrictionLaw]] = {
+    "coulomb": sizes(1e-3, 1e3).map(lambda mu: Coulomb(mu=mu)),
+}
+"""Every law of ours with any parameters it allows; a law that is not here fails its conformance tests."""
+
+angles = st.floats(-math.pi, math.pi)
+speeds = sizes(1e-6, 1e6)
+signs = st.sampled_from([-1.0, 1.0])
+velocities = st.builds(lambda speed, angle: speed * complex(math.cos(angle), math.sin(angle)), speeds, angles)
+velocities_on_the_line = st.builds(lambda speed, sign: sign * speed, speeds, signs)
+
+MU = 0.4
+
+
+@st.composite
+def scenes_on_the_line(
+    draw: Callable[..., float], speed: tuple[float, float] = (1e-3, 1.2), friction: tuple[float, float] = (0.01, 3.0)
+) -> Scene:
+    """One degree of freedom; speed: belt speed over V_lin, either direction; friction: over the drive (mu 0.4)."""
+    load, frequency = draw(sizes(0.1, 100.0)), draw(sizes(0.2, 5.0))
+    one = Scene(
+        damping_ratio=draw(sizes(0.01, 2.0)),
+        normal_load=load * draw(sizes(*friction)) / MU,
+        belt_speed=1.0,
+        drive=Drive(amplitude=load, frequency=frequency, phase=draw(st.floats(0.0, 360.0))),
+    )
+    v = draw(signs) * draw(sizes(*speed)) * friction_free_velocity(one)
+    return one.model_copy(update={"belt_speed": v})
+
+
+@st.composite
+def scenes_in_the_plane(draw: Callable[..., float], friction: tuple[float, float] = (0.02, 0.5)) -> Scene:
+    """Two degrees of freedom with both loads of comparable size."""
+    load, frequency = draw(sizes(0.3, 30.0)), draw(st.floats(0.5, 4.0))
+    across = Transverse(
+        natural_frequency=draw(st.floats(0.4, 6.0)),
+        damping_ratio=draw(sizes(0.05, 1.0)),
+        load=Load(amplitude=load * draw(st.floats(0.3, 2.0)), phase=draw(st.floats(-180.0, 180.0))),
+    )
+    one = Scene(
+        damping_ratio=draw(sizes(0.05, 1.0)),
+        normal_load=load * draw(sizes(*friction)) / MU,
+        belt_speed=1.0,
+        drive=Drive(amplitude=load, frequency=frequency),
+        transverse=across,
+    )
+    v = draw(signs) * draw(st.floats(0.05, 1.5)) * friction_free_velocity(one)
+    return one.model_copy(update={"belt_speed": v})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import io
 import json
 import os
 import signal
@@ -58,7 +59,7 @@ def _open_streams() -> None:
     """Python has no stdout, or no stderr, where the caller closed it: what is said there is then for nobody."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
-            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))
+            setattr(sys, name, io.StringIO())
 
 
 def _quietly(arguments: Sequence[str] | None) -> int:

@@ -26,14 +26,16 @@ from typing import Any
 
 import llvmlite
 import numba
+import numba.extending
 import numpy as np
 from numba.core.errors import NumbaError
-from numba.extending import overload, overload_method
 
 from frictionlab.laws.base import FrictionLaw
 
-_COMMON = {"nogil": True, "error_model": "numpy"}
-_INNER = _COMMON | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_extending: Any = numba.extending  # its published types lag behind what it accepts
+_typeof: Any = numba.typeof
+_COMMON: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+_INNER: dict[str, Any] = _COMMON | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 def njit(function: Callable[..., Any]) -> Any:
@@ -67,7 +69,7 @@ def _open_door(method: str) -> None:
 
     resolve.__signature__ = inspect.signature(getattr(FrictionLaw, method))  # type: ignore[attr-defined]
     for kind in (numba.types.NamedTuple, numba.types.NamedUniTuple):
-        overload_method(kind, method, strict=False)(resolve)
+        _extending.overload_method(kind, method, strict=False)(resolve)
 
 
 for _method in ("sliding_friction", "sliding_vector"):
@@ -89,7 +91,7 @@ def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
 
     chosen.bodies = (on_the_line, in_the_plane)  # type: ignore[attr-defined]
     resolve.__signature__ = inspect.signature(on_the_line)  # type: ignore[attr-defined]
-    overload(chosen, jit_options=_INNER | {"fastmath": True}, strict=False)(resolve)
+    _extending.overload(chosen, jit_options=_INNER | {"fastmath": True}, strict=False)(resolve)
     return chosen
 
 
@@ -137,7 +139,7 @@ def timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
     entry: Any = call.args[0] if isinstance(call, partial) else call
     bound = call.args[2:] if isinstance(call, partial) else ()
     with contextlib.suppress(NumbaError):  # the call itself says what is wrong
-        entry.compile(tuple(numba.typeof(argument) for argument in (*bound, *arguments)))
+        entry.compile(tuple(_typeof(argument) for argument in (*bound, *arguments)))
     start = time.perf_counter()
     result = call(*arguments)
     return result, time.perf_counter() - start
@@ -241,7 +243,7 @@ def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
 
 
 def _pieces_of_code(value: Any, seen: set[int]) -> Iterator[str]:
-    home = getattr(value, "__module__", None) or getattr(value, "__name__", "")
+    home: str = getattr(value, "__module__", None) or getattr(value, "__name__", None) or ""
     yield f"{home}.{getattr(value, '__qualname__', '')}"
     if home.partition(".")[0] in _FOREIGN or isinstance(value, ModuleType):
         return

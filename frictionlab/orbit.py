@@ -224,7 +224,7 @@ class Samples(NamedTuple):
 
 def sample(orbit: Orbit, scene: Scene, n: int) -> Samples:
     """The orbit at n equally spaced times tau = 0 ... period (end not included)."""
-    times = np.arange(n) * (2.0 * math.pi / scene.frequency / n)
+    times: Floats = np.arange(n, dtype=np.float64) * (2.0 * math.pi / scene.frequency / n)
     panels = np.clip(np.searchsorted(orbit.tau[:, 0], times, side="right") - 1, 0, len(orbit.tau) - 1)
     start, end = orbit.tau[panels, 0], orbit.tau[panels, -1]
     weights = _interpolation_weights((2.0 * times - start - end) / (end - start))

@@ -34,7 +34,9 @@ MU = 0.4
 
 @st.composite
 def scenes_on_the_line(
-    draw: Callable[..., float], speed: tuple[float, float] = (1e-3, 1.2), friction: tuple[float, float] = (0.01, 3.0)
+    draw: Callable[..., float],
+    speed: tuple[float, float] = (1e-3, 1.2),
+    friction: tuple[float, float] = (0.01, 3.0),
 ) -> Scene:
     """One degree of freedom; speed: belt speed over V_lin, either direction; friction: over the drive (mu 0.4)."""
     load, frequency = draw(sizes(0.1, 100.0)), draw(sizes(0.2, 5.0))

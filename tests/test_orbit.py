@@ -99,9 +99,13 @@ def test_a_harmonic_motion_has_its_own_amplitudes_phases_and_energies(along, acr
         turned = (found[f"{name}_phase"] - lead + 180.0) % 360.0 - 180.0
         assert turned == pytest.approx(0.0, abs=1e-6)
     viscous = 0.5 * period * omega**2 * (0.2 * abs(along) ** 2 + 0.8 * abs(across) ** 2)
-    put_in = 0.5 * period * (
-        (MASS.force * (1j * omega * along).conjugate()).real
-        + (MASS.transverse_force * (1j * omega * across).conjugate()).real
+    put_in = (
+        0.5
+        * period
+        * (
+            (MASS.force * (1j * omega * along).conjugate()).real
+            + (MASS.transverse_force * (1j * omega * across).conjugate()).real
+        )
     )
     assert found["energy_viscous"] == pytest.approx(viscous, rel=1e-9)
     assert found["energy_input"] == pytest.approx(put_in, rel=1e-9, abs=1e-8)
@@ -132,7 +136,9 @@ def test_means_and_friction_energies_are_integrals_over_the_period():
     assert found["force_reversals"] == 0.0
 
 
-@pytest.mark.parametrize(("belt_speed", "turns"), [(0.0, 2.0), (2.9, 2.0), (-2.9, 2.0), (3.1, 0.0), (-3.1, 0.0)])
+@pytest.mark.parametrize(
+    ("belt_speed", "turns"), [(0.0, 2.0), (2.9, 2.0), (-2.9, 2.0), (3.1, 0.0), (-3.1, 0.0)]
+)
 def test_slip_reverses_where_the_mass_overtakes_the_belt(belt_speed, turns):
     orbit = motion(1.5, 12, harmonic(1.5, 2.0 + 0j))
 
@@ -220,7 +226,9 @@ def agree_with_samples(scene, answers):
     swing = np.abs(at.v1).max() + np.abs(at.v2).max()
 
     assert np.mean(-at.friction) == pytest.approx(columns["mean_friction"], abs=2e-3 * MU)
-    assert np.mean(at.x1) == pytest.approx(scene.normal_load * columns["mean_friction"], abs=1e-4 * (1.0 + swing))
+    assert np.mean(at.x1) == pytest.approx(
+        scene.normal_load * columns["mean_friction"], abs=1e-4 * (1.0 + swing)
+    )
     assert 0.5 * np.ptp(at.v1) == pytest.approx(columns["velocity_amplitude"], rel=2e-3)
     put_in = period * np.mean(at.load * at.v1 + at.load_transverse * at.v2)
     viscous = period * np.mean(mass.damping * at.v1**2 + mass.transverse_damping * at.v2**2)

@@ -28,6 +28,22 @@ LAW = Coulomb(mu=MU)
 TIGHT = 1e-9
 planar_paper = {"damping_ratio": 0.1, "normal_load": 1.0, "drive": Drive(unbalance=10.0, frequency=4.0)}
 
+# counterexamples found
+slow_belt = Scene(
+    damping_ratio=1.0,
+    normal_load=4.445698525097306,
+    belt_speed=-0.005,
+    drive=Drive(amplitude=1.0, frequency=1.0),
+)
+at_the_kink = Scene(
+    damping_ratio=0.1,
+    normal_load=4.445698525097307,
+    belt_speed=-2.7476133817092494,
+    drive=Drive(amplitude=10.0, frequency=3.8910245728895014),
+)
+
+ratios = st.builds(lambda size, sign: sign * size, sizes(1e-4, 1.5), signs)
+
 
 class Answer:
     """The columns of one scene as attributes, and its orbit with integrals over the period."""
@@ -74,7 +90,7 @@ def friction_of(scene):
 
 @njit
 def followed(mass, mu, belt_speed, state, end, small, most):
-    """Period after period (of which the part up to ``end``) until one changes less than ``small``; and its impulse."""
+    """Period after period (the part up to ``end``) until one changes less than ``small``; and its impulse."""
     body, x, w, impulse = body_at(mass, mu, belt_speed), state[0], state[1], np.nan
     for _ in range(most):
         there = passage(body, x, w, 0.0, end * body.period)
@@ -98,12 +114,14 @@ def test_every_start_settles_to_the_same_steady_state(scene, start):
     _, _, impulse = compiled(followed)(mass, MU, v, scale * np.array(start), 1.0, small, 20_000)
     mean = -impulse * scene.frequency / (2.0 * math.pi * scene.normal_load)
 
-    assert mean == pytest.approx(abs(found.mean_friction), abs=found.error + 1e-10 * scale / scene.normal_load)
+    assert mean == pytest.approx(
+        abs(found.mean_friction), abs=found.error + 1e-10 * scale / scene.normal_load
+    )
 
 
-@given(scene=scenes_on_the_line(), others=st.lists(st.floats(-1.5, 1.5), min_size=1, max_size=4))
+@given(scene=scenes_on_the_line(), others=st.lists(ratios, min_size=1, max_size=4))
 def test_the_neighbours_a_curve_comes_from_do_not_change_a_point_on_the_line(scene, others):
-    speeds = np.unique([scene.belt_speed, *(friction_free_velocity(scene) * ratio for ratio in others if ratio)])
+    speeds = np.unique([scene.belt_speed, *(friction_free_velocity(scene) * ratio for ratio in others)])
     curve = Exact().solve([moved(scene, belt_speed=float(v)) for v in speeds], LAW, 1e-11)
     i, alone = int(np.flatnonzero(speeds == scene.belt_speed)[0]), exact(scene)
 
@@ -181,7 +199,8 @@ def test_what_starts_on_the_line_never_leaves_it(scene, start):
 # --- means --------------------------------------------------------------------------------------------------------
 
 
-@given(scene=scenes_on_the_line(friction=(0.01, 0.5)))
+@given(scene=scenes_on_the_line())
+@example(scene=slow_belt)
 def test_the_mean_position_carries_the_mean_friction_on_the_line(scene):
     for found in (exact(scene), shooting(scene)):
         carried = found.mean(found.orbit.x.real) / scene.normal_load
@@ -203,7 +222,8 @@ def test_the_mean_position_carries_the_mean_friction_in_the_plane(scene):
     )
 
 
-@given(scene=scenes_on_the_line(friction=(0.01, 0.5)))
+@given(scene=scenes_on_the_line())
+@example(scene=slow_belt)
 def test_a_belt_that_turns_round_turns_the_mean_round_on_the_line(scene):
     ahead, back = exact(scene), shooting(moved(scene, belt_speed=-scene.belt_speed))
 
@@ -242,6 +262,7 @@ def test_no_mean_exceeds_the_friction_coefficient(scene, line):
 
 
 @given(scene=scenes_on_the_line(speed=(1.0, 50.0)))
+@example(scene=at_the_kink)
 def test_a_belt_faster_than_the_friction_free_motion_feels_full_friction(scene):
     assume(abs(scene.belt_speed) >= friction_free_velocity(scene))
     found, side = exact(scene), math.copysign(1.0, scene.belt_speed)
@@ -250,7 +271,10 @@ def test_a_belt_faster_than_the_friction_free_motion_feels_full_friction(scene):
     linear = (mass.force / dynamic * np.exp(1j * mass.frequency * tau)).imag
     shifted = linear + side * friction_of(scene)
 
-    assert found.mean_friction == side * MU
+    beyond_rounding = abs(scene.belt_speed) > friction_free_velocity(scene) * (1.0 + 1e-14)
+    assert found.mean_friction == pytest.approx(
+        side * MU, rel=0.0, abs=0.0 if beyond_rounding else found.error
+    )
     np.testing.assert_allclose(found.orbit.x.real, shifted, rtol=0, atol=1e-11 * np.abs(shifted).max())
     assert found.reversals == 0.0
     confirmed = shooting(scene)
@@ -278,7 +302,9 @@ def test_the_planar_curve_approaches_full_friction_as_the_inverse_square_of_belt
     for speed in (600.0, 2_000.0, 4_000.0, 8_000.0):
         scene = Scene(belt_speed=speed, transverse=across, **planar_paper)
         found = shooting(scene)
-        gap.append((1.0 - found.mean_friction / MU) / (found.transverse_velocity_amplitude / (2.0 * speed)) ** 2)
+        gap.append(
+            (1.0 - found.mean_friction / MU) / (found.transverse_velocity_amplitude / (2.0 * speed)) ** 2
+        )
     short = 1.0 - np.array(gap[1:])
 
     assert gap[0] == pytest.approx(0.02622 / 0.02773, rel=1e-3)
@@ -296,7 +322,9 @@ def test_a_planar_curve_has_no_kink_but_a_tail(scene):
     assert abs(found.mean_friction) < MU
 
 
-ellipses = st.tuples(sizes(0.01, 100.0), sizes(0.01, 100.0), angles.map(math.degrees), angles.map(math.degrees))
+ellipses = st.tuples(
+    sizes(0.01, 100.0), sizes(0.01, 100.0), angles.map(math.degrees), angles.map(math.degrees)
+)
 
 
 def sliding(belt_speed, ellipse):
@@ -368,7 +396,9 @@ def test_the_curve_scales_with_the_load_on_the_line(scene, factor):
     drive = moved(scene.drive, amplitude=factor * scene.drive.amplitude)
     one = exact(scene)
     other = exact(
-        moved(scene, drive=drive, normal_load=factor * scene.normal_load, belt_speed=factor * scene.belt_speed)
+        moved(
+            scene, drive=drive, normal_load=factor * scene.normal_load, belt_speed=factor * scene.belt_speed
+        )
     )
 
     assert other.mean_friction == pytest.approx(one.mean_friction, abs=one.error + other.error)

@@ -209,7 +209,12 @@ def test_a_scene_knows_whether_anything_pushes_across_the_belt(values, alone):
     assert Scene(**values).load_along_belt_only is alone
 
 
-@given(size=sizes(1e-3, 1e3), frequency=sizes(1e-2, 1e2), phase=st.floats(-720.0, 720.0), tau=st.floats(0.0, 50.0))
+@given(
+    size=sizes(1e-3, 1e3),
+    frequency=sizes(1e-2, 1e2),
+    phase=st.floats(-720.0, 720.0),
+    tau=st.floats(0.0, 50.0),
+)
 def test_a_load_is_a_sine_that_leads_by_its_phase(size, frequency, phase, tau):
     drives = (
         Drive(amplitude=size, frequency=frequency, phase=phase),
@@ -242,7 +247,9 @@ def test_the_numbers_of_the_mass_are_those_of_the_equations_of_motion():
 
 
 def test_a_prescribed_motion_has_its_phases():
-    scene = Scene(**put(SLIDING, "slip.phase", 60.0), transverse_slip={"velocity_amplitude": 2.0, "phase": -90.0})
+    scene = Scene(
+        **put(SLIDING, "slip.phase", 60.0), transverse_slip={"velocity_amplitude": 2.0, "phase": -90.0}
+    )
     motion = scene.motion()
 
     assert motion.velocity == pytest.approx(cmath.rect(3.0, math.pi / 3.0))
@@ -308,7 +315,9 @@ def test_springs_and_dashpots_act_along_their_own_axis(scene, x, v):
 
 
 def test_at_undamped_resonance_the_load_drives_the_deviation_instead():
-    body = on_the_line(Scene(**(FREE | {"damping_ratio": 0.0, "drive": {"amplitude": 3.0, "frequency": 1.0}})).mass())
+    body = on_the_line(
+        Scene(**(FREE | {"damping_ratio": 0.0, "drive": {"amplitude": 3.0, "frequency": 1.0}})).mass()
+    )
 
     assert (body.reference_sine, body.reference_cosine) == (0.0, 0.0)
     assert (body.force_sine, body.force_cosine) == (3.0, 0.0)

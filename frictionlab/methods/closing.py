@@ -247,6 +247,26 @@ def _copy(source: Any, out: Any) -> None:
 
 
 @inner
+def _searched(
+    law: Any, body: Body, belt_speed: float, z: Any, residual: Any, inverse: Any, accuracy: float, like: Any
+) -> int:
+    """Move z along the Newton step, halved until the residual falls; returns the maps it took, 8 for no fall."""
+    n = z.size
+    step, trial, fresh = np.empty(n), np.empty(n), np.empty(n)
+    _times(inverse, residual, step)
+    length, part = _norm(residual), 1.0
+    for tried in range(1, 8):
+        for i in range(n):
+            trial[i] = z[i] - part * step[i]
+        mapped(law, body, belt_speed, trial, fresh, accuracy, like)
+        if _norm(fresh) < (1.0 - 0.1 * part) * length:
+            _copy(trial, z)
+            return tried
+        part *= 0.5
+    return 8
+
+
+@inner
 def close(
     law: Any,
     body: Body,
@@ -270,7 +290,7 @@ def close(
     accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
     period = 2.0 * math.pi / body.frequency
     image = mapped(law, body, belt_speed, z, residual, accuracy, like)
-    maps, stalls, checks, first = 1, 0, 0, _norm(residual)
+    maps, stalls, checks, first, troubled = 1, 0, 0, _norm(residual), False
     while maps < MOST_MAPS:
         length = _norm(residual)
         if image.steps < 0 or not length < 1e300:
@@ -291,14 +311,21 @@ def close(
             image = mapped(law, body, belt_speed, z, residual, accuracy, like)
             maps += 1
             checks += 1
+            doubt = 0.0
+            if image.stuck > 0.0 or troubled:  # derivative and map error jump with the events: take both anew
+                if not _newton_inverse(law, body, belt_speed, z, accuracy, inverse, like):
+                    break
+                coarser = mapped(law, body, belt_speed, z, fresh, FINER * accuracy, like)
+                maps += 2 * n + 1
+                _less(fresh, residual, fresh)
+                _times(inverse, fresh, work)
+                doubt = mean_error(body, fresh, _norm(work)) + abs(coarser.rubbed - image.rubbed) / period
             _times(inverse, residual, work)
-            error = 2.0 * mean_error(body, residual, _norm(work)) + floor / body.normal_load + ROUNDING
+            error = 2.0 * (mean_error(body, residual, _norm(work)) + doubt)
+            error += floor / body.normal_load + ROUNDING
             if error <= tolerance or (finest <= floor and checks > 3):
                 return Closed(image.rubbed, error, maps, image.stuck, image.closest, first)
-            finest = max(floor, accuracy)
-            if checks % 3 == 0:
-                _newton_inverse(law, body, belt_speed, z, finest, inverse, like)
-                maps += 2 * n
+            finest, troubled = max(floor, accuracy), troubled or checks > 2
             continue
         finer = max(finest, min(accuracy, 1e-4 * length))
         _less(z, step, trial)
@@ -320,14 +347,19 @@ def close(
         if accuracy <= finest and length <= 30.0 * accuracy and finest > floor:
             finest = max(floor, finest / FINER)  # what is left is the error of the map itself
         else:
+            troubled = True
             regular = _newton_inverse(law, body, belt_speed, z, finest, inverse, like)
-            periods = 0 if regular and usable else 3
-            for _ in range(periods):
-                for i in range(n):
-                    z[i] = z[i] + residual[i]
-                image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+            maps += 2 * n
             if not regular:
                 free_inverse(body, body.normal_load, inverse)
-            maps += 2 * n + periods
+            tried = _searched(law, body, belt_speed, z, residual, inverse, accuracy, like)
+            maps += tried
+            for _ in range(0 if regular and tried < 8 else 3):
+                image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+                maps += 1
+                for i in range(n):
+                    z[i] = z[i] + residual[i]
+            image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+            maps += 1
         stalls = 1
     return Closed(image.rubbed, 1e300, -maps, image.stuck, image.closest, first)

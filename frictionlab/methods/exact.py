@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
 
-from frictionlab.kernel import compiled
+from frictionlab.kernel import compiled, timed
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.methods import coulomb_curve as curve
 from frictionlab.methods.base import Answers, Floats, Method, Orbit, Status
@@ -155,9 +154,7 @@ class _Curve:
         """Both directions of the belt share one solution: the mean is exactly odd."""
         speeds, back = np.unique(np.abs(self.belt_speeds[places]), return_inverse=True)
         rows = np.full((len(speeds), 9), np.nan)
-        start = time.perf_counter()
-        compiled(curve.solve_curve)(self.mass, self.coefficient, speeds, rows)
-        self.seconds = time.perf_counter() - start
+        _, self.seconds = timed(compiled(curve.solve_curve), self.mass, self.coefficient, speeds, rows)
         rows[speeds == 0.0, curve.MEAN] = 0.0  # the orbit is its own mirror image half a period later
         self.rows[places] = rows[back]
 
@@ -190,11 +187,8 @@ class _Curve:
         out = np.full((n, len(READ)), np.nan)
         shifts = np.array([self._shift(i) for i in range(n)])
         states = np.ascontiguousarray(self.rows[:, [curve.STATE_X, curve.STATE_W]])
-        start = time.perf_counter()
-        compiled(read_orbits)(
-            self.mass, self.coefficient, self.belt_speeds, states, self._legs(), shifts, out
-        )
-        self.seconds += time.perf_counter() - start
+        arguments = self.mass, self.coefficient, self.belt_speeds, states, self._legs(), shifts, out
+        self.seconds += timed(compiled(read_orbits), *arguments)[1]
         return out
 
     def _legs(self) -> np.ndarray:

@@ -67,7 +67,9 @@ def test_friction_turns_with_the_slip_and_is_mirrored_with_it(name, data, v, ang
     friction = law.sliding_vector(v)
 
     assert law.sliding_vector(turn * v) == pytest.approx(turn * friction, rel=EXACT)
-    assert law.sliding_vector((turn * v).conjugate()) == pytest.approx((turn * friction).conjugate(), rel=EXACT)
+    assert law.sliding_vector((turn * v).conjugate()) == pytest.approx(
+        (turn * friction).conjugate(), rel=EXACT
+    )
 
 
 @every_law

@@ -107,7 +107,9 @@ def _rates(n, edges, values, width):
     slope[..., :2, 2:] = np.eye(2)
     slope[..., 2:, :2] = -np.diag(springs)
     outer = w[..., :, None] * w[..., None, :]
-    slope[..., 2:, 2:] = -np.diag(dashpots) - n.friction * (np.eye(2) / size[..., None] - outer / size[..., None] ** 3)
+    slope[..., 2:, 2:] = -np.diag(dashpots) - n.friction * (
+        np.eye(2) / size[..., None] - outer / size[..., None] ** 3
+    )
     return rate, slope
 
 

@@ -1,0 +1,107 @@
+"""Auto: the lowest rung that is right for a whole curve, said with its reason and held to the tolerance."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from frictionlab.laws.base import SlidingLaw
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.methods.auto import LADDER, Auto
+from frictionlab.methods.exact import Exact
+from frictionlab.methods.shooting import Shooting
+from frictionlab.scene import Drive, Load, Scene, Slip, Transverse
+
+LAW = Coulomb(mu=0.4)
+
+
+class Falling(SlidingLaw):
+    """Friction that falls with speed: no rung does it yet."""
+
+    def sliding_friction(self, speed):
+        return 0.4 / (1.0 + speed)
+
+
+def scene(belt_speed, load=None, **changes):
+    """Paper, Fig. 4b, with a transverse direction where ``load`` or ``transverse`` says so."""
+    across = (
+        None
+        if load is None
+        else Transverse(natural_frequency=2.0, damping_ratio=0.1, load=Load(unbalance=load))
+    )
+    values = {
+        "damping_ratio": 0.1,
+        "normal_load": 10.0,
+        "drive": Drive(unbalance=10.0, frequency=1.0),
+        "transverse": across,
+        **changes,
+    }
+    return Scene(belt_speed=belt_speed, **values)
+
+
+SCENES = {
+    "prescribed": (
+        lambda v: Scene(belt_speed=v, slip=Slip(velocity_amplitude=2.0, frequency=1.0)),
+        Exact,
+        "lowest rung",
+    ),
+    "line": (scene, Exact, "lowest rung"),
+    "plane without a transverse load": (
+        lambda v: scene(v, transverse=Transverse(natural_frequency=2.0, damping_ratio=0.1)),
+        Exact,
+        "lowest rung",
+    ),
+    "transverse load of zero": (lambda v: scene(v, 0.0), Exact, "lowest rung"),
+    "transverse load": (lambda v: scene(v, 10.0), Shooting, "this scene has a transverse load"),
+}
+SPEEDS = (0.7, 20.0, 49.0, 70.0)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_lowest_rung_that_accepts_answers_the_whole_curve_and_model_says_why(name):
+    make, rung, why = SCENES[name]
+    scenes = [make(v) for v in SPEEDS]
+    assert Auto().refusal(scenes[0], LAW) is None
+    assert type(Auto().choice(scenes[0], LAW)[0]) is rung
+    answers, direct = Auto().solve(scenes, LAW, 1e-9), rung().solve(scenes, LAW, 1e-9)
+    assert answers.status == ["ok"] * len(SPEEDS)
+    np.testing.assert_array_equal(answers.columns["mean_friction"], direct.columns["mean_friction"])
+    for ours, theirs in zip(answers.model, direct.model, strict=True):
+        assert ours.startswith(theirs)
+        assert f"auto: {why}" in ours or why in ours.partition("(auto:")[2]
+    assert answers.orbit(0) is not None
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_one_rung_answers_all_of_a_curve_even_where_a_lower_one_would_do(name):
+    make, rung, _why = SCENES[name]
+    assert {type(Auto().choice(make(v), LAW)[0]) for v in (0.0, *SPEEDS)} == {rung}
+
+
+def test_the_ladder_starts_with_the_cheapest_rung_and_auto_costs_what_its_rung_costs():
+    one = scene(5.0)
+    costs = [rung.cost(one, LAW, 1e-9) for rung in LADDER]
+    assert costs == sorted(costs)
+    assert Auto().cost(one, LAW, 1e-9) == costs[0]
+    assert Auto().cost(scene(5.0, 10.0), LAW, 1e-9) == Shooting().cost(scene(5.0, 10.0), LAW, 1e-9)
+
+
+def test_an_answer_above_the_tolerance_has_failed_with_both_numbers_in_the_reason():
+    scenes = [scene(v, 10.0) for v in (5.0, 20.0)]
+    answers, direct = Auto().solve(scenes, LAW, 1e-16), Shooting().solve(scenes, LAW, 1e-16)
+    assert direct.status == ["ok", "ok"]
+    assert answers.status == ["failed", "failed"]
+    for reason, error in zip(answers.reason, direct.columns["error"], strict=True):
+        assert error > 1e-16
+        assert reason == f"shooting reaches an error of {error:.1e}, above the tolerance 1.0e-16"
+    within = Auto().solve(scenes, LAW, 1e-8)
+    assert within.status == ["ok", "ok"]
+    assert within.reason == ["", ""]
+
+
+def test_a_scene_no_rung_accepts_is_refused_with_every_reason():
+    for one in (scene(5.0), scene(5.0, 10.0)):
+        refusal = Auto().refusal(one, Falling())
+        for rung in LADDER:
+            assert rung.refusal(one, Falling()) in refusal
+        assert Auto().cost(one, Falling(), 1e-8) == 0.0

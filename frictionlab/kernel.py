@@ -8,6 +8,7 @@ module named by a hash of every piece of code and every constant the kernel and 
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import hashlib
 import importlib.util
@@ -15,6 +16,7 @@ import inspect
 import math
 import os
 import platform
+import shutil
 import sys
 import tempfile
 import time
@@ -44,7 +46,10 @@ def njit(function: Callable[..., Any]) -> Any:
 
 
 def inner(function: Callable[..., Any]) -> Any:
-    """The same for a function only other kernels call: it gets no entry from Python and compiles faster."""
+    """The same for a function only other kernels call: it compiles faster, having no entry from Python.
+
+    Never call one from Python: nothing stands in the way of the crash.
+    """
     return numba.njit(**_INNER)(function)
 
 
@@ -179,7 +184,9 @@ def _entry(kernel: Any, law: type[FrictionLaw] | None, fields: tuple[str, ...]) 
 def _load(name: str, source: str, kernel: Any) -> ModuleType:
     path = _written(cache_folder() / f"{name}.py", source)
     if path is None:  # nowhere to write: compile afresh in every process
-        path = Path(tempfile.mkdtemp(prefix="frictionlab-")) / f"{name}.py"
+        folder = Path(tempfile.mkdtemp(prefix="frictionlab-"))
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+        path = folder / f"{name}.py"
         path.write_text(source)
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None

@@ -159,9 +159,16 @@ def free_inverse(body: Body, rubbing: float, inverse: Any) -> None:
 def monodromy(
     law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, matrix: Any, like: Any
 ) -> int:
-    """The derivative of the period map by central differences [n, n]; returns the maps it took."""
+    """The derivative of the period map by central differences [n, n]; returns the maps it took.
+
+    The shift stays below the way the belt moves in a period: that much slip ends a period that was all stick.
+    The maps are at least as accurate as asked, and always much finer than the shift.
+    """
     n = z.size
-    shift = 1e-4 * (1.0 + _norm(z)) if accuracy > 1e-9 else 1e-5 * (1.0 + _norm(z))
+    carried = abs(belt_speed) * 2.0 * math.pi / body.frequency
+    shift = 1e-5 * (1.0 + _norm(z))
+    shift = min(shift, max(0.01 * carried, 1e-3 * shift)) if carried > 0.0 else shift
+    accuracy = min(accuracy, 1e-5 * shift)
     ahead, behind, trial = np.empty(n), np.empty(n), np.empty(n)
     for column in range(n):
         for row in range(n):
@@ -303,6 +310,8 @@ def close(
             image = mapped(law, body, belt_speed, z, residual, accuracy, like)
             maps += 1
             continue
+        if image.stuck >= period * (1.0 - 1e-9):  # at rest on a belt at rest
+            return Closed(image.rubbed, floor / body.normal_load + ROUNDING, maps, image.stuck, 0.0, first)
         _times(inverse, residual, step)
         if accuracy <= finest and mean_error(body, residual, _norm(step)) <= 10.0 * tolerance:
             _less(z, step, trial)

@@ -30,6 +30,7 @@ def _first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
 
 
 MOST_KNOWN = 6
+MOST_PERIODS = 5000
 
 
 @inner
@@ -98,9 +99,13 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, tolerance: f
 def tracked(law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, like: Any) -> Track:
     """The closed orbit from z, piece by piece."""
     y, u = unpack(body, z, like)
-    steps = period_map(law, body, belt_speed, y, u, accuracy, track_of(0)).steps
-    track = track_of(4 * steps + 16)
+    room = 128
+    track = track_of(room)
     period_map(law, body, belt_speed, y, u, accuracy, track)
+    while track.filled[0] == room:
+        room *= 4
+        track = track_of(room)
+        period_map(law, body, belt_speed, y, u, accuracy, track)
     n = track.filled[0]
     return Track(track.tau[:n], track.x[:n], track.v[:n], track.friction[:n], track.stick[:n], track.filled)
 
@@ -122,7 +127,7 @@ def answer_curve(
     """Close the orbits of a curve and read them; guess [0 or 1, size] is a state to start from."""
     states, results = solve_curve(law, body, belt_speeds, guess, tolerance, like)
     n, size = states.shape
-    accuracy = max(0.01 * tolerance * body.normal_load, 1e-13)
+    accuracy = max(0.1 * tolerance * body.normal_load, 1e-13)
     columns, matrices = np.empty((n, len(READ))), np.empty((n, size, size))
     track = track_of(0)
     for i in range(n):
@@ -130,20 +135,23 @@ def answer_curve(
         row = read(track.tau, track.x, track.v, track.friction, track.stick, mass, belt_speeds[i])
         for k in range(row.size):
             columns[i, k] = row[k]
-        monodromy(law, body, belt_speeds[i], states[i], accuracy, matrices[i], like)
+        monodromy(law, body, belt_speeds[i], states[i], 1.0, matrices[i], like)
     return Curve(states, results, columns, matrices, track)
 
 
 @inner
 def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
-    """The state after period upon period from position x and velocity v on a belt at rest, once it stays put."""
+    """From position x and velocity v on a belt at rest: the state once the mass stays put, and the periods it took.
+
+    Periods: -1 where after many periods the mass still creeps.
+    """
     z, residual = np.empty(size_of(x)), np.empty(size_of(x))
     pack(body, z, x - body.reference_cosine, v - body.frequency * body.reference_sine)
     period = 2.0 * math.pi / body.frequency
-    for _ in range(100_000):
+    for count in range(1, MOST_PERIODS):
         image = mapped(law, body, 0.0, z, residual, accuracy, x)
         for row in range(z.size):
             z[row] = z[row] + residual[row]
         if image.stuck >= period * (1.0 - 1e-12):
-            break
-    return z
+            return z, count
+    return z, -1

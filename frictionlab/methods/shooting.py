@@ -11,7 +11,7 @@ import numpy as np
 from frictionlab.kernel import compiled, timed
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.methods.base import Answers, Floats, Method, Orbit, Status
-from frictionlab.methods.curve import Curve, answer_curve, settle
+from frictionlab.methods.curve import MOST_PERIODS, Curve, answer_curve, settle
 from frictionlab.orbit import READ
 from frictionlab.scene import Body, Scene, in_the_plane, on_the_line
 
@@ -48,10 +48,16 @@ class Shooting(Method):
         if moving:
             found.take(moving, scenes[0], *_answered([scenes[i] for i in moving], law, None, tolerance))
         for i in resting:
-            if scenes[i].initial is None:
+            settled = _settled(scenes[i], law) if scenes[i].initial is not None else None
+            if settled is None:
                 found.leave_open(i, resting_range(scenes[i], law))
+            elif settled[1] < 0:
+                found.reason[i] = (
+                    f"started from scene.initial the mass still creeps after {MOST_PERIODS} periods"
+                )
             else:
-                found.take([i], scenes[i], *_answered([scenes[i]], law, _settled(scenes[i], law), tolerance))
+                found.take([i], scenes[i], *_answered([scenes[i]], law, settled[0], tolerance))
+                found.columns["error"][i] += 1e-11 * settled[1]  # of the steps on the way there
                 found.reason[i] = "the state reached from scene.initial; other starts come to rest elsewhere"
         found.judge(tolerance)
         return Answers(
@@ -191,13 +197,14 @@ def _answered(
     return timed(compiled(answer_curve, law), body, scenes[0].mass(), belt_speeds, guess, tolerance, like)
 
 
-def _settled(scene: Scene, law: FrictionLaw) -> Floats:
+def _settled(scene: Scene, law: FrictionLaw) -> tuple[Floats, int]:
+    """The state reached from scene.initial on a belt at rest, and in how many periods; -1 for never."""
     body, like = _body(scene)
     start = scene.initial
     assert start is not None
     x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)
     x, v = (x, v) if isinstance(like, complex) else (x.real, v.real)
-    return compiled(settle, law)(body, x, v, 1e-11 * scene.mass().normal_load)
+    return compiled(settle, law)(body, x, v, 1e-13 * scene.mass().normal_load)
 
 
 def _model(scene: Scene) -> str:

@@ -516,7 +516,10 @@ def _note_rest(track: Track, problem: Problem, tau: float, end: float, x: Any, s
         track.tau[row, k] = tau + part
         track.x[row, k] = x + part * belt
         track.v[row, k] = belt
-        track.friction[row, k] = held / problem.body.normal_load
+        rub = held / problem.body.normal_load
+        if not stick:
+            rub = rub * min(1.0, problem.law.sliding_friction(0.0) / length(rub))
+        track.friction[row, k] = rub
     track.stick[row] = stick
     track.filled[0] = row + 1
 

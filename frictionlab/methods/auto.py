@@ -31,10 +31,8 @@ class Auto(Method):
         for rung in LADDER:
             reason = rung.refusal(scene, law)
             if reason is None:
-                return (
-                    rung,
-                    f"lowest rung: {against[-1]}" if against else "lowest rung, and it accepts the scene",
-                )
+                why = against[-1].split(";")[0] if against else "it accepts the scene"
+                return rung, f"lowest rung that can: {why}"
             against.append(reason)
         return None, "; ".join(dict.fromkeys(against))
 

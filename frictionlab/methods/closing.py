@@ -331,7 +331,7 @@ def close(
                 doubt = mean_error(body, fresh, _norm(work)) + abs(coarser.rubbed - image.rubbed) / period
             _times(inverse, residual, work)
             error = 2.0 * (mean_error(body, residual, _norm(work)) + doubt)
-            error += floor / body.normal_load + ROUNDING
+            error += (floor + 0.1 * accuracy) / body.normal_load + ROUNDING  # and the finer map's own error
             if error <= tolerance or (finest <= floor and checks > 3):
                 return Closed(image.rubbed, error, maps, image.stuck, image.closest, first)
             finest, troubled = max(floor, accuracy), troubled or checks > 2

@@ -156,9 +156,9 @@ def resting_range(scene: Scene, law: FrictionLaw) -> float:
     for _ in range(6):
         across = np.linspace(low, high, 201)
         room = limit**2 - (load.imag[:, None] - across) ** 2
-        reach = np.where(room >= 0.0, load.real[:, None] + np.sqrt(np.maximum(room, 0.0)), -np.inf).min(
-            axis=0
-        )
+        half = np.sqrt(np.maximum(room, 0.0))
+        upper, lower = (load.real[:, None] + half).min(axis=0), (load.real[:, None] - half).max(axis=0)
+        reach = np.where((room >= 0.0).all(axis=0) & (lower <= upper), upper, -np.inf)
         at = int(reach.argmax())
         best = max(best, float(reach[at]))
         width = (high - low) / 50.0

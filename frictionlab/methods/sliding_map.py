@@ -271,6 +271,7 @@ class Rest(NamedTuple):
     side: float
     rubbed: Any
     stuck: float
+    pulled: Any  # of rubbed: after release
 
 
 @inner
@@ -290,11 +291,12 @@ def _rest(law: Any, body: Body, belt_speed: float, tau: float, x: Any, accuracy:
         x = x + stuck * belt
         held, rate, bend = _held(body, pull, tau, x, belt)
         if tau >= end:
-            return Rest(tau, x, 0.0 * x, 0.0, rubbed, stuck)
+            return Rest(tau, x, 0.0 * x, 0.0, rubbed, stuck, 0.0 * x)
     side = 1.0 if held.real > 0.0 else -1.0
     t, w, path = _start(body, accuracy, limit, rate, bend, held)
     pulled = _held_impulse(body, pull, tau, tau + t, x, belt) - restoring_force(body, 0.0 * x, path) - w
-    return Rest(tau + t, x + t * belt + path, w, side, rubbed + pulled / body.normal_load, stuck)
+    pulled = pulled / body.normal_load
+    return Rest(tau + t, x + t * belt + path, w, side, rubbed + pulled, stuck, pulled)
 
 
 # --- slip ---------------------------------------------------------------------------------------------------------
@@ -399,6 +401,7 @@ def _before_in_the_plane(problem: Problem, node: Node, accuracy: float, h: float
             rubbed = (w + _held_impulse(body, pull, node.tau, end, x, belt)) / body.normal_load
             y = x + wait * belt + path - _reference(body, end)
             return Landing(REST, wait, State(y, w, w, w), rubbed)
+    h = min(h, 4.0 * speed / limit)  # slip turns towards the force at the rate limit/speed: stay stable
     return Landing(ACCEPT, min(h, 0.9 * speed / closing) if closing > 0.0 else h, node.state, y)
 
 
@@ -503,8 +506,7 @@ def _note_slip(track: Track, problem: Problem, node: Node, h: float) -> None:
 
 
 @inner
-def _note_rest(track: Track, problem: Problem, tau: float, end: float, x: Any, stick: bool) -> None:
-    """Rest from tau to end; with stick False, the short while around it in which the slip is below accuracy."""
+def _note_stick(track: Track, problem: Problem, tau: float, end: float, x: Any) -> None:
     row = track.filled[0]
     if row == track.stick.size:
         return
@@ -516,11 +518,27 @@ def _note_rest(track: Track, problem: Problem, tau: float, end: float, x: Any, s
         track.tau[row, k] = tau + part
         track.x[row, k] = x + part * belt
         track.v[row, k] = belt
-        rub = held / problem.body.normal_load
-        if not stick:
-            rub = rub * min(1.0, problem.law.sliding_friction(0.0) / length(rub))
+        track.friction[row, k] = held / problem.body.normal_load
+    track.stick[row] = True
+    track.filled[0] = row + 1
+
+
+@inner
+def _note_hop(
+    track: Track, problem: Problem, tau: float, end: float, x: Any, w: Any, change: Any, rub: Any
+) -> None:
+    """The short while next to rest that is closed by momentum: slip w changes evenly, friction is its mean."""
+    row = track.filled[0]
+    if row == track.stick.size:
+        return
+    for k in range(NODES.size):
+        share = 0.5 * (1.0 + NODES[k])
+        part = (end - tau) * share
+        track.tau[row, k] = tau + part
+        track.x[row, k] = x + part * (problem.belt_speed + w + 0.5 * share * change)
+        track.v[row, k] = problem.belt_speed + w + share * change
         track.friction[row, k] = rub
-    track.stick[row] = stick
+    track.stick[row] = False
     track.filled[0] = row + 1
 
 
@@ -557,9 +575,11 @@ def period_map(
             if room > 0:
                 x, released = state.x + _reference(body, tau), tau + rest.stuck
                 if rest.stuck > 0.0:
-                    _note_rest(track, problem, tau, released, x, True)
+                    _note_stick(track, problem, tau, released, x)
                 if rest.tau > released:
-                    _note_rest(track, problem, released, rest.tau, x + rest.stuck * belt_speed, False)
+                    rub = rest.pulled / (rest.tau - released)
+                    x = x + rest.stuck * belt_speed
+                    _note_hop(track, problem, released, rest.tau, x, 0.0 * rest.w, rest.w, rub)
             tau, resting, leaving, closest = rest.tau, False, True, 0.0
             problem = _anchored(law, body, belt_speed, rest.side, tau)
             u = rest.w + belt_speed - _reference_velocity(body, problem.sine, problem.cosine)
@@ -575,7 +595,8 @@ def period_map(
         done = _before(problem, node, accuracy, min(h, reach, end - tau), state.x)
         if done.verdict == REST:
             if room > 0 and done.h > 0.0:
-                _note_rest(track, problem, tau, tau + done.h, state.x + _reference(body, tau), False)
+                x, rub = state.x + _reference(body, tau), done.rubbed / done.h
+                _note_hop(track, problem, tau, tau + done.h, x, node.w, -node.w, rub)
         else:
             h = done.h
             taken = step(problem, tau, state, h)

@@ -115,13 +115,13 @@ def test_a_spring_is_stepped_to_the_ninth_power_of_the_step():
 
 
 def test_planar_coulomb_friction_is_integrated_to_order_eight():
-    problem, start = Belt(10.0, 2.0, 1.5), (0.4 - 9.0j, 9.0 + 1.0j)
+    problem, start = Belt(10.0, 4.0, 5.0), (0.4 - 9.0j, 9.0 + 1.0j)
     end = 2.0 * math.pi
     fine = belt_run(problem, *start, end, 4000)
-    counts = np.array([36, 42, 48, 56, 64])
+    counts = np.array([32, 40, 48, 64])
     for part in range(3):
         errors = [abs(belt_run(problem, *start, end, n)[part] - fine[part]) for n in counts]
-        assert errors[-1] > 1e-14
+        assert errors[-1] > 1e-13
         slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
         assert 7.5 <= slope <= 9.0, part
 

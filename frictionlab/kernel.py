@@ -19,6 +19,7 @@ import platform
 import shutil
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterator
 from functools import cache, partial
@@ -61,6 +62,9 @@ def fast(function: Callable[..., Any]) -> Any:
 class CannotCompile(Exception):
     """A law that runs interpreted but not compiled; the message names the law, the kernel and the remedy."""
 
+
+_one_at_a_time = threading.Lock()
+"""Two threads that loaded one entry twice would hold two types of the same numbers, and compile for ever."""
 
 _law_of_numbers: dict[type, type[FrictionLaw]] = {}
 
@@ -132,10 +136,11 @@ def compiled(kernel: Any, law: FrictionLaw | None = None) -> Callable[..., Any]:
 
     Raises CannotCompile, when called, where numba cannot compile the law's methods.
     """
+    numbers = law.numbers() if law is not None else {}
+    with _one_at_a_time:
+        entry, numbers_type = _entry(kernel, type(law) if law is not None else None, tuple(numbers))
     if law is None:
-        return _entry(kernel, None, ())[0]
-    numbers = law.numbers()
-    entry, numbers_type = _entry(kernel, type(law), tuple(numbers))
+        return entry
     return partial(_guarded, entry, type(law), numbers_type(**numbers))
 
 

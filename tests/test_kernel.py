@@ -6,11 +6,14 @@ import math
 import os
 import subprocess
 import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from frictionlab import kernel
 from frictionlab.kernel import CannotCompile, by_dimension, compiled, njit
 from frictionlab.laws.base import Positive, SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
@@ -274,3 +277,17 @@ def quotient(a, b):
 def test_compiled_division_follows_ieee_754():
     assert compiled(quotient)(1.0, 0.0) == math.inf
     assert math.isnan(compiled(quotient)(0.0, 0.0))
+
+
+def test_threads_that_ask_for_one_kernel_at_once_get_one_entry():
+    threads = 8
+    start = threading.Barrier(threads)
+
+    def ask(_):
+        start.wait()
+        return compiled(friction_at, Coulomb(mu=0.25)).args[0]
+
+    with ThreadPoolExecutor(threads) as pool:
+        for _ in range(20):
+            kernel._entry.cache_clear()
+            assert len(set(pool.map(ask, range(threads)))) == 1

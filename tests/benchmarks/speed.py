@@ -161,7 +161,7 @@ def one_period(scene: Scene, state: np.ndarray, tolerance: float) -> np.ndarray:
         def stops(t: float, y: np.ndarray) -> float:
             return y[1] - scene.belt_speed
 
-        stops.terminal, stops.direction = True, -side  # type: ignore[attr-defined]
+        stops.terminal, stops.direction = True, -side  # type: ignore[attr-defined]  # how solve_ivp is told
         events = stops if side else None
         found = solve_ivp(rates(scene, side), (tau, period), state, events=events, **settings)
         tau, state = float(found.t[-1]), found.y[:, -1]
@@ -240,7 +240,7 @@ def ratio_of(name: str, work: Callable[[ThreadPoolExecutor], object], repeats: i
     found = []
     for threads in (1, THREADS):
         with ThreadPoolExecutor(threads) as pool:
-            found.append(timed(lambda pool=pool: work(pool), repeats))  # type: ignore[misc]
+            found.append(timed(lambda pool=pool: work(pool), repeats))  # type: ignore[misc]  # mypy cannot type a bound default
     one, two = found
     print(
         f"{name:16s} one thread {1e3 * one.least:8.1f} ms, two {1e3 * two.least:8.1f} ms, "

@@ -15,6 +15,7 @@ import numpy as np
 
 from frictionlab.kernel import compiled
 from frictionlab.laws.coulomb import Coulomb
+from frictionlab.methods.base import Answers
 from frictionlab.methods.coulomb_curve import solve_curve
 from frictionlab.methods.exact import Exact
 from frictionlab.scene import Drive, Scene
@@ -57,8 +58,8 @@ def report(name: str) -> None:
     )
 
 
-def _seconds(answers: object) -> float:
-    return float(answers.columns["seconds"][0])  # type: ignore[attr-defined]
+def _seconds(answers: Answers) -> float:
+    return float(answers.columns["seconds"][0])
 
 
 def threads() -> None:

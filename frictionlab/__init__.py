@@ -10,6 +10,11 @@ __version__ = version("frictionlab")
 
 _HOMES = {
     "Coulomb": "frictionlab.laws.coulomb",
+    "Dimensional": "frictionlab.dimensional",
+    "DimensionalDrive": "frictionlab.dimensional",
+    "DimensionalInitial": "frictionlab.dimensional",
+    "DimensionalLoad": "frictionlab.dimensional",
+    "DimensionalTransverse": "frictionlab.dimensional",
     "Drive": "frictionlab.scene",
     "FrictionLaw": "frictionlab.laws.base",
     "Initial": "frictionlab.scene",
@@ -18,6 +23,7 @@ _HOMES = {
     "Slip": "frictionlab.scene",
     "SlidingLaw": "frictionlab.laws.base",
     "SteadyState": "frictionlab.runner",
+    "Stribeck": "frictionlab.laws.stribeck",
     "Transverse": "frictionlab.scene",
     "TransverseSlip": "frictionlab.scene",
     "curve": "frictionlab.runner",

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from frictionlab.failures import FolderError
-from frictionlab.output import Existing
+from frictionlab.output import Existing, check_page
 from frictionlab.runner import run_folder
 from frictionlab.study import Mistake, Study, StudyError, load_study
 
@@ -22,7 +22,7 @@ class Job(NamedTuple):
 
 def jobs(path: Path, out: Path | None, overrides: Sequence[str]) -> list[Job]:
     """The studies of a file or of a folder's ``*.yaml``. Raises StudyError with all their mistakes."""
-    folder = out or Path("runs") / path.absolute().stem
+    folder = _folder(path, out)
     if not path.is_dir():
         return [Job(path.stem, load_study(path, overrides), folder)]
     files = sorted(path.glob("*.yaml"))
@@ -30,6 +30,19 @@ def jobs(path: Path, out: Path | None, overrides: Sequence[str]) -> list[Job]:
         raise StudyError([Mistake(str(path), None, "", "a folder without studies: no *.yaml in it")])
     studies = _all_read(files, overrides)
     return [Job(file.stem, study, folder / file.stem) for file, study in zip(files, studies, strict=True)]
+
+
+def index_folder(path: Path, out: Path | None) -> Path | None:
+    """Where a folder of studies gets its index; None for a single study. Raises FolderError."""
+    if not path.is_dir():
+        return None
+    folder = _folder(path, out)
+    check_page(folder / "index.html")
+    return folder
+
+
+def _folder(path: Path, out: Path | None) -> Path:
+    return out or Path("runs") / path.absolute().stem
 
 
 def _all_read(files: Sequence[Path], overrides: Sequence[str]) -> list[Study]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import textwrap
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,7 +23,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from frictionlab.families import BELT_SPEED, Curve, Family, Setting, family_of, is_logarithmic, kinks
+from frictionlab.columns import SI, belt_speed
+from frictionlab.families import Curve, Family, Setting, family_of, is_logarithmic, kinks
 from frictionlab.symbols import word
 
 FIGURES = {
@@ -30,6 +32,7 @@ FIGURES = {
     "velocity": ["velocity_amplitude", "transverse_velocity_amplitude"],
     "energies": ["energy_input", "energy_viscous", "energy_friction", "energy_contact"],
 }
+IN_SI = {made.column: name for name, made in SI.items() if made.scale != "load"}
 
 COLUMN, PAGE = 85 / 25.4, 170 / 25.4  # widths of a journal's column and page [inch]
 PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
@@ -39,6 +42,7 @@ LINES = ("solid", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 WITHOUT_NUMBER = {"failed": "x", "killed": "x", "refused": "|"}
 LEGEND_MARKS = WITHOUT_NUMBER | {"not_unique": r"$\mathrm{I}$"}
 MOST_VALUES_IN_LEGEND = 8
+LONGEST_LABEL = 36  # letters
 ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
 
@@ -83,12 +87,25 @@ def draw(table: pd.DataFrame, title: str, folder: Path) -> list[Path]:
         return []
     folder.mkdir(parents=True, exist_ok=True)
     files = []
-    with mpl.rc_context(STYLE):
-        for name, wanted in FIGURES.items():
-            columns = [column for column in wanted if table[column].notna().any()]
-            if columns:
-                files += _save(_figure(family, columns, title), folder / name)
+    with mpl.rc_context(STYLE), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from")  # of a title: an empty box says it
+        for name, columns in figure_columns(table).items():
+            files += _save(_figure(family, columns, title), folder / name)
     return files
+
+
+def figure_columns(table: pd.DataFrame) -> dict[str, list[str]]:
+    """The columns that each figure of a table shows; a figure without any is not there."""
+    shown = {
+        name: [column for column in _as_given(wanted, table) if table[column].notna().any()]
+        for name, wanted in FIGURES.items()
+    }
+    return {name: columns for name, columns in shown.items() if columns}
+
+
+def _as_given(columns: Sequence[str], table: pd.DataFrame) -> list[str]:
+    """Velocities and energies in SI units where the scene is."""
+    return [IN_SI[column] if IN_SI.get(column) in table else column for column in columns]
 
 
 def _save(figure: Figure, path: Path) -> list[Path]:
@@ -106,7 +123,7 @@ def _figure(family: Family, columns: Sequence[str], title: str) -> Figure:
     width = (COLUMN, PAGE)[wide - 1]
     figure = Figure(figsize=(width, high * PANEL_HEIGHT), layout="constrained")
     FigureCanvasAgg(figure)
-    lines = textwrap.wrap(title, round(width * 13))
+    lines = textwrap.wrap(_plain(title), round(width * 13))
     figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight="bold")
     figure.set_figheight(high * PANEL_HEIGHT + LINE * (len(lines) + _add_legend(figure, family)))
     for place, (panel, column) in enumerate(pictures, start=1):
@@ -128,7 +145,7 @@ def _draw_panel(axes: Axes, family: Family, panel: tuple[Setting, ...], column: 
     ):
         axes.set_xscale("log")
     _scale_upwards(axes, [curve.rows[column] for curve in curves], column)
-    if family.abscissa == BELT_SPEED:
+    if family.abscissa == belt_speed([family.abscissa]):
         _mark_kinks(axes, [speed for curve in curves for speed in kinks(curve)])
 
 
@@ -267,7 +284,7 @@ def _shown(family: Family) -> set[int]:
 def _label(family: Family, curve: Curve) -> str:
     laws, _, methods = family.sizes
     value = curve.member[1] if curve.member is not None else None
-    law, method = [curve.law] * (laws > 1), [curve.method] * (methods > 1)
+    law, method = [_name(curve.law)] * (laws > 1), [_name(curve.method)] * (methods > 1)
     return ", ".join(law + method + [f"{value:.5g}"] if value is not None else law + method)
 
 
@@ -280,9 +297,19 @@ def _status_entries(family: Family) -> list[Line2D]:
         for status, mark in LEGEND_MARKS.items():
             if count := int((rows == status).sum()):
                 points = "1 point" if count == 1 else f"{count} points"
-                label = f"{points} {status.replace('_', ' ')}" + (f" ({method})" if several else "")
+                label = f"{points} {status.replace('_', ' ')}" + (f" ({_name(method)})" if several else "")
                 entries.append(Line2D([], [], color="0.3", linestyle="none", marker=mark, label=label))
     return entries
+
+
+def _plain(text: str) -> str:
+    """Words of the study: a dollar sign in them is one, and begins no formula."""
+    return text.replace("$", r"\$")
+
+
+def _name(label: str) -> str:
+    """A label of the study, as much of it as a legend has room for."""
+    return _plain(label if len(label) <= LONGEST_LABEL else f"{label[: LONGEST_LABEL - 1]}…")
 
 
 def _sentence(setting: Setting) -> str:

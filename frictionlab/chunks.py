@@ -45,8 +45,7 @@ def curves(cases: Sequence[Case]) -> list[list[int]]:
 
 
 def _curve_key(case: Case) -> Any:
-    values = case.scene.values()
-    del values["belt_speed"]
+    values = case.scene.at(0.0).values()
     return case.law_label, case.law, case.method_label, case.method, tuple(values.items())
 
 

@@ -6,6 +6,7 @@ import errno
 import io
 import json
 import os
+import shlex
 import signal
 import sys
 import threading
@@ -18,7 +19,10 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import click
 
 if TYPE_CHECKING:
+    from pandas import DataFrame
+
     from frictionlab.batch import Job
+    from frictionlab.bench import Measured
     from frictionlab.plan import Planned
     from frictionlab.runner import Run
 
@@ -161,7 +165,7 @@ def cli() -> None:
 @json_option
 @click.option("--force", is_flag=True, help="Replace the results of another study or version in DIR.")
 def run(**options: Any) -> int:
-    """Run STUDY, a file or a folder of studies, and write its table and figures to DIR.
+    """Run STUDY, a file or a folder of studies, and write its table, figures and report to DIR.
 
     The same study into the same DIR takes over the points that are finished.
     """
@@ -170,8 +174,11 @@ def run(**options: Any) -> int:
     given = RunOptions(**options)
     jobs = batch.jobs(given.study, given.out, given.overrides)
     batch.check_folders(jobs, given.existing)
+    index = batch.index_folder(given.study, given.out)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     done = [_run(job, given) for job in jobs]
+    if index is not None:
+        _write_index(index, done)
     if given.as_json:
         _print_records(
             [record for job, result in zip(jobs, done, strict=True) for record in _rows(job, result, given)]
@@ -200,7 +207,6 @@ def _run(job: Job, given: RunOptions) -> Run:
     from concurrent.futures import ThreadPoolExecutor
 
     from frictionlab import runner
-    from frictionlab.failures import SaveError
     from frictionlab.progress import Meter
 
     meter = Meter(sys.stderr)
@@ -216,10 +222,8 @@ def _run(job: Job, given: RunOptions) -> Run:
         meter.close()
         pool.shutdown(wait=False, cancel_futures=True)
     _show_failed(result) if given.as_json else _show(result)
-    try:
-        _draw(job, result)
-    except OSError as problem:
-        raise SaveError(f"cannot write the figures in {job.out}: {problem.strerror or problem}") from problem
+    _draw(job, result)
+    _report(result)
     return result
 
 
@@ -244,10 +248,33 @@ def _show_failed(result: Run) -> None:
 
 
 def _draw(job: Job, result: Run) -> None:
-    from frictionlab.charts import draw  # with matplotlib, which takes a second
-
-    if draw(result.table, job.study.title or job.name, job.out / "figures"):
+    if _drawn(result.table, job.study.title or job.name, job.out):
         _tell(f"figures in {job.out / 'figures'}")
+
+
+def _drawn(table: DataFrame, title: str, folder: Path) -> list[Path]:
+    """Draw the figures of a run; the files. Raises SaveError."""
+    from frictionlab.charts import draw  # with matplotlib, which takes a second
+    from frictionlab.failures import SaveError
+
+    try:
+        return draw(table, title, folder / "figures")
+    except OSError as problem:
+        raise SaveError(f"cannot write the figures in {folder}: {problem.strerror or problem}") from problem
+
+
+def _report(result: Run) -> None:
+    from frictionlab.report import write_report
+    from frictionlab.saved import saved_as
+
+    _tell(f"report in {write_report(saved_as(result))}")
+
+
+def _write_index(folder: Path, done: Sequence[Run]) -> None:
+    from frictionlab.report import write_index
+    from frictionlab.saved import saved_as
+
+    _tell(f"index in {write_index(folder, [saved_as(result) for result in done])}")
 
 
 def _rows(job: Job, result: Run, given: RunOptions) -> list[dict[str, Any]]:
@@ -266,6 +293,45 @@ def _print_records(records: list[dict[str, Any]]) -> None:
 def _code(result: Run) -> int:
     bad = result.counts.keys() & {"failed", "killed"}
     return FAILED if bad or not all(verdict.passed for verdict in result.verdicts) else OK
+
+
+@cli.command()
+@click.argument("run", type=click.Path(path_type=Path))
+def plot(run: Path) -> None:
+    """Draw the figures of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
+    from frictionlab.saved import read_saved
+
+    saved = read_saved(run)
+    files = _drawn(saved.table, saved.title, run)
+    _print("\n".join(map(str, files))) if files else _tell(f"no figures: the study of {run} sweeps nothing")
+
+
+@cli.command()
+@click.argument("run", type=click.Path(path_type=Path))
+def report(run: Path) -> None:
+    """Write the figures and the report.html of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
+    from frictionlab.report import write_report
+    from frictionlab.saved import read_saved
+
+    saved = read_saved(run)
+    _drawn(saved.table, saved.title, run)
+    _print(str(write_report(saved)))
+
+
+@cli.group()
+def new() -> None:
+    """Write a file to begin from."""
+
+
+@new.command("study")
+@click.argument("path", type=click.Path(path_type=Path))
+def new_study(path: Path) -> None:
+    """Write a commented study to the file PATH, which ``run`` takes as it is. Never replaces a file."""
+    from frictionlab.new_study import new_study
+
+    file = new_study(path)
+    _print(str(file))
+    _tell(f"change what it says, then: frictionlab run {shlex.quote(str(file))}")
 
 
 @cli.command()
@@ -337,3 +403,45 @@ def schema() -> None:
     from frictionlab.study.schema import schema as study_schema
 
     _print(json.dumps(study_schema(), indent=2))
+
+
+@cli.command()
+@click.argument("bench_list", metavar="LIST", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "out",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Where to; runs/bench-<list name> if left out.",
+)
+@click.option("--only", multiple=True, metavar="NAME", help="Measure this curve alone; may be repeated.")
+def bench(bench_list: Path, out: Path | None, only: tuple[str, ...]) -> None:
+    """Measure error against time per point of every method and peer in LIST; one chart and table per curve."""
+    from frictionlab import bench as benches
+
+    try:
+        asked = benches.load_bench(bench_list).only(only)
+    except benches.UnknownCurve as problem:
+        raise click.UsageError(str(problem)) from None
+    folder = out or Path("runs") / f"bench-{asked.name}"
+    try:
+        done = benches.measure(asked, _tell)
+    except benches.Interrupted as problem:
+        _save_bench(problem.done, folder)
+        raise CommandError(
+            INTERRUPTED, f"interrupted: {len(problem.done)} of {len(asked.workloads)} curves done"
+        ) from problem
+    _print(benches.summary(done))
+    _save_bench(done, folder)
+
+
+def _save_bench(done: Sequence[Measured], folder: Path) -> None:
+    """Write tables, then charts: tables wait for nobody's matplotlib."""
+    if not done:
+        return
+    from frictionlab.bench import write
+    from frictionlab.bench.chart import draw as draw_chart
+
+    write(done, folder)
+    draw_chart(done, folder)
+    _tell(f"tables and charts in {folder}")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from frictionlab.columns import SI
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Floats
 from frictionlab.scene import Scene
@@ -27,6 +29,23 @@ def derived_columns(scenes: Sequence[Scene], law: FrictionLaw, mean_friction: Fl
         "velocity_ratio": _ratio(speed, np.array([friction_free_velocity(scene) for scene in scenes])),
         "friction_to_drive": _ratio(limit, np.array([force_amplitude(scene) for scene in scenes])),
     }
+
+
+def si_scales(scene: Scene) -> dict[str, float]:
+    """The units in which the results of a scene given in SI units are to be counted: N, m/s, J, s."""
+    assert scene.dimensional is not None
+    scales = scene.dimensional.scales
+    return {
+        "load": scene.dimensional.load,
+        "velocity": scales.velocity,
+        "energy": scales.energy,
+        "drive period": 2.0 * math.pi / scene.frequency * scales.time,
+    }
+
+
+def si_columns(found: Mapping[str, Floats], scales: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Results in SI units."""
+    return {name: found[made.column] * scales[made.scale] for name, made in SI.items()}
 
 
 def force_amplitude(scene: Scene) -> float:

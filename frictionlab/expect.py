@@ -6,11 +6,15 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from frictionlab.columns import INPUTS
+from frictionlab.columns import INPUTS, belt_speed
+from frictionlab.curve_table import curve_table
 from frictionlab.study import Expectation
 
 # Numbers of a study are written in decimal and swept by formula: equal means equal to nine digits.
 _SAME = 1e-9
+
+_VERDICTS = {"area": "shape", "initial": "shape_by_initial"}
+_BY = {"area": "area", "initial": "initial curvature"}
 
 
 @dataclass(frozen=True)
@@ -21,11 +25,19 @@ class Verdict:
     sentence: str
 
 
-def judge(expectation: Expectation, table: pd.DataFrame) -> Verdict:
-    """The verdict on one expectation, which must hold for every row it speaks of; no row at all fails."""
-    rows = _matching(expectation.where, table)
+def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame | None = None) -> Verdict:
+    """The verdict on one expectation, which must hold for every row it speaks of; no row at all fails.
+
+    curves: the table of curves that goes with the table; made from it where it is not given.
+    """
+    whole = table
+    if expectation.shape is not None:
+        whole = curve_table(table) if curves is None else curves
+    rows = _matching(expectation.where, whole)
     if rows.empty:
         found = Verdict(False, "no row of the table matches")
+    elif expectation.shape is not None:
+        found = _shape(expectation, rows)
     elif expectation.max_difference is not None:
         found = _difference(expectation, rows)
     elif expectation.status is not None:
@@ -67,6 +79,8 @@ def _claim(expectation: Expectation) -> str:
         return f"|{first} - {second}| of mean_friction below {_text(expectation.below)}"
     if expectation.status is not None:
         return f"status {expectation.status}"
+    if expectation.shape is not None:
+        return f"{expectation.shape} by {_BY[expectation.measure or 'area']}"
     within = f" within {_text(expectation.within)}" if expectation.within is not None else ""
     name, value = _comparator(expectation)
     return f"{expectation.column} {name} {_text(value)}{within}"
@@ -101,6 +115,24 @@ def _status(wanted: str, rows: pd.DataFrame) -> Verdict:
     return Verdict(False, f"not so in {len(others)} of {_count(rows)}: {_first(others)}")
 
 
+def _shape(expectation: Expectation, curves: pd.DataFrame) -> Verdict:
+    """Every curve; the first that is of another shape, or that none can be read from, is told."""
+    measure = expectation.measure or "area"
+    verdicts = curves[_VERDICTS[measure]]
+    others = curves[verdicts != expectation.shape]
+    row = (curves if others.empty else others).iloc[0]
+    verdict, number = row[_VERDICTS[measure]], f"shape_{measure}"
+    told = f"{row['reason']}" if pd.isna(verdict) else f"{verdict}, {_measured(row, number)}"
+    if others.empty:
+        return Verdict(True, told if len(curves) == 1 else f"so are {len(curves)} curves; the first: {told}")
+    which = f" in the first of {len(others)} of {len(curves)} curves" if len(curves) > 1 else ""
+    return Verdict(False, f"{told}{which}")
+
+
+def _measured(row: pd.Series, name: str) -> str:
+    return f"{_text(float(row[name]))} +- {row[f'{name}_error']:.1g}"
+
+
 def _difference(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
     """The two methods, scene by scene and law by law; each must have a number where the other does."""
     assert expectation.max_difference is not None
@@ -131,7 +163,8 @@ def _first(rows: pd.DataFrame) -> str:
     """The first of some rows in words: its status and why."""
     row = rows.iloc[0]
     reason = f": {row['reason']}" if isinstance(row["reason"], str) and row["reason"] else ""
-    scene = f" at belt speed {_text(row['scene.belt_speed'])}" if "scene.belt_speed" in rows else ""
+    speed = belt_speed(rows)
+    scene = f" at belt speed {_text(row[speed])}" if speed in rows else ""
     return f"the row of {row['law']} by {row['method']}{scene}, {row['status']}{reason}"
 
 

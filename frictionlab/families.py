@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-BELT_SPEED = "scene.belt_speed"
+from frictionlab.columns import belt_speed, given
 
 Setting = tuple[str, float | None]  # a swept input and its value; None where a law has no such parameter
 
@@ -59,15 +59,16 @@ def family_of(table: pd.DataFrame) -> Family | None:
     swept = sorted(_swept_inputs(table), key=lambda name: table[name].nunique())
     if not swept:
         return None
-    abscissa = BELT_SPEED if BELT_SPEED in swept else swept[-1]
+    speed = belt_speed(table.columns)
+    abscissa = speed if speed in swept else swept[-1]
     others = [name for name in swept if name != abscissa]
     curves = _curves(table, abscissa, others)
     return Family(abscissa, others[-1] if others else None, curves)
 
 
 def _swept_inputs(table: pd.DataFrame) -> list[str]:
-    """Inputs of more than one value; a law's parameter counts only where it varies within one law."""
-    numbers = table.select_dtypes("number").columns
+    """Inputs of more than one value, as given; a law's parameter counts only where it varies within one law."""
+    numbers = given(table.select_dtypes("number").columns)
     scene = [name for name in numbers if name.startswith("scene.") and table[name].nunique() > 1]
     parameters = [name for name in numbers if name.startswith("law.")]
     return scene + [name for name in parameters if table.groupby("law")[name].nunique().max() > 1]
@@ -108,8 +109,9 @@ def kinks(curve: Curve) -> list[float]:
     across = rows["transverse_velocity_amplitude"].abs().max() > 0
     if across or sliding.empty or sliding.max() - sliding.min() > 1e-9 * sliding.max():
         return []
-    limit = float((rows[BELT_SPEED] / rows["velocity_ratio"]).median())
-    low, high = curve.rows[BELT_SPEED].min(), curve.rows[BELT_SPEED].max()
+    speeds = curve.rows[belt_speed(curve.rows.columns)]
+    limit = float((speeds[rows.index] / rows["velocity_ratio"]).median())
+    low, high = speeds.min(), speeds.max()
     return [speed for speed in (-limit, limit) if low < speed < high]
 
 

@@ -122,9 +122,11 @@ class Gathering:
                 self._folder.save(table, orbits)
             self.describe()
 
-    def save_all(self, table: pd.DataFrame, orbits: pd.DataFrame | None) -> None:
+    def save_all(self, table: pd.DataFrame, orbits: pd.DataFrame | None, curves: pd.DataFrame) -> None:
         """Write everything; what is missing where an earlier run left nothing to do. Raises SaveError."""
         self.save(table, orbits)
+        if self._folder is not None:
+            self._folder.save_curves(curves)
         if self._folder is not None and not (self.complete and self._folder.has_csv):
             self._folder.save_csv(table)
 

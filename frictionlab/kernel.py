@@ -33,7 +33,7 @@ import numba.extending
 import numpy as np
 from numba.core.errors import NumbaError
 
-from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
 
 _extending: Any = numba.extending  # its published types lag behind what it accepts
 _typeof: Any = numba.typeof
@@ -76,12 +76,12 @@ def _open_door(method: str) -> None:
         law = _law_of_numbers.get(self.instance_class)
         return None if law is None else _compilable(getattr(law, method))
 
-    resolve.__signature__ = inspect.signature(getattr(FrictionLaw, method))  # type: ignore[attr-defined]
+    resolve.__signature__ = inspect.signature(getattr(SlidingLaw, method))  # type: ignore[attr-defined]
     for kind in (numba.types.NamedTuple, numba.types.NamedUniTuple):
         _extending.overload_method(kind, method, strict=False)(resolve)
 
 
-for _method in ("sliding_friction", "sliding_vector"):
+for _method in ("sliding_friction", "sliding_vector", "static_friction"):
     _open_door(_method)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Sequence
-from typing import Any
+from typing import Annotated, Any, get_args, get_origin
 
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw, Record
@@ -59,7 +59,7 @@ def _parameters(record: type[Record]) -> list[dict[str, Any]]:
 def _parameter(name: str, field: Any, text: str) -> dict[str, Any]:
     limits = [
         f"{sign} {bound:g}"
-        for rule in field.metadata
+        for rule in _rules(field)
         for key, sign in _LIMITS.items()
         if (bound := getattr(rule, key, None)) is not None
     ]
@@ -70,6 +70,13 @@ def _parameter(name: str, field: Any, text: str) -> dict[str, Any]:
         "limits": " and ".join(limits),
         "meaning": _meaning(name, text),
     }
+
+
+def _rules(field: Any) -> list[Any]:
+    """What limits the values of a field; of one that may be left empty, what limits those that are given."""
+    inside = [kind.__metadata__ for kind in get_args(field.annotation) if get_origin(kind) is Annotated]
+    rules = [rule for metadata in [field.metadata, *inside] for rule in metadata]
+    return [each for rule in rules for each in (rule, *getattr(rule, "metadata", ()))]
 
 
 def _meaning(name: str, text: str) -> str:

@@ -66,7 +66,7 @@ class Sums(NamedTuple):
 def read(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_speed: float) -> Any:
     """Everything of ``READ`` from one period: arrays [panels, nodes], stick [panels]."""
     sums = _integrals(tau, x, v, friction, stick, mass)
-    period = 2.0 * math.pi / mass.frequency
+    period = sums.duration
     part = np.empty(tau.shape)
     out = np.empty(17)
     out[0] = -sums.friction.real / period
@@ -223,8 +223,8 @@ class Samples(NamedTuple):
 
 
 def sample(orbit: Orbit, scene: Scene, n: int) -> Samples:
-    """The orbit at n equally spaced times tau = 0 ... period (end not included)."""
-    times: Floats = np.arange(n, dtype=np.float64) * (2.0 * math.pi / scene.frequency / n)
+    """The orbit at n equally spaced times tau = 0 ... its period (end not included)."""
+    times: Floats = orbit.tau[0, 0] + np.arange(n, dtype=np.float64) * (np.ptp(orbit.tau) / n)
     panels = np.clip(np.searchsorted(orbit.tau[:, 0], times, side="right") - 1, 0, len(orbit.tau) - 1)
     start, end = orbit.tau[panels, 0], orbit.tau[panels, -1]
     weights = _interpolation_weights((2.0 * times - start - end) / (end - start))

@@ -19,17 +19,22 @@ from frictionlab.yaml_text import yaml_text
 
 PACKAGES = ("numpy", "numba", "llvmlite", "pandas", "pyarrow", "pydantic", "scipy")
 Existing = Literal["reuse", "replace"]
+PAGE_MARK = '<meta name="generator" content="frictionlab'
 MOST_DIFFERENCES = 2
 """Lines shown of each of two studies that differ."""
 
 
 @dataclass(frozen=True)
 class Identity:
-    """What a folder's results answer: the study, whole and as a digest of what determines its numbers."""
+    """What a folder's results answer: the study, whole and as a digest of what determines its numbers.
+
+    file: the name of the file it came from, for the record.
+    """
 
     study: dict[str, Any]
     digest: str
     version: str
+    file: str | None = None
 
     @property
     def text(self) -> str:
@@ -133,7 +138,8 @@ class RunFolder:
             _raise_at_the_door(self.path, problem)
 
     def _results(self) -> Iterator[Path]:
-        yield from (self.table, self.path / "results.csv", self._orbits)
+        yield from (self.table, self.path / "results.csv", self.path / "curves.csv", self._orbits)
+        yield self.path / "report.html"
         for pattern in ("*.svg", "*.png"):
             yield from (self.path / "figures").glob(pattern)
 
@@ -141,6 +147,7 @@ class RunFolder:
         """Write study.yaml and provenance.json. Raises SaveError."""
         provenance = {
             "frictionlab": self.identity.version,
+            "study": self.identity.file,
             "digest": self.identity.digest,
             **runs,
             **_platform(),
@@ -163,6 +170,13 @@ class RunFolder:
     def save_csv(self, table: pd.DataFrame) -> None:
         """Write results.csv; floats in shortest round-trip form. Raises SaveError."""
         _write(self.path / "results.csv", lambda path: table.to_csv(path, index=False, lineterminator="\n"))
+
+    def save_curves(self, curves: pd.DataFrame) -> None:
+        """Write curves.csv, where there are curves. Raises SaveError."""
+        if not curves.empty:
+            _write(
+                self.path / "curves.csv", lambda path: curves.to_csv(path, index=False, lineterminator="\n")
+            )
 
     @property
     def has_csv(self) -> bool:
@@ -192,6 +206,23 @@ def _version(name: str) -> str | None:
         return version(name)
     except ModuleNotFoundError:  # PackageNotFoundError is one
         return None
+
+
+def check_page(path: Path) -> None:
+    """Raises FolderError where a page is in the way that a person wrote."""
+    try:
+        ours = not path.exists() or PAGE_MARK in path.read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        ours = False
+    if not ours:
+        raise FolderError(
+            f"{path} is there already and was not written by frictionlab; choose another folder with -o"
+        )
+
+
+def write_page(path: Path, text: str) -> None:
+    """Write a page. Raises SaveError."""
+    _write(path, lambda file: file.write_text(text, encoding="utf-8"))
 
 
 def _write(path: Path, write: Callable[[Path], object]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from numbers import Real
 from typing import Annotated
 
@@ -18,6 +19,24 @@ def _a_number(value: object) -> object:
 Finite = Annotated[float, BeforeValidator(_a_number), Field(allow_inf_nan=False)]
 NonNegative = Annotated[float, BeforeValidator(_a_number), Field(allow_inf_nan=False, ge=0)]
 Positive = Annotated[float, BeforeValidator(_a_number), Field(allow_inf_nan=False, gt=0)]
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """What a number measures, as powers of force, length and time; written beside its limits in an annotation.
+
+    It says how the number is scaled where a scene is given in SI units. A number without one has no dimension.
+    """
+
+    force: int = 0
+    length: int = 0
+    time: int = 0
+
+
+Speed = Annotated[Positive, Dimension(length=1, time=-1)]
+"""A speed > 0 [m/s in SI, else scene velocity]."""
+PerSpeed = Annotated[NonNegative, Dimension(length=-1, time=1)]
+"""A coefficient >= 0 per speed [s/m in SI, else 1/scene velocity]."""
 
 
 class Record(BaseModel):

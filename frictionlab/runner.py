@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import isfinite
 from os import PathLike
 from pathlib import Path
@@ -19,6 +20,8 @@ from numpy.typing import ArrayLike
 from frictionlab import __version__, registry
 from frictionlab.chunks import Chunk, Task, chunks
 from frictionlab.collecting import collect
+from frictionlab.curve_table import curve_table
+from frictionlab.derived import si_columns, si_scales
 from frictionlab.expect import Verdict, judge
 from frictionlab.failures import SaveError
 from frictionlab.gathering import Gathering
@@ -27,7 +30,7 @@ from frictionlab.methods.base import Method
 from frictionlab.output import Existing, Identity, RunFolder
 from frictionlab.progress import Progress, silent
 from frictionlab.scene import Scene
-from frictionlab.solving import answer, parts
+from frictionlab.solving import Part, answer, parts
 from frictionlab.state import SteadyState
 from frictionlab.study import Case, Study, load_study, parse_study
 from frictionlab.table import headings, inputs
@@ -38,7 +41,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Run:
-    """A study and what came of it: its table, its kept orbits, and the verdicts on what it expects."""
+    """A study and what came of it: its tables, its kept orbits, and the verdicts on what it expects.
+
+    curves: one row per curve, with its shape; none where belt speed is not swept or the run was stopped.
+    """
 
     study: Study
     table: pd.DataFrame
@@ -46,6 +52,7 @@ class Run:
     verdicts: tuple[Verdict, ...]
     folder: Path | None
     computed: int
+    curves: pd.DataFrame = field(default_factory=pd.DataFrame)
 
     @property
     def table_file(self) -> Path | None:
@@ -111,7 +118,8 @@ def _loaded(study: str | PathLike[str] | Mapping[str, Any] | Study, overrides: S
 
 def run_folder(study: Study, out: Path) -> RunFolder:
     """The output folder of a study."""
-    return RunFolder(out, Identity(study.resolved(), study.digest(), __version__))
+    file = study.path.name if study.path is not None else None
+    return RunFolder(out, Identity(study.resolved(), study.digest(), __version__, file))
 
 
 def _solve(gathering: Gathering, left: list[Chunk], executor: Executor | None) -> bool:
@@ -146,11 +154,12 @@ def _workers(executor: Executor | None) -> Iterator[Executor]:
 def _finished(study: Study, gathering: Gathering, folder: RunFolder | None, stopped: bool) -> Run:
     """The run, saved and judged. Raises Interrupted or UnsavedError, both with the run."""
     table, orbits = gathering.table, gathering.orbits
-    verdicts = () if stopped else tuple(judge(expectation, table) for expectation in study.expect)
+    curves = curve_table(table.iloc[:0] if stopped else table)
+    verdicts = () if stopped else tuple(judge(expectation, table, curves) for expectation in study.expect)
     gathering.judged(verdicts)
-    unsaved = _saved(gathering, table, orbits)
+    unsaved = _saved(gathering, table, orbits, curves)
     path = folder.path if folder is not None and unsaved is None else None
-    done = Run(study, table, orbits, verdicts, path, gathering.computed)
+    done = Run(study, table, orbits, verdicts, path, gathering.computed, curves)
     if unsaved is not None:
         raise UnsavedError(unsaved, done) from unsaved
     if stopped:
@@ -158,10 +167,12 @@ def _finished(study: Study, gathering: Gathering, folder: RunFolder | None, stop
     return done
 
 
-def _saved(gathering: Gathering, table: pd.DataFrame, orbits: pd.DataFrame | None) -> SaveError | None:
+def _saved(
+    gathering: Gathering, table: pd.DataFrame, orbits: pd.DataFrame | None, curves: pd.DataFrame
+) -> SaveError | None:
     """Save the run; what kept it from being saved, to be raised once the run is whole."""
     try:
-        gathering.save_all(table, orbits)
+        gathering.save_all(table, orbits, curves)
     except SaveError as problem:
         return problem
     return None
@@ -176,7 +187,8 @@ def curve(
 ) -> pd.DataFrame:
     """The result table of one law over belt speeds, in the order given.
 
-    belt_speed [scene velocity]: one-dimensional. tolerance [-]: absolute, on mean_friction.
+    belt_speed [scene velocity; m/s for a scene given in SI units]: one-dimensional.
+    tolerance [-]: absolute, on mean_friction.
     Raises ValueError for values that make no sense, BrokenPlugin.
     """
     speeds = np.atleast_1d(np.asarray(belt_speed, dtype=float))
@@ -184,7 +196,7 @@ def curve(
         raise ValueError("belt_speed must be a list of finite numbers")
     ready, kind, task = _method(method), _kind(law), Task(_checked(tolerance))
     different, places = np.unique(speeds, return_inverse=True)  # a method is never given a belt speed twice
-    scenes = [scene.model_copy(update={"belt_speed": float(speed)}) for speed in different]
+    scenes = [scene.at(float(speed)) for speed in different]
     cases = [Case(kind, kind, law, ready.name, ready, each) for each in scenes]
     gathering = Gathering(inputs(cases))
     with _workers(None) as pool:
@@ -199,7 +211,9 @@ def steady_state(
 
     tolerance [-]: absolute, on mean_friction. Raises ValueError for values that make no sense, BrokenPlugin.
     """
-    chunk = Chunk((0,), (scene,), law, _method(method), Task(_checked(tolerance)))
+    ready, kind, task = _method(method), _kind(law), Task(_checked(tolerance))
+    case = Case(kind, kind, law, ready.name, ready, scene)
+    (chunk,) = chunks([case], task)
     (piece,) = answer(chunk)
     (part,) = parts(chunk, [piece])
     numbers = {name: float(column[0]) for name, column in part.numbers.items()}
@@ -213,7 +227,16 @@ def steady_state(
 
         return sample(orbit, scene, n)
 
-    return SteadyState(**words, **numbers, sampled=sampled)  # type: ignore[arg-type]
+    return SteadyState(**words, **numbers, si=_in_si(part, scene), sampled=sampled)  # type: ignore[arg-type]
+
+
+def _in_si(part: Part, scene: Scene) -> dict[str, float]:
+    """The columns in SI units; none where the scene is not given in them."""
+    if scene.dimensional is None:
+        return {}
+    found = defaultdict(lambda: np.full(1, np.nan), part.numbers)
+    scales = {name: np.array([scale]) for name, scale in si_scales(scene).items()}
+    return {name: float(column[0]) for name, column in si_columns(found, scales).items()}
 
 
 def _method(method: str | Method) -> Method:

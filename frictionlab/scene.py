@@ -15,8 +15,9 @@ import cmath
 import math
 from typing import Any, ClassVar, NamedTuple
 
-from pydantic import model_validator
+from pydantic import ValidationError, model_validator
 
+from frictionlab.dimensional import Dimensional
 from frictionlab.quantities import Finite, NonNegative, Positive, Record
 
 
@@ -122,6 +123,7 @@ class Body(NamedTuple):
     A direction-dependent constant acts as mean*x + split*conj(x). The motion is split into a harmonic reference,
     the friction-free response where it is bounded, and the deviation from it: ``force`` is what drives the
     deviation besides friction. A sine/cosine pair stands for sine*sin(Omega tau) + cosine*cos(Omega tau).
+    The motion is followed over ``periods`` of the drive at a time.
     """
 
     damping_mean: float
@@ -134,9 +136,10 @@ class Body(NamedTuple):
     force_cosine: Any
     reference_sine: Any
     reference_cosine: Any
+    periods: float
 
 
-def on_the_line(mass: Mass) -> Body:
+def on_the_line(mass: Mass, periods: float = 1.0) -> Body:
     """The body with motion along the belt alone."""
     reference = _friction_free(mass.damping, mass.stiffness, mass.frequency, mass.force)
     rest = (
@@ -153,10 +156,11 @@ def on_the_line(mass: Mass) -> Body:
         force_cosine=rest.imag,
         reference_sine=reference.real,
         reference_cosine=reference.imag,
+        periods=periods,
     )
 
 
-def in_the_plane(mass: Mass) -> Body:
+def in_the_plane(mass: Mass, periods: float = 1.0) -> Body:
     """The body with both motions."""
     along = mass.damping, mass.stiffness, mass.frequency, mass.force
     across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
@@ -174,6 +178,7 @@ def in_the_plane(mass: Mass) -> Body:
         force_cosine=complex(rest.imag, rest_2.imag),
         reference_sine=complex(reference.real, reference_2.real),
         reference_cosine=complex(reference.imag, reference_2.imag),
+        periods=periods,
     )
 
 
@@ -189,6 +194,11 @@ def restoring_force(body: Body, x: Any, v: Any) -> Any:
     return damping + body.stiffness_mean * x + body.stiffness_split * x.conjugate()
 
 
+def span(body: Body) -> float:
+    """The time its motion is followed at once."""
+    return 2.0 * math.pi * body.periods / body.frequency
+
+
 class Motion(NamedTuple):
     """Prescribed slip as kernels see it: velocities Im(phasor exp(i frequency tau))."""
 
@@ -202,10 +212,9 @@ class Scene(_Part):
     """A body on a moving belt, shaken: damping_ratio and drive, or a prescribed slip instead of both.
 
     damping_ratio (>= 0, may exceed 1), normal_load (gamma^2 > 0; 1 by default for prescribed slip), belt_speed.
-    Leave ``transverse`` out for one degree of freedom.
+    Leave ``transverse`` out for one degree of freedom, ``drive`` for a scene that nothing shakes. ``dimensional``
+    gives all of it in SI units instead; every other field is then filled from it (Eq. 2).
     """
-
-    not_available_yet: ClassVar[frozenset[str]] = frozenset({"dimensional"})
 
     damping_ratio: NonNegative | None = None
     normal_load: Positive | None = None
@@ -215,6 +224,7 @@ class Scene(_Part):
     slip: Slip | None = None
     transverse_slip: TransverseSlip | None = None
     initial: Initial | None = None
+    dimensional: Dimensional | None = None
 
     @model_validator(mode="before")
     @classmethod
@@ -222,6 +232,21 @@ class Scene(_Part):
         if isinstance(data, dict) and {"slip", "transverse_slip"} & set(data):
             return {"normal_load": 1.0, **data}
         return data
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_si_units(cls, data: Any) -> Any:
+        """Fill the fields from ``dimensional``, whose own mistakes are left for its field to tell."""
+        if not isinstance(data, dict) or data.get("dimensional") is None:
+            return data
+        both = sorted(set(data) & set(cls.model_fields) - {"dimensional"})
+        if both:
+            raise ValueError("; ".join(f"{name}: leave it out, dimensional gives the scene" for name in both))
+        try:
+            dimensional = Dimensional.model_validate(data["dimensional"])
+        except ValidationError:
+            return {"belt_speed": 0.0, **data}
+        return {**data, **dimensional.scaled(), "dimensional": dimensional}
 
     @model_validator(mode="after")
     def _one_kind_of_scene(self) -> Scene:
@@ -245,8 +270,8 @@ class Scene(_Part):
     def _free_problems(self) -> list[str]:
         missing = [name for name in ("damping_ratio", "normal_load") if getattr(self, name) is None]
         problems = [f"{name}: required" for name in missing]
-        if self.drive is None:
-            problems.append("drive: required (undriven scenes: not available yet)")
+        if self.drive is None and self.transverse is not None and self.transverse.load is not None:
+            problems.append("transverse.load: leave it out where drive is left out (an undriven scene)")
         if self.initial is not None and self.transverse is None:
             stray = {"x2", "velocity2"} & self.initial.model_fields_set
             problems += [f"initial.{name}: needs transverse" for name in sorted(stray)]
@@ -260,10 +285,21 @@ class Scene(_Part):
         return 1 if self.transverse is None else 2
 
     @property
+    def undriven(self) -> bool:
+        """Whether nothing shakes the mass: then the period of its motion is its own."""
+        return self.degrees_of_freedom > 0 and self.drive is None
+
+    @property
+    def start(self) -> Initial:
+        """``initial``, or where it is left out, resting on the belt with the spring undeflected."""
+        return self.initial or Initial(velocity=self.belt_speed)
+
+    @property
     def frequency(self) -> float:
-        """Of the drive, or of the prescribed slip [omega_1]."""
+        """Of the drive, or of the prescribed slip [omega_1]; 1, the unit, for an undriven scene."""
         part = self.drive or self.slip or self.transverse_slip
-        assert part is not None
+        if part is None:
+            return 1.0
         assert part.frequency is not None
         return part.frequency
 
@@ -277,7 +313,6 @@ class Scene(_Part):
 
     def mass(self) -> Mass:
         """The numbers of a free scene."""
-        assert self.drive is not None
         assert self.damping_ratio is not None
         assert self.normal_load is not None
         across = self.transverse or Transverse(natural_frequency=1.0, damping_ratio=0.0)
@@ -289,7 +324,7 @@ class Scene(_Part):
             transverse_stiffness=omega_r**2,
             normal_load=self.normal_load,
             frequency=self.frequency,
-            force=self.drive.phasor(self.frequency),
+            force=self.drive.phasor(self.frequency) if self.drive is not None else 0j,
             transverse_force=across.load.phasor(self.frequency) if across.load is not None else 0j,
         )
 
@@ -303,8 +338,32 @@ class Scene(_Part):
         return Motion(self.normal_load, self.frequency, *phasors)
 
     def values(self) -> dict[str, float]:
-        """Every number of the scene by its dotted path, without the leading ``scene.``."""
+        """Every number of the scene by its dotted path, without the leading ``scene.``; SI ones as well."""
         return _flat(self.model_dump(exclude_none=True))
+
+    def given(self) -> dict[str, Any]:
+        """Nested plain values that make the same scene again: in SI units where it was given so."""
+        tree = self.model_dump(exclude_none=True)
+        if self.initial is not None:
+            # Its defaults for x2 would be refused in a scene without x2.
+            tree["initial"] = self.initial.model_dump(exclude_unset=True)
+        if self.dimensional is None:
+            return tree
+        if self.dimensional.initial is not None:
+            tree["dimensional"]["initial"] = self.dimensional.initial.model_dump(exclude_unset=True)
+        return {"dimensional": tree["dimensional"]}
+
+    def given_values(self) -> dict[str, float]:
+        """Those of ``values`` that were given: the SI ones alone where the scene is in SI units."""
+        kept = "" if self.dimensional is None else "dimensional."
+        return {path: value for path, value in self.values().items() if path.startswith(kept)}
+
+    def at(self, belt_speed: float) -> Scene:
+        """The same scene at another belt speed: [m/s] where the scene is given in SI units."""
+        if self.dimensional is None:
+            return self.model_copy(update={"belt_speed": belt_speed})
+        there = self.dimensional.model_copy(update={"belt_speed_m_per_s": belt_speed})
+        return self.model_copy(update={"belt_speed": there.scaled()["belt_speed"], "dimensional": there})
 
 
 def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,10 @@ NAN = float("nan")
 
 @dataclass(frozen=True)
 class SteadyState:
-    """A steady state: the result columns of the table, in its units; NaN or "" where one does not apply."""
+    """A steady state: the result columns of the table, in its units; NaN or "" where one does not apply.
+
+    si: the columns in SI units by name, where the scene is given in them.
+    """
 
     status: Status
     reason: str = ""
@@ -48,6 +51,7 @@ class SteadyState:
     presliding_ratio: float = NAN
     model: str = ""
     seconds: float = NAN
+    si: Mapping[str, float] = field(default_factory=dict)
     sampled: Callable[[int], Samples | None] = field(default=lambda n: None, repr=False, compare=False)
 
     def orbit(self, n: int) -> Samples:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pandas as pd
 
+from frictionlab.columns import belt_speed, given
 from frictionlab.expect import Verdict
 from frictionlab.runner import Run
 
@@ -32,9 +33,7 @@ _HEAD = ("law", "method", "curve", "points", "mean_friction", "largest error", "
 
 def _curve_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
     """One line per curve: everything equal but belt speed."""
-    told = [
-        name for name in table.columns if name.startswith(("scene.", "law.")) and name != "scene.belt_speed"
-    ]
+    told = [name for name in given(table.columns) if name != belt_speed(table.columns)]
     told = [name for name in told if table[name].nunique(dropna=False) > 1]
     keys = ["law", "method", *told]
     groups = table.groupby(keys, sort=False, dropna=False)
@@ -49,12 +48,17 @@ def _models(table: pd.DataFrame) -> dict[str, int]:
 
 def _curve_line(inputs: dict[str, Any], rows: pd.DataFrame, models: dict[str, int]) -> tuple[str, ...]:
     law, method = str(inputs.pop("law")), str(inputs.pop("method"))
-    where = ", ".join(f"{name.removeprefix('scene.')} {_short(x)}" for name, x in inputs.items() if x == x)
+    where = ", ".join(f"{_brief(name)} {_short(x)}" for name, x in inputs.items() if x == x)
     found = rows["mean_friction"].dropna()
     span = dict.fromkeys(f"{value:.6g}" for value in (found.min(), found.max())) if len(found) else {}
     error = f"{rows['error'].max():.1e}" if rows["error"].notna().any() else ""
     used = ", ".join(str(models[model]) for model in rows["model"].dropna().unique())
     return law, method, where, statuses(rows), " ... ".join(span), error, used
+
+
+def _brief(name: str) -> str:
+    """An input without what all inputs of a scene begin with."""
+    return name.removeprefix("scene.").removeprefix("dimensional.")
 
 
 def _points(count: int) -> str:

@@ -31,17 +31,52 @@ _NAMES = {
     "scene.transverse_slip.frequency": ("transverse slip frequency", r"\Omega"),
     "scene.transverse_slip.phase": ("transverse slip phase [deg]", r"\varphi_2"),
     "law.mu": ("friction coefficient", r"\mu"),
+    "law.mu_kinetic": ("kinetic friction coefficient", r"\mu_k"),
+    "law.mu_static": ("static friction coefficient", r"\mu_s"),
+}
+
+_IN_SI = {  # words, symbol, unit; inputs without the "scene.dimensional." before them
+    "velocity_amplitude_m_per_s": ("velocity amplitude", r"\hat V_1", "m/s"),
+    "transverse_velocity_amplitude_m_per_s": ("transverse velocity amplitude", r"\hat V_2", "m/s"),
+    "energy_input_J": ("work of the loads", r"E_\mathrm{in}", "J"),
+    "energy_viscous_J": ("viscous loss", r"E_\mathrm{v}", "J"),
+    "energy_friction_J": ("friction's take", r"E_\mathrm{f}", "J"),
+    "energy_contact_J": ("heat in the contact", r"E_\mathrm{c}", "J"),
+    "mass_kg": ("mass", "M", "kg"),
+    "stiffness_N_per_m": ("stiffness", "K_1", "N/m"),
+    "damping_N_s_per_m": ("damping", "C_1", "N s/m"),
+    "length_m": ("length scale", "L", "m"),
+    "gravity_m_per_s2": ("gravity", "g", "m/s$^2$"),
+    "normal_load_N": ("normal load", "N", "N"),
+    "belt_speed_m_per_s": ("belt speed", "V_b", "m/s"),
+    "drive.frequency_rad_per_s": ("drive frequency", r"\omega", "rad/s"),
+    "drive.unbalance_kg_m": ("unbalance", "m r", "kg m"),
+    "drive.amplitude_N": ("load amplitude", "F_1", "N"),
+    "drive.phase": ("load phase", r"\varphi_1", "deg"),
+    "transverse.stiffness_N_per_m": ("transverse stiffness", "K_2", "N/m"),
+    "transverse.damping_N_s_per_m": ("transverse damping", "C_2", "N s/m"),
+    "transverse.load.unbalance_kg_m": ("transverse unbalance", "m_2 r_2", "kg m"),
+    "transverse.load.amplitude_N": ("transverse load amplitude", "F_2", "N"),
+    "transverse.load.phase": ("transverse load phase", r"\varphi_2", "deg"),
 }
 
 
 def symbol(name: str) -> str:
     """The symbol of an input or column in mathtext; for one without a symbol the last part of its path."""
-    return f"${_NAMES[name][1]}$" if name in _NAMES else name.rpartition(".")[2].replace("_", " ")
+    return f"${_said(name)[1]}$" if _said(name) else name.rpartition(".")[2].replace("_", " ")
 
 
 def word(name: str, longest: int = 80) -> str:
-    """The words of an input or column with its symbol, on lines of so many letters.
+    """The words of an input or column with its symbol and unit, on lines of so many letters.
 
     For one without a symbol: the last part of its path.
     """
-    return f"{textwrap.fill(_NAMES[name][0], longest)} {symbol(name)}" if name in _NAMES else symbol(name)
+    if not (said := _said(name)):
+        return symbol(name)
+    unit = f" [{said[2]}]" if len(said) > 2 else ""
+    return f"{textwrap.fill(said[0], longest)} {symbol(name)}{unit}"
+
+
+def _said(name: str) -> tuple[str, ...]:
+    known: dict[str, tuple[str, ...]] = {**_IN_SI, **_NAMES}
+    return known.get(name.removeprefix("scene.dimensional."), ())

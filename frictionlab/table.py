@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import RESULTS, TEXT
+from frictionlab.columns import RESULTS, SCALED, TEXT
+from frictionlab.derived import si_columns, si_scales
+from frictionlab.dimensional import scaled_parameters
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Floats
 from frictionlab.scene import Scene
@@ -26,7 +28,7 @@ class Heading(NamedTuple):
 
     law_label: str
     kind: str
-    law: FrictionLaw
+    given_law: FrictionLaw
     method_label: str
     scene: Scene
 
@@ -43,10 +45,11 @@ def headings(study: Study) -> list[Heading]:
 
 
 class Inputs(NamedTuple):
-    """The columns that say what each row is about."""
+    """The columns that say what each row is about; scales: the units of its results, for scenes in SI units."""
 
     columns: dict[str, list[Any]]
     size: int
+    scales: dict[str, Floats] | None = None
 
 
 def inputs(rows: Sequence[Heading | Case]) -> Inputs:
@@ -58,10 +61,27 @@ def inputs(rows: Sequence[Heading | Case]) -> Inputs:
     }
     # Rows share their scenes and laws: each is taken apart once.
     scenes = {id(row.scene): row.scene.values() for row in {id(row.scene): row for row in rows}.values()}
-    laws = {id(row.law): _values(row.law) for row in {id(row.law): row for row in rows}.values()}
-    columns = _spread("scene", [scenes[id(row.scene)] for row in rows])
-    columns |= _spread("law", [laws[id(row.law)] for row in rows])
-    return Inputs(named | columns, len(rows))
+    laws = {id(row.given_law): row.given_law for row in rows}
+    parameters = {key: _values(law) for key, law in laws.items()}
+    columns = _spread("scene.", [scenes[id(row.scene)] for row in rows])
+    columns |= _spread("law.", [parameters[id(row.given_law)] for row in rows])
+    columns |= _spread(SCALED, [_scaled(row) for row in rows])
+    return Inputs(named | columns, len(rows), _scales([row.scene for row in rows]))
+
+
+def _scaled(row: Heading | Case) -> dict[str, float]:
+    """The parameters of its law that were given in SI units in the scales of the scene."""
+    si = row.scene.dimensional
+    return {} if si is None else scaled_parameters(row.given_law, si.scales)
+
+
+def _scales(scenes: Sequence[Scene]) -> dict[str, Floats] | None:
+    different = {id(scene): scene for scene in scenes if scene.dimensional is not None}
+    found = {key: si_scales(scene) for key, scene in different.items()}
+    if not found:
+        return None
+    rows = [found[id(scene)] for scene in scenes]
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 def _values(law: FrictionLaw) -> dict[str, Any]:
@@ -72,7 +92,7 @@ def _spread(prefix: str, records: list[dict[str, Any]]) -> dict[str, list[Any]]:
     names = dict.fromkeys(
         name for record in {id(record): record for record in records}.values() for name in record
     )
-    return {f"{prefix}.{name}": [record.get(name) for record in records] for name in names}
+    return {f"{prefix}{name}": [record.get(name) for record in records] for name in names}
 
 
 class Results:
@@ -111,7 +131,8 @@ class Results:
     def frame(self, given: Inputs) -> pd.DataFrame:
         """The table: contract order, empty cells where a column does not apply."""
         found = {name: self._words.get(name, self._numbers.get(name)) for name in RESULTS}
-        frame = pd.DataFrame(given.columns | found)
+        in_si = si_columns(self._numbers, given.scales) if given.scales is not None else {}
+        frame = pd.DataFrame(given.columns | found | in_si)
         for name in frame.columns[[kind.kind == "O" for kind in frame.dtypes]]:
             frame[name] = _column_of_words_or_numbers(frame[name])
         return frame

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 from hypothesis import strategies as st
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.stribeck import Stribeck
 from frictionlab.scene import Drive, Load, Scene, Transverse
 from frictionlab.theory import friction_free_velocity
 
@@ -18,10 +20,37 @@ def sizes(low: float, high: float) -> st.SearchStrategy[float]:
     return st.floats(math.log10(low), math.log10(high)).map(lambda exponent: 10.0**exponent)
 
 
+@st.composite
+def stribeck_laws(draw: Callable[..., Any]) -> Stribeck:
+    """All four curves, strengthening by viscosity included."""
+    curve = draw(st.sampled_from(["exponential", "hyperbolic", "hess-soom", "cubic"]))
+    kinetic = draw(sizes(1e-2, 10.0))
+    own = {"stribeck_exponent": draw(st.floats(0.5, 3.0))} if curve == "exponential" else {}
+    return Stribeck(
+        mu_kinetic=kinetic,
+        mu_static=kinetic * draw(st.floats(1.0, 3.0)),
+        stribeck_speed=draw(sizes(1e-2, 1e2)),
+        viscosity=draw(st.just(0.0) | sizes(1e-3, 1.0)),
+        curve=curve,
+        **own,
+    )
+
+
 LAWS: dict[str, st.SearchStrategy[FrictionLaw]] = {
-    "coulomb": sizes(1e-3, 1e3).map(lambda mu: Coulomb(mu=mu)),
+    "coulomb": st.builds(
+        lambda mu, ratio: Coulomb(mu=mu, mu_static=None if ratio is None else mu * ratio),
+        sizes(1e-3, 1e3),
+        st.none() | st.floats(1.0, 3.0),
+    ),
+    "stribeck": stribeck_laws(),
 }
 """Every law of ours with any parameters it allows; a law that is not here fails its conformance tests."""
+
+EXAMPLES: dict[str, FrictionLaw] = {
+    "coulomb": Coulomb(mu=1.0, mu_static=1.0),
+    "stribeck": Stribeck(mu_kinetic=1.0, mu_static=1.0),
+}
+"""One of each, every number in place."""
 
 angles = st.floats(-math.pi, math.pi)
 speeds = sizes(1e-6, 1e6)

@@ -317,3 +317,13 @@ def test_every_drawn_column_is_a_column_of_the_table_with_a_symbol() -> None:
 
 def test_an_input_without_a_symbol_is_named_by_its_path() -> None:
     assert word("law.breakaway_ratio") == "breakaway ratio"
+
+
+def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
+    resonance: pd.DataFrame, tmp_path: Path
+) -> None:
+    laws = [resonance.assign(law=label) for label in (r"$\nope{$", "costs $5", "L" * 200)]
+    table = pd.concat(laws, ignore_index=True)
+
+    assert len(draw(table, r"$\bad{ 摩擦 and $3", tmp_path)) == 2 * len(charts.figure_columns(table))
+    assert _legend(_figure(table)) == [r"\$\nope{\$", r"costs \$5", "L" * 35 + "…"]

@@ -86,6 +86,132 @@ def test_a_run_draws_its_figures_into_its_folder(frictionlab: Any) -> None:
     assert {path.suffix for path in Path("out/figures").iterdir()} == {".svg", ".png"}
 
 
+def test_a_run_writes_its_report_last_with_its_figures_inside(frictionlab: Any) -> None:
+    said = frictionlab("run", study(), "-o", "out")
+
+    assert said.err.splitlines()[-1] == "report in out/report.html"
+    assert Path("out/report.html").read_text().count('<img src="data:image/') == 1
+    assert said.out.splitlines()[-1] == "table in out/results.parquet"
+
+
+def test_plot_and_report_make_again_what_a_run_made_and_compute_nothing(
+    frictionlab: Any, monkeypatch: Any
+) -> None:
+    frictionlab("run", study(), "-o", "out")
+    files = ("report.html", "figures/mean_friction.svg", "figures/mean_friction.png")
+    before = [(Path("out") / file).read_bytes() for file in files]
+    monkeypatch.setattr(Fake, "solve", lambda *_: pytest.fail("computed"))
+    for file in files:
+        (Path("out") / file).unlink()
+    written = frictionlab("report", "out")
+
+    assert (written.code, written.err, written.out) == (0, "", "out/report.html\n")
+    assert [(Path("out") / file).read_bytes() for file in files] == before
+
+    for file in files[1:]:
+        (Path("out") / file).unlink()
+    drawn = frictionlab("plot", "out")
+
+    assert (drawn.code, drawn.err) == (0, "")
+    assert sorted(drawn.out.split()) == sorted(f"out/{file}" for file in files[1:])
+    assert [(Path("out") / file).read_bytes() for file in files] == before
+
+
+def test_a_run_without_a_sweep_has_nothing_to_plot_and_a_report(frictionlab: Any) -> None:
+    frictionlab("run", study(sweep={}), "-o", "out")
+    said = frictionlab("plot", "out")
+
+    assert (said.code, said.out) == (0, "")
+    assert said.err == "no figures: the study of out sweeps nothing\n"
+    assert frictionlab("report", "out").code == 0
+
+
+@pytest.mark.parametrize("command", ["plot", "report"])
+def test_what_is_no_run_is_code_2_with_one_message(frictionlab: Any, command: str) -> None:
+    study()
+    Path("empty").mkdir()
+    frictionlab("run", "study.yaml", "-o", "all/one")
+    said = {name: frictionlab(command, name) for name in ("missing", "study.yaml", "empty", "all")}
+
+    assert {each.code for each in said.values()} == {2}
+    assert {each.out for each in said.values()} == {""}
+    assert {each.err.count("\n") for each in said.values()} == {1}
+    assert (
+        "missing: no such folder; RUN is a folder that 'frictionlab run STUDY -o RUN' wrote"
+        in said["missing"].err
+    )
+    assert "is a file" in said["study.yaml"].err
+    assert "no results.parquet, study.yaml, provenance.json in it" in said["empty"].err
+    assert "give one of them: all/one" in said["all"].err
+
+
+def test_a_page_that_cannot_be_written_is_code_3_with_the_table_safe(
+    frictionlab: Any, monkeypatch: Any
+) -> None:
+    def replace(source: Path, target: Path) -> None:
+        if target.name == "report.html":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        whole(source, target)
+
+    whole = os.replace
+    monkeypatch.setattr("frictionlab.output.os.replace", replace)
+    said = frictionlab("run", study(), "-o", "out")
+
+    assert said.code == 3
+    assert said.out.splitlines()[-1] == "table in out/results.parquet"
+    assert said.err.splitlines()[-1] == "cannot write out/report.html: No space left on device"
+    assert not [path for path in Path("out").iterdir() if path.name.startswith(".")]
+
+
+def test_force_takes_the_report_of_the_earlier_study_away(frictionlab: Any, monkeypatch: Any) -> None:
+    frictionlab("run", study(), "-o", "out")
+    monkeypatch.setattr(cli, "_report", lambda *_: None)
+    frictionlab("run", study(tolerance=1e-6), "-o", "out", "--force")
+
+    assert not Path("out/report.html").exists()
+
+
+def test_a_folder_of_studies_gets_an_index_that_leads_to_every_report(frictionlab: Any) -> None:
+    study("set/one.yaml", title="The first")
+    study("set/two.yaml", sweep={})
+    said = frictionlab("run", "set", "-o", "out")
+
+    assert said.err.splitlines()[-1] == "index in out/index.html"
+    index = Path("out/index.html").read_text()
+    assert "The first" in index
+    for link in ("one/report.html", "two/report.html"):
+        assert f'href="{link}"' in index
+        assert (Path("out") / link).is_file()
+    assert frictionlab("run", "set", "-o", "out").code == 0
+
+
+def test_an_index_that_a_person_wrote_stays_and_nothing_is_computed(
+    frictionlab: Any, monkeypatch: Any
+) -> None:
+    monkeypatch.setattr(Fake, "solve", lambda *_: pytest.fail("computed"))
+    study("set/one.yaml")
+    Path("out").mkdir()
+    Path("out/index.html").write_text("mine")
+    said = frictionlab("run", "set", "-o", "out")
+
+    assert (said.code, said.out) == (2, "")
+    assert said.err == (
+        "out/index.html is there already and was not written by frictionlab; choose another folder with -o\n"
+    )
+    assert [path.name for path in Path("out").iterdir()] == ["index.html"]
+
+
+def test_a_new_study_is_written_once_and_runs_as_it_is(frictionlab: Any) -> None:
+    said = frictionlab("new", "study", "my study")
+    again = frictionlab("new", "study", "my study")
+
+    assert (said.code, said.out) == (0, "my study.yaml\n")
+    assert said.err == "change what it says, then: frictionlab run 'my study.yaml'\n"
+    assert frictionlab("check", "my study.yaml").code == 0
+    assert (again.code, again.out) == (2, "")
+    assert again.err == "my study.yaml is there already and stays as it is; choose another name\n"
+
+
 def test_the_table_is_on_disk_before_the_drawing_begins(frictionlab: Any, monkeypatch: Any) -> None:
     seen = []
     monkeypatch.setattr(cli, "_draw", lambda *_: seen.extend(path.name for path in Path("out").iterdir()))
@@ -172,7 +298,7 @@ def test_a_folder_of_studies_runs_each_into_a_folder_of_its_own(frictionlab: Any
 
     assert said.code == 0
     assert [record["study"] for record in json.loads(said.out)] == ["one"] * 4 + ["two"] * 4
-    assert sorted(path.name for path in Path("runs/set").iterdir()) == ["one", "two"]
+    assert sorted(path.name for path in Path("runs/set").iterdir()) == ["index.html", "one", "two"]
 
 
 def test_a_folder_that_holds_another_study_stops_all_of_them(frictionlab: Any) -> None:
@@ -296,7 +422,9 @@ def test_laws_are_listed_with_parameters_limits_and_what_they_declare(frictionla
     (mu,) = [given for given in alone["parameters"] if given["name"] == "mu"]
     assert (mu["required"], mu["default"], mu["limits"]) == (True, None, "> 0")
     assert "friction coefficient" in mu["meaning"]
-    assert "Coulomb friction is the subdifferential" in alone["declares"]["monotone"]
+    (mu_static,) = [given for given in alone["parameters"] if given["name"] == "mu_static"]
+    assert (mu_static["required"], mu_static["default"], mu_static["limits"]) == (False, None, "> 0")
+    assert "the subdifferential of mu |v|" in alone["declares"]["monotone"]
 
 
 def test_methods_are_listed(frictionlab: Any) -> None:
@@ -419,8 +547,8 @@ def test_an_output_that_takes_nothing_is_code_3(surroundings: dict[str, str]) ->
 @pytest.mark.parametrize(
     ("arguments", "stranger"),
     [
-        (["--help"], ["numpy", "pandas", "numba", "pydantic", "matplotlib"]),
-        (["run", "--help"], ["numpy", "pandas", "numba", "pydantic", "matplotlib"]),
+        (["--help"], ["numpy", "pandas", "numba", "pydantic", "matplotlib", "jinja2"]),
+        (["run", "--help"], ["numpy", "pandas", "numba", "pydantic", "matplotlib", "jinja2"]),
         (["laws"], ["pandas", "numba", "matplotlib"]),
         (["run", "missing.yaml"], ["numba", "matplotlib"]),
         (["run", "study.yaml", "-o", "out"], ["numba"]),

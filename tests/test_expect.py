@@ -110,6 +110,50 @@ def test_an_empty_cell_is_told_with_the_reason_of_its_row() -> None:
     )
 
 
+CURVES = pd.DataFrame(
+    {
+        "law": ["coulomb"] * 3,
+        "method": ["exact", "shooting", "march"],
+        "shape": ["convex", "concave", None],
+        "shape_area": [-0.2, 0.1, np.nan],
+        "shape_area_error": [1e-3, 2e-3, np.nan],
+        "shape_by_initial": ["concave", "concave", None],
+        "shape_initial": [-0.5, -2.0, np.nan],
+        "shape_initial_error": [1e-3, 0.25, np.nan],
+        "reason": [None, None, "slip still reverses at the highest belt speed, 2"],
+    }
+)
+
+
+@pytest.mark.parametrize(
+    ("where", "claim", "passed", "found"),
+    [
+        ({"method": "exact"}, {"shape": "convex"}, True, "convex, -0.2 +- 0.001"),
+        ({"method": "shooting"}, {"shape": "convex"}, False, "concave, 0.1 +- 0.002"),
+        ({"method": "exact"}, {"shape": "concave", "measure": "initial"}, True, "concave, -0.5 +- 0.001"),
+        ({"method": "march"}, {"shape": "convex"}, False, "slip still reverses at the highest belt speed, 2"),
+        ({}, {"shape": "convex"}, False, "concave, 0.1 +- 0.002 in the first of 2 of 3 curves"),
+        ({"law": "dahl"}, {"shape": "convex"}, False, "no row of the table matches"),
+    ],
+)
+def test_a_shape_holds_or_fails_for_all_its_curves_and_says_by_how_much(
+    where: dict[str, Any], claim: dict[str, Any], passed: bool, found: str
+) -> None:
+    verdict = judge(Expectation(where=where, because="Fig. 4", **claim), TABLE, CURVES)
+
+    by = "initial curvature" if "measure" in claim else "area"
+    assert verdict.passed is passed
+    assert verdict.sentence.startswith(f"{claim['shape']} by {by} ")
+    assert verdict.sentence.endswith(f"(Fig. 4): {found}")
+
+
+def test_without_a_table_of_curves_it_is_made_from_the_table() -> None:
+    verdict = judge(Expectation(where={"method": "exact"}, shape="convex"), TABLE)
+
+    assert not verdict.passed
+    assert "nothing shakes the body" in verdict.sentence or "slip reverses at no point" in verdict.sentence
+
+
 @pytest.mark.parametrize("table", [TABLE, TABLE.iloc[:3]])
 def test_a_missing_partner_fails_and_is_told(table: pd.DataFrame) -> None:
     verdict = judge(Expectation(where={}, max_difference=("exact", "shooting"), below=1.0), table)

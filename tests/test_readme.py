@@ -11,7 +11,7 @@ import pytest
 
 import frictionlab as fl
 from frictionlab.charts import FIGURES
-from frictionlab.columns import RESULTS
+from frictionlab.columns import CURVES, RESULTS, SI
 from frictionlab.study import load_study
 
 PROJECT = Path(__file__).parent.parent
@@ -102,18 +102,25 @@ REFERENCE = (PROJECT / "docs" / "study.md").read_text()
 
 
 def test_the_example_of_the_study_reference_is_a_study(tmp_path: Path) -> None:
-    (example,) = re.findall(r"```yaml\n(.*?)```", REFERENCE, re.DOTALL)
-    study = tmp_path / "study.yaml"
+    example, in_si = re.findall(r"```yaml\n(.*?)```", REFERENCE, re.DOTALL)[:2]
+    study, other = tmp_path / "study.yaml", tmp_path / "in_si.yaml"
     study.write_text(example)
+    other.write_text(f"schema: 1\nlaws: [{{kind: coulomb, mu: 0.3}}]\n{in_si}")
 
     assert len(load_study(study).cases()) == 8
+    assert [case.scene.degrees_of_freedom for case in load_study(other).cases()] == [2]
 
 
 def test_the_study_reference_lists_the_columns_of_the_table_in_their_order() -> None:
     rows = REFERENCE.partition("| column |")[2]
+    measures = [name for name in CURVES if not name.endswith("_error")]
     first_cells = [line.split("|")[1] for line in rows.splitlines()[2:] if line.startswith("|")]
 
-    assert [name for cell in first_cells for name in re.findall(r"`(\w+)`", cell)] == list(RESULTS)
+    assert [name for cell in first_cells for name in re.findall(r"`(\w+)`", cell)] == [
+        *RESULTS,
+        *SI,
+        *measures,
+    ]
 
 
 def test_the_nomenclature_has_every_symbol_of_a_figure_by_its_key() -> None:

@@ -230,6 +230,7 @@ def test_the_folder_of_a_run_holds_the_table_twice_its_study_and_its_account(tmp
     out = tmp_path / "deep" / "out"
 
     assert sorted(path.name for path in out.iterdir()) == [
+        "curves.csv",
         "provenance.json",
         "results.csv",
         "results.parquet",
@@ -243,6 +244,43 @@ def test_the_folder_of_a_run_holds_the_table_twice_its_study_and_its_account(tmp
     assert [run["computed"] for run in account["runs"]] == [6]
     assert account["frictionlab"] == fl.__version__
     assert {"numpy", "numba"} <= set(account["packages"])
+
+
+def test_the_folder_holds_one_row_per_curve_with_its_shape(tmp_path: Path) -> None:
+    expect = [{"where": {"scene.drive.frequency": 1.5}, "shape": "convex", "measure": "initial"}]
+    plan = study(methods=["exact"], sweep=MANY, expect=expect)
+    done = fl.run(plan, out=tmp_path / "out")
+    written = tmp_path / "out" / "curves.csv"
+    read = pd.read_csv(written)
+
+    assert read["scene.drive.frequency"].tolist() == [1.0, 1.5]
+    assert read["shape"].fillna("").tolist() == ["", "convex"]
+    assert (
+        read["reason"].fillna("").tolist()[0]
+        == "the curve ends at belt speed 40, below the end of reversal, 50"
+    )
+    assert read["shape_area"].tolist()[1] == done.curves["shape_area"].tolist()[1]
+    assert [verdict.passed for verdict in done.verdicts] == [True]
+
+    text = written.read_bytes()
+    written.unlink()
+    assert fl.run(plan, out=tmp_path / "out").computed == 0
+    assert written.read_bytes() == text
+    fl.run(
+        study(methods=["exact"], sweep={"scene.damping_ratio": [0.1, 0.2]}), tmp_path / "out", (), "replace"
+    )
+    assert not written.exists()
+
+
+def test_an_interrupted_run_tells_no_shapes(tmp_path: Path) -> None:
+    def stop(done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    with ThreadPoolExecutor(1) as pool, pytest.raises(runner.Interrupted) as caught:
+        fl.run(study(sweep=MANY), out=tmp_path / "out", executor=pool, progress=stop)
+
+    assert caught.value.run.curves.empty
+    assert not (tmp_path / "out" / "curves.csv").exists()
 
 
 def test_floats_come_back_from_the_csv_file_bit_for_bit(tmp_path: Path) -> None:
@@ -545,7 +583,7 @@ def test_belt_speeds_that_are_no_list_of_numbers_are_refused(speeds: list[Any]) 
 
 def test_a_steady_state_has_every_result_column_and_nothing_else() -> None:
     names = {field.name for field in fields(fl.SteadyState)}
-    assert names - {"sampled"} == set(RESULTS)
+    assert names - {"sampled", "si"} == set(RESULTS)
 
 
 def test_a_steady_state_is_the_row_of_the_same_scene() -> None:

@@ -111,7 +111,6 @@ def test_an_unknown_key_is_refused_by_its_name(path):
 @pytest.mark.parametrize(
     ("path", "where"),
     [
-        ("dimensional", ""),
         ("drive.waveform", "drive"),
         ("drive.direction", "drive"),
         ("transverse.load.waveform", "transverse.load"),
@@ -137,17 +136,29 @@ def test_a_force_needs_exactly_one_of_unbalance_and_amplitude(path):
         assert "exactly one of unbalance and amplitude" in message
 
 
-@pytest.mark.parametrize("name", ["damping_ratio", "normal_load", "drive"])
+@pytest.mark.parametrize("name", ["damping_ratio", "normal_load"])
 def test_what_a_free_mass_lacks_is_named(name):
     ((_, message),) = complaints(without(FREE, name)).items()
 
     assert f"{name}: required" in message
 
 
+def test_a_scene_without_a_drive_has_a_frequency_of_one_and_starts_at_rest_on_the_belt():
+    one = Scene.model_validate(without(FREE, "drive"))
+
+    assert one.undriven
+    assert one.frequency == 1.0
+    assert one.mass().force == 0.0
+    assert one.load_along_belt_only
+    assert (one.start.x, one.start.velocity) == (0.0, one.belt_speed)
+    assert not Scene.model_validate(FREE).undriven
+    assert not Scene.model_validate(SLIDING).undriven
+
+
 def test_all_that_is_missing_is_named_at_once():
     ((_, message),) = complaints({"belt_speed": 5.0}).items()
 
-    assert "damping_ratio: required; normal_load: required; drive: required" in message
+    assert "damping_ratio: required; normal_load: required" in message
     assert list(complaints(without(FREE, "belt_speed"))) == ["belt_speed"]
 
 

@@ -95,6 +95,25 @@ def test_a_study_becomes_its_frozen_record(written: Any) -> None:
     )
 
 
+def test_a_shape_is_expected_by_area_unless_it_says_else_and_loads_back() -> None:
+    sweep = {"sweep": {"scene.belt_speed": [1, 2]}}
+    claims = [{"shape": "mixed"}, {"shape": "concave", "measure": "initial"}]
+    found = parse_study(good() | sweep | {"expect": claims})
+
+    assert [(claim.shape, claim.measure) for claim in found.expect] == [
+        ("mixed", "area"),
+        ("concave", "initial"),
+    ]
+    assert parse_study(found.resolved()) == found
+
+
+def test_a_shape_needs_a_curve() -> None:
+    with pytest.raises(
+        StudyError, match=re.escape("expect[0].shape: a shape needs a curve: sweep scene.belt_speed")
+    ):
+        parse_study(good() | {"expect": [{"shape": "mixed"}]})
+
+
 def test_what_is_left_out_takes_its_default() -> None:
     study = parse_study(good())
 
@@ -359,7 +378,7 @@ def test_a_mistake_shows_its_place_its_line_a_caret_and_a_likely_meaning(written
 
     assert str(caught.value).splitlines() == [
         "study.yaml:7:3: scene.belt_sped: unknown key; allowed: damping_ratio, normal_load, belt_speed, "
-        "drive, transverse, slip, transverse_slip, initial",
+        "drive, transverse, slip, transverse_slip, initial, dimensional",
         "      belt_sped: 5",
         "      ^",
         "    did you mean 'belt_speed'?",
@@ -665,11 +684,24 @@ def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene
         "transverse_slip": {"zzz": 1},
         "initial": {"zzz": 1},
     }
+    parts = {
+        "zzz": 1,
+        "drive": {"zzz": 1},
+        "transverse": {"zzz": 1, "load": {"zzz": 1}},
+        "initial": {"zzz": 1},
+    }
+    si = good() | {"scene": {"dimensional": parts}}
 
     assert set(_allowed(probe, "zzz")) == set(made["properties"])
     scene = _keys_of(made, made["properties"]["scene"])
-    parts = ["", "drive.", "transverse.", "transverse.load.", "slip.", "transverse_slip.", "initial."]
-    assert scene == {part + key for part in parts for key in _allowed(probe, f"scene.{part}zzz")}
+    both = ["", "drive.", "transverse.", "transverse.load.", "initial."]
+    found = {
+        part + key
+        for part in [*both, "slip.", "transverse_slip."]
+        for key in _allowed(probe, f"scene.{part}zzz")
+    }
+    ours = [f"dimensional.{part}" for part in both]
+    assert scene == found | {part + key for part in ours for key in _allowed(si, f"scene.{part}zzz")}
 
 
 def _dotted_keys(tree: dict[str, Any]) -> set[str]:

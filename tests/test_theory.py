@@ -8,16 +8,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.special import ellipe, ellipk
 
 from frictionlab.scene import Drive, Load, Scene, Slip, Transverse, TransverseSlip
 from frictionlab.theory import (
+    CONCAVE_BY_AREA,
+    CONCAVE_BY_INITIAL_CURVATURE,
+    Floats,
+    chord_area_at_resonance,
     friction_free_velocity,
+    initial_concavity,
     mean_prescribed_circular,
     mean_prescribed_longitudinal,
     mean_prescribed_transverse,
+    one_harmonic_least_ratio,
+    one_harmonic_velocity,
 )
 
 REFERENCE = Path(__file__).parent / "reference"
@@ -154,3 +161,106 @@ def test_the_circular_mean_is_continuous_where_the_slip_stops_for_an_instant() -
 
     assert around[1] == pytest.approx(2 / np.pi, rel=1e-15)
     np.testing.assert_allclose(around, around[1], rtol=1e-7)
+
+
+def _one_harmonic(scene: Scene, friction: float, ratio: Floats) -> tuple[Floats, Floats]:
+    """Belt speed and mean friction of one harmonic, along the ratio of belt speed to velocity amplitude."""
+    return ratio * one_harmonic_velocity(scene, friction, ratio), 2 / np.pi * np.arcsin(ratio)
+
+
+@given(st.floats(0.01, 0.75), st.floats(0.02, 0.5))
+def test_the_chord_area_at_resonance_is_the_integral_of_the_curve_of_one_harmonic(
+    share: float, damping: float
+) -> None:
+    scene = _scene(1.0, damping_ratio=damping, normal_load=1.0, drive=Drive(unbalance=10, frequency=1.0))
+    angle = np.linspace(0, np.pi / 2, 2001)
+    speed, mean = _one_harmonic(scene, 10 * share, np.sin(angle))
+    u = speed / speed[-1]
+
+    assert 2 * np.trapezoid(mean - u, u) == pytest.approx(float(chord_area_at_resonance(share)), abs=1e-6)
+
+
+def test_at_resonance_curves_turn_concave_at_a_third_and_a_fifth_of_the_unbalance() -> None:
+    assert pytest.approx(0.337, abs=5e-4) == CONCAVE_BY_AREA
+    assert pytest.approx(0.196, abs=5e-4) == CONCAVE_BY_INITIAL_CURVATURE
+    assert chord_area_at_resonance(CONCAVE_BY_AREA) == pytest.approx(0, abs=1e-15)
+    assert chord_area_at_resonance(0) == pytest.approx(-0.2732, abs=5e-5)  # the arcsine
+    for damping in (0.02, 0.1, 0.5):
+        scene = _scene(1.0, damping_ratio=damping, drive=Drive(unbalance=10, frequency=1.0))
+        assert initial_concavity(scene, 10 * CONCAVE_BY_INITIAL_CURVATURE) == pytest.approx(0, abs=1e-14)
+
+
+@given(st.floats(0.3, 3.0), st.floats(0.02, 0.5), st.floats(0.05, 0.75))
+def test_a_curve_starts_concave_where_the_criterion_says_so(
+    frequency: float, damping: float, share: float
+) -> None:
+    scene = _scene(frequency, damping_ratio=damping, drive=Drive(amplitude=3.0, frequency=frequency))
+    margin = initial_concavity(scene, 3.0 * share)
+    speed, mean = _one_harmonic(scene, 3.0 * share, np.array([0.0, 1e-3, 2e-3]))
+    chords = np.diff(mean) / np.diff(speed)
+
+    assume(abs(margin) > 0.02)
+    assert np.sign(margin) == np.sign(chords[0] - chords[1])
+
+
+def test_the_papers_curves_start_concave_near_resonance_alone() -> None:
+    margins = [
+        initial_concavity(_scene(frequency, drive=Drive(unbalance=10, frequency=frequency)), 4.0)
+        for frequency in (1.0, 1.2, 1.5, 2.0)
+    ]
+
+    assert [margin > 0 for margin in margins] == [True, True, False, False]
+
+
+def test_a_curve_that_starts_in_stick_or_without_a_drive_has_no_such_criterion() -> None:
+    assert math.isnan(initial_concavity(_scene(1.0, drive=Drive(amplitude=1.0, frequency=1.0)), 0.8))
+    with pytest.raises(ValueError, match="no"):
+        initial_concavity(Scene(belt_speed=1, slip=Slip(velocity_amplitude=1, frequency=1)), 1.0)
+
+
+def _held(damping: float, frequency: float) -> Scene:
+    return Scene(
+        damping_ratio=damping, normal_load=1, belt_speed=0, drive=Drive(amplitude=1, frequency=frequency)
+    )
+
+
+@given(st.floats(0, 1), st.floats(0.1, 10), st.floats(0, 3), st.floats(0, 1))
+def test_the_one_harmonic_velocity_solves_its_balance(damping, frequency, friction, ratio) -> None:  # type: ignore[no-untyped-def]
+    scene = _held(damping, frequency)
+    stiffness = math.hypot(1 - frequency**2, 2 * damping * frequency)
+    assume(stiffness > 1e-6)
+    held = 4 / math.pi * friction * math.sqrt(1 - ratio**2)
+
+    velocity = float(one_harmonic_velocity(scene, friction, ratio))
+    spring = (1 - frequency**2) * velocity / frequency
+    damped = 2 * damping * velocity + held
+
+    if held < 1:
+        assert math.hypot(spring, damped) == pytest.approx(1, rel=1e-10)
+    else:
+        assert velocity == 0
+
+
+def test_the_one_harmonic_velocity_ends_at_v_lin_and_is_the_closed_form_at_resonance() -> None:
+    scene = _scene(1.0, normal_load=10)
+
+    assert one_harmonic_velocity(scene, 4.0, 1.0) == pytest.approx(friction_free_velocity(scene), rel=1e-15)
+    assert one_harmonic_velocity(scene, 4.0, 0.0) == pytest.approx((10 - 16 / math.pi) / 0.2, rel=1e-14)
+
+
+def test_the_one_harmonic_velocity_loses_no_digits_where_friction_just_holds_the_load() -> None:
+    scene, gap = _held(0.5, 3.0), 1e-12
+
+    velocity = one_harmonic_velocity(scene, math.pi / 4 * (1 - gap), 0.0)
+
+    assert velocity == pytest.approx(gap, rel=1e-3)  # P - c = gap, taken by the dashpot of 2 beta = 1 alone
+
+
+def test_the_one_harmonic_curve_starts_above_zero_where_friction_holds_the_load() -> None:
+    scene = _held(0.1, 0.5)
+
+    assert one_harmonic_least_ratio(scene, math.pi / 4 * 0.999) == 0.0
+    least = one_harmonic_least_ratio(scene, 1.6)  # load 2.5 against friction 4
+    assert 2 / math.pi * math.asin(least) == pytest.approx(0.673, abs=5e-4)
+    assert one_harmonic_velocity(scene, 1.6, least) == pytest.approx(0, abs=1e-12)
+    assert one_harmonic_velocity(scene, 1.6, least + 1e-6) > 0

@@ -6,11 +6,22 @@ numbers as ``self``), and on the line (``float`` slip velocity) and in the plane
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 
-from frictionlab.quantities import Finite, NonNegative, Positive, Record
+from frictionlab.quantities import Dimension, Finite, NonNegative, PerSpeed, Positive, Record, Speed
 
-__all__ = ["Finite", "FrictionLaw", "NonNegative", "Positive", "Record", "SlidingLaw"]
+__all__ = [
+    "Dimension",
+    "Finite",
+    "FrictionLaw",
+    "NonNegative",
+    "PerSpeed",
+    "Positive",
+    "Record",
+    "SlidingLaw",
+    "Speed",
+]
 
 
 class FrictionLaw(Record, ABC):
@@ -40,8 +51,14 @@ class FrictionLaw(Record, ABC):
         return False
 
     def numbers(self) -> dict[str, float]:
-        """The parameters as the kernels see them: every numeric field that has a value."""
-        return {name: float(value) for name, value in self if isinstance(value, float)}
+        """The parameters as the kernels see them: every number, and every property.
+
+        A number that may be left out (``None``) is for a property to read: the kernels of a law are then the same
+        whether it is given or not.
+        """
+        required = {name for name, field in type(self).model_fields.items() if field.default is not None}
+        fields = {name: float(value) for name, value in self if isinstance(value, float) and name in required}
+        return fields | {name: float(getattr(self, name)) for name in _properties(type(self))}
 
 
 class SlidingLaw(FrictionLaw, ABC):
@@ -49,3 +66,20 @@ class SlidingLaw(FrictionLaw, ABC):
 
     At rest any vector up to the static coefficient is allowed; resolving that is the method's business.
     """
+
+    def static_friction(self) -> float:
+        """Friction coefficient [-] that slip must overcome to begin; not below ``sliding_friction(0)``."""
+        return self.sliding_friction(0.0)
+
+    def steepest_fall(self) -> float:
+        """Largest rate at which sliding friction falls as speed grows [1/scene velocity], rest included.
+
+        Slower than the damping can make up for, the steady state stays unique. Infinite where it may jump.
+        """
+        return 0.0 if self.monotone() else math.inf
+
+
+def _properties(law: type[FrictionLaw]) -> list[str]:
+    """The names of what a law derives from its parameters, its own and those of its bases."""
+    own = [name for kind in law.__mro__ if issubclass(kind, FrictionLaw) for name in vars(kind)]
+    return [name for name in dict.fromkeys(own) if isinstance(getattr(law, name), property)]

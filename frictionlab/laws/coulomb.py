@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+import math
 
 from pydantic import model_validator
 
@@ -10,30 +10,44 @@ from frictionlab.laws.base import Positive, SlidingLaw
 
 
 class Coulomb(SlidingLaw):
-    """Amontons-Coulomb friction: a constant coefficient against the slip, any vector up to it at rest.
+    """Amontons-Coulomb friction: a constant coefficient against the slip, any vector up to another at rest.
 
-    mu [-], > 0: friction coefficient, at rest and in slip.
+    mu [-], > 0: friction coefficient in slip.
+    mu_static [-], >= mu: friction coefficient at rest; mu where left out.
 
     Sources: Amontons (1699); Coulomb (1785); in the notation of Sulollari, van Dalen & Cabboi, Eq. 3.
     """
 
     mu: Positive
+    mu_static: Positive | None = None
 
-    @model_validator(mode="before")
-    @classmethod
-    def _refuse_what_has_not_come(cls, data: Any) -> Any:
-        if isinstance(data, dict) and "mu_static" in data:
-            raise ValueError("mu_static: not available yet")
-        return data
+    @model_validator(mode="after")
+    def _rest_holds_at_least_as_much(self) -> Coulomb:
+        if self.mu_static is not None and self.mu_static < self.mu:
+            raise ValueError(f"mu_static: must be >= mu = {self.mu:g}, got {self.mu_static:g}")
+        return self
+
+    @property
+    def at_rest(self) -> float:
+        """The coefficient at rest [-]."""
+        return self.mu if self.mu_static is None else self.mu_static
 
     def sliding_friction(self, speed: float) -> float:
         """The same coefficient at every speed."""
         return self.mu
+
+    def static_friction(self) -> float:
+        """mu_static."""
+        return self.at_rest
 
     def constant_sliding_friction(self) -> bool:
         """Always."""
         return True
 
     def monotone(self) -> bool:
-        """Always: Coulomb friction is the subdifferential of mu |v|."""
-        return True
+        """Where rest holds no more than slip: Coulomb friction is then the subdifferential of mu |v|."""
+        return self.at_rest == self.mu
+
+    def steepest_fall(self) -> float:
+        """None, or a jump where rest holds more than slip."""
+        return 0.0 if self.monotone() else math.inf

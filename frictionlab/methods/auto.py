@@ -13,7 +13,8 @@ from frictionlab.methods.shooting import Shooting
 from frictionlab.scene import Scene
 
 LADDER: tuple[Method, ...] = (Exact(), Shooting())
-"""From the cheapest method to the most general one."""
+"""From the cheapest method to the most general one. Reduced models have no rung: an honest bound on what they
+leave out costs more than the exact answer along the belt, and more than shooting in the plane."""
 
 
 class Auto(Method):
@@ -58,5 +59,5 @@ class Auto(Method):
                 reason[i] = (
                     f"{rung.name} reaches an error of {error:.1e}, above the tolerance {tolerance:.1e}"
                 )
-        model = [f"{model} (auto: {why})" for model in answers.model]
+        model = [f"{model} (auto: {rung.name}, {why})" for model in answers.model]
         return replace(answers, status=status, reason=reason, model=model)

@@ -13,10 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.kernel import by_dimension, inner
-from frictionlab.methods.sliding_map import Mapped, period_map, periods_at_rest, track_of
+from frictionlab.methods.sliding_map import Mapped, period_map, periods_at_rest, span, track_of
 from frictionlab.scene import Body
 
 MOST_MAPS = 600
+MUCH_WORK = 500_000
+"""Steps, some tenths of a second, after which an orbit that need not exist is no longer looked for."""
 FINER = 16.0
 """How much finer the last map is; of order eight, its own error is then a small part of what it measures."""
 
@@ -142,7 +144,7 @@ def _free_block(damping: float, stiffness: float, period: float, jacobian: Any, 
 def free_inverse(body: Body, rubbing: float, inverse: Any) -> None:
     """Inverse of (monodromy - identity) of the body with friction as a dashpot of this coefficient."""
     n = inverse.shape[0]
-    period = 2.0 * math.pi / body.frequency
+    period = span(body)
     jacobian = np.zeros((n, n))
     damping, stiffness = body.damping_mean + body.damping_split, body.stiffness_mean + body.stiffness_split
     _free_block(damping + rubbing, stiffness, period, jacobian, 0)
@@ -165,7 +167,7 @@ def monodromy(
     The maps are at least as accurate as asked, and always much finer than the shift.
     """
     n = z.size
-    carried = abs(belt_speed) * 2.0 * math.pi / body.frequency
+    carried = abs(belt_speed) * span(body)
     shift = 1e-5 * (1.0 + _norm(z))
     shift = min(shift, max(0.01 * carried, 1e-3 * shift)) if carried > 0.0 else shift
     accuracy = min(accuracy, 1e-5 * shift)
@@ -213,6 +215,13 @@ def _broyden(inverse: Any, step: Any, change: Any, work: Any) -> None:
             inverse[row, column] = inverse[row, column] + (step[row] - work[row]) * change[column]
 
 
+class Goal(NamedTuple):
+    """What an orbit is closed for: the tolerance on the mean, and whether no two motions ever move apart."""
+
+    tolerance: float
+    contracts: bool
+
+
 ROUNDING = 2e-14
 """What the sums of a period's friction lose to rounding, in the mean coefficient."""
 
@@ -229,6 +238,17 @@ class Closed(NamedTuple):
 
 
 @inner
+def felt(
+    law: Any, body: Body, belt_speed: float, z: Any, shift: Any, image: Mapped, accuracy: float, like: Any
+) -> float:
+    """By how much the mean changes where the state z, whose map is the image, is shifted."""
+    trial, residual = np.empty(z.size), np.empty(z.size)
+    _less(z, shift, trial)
+    moved = mapped(law, body, belt_speed, trial, residual, accuracy, like)
+    return abs(moved.rubbed - image.rubbed) / span(body)
+
+
+@inner
 def mean_error(body: Body, residual: Any, distance: float) -> float:
     """Bound on the error of the mean friction of an orbit that closes up to the residual.
 
@@ -236,7 +256,7 @@ def mean_error(body: Body, residual: Any, distance: float) -> float:
     impulses differ by the change of du + damping*dy, which the residual is, plus the integral of dx, which the
     distance of the states bounds because orbits of a monotone law never move apart.
     """
-    period = 2.0 * math.pi / body.frequency
+    period = span(body)
     ends = abs(residual[1]) + (body.damping_mean + body.damping_split) * abs(residual[0])
     return (distance + ends / period) / body.normal_load
 
@@ -280,7 +300,7 @@ def close(
     belt_speed: float,
     z: Any,
     inverse: Any,
-    tolerance: float,
+    goal: Goal,
     expected: float,
     like: Any,
 ) -> Closed:
@@ -290,18 +310,20 @@ def close(
     residual stops falling, Newton with a difference Jacobian, then Picard. One criterion ends it: a map much
     finer than those the orbit was found with leaves a residual whose bound on the mean is below the tolerance.
     """
-    n = z.size
+    n, tolerance = z.size, goal.tolerance
     residual, trial, fresh, step, work = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     floor = 4e-15 * (1.0 + _norm(z) + abs(belt_speed))
     finest = max(0.5 * tolerance * body.normal_load, floor)
     accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
-    period = 2.0 * math.pi / body.frequency
+    period = span(body)
     image = mapped(law, body, belt_speed, z, residual, accuracy, like)
     maps, stalls, checks, first, troubled = 1, 0, 0, _norm(residual), False
     while maps < MOST_MAPS:
         length = _norm(residual)
         if image.steps < 0 or not length < 1e300:
             break
+        if not goal.contracts and maps * image.steps > MUCH_WORK:
+            break  # what repels, or is not there, is not to be found: other starts will tell
         if image.stuck >= period * (1.0 - 1e-9) and belt_speed != 0.0:
             y, _u = unpack(body, z, like)
             many = periods_at_rest(law, body, belt_speed, y + period * belt_speed)
@@ -321,7 +343,9 @@ def close(
             maps += 1
             checks += 1
             doubt = 0.0
-            if image.stuck > 0.0 or troubled:  # derivative and map error jump with the events: take both anew
+            if (
+                image.stuck > 0.0 or troubled or not goal.contracts
+            ):  # both jump with the events: take them anew
                 if not _newton_inverse(law, body, belt_speed, z, accuracy, inverse, like):
                     break
                 coarser = mapped(law, body, belt_speed, z, fresh, FINER * accuracy, like)
@@ -329,6 +353,10 @@ def close(
                 _less(fresh, residual, fresh)
                 _times(inverse, fresh, work)
                 doubt = mean_error(body, fresh, _norm(work)) + abs(coarser.rubbed - image.rubbed) / period
+                if not goal.contracts:
+                    doubt += felt(law, body, belt_speed, z, work, image, accuracy, like)
+                    _times(inverse, residual, work)
+                    doubt += felt(law, body, belt_speed, z, work, image, accuracy, like)
             _times(inverse, residual, work)
             error = 2.0 * (mean_error(body, residual, _norm(work)) + doubt)
             error += (floor + 0.1 * accuracy) / body.normal_load + ROUNDING  # and the finer map's own error

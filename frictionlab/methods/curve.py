@@ -8,8 +8,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.kernel import inner
-from frictionlab.methods.closing import close, free_inverse, mapped, monodromy, pack, size_of, unpack
-from frictionlab.methods.sliding_map import Track, period_map, track_of
+from frictionlab.methods.closing import (
+    MUCH_WORK,
+    Goal,
+    close,
+    free_inverse,
+    mapped,
+    monodromy,
+    pack,
+    size_of,
+    unpack,
+)
+from frictionlab.methods.sliding_map import Track, period_map, span, track_of
 from frictionlab.orbit import READ, read
 from frictionlab.scene import Body, Mass
 
@@ -62,12 +72,12 @@ def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) ->
 
 
 @inner
-def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, tolerance: float, like: Any) -> Any:
+def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, like: Any) -> Any:
     """States [n, size] and results [n, 6]: mean friction, across, error, maps, share of stick, slowest slip."""
     size, n = size_of(like), belt_speeds.size
     states, results = np.zeros((n, size)), np.empty((n, 6))
     z, work, inverse = np.empty(size), np.empty(size), np.empty((size, size))
-    period = 2.0 * math.pi / body.frequency
+    period = span(body)
     known, order, expected = 0, 1, 1e300
     for i in range(n):
         if known == 0:
@@ -77,10 +87,10 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, tolerance: f
                     z[row] = guess[0, row]
         else:
             _extrapolated(states, belt_speeds, i, min(order, known), z)
-        closed = close(law, body, belt_speeds[i], z, inverse, tolerance, expected, like)
+        closed = close(law, body, belt_speeds[i], z, inverse, goal, expected, like)
         if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
             free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse)
-            closed = close(law, body, belt_speeds[i], z, inverse, tolerance, 1e300, like)
+            closed = close(law, body, belt_speeds[i], z, inverse, goal, 1e300, like)
         for row in range(size):
             states[i, row] = z[row]
         if closed.maps > 0 and known > 1:
@@ -122,15 +132,17 @@ class Curve(NamedTuple):
 
 @inner
 def answer_curve(
-    law: Any, body: Body, mass: Mass, belt_speeds: Any, guess: Any, tolerance: float, like: Any
+    law: Any, body: Body, mass: Mass, belt_speeds: Any, guess: Any, goal: Goal, like: Any
 ) -> Curve:
     """Close the orbits of a curve and read them; guess [0 or 1, size] is a state to start from."""
-    states, results = solve_curve(law, body, belt_speeds, guess, tolerance, like)
+    states, results = solve_curve(law, body, belt_speeds, guess, goal, like)
     n, size = states.shape
-    accuracy = max(0.1 * tolerance * body.normal_load, 1e-13)
-    columns, matrices = np.empty((n, len(READ))), np.empty((n, size, size))
+    accuracy = max(0.1 * goal.tolerance * body.normal_load, 1e-13)
+    columns, matrices = np.full((n, len(READ)), np.nan), np.zeros((n, size, size))
     track = track_of(0)
     for i in range(n):
+        if results[i, 3] < 0.0:
+            continue
         track = tracked(law, body, belt_speeds[i], states[i], accuracy, like)
         row = read(track.tau, track.x, track.v, track.friction, track.stick, mass, belt_speeds[i])
         for k in range(row.size):
@@ -147,7 +159,7 @@ def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
     """
     z, residual = np.empty(size_of(x)), np.empty(size_of(x))
     pack(body, z, x - body.reference_cosine, v - body.frequency * body.reference_sine)
-    period = 2.0 * math.pi / body.frequency
+    period = span(body)
     for count in range(1, MOST_PERIODS):
         image = mapped(law, body, 0.0, z, residual, accuracy, x)
         for row in range(z.size):
@@ -155,3 +167,45 @@ def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
         if image.stuck >= period * (1.0 - 1e-12):
             return z, count
     return z, -1
+
+
+LONGEST_PERIOD = 8
+"""Of a subharmonic response that is looked for [drive periods]."""
+
+
+@inner
+def _apart(states: Any, a: int, b: int) -> float:
+    total, size = 0.0, 1.0
+    for row in range(states.shape[1]):
+        total += (states[a, row] - states[b, row]) ** 2
+        size = max(size, abs(states[a, row]))
+    return math.sqrt(total) / size
+
+
+@inner
+def wander(
+    law: Any, body: Body, belt_speed: float, start: Any, accuracy: float, means: Any, states: Any
+) -> Any:
+    """Follow the motion from a start (x, v), period by period, until it repeats.
+
+    Fills the one-period means [n] and the states [n + 1, size]; returns after how many periods it repeats (0 where
+    it has not after n), and how many it was followed.
+    """
+    x, v = start
+    steps = 0
+    residual = np.empty(states.shape[1])
+    pack(body, states[0], x - body.reference_cosine, v - body.frequency * body.reference_sine)
+    for n in range(means.size):
+        image = mapped(law, body, belt_speed, states[n], residual, accuracy, x)
+        means[n] = -image.rubbed.real / span(body)
+        steps += image.steps
+        for row in range(residual.size):
+            states[n + 1, row] = states[n, row] + residual[row]
+        for k in range(1, min(LONGEST_PERIOD, n // 2) + 1):
+            repeats = max(_apart(states, n + 1, n + 1 - k), _apart(states, n, n - k)) < 1e-7
+            # a spiral into an orbit of one period looks like a longer one while it is still far out
+            if repeats and (k == 1 or _apart(states, n + 1, n) > 1e-4):
+                return k, n + 1
+        if image.steps < 0 or steps > MUCH_WORK:
+            return 0, n + 1
+    return 0, means.size

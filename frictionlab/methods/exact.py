@@ -44,11 +44,15 @@ class Exact(Method):
     name: ClassVar[str] = "exact"
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Anything but Coulomb friction along one line, or a prescribed slip."""
+        """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
         if not isinstance(law, SlidingLaw):
             return "exact needs friction without memory (Coulomb); use shooting"
         if not law.constant_sliding_friction():
             return "exact needs friction that does not vary with speed (Coulomb); use shooting"
+        if scene.degrees_of_freedom > 0 and not law.monotone():
+            return "exact needs friction at rest to be that of slip (no mu_static); use shooting"
+        if scene.undriven:
+            return "exact needs a drive, whose period is the motion's; use shooting"
         if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
             return "exact works along one line: this scene has a transverse load; use shooting"
         return None

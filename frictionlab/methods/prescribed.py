@@ -1,4 +1,4 @@
-"""Coulomb friction under a prescribed slip: a closed form along the belt, quadrature to rounding in the plane."""
+"""Friction without memory under a prescribed slip: quadrature to rounding, along the belt a closed form."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.methods.base import Answers, Floats, Orbit, Status
 from frictionlab.orbit import NODES, WEIGHTS
 from frictionlab.scene import Motion, Scene
@@ -23,18 +23,21 @@ CLOSEST = 1e-16
 
 
 class Integrals(NamedTuple):
-    """Over one period: mean resisting coefficient (complex), heat in the contact and work taken, per unit load."""
+    """Over one period: mean resisting coefficient (complex), heat in the contact and work taken, per unit load.
+
+    largest: the largest coefficient met, the scale of rounding.
+    """
 
     mean: complex
     contact: float
     taken: float
+    largest: float
 
 
 def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer scenes of prescribed slip that differ in belt speed alone."""
     start = time.perf_counter()
-    coefficient = law.sliding_friction(1.0)
-    rows = [_Point(scene, coefficient) for scene in scenes]
+    rows = [_Point(scene, law) for scene in scenes]
     columns = {name: np.array([row.columns[name] for row in rows]) for name in rows[0].columns}
     columns["seconds"] = np.full(len(rows), (time.perf_counter() - start) / len(rows))
     for row in rows:
@@ -55,8 +58,8 @@ def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
 class _Point:
     """One scene of prescribed slip and its answer."""
 
-    def __init__(self, scene: Scene, coefficient: float) -> None:
-        self.motion, self.belt_speed, self.coefficient = scene.motion(), scene.belt_speed, coefficient
+    def __init__(self, scene: Scene, law: FrictionLaw) -> None:
+        self.motion, self.belt_speed, self.law = scene.motion(), scene.belt_speed, law
         self.planar = scene.transverse_slip is not None
         self.along, self.across = self.motion.velocity, self.motion.transverse_velocity
         self.status: Status = "ok"
@@ -66,18 +69,19 @@ class _Point:
     def _answer(self) -> dict[str, float]:
         if self.belt_speed == 0.0 and self.along == 0.0 and self.across == 0.0:
             return self._no_slip()
-        edges = self._edges()
-        found = _integrals(self.motion, self.belt_speed, edges)
-        mean, error = complex(-found.mean), 8.0 * EPSILON
-        if self.across == 0.0:
-            mean = complex(self._along_the_belt(), 0.0)
+        edges = slip_edges(self.motion, self.belt_speed)
+        found = integrals(self.motion, self.belt_speed, self.law, edges)
+        rounding = EPSILON * found.largest
+        mean, error = -found.mean, 8.0 * rounding
+        if self.across == 0.0 and self.law.constant_sliding_friction():
+            mean = complex(found.largest * self._along_the_belt(), 0.0)
             self.model = "closed form: slip prescribed along the belt"
         elif self.belt_speed == 0.0:
             mean = 0j
             self.model = "closed form: each half period of slip undoes the other"
         else:
-            finer = _integrals(self.motion, self.belt_speed, _halved(edges))
-            error = 4.0 * abs(finer.mean - found.mean) + 64.0 * EPSILON
+            finer = integrals(self.motion, self.belt_speed, self.law, halved(edges))
+            error = 4.0 * abs(finer.mean - found.mean) + 64.0 * rounding
             self.model = "prescribed slip: Gauss-Lobatto quadrature, panels graded towards slow slip"
             self.error_kind = "estimated"
         return self._row(mean, error, found)
@@ -92,21 +96,22 @@ class _Point:
         self.status, self.error_kind = "not_unique", ""
         self.model = "closed form"
         self.reason = "nothing moves: friction at rest may be anything up to mu"
-        nothing = dict.fromkeys(self._row(0j, 0.0, Integrals(0j, 0.0, 0.0)), math.nan)
-        return nothing | {"mean_low": -self.coefficient, "mean_high": self.coefficient, "window": 1.0}
+        nothing = dict.fromkeys(self._row(0j, 0.0, Integrals(0j, 0.0, 0.0, 0.0)), math.nan)
+        most = _friction_at_rest(self.law)
+        return nothing | {"mean_low": -most, "mean_high": most, "window": 1.0}
 
     def _row(self, mean: complex, error: float, found: Integrals) -> dict[str, float]:
         """Every column that applies; nothing is driven or damped, so no energy is put in or lost to viscosity."""
-        force = self.coefficient * self.motion.normal_load
+        load = self.motion.normal_load
         turns = 2.0 if abs(self.belt_speed) < abs(self.along) else 0.0
         nan, a, c = math.nan, abs(self.along), abs(self.across)
         return {
-            "mean_friction": self.coefficient * mean.real,
-            "error": self.coefficient * error,
+            "mean_friction": mean.real,
+            "error": error,
             "mean_low": nan,
             "mean_high": nan,
             "window": nan,
-            "mean_friction_transverse": self.coefficient * mean.imag if self.planar else nan,
+            "mean_friction_transverse": mean.imag if self.planar else nan,
             "velocity_amplitude": a,
             "velocity_harmonic": a,
             "velocity_phase": nan,
@@ -118,28 +123,34 @@ class _Point:
             "force_reversals": turns,
             "energy_input": nan,
             "energy_viscous": nan,
-            "energy_friction": force * found.taken,
-            "energy_contact": force * found.contact,
+            "energy_friction": load * found.taken,
+            "energy_contact": load * found.contact,
             "period": 1.0,
             "floquet": nan,
         }
 
-    def _edges(self) -> Floats:
-        """Angles between which the friction is analytic far enough around every panel."""
-        return _graded_circle(slow_passages(self.along, self.across, self.belt_speed))
-
     def orbit(self) -> Orbit | None:
         """The prescribed motion and the friction along it."""
-        if self.status != "ok":
-            return None
-        edges = self._edges()
-        edges = np.unique(np.concatenate(([0.0, 2.0 * math.pi], edges % (2.0 * math.pi))))
-        angle, _ = _nodes(edges)
-        turn = np.exp(1j * angle)
-        v = (self.along * turn).imag + 1j * (self.across * turn).imag
-        x = -((self.along * turn).real + 1j * (self.across * turn).real) / self.motion.frequency
-        friction = self.coefficient * _direction(v - self.belt_speed)
-        return Orbit(angle / self.motion.frequency, x, v, friction, np.zeros(len(angle), np.bool_))
+        return orbit_of_slip(self.motion, self.belt_speed, self.law, 0j) if self.status == "ok" else None
+
+
+def _friction_at_rest(law: FrictionLaw) -> float:
+    return law.static_friction() if isinstance(law, SlidingLaw) else law.sliding_friction(0.0)
+
+
+def orbit_of_slip(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:
+    """One period of a harmonic motion about a mean position, and the friction along it."""
+    edges = slip_edges(motion, belt_speed)
+    angle, _ = nodes(np.unique(np.concatenate(([0.0, 2.0 * math.pi], edges % (2.0 * math.pi)))))
+    v, turn = velocity(motion, angle), np.exp(1j * angle)
+    x = -((motion.velocity * turn).real + 1j * (motion.transverse_velocity * turn).real) / motion.frequency
+    friction = sliding_vectors(law, v - belt_speed)
+    return Orbit(angle / motion.frequency, position + x, v, friction, np.zeros(len(angle), np.bool_))
+
+
+def slip_edges(motion: Motion, belt_speed: float) -> Floats:
+    """Angles between which the friction is analytic far enough around every panel."""
+    return graded_circle(slow_passages(motion.velocity, motion.transverse_velocity, belt_speed))
 
 
 def slow_passages(along: complex, across: complex, belt_speed: float) -> list[tuple[float, float]]:
@@ -157,7 +168,7 @@ def slow_passages(along: complex, across: complex, belt_speed: float) -> list[tu
     return [(cmath.phase(z), abs(math.log(abs(z)))) for z in zeros]
 
 
-def _graded_circle(passages: list[tuple[float, float]]) -> Floats:
+def graded_circle(passages: list[tuple[float, float]]) -> Floats:
     """Panel edges once around, from the first passage on, refined geometrically towards each."""
     places = sorted((angle % (2.0 * math.pi), depth) for angle, depth in passages) or [(0.0, math.inf)]
     following = [*places[1:], (places[0][0] + 2.0 * math.pi, places[0][1])]
@@ -177,28 +188,39 @@ def _graded(length: float, depth: float) -> Floats:
     return np.array(ends)
 
 
-def _halved(edges: Floats) -> Floats:
+def halved(edges: Floats) -> Floats:
+    """The panels cut in two."""
     return np.unique(np.concatenate((edges, 0.5 * (edges[1:] + edges[:-1]))))
 
 
-def _nodes(edges: Floats) -> tuple[Floats, Floats]:
+def nodes(edges: Floats) -> tuple[Floats, Floats]:
+    """Gauss-Lobatto nodes and weights of every panel."""
     half = 0.5 * np.diff(edges)[:, None]
     return edges[:-1, None] + half * (1.0 + NODES), half * WEIGHTS
 
 
-def _direction(slip: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """Unit vectors; zero at rest, which is an instant without duration."""
-    speed = np.abs(slip)
-    return slip / np.where(speed > 0.0, speed, 1.0)
-
-
-def _integrals(motion: Motion, belt_speed: float, edges: Floats) -> Integrals:
-    angle, weights = _nodes(edges)
+def velocity(motion: Motion, angle: Floats) -> NDArray[np.complex128]:
+    """x1' + i x2' at these angles of the period."""
     turn = np.exp(1j * angle)
-    v = (motion.velocity * turn).imag + 1j * (motion.transverse_velocity * turn).imag
+    return (motion.velocity * turn).imag + 1j * (motion.transverse_velocity * turn).imag
+
+
+def sliding_vectors(law: FrictionLaw, slip: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """The friction that resists each slip; zero at rest, which is an instant without duration."""
+    if law.constant_sliding_friction():
+        speed = np.abs(slip)
+        return law.sliding_friction(1.0) * (slip / np.where(speed > 0.0, speed, 1.0))
+    values = [law.sliding_vector(one) if one else 0j for one in slip.ravel().tolist()]
+    return np.array(values).reshape(slip.shape)
+
+
+def integrals(motion: Motion, belt_speed: float, law: FrictionLaw, edges: Floats) -> Integrals:
+    """Quadrature over one period with these panels."""
+    angle, weights = nodes(edges)
+    v = velocity(motion, angle)
     slip = v - belt_speed
-    direction = _direction(slip)
-    mean = complex((weights * direction).sum() / (2.0 * math.pi))
-    contact = float((weights * np.abs(slip)).sum()) / motion.frequency
-    taken = float((weights * (direction * v.conjugate()).real).sum()) / motion.frequency
-    return Integrals(mean, contact, taken)
+    friction = sliding_vectors(law, slip)
+    mean = complex((weights * friction).sum() / (2.0 * math.pi))
+    contact = float((weights * (friction * slip.conjugate()).real).sum()) / motion.frequency
+    taken = float((weights * (friction * v.conjugate()).real).sum()) / motion.frequency
+    return Integrals(mean, contact, taken, float(np.abs(friction).max()))

@@ -2,38 +2,44 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from frictionlab.kernel import compiled, timed
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.methods.attractors import attractors, closed_orbit, multiplier, told
 from frictionlab.methods.base import Answers, Floats, Method, Orbit, Status
-from frictionlab.methods.curve import MOST_PERIODS, Curve, answer_curve, settle
+from frictionlab.methods.closer import Closer
+from frictionlab.methods.curve import MOST_PERIODS, Curve
+from frictionlab.methods.limit_cycle import solve_undriven
+from frictionlab.methods.prescribed import solve_prescribed
 from frictionlab.orbit import READ
-from frictionlab.scene import Body, Scene, in_the_plane, on_the_line
+from frictionlab.scene import Scene
 
 
 class Shooting(Method):
-    """Shooting on the period map of any constant sliding law, on the line and in the plane.
+    """Shooting on the period map of any sliding law, on the line and in the plane.
 
-    Accepts sliding laws of constant friction (Coulomb) on scenes of one and two degrees of freedom. Integrates
-    the deviation from the friction-free response by DOP853 (Hairer, Norsett & Wanner, 1993) with the instants
-    of stick and release resolved, and closes the orbit by Broyden's method (1965) with Newton and Picard steps
-    where it stalls. The error comes from a last map sixteen times finer: what it leaves open, carried to the
-    mean by the contraction of monotone friction.
+    Integrates the deviation from the friction-free response by DOP853 (Hairer, Norsett & Wanner, 1993) with the
+    instants of stick and release resolved, and closes the orbit by Broyden's method (1965) with Newton and Picard
+    steps where it stalls. The error comes from a last map sixteen times finer: what it leaves open, carried to the
+    mean by the contraction of monotone friction, or by the mean's own change where friction falls with speed.
+    There the orbit must attract, and three starts must reach it; otherwise the mean is not unique. Without a drive
+    the period is an unknown too, and the answer is the state reached from scene.initial. A prescribed slip leaves
+    nothing to close: its mean is quadrature.
     """
 
     name: ClassVar[str] = "shooting"
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Why not: prescribed slip, friction that varies with speed or remembers, no damping across the belt."""
-        if scene.degrees_of_freedom == 0:
-            return "shooting closes an orbit of the mass, and a prescribed slip leaves it none; use exact"
-        if not (isinstance(law, SlidingLaw) and law.constant_sliding_friction() and law.monotone()):
-            return "shooting needs a sliding law of constant friction (Coulomb)"
+        """Friction with memory; an undriven start across the belt."""
+        if not isinstance(law, SlidingLaw):
+            return "shooting needs friction without memory (a sliding law)"
+        if scene.undriven and (scene.start.x2 != 0.0 or scene.start.velocity2 != 0.0):
+            return "undriven scenes are followed along the belt alone: leave initial.x2 and velocity2 at 0"
         return None
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
@@ -42,13 +48,22 @@ class Shooting(Method):
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer a curve by continuation in belt speed."""
-        found = Found.empty(len(scenes))
+        assert isinstance(law, SlidingLaw)
+        if scenes[0].degrees_of_freedom == 0:
+            return solve_prescribed(scenes, law, tolerance)
+        if scenes[0].undriven:
+            return solve_undriven(scenes, law, tolerance)
+        closer = Closer(scenes[0], law, tolerance)
+        found = Found.empty(scenes)
         resting = [i for i, scene in enumerate(scenes) if stays_at_rest(scene, law)]
         moving = [i for i in range(len(scenes)) if i not in resting]
         if moving:
-            found.take(moving, scenes[0], *_answered([scenes[i] for i in moving], law, None, tolerance))
+            found.take(moving, scenes[0], *closer.closed([scenes[i] for i in moving]))
+        for i in moving if not closer.goal.contracts else ():
+            found.hold_to_other_starts(i, closer, scenes[i])
         for i in resting:
-            settled = _settled(scenes[i], law) if scenes[i].initial is not None else None
+            start = scenes[i].initial
+            settled = closer.settled(start) if start is not None else None
             if settled is None:
                 found.leave_open(i, resting_range(scenes[i], law))
             elif settled[1] < 0:
@@ -56,7 +71,7 @@ class Shooting(Method):
                     f"started from scene.initial the mass still creeps after {MOST_PERIODS} periods"
                 )
             else:
-                found.take([i], scenes[i], *_answered([scenes[i]], law, settled[0], tolerance))
+                found.take([i], scenes[i], *closer.closed([scenes[i]], settled[0]))
                 found.columns["error"][i] += 1e-11 * settled[1]  # of the steps on the way there
                 found.reason[i] = "the state reached from scene.initial; other starts come to rest elsewhere"
         found.judge(tolerance)
@@ -66,7 +81,7 @@ class Shooting(Method):
             [_model(scenes[0])] * len(scenes),
             ["estimated" if status == "ok" else "" for status in found.status],
             found.columns,
-            lambda i: _orbit(scenes[i], law, found.states[i], tolerance),
+            lambda i: _orbit(closer, scenes[i], found.states[i]),
         )
 
 
@@ -78,13 +93,16 @@ class Found:
     reason: list[str]
     states: list[Floats | None]
     columns: dict[str, Floats]
+    planar: bool
 
     @classmethod
-    def empty(cls, n: int) -> Found:
-        """Nothing found yet for n scenes."""
+    def empty(cls, scenes: Sequence[Scene]) -> Found:
+        """Nothing found yet for these scenes."""
+        n = len(scenes)
         names = [name for name in READ if not name.startswith("mean_position")]
         names += ["error", "mean_low", "mean_high", "window", "period", "floquet", "seconds"]
-        return cls(["failed"] * n, [""] * n, [None] * n, {name: np.full(n, np.nan) for name in names})
+        columns = {name: np.full(n, np.nan) for name in names}
+        return cls(["failed"] * n, [""] * n, [None] * n, columns, scenes[0].degrees_of_freedom == 2)
 
     def take(self, where: list[int], scene: Scene, curve: Curve, seconds: float) -> None:
         """Take in the closed orbits of the scenes at these places."""
@@ -105,6 +123,35 @@ class Found:
                     multipliers[row] if curve.states.shape[1] == _size(scene) else np.nan
                 )
 
+    def hold_to_other_starts(self, i: int, closer: Closer, scene: Scene) -> None:
+        """Keep an answer only where three starts reach it; else the one reached from scene.initial, or none."""
+        known = None
+        if self.states[i] is not None:
+            curve, _ = closer.closed([scene], self.states[i])
+            known = closed_orbit(curve, curve.results[0, :1])
+        reached, seconds = attractors(closer, scene, known)
+        self.columns["seconds"][i] += seconds
+        first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
+        self._clear(i)
+        if first.period == 1 and first.curve is not None and (unique or scene.initial is not None):
+            self._put(i, first.curve, 0)
+            self.columns["floquet"][i] = _largest(first.curve, scene)
+            self.reason[i] = "" if unique else f"reached from scene.initial; {told(reached)}"
+            return
+        self._range(i, min(one.low for one in reached), max(one.high for one in reached))
+        self.reason[i] = (
+            f"friction falls with speed, and the motion is no simple answer to the drive: {told(reached)}"
+        )
+        if unique and first.curve is not None:
+            self.columns["period"][i] = first.period
+            self.columns["floquet"][i] = _largest(first.curve, scene)
+
+    def _clear(self, i: int) -> None:
+        self.status[i], self.reason[i], self.states[i] = "failed", "", None
+        for name, column in self.columns.items():
+            if name != "seconds":
+                column[i] = np.nan
+
     def leave_open(self, i: int, highest: float) -> None:
         """A mass that can rest for ever on a belt at rest: where it rests depends on where it starts."""
         self._range(i, -highest, highest)
@@ -120,10 +167,11 @@ class Found:
 
     def _put(self, i: int, curve: Curve, row: int) -> None:
         for name, value in zip(READ, curve.columns[row], strict=True):
-            if name in self.columns:
+            if name in self.columns and (self.planar or "transverse" not in name):
                 self.columns[name][i] = value
         mean, across, error = curve.results[row, :3]
-        self.columns["mean_friction"][i], self.columns["mean_friction_transverse"][i] = mean, across
+        self.columns["mean_friction"][i] = mean
+        self.columns["mean_friction_transverse"][i] = across if self.planar else math.nan
         self.columns["error"][i], self.columns["period"][i] = error, 1.0
         self.status[i], self.states[i] = "ok", curve.states[row]
 
@@ -135,19 +183,19 @@ class Found:
                 self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
 
 
-def stays_at_rest(scene: Scene, law: FrictionLaw) -> bool:
+def stays_at_rest(scene: Scene, law: SlidingLaw) -> bool:
     """Whether friction can hold the loads for ever on a belt at rest."""
     return scene.belt_speed == 0.0 and resting_range(scene, law) >= 0.0
 
 
-def resting_range(scene: Scene, law: FrictionLaw) -> float:
+def resting_range(scene: Scene, law: SlidingLaw) -> float:
     """The largest mean friction coefficient of a mass at rest on a belt at rest; negative where none can rest.
 
     The spring holds k, friction the rest of the load: |load - k| <= limit all the time, a convex set of k,
     symmetric about zero; the mean is k1/normal_load.
     """
     mass = scene.mass()
-    limit = mass.normal_load * law.sliding_friction(0.0)
+    limit = mass.normal_load * law.static_friction()
     angle = np.linspace(0.0, np.pi, 721)  # the other half of the ellipse of loads mirrors this one
     turn = np.exp(1j * angle)
     load = (mass.force * turn).imag + 1j * (mass.transverse_force * turn).imag
@@ -166,11 +214,9 @@ def resting_range(scene: Scene, law: FrictionLaw) -> float:
     return best / mass.normal_load
 
 
-def _body(scene: Scene) -> tuple[Body, complex]:
-    """The body, on the line where nothing pushes across the belt, and a number of the kind of its positions."""
-    if scene.load_along_belt_only:
-        return on_the_line(scene.mass()), 0.0
-    return in_the_plane(scene.mass()), 0j
+def _largest(curve: Curve, scene: Scene) -> float:
+    """The largest Floquet multiplier, where those of every degree of freedom are known."""
+    return multiplier(curve) if curve.states.shape[1] == _size(scene) else math.nan
 
 
 def _size(scene: Scene) -> int:
@@ -187,34 +233,14 @@ def _at_rest(curve: Curve, row: int) -> bool:
     return bool(curve.results[row, 4] > 1.0 - 1e-9)
 
 
-def _answered(
-    scenes: Sequence[Scene], law: FrictionLaw, state: Floats | None, tolerance: float
-) -> tuple[Curve, float]:
-    """The curve through these scenes, from a known state at the first where there is one; and kernel time [s]."""
-    body, like = _body(scenes[0])
-    belt_speeds = np.array([scene.belt_speed for scene in scenes])
-    guess = np.empty((0, 0)) if state is None else state[None, :]
-    return timed(compiled(answer_curve, law), body, scenes[0].mass(), belt_speeds, guess, tolerance, like)
-
-
-def _settled(scene: Scene, law: FrictionLaw) -> tuple[Floats, int]:
-    """The state reached from scene.initial on a belt at rest, and in how many periods; -1 for never."""
-    body, like = _body(scene)
-    start = scene.initial
-    assert start is not None
-    x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)
-    x, v = (x, v) if isinstance(like, complex) else (x.real, v.real)
-    return compiled(settle, law)(body, x, v, 1e-13 * scene.mass().normal_load)
-
-
 def _model(scene: Scene) -> str:
     if scene.degrees_of_freedom == 2 and scene.load_along_belt_only:
         return "shooting, one degree of freedom: with no load across the belt x2 dies out"
     return f"shooting, {'two degrees' if scene.degrees_of_freedom == 2 else 'one degree'} of freedom"
 
 
-def _orbit(scene: Scene, law: FrictionLaw, state: Floats | None, tolerance: float) -> Orbit | None:
+def _orbit(closer: Closer, scene: Scene, state: Floats | None) -> Orbit | None:
     if state is None:
         return None
-    track = _answered([scene], law, state, tolerance)[0].last
+    track = closer.closed([scene], state)[0].last
     return Orbit(track.tau, track.x, track.v, track.friction, track.stick)

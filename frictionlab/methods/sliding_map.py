@@ -18,8 +18,10 @@ from frictionlab.methods.steppers.dop853 import State, stepper
 from frictionlab.orbit import NODES
 from frictionlab.scene import Body
 from frictionlab.scene import restoring_force as _restoring_force
+from frictionlab.scene import span as _span
 
 restoring_force = fast(_restoring_force)
+span = fast(_span)
 
 
 class Problem(NamedTuple):
@@ -35,13 +37,14 @@ class Problem(NamedTuple):
 
 
 class Mapped(NamedTuple):
-    """A state after one period, and what was met on the way."""
+    """A state after the span of the body, and what was met on the way."""
 
     y: Any
     u: Any
     rubbed: Any  # integral of the friction coefficient
     stuck: float  # time at rest
     closest: float  # smallest slip speed at a node
+    released: float  # when rest ended last; -1: never
     steps: int  # -1: gave up
 
 
@@ -203,11 +206,11 @@ def _stick_end(body: Body, pull: Pull, tau: float, x: Any, belt: Any, limit: flo
 @inner
 def periods_at_rest(law: Any, body: Body, belt_speed: float, y: Any) -> float:
     """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
-    pull, limit = _pull(body), body.normal_load * law.sliding_friction(0.0)
+    pull, limit = _pull(body), body.normal_load * law.static_friction()
     belt = belt_speed + 0.0 * y
-    period = 2.0 * math.pi / body.frequency
+    period = span(body)
     drift = abs(restoring_force(body, belt, 0.0 * belt)) * period
-    x, largest, samples = y + body.reference_cosine, 0.0, 128
+    x, largest, samples = y + body.reference_cosine, 0.0, int(128 * max(1.0, body.periods))
     for k in range(samples):
         tau = k * period / samples
         held, _rate, _bend = _held(body, pull, tau, x + tau * belt, belt)
@@ -225,25 +228,30 @@ class Start(NamedTuple):
     path: Any
 
 
-def _start_on_the_line(
-    body: Body, accuracy: float, limit: float, rate: float, bend: float, held: float
-) -> Start:
+def _start_on_the_line(law: Any, body: Body, accuracy: float, rate: float, bend: float, held: float) -> Start:
     """Nothing is singular on the line: the leg starts from rest."""
     return Start(0.0, 0.0, 0.0)
 
 
 def _start_in_the_plane(
-    body: Body, accuracy: float, limit: float, rate: complex, bend: complex, held: complex
+    law: Any, body: Body, accuracy: float, rate: complex, bend: complex, held: complex
 ) -> Start:
-    """Slip sets off along the held force; where that is at the limit, it grows with the square of time.
+    """Slip sets off along the held force; where that is at the limit of slip, it grows with the square of time.
 
     Then it lags behind the force that turns: slip = b2 t^2 + b3 t^3 + ..., from the expansion of the equation
-    of motion; the series carries the step control beyond the singular instant.
+    of motion; the series carries the step control beyond the singular instant. It takes friction as constant,
+    and ends before a law that falls has fallen by more than the accuracy bears.
     """
+    limit = body.normal_load * law.sliding_friction(0.0)
     excess = abs(held) - limit
     along = held / abs(held)
     if excess > 1e-6 * limit:
         t = min(1e-3, math.sqrt(0.01 * accuracy * excess) / (excess + abs(rate) + limit * body.frequency))
+        while (
+            t > 1e-12
+            and t * abs(limit - body.normal_load * law.sliding_friction(excess * t)) > 0.1 * accuracy
+        ):
+            t *= 0.5
         return Start(t, along * excess * t, 0.5 * along * excess * t * t)
     first = rate * along.conjugate()
     b2 = 0.5 * first.real
@@ -255,6 +263,8 @@ def _start_in_the_plane(
     b4 = complex(0.0, b2 * (second.imag - 3.0 * b3.imag) / limit + b3.real * turn)
     quick = body.frequency + math.sqrt(body.stiffness_mean + abs(body.stiffness_split))
     t = min(0.01 / quick, (0.1 * accuracy / (b2 * quick**2)) ** 0.25)
+    while t > 1e-12 and t * abs(limit - body.normal_load * law.sliding_friction(b2 * t * t)) > 0.1 * accuracy:
+        t *= 0.5
     w = along * (t * (excess + t * (b2 + t * (b3 + t * b4))))
     return Start(t, w, along * (t * t * (excess / 2.0 + t * (b2 / 3.0 + t * (b3 / 4.0 + t * b4 / 5.0)))))
 
@@ -279,7 +289,7 @@ def _rest(law: Any, body: Body, belt_speed: float, tau: float, x: Any, accuracy:
     """From rest at tau, x until slip begins, or until the end of the period."""
     belt = belt_speed + 0.0 * x
     pull = _pull(body)
-    limit = body.normal_load * law.sliding_friction(0.0)
+    limit = body.normal_load * law.static_friction()
     held, rate, bend = _held(body, pull, tau, x, belt)
     start, stuck, rubbed = tau, 0.0, 0.0 * x
     rising = (rate * held.conjugate()).real > 0.0
@@ -293,7 +303,7 @@ def _rest(law: Any, body: Body, belt_speed: float, tau: float, x: Any, accuracy:
         if tau >= end:
             return Rest(tau, x, 0.0 * x, 0.0, rubbed, stuck, 0.0 * x)
     side = 1.0 if held.real > 0.0 else -1.0
-    t, w, path = _start(body, accuracy, limit, rate, bend, held)
+    t, w, path = _start(law, body, accuracy, rate, bend, held)
     pulled = _held_impulse(body, pull, tau, tau + t, x, belt) - restoring_force(body, 0.0 * x, path) - w
     pulled = pulled / body.normal_load
     return Rest(tau + t, x + t * belt + path, w, side, rubbed + pulled, stuck, pulled)
@@ -313,7 +323,10 @@ class Node(NamedTuple):
 
 
 class Landing(NamedTuple):
-    """A verdict on a step (or the wait until rest): repeat it with h, accept it, or rest after h; and its end."""
+    """A verdict on a step (or the wait until rest) and its end.
+
+    Repeat it with h, accept it, rest after h, or accept it with the slip still lost in the rounding of the velocity.
+    """
 
     verdict: int
     h: float
@@ -321,7 +334,7 @@ class Landing(NamedTuple):
     rubbed: Any
 
 
-REPEAT, ACCEPT, REST = 0, 1, 2
+REPEAT, ACCEPT, REST, STILL = 0, 1, 2, 3
 
 
 @inner
@@ -378,6 +391,12 @@ def _dips(w0: complex, rate0: complex, w1: complex, rate1: complex, h: float) ->
     return False
 
 
+@inner
+def _state(problem: Problem, tau: float, y: Any, u: Any) -> State:
+    a, f = rates(problem, tau, y, u)
+    return State(y, u, a, f)
+
+
 def _before_on_the_line(problem: Problem, node: Node, accuracy: float, h: float, y: float) -> Landing:
     return Landing(ACCEPT, h, node.state, y)
 
@@ -414,6 +433,8 @@ def _after_on_the_line(
     """Whether the slip velocity passed through zero, between the nodes included."""
     side, state, limit = problem.side, node.state, h
     after = side * slip(problem, node.tau + h, taken.v)
+    if after <= 0.0 and leaving and after >= -1e-15 * (abs(taken.v) + abs(problem.belt_speed)):
+        return Landing(STILL, h, _state(problem, node.tau + h, taken.x, taken.v), taken.rubbed)
     if after <= 0.0 and leaving:
         return Landing(REPEAT if h * problem.body.frequency > 1e-12 else REST, 0.25 * h, state, 0.0)
     a, f = rates(problem, node.tau + h, taken.x, taken.v)
@@ -543,43 +564,39 @@ def _note_hop(
 
 
 @inner
-def _state(problem: Problem, tau: float, y: Any, u: Any) -> State:
-    a, f = rates(problem, tau, y, u)
-    return State(y, u, a, f)
-
-
-@inner
 def period_map(
     law: Any, body: Body, belt_speed: float, y: Any, u: Any, accuracy: float, track: Track
 ) -> Mapped:
-    """One period from the deviation (y, u) at tau = 0; accuracy is each step's, in the norm of energy.
+    """One span from the deviation (y, u) at tau = 0; accuracy is each step's, in the norm of energy.
 
     On a track with room every piece of the way is noted.
     """
-    end = 2.0 * math.pi / body.frequency
+    end = span(body)
     room = track.stick.size
     reach = _reach(body, law.sliding_friction(0.0), accuracy)
     tau, h, steps = 0.0, 0.1 * reach, 0
-    rubbed, stuck, closest = 0.0 * y, 0.0, 1e300
+    rubbed, stuck, closest, released = 0.0 * y, 0.0, 1e300, -1.0
     w = slip(_anchored(law, body, belt_speed, 1.0, 0.0), 0.0, u)
     problem = _anchored(law, body, belt_speed, 1.0 if w.real > 0.0 else -1.0, 0.0)
     resting, leaving = abs(w) <= 1e-2 * accuracy, False
     state = State(y, u, u, u)
     if not resting:
         state = _state(problem, tau, y, u)
-    while tau < end:
+    while end - tau > 4e-15 * end:  # slip cannot get away from rest in less
         if resting:
             rest = _rest(law, body, belt_speed, tau, state.x + _reference(body, tau), accuracy, end)
             rubbed = rubbed + rest.rubbed
             stuck += rest.stuck
             if room > 0:
-                x, released = state.x + _reference(body, tau), tau + rest.stuck
+                x, slips = state.x + _reference(body, tau), tau + rest.stuck
                 if rest.stuck > 0.0:
-                    _note_stick(track, problem, tau, released, x)
-                if rest.tau > released:
-                    rub = rest.pulled / (rest.tau - released)
+                    _note_stick(track, problem, tau, slips, x)
+                if rest.tau > slips:
+                    rub = rest.pulled / (rest.tau - slips)
                     x = x + rest.stuck * belt_speed
-                    _note_hop(track, problem, released, rest.tau, x, 0.0 * rest.w, rest.w, rub)
+                    _note_hop(track, problem, slips, rest.tau, x, 0.0 * rest.w, rest.w, rub)
+            if rest.stuck > 0.0 and rest.tau < end:
+                released = tau + rest.stuck
             tau, resting, leaving, closest = rest.tau, False, True, 0.0
             problem = _anchored(law, body, belt_speed, rest.side, tau)
             u = rest.w + belt_speed - _reference_velocity(body, problem.sine, problem.cosine)
@@ -603,7 +620,7 @@ def period_map(
             steps += 1
             growth = _growth(body, taken, accuracy)
             if steps > MOST_STEPS:
-                return Mapped(state.x, state.v, rubbed, stuck, closest, -1)
+                return Mapped(state.x, state.v, rubbed, stuck, closest, released, -1)
             if growth < 1.0:
                 h = h * growth
                 continue
@@ -614,8 +631,8 @@ def period_map(
             if room > 0:
                 _note_slip(track, problem, node, done.h)
             h = h * growth
-        resting, leaving = done.verdict == REST, False
+        resting, leaving = done.verdict == REST, done.verdict == STILL
         rubbed = rubbed + done.rubbed
         state = done.end
         tau = tau + done.h if end - tau > done.h else end
-    return Mapped(state.x, state.v, rubbed, stuck, closest, steps)
+    return Mapped(state.x, state.v, rubbed, stuck, closest, released, steps)

@@ -11,8 +11,7 @@ from frictionlab.study.mistakes import Path, described, did_you_mean
 from frictionlab.study.notes import Notes
 from frictionlab.study.record import LawChoice, MethodChoice
 
-LAWS_TO_COME = ("stribeck", "dahl", "jenkins", "lugre", "elasto-plastic", "dupont")
-METHODS_TO_COME = ("mdsm", "harmonic_balance", "march")
+LAWS_TO_COME = ("dahl", "jenkins", "lugre", "elasto-plastic", "dupont")
 
 
 def items(given: Any, path: Path, example: str, notes: Notes) -> list[Any]:
@@ -41,7 +40,7 @@ def law_choice(given: Any, path: Path, notes: Notes) -> LawChoice | None:
 
 def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:
     """One method, by its name or with parameters; None, noted, where there is a mistake."""
-    named = _named("method", registry.method_names(), METHODS_TO_COME, notes)
+    named = _named("method", registry.method_names(), (), notes)
     if not isinstance(given, dict):
         name = named(given, path)
         return None if name is None else MethodChoice(name, name, {})

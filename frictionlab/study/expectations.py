@@ -11,20 +11,24 @@ from frictionlab.study.mistakes import Path, described, did_you_mean
 from frictionlab.study.notes import Notes
 from frictionlab.study.record import Expectation
 
-KEYS = ("where", "column", "equals", "below", "above", "within", "status", "max_difference", "because")
-_NOT_YET = ("shape", "measure")
+KEYS = (
+    *("where", "column", "equals", "below", "above", "within"),
+    *("status", "max_difference", "shape", "measure", "because"),
+)
 _COMPARISONS = ("equals", "below", "above")
 
 
 @dataclass(frozen=True)
 class Table:
-    """What the table of a study will hold: text columns with their values, number columns by name.
+    """What the table of a study will hold: text inputs with their values, number inputs, result columns, sweeps.
 
     The values of a text column are None where they are not known for certain.
     """
 
     texts: Mapping[str, tuple[str, ...] | None]
     numbers: tuple[str, ...]
+    results: tuple[str, ...]
+    swept: tuple[str, ...] = ()
 
 
 def expectations(given: Any, table: Table, notes: Notes) -> tuple[Expectation, ...]:
@@ -40,12 +44,10 @@ def _expectation(given: Any, path: Path, table: Table, notes: Notes) -> Expectat
     if notes.mapping(given, path) is None:
         return None
     for key in given:
-        if key in _NOT_YET:
-            notes.on_key((*path, key), "not available yet")
-        elif key not in KEYS:
+        if key not in KEYS:
             notes.unknown_key((*path, key), KEYS)
     where = _where(given.get("where", {}), (*path, "where"), table, notes)
-    said = _claim(given, path, table, notes) if not any(key in given for key in _NOT_YET) else {}
+    said = _claim(given, path, table, notes)
     if "because" in given:
         said["because"] = notes.text(given["because"], (*path, "because"))
     return None if notes.below(path) else Expectation(where=where, **said)
@@ -74,12 +76,14 @@ def _known_text(value: Any, path: Path, known: tuple[str, ...] | None, notes: No
 
 
 def _claim(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
-    """What is claimed of the rows: a number, a status, or a difference of two methods."""
+    """What is claimed of the rows: a number, a status, a difference of two methods, or the shape of a curve."""
     if "status" in given:
         return _status(given, path, notes)
     if "max_difference" in given:
         return _difference(given, path, table, notes)
-    return _comparison(given, path, notes)
+    if "shape" in given:
+        return _shape(given, path, table, notes)
+    return _comparison(given, path, table, notes)
 
 
 def _status(given: dict[str, Any], path: Path, notes: Notes) -> dict[str, Any]:
@@ -101,12 +105,29 @@ def _difference(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
     return {"max_difference": tuple(labels), "below": below}
 
 
-def _comparison(given: dict[str, Any], path: Path, notes: Notes) -> dict[str, Any]:
+def _shape(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
+    """A verdict on whole curves, which no belt speed can pick."""
+    _only(given, ("shape", "measure"), path, notes)
+    where = given.get("where")
+    for key in where if isinstance(where, dict) else ():
+        if key in columns.BELT_SPEEDS:
+            notes.on_key((*path, "where", key), "a shape belongs to a whole curve: leave the belt speed out")
+    if not any(name in columns.BELT_SPEEDS for name in table.swept):
+        speed = columns.belt_speed(table.numbers)
+        notes.on_key((*path, "shape"), f"a shape needs a curve: sweep {speed}")
+    measure = notes.one_of(given.get("measure", "area"), (*path, "measure"), tuple(columns.SHAPES))
+    shapes = columns.SHAPES.get(str(measure), columns.SHAPES["area"])
+    return {"shape": notes.one_of(given["shape"], (*path, "shape"), shapes), "measure": measure}
+
+
+def _comparison(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
+    if "measure" in given:
+        notes.on_key((*path, "measure"), "goes with shape")
     column = None
     if "column" not in given:
-        notes.add((*path, "column"), "required key is missing (or give status, or max_difference)")
+        notes.add((*path, "column"), "required key is missing (or give status, max_difference or shape)")
     else:
-        column = _column(given["column"], (*path, "column"), notes)
+        column = _column(given["column"], (*path, "column"), table, notes)
     chosen = [key for key in _COMPARISONS if key in given]
     if len(chosen) != 1:
         notes.add(path, f"give exactly one of equals, below and above, got {' and '.join(chosen) or 'none'}")
@@ -116,10 +137,12 @@ def _comparison(given: dict[str, Any], path: Path, notes: Notes) -> dict[str, An
     return {"column": column, **said}
 
 
-def _column(given: Any, path: Path, notes: Notes) -> str | None:
-    if not isinstance(given, str) or given not in columns.RESULTS:
-        hint = did_you_mean(given, columns.RESULTS) if isinstance(given, str) else ""
-        notes.add(path, f"must be a result column, got {described(given)}", hint)
+def _column(given: Any, path: Path, table: Table, notes: Notes) -> str | None:
+    if not isinstance(given, str) or given not in table.results:
+        hint = did_you_mean(given, table.results) if isinstance(given, str) else ""
+        in_si = given in columns.SI if isinstance(given, str) else False
+        needed = " (this one needs a scene given in SI units: scene.dimensional)" if in_si else ""
+        notes.add(path, f"must be a result column, got {described(given)}{needed}", "" if in_si else hint)
         return None
     if given in columns.TEXT:
         notes.add(path, f"'{given}' holds text; only numbers can be compared")

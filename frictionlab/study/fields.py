@@ -109,7 +109,10 @@ class _Check:
             part = nested(record, key)
             if tree[key] is None:
                 self._note((*inside, key), f"must be {'a mapping' if part else 'a number'}, got null")
-                del tree[key]
+                if part is None:
+                    del tree[key]
+                else:
+                    tree[key] = _ones(part)
             elif part and isinstance(tree[key], dict):
                 self._drop_nulls(tree[key], part, (*inside, key))
 
@@ -123,17 +126,19 @@ class _Check:
             return self._filled(inside)
         if error["type"] in ("model_type", "model_attributes_type", "dict_type"):
             self._note(inside, f"must be a mapping (key: value), got {described(error['input'])}")
-            return self._dropped(inside)
+            return self._replaced(inside)
         if error["type"] == "value_error" and isinstance(error["input"], dict):
-            return any([self._rule(part, what) for part, what in self._said(inside, _message(error))])
+            return any([self._rule(inside, part, what) for part, what in self._said(inside, _message(error))])
         self._note(inside, _in_words(error))
         return self._filled(inside)
 
-    def _rule(self, inside: Path, what: str) -> bool:
-        """A rule between several keys, or a key whose time has not come."""
+    def _rule(self, whole: Path, inside: Path, what: str) -> bool:
+        """A rule of a record about itself as a whole or one of its keys, such as one whose time has not come."""
         required = what.startswith("required")
         self._note(inside, what.replace("required", "required key is missing", 1) if required else what)
-        return self._filled(inside) if required else self._dropped(inside)
+        if required:
+            return self._filled(inside)
+        return self._replaced(inside) if inside == whole else self._dropped(inside)
 
     def _said(self, inside: Path, message: str) -> list[tuple[Path, str]]:
         """The paths a record's own message speaks of, written ``path: what; path: what``."""
@@ -180,12 +185,29 @@ class _Check:
         tree[inside[-1]] = 1.0
         return True
 
+    def _replaced(self, inside: Path) -> bool:
+        """Put in a record of ones for one that cannot be used: other parts may ask only whether it is there."""
+        parent, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
+        part = nested(parent, str(inside[-1])) if inside and parent else None
+        if part is None or not isinstance(tree, dict):
+            return False
+        if tree.get(inside[-1]) == _ones(part):
+            return False
+        tree[inside[-1]] = _ones(part)
+        return True
+
     def _dropped(self, inside: Path) -> bool:
         tree = self._at(inside[:-1])
         if not inside or not isinstance(tree, dict) or inside[-1] not in tree:
             return False
         del tree[inside[-1]]
         return True
+
+
+def _ones(record: type[BaseModel]) -> dict[str, float]:
+    """A one for every number that a record requires."""
+    numbers = [key for key in number_paths(record) if key in record.model_fields]
+    return {key: 1.0 for key in numbers if record.model_fields[key].is_required()}
 
 
 def _message(error: Any) -> str:

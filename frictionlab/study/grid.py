@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from frictionlab import registry
+from frictionlab.dimensional import Dimensional
 from frictionlab.scene import Scene
 from frictionlab.study.choices import label_of, sure_law_labels
 from frictionlab.study.fields import number_paths, record_at, wrong_value
@@ -18,7 +19,8 @@ from frictionlab.study.notes import Notes
 from frictionlab.study.record import Study
 from frictionlab.study.sweep import LARGEST_GRID, sweep_values
 
-_ALTERNATIVE = {"unbalance": "amplitude", "amplitude": "unbalance"}
+_PAIRS = ("unbalance", "amplitude"), ("unbalance_kg_m", "amplitude_N"), ("gravity_m_per_s2", "normal_load_N")
+_ALTERNATIVE = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
 
 
 @dataclass
@@ -66,6 +68,11 @@ def _target(tree: dict[str, Any], key: str, notes: Notes) -> _Target | None:
 
 def _scene_target(tree: dict[str, Any], steps: list[str], path: Path, notes: Notes) -> _Target | None:
     parent: Path = ("scene", *steps[:-1])
+    if steps[0] != "dimensional" and isinstance(_at(tree, ("scene", "dimensional")), dict):
+        known = [f"scene.{value}" for value in number_paths(Dimensional, "dimensional.")]
+        hint = did_you_mean(f"scene.{'.'.join(steps)}", known)
+        notes.on_key(path, "the scene is given in SI units: sweep its values under scene.dimensional", hint)
+        return None
     within = _at(tree, parent)
     name = ".".join(map(str, parent))
     other = _ALTERNATIVE.get(steps[-1])
@@ -153,8 +160,8 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
         notes.add(("sweep",), f"the grid has {size} points, more than {LARGEST_GRID}")
         return
     _build(lambda: study.scenes, study.sweep, "scene.", notes)
-    for choice in study.laws:
-        _build(lambda law=choice: study.laws_of(law), study.sweep, f"laws.{choice.label}.", notes)  # type: ignore[misc]
+    for choice in study.laws if not notes.all else ():
+        _build(lambda law=choice: study.laws_in_scenes(law), study.sweep, f"laws.{choice.label}.", notes)  # type: ignore[misc]
 
 
 def grid_size(study: Study) -> int:
@@ -171,7 +178,10 @@ def _build(build: Callable[[], Any], sweep: Mapping[str, Any], prefix: str, note
     """Values that are right one by one may still not go together."""
     try:
         build()
-    except ValidationError as problem:
-        error = problem.errors(include_url=False)[0]
+    except (ValidationError, OverflowError) as problem:
+        what = str(problem)
+        if isinstance(problem, ValidationError):
+            what = problem.errors(include_url=False)[0]["msg"]
         own = [path for path in sweep if path.startswith(prefix)]
-        notes.on_key(("sweep", own[-1]), f"a point of the grid cannot be built: {error['msg']}")
+        path: Path = ("sweep", own[-1]) if own else ("laws",)
+        notes.on_key(path, f"a point of the grid cannot be built: {what}")

@@ -84,10 +84,11 @@ def dotted(path: Path) -> str:
 
 
 def closest(name: str, among: Iterable[str]) -> str | None:
-    """The name most like this one, if any is close."""
+    """The name most like this one, if any is close; else the one it begins, as a name without its unit does."""
     names = list(among)
     found = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1, cutoff=0.6)
-    return next((n for n in names if found and n.lower() == found[0]), None)
+    begun = [n for n in names if n.lower().startswith(f"{name.lower()}_")]
+    return next((n for n in names if found and n.lower() == found[0]), begun[0] if len(begun) == 1 else None)
 
 
 def did_you_mean(name: str, among: Iterable[str]) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from frictionlab import columns, registry
+from frictionlab.dimensional import dimensions
 from frictionlab.scene import Scene
 from frictionlab.study.choices import (
     items,
@@ -32,7 +33,7 @@ from frictionlab.study.source import Odd, Source, plain_number, read_file
 
 KEYS = ("schema", "title", "source", "scene", "laws", "methods", "tolerance", "sweep", "expect", "keep")
 REQUIRED = ("schema", "scene", "laws")
-NOT_YET = ("plugins", "dimensional")
+NOT_YET = ("plugins",)
 DEFAULT_TOLERANCE = 1e-8
 DEFAULT_METHODS = ("auto",)
 
@@ -46,6 +47,11 @@ def load_study(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Stud
 def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name: str = "study") -> Study:
     """The study of a mapping shaped like a study file. Raises StudyError with every mistake."""
     return _study(Source(name, tree=_plain(mapping)), overrides)
+
+
+def study_of(source: Source) -> Study:
+    """The study of values read before, such as a part of a larger file. Raises StudyError with every mistake."""
+    return _study(source, ())
 
 
 def _study(source: Source, overrides: Sequence[str]) -> Study:
@@ -84,6 +90,8 @@ class _Reading:
         for key in self._tree:
             if key in NOT_YET:
                 self._notes.on_key((key,), "not available yet")
+            elif key == "dimensional":
+                self._notes.on_key((key,), "is a part of the scene: write scene: {dimensional: {...}}")
             elif key not in KEYS:
                 self._notes.unknown_key((key,), KEYS)
         for key in REQUIRED:
@@ -148,11 +156,15 @@ class _Reading:
         methods = sure_labels(self._tree.get("methods", list(DEFAULT_METHODS)), registry.method_names())
         kinds = tuple(dict.fromkeys(law["kind"] for law in self._tree["laws"])) if laws else None
         known = registry.law_names() if kinds is None else kinds
-        parameters = {
-            f"law.{name}": None for kind in known for name in number_paths(registry.law_class(kind))
-        }
+        classes = [registry.law_class(kind) for kind in known]
+        parameters = {f"law.{name}": None for law in classes for name in number_paths(law)}
+        inputs = [*(f"scene.{path}" for path in paths), *parameters]
+        if columns.belt_speed(inputs) != columns.BELT_SPEED:
+            inputs += dict.fromkeys(f"{columns.SCALED}{name}" for law in classes for name in dimensions(law))
         texts = dict(zip(columns.INPUTS, (laws, kinds, methods), strict=True))
-        return Table(texts, (*(f"scene.{path}" for path in paths), *parameters))
+        sweep = self._tree.get("sweep")
+        swept = tuple(sweep) if isinstance(sweep, Mapping) else ()
+        return Table(texts, tuple(inputs), tuple(columns.results(inputs)), swept)
 
 
 def _plain(value: Any) -> Any:

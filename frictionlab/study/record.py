@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from frictionlab import registry
+from frictionlab.dimensional import scaled_law
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.scene import Scene
@@ -61,10 +62,11 @@ class MethodChoice:
 
 @dataclass(frozen=True)
 class Expectation:
-    """What a study claims of its own table; exactly one of the five comparisons is set.
+    """What a study claims of its own table; exactly one of the six comparisons is set.
 
     where: input column -> value, rows it speaks of. equals (needs within), below, above: of ``column``.
     status: of those rows. max_difference: two method labels whose mean_friction differs by under ``below``.
+    shape: of the curves those rows make, by ``measure``.
     """
 
     where: dict[str, str | float]
@@ -75,6 +77,8 @@ class Expectation:
     within: float | None = None
     status: str | None = None
     max_difference: tuple[str, str] | None = None
+    shape: str | None = None
+    measure: str | None = None
     because: str = ""
 
     def resolved(self) -> dict[str, Any]:
@@ -89,14 +93,23 @@ class Expectation:
 
 @dataclass(frozen=True)
 class Case:
-    """One row to be: a scene, a law and a method, complete in itself and free of any order."""
+    """One row to be: a scene, a law and a method, complete in itself and free of any order.
+
+    given_law: in SI units where the scene is.
+    """
 
     law_label: str
     kind: str
-    law: FrictionLaw
+    given_law: FrictionLaw
     method_label: str
     method: Method
     scene: Scene
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as methods take it, in the scene's lengths and times."""
+        si = self.scene.dimensional
+        return self.given_law if si is None else scaled_law(self.given_law, si.scales)
 
 
 @dataclass(frozen=True)
@@ -131,7 +144,7 @@ class Study:
     @cached_property
     def scenes(self) -> tuple[Scene, ...]:
         """Every scene of the grid, the last sweep running fastest."""
-        tree = scene_tree(self.scene)
+        tree = self.scene.given()
         return tuple(Scene.model_validate(with_values(tree, point)) for point in self.scene_points())
 
     def scene_points(self) -> Iterator[dict[str, float]]:
@@ -142,6 +155,12 @@ class Study:
         """The law at every value of its own sweeps."""
         return tuple(choice.law(point) for point in self.law_points(choice))
 
+    def laws_in_scenes(self, choice: LawChoice) -> set[FrictionLaw]:
+        """All that becomes of the law in the scales of the scenes."""
+        laws = self.laws_of(choice)
+        scales = {None if scene.dimensional is None else scene.dimensional.scales for scene in self.scenes}
+        return {law if unit is None else scaled_law(law, unit) for law in laws for unit in scales}
+
     def law_points(self, choice: LawChoice) -> Iterator[dict[str, float]]:
         """The swept parameters of each of this law's records."""
         return _grid(self.sweep, f"laws.{choice.label}.")
@@ -150,7 +169,7 @@ class Study:
         """The whole study as plain values that load back to an equal study."""
         words = {"title": self.title, "source": self.source}
         told: dict[str, Any] = {"schema": SCHEMA, **{key: text for key, text in words.items() if text}}
-        told["scene"] = _natural(scene_tree(self.scene))
+        told["scene"] = _natural(self.scene.given())
         told["laws"] = [law.resolved() for law in self.laws]
         told["methods"] = [method.resolved() for method in self.methods]
         told["tolerance"] = self.tolerance
@@ -166,7 +185,7 @@ class Study:
         """SHA-256 of what determines the numbers: scene, laws, methods, tolerance and sweep, nothing else."""
         swept = {path.removeprefix("scene.") for path in self.sweep}
         numbers = {
-            "scene": {path: value for path, value in self.scene.values().items() if path not in swept},
+            "scene": {path: value for path, value in self.scene.given_values().items() if path not in swept},
             "laws": [[law.label, law.kind, self._fixed(law)] for law in self.laws],
             "methods": [[method.label, method.name, method.parameters] for method in self.methods],
             "tolerance": self.tolerance,
@@ -177,15 +196,6 @@ class Study:
     def _fixed(self, law: LawChoice) -> dict[str, Any]:
         swept = {path for path in self.sweep if path.startswith(f"laws.{law.label}.")}
         return {name: v for name, v in law.parameters.items() if f"laws.{law.label}.{name}" not in swept}
-
-
-def scene_tree(scene: Scene) -> dict[str, Any]:
-    """A scene as nested plain values that make the same scene again."""
-    tree = scene.model_dump(exclude_none=True)
-    if scene.initial is not None:
-        # Its defaults for x2 would be refused in a scene without x2.
-        tree["initial"] = scene.initial.model_dump(exclude_unset=True)
-    return tree
 
 
 def with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:

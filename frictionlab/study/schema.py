@@ -106,10 +106,10 @@ def _sweep() -> dict[str, Any]:
 
 
 def _expectations() -> list[dict[str, Any]]:
-    """A column against a number, a status, or the difference of two methods."""
+    """A column against a number, a status, the difference of two methods, or the shape of a curve."""
     where = {"type": "object", "additionalProperties": {"type": ["string", "number"]}}
     shared: dict[str, Any] = {"where": where, "because": _TEXT}
-    numeric = [name for name in columns.RESULTS if name not in columns.TEXT]
+    numeric = [name for name in (*columns.RESULTS, *columns.SI) if name not in columns.TEXT]
     positive = {"type": "number", "exclusiveMinimum": 0}
     column = {"column": {"enum": numeric}, "within": positive}
     statuses = [status for status in columns.STATUSES if status != "killed"]
@@ -120,4 +120,12 @@ def _expectations() -> list[dict[str, Any]]:
         _closed({**shared, **column, "above": _NUMBER}, ["column", "above"]),
         _closed({**shared, "status": {"enum": statuses}}, ["status"]),
         _closed({**shared, "max_difference": pair, "below": positive}, ["max_difference", "below"]),
+        *(_shape(shared, measure) for measure in columns.SHAPES),
     ]
+
+
+def _shape(shared: dict[str, Any], measure: str) -> dict[str, Any]:
+    """A verdict on curves by one measure, which for area may be left out."""
+    required = ["shape"] if measure == "area" else ["shape", "measure"]
+    own = {"shape": {"enum": list(columns.SHAPES[measure])}, "measure": {"const": measure}}
+    return _closed({**shared, **own}, required)

@@ -8,13 +8,14 @@ import pickle
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from pydantic import ValidationError
-from strategies import LAWS, angles, speeds, velocities, velocities_on_the_line
+from strategies import EXAMPLES, LAWS, angles, sizes, speeds, velocities, velocities_on_the_line
 
 from frictionlab.kernel import compiled, njit
 from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.stribeck import Stribeck
 from frictionlab.registry import law_class, law_names
 
 every_law = pytest.mark.parametrize("name", LAWS)
@@ -152,7 +153,7 @@ def test_coulomb_declares_constant_and_monotone_friction():
 
     assert law.constant_sliding_friction()
     assert law.monotone()
-    assert law.numbers() == {"mu": 0.3}
+    assert law.numbers() == {"mu": 0.3, "at_rest": 0.3}
     assert law.sliding_vector(-7.0) == pytest.approx(-0.3, rel=1e-15)
 
 
@@ -173,17 +174,25 @@ def test_a_law_is_frozen_hashes_and_survives_pickling(name, data):
 @every_law
 def test_an_unknown_parameter_is_refused_by_its_name(name):
     with pytest.raises(ValidationError, match="wobble"):
-        law_class(name)(**dict.fromkeys(law_class(name).model_fields, 1.0), wobble=1.0)
+        law_class(name)(**EXAMPLES[name].model_dump(), wobble=1.0)
 
 
 @every_law
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, "0.4", True, None, [0.4], 1j])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, "0.4", True, [0.4], 1j])
 def test_what_is_no_finite_number_is_refused_by_the_name_of_its_parameter(name, value):
-    fields = law_class(name).model_fields
-    for field in fields:
+    given_ = EXAMPLES[name].model_dump()
+    for field in [field for field, number in given_.items() if isinstance(number, float)]:
         with pytest.raises(ValidationError) as caught:
-            law_class(name)(**{**dict.fromkeys(fields, 1.0), field: value})
+            law_class(name)(**{**given_, field: value})
         assert [problem["loc"] for problem in caught.value.errors()] == [(field,)]
+
+
+@every_law
+def test_a_number_that_is_required_cannot_be_left_empty(name):
+    for field, info in law_class(name).model_fields.items():
+        if info.is_required():
+            with pytest.raises(ValidationError, match=field):
+                law_class(name)(**{**EXAMPLES[name].model_dump(), field: None})
 
 
 @pytest.mark.parametrize("mu", [0.0, -0.0, -0.4])
@@ -205,6 +214,92 @@ def test_a_missing_parameter_is_named():
         Coulomb()
 
 
-def test_the_static_coefficient_has_not_come_yet():
-    with pytest.raises(ValidationError, match="mu_static: not available yet"):
-        Coulomb(mu=0.4, mu_static=0.5)
+def test_rest_cannot_hold_less_than_slip():
+    with pytest.raises(ValidationError, match=r"mu_static: must be >= mu = 0\.4, got 0\.3"):
+        Coulomb(mu=0.4, mu_static=0.3)
+    with pytest.raises(ValidationError, match=r"mu_static: must be >= mu_kinetic = 0\.4, got 0\.3"):
+        Stribeck(mu_kinetic=0.4, mu_static=0.3)
+
+
+def test_a_higher_coefficient_at_rest_is_a_jump():
+    law = Coulomb(mu=0.4, mu_static=0.5)
+
+    assert law.static_friction() == 0.5
+    assert law.sliding_friction(0.0) == 0.4
+    assert law.steepest_fall() == math.inf
+    assert law.constant_sliding_friction()
+    assert not law.monotone()
+
+
+@every_law
+@given(data=st.data())
+def test_rest_holds_at_least_as_much_as_vanishing_slip(name, data):
+    law = data.draw(LAWS[name])
+
+    assert law.static_friction() >= law.sliding_friction(0.0) * (1.0 - EXACT)
+
+
+@every_law
+@given(data=st.data(), speed=sizes(1e-4, 1e4), step=sizes(1e-3, 1.0))
+def test_friction_falls_no_faster_than_the_law_says(name, data, speed, step):
+    law = data.draw(LAWS[name])
+    low, high = speed, speed * (1.0 + step)
+    fall = law.sliding_friction(low) - law.sliding_friction(high)
+    rounding = 1e-14 * max(law.sliding_friction(low), law.sliding_friction(high))
+
+    assert fall <= law.steepest_fall() * (high - low) + rounding
+
+
+@given(data=st.data())
+def test_the_steepest_fall_of_a_curve_is_met_somewhere_on_it(data):
+    law = data.draw(LAWS["stribeck"])
+    bound = law.steepest_fall()
+    assume(0.0 < bound < math.inf)
+    u = np.linspace(0.0, 2.0, 4001) * law.stribeck_speed
+    friction = np.array([law.sliding_friction(float(speed)) for speed in u])
+
+    assert (
+        -np.diff(friction) / np.diff(u)
+    ).max() >= 0.99 * bound - 1e-9 * friction.max() / law.stribeck_speed
+
+
+@pytest.mark.parametrize(
+    ("curve", "half", "far"),
+    [
+        ("exponential", 0.2 + 0.2 * math.exp(-0.25), 0.2),
+        ("hyperbolic", 0.2 + 0.2 / 1.5, 0.2),
+        ("hess-soom", 0.2 + 0.2 / 1.25, 0.2),
+    ],
+)
+def test_each_curve_runs_from_static_to_kinetic_friction_as_published(curve, half, far):
+    law = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=2.0, curve=curve)
+
+    assert law.sliding_friction(0.0) == pytest.approx(0.4, rel=1e-15)
+    assert law.sliding_friction(1.0) == pytest.approx(half, rel=1e-15)
+    assert law.sliding_friction(1e9) == pytest.approx(far, rel=1e-8)
+
+
+def test_the_cubic_curve_has_its_minimum_at_the_stribeck_speed():
+    # mu(v) = mu_s - k1 v + k3 v^3, k1 = (3/2)(mu_s - mu_m)/v_m, k3 = (1/2)(mu_s - mu_m)/v_m^3 (Thomsen 1999)
+    law = Stribeck(mu_kinetic=0.25, mu_static=0.4, stribeck_speed=0.5, curve="cubic")
+    k1, k3 = 1.5 * 0.15 / 0.5, 0.5 * 0.15 / 0.5**3
+
+    for v in (0.0, 0.1, 0.3, 0.5, 0.8):
+        assert law.sliding_friction(v) == pytest.approx(0.4 - k1 * v + k3 * v**3, rel=1e-14)
+    assert law.sliding_friction(0.5) == pytest.approx(0.25, rel=1e-14)
+    assert min(law.sliding_friction(0.499), law.sliding_friction(0.501)) > 0.25
+
+
+def test_only_the_exponential_curve_has_an_exponent():
+    with pytest.raises(ValidationError, match="stribeck_exponent: leave it out, the cubic curve has none"):
+        Stribeck(mu_kinetic=0.2, mu_static=0.4, curve="cubic", stribeck_exponent=1.0)
+    assert Stribeck(mu_kinetic=0.2, mu_static=0.4).stribeck_exponent == 2.0
+
+
+def test_enough_viscosity_makes_a_falling_curve_monotone():
+    falling = Stribeck(mu_kinetic=0.2, mu_static=0.4, curve="hyperbolic")
+    made_up_for = Stribeck(mu_kinetic=0.2, mu_static=0.4, curve="hyperbolic", viscosity=0.2)
+
+    assert falling.steepest_fall() == pytest.approx(0.2)
+    assert not falling.monotone()
+    assert made_up_for.monotone()

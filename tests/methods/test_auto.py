@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frictionlab.laws.base import SlidingLaw
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.auto import LADDER, Auto
 from frictionlab.methods.exact import Exact
 from frictionlab.methods.shooting import Shooting
@@ -15,8 +16,8 @@ from frictionlab.scene import Drive, Load, Scene, Slip, Transverse
 LAW = Coulomb(mu=0.4)
 
 
-class Falling(SlidingLaw):
-    """Friction that falls with speed: no rung does it yet."""
+class Remembers(FrictionLaw):
+    """A law that is not said to be without memory: no rung does it."""
 
     def sliding_friction(self, speed):
         return 0.4 / (1.0 + speed)
@@ -68,7 +69,7 @@ def test_the_lowest_rung_that_accepts_answers_the_whole_curve_and_model_says_why
     np.testing.assert_array_equal(answers.columns["mean_friction"], direct.columns["mean_friction"])
     for ours, theirs in zip(answers.model, direct.model, strict=True):
         assert ours.startswith(theirs)
-        assert f"auto: {why}" in ours or why in ours.partition("(auto:")[2]
+        assert f"auto: {rung.name}, {why}" in ours or why in ours.partition("(auto:")[2]
     assert answers.orbit(0) is not None
 
 
@@ -101,7 +102,26 @@ def test_an_answer_above_the_tolerance_has_failed_with_both_numbers_in_the_reaso
 
 def test_a_scene_no_rung_accepts_is_refused_with_every_reason():
     for one in (scene(5.0), scene(5.0, 10.0)):
-        refusal = Auto().refusal(one, Falling())
+        refusal = Auto().refusal(one, Remembers())
         for rung in LADDER:
-            assert rung.refusal(one, Falling()) in refusal
-        assert Auto().cost(one, Falling(), 1e-8) == 0.0
+            assert rung.refusal(one, Remembers()) in refusal
+        assert Auto().cost(one, Remembers(), 1e-8) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("one", "law"),
+    [
+        (scene(5.0), Coulomb(mu=0.4, mu_static=0.5)),
+        (scene(5.0), Stribeck(mu_kinetic=0.4, mu_static=0.5)),
+        (Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=1.0), LAW),
+        (
+            Scene(belt_speed=1.0, slip=Slip(velocity_amplitude=2.0, frequency=1.0)),
+            Stribeck(mu_kinetic=0.4, mu_static=0.5),
+        ),
+    ],
+)
+def test_what_exact_refuses_along_the_belt_is_answered_by_shooting(one, law):
+    rung, why = Auto().choice(one, law)
+
+    assert isinstance(rung, Shooting)
+    assert "exact needs" in why

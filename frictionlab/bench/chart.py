@@ -1,0 +1,119 @@
+"""One chart per curve: largest error against time per point, every method and peer, readable without colour."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from frictionlab.bench.measure import Measured, Row
+from frictionlab.bench.record import Contender
+from frictionlab.bench.report import largest, remark
+from frictionlab.charts import PAGE, STYLE
+from frictionlab.failures import SaveError
+
+OURS = ("#08306b", "#7f0000", "#00441b", "#4a1486", "#662506", "#252525")
+THEIRS = ("#e6550d", "#31a354", "#756bb1", "#969696")
+MARKERS, HOLLOW = "osD^v<>", "oshdPX"
+LINES = ("solid", (0, (5, 1.5)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)))
+LEAST = 1e-17
+"""An error of zero is drawn here."""
+HEIGHT = 3.0
+LETTERS = 36
+"""On a line of the legend."""
+
+
+def draw(done: Sequence[Measured], folder: Path) -> list[Path]:
+    """Draw every curve as SVG and PNG; the files written. Raises SaveError."""
+    files = []
+    try:
+        with mpl.rc_context(STYLE):
+            for measured in done:
+                figure = chart(measured)
+                for kind, unstamped in (("svg", {"Date": None}), ("png", {"Software": None})):
+                    files.append(folder / f"{measured.work.name}.{kind}")
+                    figure.savefig(files[-1], metadata=unstamped)
+    except OSError as problem:
+        raise SaveError(f"cannot write the charts in {folder}: {problem.strerror or problem}") from problem
+    return files
+
+
+def chart(measured: Measured) -> Figure:
+    """The chart of one curve."""
+    figure = Figure(figsize=(PAGE, HEIGHT), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    entries = [_draw(axes, contender, look, rows) for contender, look, rows in _looks(measured)]
+    lines = sum(str(entry.get_label()).count("\n") + 1.4 for entry in entries)
+    figure.set_figheight(max(HEIGHT, 0.4 + 0.11 * lines))
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel(r"time per point [$\mathrm{\mu s}$]; thin: with every other column")
+    axes.set_ylabel("largest error of the mean friction")
+    axes.grid(which="major", color="0.9", linewidth=0.5)
+    axes.set_axisbelow(True)
+    _shade_what_is_not_known(axes, measured)
+    work = measured.work
+    axes.set_title(f"{work.name}: {work.title}" if work.title else work.name, loc="left", fontweight="bold")
+    figure.legend(handles=entries, loc="outside right upper", handlelength=3.2)
+    return figure
+
+
+def _looks(measured: Measured) -> Iterator[tuple[Contender, dict[str, Any], list[Row]]]:
+    """Each contender with its look: methods dark and full, peers light and hollow."""
+    contenders = list({row.contender.label: row.contender for row in measured.rows}.values())
+    seen = {"method": 0, "peer": 0}
+    for contender in contenders:
+        n, ours = seen[contender.side], contender.side == "method"
+        seen[contender.side] += 1
+        color = (OURS if ours else THEIRS)[n % len(OURS if ours else THEIRS)]
+        look = {
+            "color": color,
+            "marker": (MARKERS if ours else HOLLOW)[n % len(MARKERS if ours else HOLLOW)],
+            "markerfacecolor": color if ours else "white",
+            "linestyle": LINES[n % len(LINES)],
+            "markersize": 4.5,
+        }
+        yield contender, look, [row for row in measured.rows if row.contender is contender]
+
+
+def _draw(axes: Axes, contender: Contender, look: dict[str, Any], rows: Sequence[Row]) -> Line2D:
+    """The line of one contender, and its place in the legend, which it keeps when there is no line."""
+    drawn = [row for row in rows if math.isfinite(row.largest) and math.isfinite(row.mean.least)]
+    places = [(1e6 * row.mean.least, max(row.largest, LEAST)) for row in drawn]
+    if places:
+        axes.plot(*zip(*places, strict=True), **look)
+    for row, (x, y) in zip(drawn, places, strict=True):
+        axes.plot([x, 1e6 * row.whole.least], [y, y], color=look["color"], linewidth=0.5)
+    partly = [place for place, row in zip(places, drawn, strict=True) if row.counts["ok"] < row.points]
+    for x, y in partly:
+        axes.plot([x], [y], marker="x", markersize=8, color="0.2", linestyle="none")
+    text = contender.label + (" (peer)" if contender.side == "peer" else "")
+    without = next((remark(row) for row in rows if remark(row)), "")
+    if without:
+        told = textwrap.shorten(f"{text}; {_share(rows)}{without}", 3 * LETTERS - 12, placeholder=" ...")
+        text = "\n".join(textwrap.wrap(told, LETTERS))
+    return Line2D([], [], label=text, **(look if places else look | {"linestyle": "none"}))
+
+
+def _share(rows: Sequence[Row]) -> str:
+    """At how many settings points are missing, where it is not all of them."""
+    missing = sum(row.counts["ok"] < row.points for row in rows)
+    return "" if missing in (0, len(rows)) else f"at {missing} of {len(rows)} settings (x) "
+
+
+def _shade_what_is_not_known(axes: Axes, measured: Measured) -> None:
+    """Errors below those of the references cannot be told apart."""
+    known = largest([largest(reference.errors) for reference in measured.references])
+    low, high = axes.get_ylim()
+    if math.isfinite(known) and low < known:
+        axes.axhspan(low, known, color="0.93", zorder=0)
+        axes.set_ylim(low, high)

@@ -1,0 +1,165 @@
+"""Every contender on every workload: what it costs and how far off it is."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from frictionlab.bench.record import Bench, Contender, Reference, Setting, Workload
+from frictionlab.bench.references import independent, worked_out
+from frictionlab.bench.solvers import Outcome, answered, mean_task, whole_task
+from frictionlab.bench.timing import Times, timed
+from frictionlab.methods.base import Floats, Method
+from frictionlab.peers.base import Peer
+
+STATUSES = ("ok", "refused", "failed", "not_unique")
+NO_TIME = Times(math.nan, (math.nan,) * 3, 0)
+
+
+class Interrupted(Exception):
+    """Stopped by the user; ``done`` holds the workloads measured before."""
+
+    def __init__(self, done: list[Measured]) -> None:
+        super().__init__("interrupted")
+        self.done = done
+
+
+@dataclass(frozen=True)
+class Row:
+    """One contender at one setting on one workload; points: those it was given, times: per point that has an answer.
+
+    mean: for the mean friction and its error alone; whole: with every other column. ``covered``: points whose
+    stated error, with the reference's own, covers their error; None for a peer, which states none.
+    """
+
+    contender: Contender
+    setting: Setting
+    points: int
+    counts: dict[str, int]
+    reason: str
+    largest: float
+    median: float
+    stated: float
+    covered: int | None
+    mean: Times
+    whole: Times
+    reference: Reference | None
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A workload with its references and rows."""
+
+    work: Workload
+    references: list[Reference]
+    rows: list[Row]
+
+
+def measure(bench: Bench, tell: Callable[[str], None]) -> list[Measured]:
+    """Measure a bench list. Raises Interrupted with what is finished."""
+    done: list[Measured] = []
+    try:
+        for work in bench.workloads:
+            tell(f"{work.name}: references")
+            found = worked_out(work)
+            rows = list(_rows(bench, work, found, tell))
+            done.append(Measured(work, found, rows))
+    except KeyboardInterrupt:
+        raise Interrupted(done) from None
+    return done
+
+
+def _rows(
+    bench: Bench, work: Workload, found: Sequence[Reference], tell: Callable[[str], None]
+) -> Iterator[Row]:
+    for contender in work.contenders:
+        for setting, solver in contender.solvers:
+            tell(f"{work.name}: {contender.label}, {setting}")
+            yield _row(bench, work, found, contender, setting, solver)
+
+
+def _row(
+    bench: Bench,
+    work: Workload,
+    found: Sequence[Reference],
+    contender: Contender,
+    setting: Setting,
+    solver: Method | Peer,
+) -> Row:
+    places = chosen(len(work.scenes), contender.points)
+    scenes = [work.scenes[place] for place in places]
+    outcome = answered(solver, scenes, work.law, setting.tolerance)
+    reference = independent(found, contender.kind if contender.side == "method" else "", places)
+    off, covered = _off(outcome, reference, places)
+    mean, whole = _times(bench, work, setting, solver, [places[i] for i in _solved(outcome)])
+    return Row(
+        contender,
+        setting,
+        len(places),
+        {status: Counter(outcome.status)[status] for status in STATUSES},
+        _reason(outcome, off, reference),
+        float(np.max(off)) if off.size else math.nan,
+        float(np.median(off)) if off.size else math.nan,
+        _largest(outcome.errors),
+        None if contender.side == "peer" else covered,
+        mean,
+        whole,
+        reference,
+    )
+
+
+def chosen(size: int, points: int | None) -> list[int]:
+    """So many places, spread evenly from the first to the last."""
+    if points is None or points >= size:
+        return list(range(size))
+    return sorted({round(place) for place in np.linspace(0, size - 1, points).tolist()})
+
+
+def _off(outcome: Outcome, reference: Reference | None, places: list[int]) -> tuple[Floats, int]:
+    """The errors of the points that are ok and known to the reference, and how many are covered."""
+    if reference is None:
+        return np.empty(0), 0
+    means, errors = reference.means[places], reference.errors[places]
+    known = np.isfinite(means) & (np.array(outcome.status) == "ok")
+    off = np.abs(outcome.means - means)[known]
+    return off, int((off <= (outcome.errors + errors)[known]).sum())
+
+
+def _reason(outcome: Outcome, off: Floats, reference: Reference | None) -> str:
+    """The most frequent reason of a point without a number, or why there is no error."""
+    reasons = Counter(
+        reason for status, reason in zip(outcome.status, outcome.reason, strict=True) if status != "ok"
+    )
+    if reasons:
+        return reasons.most_common(1)[0][0]
+    return (
+        "" if off.size else "no independent reference" if reference is None else "the reference has no value"
+    )
+
+
+def _largest(errors: Floats) -> float:
+    return float(np.nanmax(errors)) if np.isfinite(errors).any() else math.nan
+
+
+def _solved(outcome: Outcome) -> list[int]:
+    """The points worth timing: those with an answer."""
+    return [i for i, status in enumerate(outcome.status) if status in ("ok", "not_unique")]
+
+
+def _times(
+    bench: Bench, work: Workload, setting: Setting, solver: Method | Peer, places: list[int]
+) -> tuple[Times, Times]:
+    """Time of the mean alone and of everything; the same twice where a solver cannot leave anything out."""
+    if not places:
+        return NO_TIME, NO_TIME
+    given = [work.scenes[place] for place in places], work.law, setting.tolerance
+    whole = timed(whole_task(solver, *given), bench.repeats, bench.seconds).each_of(len(places))
+    task = mean_task(solver, *given)
+    if task is None:
+        return whole, whole
+    task()  # a kernel of its own, to be compiled first
+    return timed(task, bench.repeats, bench.seconds).each_of(len(places)), whole

@@ -1,0 +1,146 @@
+"""From a bench list (YAML) to a frozen Bench, or to every mistake in it at once, each with its line."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path as FilePath
+from typing import Any
+
+from frictionlab import columns
+from frictionlab.bench.contenders import Defaults, contenders
+from frictionlab.bench.record import Bench, Workload
+from frictionlab.bench.references import references
+from frictionlab.study import Mistake, Study, StudyError
+from frictionlab.study.choices import items
+from frictionlab.study.mistakes import Path, described
+from frictionlab.study.notes import Notes
+from frictionlab.study.reader import study_of
+from frictionlab.study.source import Source, read_file
+
+KEYS = ("schema", "title", "scenes", "references", "methods", "peers", "repeats", "seconds")
+SCENE_KEYS = ("name", "title", "scene", "laws", "sweep", "references", "methods", "peers")
+OWN_STUDY = ("scene", "laws", "sweep")
+SCHEMA = 1
+REPEATS, SECONDS = 30, 2.0
+
+
+def load_bench(path: FilePath) -> Bench:
+    """The bench list of this file. Raises StudyError with every mistake."""
+    source = read_file(path)
+    notes, mistakes = Notes(source.notes), list[Mistake]()
+    bench = _Reading(source, notes, mistakes, path).bench()
+    mistakes += source.located(notes.all)
+    if mistakes or bench is None:
+        raise StudyError(_each_once(mistakes))
+    return bench
+
+
+def _each_once(mistakes: list[Mistake]) -> list[Mistake]:
+    """In the order of the file; what several scenes refer to is told for the first of them."""
+    found = {(mistake.place, mistake.what): mistake for mistake in reversed(mistakes)}
+    return sorted(found.values(), key=lambda mistake: mistake.place or (float("inf"), 0))
+
+
+class _Reading:
+    """One pass over a list's values."""
+
+    def __init__(self, source: Source, notes: Notes, mistakes: list[Mistake], path: FilePath) -> None:
+        self._source, self._notes, self._mistakes, self._path = source, notes, mistakes, path
+        self._tree: dict[str, Any] = source.tree
+
+    def bench(self) -> Bench | None:
+        if self._notes.mapping(self._tree, (), KEYS) is None:
+            return None
+        self._required()
+        repeats = self._notes.whole_number(self._tree.get("repeats", REPEATS), ("repeats",), 1)
+        seconds = self._notes.number(self._tree.get("seconds", SECONDS), ("seconds",))
+        if seconds is not None and seconds <= 0.0:
+            self._notes.add(("seconds",), f"must be > 0, got {described(seconds)}")
+        title = self._notes.text(self._tree.get("title", ""), ("title",))
+        defaults = Defaults(
+            references(self._tree.get("references", []), ("references",), self._path, self._notes),
+            contenders(self._tree, (), self._notes),
+        )
+        given = self._tree.get("scenes", [])
+        blocks = items(given, ("scenes",), "[{name: A, scene: {...}, laws: [...]}]", self._notes)
+        found = [
+            work for index, block in enumerate(blocks) for work in self._workloads(block, index, defaults)
+        ]
+        self._note_equal_names(found)
+        return Bench(self._path.stem, title, tuple(found), repeats or 1, seconds or 1.0)
+
+    def _required(self) -> None:
+        for key in ("schema", "scenes"):
+            if key not in self._tree:
+                self._notes.add((key,), "required key is missing")
+        given = self._tree.get("schema", SCHEMA)
+        if isinstance(given, bool) or given != SCHEMA:
+            self._notes.add(("schema",), f"must be {SCHEMA}, got {described(given)}")
+
+    def _workloads(self, block: Any, index: int, defaults: Defaults) -> list[Workload]:
+        path: Path = ("scenes", index)
+        if self._notes.mapping(block, path, SCENE_KEYS) is None:
+            return []
+        name = self._name(block, path)
+        title = self._notes.text(block.get("title", ""), (*path, "title"))
+        trusted = references(block.get("references", []), (*path, "references"), self._path, self._notes)
+        trusted = trusted or defaults.references
+        if not trusted:
+            self._notes.add(path, "no references: give a method or values to measure errors against")
+        chosen = defaults.contenders | contenders(block, path, self._notes)
+        if not chosen:
+            self._notes.add(path, "no methods and no peers: there is nothing to measure")
+        study = self._study(block, path)
+        if study is None:
+            return []
+        return [
+            Workload(
+                name if len(study.laws) == 1 else f"{name} {choice.label}",
+                title,
+                tuple(sorted((case.scene for case in cases), key=lambda scene: scene.belt_speed)),
+                cases[0].law,
+                tuple(chosen.values()),
+                trusted,
+            )
+            for choice in study.laws
+            if (cases := [case for case in study.cases() if case.law_label == choice.label])
+        ]
+
+    def _name(self, block: dict[str, Any], path: Path) -> str:
+        if "name" not in block:
+            self._notes.add((*path, "name"), "required key is missing")
+            return ""
+        name = self._notes.text(block["name"], (*path, "name"))
+        if isinstance(block["name"], str) and not re.fullmatch(r"\w[\w.-]*", name):
+            self._notes.add((*path, "name"), "names a file: use letters, digits, points, - and _")
+        return name
+
+    def _study(self, block: dict[str, Any], path: Path) -> Study | None:
+        """The scene, laws and sweep as the study they are, read by the study's own reader."""
+        sweep = block.get("sweep")
+        stray = [key for key in sweep if key not in columns.BELT_SPEEDS] if isinstance(sweep, dict) else []
+        for key in stray:
+            self._notes.on_key((*path, "sweep", key), "a bench curve sweeps the belt speed alone")
+        try:
+            return None if stray else study_of(_part(self._source, block, path))
+        except StudyError as problem:
+            head = f"scenes[{path[1]}]"
+            self._mistakes += [
+                replace(each, path=f"{head}.{each.path}" if each.path else head) for each in problem.mistakes
+            ]
+            return None
+
+    def _note_equal_names(self, found: list[Workload]) -> None:
+        names = [work.name for work in found]
+        for name in {name for name in names if names.count(name) > 1}:
+            self._notes.add(("scenes",), f"two curves are called '{name}'; give each its own name")
+
+
+def _part(source: Source, block: dict[str, Any], path: Path) -> Source:
+    """The keys of a block that make a study, with their places in the whole file."""
+    tree = {"schema": SCHEMA} | {key: block[key] for key in OWN_STUDY if key in block}
+    depth = len(path)
+    keys = {at[depth:]: place for at, place in source.keys.items() if at[:depth] == path}
+    values = {at[depth:]: place for at, place in source.values.items() if at[:depth] == path}
+    return Source(source.name, source.text, tree, keys, values)

@@ -1,0 +1,104 @@
+"""A bench list as it will be measured: frozen, with every default filled in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Floats, Method
+from frictionlab.peers.base import Peer
+from frictionlab.scene import Scene
+
+
+class UnknownCurve(Exception):
+    """A curve asked for by a name that is not in the list."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How well a solver is asked to do: the quantity that is varied, its value, and the tolerance to ask for."""
+
+    quantity: str
+    value: float
+    tolerance: float
+
+    def __str__(self) -> str:
+        """``tolerance 1e-06``, or ``as is`` where nothing is varied."""
+        return f"{self.quantity} {self.value:g}" if self.quantity else "as is"
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A method or a peer under one label, with one solver per setting; points: of the curve, None for all."""
+
+    label: str
+    kind: str
+    solvers: tuple[tuple[Setting, Method | Peer], ...]
+    points: int | None
+
+    @property
+    def side(self) -> Literal["method", "peer"]:
+        """Whose it is."""
+        return "peer" if isinstance(self.solvers[0][1], Peer) else "method"
+
+
+@dataclass(frozen=True)
+class Trusted:
+    """What errors are measured against: a method at its finest, or values known from elsewhere.
+
+    kind: of the method; empty for values, which are by belt speed. tolerance: asked of the method, or the error of
+    the values.
+    """
+
+    label: str
+    kind: str
+    method: Method | None
+    tolerance: float
+    values: dict[float, float]
+
+
+@dataclass(frozen=True)
+class Workload:
+    """One curve: scenes that differ in belt speed alone, in ascending order, and who is measured on it."""
+
+    name: str
+    title: str
+    scenes: tuple[Scene, ...]
+    law: FrictionLaw
+    contenders: tuple[Contender, ...]
+    references: tuple[Trusted, ...]
+
+    def speeds(self) -> list[float]:
+        """The belt speeds."""
+        return [scene.belt_speed for scene in self.scenes]
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Workloads, and how long each setting may be timed: so many repeats, or so many seconds if that is less."""
+
+    name: str
+    title: str
+    workloads: tuple[Workload, ...]
+    repeats: int
+    seconds: float
+
+    def only(self, names: Sequence[str]) -> Bench:
+        """The curves of these names alone; all where none is named. Raises UnknownCurve."""
+        known = [work.name for work in self.workloads]
+        if unknown := [name for name in names if name not in known]:
+            raise UnknownCurve(f"no curve '{unknown[0]}' in the list; there are {', '.join(known)}")
+        kept = tuple(work for work in self.workloads if not names or work.name in names)
+        return replace(self, workloads=kept)
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A reference worked out: mean friction and its own error at each point, NaN where it has none."""
+
+    label: str
+    kind: str
+    means: Floats
+    errors: Floats

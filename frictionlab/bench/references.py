@@ -1,0 +1,107 @@
+"""What errors are measured against: never a method's own answers."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+
+from frictionlab.bench.record import Reference, Trusted, Workload
+from frictionlab.bench.solvers import answered
+from frictionlab.study.choices import items, method_choice
+from frictionlab.study.mistakes import Path, described
+from frictionlab.study.notes import Notes
+
+COLUMNS = ("belt_speed", "mean_friction")
+
+
+def references(given: Any, path: Path, file: FilePath, notes: Notes) -> tuple[Trusted, ...]:
+    """The references of a list or of one of its scenes; those with mistakes are noted."""
+    if given == []:
+        return ()
+    listed = items(given, path, "[{kind: shooting, tolerance: 1.0e-12}]", notes)
+    read = [_trusted(item, (*path, index), file, notes) for index, item in enumerate(listed)]
+    return tuple(trusted for trusted in read if trusted is not None)
+
+
+def _trusted(item: Any, path: Path, file: FilePath, notes: Notes) -> Trusted | None:
+    if notes.mapping(item, path) is None:
+        return None
+    if "values" in item:
+        return _values(item, path, file, notes)
+    if "tolerance" not in item:
+        notes.add((*path, "tolerance"), "required key is missing")
+        return None
+    tolerance = _positive(item, "tolerance", path, notes)
+    told = {key: value for key, value in item.items() if key != "tolerance"}
+    if told.get("kind") == "auto":
+        notes.add((*path, "kind"), "auto only chooses: name a method it chooses from")
+        return None
+    choice = method_choice(told, path, notes)
+    if choice is None or tolerance is None:
+        return None
+    return Trusted(f"{choice.label} at {tolerance:g}", choice.name, choice.method, tolerance, {})
+
+
+def _positive(item: dict[str, Any], key: str, path: Path, notes: Notes) -> float | None:
+    value = notes.number(item[key], (*path, key))
+    if value is not None and value <= 0.0:
+        notes.add((*path, key), f"must be > 0, got {described(value)}")
+    return value
+
+
+def _values(item: dict[str, Any], path: Path, file: FilePath, notes: Notes) -> Trusted | None:
+    """``{values: FILE, error: x, label: TEXT}``; the path is relative to the list."""
+    notes.mapping(item, path, ("values", "error", "label"))
+    if "error" not in item:
+        notes.add((*path, "error"), "required key is missing: how well the values are known")
+        return None
+    error = _positive(item, "error", path, notes)
+    name = notes.text(item["values"], (*path, "values"))
+    label = notes.text(item.get("label", name), (*path, "label"))
+    table = _table(file.parent / name, (*path, "values"), notes) if name else None
+    return None if error is None or table is None else Trusted(label, "", None, error, table)
+
+
+def _table(file: FilePath, path: Path, notes: Notes) -> dict[float, float] | None:
+    """Mean friction by belt speed."""
+    try:
+        with file.open(encoding="utf-8", newline="") as text:
+            rows = [[float(row[column]) for column in COLUMNS] for row in csv.DictReader(text)]
+    except OSError as problem:
+        notes.add(path, f"cannot be read: {problem.strerror}")
+    except (KeyError, TypeError, ValueError):
+        notes.add(path, f"must be a CSV file of numbers with the columns {' and '.join(COLUMNS)}")
+    else:
+        return {speed: mean for speed, mean in rows}
+    return None
+
+
+def worked_out(work: Workload) -> list[Reference]:
+    """Every reference of a workload at each of its points."""
+    return [_worked_out(trusted, work) for trusted in work.references]
+
+
+def _worked_out(trusted: Trusted, work: Workload) -> Reference:
+    if trusted.method is None:
+        means = np.array([_known(trusted.values, speed) for speed in work.speeds()])
+        return Reference(trusted.label, "", means, np.where(np.isnan(means), math.nan, trusted.tolerance))
+    outcome = answered(trusted.method, work.scenes, work.law, trusted.tolerance)
+    good = np.array([status == "ok" for status in outcome.status])
+    means, errors = (np.where(good, column, math.nan) for column in (outcome.means, outcome.errors))
+    return Reference(trusted.label, trusted.kind, means, errors)
+
+
+def _known(values: dict[float, float], speed: float) -> float:
+    """The value at this belt speed, give or take its last digits."""
+    return next((mean for at, mean in values.items() if math.isclose(at, speed, rel_tol=1e-12)), math.nan)
+
+
+def independent(found: Sequence[Reference], kind: str, places: Sequence[int]) -> Reference | None:
+    """The first reference not made by this kind of method that knows one of these points; kind empty: a peer."""
+    others = (each for each in found if not kind or each.kind != kind)
+    return next((each for each in others if np.isfinite(each.means[list(places)]).any()), None)

@@ -1,0 +1,115 @@
+"""The table of curves: everything but belt speed equal, one row each, with the shape of its mean friction."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS
+from frictionlab.curve_ends import Loads, Rows, end_of_reversal, friction_at_rest
+from frictionlab.methods.base import Floats
+from frictionlab.shape import Curve, Measured, Shape, Unreadable, reduction, shape_of
+
+TEXT = frozenset({"shape", "shape_by_initial", "reason"})
+_NEEDED = [name if name != "belt_speed" else "scene.belt_speed" for name in Rows._fields]
+
+
+def curve_table(table: pd.DataFrame) -> pd.DataFrame:
+    """One row per curve of a result table, in its order; none where no curve has two belt speeds.
+
+    Rows without a number are left out of their curve. A measure that cannot be read is empty, with the reason.
+    """
+    keys = curve_inputs(table.columns)
+    groups = table.groupby(keys, sort=False, dropna=False).indices if len(table) else {}
+    if all(len(places) < 2 for places in groups.values()):
+        return pd.DataFrame(columns=[*keys, *CURVES])
+    places = sorted((np.sort(found) for found in groups.values()), key=lambda found: int(found[0]))
+    heads = table.loc[:, keys].iloc[[found[0] for found in places]].reset_index(drop=True)
+    numbers = table.reindex(columns=_NEEDED).to_numpy(dtype=float)
+    usable = (table["status"] == "ok").to_numpy() & (numbers[:, 0] > 0.0)
+    inputs = [dict(zip(keys, row, strict=True)) for row in heads.itertuples(index=False, name=None)]
+    read = [
+        _measures(_rows(numbers[found[usable[found]]]), _loads(given))
+        for found, given in zip(places, inputs, strict=True)
+    ]
+    return pd.concat([heads, _frame(read)], axis=1)
+
+
+def curve_inputs(columns: Iterable[str]) -> list[str]:
+    """The inputs that are the same all along a curve."""
+    return [
+        name
+        for name in columns
+        if (name in INPUTS or name.startswith(("scene.", "law."))) and name not in BELT_SPEEDS
+    ]
+
+
+def _frame(read: list[dict[str, Any]]) -> pd.DataFrame:
+    columns = {name: [found.get(name) for found in read] for name in CURVES}
+    types = {name: "str" if name in TEXT else "float" for name in CURVES}
+    return pd.DataFrame(columns, dtype=object).astype(types)
+
+
+def _rows(numbers: Floats) -> Rows:
+    rising = numbers[np.argsort(numbers[:, 0], kind="stable")]
+    return Rows(*(np.ascontiguousarray(column) for column in rising.T))
+
+
+def _loads(given: Mapping[str, Any]) -> Loads:
+    """What the inputs of a curve say about its loads."""
+
+    def value(name: str) -> float:
+        found = given.get(name)
+        return 0.0 if found is None or found != found else float(found)
+
+    frequency = value("scene.drive.frequency")
+
+    def force(path: str) -> complex:
+        size = value(f"{path}.unbalance") * frequency**2 + value(f"{path}.amplitude")
+        return cmath.rect(size, math.radians(value(f"{path}.phase")))
+
+    static = value("law.mu_static") * value("scene.normal_load")
+    slips = [value(f"scene.{slip}.velocity_amplitude") for slip in ("slip", "transverse_slip")]
+    return Loads(
+        force("scene.drive"), force("scene.transverse.load"), slips[1], static or math.nan, any(slips)
+    )
+
+
+def _measures(rows: Rows, loads: Loads) -> dict[str, Any]:
+    """Every measure that can be read from a curve; the reason where one cannot."""
+    found: dict[str, Any] = _reduction(rows)
+    try:
+        if not rows.belt_speed.size:
+            raise Unreadable("no point at a belt speed > 0 has a number")
+        end, kinked = end_of_reversal(rows, loads)
+        found |= _entry("reversal_end", end)
+        start = friction_at_rest(rows, loads)
+        shape = shape_of(Curve(rows.belt_speed, rows.mean_friction, rows.error, start, end, kinked))
+    except Unreadable as problem:
+        return found | {"reason": str(problem)}
+    return found | _shape(shape)
+
+
+def _reduction(rows: Rows) -> dict[str, float]:
+    known = np.isfinite(rows.normalized_friction)
+    if not known.any():
+        return {}
+    size = rows.normalized_friction[known]
+    return _entry("reduction", reduction(size, rows.error[known] / np.abs(rows.steady[known])))
+
+
+def _shape(shape: Shape) -> dict[str, Any]:
+    found: dict[str, Any] = _entry("shape_area", shape.area) | _entry("shape_half", shape.half)
+    found["shape"] = shape.by_area
+    if shape.initial is None:
+        return found | {"reason": "the curvature at rest needs two points below a tenth of the range"}
+    return found | _entry("shape_initial", shape.initial) | {"shape_by_initial": shape.by_initial}
+
+
+def _entry(name: str, measured: Measured) -> dict[str, float]:
+    return {name: measured.value, f"{name}_error": measured.error}

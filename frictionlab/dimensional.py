@@ -1,0 +1,237 @@
+# ruff: noqa: N815 - a key ends in its unit, and N stands for newton
+"""A scene in SI units, and the one place where SI numbers become nondimensional.
+
+Scales of Sulollari, van Dalen & Cabboi, Eq. 2, with omega_1 = sqrt(K_1/M): time 1/omega_1, a length L, force
+K_1 L, and from these velocity omega_1 L and energy K_1 L^2. L is any length: no result in SI units depends on it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import cache, lru_cache
+from typing import Any, NamedTuple, TypeVar, get_args
+
+from pydantic import Field, model_validator
+
+from frictionlab.quantities import Dimension, Finite, NonNegative, Positive, Record
+
+STANDARD_GRAVITY = 9.81
+
+R = TypeVar("R", bound=Record)
+
+
+class Scales(NamedTuple):
+    """The units of a scene's nondimensional numbers: length L [m], time 1/omega_1 [s], force K_1 L [N]."""
+
+    length: float
+    time: float
+    force: float
+
+    @property
+    def velocity(self) -> float:
+        """omega_1 L [m/s]."""
+        return self.length / self.time
+
+    @property
+    def energy(self) -> float:
+        """K_1 L^2 [J]."""
+        return self.force * self.length
+
+    def of(self, dimension: Dimension) -> float:
+        """The unit of what has this dimension."""
+        return self.force**dimension.force * self.length**dimension.length * self.time**dimension.time
+
+
+class _Force(Record):
+    """A harmonic force by its unbalance [kg m] or its amplitude [N]; phase in degrees."""
+
+    unbalance_kg_m: NonNegative | None = None
+    amplitude_N: NonNegative | None = None
+    phase: Finite = 0.0
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> _Force:
+        if (self.unbalance_kg_m is None) == (self.amplitude_N is None):
+            raise ValueError("give exactly one of unbalance_kg_m and amplitude_N")
+        return self
+
+    def scaled(self, mass: float, scales: Scales) -> dict[str, float]:
+        """unbalance/(M L) or amplitude/(K_1 L), and the phase."""
+        if self.unbalance_kg_m is not None:
+            return {"unbalance": self.unbalance_kg_m / (mass * scales.length), "phase": self.phase}
+        assert self.amplitude_N is not None
+        return {"amplitude": self.amplitude_N / scales.force, "phase": self.phase}
+
+
+class DimensionalDrive(_Force):
+    """The force along x1: unbalance_kg_m*omega^2 (or amplitude_N) times sin(omega t + phase).
+
+    frequency_rad_per_s > 0: omega.
+    """
+
+    frequency_rad_per_s: Positive
+
+
+class DimensionalLoad(_Force):
+    """The force along x2, at the frequency of the drive."""
+
+
+class DimensionalTransverse(Record):
+    """The motion of the same mass along x2: stiffness_N_per_m > 0, damping_N_s_per_m >= 0, its load."""
+
+    stiffness_N_per_m: Positive
+    damping_N_s_per_m: NonNegative
+    load: DimensionalLoad | None = None
+
+
+class DimensionalInitial(Record):
+    """Where the mass starts: positions [m] and velocities [m/s]."""
+
+    x_m: Finite = 0.0
+    velocity_m_per_s: Finite = 0.0
+    x2_m: Finite = 0.0
+    velocity2_m_per_s: Finite = 0.0
+
+
+class Dimensional(Record):
+    """A body on a moving belt, shaken, in SI units.
+
+    mass_kg > 0: M. stiffness_N_per_m > 0, damping_N_s_per_m >= 0: K_1 and C_1, along the belt. length_m > 0: L,
+    the length that makes numbers nondimensional. belt_speed_m_per_s. The normal load is the weight, by
+    gravity_m_per_s2 > 0 (9.81), or normal_load_N > 0 instead. Leave ``transverse`` out for one degree of freedom.
+    """
+
+    mass_kg: Positive
+    stiffness_N_per_m: Positive
+    damping_N_s_per_m: NonNegative
+    length_m: Positive
+    gravity_m_per_s2: Positive | None = Field(
+        default=None, description=f"{STANDARD_GRAVITY} where normal_load_N is left out"
+    )
+    normal_load_N: Positive | None = None
+    belt_speed_m_per_s: Finite
+    drive: DimensionalDrive | None = None
+    transverse: DimensionalTransverse | None = None
+    initial: DimensionalInitial | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _weight_unless_a_load_is_given(cls, data: Any) -> Any:
+        if isinstance(data, dict) and "normal_load_N" not in data:
+            return {"gravity_m_per_s2": STANDARD_GRAVITY, **data}
+        return data
+
+    @model_validator(mode="after")
+    def _one_scene(self) -> Dimensional:
+        problems = [*self._parts_that_do_not_go_together(), *self._out_of_range()]
+        if problems:
+            raise ValueError("; ".join(problems))
+        return self
+
+    def _parts_that_do_not_go_together(self) -> Iterator[str]:
+        if self.gravity_m_per_s2 is not None and self.normal_load_N is not None:
+            yield "gravity_m_per_s2: leave it out where normal_load_N is given"
+        if self.drive is None and self.transverse is not None and self.transverse.load is not None:
+            yield "transverse.load: leave it out where drive is left out (an undriven scene)"
+        if self.initial is not None and self.transverse is None:
+            stray = {"x2_m", "velocity2_m_per_s"} & self.initial.model_fields_set
+            yield from (f"initial.{name}: needs transverse" for name in sorted(stray))
+
+    def _out_of_range(self) -> Iterator[str]:
+        """Units mistaken by a hundred decades: what no floating-point number can hold."""
+        try:
+            numbers = [*self.scales, *_numbers(self.scaled())]
+        except (ZeroDivisionError, OverflowError):
+            numbers = [math.inf]
+        if not all(map(math.isfinite, numbers)) or min(*self.scales, self.scaled()["normal_load"]) <= 0.0:
+            yield "length_m: these values have no nondimensional numbers: check their units"
+
+    @property
+    def scales(self) -> Scales:
+        """L, 1/omega_1 and K_1 L."""
+        time = math.sqrt(self.mass_kg / self.stiffness_N_per_m)
+        return Scales(self.length_m, time, self.stiffness_N_per_m * self.length_m)
+
+    @property
+    def load(self) -> float:
+        """The normal load [N]."""
+        if self.normal_load_N is not None:
+            return self.normal_load_N
+        assert self.gravity_m_per_s2 is not None
+        return self.mass_kg * self.gravity_m_per_s2
+
+    def scaled(self) -> dict[str, Any]:
+        """The nondimensional scene as plain nested values (Eq. 2)."""
+        found: dict[str, Any] = {
+            "damping_ratio": self._damping_ratio(self.damping_N_s_per_m, self.stiffness_N_per_m),
+            "normal_load": self.load / self.scales.force,
+            "belt_speed": self.belt_speed_m_per_s / self.scales.velocity,
+        }
+        if self.drive is not None:
+            frequency = {"frequency": self.drive.frequency_rad_per_s * self.scales.time}
+            found["drive"] = self.drive.scaled(self.mass_kg, self.scales) | frequency
+        if self.transverse is not None:
+            found["transverse"] = self._scaled_transverse(self.transverse)
+        if self.initial is not None:
+            found["initial"] = self._scaled_initial(self.initial)
+        return found
+
+    def _damping_ratio(self, damping: float, stiffness: float) -> float:
+        return damping / (2.0 * math.sqrt(stiffness * self.mass_kg))
+
+    def _scaled_transverse(self, across: DimensionalTransverse) -> dict[str, Any]:
+        found: dict[str, Any] = {
+            "natural_frequency": math.sqrt(across.stiffness_N_per_m / self.stiffness_N_per_m),
+            "damping_ratio": self._damping_ratio(across.damping_N_s_per_m, across.stiffness_N_per_m),
+        }
+        if across.load is not None:
+            found["load"] = across.load.scaled(self.mass_kg, self.scales)
+        return found
+
+    def _scaled_initial(self, initial: DimensionalInitial) -> dict[str, float]:
+        """Only what was given: a start across the belt is no part of a scene on the line."""
+        given = initial.model_dump(exclude_unset=True)
+        units = {"m": self.scales.length, "m_per_s": self.scales.velocity}
+        parts = {key: key.partition("_") for key in given}
+        return {name: given[key] / units[unit] for key, (name, _, unit) in parts.items()}
+
+
+def _numbers(tree: dict[str, Any]) -> Iterator[float]:
+    for value in tree.values():
+        yield from _numbers(value) if isinstance(value, dict) else (value,)
+
+
+@cache
+def dimensions(record: type[Record]) -> dict[str, Dimension]:
+    """The dimension of every field of a record that has one."""
+    found = {
+        name: _dimension(field.annotation, field.metadata) for name, field in record.model_fields.items()
+    }
+    return {name: dimension for name, dimension in found.items() if dimension is not None}
+
+
+def _dimension(annotation: Any, metadata: Any) -> Dimension | None:
+    """The marker beside a type, or beside one of the alternatives of an optional one."""
+    for mark in metadata:
+        if isinstance(mark, Dimension):
+            return mark
+    inner = (
+        _dimension(None, kind.__metadata__) for kind in get_args(annotation) if hasattr(kind, "__metadata__")
+    )
+    return next((dimension for dimension in inner if dimension is not None), None)
+
+
+def scaled_parameters(record: Record, scales: Scales) -> dict[str, float]:
+    """The parameters of a law that have a dimension, made nondimensional."""
+    values = {
+        name: (getattr(record, name), dimension) for name, dimension in dimensions(type(record)).items()
+    }
+    return {name: value / scales.of(unit) for name, (value, unit) in values.items() if value is not None}
+
+
+@lru_cache(maxsize=4096)  # the rows of a curve share theirs
+def scaled_law(law: R, scales: Scales) -> R:
+    """A law given in SI units in the lengths and times of a scene."""
+    parameters = scaled_parameters(law, scales)
+    return type(law).model_validate(law.model_dump(exclude_none=True) | parameters) if parameters else law

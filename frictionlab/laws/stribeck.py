@@ -1,0 +1,100 @@
+"""Stribeck friction: a coefficient that falls from its static value as slip sets in."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal
+
+from pydantic import model_validator
+
+from frictionlab.laws.base import NonNegative, PerSpeed, Positive, SlidingLaw, Speed
+
+EXPONENTIAL, RATIONAL, CUBIC = 0.0, 1.0, 2.0
+
+
+class Stribeck(SlidingLaw):
+    """Stribeck friction: from mu_static at rest down to mu_kinetic in quick slip, along one of four curves.
+
+    mu_kinetic [-], >= 0: coefficient at high speed; for the cubic curve its minimum, met at stribeck_speed.
+    mu_static [-], >= mu_kinetic, > 0: coefficient at rest and at vanishing speed.
+    stribeck_speed [scene velocity], > 0: speed of the fall.
+    stribeck_exponent [-], > 0: of the exponential curve alone, 2 where left out.
+    viscosity [1/scene velocity], >= 0: adds viscosity*speed to the coefficient.
+    curve: with u = speed/stribeck_speed and d = mu_static - mu_kinetic,
+    exponential mu_kinetic + d exp(-u^stribeck_exponent), hyperbolic mu_kinetic + d/(1 + u),
+    hess-soom mu_kinetic + d/(1 + u^2), cubic mu_static - d (3 u - u^3)/2, which grows without bound.
+
+    Sources: exponential: Bo & Pavelescu (1982), Armstrong-Helouvry (1991); hyperbolic: Leine, van Campen, de
+    Kraker & van den Steen (1998); hess-soom: Hess & Soom (1990); cubic: Thomsen (1999), Thomsen & Fidlin (2003).
+    """
+
+    mu_kinetic: NonNegative
+    mu_static: Positive
+    stribeck_speed: Speed = 1.0
+    stribeck_exponent: Positive | None = None
+    viscosity: PerSpeed = 0.0
+    curve: Literal["exponential", "hyperbolic", "hess-soom", "cubic"] = "exponential"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _exponent_of_the_exponential(cls, data: Any) -> Any:
+        if isinstance(data, dict) and data.get("curve", "exponential") == "exponential":
+            return {"stribeck_exponent": 2.0, **data}
+        return data
+
+    @model_validator(mode="after")
+    def _falls(self) -> Stribeck:
+        if self.mu_static < self.mu_kinetic:
+            raise ValueError(
+                f"mu_static: must be >= mu_kinetic = {self.mu_kinetic:g}, got {self.mu_static:g}"
+            )
+        if self.curve != "exponential" and self.stribeck_exponent is not None:
+            raise ValueError(f"stribeck_exponent: leave it out, the {self.curve} curve has none")
+        return self
+
+    @property
+    def family(self) -> float:
+        """Which formula the curve is of: a number, for kernels know no words."""
+        return {"exponential": EXPONENTIAL, "cubic": CUBIC}.get(self.curve, RATIONAL)
+
+    @property
+    def power(self) -> float:
+        """The exponent of speed in it."""
+        return self.stribeck_exponent or (2.0 if self.curve == "hess-soom" else 1.0)
+
+    def sliding_friction(self, speed: float) -> float:
+        """The curve, viscosity included."""
+        u = speed / self.stribeck_speed
+        if self.family == CUBIC:
+            left = 1.0 - 0.5 * u * (3.0 - u * u)
+        elif self.family == EXPONENTIAL:
+            left = math.exp(-(u**self.power))
+        else:
+            left = 1.0 / (1.0 + u**self.power)
+        return self.mu_kinetic + (self.mu_static - self.mu_kinetic) * left + self.viscosity * speed
+
+    def constant_sliding_friction(self) -> bool:
+        """Where nothing falls and nothing is viscous."""
+        return self.mu_static == self.mu_kinetic and self.viscosity == 0.0
+
+    def monotone(self) -> bool:
+        """Where viscosity makes up for the fall at every speed."""
+        return self.steepest_fall() == 0.0
+
+    def steepest_fall(self) -> float:
+        """By the speed of steepest descent of each curve; infinite for an exponent below one."""
+        drop = self.mu_static - self.mu_kinetic
+        if drop == 0.0:
+            return 0.0
+        return max(0.0, drop / self.stribeck_speed * self._steepest() - self.viscosity)
+
+    def _steepest(self) -> float:
+        """The largest slope of the fall from 1 to 0 over u."""
+        if self.family == CUBIC:
+            return 1.5
+        if self.family == RATIONAL:
+            return 1.0 if self.power == 1.0 else 0.375 * math.sqrt(3.0)
+        if self.power < 1.0:
+            return math.inf
+        bend = 1.0 - 1.0 / self.power  # u^power at the point of inflection
+        return float(self.power * bend**bend * math.exp(-bend))

@@ -1,0 +1,132 @@
+"""Whether every start reaches the same steady state, where no theorem says so."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from frictionlab.methods.base import Floats
+from frictionlab.methods.closer import Closer, Wandered
+from frictionlab.methods.curve import Curve
+from frictionlab.scene import Initial, Scene
+
+STABLE = 1.0 - 1e-7
+"""Largest Floquet multiplier of an orbit that is said to attract."""
+FEWEST, MOST = 200, 20_000
+"""Periods a start is followed for."""
+
+
+@dataclass(frozen=True)
+class Attractor:
+    """Where a start led: an orbit closed after some drive periods, or (0) a motion that never repeats.
+
+    low, high: the smallest and the largest mean over one drive period. followed: for how many periods.
+    """
+
+    followed: int
+    period: int
+    low: float
+    high: float
+    curve: Curve | None
+
+    def agrees(self, other: Attractor) -> bool:
+        """Whether both have the same mean friction, for the same reason."""
+        if self.curve is None or other.curve is None or self.period != other.period:
+            return False
+        doubt = float(self.curve.results[0, 2] + other.curve.results[0, 2])
+        return abs(self.mean - other.mean) <= doubt + 1e-12
+
+    @property
+    def mean(self) -> float:
+        """The mean friction over all periods of a closed orbit; NaN for a motion that never repeats."""
+        return math.nan if self.curve is None else float(self.curve.results[0, 0])
+
+
+def multiplier(curve: Curve, row: int = 0) -> float:
+    """The largest modulus of an orbit's Floquet multipliers."""
+    return float(np.abs(np.linalg.eigvals(curve.matrices[row])).max())
+
+
+def closed_orbit(curve: Curve, means: Floats) -> Attractor | None:
+    """A closed orbit, with its means over each drive period; None where it did not close, or repels."""
+    if curve.results[0, 3] < 0.0 or not multiplier(curve) < STABLE:
+        return None
+    return Attractor(0, len(means), float(means.min()), float(means.max()), curve)
+
+
+def starts(scene: Scene, limit: float) -> list[Initial | None]:
+    """Three starts far from each other: shaken freely, resting on the belt, and flung against it.
+
+    limit: force of friction at rest. ``scene.initial``, where it is given, comes first.
+    """
+    given: list[Initial | None] = [] if scene.initial is None else [scene.initial]
+    against = -math.copysign(1.0, scene.belt_speed)
+    flung = Initial(x=against * 2.0 * limit, velocity=against * (abs(scene.belt_speed) + limit))
+    return [*given, None, Initial(velocity=scene.belt_speed), flung]
+
+
+def attractors(closer: Closer, scene: Scene, candidate: Attractor | None) -> tuple[list[Attractor], float]:
+    """Where each of the starts leads; and kernel time [s]. The candidate is an orbit already known."""
+    known = [candidate] if candidate is not None else []
+    reached, seconds = [], 0.0
+    for start in starts(scene, closer.mass.normal_load * closer.law.static_friction()):
+        way = closer.wandered(scene.belt_speed, start, _patience(candidate))
+        seconds += way.seconds
+        found = next((orbit for orbit in known if _arrived(way, orbit)), None)
+        if found is None:
+            found, more = _closed(closer, scene, way)
+            known, seconds = [*known, found], seconds + more
+        reached.append(found)
+    return reached, seconds
+
+
+def _patience(candidate: Attractor | None) -> int:
+    """How many periods bring every start to the candidate, were it to attract them all."""
+    if candidate is None or candidate.curve is None:
+        return 5 * FEWEST
+    rate = -math.log(max(multiplier(candidate.curve), 1e-3))
+    return int(min(max(FEWEST, 20.0 / rate), MOST))
+
+
+def _arrived(way: Wandered, orbit: Attractor) -> bool:
+    """Whether a motion ended next to an orbit of one period that attracts it."""
+    if orbit.curve is None or not way.period == orbit.period == 1:
+        return False
+    state: Floats = orbit.curve.states[0]
+    return bool(np.abs(way.state - state).max() <= 1e-5 * max(1.0, float(np.abs(state).max())))
+
+
+def _closed(closer: Closer, scene: Scene, way: Wandered) -> tuple[Attractor, float]:
+    """The orbit at the end of a way, or the spread of what never repeats."""
+    seconds = 0.0
+    if way.period > 0:
+        curve, seconds = closer.closed([scene], way.state, way.period)
+        orbit = closed_orbit(curve, way.means[-way.period :])
+        if orbit is not None:
+            return orbit, seconds
+    last = way.means[len(way.means) // 2 :]
+    return Attractor(len(way.means), 0, float(last.min()), float(last.max()), None), seconds
+
+
+def told(reached: list[Attractor]) -> str:
+    """What several starts reached, in words."""
+    orbits = [one for one in reached if one.curve is not None]
+    wild = [one for one in reached if one.curve is None]
+    parts = [_orbit_told(one) for one in {(one.period, f"{one.mean:.9g}"): one for one in orbits}.values()]
+    if wild:
+        low, high = min(one.low for one in wild), max(one.high for one in wild)
+        longest = max(one.followed for one in wild)
+        count = f"{len(wild)} of {len(reached)} starts do not repeat within {longest} periods"
+        parts.append(f"{count}, with means over one drive period from {low:.6g} to {high:.6g}")
+    return "; ".join(parts)
+
+
+def _orbit_told(orbit: Attractor) -> str:
+    if orbit.period == 1:
+        return f"an orbit of one drive period has a mean of {orbit.mean:.9g}"
+    return (
+        f"an orbit of {orbit.period} drive periods has means over one from {orbit.low:.6g} to {orbit.high:.6g}, "
+        f"{orbit.mean:.9g} over all"
+    )

@@ -1,0 +1,86 @@
+"""One curve's way to closed orbits: its scenes as kernels see them, and the kernels called on them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from frictionlab.kernel import compiled, timed
+from frictionlab.laws.base import SlidingLaw
+from frictionlab.methods.base import Floats
+from frictionlab.methods.closing import Goal
+from frictionlab.methods.curve import Curve, answer_curve, settle, wander
+from frictionlab.scene import Body, Initial, Scene, in_the_plane, on_the_line
+
+
+def contracts(scene: Scene, law: SlidingLaw) -> bool:
+    """Whether no two motions ever move apart, by friction's fall being slower than damping can make up for.
+
+    The steady state is then unique and attracts every start (Leine & van de Wouw, 2008). Where nothing pushes
+    across the belt the motion across dies out under every isotropic law, and only damping along it counts.
+    """
+    if law.monotone():
+        return True
+    mass = scene.mass()
+    along, across = mass.damping, mass.transverse_damping
+    return mass.normal_load * law.steepest_fall() < (
+        along if scene.load_along_belt_only else min(along, across)
+    )
+
+
+class Wandered(NamedTuple):
+    """A motion followed until it repeats: after how many periods (0: never), its one-period means, its end."""
+
+    period: int
+    means: Floats
+    state: Floats
+    seconds: float
+
+
+class Closer:
+    """The kernels of shooting for scenes that differ in belt speed alone; on the line where nothing pushes across.
+
+    tolerance: on the mean friction.
+    """
+
+    def __init__(self, scene: Scene, law: SlidingLaw, tolerance: float) -> None:
+        self.mass, self.law = scene.mass(), law
+        self.goal = Goal(tolerance, contracts(scene, law))
+        self.body: Body
+        self.like: complex  # a number of the kind of its positions
+        if scene.load_along_belt_only:
+            self.body, self.like = on_the_line(self.mass), 0.0
+        else:
+            self.body, self.like = in_the_plane(self.mass), 0j
+
+    def closed(
+        self, scenes: Sequence[Scene], state: Floats | None = None, periods: float = 1.0
+    ) -> tuple[Curve, float]:
+        """The orbits of these scenes, from a known state at the first where there is one; and kernel time [s]."""
+        belt_speeds = np.array([scene.belt_speed for scene in scenes])
+        guess = np.empty((0, 0)) if state is None else state[None, :]
+        body = self.body._replace(periods=float(periods))
+        return timed(
+            compiled(answer_curve, self.law), body, self.mass, belt_speeds, guess, self.goal, self.like
+        )
+
+    def settled(self, start: Initial) -> tuple[Floats, int]:
+        """The state at which the mass stays put on a belt at rest, and in how many periods; -1 for never."""
+        accuracy = 1e-13 * self.mass.normal_load
+        return compiled(settle, self.law)(self.body, *self._at(start), accuracy)
+
+    def wandered(self, belt_speed: float, start: Initial | None, most: int) -> Wandered:
+        """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
+        reference = self.body.reference_cosine, self.body.frequency * self.body.reference_sine
+        at = reference if start is None else self._at(start)
+        means, states = np.empty(most), np.empty((most + 1, 4 if isinstance(self.like, complex) else 2))
+        accuracy = 1e-9 * self.mass.normal_load
+        arguments = self.body, belt_speed, at, accuracy, means, states
+        (period, count), seconds = timed(compiled(wander, self.law), *arguments)
+        return Wandered(period, means[:count], states[count], seconds)
+
+    def _at(self, start: Initial) -> tuple[complex, complex]:
+        x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)
+        return (x, v) if isinstance(self.like, complex) else (x.real, v.real)

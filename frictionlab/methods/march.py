@@ -1,0 +1,234 @@
+"""Time stepping to the steady state: the road everybody takes, with what it costs and how far off it is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
+from frictionlab.methods.base import Answers, Method, Orbit, Status
+from frictionlab.methods.marcher import Run, Walker
+from frictionlab.methods.marching import LATE, RESTING, STALLED, TIRED
+from frictionlab.methods.refining import WORK, Found, Plan, found, restless
+from frictionlab.methods.sampling import solve_sampled
+from frictionlab.methods.shooting import resting_range, stays_at_rest
+from frictionlab.orbit import READ
+from frictionlab.scene import Scene
+
+
+def _whole(given: object) -> object:
+    if isinstance(given, bool) or not isinstance(given, int | float) or given != int(given):
+        raise ValueError(f"must be a whole number, not {given!r}")
+    return int(given)
+
+
+def _half_or_one(given: object) -> object:
+    if isinstance(given, bool) or given not in (0.5, 1):
+        raise ValueError(f"must be 0.5 or 1, not {given!r}")
+    return 1.0 if given == 1 else 0.5
+
+
+Theta = Annotated[float, BeforeValidator(_half_or_one)]
+Count = Annotated[int, BeforeValidator(_whole), Field(ge=4, le=100_000_000)]
+
+OWN_KEYS = {"moreau": ("theta", "steps"), "rk4": ("steps",), "smoothed": ("width", "smoothing")}
+ORDERS = {("moreau", 0.5): 2, ("moreau", 1.0): 1, ("rk4", 0.5): 4, ("smoothed", 0.5): 8}
+"""Of each stepper on smooth motion, by theta where it has one."""
+READABLE = 4096
+"""Most steps per period of the run that the columns besides the mean are read from."""
+COLUMNS = [name for name in READ if not name.startswith("mean_position")]
+COLUMNS += ["error", "mean_low", "mean_high", "window", "period", "floquet", "seconds"]
+WATCHED = 300
+"""Laps over which a motion that never repeats is averaged."""
+
+
+class March(Method):
+    """Time stepping, period by period, until the motion repeats: no events, no shooting.
+
+    stepper: moreau (Moreau-Jean, friction projected on its disk), rk4 (Runge-Kutta of order 4 on the jump itself,
+    blind to it) or smoothed (DOP853 with step control on friction smoothed at rest).
+    theta [-]: of moreau, 0.5 (default) or 1.
+    steps [-], >= 4: of moreau and rk4, per period of the drive, per 2 pi where nothing drives. The mean is that of
+    so many steps, its error told by two and four times as many. Left out, steps are doubled until the error is
+    below the tolerance or a point has cost 16 million, and the mean extrapolated where the order can be seen.
+    width [scene velocity], > 0: of smoothed, 0.01 where left out; the mean is that of this width, its error tells
+    the bias by twice, half and a quarter of the width.
+    smoothing: of smoothed, tanh (default), square_root or arctan.
+    periods [-], >= 4: most periods to wait for the motion to repeat, 100000.
+
+    The motion starts from scene.initial, else on the friction-free orbit. Sources: Moreau (1988), Jean (1999);
+    Kutta (1901); Hairer, Norsett & Wanner (1993).
+    """
+
+    name: ClassVar[str] = "march"
+
+    stepper: Literal["moreau", "rk4", "smoothed"] = "moreau"
+    theta: Theta | None = None
+    steps: Count | None = None
+    width: Positive | None = None
+    smoothing: Literal["tanh", "square_root", "arctan"] | None = None
+    periods: Count = 100_000
+
+    @model_validator(mode="after")
+    def _keys_of_the_stepper(self) -> March:
+        for key in ("theta", "steps", "width", "smoothing"):
+            if getattr(self, key) is not None and key not in OWN_KEYS[self.stepper]:
+                own = ", ".join(OWN_KEYS[self.stepper])
+                raise ValueError(f"{key}: leave it out, stepper {self.stepper} knows {own} and periods")
+        return self
+
+    def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
+        """Friction with memory; a static coefficient above the sliding one with a stepper that cannot hold it."""
+        if not isinstance(law, SlidingLaw):
+            return "march steps friction without memory (a sliding law)"
+        if self.stepper != "moreau" and law.static_friction() > law.sliding_friction(0.0):
+            return (
+                f"stepper {self.stepper} never rests, and static friction above that of slip acts only at rest; "
+                f"use stepper moreau"
+            )
+        return None
+
+    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
+        """Some twenty periods of 50 ns steps, errors falling as one over their number; at most what WORK takes."""
+        if self.stepper == "smoothed":
+            return 0.05
+        steps = 4.0 * self.steps if self.steps else 2.0 * law.sliding_friction(1.0) / tolerance
+        return 5e-8 * min(30.0 * steps, WORK)
+
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        """Answer each scene by itself, from its own start."""
+        assert isinstance(law, SlidingLaw)
+        plan = self._plan()
+        if scenes[0].degrees_of_freedom == 0:
+            return solve_sampled(scenes, law, tolerance, plan)
+        points = [_Point(scene, law, tolerance, plan) for scene in scenes]
+        return Answers(
+            [point.status for point in points],
+            [point.reason for point in points],
+            [point.model for point in points],
+            ["estimated" if point.status == "ok" else "" for point in points],
+            {name: np.array([point.columns[name] for point in points]) for name in COLUMNS},
+            lambda i: points[i].orbit,
+        )
+
+    def _plan(self) -> Plan:
+        theta = self.theta or 0.5
+        return Plan(
+            stepper=self.stepper,
+            theta=theta,
+            order=ORDERS[self.stepper, theta],
+            steps=self.steps,
+            width=self.width or 0.01,
+            smoothing=self.smoothing or "tanh",
+            periods=self.periods,
+        )
+
+
+class _Point:
+    """One scene, marched, and its row."""
+
+    def __init__(self, scene: Scene, law: SlidingLaw, tolerance: float, plan: Plan) -> None:
+        self.scene, self.law, self.plan = scene, law, plan
+        self.walker = Walker(scene, law, plan.stepper)
+        self.columns = dict.fromkeys(COLUMNS, math.nan)
+        self.status: Status = "failed"
+        self.reason, self.model = "", ""
+        self.orbit: Orbit | None = None
+        if stays_at_rest(scene, law) and scene.initial is None:
+            self._leave_open(resting_range(scene, law))
+        else:
+            self._judge(found(self.walker, plan, tolerance), tolerance)
+        self.columns["seconds"] = self.walker.seconds
+
+    def _leave_open(self, highest: float) -> None:
+        self._range(-highest, highest, 1.0)
+        self.reason = (
+            "the belt is at rest and friction can hold the loads for ever: the mass stays wherever it stops; "
+            "give scene.initial to choose a start"
+        )
+
+    def _range(self, low: float, high: float, window: float) -> None:
+        self.status = "not_unique"
+        self.columns |= {"mean_low": low, "mean_high": high, "window": window}
+
+    def _judge(self, answer: Found, tolerance: float) -> None:
+        last = answer.runs[-1]
+        self.model = f"march, {self.plan.stepper}{self._theta()}: {answer.how or 'no steady state'}"
+        if not last.settled:
+            self.reason = _why_not(last, self.plan)
+        elif restless(answer.runs, self.walker):
+            self._watch(last)
+        else:
+            self._accept(answer, tolerance)
+
+    def _theta(self) -> str:
+        return f" with theta {self.plan.theta:g}" if self.plan.stepper == "moreau" else ""
+
+    def _watch(self, last: Run) -> None:
+        """Follow a motion that never repeats for many laps."""
+        seen = self.walker.watch(last, WATCHED)
+        self._range(seen.low, seen.high, float(seen.laps))
+        self.reason = (
+            f"the motion never repeats, whatever the step: over {seen.laps} periods the mean over one runs from "
+            f"{seen.low:.6g} to {seen.high:.6g}"
+        )
+
+    def _accept(self, answer: Found, tolerance: float) -> None:
+        last = answer.runs[-1]
+        self.status = "ok"
+        self._read(answer.runs)
+        across = answer.mean.imag if self.scene.degrees_of_freedom == 2 else math.nan
+        self.columns |= {
+            "mean_friction": answer.mean.real,
+            "mean_friction_transverse": across,
+            "error": answer.error,
+            "period": self._period(answer, last),
+        }
+        reasons = []
+        if last.verdict == STALLED:
+            reasons.append(
+                f"the steps keep the motion from repeating: averaged over {self.walker.window} periods"
+            )
+        if not self.walker.converges:
+            start = "scene.initial" if self.scene.initial else "the default start"
+            reasons.append(f"the state reached from {start}; no other start was tried")
+        if not answer.error <= tolerance:
+            reasons.append(f"the error is above the tolerance {tolerance:.1e}")
+        self.reason = "; ".join(reasons)
+
+    def _period(self, answer: Found, last: Run) -> float:
+        if not self.scene.undriven:
+            return 1.0 if self.walker.converges else float(last.stride)
+        still = self.columns["velocity_amplitude"] <= 2.0 * last.pace.enough
+        return math.nan if last.verdict == RESTING or still else answer.period / (2.0 * math.pi)
+
+    def _read(self, runs: Sequence[Run]) -> None:
+        """The columns besides the mean, from the finest run that is not too long to keep."""
+        readable = [run for run in runs if run.pace.steps <= READABLE] or [runs[0]]
+        given = self.plan.steps is not None
+        self.orbit = self.walker.track(runs[0] if given else readable[-1])
+        if self.orbit is None:
+            return
+        values = dict(zip(READ, self.walker.columns(self.orbit), strict=True))
+        flat = "transverse" if self.scene.degrees_of_freedom == 1 else "mean_position"
+        values |= {name: math.nan for name in values if flat in name}
+        if self.plan.stepper != "moreau":
+            values["stick_fraction"] = math.nan
+        self.columns |= {name: value for name, value in values.items() if name in self.columns}
+
+
+def _why_not(run: Run, plan: Plan) -> str:
+    if run.verdict == LATE:
+        return (
+            f"the motion still changes by {run.drift:.1e} a period after {run.laps} periods (at most "
+            f"{plan.periods}); give more periods"
+        )
+    if run.verdict == TIRED:
+        return f"does not repeat within {run.steps:.1g} steps ({run.laps} periods); give fewer or wider ones"
+    return (
+        f"lost after {run.laps} periods: the motion grows without bound, or never returns; give shorter steps"
+    )

@@ -1,0 +1,312 @@
+"""One motion marched to its steady state: from scene numbers to kernel and back, one run per step size or width."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.kernel import compiled, timed
+from frictionlab.laws.base import SlidingLaw
+from frictionlab.methods.base import Floats, Orbit
+from frictionlab.methods.marching import (
+    CLOSED,
+    RESTING,
+    STALLED,
+    March,
+    Way,
+    march_moreau,
+    march_rk4,
+    march_smoothed,
+)
+from frictionlab.methods.steppers.smoothed import ARCTAN, SQUARE_ROOT, TANH
+from frictionlab.orbit import read
+from frictionlab.scene import Body, Mass, Scene, in_the_plane, on_the_line
+
+KERNELS = {"moreau": march_moreau, "rk4": march_rk4, "smoothed": march_smoothed}
+SHAPES = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
+LONGEST_PERIOD = 8
+"""Of a response that repeats only after several laps."""
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How finely to step, and how well to close: numbers of one run."""
+
+    steps: int = 1  # per period of the drive, or per 2 pi; of fixed steps
+    theta: float = 0.5
+    width: float = 1.0
+    smoothing: str = "tanh"
+    accuracy: float = 1.0  # of each adaptive step, in the norm of energy
+    enough: float = 0.0  # distance from the closed orbit, in the same norm
+    most: int = 1  # laps
+    work: int = 1_000_000_000  # steps
+    rate: float = 0.0  # at which gaps are known to shrink, 0: unknown
+
+
+class Place(NamedTuple):
+    """A state of the motion: x1 + i x2 and its rate."""
+
+    x: complex
+    v: complex
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run came to: means over one period of the response, and how well they are known.
+
+    closing bounds what is missing in the mean because the motion does not close; low and high are the extremes of
+    the mean over one lap, over the laps it was watched for.
+    """
+
+    pace: Pace
+    place: Place
+    mean: complex
+    closing: float
+    low: float
+    high: float
+    laps: int
+    period: float  # time
+    stuck: float  # time, in the last lap
+    verdict: int
+    dip: float  # least slip speed between two nodes of more slip, no reversal seen
+    bend: float  # second derivative of slip speed there
+    crossings: int  # per period of the response
+    rate: float
+    creeping: (
+        float  # share of the period in which the stepper cannot tell stick from creep, where that matters
+    )
+    steps: int
+    stride: int
+    drift: float  # gap of the last lap, in the norm of energy
+
+    @property
+    def settled(self) -> bool:
+        """Whether there is a mean to speak of."""
+        return self.verdict in (CLOSED, STALLED, RESTING)
+
+
+class Walker:
+    """Everything of a scene and a law that does not change from run to run; counts the seconds."""
+
+    def __init__(self, scene: Scene, law: SlidingLaw, stepper: str) -> None:
+        self.scene, self.law, self.stepper = scene, law, stepper
+        self.mass: Mass = scene.mass()
+        straight = scene.load_along_belt_only and not _starts_across(scene)
+        reference = on_the_line(self.mass) if straight else in_the_plane(self.mass)
+        self.straight = straight
+        self.body = loaded(reference, self.mass, straight)
+        self.start = _start(scene, reference)
+        self.forgets = scene.belt_speed != 0.0  # on a belt at rest the mass stays wherever a run left it
+        self.lap = 2.0 * math.pi / self.mass.frequency
+        self.window = self._relaxing()
+        self.seconds = 0.0
+
+    @property
+    def converges(self) -> bool:
+        """Whether a theorem leads every start to one motion, of the drive's period (Leine & van de Wouw, 2008)."""
+        mass, scene = self.mass, self.scene
+        damping = mass.damping if scene.transverse is None else min(mass.damping, mass.transverse_damping)
+        falls = mass.normal_load * self.law.steepest_fall()
+        return falls < damping and scene.belt_speed != 0.0 and not scene.undriven
+
+    def run(self, pace: Pace, place: Place | None = None) -> Run:
+        """March to the steady state, period doublings included."""
+        place = place or self.start
+        march = self._marched(self._way(pace), place)
+        run = self._read(march, pace, 1)
+        stride = _stride(march) if march.verdict == STALLED else 1
+        if stride > 1:
+            longer = self._marched(self._way(pace)._replace(stride=stride, rate=0.0), run.place)
+            other = self._read(longer, pace, stride)
+            run = replace(other, steps=run.steps + other.steps) if other.verdict == CLOSED else run
+        return run
+
+    def watch(self, run: Run, laps: int) -> Run:
+        """So many more laps of a motion that does not repeat."""
+        way = self._way(run.pace)._replace(most=laps, stride=laps)
+        march = self._marched(way, run.place)
+        return self._read(march, run.pace, len(march.rubbed))
+
+    def track(self, run: Run) -> Orbit | None:
+        """One period of the response, from the end of a run."""
+        if not run.settled or (run.verdict == STALLED and run.stride > 1):
+            return None
+        room = 2 * run.stride * (run.steps // run.laps + 50)
+        laps = run.stride
+        way = self._way(run.pace)._replace(most=laps, stride=laps + 1, room=room)
+        if run.verdict == RESTING:
+            way = way._replace(span=2.0 * math.pi)
+        march = self._marched(way, run.place)
+        track, n = march.track, int(march.track.filled[0])
+        tau = track.tau[:n] + _offsets(track.tau[:n])[:, None]
+        return Orbit(tau, track.x[:n], track.v[:n], track.friction[:n], track.stick[:n])
+
+    def columns(self, orbit: Orbit) -> Floats:
+        """What is read from one period of the response, the drive's harmonic of several laps included."""
+        duration = float(orbit.tau[-1, -1] - orbit.tau[0, 0])
+        mass = self.mass._replace(frequency=2.0 * math.pi / duration) if self.scene.undriven else self.mass
+        parts = orbit.tau, orbit.x, orbit.v, orbit.friction, orbit.stick
+        values, seconds = timed(compiled(read), *parts, mass, self.scene.belt_speed)
+        self.seconds += seconds
+        laps = round(duration * mass.frequency / (2.0 * math.pi))
+        values[[0, 1, 2, 3, 5, 8, 10]] /= max(laps, 1)
+        return np.asarray(values)
+
+    def _relaxing(self) -> int:
+        """Laps in which a drift towards the steady state dies out by a third, at least fifty and at most 2000."""
+        damping = self.mass.damping if self.straight else min(self.mass.damping, self.mass.transverse_damping)
+        slow = max(1.0, 2.0 / damping if damping > 0.0 else 1.0, self.mass.damping)
+        return int(min(2000.0, max(50.0, slow / self.lap)))
+
+    def _marched(self, way: Way, place: Place) -> March:
+        x, v = (place.x.real, place.v.real) if self.straight else place
+        call = compiled(KERNELS[self.stepper], self.law)
+        march, seconds = timed(call, self.body, way, x, v)
+        self.seconds += seconds
+        return march
+
+    def _way(self, pace: Pace) -> Way:
+        driven, h = not self.scene.undriven, self.lap / pace.steps
+        adaptive = self.stepper == "smoothed"
+        reach = self.lap / 12.0 if adaptive else h
+        return Way(
+            belt_speed=self.scene.belt_speed,
+            driven=driven,
+            loads=self._loads(1 if adaptive or not driven else pace.steps),
+            span=self.lap if driven else self.lap * pace.most,
+            first=1e-3 * reach if adaptive else h,
+            theta=pace.theta,
+            width=pace.width,
+            shape=SHAPES[pace.smoothing],
+            accuracy=pace.accuracy,
+            reach=reach,
+            enough=pace.enough,
+            most=pace.most,
+            stride=1,
+            rate=pace.rate,
+            near=self._near(pace),
+            work=pace.work,
+            window=self.window,
+            room=0,
+        )
+
+    def _near(self, pace: Pace) -> float:
+        """Slip speed that smoothing makes of stick, or the jump of slip over a step that is blind to stick."""
+        if self.stepper == "smoothed":
+            return 3.0 * pace.width
+        force = self.mass.normal_load * self.law.sliding_friction(0.0)
+        return 2.0 * force * self.lap / pace.steps if self.stepper == "rk4" else 0.0
+
+    def _creeping(self, pace: Pace, march: March) -> float:
+        """The belt carries a mass that sticks; one that creeps as fast as the belt moves stays where it is.
+
+        Chatter of a stepper that is blind to stick is erratic: its creep is trusted at an eighth of that alone.
+        """
+        trusted = 1.0 if self.stepper == "smoothed" else 8.0
+        near, belt_speed = self._near(pace), abs(self.scene.belt_speed)
+        if trusted * near < belt_speed or march.lingered == 0.0:
+            return 0.0
+        share = float(march.lingered / march.duration[-1])
+        return min(1.0, share * (1.0 + near / belt_speed)) if belt_speed > 0.0 else 1.0
+
+    def _loads(self, steps: int) -> Any:
+        angle = np.arange(2 * steps + 1) * (math.pi / steps)
+        turn = np.exp(1j * angle)
+        along, across = (self.mass.force * turn).imag, (self.mass.transverse_force * turn).imag
+        return along if self.straight else along + 1j * across
+
+    def _read(self, march: March, pace: Pace, stride: int) -> Run:
+        laps = len(march.rubbed)
+        window = min(self.window * stride if march.verdict == STALLED else stride, laps)
+        time = float(march.duration[-window:].sum())
+        mean = -complex(march.rubbed[-window:].sum()) / time
+        each = -march.rubbed[-window:].real / march.duration[-window:]
+        low, high = float(each.min()), float(each.max())
+        drift = self._apart(march, laps, laps - stride)
+        return Run(
+            pace=pace,
+            place=Place(complex(march.x[-1]), complex(march.v[-1])),
+            mean=mean,
+            closing=self._closing(march, drift, high - low),
+            low=low,
+            high=high,
+            laps=laps,
+            period=time / window * stride,
+            stuck=float(march.stuck[-1]),
+            verdict=int(march.verdict),
+            dip=float(march.dip),
+            bend=float(march.bend),
+            crossings=int(march.crossings) * stride,
+            rate=float(march.rate),
+            creeping=self._creeping(pace, march),
+            steps=int(march.steps),
+            stride=stride,
+            drift=drift,
+        )
+
+    def _closing(self, march: March, drift: float, spread: float) -> float:
+        """What the mean may still change by: integrate the motion along x1 over a period, as shooting does.
+
+        The friction impulses of two orbits differ by the change of dv + damping*dx, which the gap is, plus the
+        integral of dx, which their distance bounds.
+        """
+        if march.verdict == RESTING:
+            return 1e-12
+        if march.verdict == STALLED:
+            led = self._apart(march, len(march.rubbed), len(march.rubbed) - self.window)
+            return spread + 2.0 * led / self.mass.normal_load
+        ends = (1.0 + self.mass.damping) * drift
+        return 2.0 * float(march.distance + ends / self.lap) / self.mass.normal_load
+
+    def _apart(self, march: March, a: int, b: int) -> float:
+        dx, dv = march.x[a] - march.x[max(b, 0)], march.v[a] - march.v[max(b, 0)]
+        across = self.mass.transverse_stiffness * dx.imag**2
+        return float(math.sqrt(dx.real**2 + across + abs(dv) ** 2))
+
+
+def _starts_across(scene: Scene) -> bool:
+    initial = scene.initial
+    return initial is not None and (initial.x2 != 0.0 or initial.velocity2 != 0.0)
+
+
+def loaded(body: Body, mass: Mass, straight: bool) -> Body:
+    """The body driven by the loads themselves: nothing is taken off as a known response."""
+    sine, cosine = mass.force.real, mass.force.imag
+    if straight:
+        force: tuple[Any, Any, Any] = sine, cosine, 0.0
+    else:
+        across = mass.transverse_force
+        force = complex(sine, across.real), complex(cosine, across.imag), 0j
+    return body._replace(
+        force_sine=force[0], force_cosine=force[1], reference_sine=force[2], reference_cosine=force[2]
+    )
+
+
+def _start(scene: Scene, reference: Body) -> Place:
+    """``scene.initial``; without it the friction-free orbit of a driven scene, rest on the belt of another."""
+    if scene.initial is None and not scene.undriven:
+        return Place(complex(reference.reference_cosine), complex(scene.frequency * reference.reference_sine))
+    start = scene.start
+    return Place(complex(start.x, start.x2), complex(start.velocity, start.velocity2))
+
+
+def _stride(march: March) -> int:
+    """After how many laps a motion that does not close every lap comes nearest to repeating."""
+    points = np.stack([march.x.real, march.v.real, march.x.imag, march.v.imag], axis=1)[-3 * LONGEST_PERIOD :]
+    gaps = [
+        float(np.abs(points[n:] - points[:-n]).max(axis=1)[-LONGEST_PERIOD:].mean())
+        for n in range(1, LONGEST_PERIOD + 1)
+    ]
+    best = int(np.argmin(gaps))
+    return best + 1 if gaps[best] < 0.1 * gaps[0] else 1
+
+
+def _offsets(tau: Floats) -> Floats:
+    """What to add to each panel's time so that laps, each from zero, follow each other."""
+    offsets = np.zeros(len(tau))
+    for i in np.flatnonzero(tau[1:, 0] < tau[:-1, 0]):
+        offsets[i + 1 :] += tau[i, -1]
+    return offsets

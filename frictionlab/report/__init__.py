@@ -1,0 +1,6 @@
+"""Reports: the page of a run, and the page of a folder of runs."""
+
+from frictionlab.report.index import write_index
+from frictionlab.report.page import write_report
+
+__all__ = ["write_index", "write_report"]

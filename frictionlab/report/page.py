@@ -1,0 +1,160 @@
+"""The page of a run: one HTML file that needs nothing else, made of what the run's folder holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from frictionlab import __version__
+from frictionlab.output import write_page
+from frictionlab.report import asked, found
+from frictionlab.report.pictures import pictures
+from frictionlab.report.sources import sources
+from frictionlab.report.tables import Grid, grid, points, swept_inputs
+from frictionlab.saved import Saved
+from frictionlab.yaml_text import yaml_text
+
+TEMPLATES = Path(__file__).parent / "templates"
+GENERATOR = f"frictionlab {__version__}"
+MOST_SHOWN_AT_ONCE = 12
+"""Expectations that are shown unasked where all of them hold."""
+
+
+def write_report(saved: Saved) -> Path:
+    """Write report.html into the folder of a run; where it is. Raises SaveError."""
+    file = saved.folder / "report.html"
+    write_page(file, report(saved))
+    return file
+
+
+def report(saved: Saved) -> str:
+    """The page of a run."""
+    return rendered(
+        "report.html", title=saved.title, **_head(saved), **_asked(saved), **_found(saved), **_last(saved)
+    )
+
+
+def rendered(template: str, **values: Any) -> str:
+    """A page from its template; every value that is not markup already is escaped."""
+    return _environment().get_template(template).render(generator=GENERATOR, style=_style(), **values)
+
+
+@cache
+def _environment() -> Environment:
+    return Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+@cache
+def _style() -> Markup:
+    return Markup((TEMPLATES / "style.css").read_text(encoding="utf-8").strip())
+
+
+def _head(saved: Saved) -> dict[str, Any]:
+    verdicts = saved.verdicts
+    passed = sum(verdict.passed for verdict in verdicts)
+    return {
+        "size": points(len(saved.table)),
+        "counts": saved.counts,
+        "passed": passed,
+        "failed": len(verdicts) - passed,
+        "wall": wall(saved.seconds),
+        "unfinished": _unfinished(saved),
+    }
+
+
+def wall(seconds: float) -> str:
+    """A wall time, to the digits that matter."""
+    if seconds < 100.0:
+        return f"{seconds:.2g} s"
+    whole = round(seconds)
+    return f"{whole // 60} min {whole % 60} s"
+
+
+def _unfinished(saved: Saved) -> str:
+    killed = saved.counts.get("killed", 0)
+    return f"{killed} of {points(len(saved.table))} were not reached" if killed else ""
+
+
+def _asked(saved: Saved) -> dict[str, Any]:
+    study = saved.study
+    return {
+        "scene_sentence": asked.scene_sentence(study.scene),
+        "units_sentence": asked.units_sentence(study.scene),
+        "source": study.source,
+        "scene": asked.scene_grid(study),
+        "laws": asked.laws_grid(study),
+        "methods": asked.methods_grid(study),
+        "sweep": asked.sweep_grid(study),
+        "tolerance": f"{study.tolerance:g}",
+        "keep": study.keep_orbit,
+        "yaml": yaml_text(study.resolved()),
+    }
+
+
+def _found(saved: Saved) -> dict[str, Any]:
+    curves = found.curves_of(saved)
+    verdicts = saved.verdicts
+    return {
+        "brief": found.brief_grid(curves),
+        "whole": found.whole_grid(saved.table),
+        "shape": None if saved.curves is None else found.shape_grid(saved.curves, swept_inputs(saved.table)),
+        "pictures": pictures(saved),
+        "verdicts": found.verdicts_grid(verdicts),
+        "fold": len(verdicts) > MOST_SHOWN_AT_ONCE and all(verdict.passed for verdict in verdicts),
+        "expected": len(saved.study.expect),
+        "odd": found.trouble_grid(saved.table),
+        "models": found.models_grid(saved.table),
+        "errors": found.errors_grid(curves, saved.study.tolerance),
+        "errors_sentence": found.sentence_of_errors(saved),
+    }
+
+
+def _last(saved: Saved) -> dict[str, Any]:
+    return {
+        "sources": sources(saved),
+        "versions": _versions(saved),
+        "runs": _runs(saved.account["runs"]),
+        "commands": _commands(saved),
+    }
+
+
+def _versions(saved: Saved) -> Grid:
+    account = saved.account
+    own = {name: account.get(name) for name in ("frictionlab", "python", "platform")}
+    rows = [[name, str(value)] for name, value in (own | account["packages"]).items() if value]
+    return grid("Versions with which the numbers were made", ["what", "version"], rows)
+
+
+def _runs(runs: Sequence[dict[str, Any]]) -> Grid:
+    rows = [
+        [
+            str(run.get("started", "")),
+            wall(run["seconds"]),
+            points(int(run.get("computed", 0))),
+            " ".join(f"--set {each}" for each in run.get("overrides", [])),
+        ]
+        for run in runs
+    ]
+    return grid("When it ran", ["started", "took", "computed", "set on the command line"], rows)
+
+
+def _commands(saved: Saved) -> str:
+    on = "frictionlab run study.yaml -o .       # go on where it was interrupted"
+    return "\n".join(
+        [
+            *([on] if _unfinished(saved) else []),
+            "frictionlab run study.yaml -o again   # compute everything anew, into another folder",
+            "frictionlab report .                  # draw the figures and write this page anew; nothing is computed",
+        ]
+    )

@@ -1,0 +1,122 @@
+"""What a page's tables are made of, and how numbers and long lists are written in them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import pandas as pd
+from markupsafe import Markup, escape
+
+from frictionlab.columns import belt_speed, given
+from frictionlab.report.markup import symbol_html, unit_html
+
+Cell = str | Markup
+MOST_ROWS = 200
+"""Rows of one table on a page; how many more there are is said below it."""
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
+
+
+class Grid(NamedTuple):
+    """A table of a page: its caption, the heads of its columns, its rows, and what is to be said below it."""
+
+    caption: str
+    head: Sequence[Cell]
+    rows: Sequence[Sequence[Cell]]
+    below: str = ""
+
+
+class CurveRows(NamedTuple):
+    """The rows of one law and method that differ in belt speed alone; where: what else was swept, and its value."""
+
+    law: str
+    method: str
+    where: Mapping[str, Any]
+    rows: pd.DataFrame
+
+    @property
+    def name(self) -> Markup:
+        """What tells the curve from the others of its law and method."""
+        return settings(self.where)
+
+
+def grid(caption: str, head: Sequence[Cell], rows: Sequence[Sequence[Cell]], what: str = "rows") -> Grid:
+    """A table without columns that are empty in every row, of at most ``MOST_ROWS`` rows."""
+    kept = [place for place in range(len(head)) if any(row[place] for row in rows)]
+    shown = [[row[place] for place in kept] for row in rows[:MOST_ROWS]]
+    left = len(rows) - len(shown)
+    below = f"... and {left} more {what}, all of them in results.csv" if left else ""
+    return Grid(caption, [head[place] for place in kept], shown, below)
+
+
+def curve_rows(table: pd.DataFrame, told: Sequence[str]) -> list[CurveRows]:
+    """The curves of a table, in its order, told apart by these inputs besides law and method."""
+    groups = table.groupby(["law", "method", *told], sort=False, dropna=False)
+    return [
+        CurveRows(str(law), str(method), dict(zip(told, values, strict=True)), rows)
+        for (law, method, *values), rows in groups
+    ]
+
+
+def swept_inputs(table: pd.DataFrame) -> list[str]:
+    """Inputs besides belt speed that take several values within one law."""
+    names = [name for name in given(table.columns) if name != belt_speed(table.columns)]
+    within = table.groupby("law", sort=False)
+    return [name for name in names if within[name].nunique(dropna=False).max() > 1]
+
+
+def settings(values: Mapping[str, Any]) -> Markup:
+    """Inputs with their values, those that do not apply left out."""
+    told = [setting(name, value) for name, value in values.items() if not pd.isna(value)]
+    return Markup(", ").join(told)
+
+
+def setting(name: str, value: Any) -> Markup:
+    """One input with its value and unit."""
+    return Markup("{} = {}{}").format(symbol_html(name), number(value), unit_html(name))
+
+
+def number(value: Any) -> str:
+    """A number to six digits; nothing for one that does not apply."""
+    if isinstance(value, str):
+        return value
+    if value is None or pd.isna(value):
+        return ""
+    return f"{value:.6g}"
+
+
+def size(value: float) -> str:
+    """An error: its size to two digits; nothing for one that does not apply."""
+    return "" if pd.isna(value) else f"{value:.1e}"
+
+
+def span(values: pd.Series) -> str:
+    """The least and the greatest of some numbers."""
+    found = values.dropna()
+    if found.empty:
+        return ""
+    return " … ".join(dict.fromkeys(f"{value:.6g}" for value in (found.min(), found.max())))
+
+
+def points(count: int) -> str:
+    """So many points, in words."""
+    return "1 point" if count == 1 else f"{count} points"
+
+
+def listed(words: Iterable[Cell]) -> Markup:
+    """Words, each once, with commas."""
+    return Markup(", ").join(dict.fromkeys(escape(word) for word in words))
+
+
+def pattern(sentence: Any) -> str:
+    """A sentence without its numbers: those alike but for numbers say the same thing."""
+    return _NUMBER.sub("#", sentence) if isinstance(sentence, str) else ""
+
+
+def alike(sentences: pd.Series) -> Markup:
+    """The first of sentences that differ in their numbers at most, and how many others there are."""
+    different = sentences.fillna("").unique()
+    more = len(different) - 1
+    others = f" (and {more} more that differ in the numbers)" if more else ""
+    return escape(different[0] + others)

@@ -125,7 +125,7 @@ def _figure(family: Family, columns: Sequence[str], title: str) -> Figure:
     FigureCanvasAgg(figure)
     lines = textwrap.wrap(_plain(title), round(width * 13))
     figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight="bold")
-    figure.set_figheight(high * PANEL_HEIGHT + LINE * (len(lines) + _add_legend(figure, family)))
+    figure.set_figheight(high * PANEL_HEIGHT + LINE * (len(lines) + _add_legend(figure, family, columns)))
     for place, (panel, column) in enumerate(pictures, start=1):
         _draw_panel(figure.add_subplot(high, wide, place), family, panel, column)
     return figure
@@ -251,9 +251,9 @@ def _mark_kinks(axes: Axes, speeds: Sequence[float]) -> None:
     above.tick_params(length=0, pad=1)
 
 
-def _add_legend(figure: Figure, family: Family) -> int:
+def _add_legend(figure: Figure, family: Family, columns: Sequence[str]) -> int:
     """Name what tells curves apart, and count what has no number, below the pictures; the lines it takes."""
-    entries = _curve_entries(family) + _status_entries(family)
+    entries = _curve_entries(family, columns) + _status_entries(family)
     if not entries:
         return 0
     longest = max(len(str(entry.get_label())) for entry in entries)
@@ -264,12 +264,13 @@ def _add_legend(figure: Figure, family: Family) -> int:
     return math.ceil(len(entries) / abreast) + (title is not None)
 
 
-def _curve_entries(family: Family) -> list[Line2D]:
+def _curve_entries(family: Family, columns: Sequence[str]) -> list[Line2D]:
     """One entry per look that is drawn; of a long family only values spread over it."""
     if math.prod(family.sizes) == 1:
         return []
     shown = _shown(family)
-    drawn = [curve for curve in family.curves if (curve.rows["status"] == "ok").any()]
+    seen = [*columns, *(["mean_low"] if "mean_friction" in columns else [])]
+    drawn = [curve for curve in family.curves if curve.rows[seen].notna().any(axis=None)]
     looks = {curve.place: curve for curve in drawn if curve.place[1] in shown}
     chosen = [looks[place] for place in sorted(looks)]
     return [Line2D([], [], label=_label(family, curve), **_look(family, curve)) for curve in chosen]

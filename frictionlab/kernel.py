@@ -13,9 +13,11 @@ import contextlib
 import hashlib
 import importlib.util
 import inspect
+import itertools
 import math
 import os
 import platform
+import secrets
 import shutil
 import sys
 import tempfile
@@ -31,9 +33,14 @@ import llvmlite
 import numba
 import numba.extending
 import numpy as np
+from numba.core.bytecode import FunctionIdentity
 from numba.core.errors import NumbaError
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
+
+# numba links compiled functions by name and types, and tells those of one name apart by a number that every process
+# counts from 1: of two entries kept by two processes one would run the other's code. A random start keeps them apart.
+FunctionIdentity._unique_ids = itertools.count(secrets.randbits(60))
 
 _extending: Any = numba.extending  # its published types lag behind what it accepts
 _typeof: Any = numba.typeof

@@ -177,16 +177,18 @@ def _interpolate(values: Any, at: float) -> float:
 def _zero(values: Any, low: float, high: float) -> float:
     """A zero of the panel polynomial between two nodes of opposite sign (Illinois regula falsi)."""
     at_low, at_high = _interpolate(values, low), _interpolate(values, high)
-    middle = high
+    middle, side = high, 0
     for _ in range(40):
         if at_high == at_low or high - low < 1e-9:
             break
         middle = (low * at_high - high * at_low) / (at_high - at_low)
         value = _interpolate(values, middle)
         if (value > 0.0) == (at_high > 0.0):
-            high, at_high, at_low = middle, value, 0.5 * at_low
+            high, at_high, at_low = middle, value, 0.5 * at_low if side > 0 else at_low
+            side = 1
         else:
-            low, at_low, at_high = middle, value, 0.5 * at_high
+            low, at_low, at_high = middle, value, 0.5 * at_high if side < 0 else at_high
+            side = -1
     return middle
 
 

@@ -327,3 +327,13 @@ def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
 
     assert len(draw(table, r"$\bad{ 摩擦 and $3", tmp_path)) == 2 * len(charts.figure_columns(table))
     assert _legend(_figure(table)) == [r"\$\nope{\$", r"costs \$5", "L" * 35 + "…"]
+
+
+def test_the_legend_names_what_a_picture_shows_and_nothing_else(resonance: pd.DataFrame) -> None:
+    falls = resonance.assign(law="falls", status="not_unique", mean_low=0.1, mean_high=0.3)
+    falls = falls.assign(mean_friction=np.nan, energy_viscous=np.nan)
+    table = pd.concat([resonance.assign(law="flat"), falls], ignore_index=True)
+
+    assert _legend(_figure(table))[:2] == ["flat", "falls"]
+    assert _legend(_figure(table, "energy_viscous"))[0] == "flat"
+    assert "falls" not in _legend(_figure(table, "energy_viscous"))

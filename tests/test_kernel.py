@@ -201,6 +201,65 @@ def friction_at(law, speed):
     return law.sliding_friction(speed)
 
 
+LOOKALIKES = {
+    "lookalikes.py": """
+from frictionlab.laws.base import Positive, SlidingLaw
+
+class Single(SlidingLaw):
+    mu: Positive
+
+    def sliding_friction(self, speed):
+        return self.mu
+
+class Double(SlidingLaw):
+    mu: Positive
+
+    def sliding_friction(self, speed):
+        return 2.0 * self.mu
+""",
+    "heavy.py": """
+import math
+from frictionlab.kernel import inner, njit
+
+@inner
+def heavy(law, speed):  # heavy, and called from three places: it is linked and not inlined
+    total = law.sliding_friction(speed)
+    total += 0.0 * (WORK)
+    return total
+
+@njit
+def answer(law, speed):
+    return heavy(law, speed) + 0.0 * heavy(law, 2.0 * speed) + 0.0 * heavy(law, 3.0 * speed)
+""".replace("WORK", " + ".join(f"math.sin(speed + {k}.5) * math.exp(-{k}.0 * speed)" for k in range(80))),
+    "look.py": """
+import sys
+from frictionlab.kernel import compiled
+from heavy import answer
+import lookalikes
+for name in sys.argv[1:]:
+    print(compiled(answer, getattr(lookalikes, name)(mu=0.5))(2.0))
+""",
+}
+
+
+def test_kernels_kept_by_two_processes_do_not_take_each_others_place(tmp_path):
+    for name, text in LOOKALIKES.items():
+        (tmp_path / name).write_text(text)
+    environment = {**os.environ, "FRICTIONLAB_CACHE": str(tmp_path / "cache")}
+
+    def answers(*names: str) -> list[float]:
+        command = [sys.executable, "look.py", *names]
+        done = subprocess.run(
+            command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True
+        )
+        return [float(line) for line in done.stdout.split()]
+
+    assert answers("Single") == [0.5]
+    assert answers("Double") == [1.0]
+    assert answers("Single", "Double") == [0.5, 1.0]
+    assert answers("Double", "Single") == [1.0, 0.5]
+
+
 def test_a_law_that_numba_cannot_compile_says_so_and_still_runs_interpreted():
     law = Interpreted(mu=0.4)
     run = compiled(friction_at, law)

@@ -116,10 +116,8 @@ def told(reached: list[Attractor]) -> str:
     wild = [one for one in reached if one.curve is None]
     parts = [_orbit_told(one) for one in {(one.period, f"{one.mean:.9g}"): one for one in orbits}.values()]
     if wild:
-        low, high = min(one.low for one in wild), max(one.high for one in wild)
         longest = max(one.followed for one in wild)
-        count = f"{len(wild)} of {len(reached)} starts do not repeat within {longest} periods"
-        parts.append(f"{count}, with means over one drive period from {low:.6g} to {high:.6g}")
+        parts.append(f"{len(wild)} of {len(reached)} starts do not repeat within {longest} drive periods")
     return "; ".join(parts)
 
 

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.kernel import by_dimension, inner
-from frictionlab.methods.sliding_map import Mapped, period_map, periods_at_rest, span, track_of
+from frictionlab.methods.sliding_map import Mapped, period_map, periods_at_rest, span
+from frictionlab.methods.track import track_of
 from frictionlab.scene import Body
 
 MOST_MAPS = 600

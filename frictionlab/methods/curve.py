@@ -19,7 +19,8 @@ from frictionlab.methods.closing import (
     size_of,
     unpack,
 )
-from frictionlab.methods.sliding_map import Track, period_map, span, track_of
+from frictionlab.methods.sliding_map import period_map, span
+from frictionlab.methods.track import Track, track_of
 from frictionlab.orbit import READ, read
 from frictionlab.scene import Body, Mass
 

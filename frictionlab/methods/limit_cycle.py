@@ -22,7 +22,8 @@ from frictionlab.methods.base import Answers, Floats, Orbit, Status
 from frictionlab.methods.closer import Closer
 from frictionlab.methods.closing import FINER, ROUNDING, pack, size_of
 from frictionlab.methods.curve import tracked
-from frictionlab.methods.sliding_map import Mapped, period_map, track_of
+from frictionlab.methods.sliding_map import Mapped, period_map
+from frictionlab.methods.track import track_of
 from frictionlab.orbit import READ, read
 from frictionlab.scene import Body, Mass, Scene, on_the_line
 

@@ -12,13 +12,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.kernel import fast, inner, length
+from frictionlab.kernel import inner, length
+from frictionlab.methods.sliding_map import restoring_force, squared
 from frictionlab.methods.steppers import dop853, moreau, rk4, smoothed
+from frictionlab.methods.track import Track, track_of
 from frictionlab.orbit import NODES
 from frictionlab.scene import Body
-from frictionlab.scene import restoring_force as _restoring_force
-
-restoring_force = fast(_restoring_force)
 
 
 class Way(NamedTuple):
@@ -94,17 +93,6 @@ class Lap(NamedTuple):
     returned: bool
 
 
-class Track(NamedTuple):
-    """Room for the panels of an orbit [panels, nodes], stick [panels], and how many are filled [1]."""
-
-    tau: Any
-    x: Any
-    v: Any
-    friction: Any
-    stick: Any
-    filled: Any
-
-
 class March(NamedTuple):
     """Laps of a motion: states [laps + 1], integrals of friction, times at rest and durations [laps]."""
 
@@ -128,26 +116,6 @@ SHORT = 3
 """Steps at rest within which a reversal counts as one without stick."""
 
 CLOSED, STALLED, LATE, LOST, RESTING, TIRED = 0, 1, 2, 3, 4, 5
-
-
-@inner
-def _track_of(room: int) -> Track:
-    nodes = NODES.size
-    return Track(
-        np.empty((room, nodes)),
-        np.empty((room, nodes), np.complex128),
-        np.empty((room, nodes), np.complex128),
-        np.empty((room, nodes), np.complex128),
-        np.zeros(room, np.bool_),
-        np.zeros(1, np.int64),
-    )
-
-
-@fast
-def _squared(body: Body, x: Any, v: Any) -> float:
-    """Twice the energy of a state."""
-    elastic = body.stiffness_mean * x + body.stiffness_split * x.conjugate()
-    return (elastic * x.conjugate()).real + (v * v.conjugate()).real
 
 
 # --- steppers -----------------------------------------------------------------------------------------------------
@@ -195,8 +163,8 @@ def _by_smoothed(problem: Problem, node: Node, h: float) -> Advance:
     """A step whose error decides how long it may be (Hairer et al., 1993, II.10)."""
     a, f = _smooth_rates(problem, node.tau, node.x, node.v)
     taken = _smooth_step(problem, node.tau, dop853.State(node.x, node.v, a, f), h)
-    fifth = _squared(problem.body, taken.x_error5, taken.v_error5)
-    third = _squared(problem.body, taken.x_error3, taken.v_error3)
+    fifth = squared(problem.body, taken.x_error5, taken.v_error5)
+    third = squared(problem.body, taken.x_error3, taken.v_error3)
     error = fifth / math.sqrt(fifth + 0.01 * third) / problem.accuracy if fifth > 0.0 else 0.0
     growth = min(6.0, max(0.1 if error > 1.0 else 1.0, 0.9 / math.sqrt(math.sqrt(math.sqrt(error + 1e-300)))))
     if not fifth < 1e300:
@@ -352,7 +320,7 @@ def marcher(stepper: Marcher) -> Any:
         xs, vs = np.empty(way.most + 1, np.complex128), np.empty(way.most + 1, np.complex128)
         rubs = np.empty(way.most, np.complex128)
         stuck, duration, gaps = np.empty(way.most), np.empty(way.most), np.empty(way.most)
-        track = _track_of(way.room)
+        track = track_of(way.room)
         xs[0], vs[0] = x + 0j, v + 0j
         one = Lap(x, v, 0.0 * x, 0.0, 0.0, 1e300, 1.0, 0, 0.0, 0.0, way.first, 0, True)
         carried = 0.0
@@ -367,14 +335,14 @@ def marcher(stepper: Marcher) -> Any:
             xs[n + 1], vs[n + 1], rubs[n] = one.x + 0j, one.v + 0j, one.rubbed + 0j
             stuck[n], duration[n] = one.stuck, one.duration
             n += 1
-            if not _squared(body, one.x, one.v) < 1e300:
+            if not squared(body, one.x, one.v) < 1e300:
                 verdict = LOST
             elif not one.returned:
                 verdict = RESTING if one.step == 0.0 else LOST if one.steps < way.work else TIRED
             elif n >= way.stride:
-                gap = math.sqrt(_squared(body, xs[n] - xs[n - way.stride], vs[n] - vs[n - way.stride]))
+                gap = math.sqrt(squared(body, xs[n] - xs[n - way.stride], vs[n] - vs[n - way.stride]))
                 gaps[n - 1] = gap
-                floor = 4e-16 * math.sqrt((100.0 + one.steps) * _squared(body, one.x, one.v))
+                floor = 4e-16 * math.sqrt((100.0 + one.steps) * squared(body, one.x, one.v))
                 distance = _distance(gaps, n, way, floor)
                 good = good + 1 if distance <= way.enough else 0
                 if good > (0 if way.rate > 0.0 else 2 * way.stride) or gap == 0.0:
@@ -431,7 +399,7 @@ def _stalled(body: Body, gaps: Any, xs: Any, vs: Any, n: int, way: Way) -> bool:
     for i in range(n - half, n):
         late += gaps[i]
         early += gaps[i - half]
-    led = math.sqrt(_squared(body, xs[n] - xs[n - half], vs[n] - vs[n - half]))
+    led = math.sqrt(squared(body, xs[n] - xs[n - half], vs[n] - vs[n - half]))
     return late > 0.98 * early and led < 0.3 * late / way.stride
 
 

@@ -139,9 +139,7 @@ class Found:
             self.reason[i] = "" if unique else f"reached from scene.initial; {told(reached)}"
             return
         self._range(i, min(one.low for one in reached), max(one.high for one in reached))
-        self.reason[i] = (
-            f"friction falls with speed, and the motion is no simple answer to the drive: {told(reached)}"
-        )
+        self.reason[i] = f"friction falls with speed: {told(reached)}"
         if unique and first.curve is not None:
             self.columns["period"][i] = first.period
             self.columns["floquet"][i] = _largest(first.curve, scene)

@@ -11,10 +11,9 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from frictionlab.kernel import by_dimension, fast, inner, length
 from frictionlab.methods.steppers.dop853 import State, stepper
+from frictionlab.methods.track import Track
 from frictionlab.orbit import NODES
 from frictionlab.scene import Body
 from frictionlab.scene import restoring_force as _restoring_force
@@ -120,7 +119,7 @@ def _slip_rate(problem: Problem, tau: float, a: Any) -> Any:
 
 
 @fast
-def _squared(body: Body, x: Any, v: Any) -> float:
+def squared(body: Body, x: Any, v: Any) -> float:
     """Twice the energy of a state."""
     elastic = body.stiffness_mean * x + body.stiffness_split * x.conjugate()
     return (elastic * x.conjugate()).real + (v * v.conjugate()).real
@@ -129,8 +128,8 @@ def _squared(body: Body, x: Any, v: Any) -> float:
 @inner
 def _growth(body: Body, taken: Any, accuracy: float) -> float:
     """By how much to change the step: below one, it is to be repeated (Hairer et al., 1993, II.10)."""
-    fifth = _squared(body, taken.x_error5, taken.v_error5)
-    third = _squared(body, taken.x_error3, taken.v_error3)
+    fifth = squared(body, taken.x_error5, taken.v_error5)
+    third = squared(body, taken.x_error3, taken.v_error3)
     if not fifth < 1e300:
         return 0.1
     if fifth == 0.0:
@@ -478,31 +477,6 @@ def _reference(body: Body, tau: float) -> Any:
 
 
 # --- the record of an orbit ---------------------------------------------------------------------------------------
-
-
-class Track(NamedTuple):
-    """Room for the panels of an orbit [panels, nodes], stick [panels], and how many are filled [1]."""
-
-    tau: Any
-    x: Any
-    v: Any
-    friction: Any
-    stick: Any
-    filled: Any
-
-
-@inner
-def track_of(room: int) -> Track:
-    """An empty track with room for so many panels; none to note nothing."""
-    nodes = NODES.size
-    return Track(
-        np.empty((room, nodes)),
-        np.empty((room, nodes), np.complex128),
-        np.empty((room, nodes), np.complex128),
-        np.empty((room, nodes), np.complex128),
-        np.zeros(room, np.bool_),
-        np.zeros(1, np.int64),
-    )
 
 
 @inner

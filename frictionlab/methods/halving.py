@@ -63,7 +63,9 @@ def bias(wide: float, asked: float, narrow: float, narrowest: float) -> float:
 
     A bias of order q in the width is 1/(1 - 2^-q) times its change from the width to half of it, and 1/(1 - 4^-q)
     times that to a quarter: 3.4 and 2 for the square root, the slowest; the latter is taken as 3, for at the onset of
-    stick the bias is slower to begin with. Where it changes sign with the width one of the changes may be small, so
-    the largest counts.
+    stick the bias is slower to begin with, and as 6 where the changes still grow as the width shrinks. Where the bias
+    changes sign with the width one of the changes may be small, so the largest counts.
     """
-    return max(3.5 * abs(asked - narrow), 3.0 * abs(asked - narrowest), 1.75 * abs(wide - asked))
+    still_growing = abs(narrow - narrowest) > abs(asked - narrow)
+    far = 6.0 if still_growing else 3.0
+    return max(3.5 * abs(asked - narrow), far * abs(asked - narrowest), 1.75 * abs(wide - asked))

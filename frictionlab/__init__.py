@@ -9,6 +9,7 @@ from typing import Any
 __version__ = version("frictionlab")
 
 _HOMES = {
+    "Auto": "frictionlab.methods.auto",
     "Coulomb": "frictionlab.laws.coulomb",
     "Dimensional": "frictionlab.dimensional",
     "DimensionalDrive": "frictionlab.dimensional",
@@ -16,12 +17,17 @@ _HOMES = {
     "DimensionalLoad": "frictionlab.dimensional",
     "DimensionalTransverse": "frictionlab.dimensional",
     "Drive": "frictionlab.scene",
+    "Exact": "frictionlab.methods.exact",
     "FrictionLaw": "frictionlab.laws.base",
+    "HarmonicBalance": "frictionlab.methods.harmonic_balance",
     "Initial": "frictionlab.scene",
     "Load": "frictionlab.scene",
+    "March": "frictionlab.methods.march",
+    "Mdsm": "frictionlab.methods.mdsm",
     "Scene": "frictionlab.scene",
-    "Slip": "frictionlab.scene",
+    "Shooting": "frictionlab.methods.shooting",
     "SlidingLaw": "frictionlab.laws.base",
+    "Slip": "frictionlab.scene",
     "SteadyState": "frictionlab.runner",
     "Stribeck": "frictionlab.laws.stribeck",
     "Transverse": "frictionlab.scene",

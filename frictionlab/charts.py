@@ -1,8 +1,9 @@
 """Figures of a result table: mean friction, velocity response and energies, for the page of a journal.
 
 One colour per law, from dark to light along a swept input; one line style per method; a marker per law and
-swept value, so that black and white print tells curves apart too. A point without a number is a mark on the
-axis and a line in the legend: nothing is dropped in silence.
+swept value, so that black and white print tells curves apart too. More than two methods have markers of their
+own, staggered where curves coincide, and colours of their own where there is one law without a sweep. A point
+without a number is a mark on the axis and a line in the legend: nothing is dropped in silence.
 """
 
 from __future__ import annotations
@@ -18,9 +19,12 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.textpath import TextPath
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
 from frictionlab.columns import SI, belt_speed
@@ -38,11 +42,18 @@ COLUMN, PAGE = 85 / 25.4, 170 / 25.4  # widths of a journal's column and page [i
 PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
 SHADES = ("Blues", "Oranges", "Greens", "Purples", "Reds", "Greys")
 MARKERS = "os^Dvph<>d"
-LINES = ("solid", (0, (4, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
+METHOD_COLORS = "tab10"
+LINES = (
+    "solid",
+    *((0, dashes) for dashes in [(4, 2), (1, 1.5), (6, 2, 1, 2), (2, 1), (4, 1, 1, 1, 1, 1), (7, 3)]),
+    *((0, dashes) for dashes in [(5, 1, 2, 1), (1, 3), (8, 1, 1, 1, 1, 1, 1, 1)]),
+)
+BROADEST = 0.9  # what the first of several methods is broader than the last, however many [point]
 WITHOUT_NUMBER = {"failed": "x", "killed": "x", "refused": "|"}
 LEGEND_MARKS = WITHOUT_NUMBER | {"not_unique": r"$\mathrm{I}$"}
 MOST_VALUES_IN_LEGEND = 8
-LONGEST_LABEL = 36  # letters
+LONGEST_LABEL, BESIDE = 36, 22  # letters of a name alone, and beside another name or a count
+LEGEND_FONT = 7  # [point]
 ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
 
@@ -59,8 +70,8 @@ STYLE: Any = {
     "ytick.labelsize": 7,
     "xtick.major.width": 0.6,
     "ytick.major.width": 0.6,
-    "legend.fontsize": 7,
-    "legend.title_fontsize": 7,
+    "legend.fontsize": LEGEND_FONT,
+    "legend.title_fontsize": LEGEND_FONT,
     "legend.frameon": False,
     "svg.hashsalt": "frictionlab",
     "savefig.dpi": 300,
@@ -144,6 +155,7 @@ def _draw_panel(axes: Axes, family: Family, panel: tuple[Setting, ...], column: 
         np.concatenate([curve.rows[family.abscissa].to_numpy(dtype=float) for curve in curves])
     ):
         axes.set_xscale("log")
+        _label_decades(axes.xaxis)
     _scale_upwards(axes, [curve.rows[column] for curve in curves], column)
     if family.abscissa == belt_speed([family.abscissa]):
         _mark_kinks(axes, [speed for curve in curves for speed in kinks(curve)])
@@ -153,10 +165,20 @@ def _scale_upwards(axes: Axes, curves: Sequence[pd.Series], column: str) -> None
     """A foot at zero for what is not negative; logarithmic where whole curves lie decades apart."""
     if column != "mean_friction" and _lie_decades_apart(curves):
         axes.set_yscale("log")
+        _label_decades(axes.yaxis)
         return
     low, high = axes.get_ylim()
     if -0.06 * high < low:  # nothing but the margin below zero, so zero itself is the natural foot
         axes.set_ylim(0.0, max(high, 1.05 * axes.dataLim.y1))
+
+
+def _label_decades(axis: Axis) -> None:
+    """Of few decades 1, 2 and 5 are labelled, as plain numbers: every multiple would be one on the other."""
+    low, high = sorted(axis.get_view_interval())
+    if high < 1000.0 * low:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def _lie_decades_apart(curves: Sequence[pd.Series]) -> bool:
@@ -184,28 +206,53 @@ def _look(family: Family, curve: Curve) -> dict[str, Any]:
     """Colour, line and marker. Of several methods the first is broad and pale, the last lies thin on top."""
     law, member, method = curve.place
     _, members, methods = family.sizes
-    shade = 0.8 if members == 1 else 1.0 - 0.6 * member / (members - 1)
+    broader = BROADEST * (methods - 1 - method) / max(1, methods - 1)
+    sign = law * members + member + (method if _methods_have_markers(family) else 0)
     return {
-        "color": mpl.colormaps[SHADES[law % len(SHADES)]](shade),
+        "color": _color(family, curve),
         "linestyle": LINES[method % len(LINES)],
-        "linewidth": (1.1 if members <= MOST_VALUES_IN_LEGEND else 0.6) + 0.9 * (methods - 1 - method),
+        "linewidth": (1.1 if members <= MOST_VALUES_IN_LEGEND else 0.6) + broader,
         "gapcolor": "white" if method % len(LINES) else None,
-        "marker": MARKERS[(law * members + member) % len(MARKERS)],
+        "marker": MARKERS[sign % len(MARKERS)],
         "markeredgecolor": "white",
         "markeredgewidth": 0.4,
     }
 
 
+def _color(family: Family, curve: Curve) -> Any:
+    law, member, method = curve.place
+    laws, members, _ = family.sizes
+    if laws * members == 1 and _methods_have_markers(family):
+        return mpl.colormaps[METHOD_COLORS](method % mpl.colormaps[METHOD_COLORS].N)
+    shade = 0.8 if members == 1 else 1.0 - 0.6 * member / (members - 1)
+    return mpl.colormaps[SHADES[law % len(SHADES)]](shade)
+
+
+def _methods_have_markers(family: Family) -> bool:
+    """Whether methods are too many to be told apart as broad below and thin on top."""
+    return family.sizes[2] > 2
+
+
 def _marked(y: NDArray[np.float64], curve: Curve, family: Family) -> list[int]:
-    """The points that get a marker: about ten of a curve with neighbours, and all that no line reaches."""
+    """The points that get a marker: some of a curve with neighbours, and all that no line reaches."""
     known = np.isfinite(y)
     neighbours = np.concatenate([known[1:], [False]]) | np.concatenate([[False], known[:-1]])
     marks = known & ~neighbours
-    laws, members, _ = family.sizes
-    if laws * members > 1 and curve.place[1] in _shown(family):
-        step = max(1, len(y) // 10)
-        marks[step * (curve.place[1] + curve.place[0]) // (laws + members) % step :: step] = True
+    several = math.prod(family.sizes[:2]) > 1 or _methods_have_markers(family)
+    if several and curve.place[1] in _shown(family):
+        first, step = _stagger(len(y), curve, family)
+        marks[first::step] = True
     return [int(place) for place in np.flatnonzero(marks & known)]
+
+
+def _stagger(points: int, curve: Curve, family: Family) -> tuple[int, int]:
+    """The first marker of a curve and the step to the next: about ten, fewer where many methods coincide."""
+    (law, member, method), (laws, members, methods) = curve.place, family.sizes
+    step = max(1, points // 10)
+    if not _methods_have_markers(family):
+        return step * (member + law) // (laws + members) % step, step
+    step = max(step, min(methods, points // 3))
+    return (method * step // methods + law + member) % step, step
 
 
 def _draw_error(axes: Axes, data: Data) -> None:
@@ -248,6 +295,7 @@ def _mark_kinks(axes: Axes, speeds: Sequence[float]) -> None:
     above = axes.secondary_xaxis("top")
     above.spines["top"].set_visible(False)
     above.set_xticks(named, [r"$V_\mathrm{lin}$" if speed > 0 else r"$-V_\mathrm{lin}$" for speed in named])
+    above.xaxis.set_minor_locator(NullLocator())  # of a logarithmic axis below
     above.tick_params(length=0, pad=1)
 
 
@@ -256,12 +304,26 @@ def _add_legend(figure: Figure, family: Family, columns: Sequence[str]) -> int:
     entries = _curve_entries(family, columns) + _status_entries(family)
     if not entries:
         return 0
-    longest = max(len(str(entry.get_label())) for entry in entries)
-    lines = math.ceil(len(entries) * (longest + 8) / (16 * figure.get_figwidth()))
-    abreast = math.ceil(len(entries) / lines)
+    handle = 3.5 if _methods_have_markers(family) else 2.0
+    abreast = _abreast([str(entry.get_label()) for entry in entries], handle, 72 * figure.get_figwidth())
     title = word(family.member) if family.member else None
-    figure.legend(handles=entries, loc="outside lower center", ncols=abreast, title=title)
+    figure.legend(
+        handles=entries, loc="outside lower center", ncols=abreast, title=title, handlelength=handle
+    )
     return math.ceil(len(entries) / abreast) + (title is not None)
+
+
+def _abreast(labels: Sequence[str], handle: float, room: float) -> int:
+    """The most columns of a legend whose rows fit into a width [point]; its entries run down the columns."""
+    style = mpl.rcParams
+    around = handle + style["legend.handletextpad"] + style["legend.columnspacing"]
+    widths = [TextPath((0, 0), label, size=LEGEND_FONT).get_extents().width for label in labels]
+    entries = np.asarray(widths) + around * LEGEND_FONT
+    for lines in range(1, len(labels)):
+        columns = math.ceil(len(labels) / lines)
+        if sum(part.max() for part in np.array_split(entries, columns)) <= room:
+            return columns
+    return 1
 
 
 def _curve_entries(family: Family, columns: Sequence[str]) -> list[Line2D]:
@@ -285,7 +347,8 @@ def _shown(family: Family) -> set[int]:
 def _label(family: Family, curve: Curve) -> str:
     laws, _, methods = family.sizes
     value = curve.member[1] if curve.member is not None else None
-    law, method = [_name(curve.law)] * (laws > 1), [_name(curve.method)] * (methods > 1)
+    room = LONGEST_LABEL if laws == 1 or methods == 1 else BESIDE
+    law, method = [_name(curve.law, room)] * (laws > 1), [_name(curve.method, room)] * (methods > 1)
     return ", ".join(law + method + [f"{value:.5g}"] if value is not None else law + method)
 
 
@@ -298,7 +361,9 @@ def _status_entries(family: Family) -> list[Line2D]:
         for status, mark in LEGEND_MARKS.items():
             if count := int((rows == status).sum()):
                 points = "1 point" if count == 1 else f"{count} points"
-                label = f"{points} {status.replace('_', ' ')}" + (f" ({_name(method)})" if several else "")
+                label = f"{points} {status.replace('_', ' ')}" + (
+                    f" ({_name(method, BESIDE)})" if several else ""
+                )
                 entries.append(Line2D([], [], color="0.3", linestyle="none", marker=mark, label=label))
     return entries
 
@@ -308,9 +373,9 @@ def _plain(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-def _name(label: str) -> str:
-    """A label of the study, as much of it as a legend has room for."""
-    return _plain(label if len(label) <= LONGEST_LABEL else f"{label[: LONGEST_LABEL - 1]}…")
+def _name(label: str, room: int) -> str:
+    """A label of the study, as many letters of it as a legend has room for."""
+    return _plain(label if len(label) <= room else f"{label[: room - 1]}…")
 
 
 def _sentence(setting: Setting) -> str:

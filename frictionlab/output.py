@@ -6,7 +6,7 @@ import errno
 import json
 import os
 import platform
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -22,6 +22,8 @@ Existing = Literal["reuse", "replace"]
 PAGE_MARK = '<meta name="generator" content="frictionlab'
 MOST_DIFFERENCES = 2
 """Lines shown of each of two studies that differ."""
+SHOWN = 72
+"""Letters shown of such a line."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,9 @@ class RunFolder:
                 f"{self.identity.version}; {REMEDY}"
             )
         if there.get("digest") != self.identity.digest:
-            raise FolderError(f"{self.path} holds results of another study{self._difference()}; {REMEDY}")
+            difference = self._difference()
+            told = f":\n{difference}\n{REMEDY}" if difference else f"; {REMEDY}"
+            raise FolderError(f"{self.path} holds results of another study{told}")
 
     def _provenance(self) -> dict[str, Any]:
         try:
@@ -108,9 +112,10 @@ class RunFolder:
         except (OSError, ValueError):
             return ""
         here = self.identity.text.splitlines()
-        lines = [f"  there: {_brief(line)}" for line in there if line not in here][:MOST_DIFFERENCES]
-        lines += [f"  here:  {_brief(line)}" for line in here if line not in there][:MOST_DIFFERENCES]
-        return ":\n" + "\n".join(lines) + "\n" if lines else ""
+        old, new = [line for line in there if line not in here], [line for line in here if line not in there]
+        lines = [f"  there: {_brief(line, new)}" for line in old[:MOST_DIFFERENCES]]
+        lines += [f"  here:  {_brief(line, old)}" for line in new[:MOST_DIFFERENCES]]
+        return "\n".join(lines)
 
     def earlier(self, existing: Existing) -> pd.DataFrame | None:
         """The table of an earlier run of this study; None without one. Raises FolderError."""
@@ -187,10 +192,14 @@ class RunFolder:
 REMEDY = "choose another folder with -o, or replace what is there with --force"
 
 
-def _brief(line: str) -> str:
-    """The beginning of a line, which names what it is about."""
-    line = line.strip()
-    return line if len(line) <= 72 else f"{line[:68]} ..."
+def _brief(line: str, others: Sequence[str]) -> str:
+    """Of a long line the part, from a word on, in which it leaves the line most like it."""
+    if len(line.strip()) <= SHOWN:
+        return line.strip()
+    same = max((len(os.path.commonprefix([line, other])) for other in others), default=0)
+    start = line.rfind(" ", 0, max(0, same - SHOWN // 2)) + 1
+    begins = f"{line.split(':')[0].strip()}: ... " if start else ""
+    return f"{begins}{line[start : start + SHOWN].strip()}{' ...' if len(line) > start + SHOWN else ''}"
 
 
 def _platform() -> dict[str, Any]:

@@ -9,6 +9,7 @@ from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from math import isfinite
+from numbers import Real
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -189,14 +190,14 @@ def curve(
 
     belt_speed [scene velocity; m/s for a scene given in SI units]: one-dimensional.
     tolerance [-]: absolute, on mean_friction.
-    Raises ValueError for values that make no sense, BrokenPlugin.
+    Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     speeds = np.atleast_1d(np.asarray(belt_speed, dtype=float))
     if speeds.ndim != 1 or not speeds.size or not np.isfinite(speeds).all():
         raise ValueError("belt_speed must be a list of finite numbers")
-    ready, kind, task = _method(method), _kind(law), Task(_checked(tolerance))
+    ready, kind, task = _method(method), _kind(_law(law)), Task(_checked(tolerance))
     different, places = np.unique(speeds, return_inverse=True)  # a method is never given a belt speed twice
-    scenes = [scene.at(float(speed)) for speed in different]
+    scenes = [_scene(scene).at(float(speed)) for speed in different]
     cases = [Case(kind, kind, law, ready.name, ready, each) for each in scenes]
     gathering = Gathering(inputs(cases))
     with _workers(None) as pool:
@@ -209,10 +210,10 @@ def steady_state(
 ) -> SteadyState:
     """The steady state of one scene, refused and failed ones included: see ``status`` and ``reason``.
 
-    tolerance [-]: absolute, on mean_friction. Raises ValueError for values that make no sense, BrokenPlugin.
+    tolerance [-]: absolute, on mean_friction. Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
-    ready, kind, task = _method(method), _kind(law), Task(_checked(tolerance))
-    case = Case(kind, kind, law, ready.name, ready, scene)
+    ready, kind, task = _method(method), _kind(_law(law)), Task(_checked(tolerance))
+    case = Case(kind, kind, law, ready.name, ready, _scene(scene))
     (chunk,) = chunks([case], task)
     (piece,) = answer(chunk)
     (part,) = parts(chunk, [piece])
@@ -256,7 +257,20 @@ def _kind(law: FrictionLaw) -> str:
     return type(law).__name__
 
 
+def _law(law: FrictionLaw) -> FrictionLaw:
+    if not isinstance(law, FrictionLaw):
+        raise TypeError(f"law must be a friction law such as fl.Coulomb(mu=0.4), not {law!r}")
+    return law
+
+
+def _scene(scene: Scene) -> Scene:
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be an fl.Scene, not {scene!r}")
+    return scene
+
+
 def _checked(tolerance: float) -> float:
-    if not (isfinite(tolerance) and tolerance > 0.0):
+    number = isinstance(tolerance, Real) and not isinstance(tolerance, bool)
+    if not (number and isfinite(tolerance) and tolerance > 0.0):
         raise ValueError(f"tolerance must be a positive number, not {tolerance!r}")
     return float(tolerance)

@@ -708,3 +708,21 @@ def test_words_survive_the_study_file(value: str) -> None:
         "deep": {value or "k": [{"a": value}] * 30},
     }
     assert YAML(typ="safe").load(yaml_text(tree)) == tree
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"law": "coulomb"}, "law must be a friction law such as fl.Coulomb"),
+        ({"scene": {}}, "scene must be an fl.Scene"),
+        ({"tolerance": "x"}, "tolerance must be a positive number, not 'x'"),
+    ],
+)
+def test_what_is_no_scene_law_or_tolerance_is_told_in_python(wrong: dict[str, Any], message: str) -> None:
+    one = fl.Scene(belt_speed=1.0, slip=fl.Slip(velocity_amplitude=2.0, frequency=1.0))
+    given = {"scene": one, "law": fl.Coulomb(mu=0.4), **wrong}
+
+    with pytest.raises((TypeError, ValueError), match=message):
+        fl.steady_state(**given)
+    with pytest.raises((TypeError, ValueError), match=message):
+        fl.curve(**given, belt_speed=[1.0])

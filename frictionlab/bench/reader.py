@@ -27,13 +27,23 @@ REPEATS, SECONDS = 30, 2.0
 
 def load_bench(path: FilePath) -> Bench:
     """The bench list of this file. Raises StudyError with every mistake."""
-    source = read_file(path)
+    source = _source(path)
     notes, mistakes = Notes(source.notes), list[Mistake]()
     bench = _Reading(source, notes, mistakes, path).bench()
     mistakes += source.located(notes.all)
     if mistakes or bench is None:
         raise StudyError(_each_once(mistakes))
     return bench
+
+
+def _source(path: FilePath) -> Source:
+    """The file's values; what is no readable file is told in the words of a list."""
+    try:
+        return read_file(path)
+    except StudyError as problem:
+        raise StudyError(
+            [replace(each, what=each.what.replace("study", "bench list")) for each in problem.mistakes]
+        ) from None
 
 
 def _each_once(mistakes: list[Mistake]) -> list[Mistake]:
@@ -86,10 +96,10 @@ class _Reading:
         title = self._notes.text(block.get("title", ""), (*path, "title"))
         trusted = references(block.get("references", []), (*path, "references"), self._path, self._notes)
         trusted = trusted or defaults.references
-        if not trusted:
+        if not trusted and not self._noted("references", path):
             self._notes.add(path, "no references: give a method or values to measure errors against")
         chosen = defaults.contenders | contenders(block, path, self._notes)
-        if not chosen:
+        if not chosen and not self._noted("methods", path) and not self._noted("peers", path):
             self._notes.add(path, "no methods and no peers: there is nothing to measure")
         study = self._study(block, path)
         if study is None:
@@ -107,6 +117,10 @@ class _Reading:
             if (cases := [case for case in study.cases() if case.law_label == choice.label])
         ]
 
+    def _noted(self, key: str, path: Path) -> bool:
+        """Whether this key has a mistake, in the list or in the scene: then it is not missing."""
+        return self._notes.below((key,)) or self._notes.below((*path, key))
+
     def _name(self, block: dict[str, Any], path: Path) -> str:
         if "name" not in block:
             self._notes.add((*path, "name"), "required key is missing")
@@ -123,13 +137,16 @@ class _Reading:
         for key in stray:
             self._notes.on_key((*path, "sweep", key), "a bench curve sweeps the belt speed alone")
         try:
-            return None if stray else study_of(_part(self._source, block, path))
+            study = study_of(_part(self._source, block, path))
         except StudyError as problem:
             head = f"scenes[{path[1]}]"
             self._mistakes += [
-                replace(each, path=f"{head}.{each.path}" if each.path else head) for each in problem.mistakes
+                replace(each, path=f"{head}.{each.path}" if each.path else head)
+                for each in problem.mistakes
+                if each.path not in [f"sweep.{key}" for key in stray]
             ]
             return None
+        return None if stray else study
 
     def _note_equal_names(self, found: list[Workload]) -> None:
         names = [work.name for work in found]

@@ -11,6 +11,7 @@ from frictionlab.methods.base import Floats
 from frictionlab.methods.closer import Closer, Wandered
 from frictionlab.methods.curve import Curve
 from frictionlab.scene import Initial, Scene
+from frictionlab.theory import friction_free_velocity
 
 STABLE = 1.0 - 1e-7
 """Largest Floquet multiplier of an orbit that is said to attract."""
@@ -57,14 +58,21 @@ def closed_orbit(curve: Curve, means: Floats) -> Attractor | None:
 
 
 def starts(scene: Scene, limit: float) -> list[Initial | None]:
-    """Three starts far from each other: shaken freely, resting on the belt, and flung against it.
+    """Starts far from each other: shaken freely, resting on the belt, flung against it, and let go ahead of it.
 
     limit: force of friction at rest. ``scene.initial``, where it is given, comes first.
     """
     given: list[Initial | None] = [] if scene.initial is None else [scene.initial]
     against = -math.copysign(1.0, scene.belt_speed)
     flung = Initial(x=against * 2.0 * limit, velocity=against * (abs(scene.belt_speed) + limit))
-    return [*given, None, Initial(velocity=scene.belt_speed), flung]
+    ahead = Initial(x=-against * (limit + force_swing(scene)))
+    return [*given, None, Initial(velocity=scene.belt_speed), flung, ahead]
+
+
+def force_swing(scene: Scene) -> float:
+    """The deflection that the load along the belt would hold, or shakes a free mass through, if that is larger."""
+    mass = scene.mass()
+    return max(abs(mass.force), friction_free_velocity(scene) / mass.frequency)
 
 
 def attractors(closer: Closer, scene: Scene, candidate: Attractor | None) -> tuple[list[Attractor], float]:

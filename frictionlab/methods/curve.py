@@ -202,11 +202,13 @@ def wander(
         steps += image.steps
         for row in range(residual.size):
             states[n + 1, row] = states[n, row] + residual[row]
+        nearest = 1e300
         for k in range(1, min(LONGEST_PERIOD, n // 2) + 1):
             repeats = max(_apart(states, n + 1, n + 1 - k), _apart(states, n, n - k)) < 1e-7
-            # a spiral into an orbit of one period looks like a longer one while it is still far out
-            if repeats and (k == 1 or _apart(states, n + 1, n) > 1e-4):
+            # a spiral into an orbit of fewer periods looks like a longer one while it is still far out
+            if repeats and nearest > 1e-4:
                 return k, n + 1
+            nearest = min(nearest, _apart(states, n + 1, n + 1 - k))
         if image.steps < 0 or steps > MUCH_WORK:
             return 0, n + 1
     return 0, means.size

@@ -227,7 +227,7 @@ class _Follower:
         rough, fine = (self._cycle_from(x, part * self._accuracy) for part in (1.0, 1.0 / FINER))
         if rough is None or fine is None:
             return None
-        error = 2.0 * abs(fine[1] - rough[1]) + 1e-13
+        error = 2.0 * abs(fine[1] - rough[1]) + 1e-12
         return Motion(x, speed, fine[0], fine[1], error, 0.0, "stick-slip, followed from release to release")
 
     def _cycle_from(self, x: float, accuracy: float) -> tuple[float, float] | None:

@@ -22,13 +22,15 @@ _COMPARISONS = ("equals", "below", "above")
 class Table:
     """What the table of a study will hold: text inputs with their values, number inputs, result columns, sweeps.
 
-    The values of a text column are None where they are not known for certain.
+    The values of a text column are None where they are not known for certain; belt_speed: what this scene
+    calls it, also where mistakes leave open which numbers it holds.
     """
 
     texts: Mapping[str, tuple[str, ...] | None]
     numbers: tuple[str, ...]
     results: tuple[str, ...]
     swept: tuple[str, ...] = ()
+    belt_speed: str = columns.BELT_SPEED
 
 
 def expectations(given: Any, table: Table, notes: Notes) -> tuple[Expectation, ...]:
@@ -113,8 +115,7 @@ def _shape(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dic
         if key in columns.BELT_SPEEDS:
             notes.on_key((*path, "where", key), "a shape belongs to a whole curve: leave the belt speed out")
     if not any(name in columns.BELT_SPEEDS for name in table.swept):
-        speed = columns.belt_speed(table.numbers)
-        notes.on_key((*path, "shape"), f"a shape needs a curve: sweep {speed}")
+        notes.on_key((*path, "shape"), f"a shape needs a curve: sweep {table.belt_speed}")
     measure = notes.one_of(given.get("measure", "area"), (*path, "measure"), tuple(columns.SHAPES))
     shapes = columns.SHAPES.get(str(measure), columns.SHAPES["area"])
     return {"shape": notes.one_of(given["shape"], (*path, "shape"), shapes), "measure": measure}

@@ -164,7 +164,10 @@ class _Reading:
         texts = dict(zip(columns.INPUTS, (laws, kinds, methods), strict=True))
         sweep = self._tree.get("sweep")
         swept = tuple(sweep) if isinstance(sweep, Mapping) else ()
-        return Table(texts, tuple(inputs), tuple(columns.results(inputs)), swept)
+        given = self._tree.get("scene")
+        in_si = isinstance(given, Mapping) and "dimensional" in given
+        speed = columns.belt_speed(inputs) if in_si else columns.BELT_SPEED
+        return Table(texts, tuple(inputs), tuple(columns.results(inputs)), swept, speed)
 
 
 def _plain(value: Any) -> Any:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from brute_force import Numbers, follow, steps_per_period
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from random_scenes import draw
 
@@ -477,6 +477,7 @@ def test_slip_through_rest_jumps_in_direction_and_no_slip_at_all_is_not_unique()
 
 
 @given(across=st.floats(1e-6, 10.0), turn=st.floats(0.0, 360.0), ratio=st.floats(-3.0, 3.0))
+@example(across=1.0, turn=0.0, ratio=2.225073858507203e-309)
 @settings(deadline=None, max_examples=40)
 def test_an_elliptic_slip_agrees_with_a_fine_sum_and_keeps_its_energies(across, turn, ratio):
     answers = solve(slip(ratio, 1.0, across, turn))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 from strategies import sizes
 
 from frictionlab.laws.coulomb import Coulomb
@@ -16,7 +16,7 @@ from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.closer import contracts
 from frictionlab.methods.exact import Exact
 from frictionlab.methods.shooting import Shooting
-from frictionlab.scene import Drive, Initial, Load, Scene, Transverse
+from frictionlab.scene import Drive, Initial, Load, Scene, Slip, Transverse
 
 MILD = Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=8.0)
 ACROSS = Transverse(natural_frequency=4.0, damping_ratio=0.1, load=Load(unbalance=10.0))
@@ -252,3 +252,21 @@ def test_one_that_sticks_for_good_depends_on_where_it_stops_up_to_the_static_coe
 
     assert answers.status == ["not_unique"]
     assert row["mean_high"] == pytest.approx(0.5 - 0.2, abs=1e-6)  # static friction less the load
+
+
+@pytest.mark.parametrize("below", [0.0, 1e-15, 1e-12, 1e-9, 1e-3])
+def test_a_prescribed_slip_keeps_its_digits_where_it_only_just_reverses(below):
+    # by the angle from the crest, slip is belt - V + 2 V sin^2(t/2), without a difference
+    law, belt = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=0.3), 1.0 - below
+    short = 1.0 - belt  # exact
+    turn = 2.0 * math.asin(math.sqrt(0.5 * short))
+
+    def friction(t):
+        return law.sliding_friction(abs(2.0 * math.sin(0.5 * t) ** 2 - short))
+
+    options = {"epsabs": 1e-15, "epsrel": 1e-13, "limit": 500}
+    ahead, back = quad(friction, turn, math.pi, **options)[0], quad(friction, 0.0, turn, **options)[0]
+    one = Scene(belt_speed=belt, slip=Slip(velocity_amplitude=1.0, frequency=1.0))
+    _, row = solve(one, law)
+
+    assert row["mean_friction"] == pytest.approx((ahead - back) / math.pi, abs=row["error"] + 1e-13)

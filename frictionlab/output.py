@@ -196,10 +196,17 @@ def _brief(line: str, others: Sequence[str]) -> str:
     """Of a long line the part, from a word on, in which it leaves the line most like it."""
     if len(line.strip()) <= SHOWN:
         return line.strip()
-    same = max((len(os.path.commonprefix([line, other])) for other in others), default=0)
-    start = line.rfind(" ", 0, max(0, same - SHOWN // 2)) + 1
+    start = line.rfind(" ", 0, max(0, _alike(line, others) - SHOWN // 2)) + 1
+    if line[:start].endswith(": "):  # a value alone says little
+        start = line.rfind(" ", 0, start - 1) + 1
     begins = f"{line.split(':')[0].strip()}: ... " if start else ""
     return f"{begins}{line[start : start + SHOWN].strip()}{' ...' if len(line) > start + SHOWN else ''}"
+
+
+def _alike(line: str, others: Sequence[str]) -> int:
+    """With how many letters one of the others begins like this line, at most."""
+    shared = [[one == other for one, other in zip(line, text, strict=False)] for text in others]
+    return max(([*same, False].index(False) for same in shared), default=0)
 
 
 def _platform() -> dict[str, Any]:

@@ -23,6 +23,7 @@ from frictionlab.peers import base
 from frictionlab.peers.listing import PEERS
 from frictionlab.quantities import Finite
 from frictionlab.scene import Drive, Load, Scene, Transverse
+from frictionlab.study import StudyError
 
 PROJECT = Path(__file__).parent.parent
 STANDARD = PROJECT / "tests" / "benchmarks" / "standard.yaml"
@@ -315,6 +316,44 @@ def test_a_mistake_that_two_scenes_share_is_told_once(capsys: pytest.CaptureFixt
 
     assert cli.main(["bench", "list.yaml"]) == 2
     assert capsys.readouterr().err.count("unknown method") == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "mistakes"),
+    [
+        ("error: 1.0e-15", "error: x", ["scenes[0].references[0].error: must be a number"]),
+        ("kind: off", "kind: of", ["scenes[0].methods[0].kind: unknown method"]),
+        (
+            "mu: 0.4}]\n    sweep: {scene.belt_speed:",
+            "mu: -1}]\n    sweep: {scene.normal_load:",
+            [
+                "scenes[0].scene.belt_speed: required key is missing",
+                "scenes[0].laws[0].mu: must be > 0, got -1",
+                "scenes[0].sweep.scene.normal_load: a bench curve sweeps the belt speed alone",
+            ],
+        ),
+    ],
+)
+def test_every_mistake_of_a_list_is_told_and_none_that_follows_from_another(
+    old: str, new: str, mistakes: list[str]
+) -> None:
+    Path("list.yaml").write_text(LIST.replace(old, new))
+
+    with pytest.raises(StudyError) as caught:
+        bench.load_bench(Path("list.yaml"))
+
+    told = [f"{mistake.path}: {mistake.what}" for mistake in caught.value.mistakes]
+    assert len(told) == len(mistakes)
+    assert all(text.startswith(start) for text, start in zip(told, mistakes, strict=True))
+
+
+def test_what_is_no_list_is_told_as_a_list(tmp_path: Path) -> None:
+    (tmp_path / "empty.yaml").write_text("")
+
+    with pytest.raises(StudyError, match="the bench list is empty"):
+        bench.load_bench(tmp_path / "empty.yaml")
+    with pytest.raises(StudyError, match="is a folder; a bench list is a file"):
+        bench.load_bench(tmp_path)
 
 
 def test_a_curve_that_is_not_in_the_list_is_refused_by_name(capsys: pytest.CaptureFixture[str]) -> None:

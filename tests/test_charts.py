@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -145,6 +146,71 @@ def test_one_colour_per_law_and_one_line_style_per_method(resonance: pd.DataFram
     ]
     assert first.get_color() == second.get_color() != third.get_color() == fourth.get_color()
     assert first.get_linestyle() == third.get_linestyle() != second.get_linestyle() == fourth.get_linestyle()
+
+
+def _of_ten_methods(table: pd.DataFrame) -> pd.DataFrame:
+    return pd.concat([table.assign(method=f"method{i}") for i in range(10)], ignore_index=True)
+
+
+def test_ten_methods_are_told_apart_in_colour_and_in_black_and_white(resonance: pd.DataFrame) -> None:
+    figure = _figure(_of_ten_methods(resonance))
+    lines, handles = figure.axes[0].lines[:10], figure.legends[0].get_lines()
+
+    for shown in (lines, handles):
+        assert len({str(line.get_color()) for line in shown}) == 10
+        assert len({line.get_marker() for line in shown}) == 10
+        assert len({str(line._unscaled_dash_pattern) for line in shown}) == 10
+    assert max(line.get_linewidth() for line in lines) <= 2.0
+
+
+def test_markers_of_methods_that_coincide_lie_side_by_side(resonance: pd.DataFrame) -> None:
+    lines = _figure(_of_ten_methods(resonance)).axes[0].lines[:10]
+
+    marked = [point for line in lines for point in line.get_markevery()]
+    assert len(marked) == len(set(marked)) == 10 * 10
+
+
+def test_of_two_methods_the_first_lies_broad_below_the_second(resonance: pd.DataFrame) -> None:
+    both = pd.concat([resonance, resonance.assign(method="shooting")], ignore_index=True)
+
+    below, above = _figure(both).axes[0].lines[:2]
+
+    assert (below.get_linewidth(), above.get_linewidth()) == (2.0, 1.1)
+    assert below.get_color() == above.get_color()
+    assert below.get_markevery() == above.get_markevery() == []
+
+
+@pytest.mark.parametrize("letters", [3, 19, 60])
+def test_the_legend_keeps_within_the_figure(resonance: pd.DataFrame, letters: int) -> None:
+    short = [resonance.assign(method=name) for name in ("a", "b", "c", "d")]
+    long = resonance.assign(method="n" * letters)
+    refused = long.assign(law="rough", status="refused", mean_friction=np.nan)
+    figure = _figure(pd.concat([*short, long, resonance.assign(law="rough"), refused], ignore_index=True))
+
+    figure.canvas.draw()
+
+    legend = figure.legends[0].get_window_extent()
+    assert figure.bbox.x0 <= legend.x0 < legend.x1 <= figure.bbox.x1
+    assert legend.y1 <= figure.axes[0].get_window_extent().y0
+
+
+def test_labels_of_a_logarithmic_axis_do_not_overlap(resonance: pd.DataFrame) -> None:
+    speeds = np.geomspace(5.0, 100.0, len(resonance))
+    figure = _figure(resonance.assign(**{"scene.belt_speed": speeds}))
+    figure.canvas.draw()
+    below = figure.axes[0].xaxis
+    (above,) = (axes.xaxis for axes in figure.axes[0].child_axes)
+
+    low, high = figure.axes[0].get_xlim()
+    labels = [
+        tick.label1
+        for tick in below.get_major_ticks() + below.get_minor_ticks()
+        if low <= tick.get_loc() <= high
+    ]
+    shown = [label.get_window_extent() for label in labels if label.get_text()]
+    assert [label.get_text() for label in labels if label.get_text()] == ["5", "10", "20", "50", "100"]
+    assert not any(one.overlaps(other) for one, other in pairwise(shown))
+    assert [label.get_text() for label in above.get_ticklabels(which="both")] == [r"$V_\mathrm{lin}$"]
 
 
 def test_a_long_family_is_drawn_whole_and_named_from_end_to_end(resonance: pd.DataFrame) -> None:

@@ -156,6 +156,15 @@ def test_text_of_a_study_is_text_on_the_page(ran: Runner) -> None:
     assert HOSTILE in page.all("img")[0].attributes["alt"]
 
 
+def test_a_table_that_is_wider_than_the_page_shows_that_it_scrolls(ran: Runner) -> None:
+    (style,) = [element for element in Page(report(ran())).elements if element.tag == "style"]
+    rules = re.findall(r"([^{}]+)\{([^{}]*)\}", style.text.partition("@media print")[0])
+    boxes = " ".join(rule for names, rule in rules if names.strip().endswith(".scroll, pre"))
+
+    assert "background-attachment: local, local, scroll, scroll" in boxes
+    assert any("::-webkit-scrollbar" in names for names, _ in rules)
+
+
 def test_the_page_forbids_a_browser_to_run_or_fetch_anything(ran: Runner) -> None:
     policies = [
         element.attributes["content"]

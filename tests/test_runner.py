@@ -9,6 +9,7 @@ import json
 import math
 import os
 import pickle
+import re
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 from dataclasses import fields
@@ -428,6 +429,20 @@ def test_studies_that_differ_in_long_lines_are_told_apart_in_short_ones(tmp_path
     shown = str(caught.value).splitlines()[1:-1]
     assert any("0.5989974937343359" in line for line in shown)
     assert max(map(len, shown)) < 90
+
+
+def test_studies_that_differ_at_the_end_of_a_long_line_are_told_apart_there(tmp_path: Path) -> None:
+    drives = [{"unbalance": 10, "frequency": frequency} for frequency in (1.25, 1.5)]
+    here, other = (study(scene=study()["scene"] | {"drive": drive}) for drive in drives)
+    fl.run(here, out=tmp_path / "out")
+
+    with pytest.raises(FolderError) as caught:
+        fl.run(other, out=tmp_path / "out")
+
+    there, now, remedy = str(caught.value).splitlines()[1:]
+    assert re.search(r"drive: \{.*frequency: 1.25", there)
+    assert re.search(r"drive: \{.*frequency: 1.5", now)
+    assert remedy.startswith("choose another folder with -o")
 
 
 def test_another_version_is_refused_a_folder_that_is_taken(tmp_path: Path, monkeypatch: Any) -> None:

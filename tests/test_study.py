@@ -114,6 +114,15 @@ def test_a_shape_needs_a_curve() -> None:
         parse_study(good() | {"expect": [{"shape": "mixed"}]})
 
 
+def test_a_shape_asks_for_the_belt_speed_of_its_scene_also_beside_other_mistakes() -> None:
+    wrong = {"scene": good()["scene"] | {"normal_load": -1}, "expect": [{"shape": "mixed"}]}
+
+    with pytest.raises(StudyError) as caught:
+        parse_study(good() | wrong)
+
+    assert caught.value.mistakes[-1].what == "a shape needs a curve: sweep scene.belt_speed"
+
+
 def test_what_is_left_out_takes_its_default() -> None:
     study = parse_study(good())
 

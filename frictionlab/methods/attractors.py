@@ -122,7 +122,7 @@ def told(reached: list[Attractor]) -> str:
     """What several starts reached, in words."""
     orbits = [one for one in reached if one.curve is not None]
     wild = [one for one in reached if one.curve is None]
-    parts = [_orbit_told(one) for one in {(one.period, f"{one.mean:.9g}"): one for one in orbits}.values()]
+    parts = [_orbit_told(one) for one in {(one.period, f"{one.mean:.6g}"): one for one in orbits}.values()]
     if wild:
         longest = max(one.followed for one in wild)
         parts.append(f"{len(wild)} of {len(reached)} starts do not repeat within {longest} drive periods")

@@ -27,9 +27,9 @@ class Shooting(Method):
     instants of stick and release resolved, and closes the orbit by Broyden's method (1965) with Newton and Picard
     steps where it stalls. The error comes from a last map sixteen times finer: what it leaves open, carried to the
     mean by the contraction of monotone friction, or by the mean's own change where friction falls with speed.
-    There the orbit must attract, and three starts must reach it; otherwise the mean is not unique. Without a drive
-    the period is an unknown too, and the answer is the state reached from scene.initial. A prescribed slip leaves
-    nothing to close: its mean is quadrature.
+    There the orbit must attract, and starts far from each other must reach it; otherwise the mean is not unique.
+    Without a drive the period is an unknown too, and the answer is the state reached from scene.initial. A prescribed
+    slip leaves nothing to close: its mean is quadrature.
     """
 
     name: ClassVar[str] = "shooting"
@@ -124,7 +124,7 @@ class Found:
                 )
 
     def hold_to_other_starts(self, i: int, closer: Closer, scene: Scene) -> None:
-        """Keep an answer only where three starts reach it; else the one reached from scene.initial, or none."""
+        """Keep an answer only where every start reaches it; else the one reached from scene.initial, or none."""
         known = None
         if self.states[i] is not None:
             curve, _ = closer.closed([scene], self.states[i])

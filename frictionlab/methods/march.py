@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
 from frictionlab.methods.base import Answers, Method, Orbit, Status
-from frictionlab.methods.marcher import Run, Walker
-from frictionlab.methods.marching import LATE, RESTING, STALLED, TIRED
-from frictionlab.methods.refining import WORK, Found, Plan, found, restless
+from frictionlab.methods.closer import contracts
+from frictionlab.methods.marcher import LONGEST_PERIOD, Run, Walker
+from frictionlab.methods.marching import RESTING, STALLED
+from frictionlab.methods.refining import WORK, Found, Plan, found, restless, why_not
+from frictionlab.methods.rivals import Reached, Search, first_reached, one_motion, told
 from frictionlab.methods.sampling import solve_sampled
 from frictionlab.methods.shooting import resting_range, stays_at_rest
 from frictionlab.orbit import READ
@@ -60,8 +63,9 @@ class March(Method):
     smoothing: of smoothed, tanh (default), square_root or arctan.
     periods [-], >= 4: most periods to wait for the motion to repeat, 100000.
 
-    The motion starts from scene.initial, else on the friction-free orbit. Sources: Moreau (1988), Jean (1999);
-    Kutta (1901); Hairer, Norsett & Wanner (1993).
+    The motion starts from scene.initial, else on the friction-free orbit, undriven at rest on the belt. Where no
+    theorem makes the steady state unique, starts far from each other must reach the same. Sources: Moreau (1988),
+    Jean (1999); Kutta (1901); Hairer, Norsett & Wanner (1993).
     """
 
     name: ClassVar[str] = "march"
@@ -73,13 +77,15 @@ class March(Method):
     smoothing: Literal["tanh", "square_root", "arctan"] | None = None
     periods: Count = 100_000
 
-    @model_validator(mode="after")
-    def _keys_of_the_stepper(self) -> March:
-        for key in ("theta", "steps", "width", "smoothing"):
-            if getattr(self, key) is not None and key not in OWN_KEYS[self.stepper]:
-                own = ", ".join(OWN_KEYS[self.stepper])
-                raise ValueError(f"{key}: leave it out, stepper {self.stepper} knows {own} and periods")
-        return self
+    @field_validator("theta", "steps", "width", "smoothing", mode="before")
+    @classmethod
+    def _key_of_the_stepper(cls, given: object, info: ValidationInfo) -> object:
+        """Key by key, not for all at once, so that it is told beside whatever else is wrong."""
+        own = OWN_KEYS.get(info.data.get("stepper", ""))
+        if given is not None and own is not None and info.field_name not in own:
+            known = ", ".join(own)
+            raise ValueError(f"leave it out, stepper {info.data['stepper']} knows {known} and periods")
+        return given
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Friction with memory; a static coefficient above the sliding one with a stepper that cannot hold it."""
@@ -138,49 +144,79 @@ class _Point:
         self.status: Status = "failed"
         self.reason, self.model = "", ""
         self.orbit: Orbit | None = None
-        if stays_at_rest(scene, law) and scene.initial is None:
+        if stays_at_rest(scene, law) and scene.initial is None and not scene.undriven:
             self._leave_open(resting_range(scene, law))
         else:
             self._judge(found(self.walker, plan, tolerance), tolerance)
         self.columns["seconds"] = self.walker.seconds
 
     def _leave_open(self, highest: float) -> None:
-        self._range(-highest, highest, 1.0)
+        self._range(-highest, highest)
         self.reason = (
             "the belt is at rest and friction can hold the loads for ever: the mass stays wherever it stops; "
             "give scene.initial to choose a start"
         )
 
-    def _range(self, low: float, high: float, window: float) -> None:
+    def _range(self, low: float, high: float) -> None:
         self.status = "not_unique"
-        self.columns |= {"mean_low": low, "mean_high": high, "window": window}
+        self.columns |= {"mean_low": low, "mean_high": high, "window": 1.0}
 
     def _judge(self, answer: Found, tolerance: float) -> None:
         last = answer.runs[-1]
         self.model = f"march, {self.plan.stepper}{self._theta()}: {answer.how or 'no steady state'}"
         if not last.settled:
-            self.reason = _why_not(last, self.plan)
-        elif restless(answer.runs, self.walker):
-            self._watch(last)
+            self.reason = f"the motion {why_not(last)}"
+            return
+        readable = self._readable(answer.runs)
+        reached, problem = self._reached(answer, readable)
+        unique = not problem and one_motion(reached)
+        if reached[0].period == 1 and (unique or self.scene.initial is not None):
+            told_apart = (
+                reached[0].high - reached[0].low
+            )  # which lap's mean is meant makes so much of a difference
+            self._accept(replace(answer, error=answer.error + told_apart), readable, tolerance)
+        elif problem:
+            self.reason = f"{told(reached)}; {problem}"
         else:
-            self._accept(answer, tolerance)
+            self._leave_range(reached)
+        if self.status == "ok" and not unique:
+            self._remark(f"reached from scene.initial; {'; '.join(filter(None, (told(reached), problem)))}")
+
+    def _reached(self, answer: Found, readable: Run) -> tuple[list[Reached], str]:
+        """Where the starts lead; and why one leads nowhere, or ''."""
+        if restless(answer.runs, self.walker):
+            seen = self.walker.watch(answer.runs[-1], WATCHED)
+            first = Reached(0, math.nan, seen.low, seen.high, seen.laps)
+        else:
+            first = first_reached(self.walker, answer)
+        if not self._has_rivals():
+            return [first], ""
+        return Search(self.walker, answer, first, readable).reached()
+
+    def _has_rivals(self) -> bool:
+        """Whether another start may lead elsewhere, in a row that is not about one start alone."""
+        held = stays_at_rest(self.scene, self.law)
+        return not (self.scene.undriven or held or contracts(self.scene, self.law))
+
+    def _leave_range(self, reached: Sequence[Reached]) -> None:
+        self._range(min(one.low for one in reached), max(one.high for one in reached))
+        why = "friction falls with speed: " if self._has_rivals() else ""
+        if not why and reached[0].period == 0:
+            why = "the motion never repeats, whatever the step: "
+        self.reason = why + told(reached)
+        if one_motion(reached):
+            self.columns["period"] = float(reached[0].period)
+
+    def _remark(self, said: str) -> None:
+        self.reason = "; ".join(filter(None, (self.reason, said)))
 
     def _theta(self) -> str:
         return f" with theta {self.plan.theta:g}" if self.plan.stepper == "moreau" else ""
 
-    def _watch(self, last: Run) -> None:
-        """Follow a motion that never repeats for many laps."""
-        seen = self.walker.watch(last, WATCHED)
-        self._range(seen.low, seen.high, float(seen.laps))
-        self.reason = (
-            f"the motion never repeats, whatever the step: over {seen.laps} periods the mean over one runs from "
-            f"{seen.low:.6g} to {seen.high:.6g}"
-        )
-
-    def _accept(self, answer: Found, tolerance: float) -> None:
+    def _accept(self, answer: Found, readable: Run, tolerance: float) -> None:
         last = answer.runs[-1]
         self.status = "ok"
-        self._read(answer.runs)
+        self._read(readable, last.stride if self.scene.undriven else 1)
         across = answer.mean.imag if self.scene.degrees_of_freedom == 2 else math.nan
         self.columns |= {
             "mean_friction": answer.mean.real,
@@ -188,47 +224,41 @@ class _Point:
             "error": answer.error,
             "period": self._period(answer, last),
         }
-        reasons = []
         if last.verdict == STALLED:
-            reasons.append(
+            self._remark(
                 f"the steps keep the motion from repeating: averaged over {self.walker.window} periods"
             )
-        if not self.walker.converges:
+        if not (self.walker.converges or self._has_rivals()):
             start = "scene.initial" if self.scene.initial else "the default start"
-            reasons.append(f"the state reached from {start}; no other start was tried")
+            self._remark(f"the state reached from {start}; no other start was tried")
         if not answer.error <= tolerance:
-            reasons.append(f"the error is above the tolerance {tolerance:.1e}")
-        self.reason = "; ".join(reasons)
+            self._remark(f"the error is above the tolerance {tolerance:.1e}")
 
     def _period(self, answer: Found, last: Run) -> float:
         if not self.scene.undriven:
-            return 1.0 if self.walker.converges else float(last.stride)
+            return 1.0
         still = self.columns["velocity_amplitude"] <= 2.0 * last.pace.enough
         return math.nan if last.verdict == RESTING or still else answer.period / (2.0 * math.pi)
 
-    def _read(self, runs: Sequence[Run]) -> None:
-        """The columns besides the mean, from the finest run that is not too long to keep."""
-        readable = [run for run in runs if run.pace.steps <= READABLE] or [runs[0]]
-        given = self.plan.steps is not None
-        self.orbit = self.walker.track(runs[0] if given else readable[-1])
-        if self.orbit is None:
-            return
-        values = dict(zip(READ, self.walker.columns(self.orbit), strict=True))
+    def _readable(self, runs: Sequence[Run]) -> Run:
+        """The run of which an orbit is kept: the one asked for, else the finest that is not too long to keep."""
+        fine = [run for run in runs if run.pace.steps <= READABLE] or [runs[0]]
+        return runs[0] if self.plan.steps is not None else fine[-1]
+
+    def _read(self, run: Run, own: int) -> None:
+        """The columns besides the mean, from a run whose response takes ``own`` laps.
+
+        Where its steps keep it from repeating so soon, they are averaged over more of them.
+        """
+        steps = max(1, run.steps // run.laps)
+        laps = max(1, min(LONGEST_PERIOD, LONGEST_PERIOD * READABLE // steps))
+        laps = laps if run.verdict == STALLED else run.stride
+        periods = max(1, laps // own)
+        self.orbit = self.walker.track(run, own)
+        whole = self.orbit if periods == 1 else self.walker.track(run, periods * own)
+        values = dict(zip(READ, self.walker.columns(whole, periods), strict=True))
         flat = "transverse" if self.scene.degrees_of_freedom == 1 else "mean_position"
         values |= {name: math.nan for name in values if flat in name}
         if self.plan.stepper != "moreau":
             values["stick_fraction"] = math.nan
         self.columns |= {name: value for name, value in values.items() if name in self.columns}
-
-
-def _why_not(run: Run, plan: Plan) -> str:
-    if run.verdict == LATE:
-        return (
-            f"the motion still changes by {run.drift:.1e} a period after {run.laps} periods (at most "
-            f"{plan.periods}); give more periods"
-        )
-    if run.verdict == TIRED:
-        return f"does not repeat within {run.steps:.1g} steps ({run.laps} periods); give fewer or wider ones"
-    return (
-        f"lost after {run.laps} periods: the motion grows without bound, or never returns; give shorter steps"
-    )

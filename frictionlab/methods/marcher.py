@@ -22,13 +22,15 @@ from frictionlab.methods.marching import (
     march_smoothed,
 )
 from frictionlab.methods.steppers.smoothed import ARCTAN, SQUARE_ROOT, TANH
-from frictionlab.orbit import read
-from frictionlab.scene import Body, Mass, Scene, in_the_plane, on_the_line
+from frictionlab.orbit import READ, read
+from frictionlab.scene import Body, Initial, Mass, Scene, in_the_plane, on_the_line
 
 KERNELS = {"moreau": march_moreau, "rk4": march_rk4, "smoothed": march_smoothed}
 SHAPES = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
 LONGEST_PERIOD = 8
 """Of a response that repeats only after several laps."""
+SUMMED = np.array(["energy" in name or "reversals" in name for name in READ])
+"""Of what is read from an orbit, sums and counts over the whole of it; all else is a mean, a phase or an extreme."""
 
 
 @dataclass(frozen=True)
@@ -98,19 +100,32 @@ class Walker:
         reference = on_the_line(self.mass) if straight else in_the_plane(self.mass)
         self.straight = straight
         self.body = loaded(reference, self.mass, straight)
-        self.start = _start(scene, reference)
+        self._free = Place(
+            complex(reference.reference_cosine), complex(scene.frequency * reference.reference_sine)
+        )
+        self.start = self.place(scene.start if scene.undriven else scene.initial)
         self.forgets = scene.belt_speed != 0.0  # on a belt at rest the mass stays wherever a run left it
         self.lap = 2.0 * math.pi / self.mass.frequency
         self.window = self._relaxing()
         self.seconds = 0.0
 
     @property
+    def follows_the_drive(self) -> bool:
+        """Whether a theorem gives every motion the drive's period in the end (Leine & van de Wouw, 2008)."""
+        mass = self.mass
+        damping = mass.damping if self.straight else min(mass.damping, mass.transverse_damping)
+        return mass.normal_load * self.law.steepest_fall() < damping and not self.scene.undriven
+
+    @property
     def converges(self) -> bool:
-        """Whether a theorem leads every start to one motion, of the drive's period (Leine & van de Wouw, 2008)."""
-        mass, scene = self.mass, self.scene
-        damping = mass.damping if scene.transverse is None else min(mass.damping, mass.transverse_damping)
-        falls = mass.normal_load * self.law.steepest_fall()
-        return falls < damping and scene.belt_speed != 0.0 and not scene.undriven
+        """Whether that motion is the same from every start: on a belt at rest the mass may stay where it stops."""
+        return self.follows_the_drive and self.scene.belt_speed != 0.0
+
+    def place(self, start: Initial | None) -> Place:
+        """A start as a state; None for the friction-free orbit."""
+        if start is None:
+            return self._free
+        return Place(complex(start.x, start.x2), complex(start.velocity, start.velocity2))
 
     def run(self, pace: Pace, place: Place | None = None) -> Run:
         """March to the steady state, period doublings included."""
@@ -120,7 +135,7 @@ class Walker:
         stride = _stride(march) if march.verdict == STALLED else 1
         if stride > 1:
             longer = self._marched(self._way(pace)._replace(stride=stride, rate=0.0), run.place)
-            other = self._read(longer, pace, stride)
+            other = self._read(longer, pace, self._least(longer, stride, 2.0 * pace.enough))
             run = replace(other, steps=run.steps + other.steps) if other.verdict == CLOSED else run
         return run
 
@@ -130,12 +145,9 @@ class Walker:
         march = self._marched(way, run.place)
         return self._read(march, run.pace, len(march.rubbed))
 
-    def track(self, run: Run) -> Orbit | None:
-        """One period of the response, from the end of a run."""
-        if not run.settled or (run.verdict == STALLED and run.stride > 1):
-            return None
-        room = 2 * run.stride * (run.steps // run.laps + 50)
-        laps = run.stride
+    def track(self, run: Run, laps: int) -> Orbit:
+        """So many laps, from the end of a run that settled."""
+        room = 2 * laps * (run.steps // run.laps + 50)
         way = self._way(run.pace)._replace(most=laps, stride=laps + 1, room=room)
         if run.verdict == RESTING:
             way = way._replace(span=2.0 * math.pi)
@@ -144,16 +156,14 @@ class Walker:
         tau = track.tau[:n] + _offsets(track.tau[:n])[:, None]
         return Orbit(tau, track.x[:n], track.v[:n], track.friction[:n], track.stick[:n])
 
-    def columns(self, orbit: Orbit) -> Floats:
-        """What is read from one period of the response, the drive's harmonic of several laps included."""
-        duration = float(orbit.tau[-1, -1] - orbit.tau[0, 0])
-        mass = self.mass._replace(frequency=2.0 * math.pi / duration) if self.scene.undriven else self.mass
+    def columns(self, orbit: Orbit, periods: int) -> Floats:
+        """What is read from so many periods of the response; of what is summed up or counted, the share of one."""
+        own = 2.0 * math.pi * periods / float(orbit.tau[-1, -1] - orbit.tau[0, 0])
+        mass = self.mass._replace(frequency=own) if self.scene.undriven else self.mass
         parts = orbit.tau, orbit.x, orbit.v, orbit.friction, orbit.stick
         values, seconds = timed(compiled(read), *parts, mass, self.scene.belt_speed)
         self.seconds += seconds
-        laps = round(duration * mass.frequency / (2.0 * math.pi))
-        values[[0, 1, 2, 3, 5, 8, 10]] /= max(laps, 1)
-        return np.asarray(values)
+        return np.where(SUMMED, values / periods, values)
 
     def _relaxing(self) -> int:
         """Laps in which a drift towards the steady state dies out by a third, at least fifty and at most 2000."""
@@ -247,6 +257,12 @@ class Walker:
             drift=drift,
         )
 
+    def _least(self, march: March, stride: int, within: float) -> int:
+        """The fewest laps after which a motion known to repeat after ``stride`` laps has repeated already."""
+        last = len(march.rubbed)
+        whole = [laps for laps in range(1, stride) if stride % laps == 0]
+        return next((laps for laps in whole if self._apart(march, last, last - laps) <= within), stride)
+
     def _closing(self, march: March, drift: float, spread: float) -> float:
         """What the mean may still change by: integrate the motion along x1 over a period, as shooting does.
 
@@ -283,14 +299,6 @@ def loaded(body: Body, mass: Mass, straight: bool) -> Body:
     return body._replace(
         force_sine=force[0], force_cosine=force[1], reference_sine=force[2], reference_cosine=force[2]
     )
-
-
-def _start(scene: Scene, reference: Body) -> Place:
-    """``scene.initial``; without it the friction-free orbit of a driven scene, rest on the belt of another."""
-    if scene.initial is None and not scene.undriven:
-        return Place(complex(reference.reference_cosine), complex(scene.frequency * reference.reference_sine))
-    start = scene.start
-    return Place(complex(start.x, start.x2), complex(start.velocity, start.velocity2))
 
 
 def _stride(march: March) -> int:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from frictionlab.methods.halving import FEWEST, REVERSING, SMOOTH, STICKING, bias, first_error, limit_of
 from frictionlab.methods.marcher import Pace, Run, Walker
-from frictionlab.methods.marching import CLOSED, STALLED
+from frictionlab.methods.marching import CLOSED, LATE, STALLED, TIRED
 
 COARSEST, WORK = 64, 16_000_000
 """Steps per period to begin with, and steps in all that a point may cost, where ``steps`` is left out."""
@@ -69,7 +69,7 @@ def _by_given_steps(walker: Walker, plan: Plan, tolerance: float) -> Found:
     )
     error = (
         doubt
-        + _crossing(walker, first)
+        + crossing(walker, first)
         + _creep(walker, first)
         + sum(run.closing for run in runs)
         + _rounding(first)
@@ -110,7 +110,7 @@ def _limit(walker: Walker, plan: Plan, runs: list[Run]) -> Found:
     across = limit_of([run.mean.imag for run in runs], plan.order, least)
     period = limit_of([run.period for run in runs], plan.order, least)
     error = (
-        along.error + unseen + _crossing(walker, last) + _creep(walker, last) + last.closing + _rounding(last)
+        along.error + unseen + crossing(walker, last) + _creep(walker, last) + last.closing + _rounding(last)
     )
     error += runs[-2].closing if along.order else 0.0
     how = f"{last.pace.steps} steps per period"
@@ -145,16 +145,19 @@ def _expected(walker: Walker, runs: Sequence[Run], steps: int) -> float:
     if len(runs) < 2:
         return 0.1 * walker.law.sliding_friction(1.0) / steps
     change = abs(runs[-1].mean.real - runs[-2].mean.real)
-    return max(0.25 * change, _crossing(walker, runs[-1]) * runs[-1].pace.steps / steps)
+    return max(0.25 * change, crossing(walker, runs[-1]) * runs[-1].pace.steps / steps)
 
 
-def _crossing(walker: Walker, run: Run) -> float:
+def crossing(walker: Walker, run: Run) -> float:
     """What reversals inside a step may cost: of the impulse of that step, a grid knows the sign but not the share.
 
-    Several grids in a row can round a reversal the same way, and then no change between them tells of it.
+    A release costs the drop of friction from rest to slip in the same way. Several grids in a row can round either
+    the same way, and then no change between them tells of it.
     """
     per_period = run.pace.steps * run.period / walker.lap
-    return walker.law.sliding_friction(0.0) * run.crossings / per_period
+    slip = walker.law.sliding_friction(0.0)
+    release = walker.law.static_friction() - slip if run.stuck > 0.0 else 0.0
+    return (slip * run.crossings + release * run.stride) / per_period
 
 
 def _creep(walker: Walker, run: Run) -> float:
@@ -208,6 +211,18 @@ def restless(runs: Sequence[Run], walker: Walker) -> bool:
     spread = last.high - last.low
     seen = last.verdict == STALLED == early.verdict and spread > 1e-3 * walker.law.static_friction()
     return not walker.converges and seen and spread > 0.5 * (early.high - early.low)
+
+
+def why_not(run: Run) -> str:
+    """Why a run has no steady state, in words that follow "the motion"."""
+    if run.verdict == LATE:
+        return (
+            f"still changes by {run.drift:.1e} a period after {run.laps} periods (at most {run.pace.most}); "
+            f"give more periods"
+        )
+    if run.verdict == TIRED:
+        return f"does not repeat within {run.steps:.1g} steps ({run.laps} periods); give fewer or wider ones"
+    return f"is lost after {run.laps} periods: it grows without bound, or never returns; give shorter steps"
 
 
 def _unsettled(runs: Sequence[Run]) -> Found:

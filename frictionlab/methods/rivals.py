@@ -78,6 +78,8 @@ class Search:
     @property
     def _steps(self) -> float:
         """What the steps may have done to a mean."""
+        if self.walker.stepper == "smoothed":  # no grid, and a bias that both runs share
+            return 1e-5 * self.walker.law.static_friction()
         beside = abs(self.like.mean.real - self.answer.mean.real)
         return self.answer.error + beside + crossing(self.walker, self.like)
 
@@ -120,5 +122,6 @@ def first_reached(walker: Walker, answer: Found) -> Reached:
     alike = last.verdict != CLOSED or last.stride == 1
     if alike or walker.follows_the_drive or walker.scene.undriven:
         return Reached(1, mean, mean, mean, last.laps)
-    period = 1 if last.high - last.low <= answer.error else last.stride
+    noise = min(answer.error, NOISE * walker.law.static_friction())
+    period = 1 if last.high - last.low <= noise else last.stride
     return Reached(period, mean, last.low, last.high, last.laps)

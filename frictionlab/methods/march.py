@@ -88,10 +88,16 @@ class March(Method):
         return given
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Friction with memory; a static coefficient above the sliding one with a stepper that cannot hold it."""
+        """Friction with memory; a static coefficient above the sliding one, but for moreau along the belt."""
         if not isinstance(law, SlidingLaw):
             return "march steps friction without memory (a sliding law)"
-        if self.stepper != "moreau" and law.static_friction() > law.sliding_friction(0.0):
+        jumps = law.static_friction() > law.sliding_friction(0.0)
+        if jumps and scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
+            return (
+                "static friction above that of slip: in the plane a step catches a mass that would slip past rest, "
+                "and no bound on what that does is known; use shooting"
+            )
+        if self.stepper != "moreau" and jumps:
             return (
                 f"stepper {self.stepper} never rests, and static friction above that of slip acts only at rest; "
                 f"use stepper moreau"
@@ -207,6 +213,15 @@ class _Point:
         if one_motion(reached):
             self.columns["period"] = float(reached[0].period)
 
+    def _lost_in_chatter(self, answer: Found) -> float:
+        """All that the mean may be off by, where the belt is slower than the jumps that rk4 makes about rest."""
+        law, load = self.law, self.scene.mass().normal_load
+        step = 2.0 * math.pi / self.scene.frequency / answer.runs[-1].pace.steps
+        chatters = (
+            self.plan.stepper == "rk4" and abs(self.scene.belt_speed) < load * law.static_friction() * step
+        )
+        return law.static_friction() + abs(answer.mean.real) if chatters else 0.0
+
     def _remark(self, said: str) -> None:
         self.reason = "; ".join(filter(None, (self.reason, said)))
 
@@ -221,7 +236,7 @@ class _Point:
         self.columns |= {
             "mean_friction": answer.mean.real,
             "mean_friction_transverse": across,
-            "error": answer.error,
+            "error": max(answer.error, self._lost_in_chatter(answer)),
             "period": self._period(answer, last),
         }
         if last.verdict == STALLED:
@@ -231,7 +246,7 @@ class _Point:
         if not (self.walker.converges or self._has_rivals()):
             start = "scene.initial" if self.scene.initial else "the default start"
             self._remark(f"the state reached from {start}; no other start was tried")
-        if not answer.error <= tolerance:
+        if not self.columns["error"] <= tolerance:
             self._remark(f"the error is above the tolerance {tolerance:.1e}")
 
     def _period(self, answer: Found, last: Run) -> float:

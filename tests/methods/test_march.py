@@ -485,3 +485,39 @@ def test_an_erratic_sequence_of_order_one_is_not_taken_for_a_closer_one(signs):
 def test_a_bias_of_any_order_from_the_square_root_on_is_covered(order):
     wide, asked, narrow, narrowest = (0.2 * (2.0 * 2.0**-level) ** order for level in range(4))
     assert abs(asked) <= bias(wide, asked, narrow, narrowest) <= 6.0 * abs(asked)
+
+
+def test_static_friction_above_that_of_slip_is_refused_in_the_plane():
+    across = Transverse(natural_frequency=2.0, damping_ratio=0.1, load=Load(unbalance=10.0))
+    planar = Scene(
+        damping_ratio=0.1, normal_load=1.0, belt_speed=5.0, drive=Drive(unbalance=10.0, frequency=1.0),
+        transverse=across,
+    )  # fmt: skip
+    jump = Coulomb(mu=0.3, mu_static=0.4)
+
+    assert "use shooting" in March().refusal(planar, jump)
+    assert March().refusal(planar, Coulomb(mu=0.3)) is None
+    assert March().refusal(planar.model_copy(update={"transverse": None}), jump) is None
+
+
+def test_a_belt_slower_than_the_chatter_of_rk4_leaves_the_mean_anywhere():
+    law, steps = Coulomb(mu=0.4), 100
+    jump = 10.0 * 0.4 * 2.0 * math.pi / (4 * steps)  # what friction does to the velocity in the finest step
+    slow, quick = (
+        March(stepper="rk4", steps=steps).solve(
+            [
+                Scene(
+                    damping_ratio=0.1,
+                    normal_load=10.0,
+                    belt_speed=v,
+                    drive=Drive(unbalance=10.0, frequency=1.0),
+                )
+            ],
+            law,
+            1e-3,
+        )
+        for v in (0.5 * jump, 20.0 * jump)
+    )
+
+    assert slow.columns["error"][0] >= 0.4
+    assert quick.columns["error"][0] < 0.4

@@ -117,6 +117,11 @@ class _Follower:
     def _accuracy(self) -> float:
         return max(0.1 * self.tolerance * self._mass.normal_load, 1e-13)
 
+    @property
+    def _of_a_step(self) -> float:
+        """What one step of the finer motion may cost the mean: two step sizes may agree by chance."""
+        return self._accuracy / FINER / self._mass.normal_load + 1e-12
+
     def motion(self) -> Motion:
         """The motion reached from the start. Raises NotFound."""
         if self.scene.belt_speed == 0.0:
@@ -227,7 +232,7 @@ class _Follower:
         rough, fine = (self._cycle_from(x, part * self._accuracy) for part in (1.0, 1.0 / FINER))
         if rough is None or fine is None:
             return None
-        error = 2.0 * abs(fine[1] - rough[1]) + 1e-12
+        error = 2.0 * abs(fine[1] - rough[1]) + self._of_a_step
         return Motion(x, speed, fine[0], fine[1], error, 0.0, "stick-slip, followed from release to release")
 
     def _cycle_from(self, x: float, accuracy: float) -> tuple[float, float] | None:
@@ -272,7 +277,9 @@ class _Follower:
             -self._follow(x, 0.0, period / TURN, accuracy).rubbed / period
             for accuracy in (1e-13, self._accuracy)
         ]
-        error = 2.0 * abs(means[1] - means[0]) + 2.0 * abs(fine - rough) / (1.0 - abs(slope)) + 1e-12
+        error = (
+            2.0 * abs(means[1] - means[0]) + 2.0 * abs(fine - rough) / (1.0 - abs(slope)) + self._of_a_step
+        )
         return Motion(x, 0.0, period, means[0], error, abs(slope), "a cycle of slip without rest")
 
     def _next_peak(self, x: float, accuracy: float) -> tuple[float, float]:

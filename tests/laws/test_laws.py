@@ -258,9 +258,10 @@ def test_the_steepest_fall_of_a_curve_is_met_somewhere_on_it(data):
     u = np.linspace(0.0, 2.0, 4001) * law.stribeck_speed
     friction = np.array([law.sliding_friction(float(speed)) for speed in u])
 
-    assert (
+    own = (
         -np.diff(friction) / np.diff(u)
-    ).max() >= 0.99 * bound - 1e-9 * friction.max() / law.stribeck_speed
+    ).max() + law.viscosity  # of the curve: viscosity may all but undo it
+    assert own >= 0.98 * (bound + law.viscosity) - 1e-9 * friction.max() / law.stribeck_speed
 
 
 @pytest.mark.parametrize(

@@ -37,6 +37,7 @@ from numba.core.bytecode import FunctionIdentity
 from numba.core.errors import NumbaError
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
 
 # numba links compiled functions by name and types, and tells those of one name apart by a number that every process
 # counts from 1: of two entries kept by two processes one would run the other's code. A random start keeps them apart.
@@ -76,20 +77,22 @@ _one_at_a_time = threading.Lock()
 _law_of_numbers: dict[type, type[FrictionLaw]] = {}
 
 
-def _open_door(method: str) -> None:
-    """Let kernels call this method on a law's numbers."""
+def _open_door(interface: Any, method: str) -> None:
+    """Let kernels call this method of an interface on a law's numbers."""
 
     def resolve(self: Any, *_: Any) -> Any:
         law = _law_of_numbers.get(self.instance_class)
         return None if law is None else _compilable(getattr(law, method))
 
-    resolve.__signature__ = inspect.signature(getattr(SlidingLaw, method))  # type: ignore[attr-defined]
+    resolve.__signature__ = inspect.signature(getattr(interface, method))  # type: ignore[attr-defined]
     for kind in (numba.types.NamedTuple, numba.types.NamedUniTuple):
         _extending.overload_method(kind, method, strict=False)(resolve)
 
 
 for _method in ("sliding_friction", "sliding_vector", "static_friction"):
-    _open_door(_method)
+    _open_door(SlidingLaw, _method)
+for _method in ("rate", "friction", "deflected", "saturation_path", "yield_deflection"):
+    _open_door(BristleLaw, _method)
 
 
 def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from typing import Self
 
 from frictionlab.quantities import Dimension, Finite, NonNegative, PerSpeed, Positive, Record, Speed
 
@@ -38,6 +39,10 @@ class FrictionLaw(Record, ABC):
         """
         speed = abs(v)
         return (self.sliding_friction(speed) / speed) * v  # one division fewer than along v / speed
+
+    def under_load(self, normal_load: float) -> Self:
+        """The same law per unit of this normal load [scene force]: parameters of the contact become per unit load."""
+        return self
 
     def constant_sliding_friction(self) -> bool:
         """Whether ``sliding_friction`` is the same number at every speed."""

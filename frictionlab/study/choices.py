@@ -11,8 +11,6 @@ from frictionlab.study.mistakes import Path, described, did_you_mean
 from frictionlab.study.notes import Notes
 from frictionlab.study.record import LawChoice, MethodChoice
 
-LAWS_TO_COME = ("dahl", "jenkins", "lugre", "elasto-plastic", "dupont")
-
 
 def items(given: Any, path: Path, example: str, notes: Notes) -> list[Any]:
     """The items of a list that may not be empty."""
@@ -29,7 +27,7 @@ def law_choice(given: Any, path: Path, notes: Notes) -> LawChoice | None:
     if not isinstance(given, dict):
         notes.add(path, f"must be a mapping such as {{kind: coulomb, mu: 0.4}}, got {described(given)}")
         return None
-    kind = _kind(given, path, _named("law", registry.law_names(), LAWS_TO_COME, notes), notes)
+    kind = _kind(given, path, _named("law", registry.law_names(), notes), notes)
     label = _label(given, kind, path, notes)
     if kind is None or notes.mapping(given, path) is None:
         return None
@@ -40,7 +38,7 @@ def law_choice(given: Any, path: Path, notes: Notes) -> LawChoice | None:
 
 def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:
     """One method, by its name or with parameters; None, noted, where there is a mistake."""
-    named = _named("method", registry.method_names(), (), notes)
+    named = _named("method", registry.method_names(), notes)
     if not isinstance(given, dict):
         name = named(given, path)
         return None if name is None else MethodChoice(name, name, {})
@@ -91,18 +89,14 @@ def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:
             notes.add(path, f"{head}[{first[label]}] has the label '{label}' too; give each its own label")
 
 
-def _named(
-    what: str, installed: Iterable[str], to_come: Sequence[str], notes: Notes
-) -> Callable[[Any, Path], str | None]:
+def _named(what: str, installed: Iterable[str], notes: Notes) -> Callable[[Any, Path], str | None]:
     """A reader of a registered name."""
     names = list(installed)
 
     def name(given: Any, path: Path) -> str | None:
         if isinstance(given, str) and given in names:
             return given
-        if given in to_come:
-            notes.add(path, f"{given}: not available yet")
-        elif isinstance(given, str):
+        if isinstance(given, str):
             hint = did_you_mean(given, names)
             notes.add(path, f"unknown {what} '{given}'; installed: {', '.join(names)}", hint)
         else:

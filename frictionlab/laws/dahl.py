@@ -1,0 +1,99 @@
+"""Dahl friction: a spring that yields as friction nears its limit."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.laws.base import NonNegative, Positive
+from frictionlab.laws.bristle import CompliantLaw
+
+
+class Dahl(CompliantLaw):
+    """Dahl friction: friction grows with slip as fast as it is away from its limit, dT/dx = stiffness*sgn(u)|u|^i.
+
+    mu [-], > 0: friction coefficient in steady sliding, its limit; u = 1 - (T/mu) sgn(v).
+    stiffness [1/scene length], presliding_length [scene length] or contact_stiffness [K_1], > 0: exactly one.
+    exponent [-], >= 0: i; 1 where left out, 0 an ideal spring that slips (``jenkins``). Only 1 has a vector form.
+
+    The power keeps its sign, so that friction beyond its limit falls back to it for every exponent.
+    Sources: Dahl (1968), Aerospace TOR-0158(3107-18)-1; Dahl (1976), AIAA J. 14, 1675; in the plane
+    z' = v - |v| z stiffness/mu, Velenis & Tsiotras (2002).
+    """
+
+    mu: Positive
+    exponent: NonNegative = 1.0
+
+    def _saturated(self) -> float:
+        return self.mu
+
+    @property
+    def saturation(self) -> float:
+        """The deflection in steady sliding [scene length]."""
+        return self.mu / self.bristle_stiffness
+
+    def sliding_friction(self, speed: float) -> float:
+        """mu, at every speed."""
+        return self.mu
+
+    def rate(self, v: Any, z: Any) -> Any:
+        """z' = v - |v| z/saturation for exponent 1; else v sgn(u) |u|^exponent, along one direction."""
+        if self.exponent == 1.0:
+            return v - (abs(v) / self.saturation) * z
+        left = 1.0 - math.copysign(1.0, v.real) * z.real / self.saturation
+        return v * math.copysign(math.fabs(left) ** self.exponent, left)
+
+    def friction(self, v: Any, z: Any, dz: Any) -> Any:
+        """The spring's."""
+        return self.bristle_stiffness * z
+
+    def constant_sliding_friction(self) -> bool:
+        """Always."""
+        return True
+
+    def no_vector_form(self) -> str:
+        """For every exponent but 1."""
+        return "" if self.exponent == 1.0 else "Dahl friction has a vector form for exponent 1 alone"
+
+    def largest_deflection(self) -> float:
+        """Where the spring force is mu."""
+        return self.saturation
+
+    def largest_rate(self, speed: float) -> float:
+        """exponent*(speed/saturation)*u^(exponent - 1), largest at reversal (u = 2), or without bound below one."""
+        if 0.0 < self.exponent < 1.0:
+            return math.inf
+        return self.exponent * speed / self.saturation * 2.0 ** max(self.exponent - 1.0, 0.0)
+
+    def rate_independent(self) -> bool:
+        """Always."""
+        return True
+
+    def passive(self) -> bool:
+        """Always: what the spring does not store is lost."""
+        return True
+
+    def exact_path(self) -> bool:
+        """Always, in the plane for exponent 1."""
+        return True
+
+    def deflected(self, z: Any, path: Any) -> Any:
+        """u falls as exp(-path/saturation), for other exponents as a power of the path (physics of one direction)."""
+        length = abs(path)
+        if length == 0.0:
+            return z
+        end = (self.saturation / length) * path
+        if self.exponent == 1.0:
+            return end + (z - end) * math.exp(-length / self.saturation)
+        left = 1.0 - z.real / end.real
+        power = 1.0 - self.exponent
+        remains = math.fabs(left) ** power - power * length / self.saturation if left != 0.0 else 0.0
+        remains = remains ** (1.0 / power) if remains > 0.0 else 0.0
+        return end - end * math.copysign(remains, left)
+
+    def saturation_path(self, z: float, side: float) -> float:
+        """Finite for exponents below one."""
+        if self.exponent >= 1.0:
+            return math.inf
+        left = math.fabs(1.0 - side * z / self.saturation)
+        return left ** (1.0 - self.exponent) * self.saturation / (1.0 - self.exponent)

@@ -1,0 +1,55 @@
+"""Elasto-plastic friction (Dupont): bristles that only deflect until they begin to break away."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from frictionlab.laws.base import Positive
+from frictionlab.laws.stribeck_bristle import StribeckBristle, stribeck_curve
+
+Share = Annotated[Positive, Field(lt=1)]
+
+
+class ElastoPlastic(StribeckBristle):
+    """Elasto-plastic friction: LuGre bristles that follow the slip until they begin to break away, and unloading.
+
+    z' = v - alpha |v| z stiffness/g(|v|), friction = stiffness z + damping z' + viscosity v; alpha = 0 where
+    z.v <= 0 or |z| <= z_ba, 1 where |z| >= z_max = g/stiffness, in between (1 + sin(pi (|z| - (z_max + z_ba)/2)
+    /(z_max - z_ba)))/2, with z_ba = breakaway_ratio*mu_kinetic/stiffness. Below z_ba nothing drifts.
+
+    breakaway_ratio [-], > 0, < 1 (0.7). The other parameters are those of LuGre friction:
+    mu_kinetic [-], > 0; mu_static [-], >= mu_kinetic, the same where left out; stribeck_speed [scene velocity], > 0
+    (1); stribeck_exponent [-], > 0 (2); stiffness [1/scene length], presliding_length [scene length]
+    (mu_kinetic/stiffness) or contact_stiffness [K_1]; damping [1/scene velocity] or contact_damping [M omega_1],
+    >= 0 (0); viscosity [1/scene velocity], >= 0 (0).
+
+    Sources: Dupont, Armstrong & Hayward (2000), ACC; Dupont, Hayward, Armstrong & Altpeter (2002), IEEE TAC 47, 787.
+    In the plane alpha is that of |z|, switched off wherever z.v <= 0.
+    """
+
+    breakaway_ratio: Share = 0.7
+
+    def rate(self, v: Any, z: Any) -> Any:
+        """z' = v - alpha |v| z stiffness/g."""
+        if (z * v.conjugate()).real <= 0.0:
+            return v
+        speed = abs(v)
+        curve = stribeck_curve(self, speed) / self.bristle_stiffness
+        begins = self.breakaway_ratio * self.mu_kinetic / self.bristle_stiffness
+        return v - (broken_away(abs(z), begins, curve) * speed / curve) * z
+
+    def elastic_unloading(self) -> bool:
+        """Always."""
+        return True
+
+
+def broken_away(size: float, begins: float, ends: float) -> float:
+    """alpha: the share of slip that bristles deflected by ``size`` no longer follow, from 0 to 1."""
+    if size <= begins:
+        return 0.0
+    if size >= ends:
+        return 1.0
+    return 0.5 + 0.5 * math.sin(math.pi * (size - 0.5 * (begins + ends)) / (ends - begins))

@@ -1,0 +1,44 @@
+"""LuGre friction: damped bristles on a Stribeck curve."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.laws.stribeck_bristle import StribeckBristle, stribeck_curve
+
+
+class LuGre(StribeckBristle):
+    """LuGre friction: bristles that deflect like Dahl's towards a Stribeck curve g, damped, plus viscosity.
+
+    z' = v - |v| z stiffness/g(|v|), friction = stiffness z + damping z' + viscosity v,
+    g = mu_kinetic + (mu_static - mu_kinetic) exp(-(|v|/stribeck_speed)^stribeck_exponent).
+
+    mu_kinetic [-], > 0: coefficient in quick sliding, viscosity apart.
+    mu_static [-], >= mu_kinetic: at vanishing speed; mu_kinetic where left out.
+    stribeck_speed [scene velocity], > 0 (1); stribeck_exponent [-], > 0 (2).
+    stiffness [1/scene length], presliding_length [scene length] (mu_kinetic/stiffness) or contact_stiffness [K_1].
+    damping [1/scene velocity] or contact_damping [M omega_1], >= 0 (0).
+    viscosity [1/scene velocity], >= 0 (0).
+
+    Sources: Canudas de Wit, Olsson, Astrom & Lischinsky (1995), IEEE TAC 40, 419; in the plane Velenis, Tsiotras &
+    Canudas de Wit (2005); passivity: Barahanov & Ortega (2000), IEEE TAC 45, 1327.
+    """
+
+    def rate(self, v: Any, z: Any) -> Any:
+        """z' = v - |v| z stiffness/g."""
+        speed = abs(v)
+        return v - (self.bristle_stiffness * speed / stribeck_curve(self, speed)) * z
+
+    def exact_path(self) -> bool:
+        """Where g is the same at every speed."""
+        return self.peak == self.mu_kinetic
+
+    def deflected(self, z: Any, path: Any) -> Any:
+        """Towards mu_kinetic/stiffness as exp(-path stiffness/mu_kinetic), for constant g."""
+        length = abs(path)
+        if length == 0.0:
+            return z
+        saturation = self.mu_kinetic / self.bristle_stiffness
+        end = (saturation / length) * path
+        return end + (z - end) * math.exp(-length / saturation)

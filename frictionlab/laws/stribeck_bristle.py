@@ -1,0 +1,84 @@
+"""What LuGre and elasto-plastic friction share: damped bristles, a Stribeck curve and viscosity."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC
+from typing import Any, Self
+
+from pydantic import model_validator
+
+from frictionlab.laws.base import PerSpeed, Positive, Speed
+from frictionlab.laws.bristle import DampedLaw
+
+
+class StribeckBristle(DampedLaw, ABC):
+    """A bristle law whose steady friction is a Stribeck curve g (Bo & Pavelescu, 1982), plus viscosity.
+
+    g = mu_kinetic + (mu_static - mu_kinetic) exp(-(|v|/stribeck_speed)^stribeck_exponent),
+    friction = stiffness z + damping z' + viscosity v.
+
+    mu_kinetic [-], > 0: coefficient in quick sliding, viscosity apart.
+    mu_static [-], >= mu_kinetic: at vanishing speed; mu_kinetic where left out.
+    stribeck_speed [scene velocity], > 0 (1); stribeck_exponent [-], > 0 (2).
+    viscosity [1/scene velocity], >= 0 (0).
+    """
+
+    mu_kinetic: Positive
+    mu_static: Positive | None = None
+    stribeck_speed: Speed = 1.0
+    stribeck_exponent: Positive = 2.0
+    viscosity: PerSpeed = 0.0
+
+    @model_validator(mode="after")
+    def _falls(self) -> Self:
+        if self.mu_static is not None and self.mu_static < self.mu_kinetic:
+            raise ValueError(
+                f"mu_static: must be >= mu_kinetic = {self.mu_kinetic:g}, got {self.mu_static:g}"
+            )
+        return self
+
+    def _saturated(self) -> float:
+        return self.mu_kinetic
+
+    @property
+    def peak(self) -> float:
+        """The coefficient at vanishing speed [-]."""
+        return self.mu_kinetic if self.mu_static is None else self.mu_static
+
+    def sliding_friction(self, speed: float) -> float:
+        """The Stribeck curve, and viscosity."""
+        return stribeck_curve(self, speed) + self.viscosity * speed
+
+    def friction(self, v: Any, z: Any, dz: Any) -> Any:
+        """Spring, dashpot and viscosity."""
+        return self.bristle_stiffness * z + self.bristle_damping * dz + self.viscosity * v
+
+    def constant_sliding_friction(self) -> bool:
+        """Where nothing falls and nothing is viscous."""
+        return self.peak == self.mu_kinetic and self.viscosity == 0.0
+
+    def largest_deflection(self) -> float:
+        """Where the spring force is the coefficient at vanishing speed (in quick slip steady deflection is less)."""
+        return self.peak / self.bristle_stiffness
+
+    def largest_rate(self, speed: float) -> float:
+        """stiffness*speed/g."""
+        return self.bristle_stiffness * speed / stribeck_curve(self, speed)
+
+    def rate_independent(self) -> bool:
+        """Where g is the same at every speed, and neither bristles nor slip are damped."""
+        return self.constant_sliding_friction() and self.bristle_damping == 0.0
+
+    def passive(self) -> bool:
+        """viscosity >= damping*(mu_static/mu_kinetic - 1), the bound of Barahanov & Ortega (2000)."""
+        return self.viscosity >= self.bristle_damping * (self.peak / self.mu_kinetic - 1.0)
+
+
+def stribeck_curve(law: Any, speed: float) -> float:
+    """g: from mu_static at vanishing speed down to mu_kinetic."""
+    drop = law.peak - law.mu_kinetic
+    if drop == 0.0:
+        return law.mu_kinetic
+    left = math.exp(-((speed / law.stribeck_speed) ** law.stribeck_exponent))
+    return law.mu_kinetic + drop * left

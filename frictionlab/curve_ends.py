@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from frictionlab.bristle_hold import Hold, largest_turn
 from frictionlab.methods.base import Floats
 from frictionlab.shape import Measured, Unreadable
 
@@ -18,7 +19,8 @@ class Loads(NamedTuple):
     """What shakes the body of a curve, the same at every belt speed.
 
     along, across: phasors of the forces along and across the belt. static_limit: the largest friction force at
-    rest, where the law has one of its own; NaN otherwise. prescribed: the slip itself is given. Forces in K_1 L.
+    rest, where the law has one of its own; NaN otherwise. prescribed: the slip itself is given. hold: of a law
+    with bristles, what they do on a belt that creeps. Forces in K_1 L.
     """
 
     along: complex
@@ -26,6 +28,7 @@ class Loads(NamedTuple):
     across_slip: float
     static_limit: float
     prescribed: bool
+    hold: Hold | None = None
 
     @property
     def along_belt_only(self) -> bool:
@@ -35,8 +38,7 @@ class Loads(NamedTuple):
     @property
     def largest(self) -> float:
         """The largest size the turning load reaches within a period."""
-        squares = abs(self.along) ** 2 + abs(self.across) ** 2
-        return math.sqrt(0.5 * (squares + abs(self.along**2 + self.across**2)))
+        return largest_turn(self.along, self.across)
 
 
 class Rows(NamedTuple):
@@ -51,7 +53,6 @@ class Rows(NamedTuple):
     reversals: Floats
     stick_fraction: Floats
     friction_to_drive: Floats
-    presliding_ratio: Floats
 
     @property
     def steady(self) -> Floats:
@@ -99,11 +100,13 @@ def _bracketed(rows: Rows) -> Measured:
 def friction_at_rest(rows: Rows, loads: Loads) -> Measured:
     """The limit of mean friction as belt speed falls to zero. Raises Unreadable.
 
-    Zero by symmetry where the body moves on a belt at rest, or where a bristle can carry it back and forth. A
+    Zero by symmetry where the body moves on a belt at rest, or where bristles drift as it vibrates. A
     body that constant friction holds against its load creeps with the belt until the load's peak frees it: the
     spring then carries what the peak leaves, and the limit is mu (1 - load/friction).
     """
-    if loads.prescribed or np.isfinite(rows.presliding_ratio).any():
+    if loads.hold is not None:
+        return _on_bristles(rows, loads.hold, loads.prescribed)
+    if loads.prescribed:
         return Measured(0.0, 0.0)
     force = abs(loads.along) or abs(loads.across)
     if force == 0.0:
@@ -119,3 +122,21 @@ def friction_at_rest(rows: Rows, loads: Loads) -> Measured:
         "friction holds the body on a belt at rest: where the curve then starts is known for constant friction "
         "along the belt alone"
     )
+
+
+def _on_bristles(rows: Rows, hold: Hold, prescribed: bool) -> Measured:
+    """The friction of bristles held elastically, zero where they drift.
+
+    A body might also vibrate farther than its elastic bristles let it: the limit would then be zero. That friction
+    at the slowest belt is above the elastic limit, and how near, tells how sure it is.
+    """
+    limit = hold.friction()
+    if prescribed or limit == 0.0:
+        return Measured(limit, _ROUNDING * limit)
+    above = float(rows.mean_friction[0] - limit)
+    if above < -float(rows.error[0]):
+        raise Unreadable(
+            f"bristles can hold the body on a slow belt, where the curve would start at {limit:.6g}, and its first "
+            "point lies below"
+        )
+    return Measured(limit, min(limit, abs(above) + float(rows.error[0])))

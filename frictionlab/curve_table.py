@@ -10,8 +10,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS
+from frictionlab import registry
+from frictionlab.bristle_hold import Hold, Value, hold_of_a_body, hold_of_a_slip
+from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS, SCALED
 from frictionlab.curve_ends import Loads, Rows, end_of_reversal, friction_at_rest
+from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Floats
 from frictionlab.shape import Curve, Measured, Shape, Unreadable, reduction, shape_of
 
@@ -75,9 +78,33 @@ def _loads(given: Mapping[str, Any]) -> Loads:
 
     static = value("law.mu_static") * value("scene.normal_load")
     slips = [value(f"scene.{slip}.velocity_amplitude") for slip in ("slip", "transverse_slip")]
-    return Loads(
-        force("scene.drive"), force("scene.transverse.load"), slips[1], static or math.nan, any(slips)
+    forces = force("scene.drive"), force("scene.transverse.load")
+    hold = _hold(given, value, forces, any(slips))
+    return Loads(*forces, slips[1], static or math.nan, any(slips), hold)
+
+
+def _hold(
+    given: Mapping[str, Any], value: Value, forces: tuple[complex, complex], prescribed: bool
+) -> Hold | None:
+    """Of the bristles of a curve's law; None without any, and where one direction at a time leaves no memory."""
+    law = _bristle_law(given)
+    in_a_plane = value("scene.transverse.natural_frequency") or value(
+        "scene.transverse_slip.velocity_amplitude"
     )
+    if law is None or (in_a_plane and law.planar == "rotated"):
+        return None
+    return hold_of_a_slip(law, value) if prescribed else hold_of_a_body(law, value, *forces)
+
+
+def _bristle_law(given: Mapping[str, Any]) -> BristleLaw | None:
+    """The law as methods took it, made again from the inputs; None without bristles or without a registered name."""
+    law = registry.law_class(given["kind"]) if given.get("kind") in registry.law_names() else None
+    if law is None or not issubclass(law, BristleLaw):
+        return None
+    told = {name: given.get(f"law.{name}") for name in law.model_fields}
+    scaled = {name: given[f"{SCALED}{name}"] for name in told if f"{SCALED}{name}" in given}
+    values = {name: value for name, value in (told | scaled).items() if value is not None and value == value}
+    return law.model_validate(values).under_load(float(given["scene.normal_load"]))
 
 
 def _measures(rows: Rows, loads: Loads) -> dict[str, Any]:

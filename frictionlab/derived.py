@@ -9,6 +9,7 @@ import numpy as np
 
 from frictionlab.columns import SI
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Floats
 from frictionlab.scene import Scene
 from frictionlab.theory import friction_free_velocity
@@ -19,6 +20,7 @@ def derived_columns(scenes: Sequence[Scene], law: FrictionLaw, mean_friction: Fl
 
     ``presliding_ratio`` stays empty for laws without a presliding length.
     """
+    free = np.array([friction_free_velocity(scene) for scene in scenes])
     speed = np.array([scene.belt_speed for scene in scenes])
     sliding = np.array([law.sliding_friction(abs(scene.belt_speed)) for scene in scenes])
     limit = np.array(
@@ -26,9 +28,16 @@ def derived_columns(scenes: Sequence[Scene], law: FrictionLaw, mean_friction: Fl
     )
     return {
         "normalized_friction": _ratio(mean_friction, sliding * np.sign(speed)),
-        "velocity_ratio": _ratio(speed, np.array([friction_free_velocity(scene) for scene in scenes])),
+        "velocity_ratio": _ratio(speed, free),
         "friction_to_drive": _ratio(limit, np.array([force_amplitude(scene) for scene in scenes])),
+        "presliding_ratio": _ratio(_presliding(law) * np.array([scene.frequency for scene in scenes]), free),
     }
+
+
+def _presliding(law: FrictionLaw) -> float:
+    """The presliding length [scene length]; NaN for a law without a finite one."""
+    length = law.presliding() if isinstance(law, BristleLaw) else math.nan
+    return length if math.isfinite(length) else math.nan
 
 
 def si_scales(scene: Scene) -> dict[str, float]:

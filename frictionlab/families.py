@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from frictionlab.columns import belt_speed, given
+from frictionlab.columns import SCALED, belt_speed, given
 
 Setting = tuple[str, float | None]  # a swept input and its value; None where a law has no such parameter
 
@@ -56,6 +57,7 @@ def family_of(table: pd.DataFrame) -> Family | None:
     Along the axis: belt speed, or the swept input of most values where belt speed is not swept. Of the others
     the one of most values tells neighbours apart; each further one sets up panels.
     """
+    table = table.rename(columns=_names_in_si(table.columns))
     swept = sorted(_swept_inputs(table), key=lambda name: table[name].nunique())
     if not swept:
         return None
@@ -64,6 +66,12 @@ def family_of(table: pd.DataFrame) -> Family | None:
     others = [name for name in swept if name != abscissa]
     curves = _curves(table, abscissa, others)
     return Family(abscissa, others[-1] if others else None, curves)
+
+
+def _names_in_si(columns: Iterable[str]) -> dict[str, str]:
+    """Names that tell the parameters of a law given in SI units from nondimensional ones: they have a unit."""
+    scaled = [name.removeprefix(SCALED) for name in columns if name.startswith(SCALED)]
+    return {f"law.{name}": f"law.dimensional.{name}" for name in scaled}
 
 
 def _swept_inputs(table: pd.DataFrame) -> list[str]:

@@ -31,6 +31,7 @@ from typing import Any
 
 import llvmlite
 import numba
+import numba.core.typing.templates
 import numba.extending
 import numpy as np
 from numba.core.bytecode import FunctionIdentity
@@ -45,6 +46,7 @@ FunctionIdentity._unique_ids = itertools.count(secrets.randbits(60))
 
 _extending: Any = numba.extending  # its published types lag behind what it accepts
 _typeof: Any = numba.typeof
+_templates: Any = numba.core.typing.templates
 _COMMON: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 _INNER: dict[str, Any] = _COMMON | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
@@ -74,24 +76,43 @@ class CannotCompile(Exception):
 _one_at_a_time = threading.Lock()
 """Two threads that loaded one entry twice would hold two types of the same numbers, and compile for ever."""
 
-_law_of_numbers: dict[type, type[FrictionLaw]] = {}
+_law_of_numbers: dict[type, tuple[type[FrictionLaw], tuple[str, ...]]] = {}
 
 
 def _open_door(interface: Any, method: str) -> None:
     """Let kernels call this method of an interface on a law's numbers."""
 
     def resolve(self: Any, *_: Any) -> Any:
-        law = _law_of_numbers.get(self.instance_class)
-        return None if law is None else _compilable(getattr(law, method))
+        known = _law_of_numbers.get(self.instance_class)
+        return None if known is None else _compilable(getattr(known[0], method))
 
     resolve.__signature__ = inspect.signature(getattr(interface, method))  # type: ignore[attr-defined]
     for kind in (numba.types.NamedTuple, numba.types.NamedUniTuple):
-        _extending.overload_method(kind, method, strict=False)(resolve)
+        door = _templates.make_overload_method_template(kind, method, resolve, inline="never", strict=False)
+        _templates.infer_getattr(type(method, (_OfLaws, door), {}))
+    _extending.overload(resolve, strict=False)(resolve)
+
+
+class _OfLaws:
+    """Opens a door for the numbers of laws alone: other records may have a field of the method's name."""
+
+    def _resolve(self, typ: Any, attribute: str) -> Any:
+        known = typ.instance_class in _law_of_numbers
+        return super()._resolve(typ, attribute) if known else None  # type: ignore[misc]  # the other base has it
 
 
 for _method in ("sliding_friction", "sliding_vector", "static_friction"):
     _open_door(SlidingLaw, _method)
-for _method in ("rate", "friction", "deflected", "saturation_path", "yield_deflection"):
+for _method in (
+    "rate",
+    "friction",
+    "exact_path",
+    "deflected",
+    "saturation_path",
+    "largest_deflection",
+    "elastic_unloading",
+    "yield_deflection",
+):
     _open_door(BristleLaw, _method)
 
 
@@ -112,6 +133,34 @@ def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
     resolve.__signature__ = inspect.signature(on_the_line)  # type: ignore[attr-defined]
     _extending.overload(chosen, jit_options=_INNER | {"fastmath": True}, strict=False)(resolve)
     return chosen
+
+
+def by_law(of_sliding: Any, of_bristle: Any, of_path: Any = None) -> Any:
+    """A kernel function with several bodies of one signature, chosen by the law its first argument is.
+
+    of_path is for bristle laws on the line (by the type of the last argument) whose path is exact; the choice is made
+    when kernels are compiled, so that what a law does not need is never compiled for it.
+    """
+    bodies = [getattr(body, "py_func", body) for body in (of_sliding, of_bristle, of_path or of_bristle)]
+
+    def chosen(*arguments: Any) -> Any:
+        law = arguments[0]
+        return bodies[_which(type(law), law.structure(), isinstance(arguments[-1], complex))](*arguments)
+
+    def resolve(*types: Any) -> Any:
+        law, structure = _law_of_numbers[types[0].instance_class]
+        return bodies[_which(law, structure, isinstance(types[-1], numba.types.Complex))]
+
+    chosen.bodies = tuple(bodies)  # type: ignore[attr-defined]
+    resolve.__signature__ = inspect.signature(bodies[0])  # type: ignore[attr-defined]
+    _extending.overload(chosen, jit_options=_INNER, strict=False)(resolve)
+    return chosen
+
+
+def _which(law: type[FrictionLaw], structure: tuple[str, ...], planar: object) -> int:
+    if not issubclass(law, BristleLaw):
+        return 0
+    return 2 if "exact path" in structure and not planar else 1
 
 
 def _length_on_the_line(v: float) -> float:
@@ -146,9 +195,11 @@ def compiled(kernel: Any, law: FrictionLaw | None = None) -> Callable[..., Any]:
 
     Raises CannotCompile, when called, where numba cannot compile the law's methods.
     """
-    numbers = law.numbers() if law is not None else {}
+    numbers, structure = (law.numbers(), law.structure()) if law is not None else ({}, ())
     with _one_at_a_time:
-        entry, numbers_type = _entry(kernel, type(law) if law is not None else None, tuple(numbers))
+        entry, numbers_type = _entry(
+            kernel, type(law) if law is not None else None, tuple(numbers), structure
+        )
     if law is None:
         return entry
     return partial(_guarded, entry, type(law), numbers_type(**numbers))
@@ -176,13 +227,16 @@ def _guarded(entry: Callable[..., Any], law: type[FrictionLaw], *arguments: Any)
 
 
 @cache
-def _entry(kernel: Any, law: type[FrictionLaw] | None, fields: tuple[str, ...]) -> tuple[Any, Any]:
+def _entry(
+    kernel: Any, law: type[FrictionLaw] | None, fields: tuple[str, ...], structure: tuple[str, ...]
+) -> tuple[Any, Any]:
     """The compiled entry and the type of the law's numbers (None without a law)."""
     parameters = ", ".join(inspect.signature(kernel.py_func).parameters)
     source = (
         '"""A compiled kernel entry of frictionlab, named by its content; safe to delete."""\n'
         "from typing import NamedTuple\n"
         "from numba import njit\n\n\n"
+        f"# {', '.join(structure)}\n"
         "class Numbers(NamedTuple):\n    "
         + "\n    ".join(f"{name}: float" for name in fields or ("none",))
         + "\n\n\n"
@@ -192,7 +246,7 @@ def _entry(kernel: Any, law: type[FrictionLaw] | None, fields: tuple[str, ...]) 
     name = f"frictionlab_{kernel.py_func.__name__}_{_fingerprint(source, kernel, law)}"
     module = _load(name, source, kernel)
     if law is not None:
-        _law_of_numbers[module.Numbers] = law
+        _law_of_numbers[module.Numbers] = law, structure
     return module.entry, module.Numbers if law is not None else None
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Sequence
-from typing import Annotated, Any, get_args, get_origin
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 from frictionlab import registry
-from frictionlab.laws.base import FrictionLaw, Record
+from frictionlab.laws.base import Dimension, FrictionLaw, Record
 
 _LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 
@@ -43,8 +43,13 @@ def _text(kind: type) -> str:
 
 def _declared(law: type[FrictionLaw]) -> dict[str, str]:
     """The predicates a law declares for itself, each with the words of its docstring."""
-    predicates = [name for name, method in vars(FrictionLaw).items() if _returns_a_truth_value(method)]
-    own = [name for name in predicates if getattr(law, name) is not getattr(FrictionLaw, name)]
+    first: dict[str, Any] = {}
+    for kind in reversed(law.__mro__):
+        if issubclass(kind, FrictionLaw):
+            first = {
+                name: method for name, method in vars(kind).items() if _returns_a_truth_value(method)
+            } | first
+    own = [name for name, method in first.items() if getattr(law, name) is not method]
     return {name: inspect.getdoc(getattr(law, name)) or "" for name in own}
 
 
@@ -53,7 +58,29 @@ def _returns_a_truth_value(method: Any) -> bool:
 
 
 def _parameters(record: type[Record]) -> list[dict[str, Any]]:
-    return [_parameter(name, field, _text(record)) for name, field in record.model_fields.items()]
+    return [
+        _parameter(name, field, _text(_owner(record, name))) for name, field in record.model_fields.items()
+    ]
+
+
+def _owner(record: type[Record], name: str) -> type[Record]:
+    """The class that brings a parameter in, and whose docstring tells of it."""
+    return next(kind for kind in record.__mro__ if name in inspect.get_annotations(kind))
+
+
+def _unit(field: Any) -> str:
+    """In SI, such as N s/m; empty for what has no dimension."""
+    dimension = next((rule for rule in _rules(field) if isinstance(rule, Dimension)), None)
+    if dimension is None:
+        return ""
+    powers = [("N", dimension.force), ("s", dimension.time), ("m", dimension.length)]
+    above = " ".join(_power(unit, power) for unit, power in powers if power > 0) or "1"
+    below = [_power(unit, -power) for unit, power in powers if power < 0]
+    return "/".join([above, *below])
+
+
+def _power(unit: str, power: int) -> str:
+    return unit if power == 1 else f"{unit}^{power}"
 
 
 def _parameter(name: str, field: Any, text: str) -> dict[str, Any]:
@@ -67,7 +94,8 @@ def _parameter(name: str, field: Any, text: str) -> dict[str, Any]:
         "name": name,
         "required": field.is_required(),
         "default": None if field.is_required() else field.default,
-        "limits": " and ".join(limits),
+        "limits": " and ".join(limits) or " | ".join(_choices(field)),
+        "unit": _unit(field),
         "meaning": _meaning(name, text),
     }
 
@@ -77,6 +105,13 @@ def _rules(field: Any) -> list[Any]:
     inside = [kind.__metadata__ for kind in get_args(field.annotation) if get_origin(kind) is Annotated]
     rules = [rule for metadata in [field.metadata, *inside] for rule in metadata]
     return [each for rule in rules for each in (rule, *getattr(rule, "metadata", ()))]
+
+
+def _choices(field: Any) -> list[str]:
+    """The words a field that takes no number may hold."""
+    return (
+        [str(word) for word in get_args(field.annotation)] if get_origin(field.annotation) is Literal else []
+    )
 
 
 def _meaning(name: str, text: str) -> str:
@@ -102,5 +137,7 @@ def details(record: dict[str, Any]) -> str:
 
 
 def _parameter_line(given: dict[str, Any]) -> str:
-    default = "required" if given["required"] else f"default {given['default']}"
-    return f"{given['name']}: {', '.join(part for part in (given['limits'], default) if part)}"
+    default = "may be left out" if given["default"] is None else f"default {given['default']}"
+    unit = f"{given['unit']} in SI" if given["unit"] else ""
+    told = given["limits"], "required" if given["required"] else default, unit
+    return f"{given['name']}: {', '.join(part for part in told if part)}"

@@ -249,12 +249,14 @@ def _method(method: str | Method) -> Method:
 
 
 def _kind(law: FrictionLaw) -> str:
-    """The registered name of a law; its class's where it is not registered."""
+    """The registered name of a law, of several that of its file; its class's where it is not registered."""
+    names = []
     for name in registry.law_names():
         with suppress(registry.BrokenPlugin):  # another law's trouble
             if registry.law_class(name) is type(law):
-                return name
-    return type(law).__name__
+                names.append(name)
+    file = type(law).__module__.rpartition(".")[2].replace("_", "-")
+    return file if file in names else next(iter(names), type(law).__name__)
 
 
 def _law(law: FrictionLaw) -> FrictionLaw:

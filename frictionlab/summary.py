@@ -34,7 +34,8 @@ _HEAD = ("law", "method", "curve", "points", "mean_friction", "largest error", "
 def _curve_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
     """One line per curve: everything equal but belt speed."""
     told = [name for name in given(table.columns) if name != belt_speed(table.columns)]
-    told = [name for name in told if table[name].nunique(dropna=False) > 1]
+    within = table.groupby("law")[told].nunique(dropna=False).max()  # the label tells laws apart
+    told = [name for name in told if within[name] > 1]
     keys = ["law", "method", *told]
     groups = table.groupby(keys, sort=False, dropna=False)
     models = _models(table)

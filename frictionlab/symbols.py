@@ -35,6 +35,17 @@ _NAMES = {
     "law.mu_static": ("static friction coefficient", r"\mu_s"),
 }
 
+_LAWS = {  # words, symbol, unit in SI
+    "stiffness": ("bristle stiffness", r"\sigma_0", "1/m"),
+    "presliding_length": ("presliding length", r"\delta", "m"),
+    "contact_stiffness": ("contact stiffness", "K_t", "N/m"),
+    "damping": ("bristle damping", r"\sigma_1", "s/m"),
+    "contact_damping": ("contact damping", "C_t", "N s/m"),
+    "viscosity": ("viscosity", r"\sigma_2", "s/m"),
+    "stribeck_speed": ("Stribeck speed", "v_s", "m/s"),
+}
+_LAWS_IN_SI = "law.dimensional."
+
 _IN_SI = {  # words, symbol, unit; inputs without the "scene.dimensional." before them
     "velocity_amplitude_m_per_s": ("velocity amplitude", r"\hat V_1", "m/s"),
     "transverse_velocity_amplitude_m_per_s": ("transverse velocity amplitude", r"\hat V_2", "m/s"),
@@ -78,5 +89,9 @@ def word(name: str, longest: int = 80) -> str:
 
 
 def _said(name: str) -> tuple[str, ...]:
-    known: dict[str, tuple[str, ...]] = {**_IN_SI, **_NAMES}
+    if name.startswith(_LAWS_IN_SI):
+        parameter = name.removeprefix(_LAWS_IN_SI)
+        return _LAWS[parameter] if parameter in _LAWS else _said(f"law.{parameter}")
+    plain = {f"law.{parameter}": said[:2] for parameter, said in _LAWS.items()}
+    known: dict[str, tuple[str, ...]] = {**_IN_SI, **_NAMES, **plain}
     return known.get(name.removeprefix("scene.dimensional."), ())

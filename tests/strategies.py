@@ -10,6 +10,10 @@ from hypothesis import strategies as st
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.elasto_plastic import ElastoPlastic
+from frictionlab.laws.jenkins import Jenkins
+from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.scene import Drive, Load, Scene, Transverse
 from frictionlab.theory import friction_free_velocity
@@ -36,6 +40,56 @@ def stribeck_laws(draw: Callable[..., Any]) -> Stribeck:
     )
 
 
+planar_forms = st.sampled_from(["vectorial", "rotated", "per-axis"])
+
+
+@st.composite
+def compliant_laws(draw: Callable[..., Any], kind: type[Any], **parameters: st.SearchStrategy[Any]) -> Any:
+    """A bristle law of a stiffness over ten decades, told in any of the three ways, and in any planar form."""
+    own = {name: value for name in parameters if (value := draw(parameters[name])) is not None}
+    told = draw(st.sampled_from(["stiffness", "presliding_length", "contact_stiffness"]))
+    law = kind(**own, **{told: draw(sizes(1e-5, 1e5))}, planar=draw(planar_forms))
+    return law.under_load(draw(sizes(1e-2, 1e2)))
+
+
+@st.composite
+def stribeck_bristle_laws(draw: Callable[..., Any], kind: type[Any], **more: st.SearchStrategy[Any]) -> Any:
+    """Stribeck curves that fall or do not, with and without damping of the bristles and viscosity."""
+    kinetic = draw(sizes(1e-3, 1e3))
+    return draw(
+        compliant_laws(
+            kind,
+            mu_kinetic=st.just(kinetic),
+            mu_static=st.none() | st.just(kinetic) | st.floats(1.0, 3.0).map(lambda ratio: kinetic * ratio),
+            stribeck_speed=sizes(1e-2, 1e2),
+            stribeck_exponent=st.floats(0.5, 3.0),
+            damping=st.none() | st.just(0.0) | sizes(1e-4, 1e2),
+            viscosity=st.just(0.0) | sizes(1e-3, 1.0),
+            **more,
+        )
+    )
+
+
+BRISTLE_LAWS: dict[str, st.SearchStrategy[Any]] = {
+    "dahl": compliant_laws(
+        Dahl,
+        mu=sizes(1e-3, 1e3),
+        exponent=st.sampled_from([0.0, 0.5, 1.0, 1.5, 2.0, 3.0]) | st.floats(0.0, 3.0),
+    ),
+    "lugre": stribeck_bristle_laws(LuGre),
+    "elasto-plastic": stribeck_bristle_laws(
+        ElastoPlastic, breakaway_ratio=st.sampled_from([1e-6, 1 - 1e-6]) | st.floats(0.05, 0.95)
+    ),
+    "jenkins": compliant_laws(Jenkins, mu=sizes(1e-3, 1e3)),
+}
+"""Laws with a bristle deflection."""
+
+VECTOR_LAWS: dict[str, st.SearchStrategy[Any]] = {
+    name: laws.map(lambda law: law.model_copy(update={"planar": "vectorial"}))
+    for name, laws in (BRISTLE_LAWS | {"dahl": compliant_laws(Dahl, mu=sizes(1e-3, 1e3))}).items()
+}
+"""The same in vectorial form, of the parameters that have one."""
+
 LAWS: dict[str, st.SearchStrategy[FrictionLaw]] = {
     "coulomb": st.builds(
         lambda mu, ratio: Coulomb(mu=mu, mu_static=None if ratio is None else mu * ratio),
@@ -43,12 +97,17 @@ LAWS: dict[str, st.SearchStrategy[FrictionLaw]] = {
         st.none() | st.floats(1.0, 3.0),
     ),
     "stribeck": stribeck_laws(),
+    **BRISTLE_LAWS,
 }
 """Every law of ours with any parameters it allows; a law that is not here fails its conformance tests."""
 
 EXAMPLES: dict[str, FrictionLaw] = {
     "coulomb": Coulomb(mu=1.0, mu_static=1.0),
     "stribeck": Stribeck(mu_kinetic=1.0, mu_static=1.0),
+    "dahl": Dahl(mu=1.0, stiffness=1.0),
+    "lugre": LuGre(mu_kinetic=1.0, mu_static=1.0, stiffness=1.0, damping=1.0),
+    "elasto-plastic": ElastoPlastic(mu_kinetic=1.0, mu_static=1.0, stiffness=1.0, damping=1.0),
+    "jenkins": Jenkins(mu=1.0, stiffness=1.0),
 }
 """One of each, every number in place."""
 

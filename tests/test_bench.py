@@ -17,10 +17,13 @@ from frictionlab.bench import chart, timing
 from frictionlab.bench.measure import Measured, Row, chosen
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.elasto_plastic import ElastoPlastic
+from frictionlab.laws.lugre import LuGre
 from frictionlab.methods.base import Answers
 from frictionlab.methods.exact import Exact
 from frictionlab.peers import base
 from frictionlab.peers.listing import PEERS
+from frictionlab.peers.scipy_bristle import ScipyBristle
 from frictionlab.quantities import Finite
 from frictionlab.scene import Drive, Load, Scene, Transverse
 from frictionlab.study import StudyError
@@ -179,7 +182,9 @@ def test_a_peer_that_is_not_installed_keeps_its_place(monkeypatch: pytest.Monkey
 
     for name in PEERS:
         assert [row.counts["refused"] for row in rows_of(found, name)] == [4, 4]
-    assert bench.summary([found]).count("not installed: pip install frictionlab[peers]") == len(PEERS)
+    told = bench.summary([found])
+    assert all(told.count(f"not installed: {peer.remedy}") >= 1 for peer in PEERS.values())
+    assert told.count("not installed: pip install") == len(PEERS)
     assert {text.get_text().partition(" ")[0] for text in chart.chart(found).legends[0].get_texts()} == {
         "off",
         *PEERS,
@@ -287,7 +292,12 @@ MISTAKES = [
     ("repeats: 2", "repeats: 0", "list.yaml:3:", "repeats: must be >= 1, got 0"),
     ("repeats: 2", "seconds: -1", "list.yaml:3:", "seconds: must be > 0, got -1"),
     ("repeats: 2", "repeat: 2", "list.yaml:3:", "repeat: unknown key"),
-    ("methods:", "peers:", "list.yaml:11:", "must be one of scipy, scipy_events, heyoka"),
+    (
+        "methods:",
+        "peers:",
+        "list.yaml:11:",
+        "must be one of scipy, scipy_events, scipy_bristle, heyoka, numbalsoda",
+    ),
     ("    laws:", "    law:", "list.yaml:7:", "scenes[0].law: unknown key"),
 ]
 
@@ -421,10 +431,67 @@ def test_a_peer_that_gives_up_keeps_its_place(monkeypatch: pytest.MonkeyPatch) -
     assert (row.counts["failed"], row.reason) == (4, "gave up after 100 calls of the equations of motion")
 
 
-@pytest.mark.parametrize("name", PEERS)
+@pytest.mark.parametrize("name", ["scipy", "scipy_events", "heyoka"])
 def test_a_peer_refuses_what_it_is_not_set_up_for(name: str) -> None:
     peer = PEERS[name]()
     pytest.importorskip(peer.package)
 
     assert "Coulomb" in (peer.refusal(SLIDING, Coulomb(mu=0.4, mu_static=0.5)) or "")
+    assert "Coulomb" in (peer.refusal(SLIDING, BRISTLES) or "")
     assert (peer.refusal(PLANAR, LAW) is None) == (name != "scipy_events")
+
+
+# --- peers of bristle laws ----------------------------------------------------------------------------------------
+
+BRISTLES = LuGre(mu_kinetic=0.4, presliding_length=5e-2, damping=4e-4)
+BRISTLES_MEAN = 0.23164774756257994  # W4a of bristle_w4.csv
+IN_THE_PLANE = ElastoPlastic(mu_kinetic=0.4, presliding_length=1.0)
+MEAN_IN_THE_PLANE = 0.012659382313928562  # bristle_more.csv
+
+
+@pytest.mark.parametrize("name", ["scipy_bristle", "numbalsoda"])
+def test_a_peer_of_bristle_laws_finds_the_mean_friction(name: str) -> None:
+    peer = PEERS[name]()
+    pytest.importorskip(peer.package)
+    planar = PLANAR.model_copy(update={"belt_speed": 5.0})
+
+    assert peer.solve([SLIDING.at(27.0)], BRISTLES, 1e-6) == pytest.approx([BRISTLES_MEAN], abs=1e-5)
+    assert peer.solve([planar], IN_THE_PLANE, 1e-5) == pytest.approx([MEAN_IN_THE_PLANE], abs=1e-4)
+
+
+@pytest.mark.parametrize("solver", ["Radau", "BDF"])
+def test_other_stiff_solvers_find_the_mean_friction(solver: Any) -> None:
+    pytest.importorskip("scipy")
+
+    means = ScipyBristle(solver=solver).solve([SLIDING.at(27.0)], BRISTLES, 1e-4)
+
+    assert means == pytest.approx([BRISTLES_MEAN], abs=1e-3)
+
+
+@pytest.mark.parametrize("name", ["scipy_bristle", "numbalsoda"])
+def test_a_peer_of_bristle_laws_refuses_what_it_is_not_set_up_for(name: str) -> None:
+    peer = PEERS[name]()
+    pytest.importorskip(peer.package)
+
+    assert peer.refusal(SLIDING, LAW) == f"{name} is set up for bristle laws"
+    assert "driven scenes" in (peer.refusal(SLIDING.model_copy(update={"drive": None}), BRISTLES) or "")
+    assert peer.refusal(SLIDING, BRISTLES) is None
+
+
+def test_a_peer_of_bristle_laws_that_gives_up_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("scipy")
+    monkeypatch.setattr("frictionlab.peers.scipy_bristle.MOST_STEPS", 3)
+
+    with pytest.raises(ArithmeticError, match="odeint: Excess work"):
+        ScipyBristle().solve([SLIDING], BRISTLES, 1e-6)
+
+
+def test_the_bristle_set_is_a_list_without_mistakes_and_its_values_are_at_its_belt_speeds() -> None:
+    bristles = bench.load_bench(STANDARD.parent / "bristle.yaml")
+
+    assert [work.name for work in bristles.workloads][:4] == ["W4a", "W4b", "W4c", "W4d"]
+    for work in bristles.workloads:
+        speeds = np.array(work.speeds())
+        for trusted in work.references:
+            assert all(np.isclose(speeds, speed, rtol=1e-13, atol=0.0).any() for speed in trusted.values)
+            assert len(trusted.values) >= 0.8 * len(speeds)

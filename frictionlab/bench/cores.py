@@ -8,6 +8,7 @@ import numpy as np
 
 from frictionlab.kernel import compiled
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods import coulomb_curve, curve
 from frictionlab.methods.base import Method
 from frictionlab.methods.closer import Closer
@@ -21,9 +22,9 @@ def core(
 ) -> Callable[[], object] | None:
     """The kernel of a method on a curve of moving belts; None for a method that always reads its orbits too."""
     moving = all(scene.belt_speed > 0.0 for scene in scenes) and scenes[0].degrees_of_freedom > 0
-    if not moving or not isinstance(law, SlidingLaw) or scenes[0].undriven:
+    if not moving or scenes[0].undriven:
         return None
-    if isinstance(method, Exact):
+    if isinstance(method, Exact) and isinstance(law, SlidingLaw):
         return _exact(scenes, law)
     return _shooting(scenes, law, tolerance) if isinstance(method, Shooting) else None
 
@@ -35,9 +36,10 @@ def _exact(scenes: Sequence[Scene], law: SlidingLaw) -> Callable[[], object]:
     return lambda: solve(mass, friction, speeds, rows)
 
 
-def _shooting(scenes: Sequence[Scene], law: SlidingLaw, tolerance: float) -> Callable[[], object] | None:
+def _shooting(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Callable[[], object] | None:
+    law = law.under_load(scenes[0].mass().normal_load)
     closer = Closer(scenes[0], law, tolerance)
-    if not closer.goal.contracts:
+    if not (closer.goal.contracts or (isinstance(law, BristleLaw) and closer.falls_slowly)):
         return None  # other starts are part of the answer
     speeds, no_guess = np.array([scene.belt_speed for scene in scenes]), np.empty((0, 0))
     solve = compiled(curve.solve_curve, law)

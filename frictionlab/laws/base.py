@@ -48,12 +48,24 @@ class FrictionLaw(Record, ABC):
         """Whether ``sliding_friction`` is the same number at every speed."""
         return False
 
+    def steepest_fall(self) -> float:
+        """Largest rate at which sliding friction falls as speed grows [1/scene velocity], rest included.
+
+        Slower than the damping can make up for, no law without memory has more than one steady state. Infinite where
+        it may jump.
+        """
+        return 0.0 if self.constant_sliding_friction() else math.inf
+
     def monotone(self) -> bool:
         """Whether friction never falls as slip grows: (T(v) - T(w)).(v - w) >= 0, rest included.
 
         With constant normal load and damping the steady state is then unique (Leine & van de Wouw, 2008).
         """
         return False
+
+    def structure(self) -> tuple[str, ...]:
+        """What about the parameters decides which kernels are compiled, in words."""
+        return ()
 
     def numbers(self) -> dict[str, float]:
         """The parameters as the kernels see them: every number, and every property.
@@ -77,10 +89,7 @@ class SlidingLaw(FrictionLaw, ABC):
         return self.sliding_friction(0.0)
 
     def steepest_fall(self) -> float:
-        """Largest rate at which sliding friction falls as speed grows [1/scene velocity], rest included.
-
-        Slower than the damping can make up for, the steady state stays unique. Infinite where it may jump.
-        """
+        """None where friction is monotone."""
         return 0.0 if self.monotone() else math.inf
 
 

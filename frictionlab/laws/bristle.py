@@ -52,6 +52,10 @@ class BristleLaw(FrictionLaw, ABC):
         """``planar`` as kernels know it."""
         return {"vectorial": VECTORIAL, "rotated": ROTATED, "per-axis": PER_AXIS}[self.planar]
 
+    def structure(self) -> tuple[str, ...]:
+        """Whether the path is exact."""
+        return ("exact path",) if self.exact_path() else ()
+
     def no_vector_form(self) -> str:
         """Why ``planar: vectorial`` has no meaning for this law, as a sentence; empty where it has one."""
         return ""
@@ -59,6 +63,14 @@ class BristleLaw(FrictionLaw, ABC):
     def largest_deflection(self) -> float:
         """Radius of the set of deflections [scene length] that no slip history leaves once inside."""
         return math.inf
+
+    def presliding(self) -> float:
+        """The presliding length [scene length]: deflection that steady sliding in quick slip tends to."""
+        return self.largest_deflection()
+
+    def elastic_deflection(self) -> float:
+        """Deflection [scene length] up to which z moves with the slip whatever its direction: nothing drifts."""
+        return 0.0
 
     def largest_rate(self, speed: float) -> float:
         """Largest modulus of d(rate)/dz [1/scene time] at this slip speed: what explicit steps are limited by."""
@@ -71,6 +83,13 @@ class BristleLaw(FrictionLaw, ABC):
     def passive(self) -> bool:
         """Whether the work of friction from any slip history is at least minus what the bristle has stored."""
         return False
+
+    def damps_across(self, speed: float) -> bool:
+        """Whether friction never feeds a motion across the slip, at slip speeds up to this.
+
+        Spring and bristle across then only lose energy, and with no load across the belt x2 dies out.
+        """
+        return self.planar != "rotated"
 
     def exact_path(self) -> bool:
         """Whether ``deflected`` is exact for slip along a straight line at whatever speed."""
@@ -136,10 +155,11 @@ class CompliantLaw(BristleLaw, ABC):
     def _one_stiffness(self) -> Self:
         names = "stiffness", "presliding_length", "contact_stiffness"
         given = [name for name in names if getattr(self, name) is not None]
-        if len(given) != 1:
-            got = ", ".join(given) or "none of them"
+        if not given:
+            raise ValueError("stiffness: required, or presliding_length or contact_stiffness instead")
+        if len(given) > 1:
             raise ValueError(
-                f"give exactly one of stiffness, presliding_length and contact_stiffness, got {got}"
+                "; ".join(f"{name}: leave it out where {given[0]} is given" for name in given[1:])
             )
         return self
 
@@ -157,6 +177,10 @@ class CompliantLaw(BristleLaw, ABC):
         raise ValueError(
             "contact_stiffness: is per normal load only under a load; call under_load(normal_load)"
         )
+
+    def presliding(self) -> float:
+        """Friction coefficient in slow sliding over stiffness."""
+        return self._saturated() / self.bristle_stiffness
 
     def under_load(self, normal_load: float) -> Self:
         """The same law per unit of this normal load [scene force], without what is given as the contact's."""
@@ -179,7 +203,7 @@ class DampedLaw(CompliantLaw, ABC):
     @model_validator(mode="after")
     def _one_damping(self) -> Self:
         if self.damping is not None and self.contact_damping is not None:
-            raise ValueError("give only one of damping and contact_damping")
+            raise ValueError("contact_damping: leave it out where damping is given")
         return self
 
     @property

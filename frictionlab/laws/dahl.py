@@ -59,11 +59,15 @@ class Dahl(CompliantLaw):
         """Where the spring force is mu."""
         return self.saturation
 
+    def elastic_deflection(self) -> float:
+        """That of steady sliding for exponent 0, else none."""
+        return self.saturation if self.exponent == 0.0 else 0.0
+
     def largest_rate(self, speed: float) -> float:
         """exponent*(speed/saturation)*u^(exponent - 1), largest at reversal (u = 2), or without bound below one."""
-        if 0.0 < self.exponent < 1.0:
+        if self.exponent < 1.0:
             return math.inf
-        return self.exponent * speed / self.saturation * 2.0 ** max(self.exponent - 1.0, 0.0)
+        return self.exponent * speed / self.saturation * 2.0 ** (self.exponent - 1.0)
 
     def rate_independent(self) -> bool:
         """Always."""
@@ -85,11 +89,13 @@ class Dahl(CompliantLaw):
         end = (self.saturation / length) * path
         if self.exponent == 1.0:
             return end + (z - end) * math.exp(-length / self.saturation)
-        left = 1.0 - z.real / end.real
-        power = 1.0 - self.exponent
-        remains = math.fabs(left) ** power - power * length / self.saturation if left != 0.0 else 0.0
-        remains = remains ** (1.0 / power) if remains > 0.0 else 0.0
-        return end - end * math.copysign(remains, left)
+        left, steeper = 1.0 - z.real / end.real, self.exponent - 1.0
+        if left == 0.0:
+            return end
+        gone = steeper * (length / self.saturation) * math.fabs(left) ** steeper
+        if gone <= -1.0:  # of an exponent below one: the limit was met on the way
+            return end
+        return end - end * (left * math.exp(-math.log1p(gone) / steeper))  # log1p: for exponents near 1
 
     def saturation_path(self, z: float, side: float) -> float:
         """Finite for exponents below one."""

@@ -41,6 +41,21 @@ class ElastoPlastic(StribeckBristle):
         begins = self.breakaway_ratio * self.mu_kinetic / self.bristle_stiffness
         return v - (broken_away(abs(z), begins, curve) * speed / curve) * z
 
+    def largest_rate(self, speed: float) -> float:
+        """speed stiffness/g times the largest d(alpha |z|)/d|z|, which is steepest half way through breaking away.
+
+        With t = pi (|z| - middle)/(z_max - z_ba): (1 + sin t + t cos t)/2 + pi middle/(2 (z_max - z_ba)) cos t, its
+        first part never above 1.2.
+        """
+        curve = stribeck_curve(self, speed)
+        begins = self.breakaway_ratio * self.mu_kinetic / curve
+        steepest = 1.2 + 0.25 * math.pi * (1.0 + begins) / (1.0 - begins)
+        return steepest * self.bristle_stiffness * speed / curve
+
+    def elastic_deflection(self) -> float:
+        """z_ba."""
+        return self.breakaway_ratio * self.mu_kinetic / self.bristle_stiffness
+
     def elastic_unloading(self) -> bool:
         """Always."""
         return True

@@ -95,6 +95,10 @@ class Jenkins(CompliantLaw):
         """Up to the reach."""
         return self.reach - side * z
 
+    def elastic_deflection(self) -> float:
+        """The reach."""
+        return self.reach
+
     def elastic_unloading(self) -> bool:
         """Always."""
         return True

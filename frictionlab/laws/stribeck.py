@@ -8,6 +8,7 @@ from typing import Any, Literal
 from pydantic import model_validator
 
 from frictionlab.laws.base import NonNegative, PerSpeed, Positive, SlidingLaw, Speed
+from frictionlab.laws.fall import fallen, steepest_fall
 
 EXPONENTIAL, RATIONAL, CUBIC = 0.0, 1.0, 2.0
 
@@ -68,7 +69,7 @@ class Stribeck(SlidingLaw):
         if self.family == CUBIC:
             left = 1.0 - 0.5 * u * (3.0 - u * u)
         elif self.family == EXPONENTIAL:
-            left = math.exp(-(u**self.power))
+            left = fallen(u, self.power)
         else:
             left = 1.0 / (1.0 + u**self.power)
         return self.mu_kinetic + (self.mu_static - self.mu_kinetic) * left + self.viscosity * speed
@@ -94,7 +95,4 @@ class Stribeck(SlidingLaw):
             return 1.5
         if self.family == RATIONAL:
             return 1.0 if self.power == 1.0 else 0.375 * math.sqrt(3.0)
-        if self.power < 1.0:
-            return math.inf
-        bend = 1.0 - 1.0 / self.power  # u^power at the point of inflection
-        return float(self.power * bend**bend * math.exp(-bend))
+        return steepest_fall(self.power)

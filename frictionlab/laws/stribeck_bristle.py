@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from abc import ABC
 from typing import Any, Self
 
@@ -10,6 +9,7 @@ from pydantic import model_validator
 
 from frictionlab.laws.base import PerSpeed, Positive, Speed
 from frictionlab.laws.bristle import DampedLaw
+from frictionlab.laws.fall import fallen, steepest_fall
 
 
 class StribeckBristle(DampedLaw, ABC):
@@ -20,8 +20,9 @@ class StribeckBristle(DampedLaw, ABC):
 
     mu_kinetic [-], > 0: coefficient in quick sliding, viscosity apart.
     mu_static [-], >= mu_kinetic: at vanishing speed; mu_kinetic where left out.
-    stribeck_speed [scene velocity], > 0 (1); stribeck_exponent [-], > 0 (2).
-    viscosity [1/scene velocity], >= 0 (0).
+    stribeck_speed [scene velocity], > 0: speed of the fall.
+    stribeck_exponent [-], > 0: 2 makes the fall a Gaussian.
+    viscosity [1/scene velocity], >= 0: adds viscosity*speed to the coefficient.
     """
 
     mu_kinetic: Positive
@@ -66,6 +67,18 @@ class StribeckBristle(DampedLaw, ABC):
         """stiffness*speed/g."""
         return self.bristle_stiffness * speed / stribeck_curve(self, speed)
 
+    def steepest_fall(self) -> float:
+        """At the inflection of the curve, less viscosity."""
+        drop = self.peak - self.mu_kinetic
+        if drop == 0.0:
+            return 0.0
+        return max(0.0, drop / self.stribeck_speed * steepest_fall(self.stribeck_exponent) - self.viscosity)
+
+    def damps_across(self, speed: float) -> bool:
+        """damping^2 speed/mu_kinetic <= 4 (damping + viscosity)."""
+        lost = self.bristle_damping + self.viscosity
+        return super().damps_across(speed) and self.bristle_damping**2 * speed / self.mu_kinetic <= 4.0 * lost
+
     def rate_independent(self) -> bool:
         """Where g is the same at every speed, and neither bristles nor slip are damped."""
         return self.constant_sliding_friction() and self.bristle_damping == 0.0
@@ -80,5 +93,4 @@ def stribeck_curve(law: Any, speed: float) -> float:
     drop = law.peak - law.mu_kinetic
     if drop == 0.0:
         return law.mu_kinetic
-    left = math.exp(-((speed / law.stribeck_speed) ** law.stribeck_exponent))
-    return law.mu_kinetic + drop * left
+    return law.mu_kinetic + drop * fallen(speed / law.stribeck_speed, law.stribeck_exponent)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.methods.base import Floats
 from frictionlab.methods.closer import Closer, Wandered
 from frictionlab.methods.curve import Curve
@@ -69,6 +70,11 @@ def starts(scene: Scene, limit: float) -> list[Initial | None]:
     return [*given, None, Initial(velocity=scene.belt_speed), flung, ahead]
 
 
+def friction_at_rest(law: FrictionLaw) -> float:
+    """The coefficient that slip must overcome to begin, slowly."""
+    return law.static_friction() if isinstance(law, SlidingLaw) else law.sliding_friction(0.0)
+
+
 def force_swing(scene: Scene) -> float:
     """The deflection that the load along the belt would hold, or shakes a free mass through, if that is larger."""
     mass = scene.mass()
@@ -79,7 +85,7 @@ def attractors(closer: Closer, scene: Scene, candidate: Attractor | None) -> tup
     """Where each of the starts leads; and kernel time [s]. The candidate is an orbit already known."""
     known = [candidate] if candidate is not None else []
     reached, seconds = [], 0.0
-    for start in starts(scene, closer.mass.normal_load * closer.law.static_friction()):
+    for start in starts(scene, closer.mass.normal_load * friction_at_rest(closer.law)):
         way = closer.wandered(scene.belt_speed, start, _patience(candidate))
         seconds += way.seconds
         found = next((orbit for orbit in known if _arrived(way, orbit)), None)

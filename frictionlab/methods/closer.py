@@ -2,32 +2,49 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from frictionlab.kernel import compiled, timed
-from frictionlab.laws.base import SlidingLaw
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Floats
 from frictionlab.methods.closing import Goal
 from frictionlab.methods.curve import Curve, answer_curve, settle, wander
 from frictionlab.scene import Body, Initial, Scene, in_the_plane, on_the_line
 
 
-def contracts(scene: Scene, law: SlidingLaw) -> bool:
+def contracts(scene: Scene, law: FrictionLaw) -> bool:
     """Whether no two motions ever move apart, by friction's fall being slower than damping can make up for.
 
-    The steady state is then unique and attracts every start (Leine & van de Wouw, 2008). Where nothing pushes
-    across the belt the motion across dies out under every isotropic law, and only damping along it counts.
+    The steady state of a law without memory is then unique and attracts every start (Leine & van de Wouw, 2008).
+    Where nothing pushes across the belt the motion across dies out under every isotropic law, and only damping along
+    it counts. No theorem covers laws with memory.
     """
-    if law.monotone():
-        return True
+    return isinstance(law, SlidingLaw) and (law.monotone() or falls_slowly(scene, law))
+
+
+def falls_slowly(scene: Scene, law: FrictionLaw) -> bool:
+    """Whether damping makes up for the steepest fall of steady sliding friction."""
     mass = scene.mass()
     along, across = mass.damping, mass.transverse_damping
-    return mass.normal_load * law.steepest_fall() < (
-        along if scene.load_along_belt_only else min(along, across)
-    )
+    damping = along if scene.load_along_belt_only else min(along, across)
+    return law.steepest_fall() == 0.0 or mass.normal_load * law.steepest_fall() < damping
+
+
+def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
+    """Whether the motion is on a line: nothing pushes across the belt, and what moves across it dies out.
+
+    A bristle law damps motion across the slip up to some speed: here the largest that the loads could drive.
+    """
+    if scene.degrees_of_freedom == 1 or not isinstance(law, BristleLaw):
+        return scene.load_along_belt_only
+    mass = scene.mass()
+    swing = abs(mass.force) / mass.damping if mass.damping > 0.0 else math.inf  # at resonance
+    return scene.load_along_belt_only and law.damps_across(abs(scene.belt_speed) + swing)
 
 
 class Wandered(NamedTuple):
@@ -45,15 +62,18 @@ class Closer:
     tolerance: on the mean friction.
     """
 
-    def __init__(self, scene: Scene, law: SlidingLaw, tolerance: float) -> None:
+    def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float) -> None:
         self.mass, self.law = scene.mass(), law
         self.goal = Goal(tolerance, contracts(scene, law))
+        self.falls_slowly = falls_slowly(scene, law)
         self.body: Body
         self.like: complex  # a number of the kind of its positions
-        if scene.load_along_belt_only:
+        if along_the_belt(scene, law):
             self.body, self.like = on_the_line(self.mass), 0.0
         else:
             self.body, self.like = in_the_plane(self.mass), 0j
+        directions = 2 if isinstance(self.like, complex) else 1
+        self.size = (3 if isinstance(law, BristleLaw) else 2) * directions  # of a state
 
     def closed(
         self, scenes: Sequence[Scene], state: Floats | None = None, periods: float = 1.0
@@ -75,7 +95,7 @@ class Closer:
         """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
         reference = self.body.reference_cosine, self.body.frequency * self.body.reference_sine
         at = reference if start is None else self._at(start)
-        means, states = np.empty(most), np.empty((most + 1, 4 if isinstance(self.like, complex) else 2))
+        means, states = np.empty(most), np.empty((most + 1, self.size))
         accuracy = 1e-9 * self.mass.normal_load
         arguments = self.body, belt_speed, at, accuracy, means, states
         (period, count), seconds = timed(compiled(wander, self.law), *arguments)

@@ -1,8 +1,7 @@
-"""Closing an orbit: the fixed point of a period map, and how far from it the answer is.
+"""Closing an orbit of a law without memory: the fixed point of a period map, and how far from it the answer is.
 
-States are vectors z whose Euclidean norm is that of energy: sqrt(stiffness)*y, u along x1, then along x2. In it
-no two orbits of a monotone law move apart (Leine & van de Wouw, 2008), which makes a Picard step always safe and
-turns a distance of states into a bound on the mean friction.
+No two orbits of a monotone law move apart in the norm of energy (Leine & van de Wouw, 2008), which makes a Picard
+step always safe and turns a distance of states into a bound on the mean friction.
 """
 
 from __future__ import annotations
@@ -12,8 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.kernel import by_dimension, inner
-from frictionlab.methods.sliding_map import Mapped, period_map, periods_at_rest, span
+from frictionlab.kernel import by_law, inner
+from frictionlab.methods.period import mapped, rest_of, unpack
+from frictionlab.methods.sliding_map import Mapped, span
 from frictionlab.methods.track import track_of
 from frictionlab.scene import Body
 
@@ -24,57 +24,8 @@ FINER = 16.0
 """How much finer the last map is; of order eight, its own error is then a small part of what it measures."""
 
 
-def _pack_line(body: Body, z: Any, y: float, u: float) -> None:
-    z[0], z[1] = math.sqrt(body.stiffness_mean) * y, u
-
-
-def _pack_plane(body: Body, z: Any, y: complex, u: complex) -> None:
-    z[0], z[1] = math.sqrt(body.stiffness_mean + body.stiffness_split) * y.real, u.real
-    z[2], z[3] = math.sqrt(body.stiffness_mean - body.stiffness_split) * y.imag, u.imag
-
-
-pack = by_dimension(_pack_line, _pack_plane)
-
-
-def _unpack_line(body: Body, z: Any, like: float) -> Any:
-    return z[0] / math.sqrt(body.stiffness_mean), z[1]
-
-
-def _unpack_plane(body: Body, z: Any, like: complex) -> Any:
-    y = complex(
-        z[0] / math.sqrt(body.stiffness_mean + body.stiffness_split),
-        z[2] / math.sqrt(body.stiffness_mean - body.stiffness_split),
-    )
-    return y, complex(z[1], z[3])
-
-
-unpack = by_dimension(_unpack_line, _unpack_plane)
-
-
-def _size_line(like: float) -> int:
-    return 2
-
-
-def _size_plane(like: complex) -> int:
-    return 4
-
-
-size_of = by_dimension(_size_line, _size_plane)
-
-
 @inner
-def mapped(
-    law: Any, body: Body, belt_speed: float, z: Any, residual: Any, accuracy: float, like: Any
-) -> Mapped:
-    """One period map from z; leaves image - z in residual."""
-    y, u = unpack(body, z, like)
-    image = period_map(law, body, belt_speed, y, u, accuracy, track_of(0))
-    pack(body, residual, image.y - y, image.u - u)
-    return image
-
-
-@inner
-def _norm(z: Any) -> float:
+def norm(z: Any) -> float:
     total = 0.0
     for value in z:
         total += value * value
@@ -82,7 +33,7 @@ def _norm(z: Any) -> float:
 
 
 @inner
-def _times(matrix: Any, z: Any, out: Any) -> None:
+def times(matrix: Any, z: Any, out: Any) -> None:
     for row in range(z.size):
         total = 0.0
         for column in range(z.size):
@@ -149,13 +100,28 @@ def free_inverse(body: Body, rubbing: float, inverse: Any) -> None:
     jacobian = np.zeros((n, n))
     damping, stiffness = body.damping_mean + body.damping_split, body.stiffness_mean + body.stiffness_split
     _free_block(damping + rubbing, stiffness, period, jacobian, 0)
-    if n == 4:
+    if n >= 4:
         damping, stiffness = (
             body.damping_mean - body.damping_split,
             body.stiffness_mean - body.stiffness_split,
         )
         _free_block(damping + rubbing, stiffness, period, jacobian, 2)
+    for row in range(4 if n >= 4 else 2, n):
+        jacobian[row, row] = -1.0  # a bristle remembers nothing of a period ago
     inverted(jacobian, inverse)
+
+
+def _shift_without_memory(law: Any, n: int) -> float:
+    return 1e-5
+
+
+def _shift_with_a_bristle(law: Any, n: int) -> float:
+    """Bristles never stick: their maps bend less, and cost more."""
+    return 1e-4
+
+
+shift_of = by_law(_shift_without_memory, _shift_with_a_bristle)
+"""Relative shift of a state for a difference quotient, and accuracy of the maps relative to the shift."""
 
 
 @inner
@@ -169,23 +135,24 @@ def monodromy(
     """
     n = z.size
     carried = abs(belt_speed) * span(body)
-    shift = 1e-5 * (1.0 + _norm(z))
+    relative = shift_of(law, n)
+    shift = relative * (1.0 + norm(z))
     shift = min(shift, max(0.01 * carried, 1e-3 * shift)) if carried > 0.0 else shift
-    accuracy = min(accuracy, 1e-5 * shift)
+    accuracy = min(accuracy, relative * shift)
     ahead, behind, trial = np.empty(n), np.empty(n), np.empty(n)
     for column in range(n):
         for row in range(n):
             trial[row] = z[row] + (shift if row == column else 0.0)
-        mapped(law, body, belt_speed, trial, ahead, accuracy, like)
+        mapped(law, body, belt_speed, trial, ahead, accuracy, track_of(0), like)
         trial[column] = z[column] - shift
-        mapped(law, body, belt_speed, trial, behind, accuracy, like)
+        mapped(law, body, belt_speed, trial, behind, accuracy, track_of(0), like)
         for row in range(n):
             matrix[row, column] = (ahead[row] - behind[row]) / (2.0 * shift) + (1.0 if row == column else 0.0)
     return 2 * n
 
 
 @inner
-def _newton_inverse(
+def newton_inverse(
     law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, inverse: Any, like: Any
 ) -> bool:
     n = z.size
@@ -197,14 +164,14 @@ def _newton_inverse(
 
 
 @inner
-def _broyden(inverse: Any, step: Any, change: Any, work: Any) -> None:
+def broyden(inverse: Any, step: Any, change: Any, work: Any) -> None:
     """Broyden's update of the inverse (1965, by the Sherman-Morrison formula)."""
     n = step.size
-    _times(inverse, change, work)
+    times(inverse, change, work)
     scale = 0.0
     for i in range(n):
         scale += step[i] * work[i]
-    if abs(scale) < 1e-3 * _norm(step) ** 2:
+    if abs(scale) < 1e-3 * norm(step) ** 2:
         return
     for column in range(n):
         row_sum = 0.0
@@ -244,8 +211,8 @@ def felt(
 ) -> float:
     """By how much the mean changes where the state z, whose map is the image, is shifted."""
     trial, residual = np.empty(z.size), np.empty(z.size)
-    _less(z, shift, trial)
-    moved = mapped(law, body, belt_speed, trial, residual, accuracy, like)
+    less(z, shift, trial)
+    moved = mapped(law, body, belt_speed, trial, residual, accuracy, track_of(0), like)
     return abs(moved.rubbed - image.rubbed) / span(body)
 
 
@@ -263,32 +230,32 @@ def mean_error(body: Body, residual: Any, distance: float) -> float:
 
 
 @inner
-def _less(z: Any, step: Any, out: Any) -> None:
+def less(z: Any, step: Any, out: Any) -> None:
     for i in range(z.size):
         out[i] = z[i] - step[i]
 
 
 @inner
-def _copy(source: Any, out: Any) -> None:
+def copy(source: Any, out: Any) -> None:
     for i in range(source.size):
         out[i] = source[i]
 
 
 @inner
-def _searched(
+def searched(
     law: Any, body: Body, belt_speed: float, z: Any, residual: Any, inverse: Any, accuracy: float, like: Any
 ) -> int:
     """Move z along the Newton step, halved until the residual falls; returns the maps it took, 8 for no fall."""
     n = z.size
     step, trial, fresh = np.empty(n), np.empty(n), np.empty(n)
-    _times(inverse, residual, step)
-    length, part = _norm(residual), 1.0
+    times(inverse, residual, step)
+    length, part = norm(residual), 1.0
     for tried in range(1, 8):
         for i in range(n):
             trial[i] = z[i] - part * step[i]
-        mapped(law, body, belt_speed, trial, fresh, accuracy, like)
-        if _norm(fresh) < (1.0 - 0.1 * part) * length:
-            _copy(trial, z)
+        mapped(law, body, belt_speed, trial, fresh, accuracy, track_of(0), like)
+        if norm(fresh) < (1.0 - 0.1 * part) * length:
+            copy(trial, z)
             return tried
         part *= 0.5
     return 8
@@ -313,71 +280,71 @@ def close(
     """
     n, tolerance = z.size, goal.tolerance
     residual, trial, fresh, step, work = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    floor = 4e-15 * (1.0 + _norm(z) + abs(belt_speed))
+    floor = 4e-15 * (1.0 + norm(z) + abs(belt_speed))
     finest = max(0.5 * tolerance * body.normal_load, floor)
     accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
     period = span(body)
-    image = mapped(law, body, belt_speed, z, residual, accuracy, like)
-    maps, stalls, checks, first, troubled = 1, 0, 0, _norm(residual), False
+    image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
+    maps, stalls, checks, first, troubled = 1, 0, 0, norm(residual), False
     while maps < MOST_MAPS:
-        length = _norm(residual)
+        length = norm(residual)
         if image.steps < 0 or not length < 1e300:
             break
         if not goal.contracts and maps * image.steps > MUCH_WORK:
             break  # what repels, or is not there, is not to be found: other starts will tell
         if image.stuck >= period * (1.0 - 1e-9) and belt_speed != 0.0:
             y, _u = unpack(body, z, like)
-            many = periods_at_rest(law, body, belt_speed, y + period * belt_speed)
+            many = rest_of(law, body, belt_speed, y + period * belt_speed)
             for i in range(n):  # carried by the belt all the time: go on by many periods at once
                 z[i] = z[i] + many * residual[i]
-            image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+            image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
             maps += 1
             continue
         if image.stuck >= period * (1.0 - 1e-9):  # at rest on a belt at rest
             return Closed(image.rubbed, floor / body.normal_load + ROUNDING, maps, image.stuck, 0.0, first)
-        _times(inverse, residual, step)
-        if accuracy <= finest and mean_error(body, residual, _norm(step)) <= 10.0 * tolerance:
-            _less(z, step, trial)
-            _copy(trial, z)
+        times(inverse, residual, step)
+        if accuracy <= finest and mean_error(body, residual, norm(step)) <= 10.0 * tolerance:
+            less(z, step, trial)
+            copy(trial, z)
             accuracy = finest / FINER
-            image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+            image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
             maps += 1
             checks += 1
             doubt = 0.0
             if (
                 image.stuck > 0.0 or troubled or not goal.contracts
             ):  # both jump with the events: take them anew
-                if not _newton_inverse(law, body, belt_speed, z, accuracy, inverse, like):
+                if not newton_inverse(law, body, belt_speed, z, accuracy, inverse, like):
                     break
-                coarser = mapped(law, body, belt_speed, z, fresh, FINER * accuracy, like)
+                coarser = mapped(law, body, belt_speed, z, fresh, FINER * accuracy, track_of(0), like)
                 maps += 2 * n + 1
-                _less(fresh, residual, fresh)
-                _times(inverse, fresh, work)
-                doubt = mean_error(body, fresh, _norm(work)) + abs(coarser.rubbed - image.rubbed) / period
+                less(fresh, residual, fresh)
+                times(inverse, fresh, work)
+                doubt = mean_error(body, fresh, norm(work)) + abs(coarser.rubbed - image.rubbed) / period
                 if not goal.contracts:
                     doubt += felt(law, body, belt_speed, z, work, image, accuracy, like)
-                    _times(inverse, residual, work)
+                    times(inverse, residual, work)
                     doubt += felt(law, body, belt_speed, z, work, image, accuracy, like)
-            _times(inverse, residual, work)
-            error = 2.0 * (mean_error(body, residual, _norm(work)) + doubt)
+            times(inverse, residual, work)
+            error = 2.0 * (mean_error(body, residual, norm(work)) + doubt)
             error += (floor + 0.1 * accuracy) / body.normal_load + ROUNDING  # and the finer map's own error
             if error <= tolerance or (finest <= floor and checks > 3):
                 return Closed(image.rubbed, error, maps, image.stuck, image.closest, first)
             finest, troubled = max(floor, accuracy), troubled or checks > 2
             continue
         finer = max(finest, min(accuracy, 1e-4 * length))
-        _less(z, step, trial)
-        image = mapped(law, body, belt_speed, trial, fresh, finer, like)
+        less(z, step, trial)
+        image = mapped(law, body, belt_speed, trial, fresh, finer, track_of(0), like)
         maps += 1
-        falls, usable = _norm(fresh) < 0.7 * length, _norm(fresh) <= 1.5 * length
+        falls, usable = norm(fresh) < 0.7 * length, norm(fresh) <= 1.5 * length
         if usable:
             for i in range(n):
                 step[i] = -step[i]
                 work[i] = fresh[i] - residual[i]
-            _copy(trial, z)
-            _copy(fresh, residual)
+            copy(trial, z)
+            copy(fresh, residual)
             if accuracy <= 0.05 * length:
-                _broyden(inverse, step, work.copy(), work)
+                broyden(inverse, step, work.copy(), work)
         accuracy = finer
         stalls = 0 if falls else stalls + 1
         if stalls == 0 or (stalls == 1 and usable):
@@ -386,18 +353,18 @@ def close(
             finest = max(floor, finest / FINER)  # what is left is the error of the map itself
         else:
             troubled = True
-            regular = _newton_inverse(law, body, belt_speed, z, finest, inverse, like)
+            regular = newton_inverse(law, body, belt_speed, z, finest, inverse, like)
             maps += 2 * n
             if not regular:
                 free_inverse(body, body.normal_load, inverse)
-            tried = _searched(law, body, belt_speed, z, residual, inverse, accuracy, like)
+            tried = searched(law, body, belt_speed, z, residual, inverse, accuracy, like)
             maps += tried
             for _ in range(0 if regular and tried < 8 else 3):
-                image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+                image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
                 maps += 1
                 for i in range(n):
                     z[i] = z[i] + residual[i]
-            image = mapped(law, body, belt_speed, z, residual, accuracy, like)
+            image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
             maps += 1
         stalls = 1
     return Closed(image.rubbed, 1e300, -maps, image.stuck, image.closest, first)

@@ -7,19 +7,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.kernel import inner
+from frictionlab.kernel import by_law, inner
+from frictionlab.methods.bristle_closing import close_bristle
 from frictionlab.methods.closing import (
     MUCH_WORK,
     Goal,
     close,
     free_inverse,
-    mapped,
     monodromy,
-    pack,
-    size_of,
-    unpack,
 )
-from frictionlab.methods.sliding_map import period_map, span
+from frictionlab.methods.period import mapped, size_of, start_of
+from frictionlab.methods.sliding_map import span
 from frictionlab.methods.track import Track, track_of
 from frictionlab.orbit import READ, read
 from frictionlab.scene import Body, Mass
@@ -72,10 +70,14 @@ def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) ->
     return best
 
 
+closed_by = by_law(close, close_bristle)
+"""The fixed point of the period map from a guess, by the way that suits the law."""
+
+
 @inner
 def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, like: Any) -> Any:
     """States [n, size] and results [n, 6]: mean friction, across, error, maps, share of stick, slowest slip."""
-    size, n = size_of(like), belt_speeds.size
+    size, n = size_of(law, like), belt_speeds.size
     states, results = np.zeros((n, size)), np.empty((n, 6))
     z, work, inverse = np.empty(size), np.empty(size), np.empty((size, size))
     period = span(body)
@@ -88,10 +90,10 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, 
                     z[row] = guess[0, row]
         else:
             _extrapolated(states, belt_speeds, i, min(order, known), z)
-        closed = close(law, body, belt_speeds[i], z, inverse, goal, expected, like)
+        closed = closed_by(law, body, belt_speeds[i], z, inverse, goal, expected, like)
         if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
             free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse)
-            closed = close(law, body, belt_speeds[i], z, inverse, goal, 1e300, like)
+            closed = closed_by(law, body, belt_speeds[i], z, inverse, goal, 1e300, like)
         for row in range(size):
             states[i, row] = z[row]
         if closed.maps > 0 and known > 1:
@@ -109,14 +111,13 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, 
 @inner
 def tracked(law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, like: Any) -> Track:
     """The closed orbit from z, piece by piece."""
-    y, u = unpack(body, z, like)
-    room = 128
+    room, residual = 128, np.empty(z.size)
     track = track_of(room)
-    period_map(law, body, belt_speed, y, u, accuracy, track)
+    mapped(law, body, belt_speed, z, residual, accuracy, track, like)
     while track.filled[0] == room:
         room *= 4
         track = track_of(room)
-        period_map(law, body, belt_speed, y, u, accuracy, track)
+        mapped(law, body, belt_speed, z, residual, accuracy, track, like)
     n = track.filled[0]
     return Track(track.tau[:n], track.x[:n], track.v[:n], track.friction[:n], track.stick[:n], track.filled)
 
@@ -158,11 +159,11 @@ def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
 
     Periods: -1 where after many periods the mass still creeps.
     """
-    z, residual = np.empty(size_of(x)), np.empty(size_of(x))
-    pack(body, z, x - body.reference_cosine, v - body.frequency * body.reference_sine)
+    z, residual = np.empty(size_of(law, x)), np.empty(size_of(law, x))
+    start_of(law, body, z, x, v)
     period = span(body)
     for count in range(1, MOST_PERIODS):
-        image = mapped(law, body, 0.0, z, residual, accuracy, x)
+        image = mapped(law, body, 0.0, z, residual, accuracy, track_of(0), x)
         for row in range(z.size):
             z[row] = z[row] + residual[row]
         if image.stuck >= period * (1.0 - 1e-12):
@@ -195,9 +196,9 @@ def wander(
     x, v = start
     steps = 0
     residual = np.empty(states.shape[1])
-    pack(body, states[0], x - body.reference_cosine, v - body.frequency * body.reference_sine)
+    start_of(law, body, states[0], x, v)
     for n in range(means.size):
-        image = mapped(law, body, belt_speed, states[n], residual, accuracy, x)
+        image = mapped(law, body, belt_speed, states[n], residual, accuracy, track_of(0), x)
         means[n] = -image.rubbed.real / span(body)
         steps += image.steps
         for row in range(residual.size):

@@ -10,10 +10,12 @@ import numpy as np
 
 from frictionlab.kernel import compiled, timed
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods import coulomb_curve as curve
 from frictionlab.methods.base import Answers, Floats, Method, Orbit, Status
 from frictionlab.methods.coulomb_orbit import make_orbit, read_orbits
 from frictionlab.methods.prescribed import solve_prescribed
+from frictionlab.methods.prescribed_bristle import along_one_line
 from frictionlab.orbit import READ
 from frictionlab.scene import Scene
 from frictionlab.theory import friction_free_velocity
@@ -31,6 +33,15 @@ UNBOUNDED = (
 )
 
 
+def _refusal_of_legs(scene: Scene, law: BristleLaw) -> str | None:
+    """Why a prescribed slip has no two legs along which the deflection is known."""
+    if not law.exact_path():
+        return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction); use shooting"
+    if not along_one_line(scene, law):
+        return "exact works along one line: this slip goes across the belt too; use shooting"
+    return None
+
+
 class Exact(Method):
     """Steady states of Coulomb friction along one line, to rounding: events in closed form, no steps.
 
@@ -45,6 +56,8 @@ class Exact(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
+        if isinstance(law, BristleLaw) and scene.degrees_of_freedom == 0:
+            return _refusal_of_legs(scene, law)
         if not isinstance(law, SlidingLaw):
             return "exact needs friction without memory (Coulomb); use shooting"
         if not law.constant_sliding_friction():

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Floats
-from frictionlab.methods.prescribed import graded_circle, sliding_vectors, slow_passages
+from frictionlab.methods.prescribed import graded_circle, sliding_vectors
+from frictionlab.methods.prescribed_motion import slow_passages
 from frictionlab.scene import Scene
 
 Complexes = NDArray[np.complex128]

@@ -9,7 +9,9 @@ from typing import ClassVar
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Answers, Floats, Method
+from frictionlab.methods.harmonic_bristle import answer_bristle, bristle_refusal
 from frictionlab.methods.monotone_root import monotone_root
 from frictionlab.methods.reduced import Harmonic, answer_line, line_refusal
 from frictionlab.scene import Scene
@@ -26,11 +28,14 @@ AT_REST = (
 
 
 class HarmonicBalance(Method):
-    """One harmonic of motion and Coulomb friction balanced along the belt; its curve is explicit.
+    """One harmonic of motion and friction balanced along the belt; for Coulomb friction its curve is explicit.
 
     Amplitude and belt speed follow from their ratio without a search (theory.one_harmonic_velocity); only a given
     belt speed asks for that ratio, the one root of a rising function. The error is what the left-out harmonics,
     stick included, do to the mean: bounds on it come from motions that reverse twice with all their harmonics.
+
+    Bristle friction has a part in phase with the displacement as well, and both parts ask for a loop of the law at
+    every amplitude looked at (methods/harmonic_bristle.py); its error comes from the motion of all harmonics.
 
     Source: Sulollari, van Dalen & Cabboi, Eqs. 5, 8 and 9 and appendix A.
     """
@@ -38,17 +43,26 @@ class HarmonicBalance(Method):
     name: ClassVar[str] = "harmonic_balance"
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Anything but Coulomb friction along one line under a drive that bounds the friction-free motion."""
+        """Anything but Coulomb or bristle friction on one line under a drive that bounds the friction-free motion."""
         if scene.degrees_of_freedom == 0:
             return "harmonic_balance seeks the motion of the mass, and a prescribed slip leaves it none; use exact"
+        if isinstance(law, BristleLaw):
+            return bristle_refusal(self.name, scene, law)
         return line_refusal(self.name, scene, law)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
+        if isinstance(law, BristleLaw):
+            return answer_bristle(scenes, law, tolerance)
         return answer_line(scenes, law, tolerance, TEXT, one_harmonic)
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """Two root searches on whole arrays; slow drives need more samples to be sure of the reversals."""
+        """Two root searches on whole arrays; slow drives need more samples to be sure of the reversals.
+
+        With bristles a search for every amplitude that balances, and their motion of all harmonics.
+        """
+        if isinstance(law, BristleLaw):
+            return 4e-2
         return 5e-5 * max(1.0, 1.0 / scene.frequency)
 
 

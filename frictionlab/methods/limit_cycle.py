@@ -20,8 +20,9 @@ from frictionlab.kernel import compiled, inner
 from frictionlab.laws.base import SlidingLaw
 from frictionlab.methods.base import Answers, Floats, Orbit, Status
 from frictionlab.methods.closer import Closer
-from frictionlab.methods.closing import FINER, ROUNDING, pack, size_of
+from frictionlab.methods.closing import FINER, ROUNDING
 from frictionlab.methods.curve import tracked
+from frictionlab.methods.period import pack, size_of
 from frictionlab.methods.sliding_map import Mapped, period_map
 from frictionlab.methods.track import track_of
 from frictionlab.orbit import READ, read
@@ -42,7 +43,7 @@ def followed(law: Any, body: Body, belt_speed: float, x: float, v: float, accura
 @inner
 def recorded(law: Any, body: Body, mass: Mass, belt_speed: float, x: float, v: float, accuracy: float) -> Any:
     """What is read from the motion from x, v over the span of the body, and its record."""
-    z = np.empty(size_of(x))
+    z = np.empty(size_of(law, x))
     pack(body, z, x, v)
     track = tracked(law, body, belt_speed, z, accuracy, x)
     return read(track.tau, track.x, track.v, track.friction, track.stick, mass, belt_speed), track

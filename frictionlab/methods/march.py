@@ -11,11 +11,14 @@ import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Answers, Method, Orbit, Status
+from frictionlab.methods.bristle_limits import fewest_steps, friction_falls
+from frictionlab.methods.bristle_sampling import solve_rubbed
 from frictionlab.methods.closer import contracts
 from frictionlab.methods.marcher import LONGEST_PERIOD, Run, Walker
-from frictionlab.methods.marching import RESTING, STALLED
-from frictionlab.methods.refining import WORK, Found, Plan, found, restless, why_not
+from frictionlab.methods.marching import RESTING, STALLED, TOO_FAST
+from frictionlab.methods.refining import FEWEST_LAPS, WORK, Found, Plan, found, restless, why_not
 from frictionlab.methods.rivals import Reached, Search, first_reached, one_motion, told
 from frictionlab.methods.sampling import solve_sampled
 from frictionlab.methods.shooting import resting_range, stays_at_rest
@@ -38,8 +41,24 @@ def _half_or_one(given: object) -> object:
 Theta = Annotated[float, BeforeValidator(_half_or_one)]
 Count = Annotated[int, BeforeValidator(_whole), Field(ge=4, le=100_000_000)]
 
-OWN_KEYS = {"moreau": ("theta", "steps"), "rk4": ("steps",), "smoothed": ("width", "smoothing")}
-ORDERS = {("moreau", 0.5): 2, ("moreau", 1.0): 1, ("rk4", 0.5): 4, ("smoothed", 0.5): 8}
+OWN_KEYS = {
+    "moreau": ("theta", "steps"),
+    "rk4": ("steps",),
+    "smoothed": ("width", "smoothing"),
+    "exponential": ("steps",),
+    "sdirk2": ("steps",),
+}
+FOR_SLIDING = "moreau", "rk4", "smoothed"
+FOR_BRISTLES = "exponential", "rk4", "sdirk2"
+"""The steppers of each kind of law, the one taken where none is named first."""
+ORDERS = {
+    ("moreau", 0.5): 2,
+    ("moreau", 1.0): 1,
+    ("rk4", 0.5): 4,
+    ("smoothed", 0.5): 8,
+    ("exponential", 0.5): 2,
+    ("sdirk2", 0.5): 2,
+}
 """Of each stepper on smooth motion, by theta where it has one."""
 READABLE = 4096
 """Most steps per period of the run that the columns besides the mean are read from."""
@@ -52,10 +71,13 @@ WATCHED = 300
 class March(Method):
     """Time stepping, period by period, until the motion repeats: no events, no shooting.
 
-    stepper: moreau (Moreau-Jean, friction projected on its disk), rk4 (Runge-Kutta of order 4 on the jump itself,
-    blind to it) or smoothed (DOP853 with step control on friction smoothed at rest).
+    stepper: of laws without memory moreau (default: Moreau-Jean, friction projected on its disk), rk4 (Runge-Kutta of
+    order 4 on the jump itself, blind to it) or smoothed (DOP853 with step control on friction smoothed at rest); of
+    laws with bristles exponential (default: bristles carried exactly along the slip, of order 2, steps limited by the
+    mass held by its bristles alone), rk4 (steps limited by stiffness*speed/friction as well) or sdirk2 (L-stable, of
+    order 2, no limit).
     theta [-]: of moreau, 0.5 (default) or 1.
-    steps [-], >= 4: of moreau and rk4, per period of the drive, per 2 pi where nothing drives. The mean is that of
+    steps [-], >= 4: of all but smoothed, per period of the drive, per 2 pi where nothing drives. The mean is that of
     so many steps, its error told by two and four times as many. Left out, steps are doubled until the error is
     below the tolerance or a point has cost 16 million, and the mean extrapolated where the order can be seen.
     width [scene velocity], > 0: of smoothed, 0.01 where left out; the mean is that of this width, its error tells
@@ -65,12 +87,12 @@ class March(Method):
 
     The motion starts from scene.initial, else on the friction-free orbit, undriven at rest on the belt. Where no
     theorem makes the steady state unique, starts far from each other must reach the same. Sources: Moreau (1988),
-    Jean (1999); Kutta (1901); Hairer, Norsett & Wanner (1993).
+    Jean (1999); Kutta (1901); Hairer, Norsett & Wanner (1993); Strang (1968); Alexander (1977).
     """
 
     name: ClassVar[str] = "march"
 
-    stepper: Literal["moreau", "rk4", "smoothed"] = "moreau"
+    stepper: Literal["moreau", "rk4", "smoothed", "exponential", "sdirk2"] | None = None
     theta: Theta | None = None
     steps: Count | None = None
     width: Positive | None = None
@@ -81,41 +103,90 @@ class March(Method):
     @classmethod
     def _key_of_the_stepper(cls, given: object, info: ValidationInfo) -> object:
         """Key by key, not for all at once, so that it is told beside whatever else is wrong."""
-        own = OWN_KEYS.get(info.data.get("stepper", ""))
+        stepper = info.data.get("stepper", "") or "moreau"
+        own = OWN_KEYS[stepper] if "stepper" in info.data else None
         if given is not None and own is not None and info.field_name not in own:
             known = ", ".join(own)
-            raise ValueError(f"leave it out, stepper {info.data['stepper']} knows {known} and periods")
+            raise ValueError(f"leave it out, stepper {stepper} knows {known} and periods")
         return given
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Friction with memory; a static coefficient above the sliding one, but for moreau along the belt."""
+        """A stepper of another kind of law; of a law without memory, a static coefficient above the sliding one, but
+        for moreau along the belt; bristles too stiff for an explicit stepper.
+        """
+        if isinstance(law, BristleLaw):
+            assert scene.normal_load is not None
+            return self._bristle_refusal(scene, law.under_load(scene.normal_load))
         if not isinstance(law, SlidingLaw):
-            return "march steps friction without memory (a sliding law)"
+            return "march steps sliding laws and laws with one bristle deflection"
+        if self._stepper(law) not in FOR_SLIDING:
+            return (
+                f"stepper {self.stepper} steps bristles, and this law has none; use moreau, rk4 or smoothed"
+            )
         jumps = law.static_friction() > law.sliding_friction(0.0)
         if jumps and scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
             return (
                 "static friction above that of slip: in the plane a step catches a mass that would slip past rest, "
                 "and no bound on what that does is known; use shooting"
             )
-        if self.stepper != "moreau" and jumps:
+        if self._stepper(law) != "moreau" and jumps:
             return (
                 f"stepper {self.stepper} never rests, and static friction above that of slip acts only at rest; "
                 f"use stepper moreau"
             )
         return None
 
+    def _bristle_refusal(self, scene: Scene, law: BristleLaw) -> str | None:
+        stepper = self._stepper(law)
+        if stepper not in FOR_BRISTLES:
+            return f"stepper {stepper} knows no friction with memory; use exponential, rk4 or sdirk2"
+        if self.theta is not None:
+            return "theta is a key of stepper moreau, which knows no friction with memory; leave it out"
+        planar = law.planar == "vectorial" and not scene.load_along_belt_only
+        if planar and law.no_vector_form():
+            return f"{law.no_vector_form()}; use planar rotated or per-axis"
+        if stepper == "rk4" and math.isinf(law.largest_rate(1.0)):
+            return "stepper rk4 needs a bound on how quickly bristles decay, and this law has none; use exponential"
+        if stepper == "sdirk2" and scene.degrees_of_freedom == 0:
+            return "under a prescribed slip there is nothing to solve for; use exponential, for any stiffness"
+        if stepper == "sdirk2" and math.isfinite(law.yield_deflection()):
+            return "stepper sdirk2 needs rates that do not jump, and those of this law do at yield; use exponential"
+        return self._too_few(fewest_steps(scene, law, stepper), stepper)
+
+    def _too_few(self, fewest: int, stepper: str) -> str | None:
+        """Why so many steps cannot be taken, where this many are needed."""
+        if self.steps is not None and self.steps < fewest:
+            return _unstable(self.steps, fewest, stepper)
+        if self.steps is None and 3 * FEWEST_LAPS * fewest > WORK:
+            return (
+                f"stepper {stepper} is unstable on bristles this stiff below about {fewest:,} steps per period, too "
+                f"many to be doubled with {WORK:,} steps in all; give steps, or use stepper sdirk2"
+            )
+        return None
+
+    def _stepper(self, law: FrictionLaw) -> str:
+        return self.stepper or (FOR_BRISTLES if isinstance(law, BristleLaw) else FOR_SLIDING)[0]
+
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Some twenty periods of 50 ns steps, errors falling as one over their number; at most what WORK takes."""
         if self.stepper == "smoothed":
             return 0.05
+        if isinstance(law, BristleLaw):
+            assert scene.normal_load is not None
+            fewest = fewest_steps(scene, law.under_load(scene.normal_load), self._stepper(law))
+            return 1e-7 * min(30.0 * max(4.0 * (self.steps or 4096), 2.0 * fewest), WORK)
         steps = 4.0 * self.steps if self.steps else 2.0 * law.sliding_friction(1.0) / tolerance
         return 5e-8 * min(30.0 * steps, WORK)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer each scene by itself, from its own start."""
-        assert isinstance(law, SlidingLaw)
-        plan = self._plan()
+        assert scenes[0].normal_load is not None
+        law = law.under_load(scenes[0].normal_load)
+        plan = self._plan(law)
         if scenes[0].degrees_of_freedom == 0:
+            if isinstance(law, BristleLaw):
+                return solve_rubbed(scenes, law, tolerance, plan)
+            assert isinstance(law, SlidingLaw)
             return solve_sampled(scenes, law, tolerance, plan)
         points = [_Point(scene, law, tolerance, plan) for scene in scenes]
         return Answers(
@@ -127,12 +198,12 @@ class March(Method):
             lambda i: points[i].orbit,
         )
 
-    def _plan(self) -> Plan:
-        theta = self.theta or 0.5
+    def _plan(self, law: FrictionLaw) -> Plan:
+        theta, stepper = self.theta or 0.5, self._stepper(law)
         return Plan(
-            stepper=self.stepper,
+            stepper=stepper,
             theta=theta,
-            order=ORDERS[self.stepper, theta],
+            order=ORDERS[stepper, theta],
             steps=self.steps,
             width=self.width or 0.01,
             smoothing=self.smoothing or "tanh",
@@ -140,21 +211,35 @@ class March(Method):
         )
 
 
+def _unstable(steps: int, fewest: int, stepper: str) -> str:
+    """Why an explicit stepper cannot do with so many steps, and how many would do."""
+    others = "exponential or sdirk2" if stepper == "rk4" else "sdirk2"
+    return (
+        f"stepper {stepper} is unstable on bristles this stiff with {steps:,} steps per period: about {fewest:,} "
+        f"would do; or use stepper {others}"
+    )
+
+
 class _Point:
     """One scene, marched, and its row."""
 
-    def __init__(self, scene: Scene, law: SlidingLaw, tolerance: float, plan: Plan) -> None:
+    def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float, plan: Plan) -> None:
         self.scene, self.law, self.plan = scene, law, plan
         self.walker = Walker(scene, law, plan.stepper)
         self.columns = dict.fromkeys(COLUMNS, math.nan)
         self.status: Status = "failed"
         self.reason, self.model = "", ""
         self.orbit: Orbit | None = None
-        if stays_at_rest(scene, law) and scene.initial is None and not scene.undriven:
+        if self._held() and scene.initial is None and not scene.undriven:
+            assert isinstance(law, SlidingLaw)
             self._leave_open(resting_range(scene, law))
         else:
             self._judge(found(self.walker, plan, tolerance), tolerance)
         self.columns["seconds"] = self.walker.seconds
+
+    def _held(self) -> bool:
+        """Whether friction without memory can hold the mass on a belt at rest, wherever it stops."""
+        return isinstance(self.law, SlidingLaw) and stays_at_rest(self.scene, self.law)
 
     def _leave_open(self, highest: float) -> None:
         self._range(-highest, highest)
@@ -170,6 +255,11 @@ class _Point:
     def _judge(self, answer: Found, tolerance: float) -> None:
         last = answer.runs[-1]
         self.model = f"march, {self.plan.stepper}{self._theta()}: {answer.how or 'no steady state'}"
+        if last.verdict == TOO_FAST:
+            self.status = "refused"
+            fewest = math.ceil(1.5 * last.pace.steps * last.met / self.walker.fastest(last.pace))
+            self.reason = _unstable(last.pace.steps, fewest, self.plan.stepper)
+            return
         if not last.settled:
             self.reason = f"the motion {why_not(last)}"
             return
@@ -201,12 +291,20 @@ class _Point:
 
     def _has_rivals(self) -> bool:
         """Whether another start may lead elsewhere, in a row that is not about one start alone."""
-        held = stays_at_rest(self.scene, self.law)
-        return not (self.scene.undriven or held or contracts(self.scene, self.law))
+        if self.scene.undriven or self._held():
+            return False
+        if isinstance(self.law, SlidingLaw):
+            return not contracts(self.scene, self.law)
+        assert isinstance(self.law, BristleLaw)
+        at_rest = self.scene.belt_speed == 0.0 and self.law.elastic_deflection() > 0.0
+        return at_rest or friction_falls(self.law)
+
+    def _falls(self) -> bool:
+        return isinstance(self.law, SlidingLaw) or friction_falls(self.law)
 
     def _leave_range(self, reached: Sequence[Reached]) -> None:
         self._range(min(one.low for one in reached), max(one.high for one in reached))
-        why = "friction falls with speed: " if self._has_rivals() else ""
+        why = "friction falls with speed: " if self._has_rivals() and self._falls() else ""
         if not why and reached[0].period == 0:
             why = "the motion never repeats, whatever the step: "
         self.reason = why + told(reached)
@@ -216,6 +314,8 @@ class _Point:
     def _lost_in_chatter(self, answer: Found) -> float:
         """All that the mean may be off by, where the belt is slower than the jumps that rk4 makes about rest."""
         law, load = self.law, self.scene.mass().normal_load
+        if not isinstance(law, SlidingLaw):
+            return 0.0
         step = 2.0 * math.pi / self.scene.frequency / answer.runs[-1].pace.steps
         chatters = (
             self.plan.stepper == "rk4" and abs(self.scene.belt_speed) < load * law.static_friction() * step
@@ -243,11 +343,15 @@ class _Point:
             self._remark(
                 f"the steps keep the motion from repeating: averaged over {self.walker.window} periods"
             )
-        if not (self.walker.converges or self._has_rivals()):
+        if not (self.walker.converges or self._has_rivals() or self._moves_on()):
             start = "scene.initial" if self.scene.initial else "the default start"
             self._remark(f"the state reached from {start}; no other start was tried")
         if not self.columns["error"] <= tolerance:
             self._remark(f"the error is above the tolerance {tolerance:.1e}")
+
+    def _moves_on(self) -> bool:
+        """Whether bristles that a moving belt drags along forget where the mass started."""
+        return self.walker.bristles is not None and not self.scene.undriven and self.scene.belt_speed != 0.0
 
     def _period(self, answer: Found, last: Run) -> float:
         if not self.scene.undriven:

@@ -9,8 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.kernel import compiled, timed
-from frictionlab.laws.base import SlidingLaw
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Floats, Orbit
+from frictionlab.methods.bristle_limits import fastest_slip, spring_of
+from frictionlab.methods.bristle_marching import march_bristle_rk4, march_exponential, march_sdirk2
 from frictionlab.methods.marching import (
     CLOSED,
     RESTING,
@@ -26,7 +29,10 @@ from frictionlab.orbit import READ, read
 from frictionlab.scene import Body, Initial, Mass, Scene, in_the_plane, on_the_line
 
 KERNELS = {"moreau": march_moreau, "rk4": march_rk4, "smoothed": march_smoothed}
+BRISTLE_KERNELS = {"rk4": march_bristle_rk4, "exponential": march_exponential, "sdirk2": march_sdirk2}
 SHAPES = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
+GRIDDED = "moreau", "rk4", "exponential"
+"""Steppers that meet the load at half steps alone."""
 LONGEST_PERIOD = 8
 """Of a response that repeats only after several laps."""
 SUMMED = np.array(["energy" in name or "reversals" in name for name in READ])
@@ -49,10 +55,11 @@ class Pace:
 
 
 class Place(NamedTuple):
-    """A state of the motion: x1 + i x2 and its rate."""
+    """A state of the motion: x1 + i x2 and its rate, and the deflection of the bristles, if there are any."""
 
     x: complex
     v: complex
+    z: complex = 0j
 
 
 @dataclass(frozen=True)
@@ -83,6 +90,8 @@ class Run:
     steps: int
     stride: int
     drift: float  # gap of the last lap, in the norm of energy
+    turn: float  # largest rate at which slip passed through zero
+    met: float  # most slip
 
     @property
     def settled(self) -> bool:
@@ -93,9 +102,10 @@ class Run:
 class Walker:
     """Everything of a scene and a law that does not change from run to run; counts the seconds."""
 
-    def __init__(self, scene: Scene, law: SlidingLaw, stepper: str) -> None:
+    def __init__(self, scene: Scene, law: FrictionLaw, stepper: str) -> None:
         self.scene, self.law, self.stepper = scene, law, stepper
         self.mass: Mass = scene.mass()
+        self.bristles = law if isinstance(law, BristleLaw) else None
         straight = scene.load_along_belt_only and not _starts_across(scene)
         reference = on_the_line(self.mass) if straight else in_the_plane(self.mass)
         self.straight = straight
@@ -110,8 +120,17 @@ class Walker:
         self.seconds = 0.0
 
     @property
+    def at_rest(self) -> float:
+        """The coefficient that slip must overcome to begin; of bristles, that of the slowest slip."""
+        return (
+            self.law.static_friction() if isinstance(self.law, SlidingLaw) else self.law.sliding_friction(0.0)
+        )
+
+    @property
     def follows_the_drive(self) -> bool:
         """Whether a theorem gives every motion the drive's period in the end (Leine & van de Wouw, 2008)."""
+        if not isinstance(self.law, SlidingLaw):
+            return False
         mass = self.mass
         damping = mass.damping if self.straight else min(mass.damping, mass.transverse_damping)
         return mass.normal_load * self.law.steepest_fall() < damping and not self.scene.undriven
@@ -165,6 +184,12 @@ class Walker:
         self.seconds += seconds
         return np.where(SUMMED, values / periods, values)
 
+    def fastest(self, pace: Pace) -> float:
+        """The slip speed that steps of this pace can bear."""
+        if self.bristles is None or self.stepper != "rk4":
+            return 1e300
+        return fastest_slip(self.bristles, self.lap / pace.steps)
+
     def _relaxing(self) -> int:
         """Laps in which a drift towards the steady state dies out by a third, at least fifty and at most 2000."""
         damping = self.mass.damping if self.straight else min(self.mass.damping, self.mass.transverse_damping)
@@ -172,8 +197,11 @@ class Walker:
         return int(min(2000.0, max(50.0, slow / self.lap)))
 
     def _marched(self, way: Way, place: Place) -> March:
-        x, v = (place.x.real, place.v.real) if self.straight else place
-        call = compiled(KERNELS[self.stepper], self.law)
+        x, v = (place.x.real, place.v.real) if self.straight else (place.x, place.v)
+        if self.bristles is not None:
+            way = way._replace(z=place.z.real if self.straight else place.z)
+        kernels = KERNELS if self.bristles is None else BRISTLE_KERNELS
+        call = compiled(kernels[self.stepper], self.law)
         march, seconds = timed(call, self.body, way, x, v)
         self.seconds += seconds
         return march
@@ -185,7 +213,7 @@ class Walker:
         return Way(
             belt_speed=self.scene.belt_speed,
             driven=driven,
-            loads=self._loads(1 if adaptive or not driven else pace.steps),
+            loads=self._loads(pace.steps if driven and self.stepper in GRIDDED else 1),
             span=self.lap if driven else self.lap * pace.most,
             first=1e-3 * reach if adaptive else h,
             theta=pace.theta,
@@ -201,6 +229,8 @@ class Walker:
             work=pace.work,
             window=self.window,
             room=0,
+            bristles=self.mass.normal_load * spring_of(self.bristles) if self.bristles is not None else 0.0,
+            fastest=self.fastest(pace),
         )
 
     def _near(self, pace: Pace) -> float:
@@ -208,7 +238,8 @@ class Walker:
         if self.stepper == "smoothed":
             return 3.0 * pace.width
         force = self.mass.normal_load * self.law.sliding_friction(0.0)
-        return 2.0 * force * self.lap / pace.steps if self.stepper == "rk4" else 0.0
+        blind = self.stepper == "rk4" and self.bristles is None
+        return 2.0 * force * self.lap / pace.steps if blind else 0.0
 
     def _creeping(self, pace: Pace, march: March) -> float:
         """The belt carries a mass that sticks; one that creeps as fast as the belt moves stays where it is.
@@ -238,7 +269,7 @@ class Walker:
         drift = self._apart(march, laps, laps - stride)
         return Run(
             pace=pace,
-            place=Place(complex(march.x[-1]), complex(march.v[-1])),
+            place=Place(complex(march.x[-1]), complex(march.v[-1]), complex(march.z[-1])),
             mean=mean,
             closing=self._closing(march, drift, high - low),
             low=low,
@@ -255,6 +286,8 @@ class Walker:
             steps=int(march.steps),
             stride=stride,
             drift=drift,
+            turn=float(march.turn),
+            met=float(march.met),
         )
 
     def _least(self, march: March, stride: int, within: float) -> int:
@@ -275,12 +308,19 @@ class Walker:
             led = self._apart(march, len(march.rubbed), len(march.rubbed) - self.window)
             return spread + 2.0 * led / self.mass.normal_load
         ends = (1.0 + self.mass.damping) * drift
-        return 2.0 * float(march.distance + ends / self.lap) / self.mass.normal_load
+        doubt = 2.0 if self.bristles is None else 4.0  # with bristles, orbits may move apart before they meet
+        return doubt * float(march.distance + ends / self.lap) / self.mass.normal_load
 
     def _apart(self, march: March, a: int, b: int) -> float:
-        dx, dv = march.x[a] - march.x[max(b, 0)], march.v[a] - march.v[max(b, 0)]
+        b = max(b, 0)
+        dx, dv, dz = march.x[a] - march.x[b], march.v[a] - march.v[b], march.z[a] - march.z[b]
         across = self.mass.transverse_stiffness * dx.imag**2
-        return float(math.sqrt(dx.real**2 + across + abs(dv) ** 2))
+        bent = (
+            self.mass.normal_load * spring_of(self.bristles) * abs(dz) ** 2
+            if self.bristles is not None
+            else 0.0
+        )
+        return float(math.sqrt(dx.real**2 + across + abs(dv) ** 2 + bent))
 
 
 def _starts_across(scene: Scene) -> bool:

@@ -41,6 +41,9 @@ class Way(NamedTuple):
     work: int  # most steps
     window: int  # laps over which a motion that does not close is judged, twice
     room: int  # panels of the record of the last lap
+    z: Any = 0.0  # deflection of the bristles to begin with, if the law has any
+    bristles: float = 0.0  # their stiffness, in the norm of energy
+    fastest: float = 1e300  # slip that the steps are short enough for
 
 
 class Problem(NamedTuple):
@@ -63,6 +66,7 @@ class Node(NamedTuple):
     tau: float
     x: Any
     v: Any
+    z: Any
 
 
 class Advance(NamedTuple):
@@ -73,6 +77,7 @@ class Advance(NamedTuple):
     rubbed: Any
     stuck: bool
     growth: float
+    z: Any
 
 
 class Lap(NamedTuple):
@@ -91,6 +96,9 @@ class Lap(NamedTuple):
     step: float  # the next one
     steps: int
     returned: bool
+    z: Any
+    turn: float  # largest rate at which slip passed through zero
+    met: float  # most slip
 
 
 class March(NamedTuple):
@@ -98,6 +106,7 @@ class March(NamedTuple):
 
     x: Any
     v: Any
+    z: Any
     rubbed: Any
     stuck: Any
     duration: Any
@@ -110,12 +119,14 @@ class March(NamedTuple):
     verdict: int
     steps: int
     track: Track
+    turn: float
+    met: float
 
 
 SHORT = 3
 """Steps at rest within which a reversal counts as one without stick."""
 
-CLOSED, STALLED, LATE, LOST, RESTING, TIRED = 0, 1, 2, 3, 4, 5
+CLOSED, STALLED, LATE, LOST, RESTING, TIRED, TOO_FAST = 0, 1, 2, 3, 4, 5, 6
 
 
 # --- steppers -----------------------------------------------------------------------------------------------------
@@ -149,13 +160,13 @@ _smooth_step = dop853.stepper(_smooth_rates)
 @inner
 def _by_moreau(problem: Problem, node: Node, h: float) -> Advance:
     taken = _moreau_step(problem, node.k, node.x, node.v, h)
-    return Advance(taken.x, taken.v, taken.rubbed, taken.stuck, 1.0)
+    return Advance(taken.x, taken.v, taken.rubbed, taken.stuck, 1.0, node.z)
 
 
 @inner
 def _by_rk4(problem: Problem, node: Node, h: float) -> Advance:
     taken = _rk4_step(problem, node.k, node.x, node.v, h)
-    return Advance(taken.x, taken.v, taken.rubbed, taken.stuck, 1.0)
+    return Advance(taken.x, taken.v, taken.rubbed, taken.stuck, 1.0, node.z)
 
 
 @inner
@@ -172,14 +183,14 @@ def _by_smoothed(problem: Problem, node: Node, h: float) -> Advance:
     leap = length(taken.v - node.v)
     if growth >= 1.0 and leap > 2.0 * length(node.v - problem.belt_speed) + 8.0 * problem.width:
         growth = 0.5  # slip may have come and gone within the step: the error estimate can be blind to that
-    return Advance(taken.x, taken.v, taken.rubbed, False, growth)
+    return Advance(taken.x, taken.v, taken.rubbed, False, growth, node.z)
 
 
 # --- the record of an orbit ---------------------------------------------------------------------------------------
 
 
 @inner
-def _note_straight(problem: Problem, track: Track, node: Node, end: Advance, h: float) -> None:
+def note_straight(problem: Problem, track: Track, node: Node, end: Advance, h: float) -> None:
     """A step of which only the ends are known: velocity changes evenly, friction is its mean."""
     row, rub = track.filled[0], end.rubbed / h
     stray = end.x - node.x - 0.5 * h * (node.v + end.v)
@@ -211,11 +222,12 @@ def _note_curved(problem: Problem, track: Track, node: Node, end: Advance, h: fl
 
 
 class Marcher(NamedTuple):
-    """How one stepper advances and is noted, as kernel functions; and its name."""
+    """How one stepper advances and is noted, and what friction can hold, as kernel functions; and its name."""
 
     name: str
     advance: Any
     note: Any
+    held: Any
 
 
 def _named(name: str) -> Any:
@@ -235,7 +247,7 @@ def _named(name: str) -> Any:
 
 def marcher(stepper: Marcher) -> Any:
     """The kernel ``marched(law, body, way, x, v)`` of a stepper; numba caches none that is handed a function."""
-    name, advance, note = stepper
+    name, advance, note, held = stepper
     inner_of = _named(name)
 
     @inner_of  # type: ignore[untyped-decorator]
@@ -258,16 +270,17 @@ def marcher(stepper: Marcher) -> Any:
         return high
 
     @inner_of  # type: ignore[untyped-decorator]
-    def lap(problem: Problem, way: Way, x: Any, v: Any, h: float, track: Track) -> Lap:
+    def lap(problem: Problem, way: Way, start: Node, h: float, track: Track) -> Lap:
         """From tau = 0 once around."""
-        end, tau, k, steps = way.span, 0.0, 0, 0
+        x, v, z = start.x, start.v, start.z
+        end, tau, k, steps, turn, met = way.span, 0.0, 0, 0, 0.0, 0.0
         rubbed, stuck, dip, bend, crossings, peak, crossed = 0.0 * x, 0.0, 1e300, 1.0, 0, 0.0, False
         w, resting, lingered = v - problem.belt_speed, 0, 0.0
         speed, before, swing, mark = length(w), -1.0, length(v), 2.0 * math.pi
-        marked, held = rubbed, stuck
+        marked, halted = rubbed, stuck
         while tau < end and steps < way.work:
             last = end - tau <= h * (1.0 + 1e-9)
-            node, step = Node(k, tau, x, v), end - tau if last else h
+            node, step = Node(k, tau, x, v, z), end - tau if last else h
             taken = advance(problem, node, step)
             steps += 1
             if taken.growth < 1.0:
@@ -279,7 +292,7 @@ def marcher(stepper: Marcher) -> Any:
                 taken = advance(problem, node, step)
             if way.room > 0 and track.filled[0] < way.room:
                 note(problem, track, node, taken, step)
-            x, v = taken.x, taken.v
+            x, v, z = taken.x, taken.v, taken.z
             rubbed = rubbed + taken.rubbed
             stuck += step if taken.stuck else 0.0
             k += 1 if way.driven else 0
@@ -289,6 +302,8 @@ def marcher(stepper: Marcher) -> Any:
             if before >= speed < slip and turned > 0.0 and speed < dip:
                 dip, bend = speed, (before - 2.0 * speed + slip) / (step * step)
             crossings += 1 if turned < 0.0 and not crossed and resting <= SHORT else 0
+            turn = max(turn, length(ahead - w) / step) if turned < 0.0 else turn
+            met = max(met, slip)
             crossed = turned < 0.0
             before = speed if turned > 0.0 else -1.0
             peak = max(peak, length(taken.rubbed) / step)
@@ -297,21 +312,27 @@ def marcher(stepper: Marcher) -> Any:
             w = ahead if slip > 0.0 else w
             if back:
                 return Lap(
-                    x, v - v.real, rubbed, stuck, tau, dip, bend, crossings, peak, lingered, h, steps, True
-                )
+                    x, v - v.real, rubbed, stuck, tau, dip, bend, crossings, peak, lingered, h, steps, True,
+                    z, turn, met,
+                )  # fmt: skip
             h = min(h * taken.growth, way.reach) if taken.growth > 1.0 else h
             if not way.driven:
                 swing = max(swing, length(v))
                 if tau >= mark:  # a mass at rest in the spring never returns
                     late = tau - mark + 2.0 * math.pi
                     if swing <= 1e-12 * (length(x) + 1e-3):
-                        rubbed, stuck = rubbed - marked, stuck - held
+                        rubbed, stuck = rubbed - marked, stuck - halted
                         return Lap(
-                            x, v, rubbed, stuck, late, dip, bend, crossings, peak, lingered, 0.0, steps, False
-                        )
-                    marked, held, mark, swing = rubbed, stuck, tau + 2.0 * math.pi, 0.0
+                            x, v, rubbed, stuck, late, dip, bend, crossings, peak, lingered, 0.0, steps, False,
+                            z, turn, met,
+                        )  # fmt: skip
+                    marked, halted, mark, swing = rubbed, stuck, tau + 2.0 * math.pi, 0.0
+            if slip > way.fastest:
+                break
         done = way.driven and tau >= end
-        return Lap(x, v, rubbed, stuck, tau, dip, bend, crossings, peak, lingered, h, steps, done)
+        return Lap(
+            x, v, rubbed, stuck, tau, dip, bend, crossings, peak, lingered, h, steps, done, z, turn, met
+        )
 
     @inner_of  # type: ignore[untyped-decorator]
     def marched(law: Any, body: Body, way: Way, x: Any, v: Any) -> March:
@@ -321,26 +342,32 @@ def marcher(stepper: Marcher) -> Any:
         rubs = np.empty(way.most, np.complex128)
         stuck, duration, gaps = np.empty(way.most), np.empty(way.most), np.empty(way.most)
         track = track_of(way.room)
-        xs[0], vs[0] = x + 0j, v + 0j
-        one = Lap(x, v, 0.0 * x, 0.0, 0.0, 1e300, 1.0, 0, 0.0, 0.0, way.first, 0, True)
+        zs = np.empty(way.most + 1, np.complex128)
+        z = way.z + 0.0 * x
+        xs[0], vs[0], zs[0] = x + 0j, v + 0j, z + 0j
+        one = Lap(x, v, 0.0 * x, 0.0, 0.0, 1e300, 1.0, 0, 0.0, 0.0, way.first, 0, True, z, 0.0, 0.0)
         carried = 0.0
         distance, good, steps, verdict, n = 1e300, 0, 0, LATE, 0
         drift = (
             abs(way.belt_speed) * way.span * (body.stiffness_mean + body.stiffness_split) / body.normal_load
         )
         while n < way.most and verdict == LATE:
-            one = lap(problem, way, one.x + carried, one.v, one.step, track)
+            one = lap(problem, way, Node(0, 0.0, one.x + carried, one.v, one.z), one.step, track)
             carried = 0.0
             steps += one.steps
-            xs[n + 1], vs[n + 1], rubs[n] = one.x + 0j, one.v + 0j, one.rubbed + 0j
+            xs[n + 1], vs[n + 1], zs[n + 1], rubs[n] = one.x + 0j, one.v + 0j, one.z + 0j, one.rubbed + 0j
             stuck[n], duration[n] = one.stuck, one.duration
             n += 1
-            if not squared(body, one.x, one.v) < 1e300:
+            if one.met > way.fastest:
+                verdict = TOO_FAST
+            elif not squared(body, one.x, one.v) < 1e300:
                 verdict = LOST
             elif not one.returned:
                 verdict = RESTING if one.step == 0.0 else LOST if one.steps < way.work else TIRED
             elif n >= way.stride:
-                gap = math.sqrt(squared(body, xs[n] - xs[n - way.stride], vs[n] - vs[n - way.stride]))
+                bent = abs(zs[n] - zs[n - way.stride])
+                gap = squared(body, xs[n] - xs[n - way.stride], vs[n] - vs[n - way.stride])
+                gap = math.sqrt(gap + way.bristles * bent * bent)
                 gaps[n - 1] = gap
                 floor = 4e-16 * math.sqrt((100.0 + one.steps) * squared(body, one.x, one.v))
                 distance = _distance(gaps, n, way, floor)
@@ -350,7 +377,7 @@ def marcher(stepper: Marcher) -> Any:
                 elif (
                     way.driven and one.stuck > 0.999999 * way.span
                 ):  # carried by the belt: not before release
-                    many = math.floor((law.static_friction() - one.peak) / drift) - 1.0
+                    many = math.floor((held(law) - one.peak) / drift) - 1.0
                     if way.stride == 1 and many > 1.0:
                         carried = many * way.span * way.belt_speed
                 elif _stalled(body, gaps, xs, vs, n, way):
@@ -358,8 +385,10 @@ def marcher(stepper: Marcher) -> Any:
                 elif steps > way.work:
                     verdict = TIRED
         return March(
-            xs[: n + 1], vs[: n + 1], rubs[:n], stuck[:n], duration[:n], one.dip, one.bend, one.crossings,
-            one.lingered, _rate(gaps, n, way.stride), distance, verdict, steps, track,
+            xs[: n + 1], vs[: n + 1], zs[: n + 1], rubs[:n], stuck[:n], duration[:n],
+            one.dip, one.bend, one.crossings, one.lingered, _rate(gaps, n, way.stride), distance, verdict, steps,
+            track,
+            one.turn, one.met,
         )  # fmt: skip
 
     return marched
@@ -403,6 +432,12 @@ def _stalled(body: Body, gaps: Any, xs: Any, vs: Any, n: int, way: Way) -> bool:
     return late > 0.98 * early and led < 0.3 * late / way.stride
 
 
-march_moreau = marcher(Marcher("moreau", _by_moreau, _note_straight))
-march_rk4 = marcher(Marcher("rk4", _by_rk4, _note_straight))
-march_smoothed = marcher(Marcher("smoothed", _by_smoothed, _note_curved))
+@inner
+def _at_rest(law: Any) -> float:
+    """What friction of a law without memory can hold."""
+    return law.static_friction()
+
+
+march_moreau = marcher(Marcher("moreau", _by_moreau, note_straight, _at_rest))
+march_rk4 = marcher(Marcher("rk4", _by_rk4, note_straight, _at_rest))
+march_smoothed = marcher(Marcher("smoothed", _by_smoothed, _note_curved, _at_rest))

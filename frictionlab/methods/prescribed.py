@@ -1,8 +1,7 @@
-"""Friction without memory under a prescribed slip: quadrature to rounding, along the belt a closed form."""
+"""Friction under a prescribed slip; without memory by quadrature to rounding, along the belt a closed form."""
 
 from __future__ import annotations
 
-import cmath
 import math
 import time
 from collections.abc import Sequence
@@ -12,7 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Answers, Floats, Orbit, Status
+from frictionlab.methods.prescribed_bristle import BristlePoint
+from frictionlab.methods.prescribed_motion import (
+    Reading,
+    prescribed_columns,
+    slow_passages,
+    undecided_columns,
+)
 from frictionlab.orbit import NODES, WEIGHTS
 from frictionlab.scene import Motion, Scene
 from frictionlab.theory import mean_prescribed_longitudinal
@@ -37,10 +44,9 @@ class Integrals(NamedTuple):
 
 def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer scenes of prescribed slip that differ in belt speed alone."""
-    start = time.perf_counter()
-    rows = [_Point(scene, law) for scene in scenes]
+    rows = [_point(scene, law, tolerance) for scene in scenes]
     columns = {name: np.array([row.columns[name] for row in rows]) for name in rows[0].columns}
-    columns["seconds"] = np.full(len(rows), (time.perf_counter() - start) / len(rows))
+    columns["seconds"] = np.array([row.seconds for row in rows])
     for row in rows:
         if row.status == "ok" and row.columns["error"] > tolerance:
             row.reason = (
@@ -56,6 +62,12 @@ def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
     )
 
 
+def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> _Point | BristlePoint:
+    if isinstance(law, BristleLaw):
+        return BristlePoint(scene, law, tolerance)
+    return _Point(scene, law)
+
+
 class _Point:
     """One scene of prescribed slip and its answer."""
 
@@ -66,7 +78,9 @@ class _Point:
         self.size = scene.slip.velocity_amplitude if scene.slip is not None else 0.0
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind = "", "", "guaranteed"
+        start = time.perf_counter()
         self.columns = self._answer()
+        self.seconds = time.perf_counter() - start
 
     def _answer(self) -> dict[str, float]:
         if self.belt_speed == 0.0 and self.along == 0.0 and self.across == 0.0:
@@ -114,38 +128,13 @@ class _Point:
         self.status, self.error_kind = "not_unique", ""
         self.model = "closed form"
         self.reason = "nothing moves: friction at rest may be anything up to mu"
-        nothing = dict.fromkeys(self._row(0j, 0.0, Integrals(0j, 0.0, 0.0, 0.0, 0j)), math.nan)
         most = _friction_at_rest(self.law)
-        return nothing | {"mean_low": -most, "mean_high": most, "window": 1.0}
+        return undecided_columns(self.motion, -most, most)
 
     def _row(self, mean: complex, error: float, found: Integrals) -> dict[str, float]:
-        """Every column that applies; nothing is driven or damped, so no energy is put in or lost to viscosity."""
-        load = self.motion.normal_load
         turns = 2.0 if abs(self.belt_speed) < abs(self.along) else 0.0
-        nan, a, c = math.nan, abs(self.along), abs(self.across)
-        return {
-            "mean_friction": mean.real,
-            "error": error,
-            "mean_low": nan,
-            "mean_high": nan,
-            "window": nan,
-            "mean_friction_transverse": mean.imag if self.planar else nan,
-            "velocity_amplitude": a,
-            "velocity_harmonic": a,
-            "velocity_phase": nan,
-            "transverse_velocity_amplitude": c if self.planar else nan,
-            "transverse_velocity_harmonic": c if self.planar else nan,
-            "transverse_velocity_phase": nan,
-            "stick_fraction": 0.0,
-            "reversals": turns,
-            "force_reversals": turns,
-            "energy_input": nan,
-            "energy_viscous": nan,
-            "energy_friction": load * found.taken,
-            "energy_contact": load * found.contact,
-            "period": 1.0,
-            "floquet": nan,
-        }
+        read = Reading(mean, error, found.contact, found.taken, turns, turns)
+        return prescribed_columns(self.motion, self.planar, read)
 
     def orbit(self) -> Orbit | None:
         """The prescribed motion and the friction along it."""
@@ -169,21 +158,6 @@ def orbit_of_slip(motion: Motion, belt_speed: float, law: FrictionLaw, position:
 def slip_edges(motion: Motion, belt_speed: float) -> Floats:
     """Angles between which the friction is analytic far enough around every panel."""
     return graded_circle(slow_passages(motion.velocity, motion.transverse_velocity, belt_speed))
-
-
-def slow_passages(along: complex, across: complex, belt_speed: float) -> list[tuple[float, float]]:
-    """Where in the complex plane of the angle the slip speed vanishes: (angle, distance from the real axis).
-
-    |slip|^2 is the product of slip_1 + i slip_2 and slip_1 - i slip_2; each is p z - belt_speed + q/z in
-    z = exp(i angle), and their zeros mirror each other in the real axis.
-    """
-    p, q = -0.5j * along + 0.5 * across, 0.5j * along.conjugate() - 0.5 * across.conjugate()
-    root = cmath.sqrt(belt_speed * belt_speed - 4.0 * p * q)
-    larger = max(belt_speed + root, belt_speed - root, key=abs)
-    zeros = [
-        top / bottom for top, bottom in ((larger, 2.0 * p), (2.0 * q, larger)) if top != 0 and bottom != 0
-    ]
-    return [(cmath.phase(z), abs(math.log(abs(z)))) for z in zeros]
 
 
 def graded_circle(passages: list[tuple[float, float]]) -> Floats:

@@ -89,7 +89,7 @@ def answer_line(
     low, high = bounds(Line(0.5 * mass.damping, mass.frequency, friction, free), np.abs(speeds))
     for i in np.flatnonzero(high - low > WIDEST).tolist():
         low[i], high[i] = _narrowed(scenes[i], law, low[i], high[i])
-    columns = _columns(scenes[0], speeds, found)
+    columns = motion_columns(scenes[0], speeds, found)
     columns["mean_friction"] = mu * np.copysign(found.mean, speeds)
     columns["error"] = mu * (np.maximum(high - found.mean, found.mean - low) + ROUNDING)
     columns["seconds"] = np.full(len(scenes), (time.perf_counter() - start) / len(scenes))
@@ -146,7 +146,7 @@ def _too_wide(width: float, mu: float) -> str:
     )
 
 
-def _columns(scene: Scene, speeds: Floats, found: Harmonic) -> dict[str, Floats]:
+def motion_columns(scene: Scene, speeds: Floats, found: Harmonic) -> dict[str, Floats]:
     """Every column that one harmonic gives."""
     force, size = scene.mass().force, np.abs(found.velocity)
     turns = np.where(np.abs(speeds) < friction_free_velocity(scene), 2.0, 0.0)

@@ -7,9 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from frictionlab.laws.bristle import BristleLaw
+from frictionlab.methods.bristle_limits import fewest_steps
 from frictionlab.methods.halving import FEWEST, REVERSING, SMOOTH, STICKING, bias, first_error, limit_of
 from frictionlab.methods.marcher import Pace, Run, Walker
-from frictionlab.methods.marching import CLOSED, LATE, STALLED, TIRED
+from frictionlab.methods.marching import CLOSED, LATE, STALLED, TIRED, TOO_FAST
 
 COARSEST, WORK = 64, 16_000_000
 """Steps per period to begin with, and steps in all that a point may cost, where ``steps`` is left out."""
@@ -79,7 +81,7 @@ def _by_given_steps(walker: Walker, plan: Plan, tolerance: float) -> Found:
 
 def _by_halving(walker: Walker, plan: Plan, tolerance: float) -> Found:
     """Steps are doubled until the error is below the tolerance or the work is done."""
-    steps, work = COARSEST * _slowness(walker), 0
+    steps, work = _coarsest(walker, plan), 0
     runs: list[Run] = []
     best: Found | None = None
     while best is None or best.error > tolerance:
@@ -156,13 +158,29 @@ def crossing(walker: Walker, run: Run) -> float:
     """
     per_period = run.pace.steps * run.period / walker.lap
     slip = walker.law.sliding_friction(0.0)
-    release = walker.law.static_friction() - slip if run.stuck > 0.0 else 0.0
+    if walker.bristles is not None:
+        return slip * run.crossings / per_period * _unresolved(walker.bristles, run)
+    release = walker.at_rest - slip if run.stuck > 0.0 else 0.0
     return (slip * run.crossings + release * run.stride) / per_period
+
+
+def _unresolved(law: BristleLaw, run: Run) -> float:
+    """How much of the impulse of the step in which slip reverses is in doubt: bristles take time to bend back.
+
+    Until slip that gathers speed at the rate a has covered the presliding length d: sqrt(2 d/a). A step h misplaces
+    a path of at most a h^2/8 to either side, a part (h/time)^2/4 of that length, and for as long as that time the
+    friction is off by this part of its jump, 2 at most.
+    """
+    step = run.period / run.stride / run.pace.steps if run.pace.steps else 0.0
+    if run.turn == 0.0:
+        return 0.0
+    bending = math.sqrt(2.0 * law.presliding() / run.turn)
+    return min(1.0, 0.5 * step / bending)
 
 
 def _creep(walker: Walker, run: Run) -> float:
     """Where creep hides stick, friction may have any value while it does."""
-    return 2.0 * walker.law.static_friction() * run.creeping
+    return 2.0 * walker.at_rest * run.creeping
 
 
 def _unseen(walker: Walker, runs: Sequence[Run]) -> float:
@@ -188,6 +206,14 @@ def _unseen(walker: Walker, runs: Sequence[Run]) -> float:
     return 2.0 * walker.law.sliding_friction(0.0) * lasts / fine.period
 
 
+def _coarsest(walker: Walker, plan: Plan) -> int:
+    """Steps to begin with: what the motion asks for, and what the stepper needs not to explode."""
+    steps = COARSEST * _slowness(walker)
+    if walker.bristles is None:
+        return steps
+    return max(steps, fewest_steps(walker.scene, walker.bristles, plan.stepper))
+
+
 def _slowness(walker: Walker) -> int:
     """Steps are counted per period; a slow drive needs more of them for the body's own motion."""
     mass = walker.mass
@@ -209,7 +235,7 @@ def restless(runs: Sequence[Run], walker: Walker) -> bool:
     """
     early, last = runs[max(0, len(runs) - 3)], runs[-1]
     spread = last.high - last.low
-    seen = last.verdict == STALLED == early.verdict and spread > 1e-3 * walker.law.static_friction()
+    seen = last.verdict == STALLED == early.verdict and spread > 1e-3 * walker.at_rest
     return not walker.converges and seen and spread > 0.5 * (early.high - early.low)
 
 
@@ -220,6 +246,8 @@ def why_not(run: Run) -> str:
             f"still changes by {run.drift:.1e} a period after {run.laps} periods (at most {run.pace.most}); "
             f"give more periods"
         )
+    if run.verdict == TOO_FAST:
+        return f"slips faster, at {run.met:.3g}, than {run.pace.steps} steps per period are stable for"
     if run.verdict == TIRED:
         return f"does not repeat within {run.steps:.1g} steps ({run.laps} periods); give fewer or wider ones"
     return f"is lost after {run.laps} periods: it grows without bound, or never returns; give shorter steps"

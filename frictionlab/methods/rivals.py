@@ -46,7 +46,7 @@ class Search:
     def reached(self) -> tuple[list[Reached], str]:
         """Where every start led, the first one's first, equal ones the same object; why one led nowhere, or ''."""
         scene, walker = self.walker.scene, self.walker
-        known, limit = [self.first], walker.mass.normal_load * walker.law.static_friction()
+        known, limit = [self.first], walker.mass.normal_load * walker.at_rest
         enough = min(self.like.pace.enough, SHUT * walker.mass.normal_load)
         pace = replace(self.like.pace, rate=0.0, enough=enough, work=max(self.like.pace.work, WORK))
         for start in starts(scene, limit)[1:]:
@@ -62,7 +62,7 @@ class Search:
         mean, like, spread = run.mean.real, self.like, run.high - run.low
         noise = 2.0 * self._steps if self.first.period > 0 else 0.0
         if run.verdict == STALLED:
-            noise = max(noise, NOISE * self.walker.law.static_friction())
+            noise = max(noise, NOISE * self.walker.at_rest)
             noise = max(noise, 2.0 * (like.high - like.low) if like.verdict == STALLED else 0.0)
         if spread <= noise or (run.verdict == CLOSED and run.stride == 1):
             return Reached(1, mean, mean, mean, run.laps)
@@ -79,7 +79,7 @@ class Search:
     def _steps(self) -> float:
         """What the steps may have done to a mean."""
         if self.walker.stepper == "smoothed":  # no grid, and a bias that both runs share
-            return 1e-5 * self.walker.law.static_friction()
+            return 1e-5 * self.walker.at_rest
         beside = abs(self.like.mean.real - self.answer.mean.real)
         return self.answer.error + beside + crossing(self.walker, self.like)
 
@@ -122,6 +122,6 @@ def first_reached(walker: Walker, answer: Found) -> Reached:
     alike = last.verdict != CLOSED or last.stride == 1
     if alike or walker.follows_the_drive or walker.scene.undriven:
         return Reached(1, mean, mean, mean, last.laps)
-    noise = min(answer.error, NOISE * walker.law.static_friction())
+    noise = min(answer.error, NOISE * walker.at_rest)
     period = 1 if last.high - last.low <= noise else last.stride
     return Reached(period, mean, last.low, last.high, last.laps)

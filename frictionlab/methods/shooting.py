@@ -10,18 +10,20 @@ from typing import ClassVar
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.attractors import attractors, closed_orbit, multiplier, told
 from frictionlab.methods.base import Answers, Floats, Method, Orbit, Status
-from frictionlab.methods.closer import Closer
+from frictionlab.methods.closer import Closer, along_the_belt
 from frictionlab.methods.curve import MOST_PERIODS, Curve
 from frictionlab.methods.limit_cycle import solve_undriven
 from frictionlab.methods.prescribed import solve_prescribed
+from frictionlab.methods.prescribed_bristle import refusal_of_prescribed
 from frictionlab.orbit import READ
 from frictionlab.scene import Scene
 
 
 class Shooting(Method):
-    """Shooting on the period map of any sliding law, on the line and in the plane.
+    """Shooting on the period map of any law without memory or with a bristle, on the line and in the plane.
 
     Integrates the deviation from the friction-free response by DOP853 (Hairer, Norsett & Wanner, 1993) with the
     instants of stick and release resolved, and closes the orbit by Broyden's method (1965) with Newton and Picard
@@ -35,9 +37,13 @@ class Shooting(Method):
     name: ClassVar[str] = "shooting"
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Friction with memory; an undriven start across the belt."""
-        if not isinstance(law, SlidingLaw):
-            return "shooting needs friction without memory (a sliding law)"
+        """Other memory than a bristle's; bristles where nothing drives; an undriven start across the belt."""
+        if isinstance(law, BristleLaw) and scene.degrees_of_freedom == 0:
+            return refusal_of_prescribed(scene, law)
+        if not isinstance(law, SlidingLaw | BristleLaw):
+            return "shooting needs friction without memory, or with one bristle deflection"
+        if isinstance(law, BristleLaw):
+            return _refusal_with_a_bristle(scene, law)
         if scene.undriven and (scene.start.x2 != 0.0 or scene.start.velocity2 != 0.0):
             return "undriven scenes are followed along the belt alone: leave initial.x2 and velocity2 at 0"
         return None
@@ -48,10 +54,10 @@ class Shooting(Method):
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer a curve by continuation in belt speed."""
-        assert isinstance(law, SlidingLaw)
         if scenes[0].degrees_of_freedom == 0:
             return solve_prescribed(scenes, law, tolerance)
         if scenes[0].undriven:
+            assert isinstance(law, SlidingLaw)
             return solve_undriven(scenes, law, tolerance)
         closer = Closer(scenes[0], law, tolerance)
         found = Found.empty(scenes)
@@ -60,8 +66,12 @@ class Shooting(Method):
         if moving:
             found.take(moving, scenes[0], *closer.closed([scenes[i] for i in moving]))
         for i in moving if not closer.goal.contracts else ():
-            found.hold_to_other_starts(i, closer, scenes[i])
+            if isinstance(law, BristleLaw) and found.holds_elastically(i, scenes[i], law):
+                found.leave_elastic(i, law)
+            elif isinstance(law, SlidingLaw) or not closer.falls_slowly or not found.attracts(i):
+                found.hold_to_other_starts(i, closer, scenes[i])
         for i in resting:
+            assert isinstance(law, SlidingLaw)
             start = scenes[i].initial
             settled = closer.settled(start) if start is not None else None
             if settled is None:
@@ -78,7 +88,7 @@ class Shooting(Method):
         return Answers(
             found.status,
             found.reason,
-            [_model(scenes[0])] * len(scenes),
+            [_model(scenes[0], closer)] * len(scenes),
             ["estimated" if status == "ok" else "" for status in found.status],
             found.columns,
             lambda i: _orbit(closer, scenes[i], found.states[i]),
@@ -119,9 +129,26 @@ class Found:
                 self._range(i, curve.results[row, 0], curve.results[row, 0])
             else:
                 self._put(i, curve, row)
-                self.columns["floquet"][i] = (
-                    multipliers[row] if curve.states.shape[1] == _size(scene) else np.nan
-                )
+                self.columns["floquet"][i] = multipliers[row] if _whole(curve, scene) else np.nan
+
+    def attracts(self, i: int) -> bool:
+        """Whether the answer is an orbit that no small disturbance leaves, to the accuracy of its multipliers."""
+        return self.status[i] == "ok" and not self.columns["floquet"][i] > 1.0 + 1e-6
+
+    def holds_elastically(self, i: int, scene: Scene, law: BristleLaw) -> bool:
+        """Whether on a belt at rest the bristle only follows the mass: nothing then decides about its mean."""
+        if scene.belt_speed != 0.0 or law.elastic_deflection() == 0.0:
+            return False
+        return self.status[i] != "ok" or bool(self.columns["floquet"][i] > 1.0 - 1e-6)
+
+    def leave_elastic(self, i: int, law: BristleLaw) -> None:
+        """A bristle that never yields on a belt at rest: its mean deflection depends on the start."""
+        most = abs(law.friction(0.0, law.elastic_deflection(), 0.0))
+        self._clear(i)
+        self._range(i, -most, most)
+        self.reason[i] = (
+            "the belt is at rest and the bristle holds the loads elastically: its mean depends on the start"
+        )
 
     def hold_to_other_starts(self, i: int, closer: Closer, scene: Scene) -> None:
         """Keep an answer only where every start reaches it; else the one reached from scene.initial, or none."""
@@ -181,8 +208,20 @@ class Found:
                 self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
 
 
-def stays_at_rest(scene: Scene, law: SlidingLaw) -> bool:
-    """Whether friction can hold the loads for ever on a belt at rest."""
+def _refusal_with_a_bristle(scene: Scene, law: BristleLaw) -> str | None:
+    if scene.undriven:
+        return (
+            "shooting follows undriven scenes for friction without memory alone: use march, or give a drive"
+        )
+    if not along_the_belt(scene, law) and law.planar == "vectorial" and law.no_vector_form():
+        return law.no_vector_form()
+    return None
+
+
+def stays_at_rest(scene: Scene, law: FrictionLaw) -> bool:
+    """Whether friction can hold the loads for ever on a belt at rest; a bristle always gives a little."""
+    if not isinstance(law, SlidingLaw):
+        return False
     return scene.belt_speed == 0.0 and resting_range(scene, law) >= 0.0
 
 
@@ -214,12 +253,12 @@ def resting_range(scene: Scene, law: SlidingLaw) -> float:
 
 def _largest(curve: Curve, scene: Scene) -> float:
     """The largest Floquet multiplier, where those of every degree of freedom are known."""
-    return multiplier(curve) if curve.states.shape[1] == _size(scene) else math.nan
+    return multiplier(curve) if _whole(curve, scene) else math.nan
 
 
-def _size(scene: Scene) -> int:
-    """Of a state that has every degree of freedom: along the line, multipliers across the belt are left out."""
-    return 2 * scene.degrees_of_freedom
+def _whole(curve: Curve, scene: Scene) -> bool:
+    """Whether states have every degree of freedom: along the line, multipliers across the belt are left out."""
+    return curve.states.shape[1] in ((2, 3) if scene.degrees_of_freedom == 1 else (4, 6))
 
 
 def _undamped(scene: Scene) -> bool:
@@ -231,10 +270,17 @@ def _at_rest(curve: Curve, row: int) -> bool:
     return bool(curve.results[row, 4] > 1.0 - 1e-9)
 
 
-def _model(scene: Scene) -> str:
-    if scene.degrees_of_freedom == 2 and scene.load_along_belt_only:
-        return "shooting, one degree of freedom: with no load across the belt x2 dies out"
-    return f"shooting, {'two degrees' if scene.degrees_of_freedom == 2 else 'one degree'} of freedom"
+def _model(scene: Scene, closer: Closer) -> str:
+    directions = "two degrees" if isinstance(closer.like, complex) else "one degree"
+    if scene.degrees_of_freedom == 2 and directions == "one degree":
+        model = "shooting, one degree of freedom: with no load across the belt x2 dies out"
+    else:
+        model = f"shooting, {directions} of freedom"
+    if not isinstance(closer.law, BristleLaw):
+        return model
+    if directions == "one degree" and closer.law.exact_path():
+        return f"{model}; deflection as a function of the way slid"
+    return f"{model}; mass and bristle solved for together (Rodas5P)"
 
 
 def _orbit(closer: Closer, scene: Scene, state: Floats | None) -> Orbit | None:

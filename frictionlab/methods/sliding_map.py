@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from frictionlab.kernel import by_dimension, fast, inner, length
 from frictionlab.methods.steppers.dop853 import State, stepper
 from frictionlab.methods.track import Track
+from frictionlab.methods.turning import reference_acceleration, turning
 from frictionlab.orbit import NODES
 from frictionlab.scene import Body
 from frictionlab.scene import restoring_force as _restoring_force
@@ -51,7 +52,7 @@ MOST_STEPS = 200_000
 
 
 @fast
-def _turned(problem: Problem, tau: float) -> Any:
+def turned(problem: Problem, tau: float) -> Any:
     """Sine and cosine of Omega*tau from those at the anchor, at most one radian away (Taylor, to rounding)."""
     angle = problem.body.frequency * (tau - problem.anchor)
     q = angle * angle
@@ -76,15 +77,15 @@ def _anchored(law: Any, body: Body, belt_speed: float, side: float, tau: float) 
 
 
 @fast
-def _reference_velocity(body: Body, sine: float, cosine: float) -> Any:
+def reference_velocity(body: Body, sine: float, cosine: float) -> Any:
     return body.frequency * (body.reference_sine * cosine - body.reference_cosine * sine)
 
 
 @fast
 def slip(problem: Problem, tau: float, u: Any) -> Any:
     """Slip velocity: of the mass against the belt."""
-    sine, cosine = _turned(problem, tau)
-    return u + _reference_velocity(problem.body, sine, cosine) - problem.belt_speed
+    sine, cosine = turned(problem, tau)
+    return u + reference_velocity(problem.body, sine, cosine) - problem.belt_speed
 
 
 def _friction_on_the_line(problem: Problem, w: float) -> Any:
@@ -102,8 +103,8 @@ _friction = by_dimension(_friction_on_the_line, _friction_in_the_plane)
 def rates(problem: Problem, tau: float, y: Any, u: Any) -> Any:
     """Acceleration of the deviation, and the friction coefficient."""
     body = problem.body
-    sine, cosine = _turned(problem, tau)
-    rub = _friction(problem, u + _reference_velocity(body, sine, cosine) - problem.belt_speed)
+    sine, cosine = turned(problem, tau)
+    rub = _friction(problem, u + reference_velocity(body, sine, cosine) - problem.belt_speed)
     force = body.force_sine * sine + body.force_cosine * cosine
     return force - restoring_force(body, y, u) - body.normal_load * rub, rub
 
@@ -112,10 +113,9 @@ step = stepper(rates)
 
 
 @fast
-def _slip_rate(problem: Problem, tau: float, a: Any) -> Any:
-    sine, cosine = _turned(problem, tau)
-    body = problem.body
-    return a - body.frequency**2 * (body.reference_sine * sine + body.reference_cosine * cosine)
+def slip_rate(problem: Problem, tau: float, a: Any) -> Any:
+    sine, cosine = turned(problem, tau)
+    return a + reference_acceleration(problem.body, sine, cosine)
 
 
 @fast
@@ -126,7 +126,7 @@ def squared(body: Body, x: Any, v: Any) -> float:
 
 
 @inner
-def _growth(body: Body, taken: Any, accuracy: float) -> float:
+def growth_of(body: Body, taken: Any, accuracy: float) -> float:
     """By how much to change the step: below one, it is to be repeated (Hairer et al., 1993, II.10)."""
     fifth = squared(body, taken.x_error5, taken.v_error5)
     third = squared(body, taken.x_error3, taken.v_error3)
@@ -336,50 +336,11 @@ class Landing(NamedTuple):
 REPEAT, ACCEPT, REST, STILL = 0, 1, 2, 3
 
 
-@inner
-def _land(problem: Problem, tau: float, state: State, low: float, high: float) -> Landing:
-    """The zero of the slip velocity between two step sizes with slip before and none after (safeguarded Newton)."""
-    h = high
-    taken = step(problem, tau, state, h)
-    for _ in range(60):
-        w = problem.side * slip(problem, tau + h, taken.v)
-        low, high = (h, high) if w > 0.0 else (low, h)
-        a, _rub = rates(problem, tau + h, taken.x, taken.v)
-        slope = problem.side * _slip_rate(problem, tau + h, a)
-        trial = h - w / slope if slope < 0.0 else low
-        if not low < trial < high:
-            trial = 0.5 * (low + high)
-        done = abs(trial - h) <= 4e-16 * (tau + h)
-        h = trial
-        taken = step(problem, tau, state, h)
-        if done or high - low <= 4e-16 * (tau + h):
-            break
-    return Landing(REST, h, State(taken.x, taken.v, taken.v, taken.v), taken.rubbed)
+stop, lowest = turning(step, rates, slip, turned)
 
 
 @inner
-def _lowest(problem: Problem, tau: float, state: State, h: float) -> float:
-    """Step size at which slip is slowest inside a step whose slip falls first and rises last (on the line)."""
-    low, high, middle = 0.0, h, h
-    at_low = problem.side * _slip_rate(problem, tau, state.a)
-    at_high = 0.0
-    for _ in range(50):
-        taken = step(problem, tau, state, middle)
-        a, _rub = rates(problem, tau + middle, taken.x, taken.v)
-        value = problem.side * _slip_rate(problem, tau + middle, a)
-        if value > 0.0:
-            high, at_high = middle, value
-        else:
-            low, at_low = middle, value
-        if high - low < 1e-13 * h or value == 0.0:
-            break
-        linear = low - at_low * (high - low) / (at_high - at_low)
-        middle = min(max(linear, low + 0.01 * (high - low)), high - 0.01 * (high - low))
-    return middle
-
-
-@inner
-def _dips(w0: complex, rate0: complex, w1: complex, rate1: complex, h: float) -> bool:
+def dips(w0: complex, rate0: complex, w1: complex, rate1: complex, h: float) -> bool:
     """Whether the slip comes much closer to rest between two nodes than at either (cubic Hermite, in the plane)."""
     close = 0.0625 * min(w0.real**2 + w0.imag**2, w1.real**2 + w1.imag**2)
     for s in (0.25, 0.5, 0.75):
@@ -408,7 +369,7 @@ def _before_in_the_plane(problem: Problem, node: Node, accuracy: float, h: float
     limit = body.normal_load * problem.law.sliding_friction(0.0)
     if speed < math.sqrt(accuracy * limit) or speed < 1e-2 * accuracy:
         pull, belt = _pull(body), complex(problem.belt_speed)
-        x = y + _reference(body, node.tau)
+        x = y + reference(body, node.tau)
         held, rate, _bend = _held(body, pull, node.tau, x, belt)
         margin = limit - abs(held)
         sure = speed * speed < 0.1 * accuracy * margin and 10.0 * speed * abs(rate) < margin * abs(margin)
@@ -417,7 +378,7 @@ def _before_in_the_plane(problem: Problem, node: Node, accuracy: float, h: float
             end = node.tau + wait
             path = 0.5 * wait * w
             rubbed = (w + _held_impulse(body, pull, node.tau, end, x, belt)) / body.normal_load
-            y = x + wait * belt + path - _reference(body, end)
+            y = x + wait * belt + path - reference(body, end)
             return Landing(REST, wait, State(y, w, w, w), rubbed)
     h = min(h, 4.0 * speed / limit)  # slip turns towards the force at the rate limit/speed: stay stable
     return Landing(ACCEPT, min(h, 0.9 * speed / closing) if closing > 0.0 else h, node.state, y)
@@ -437,11 +398,12 @@ def _after_on_the_line(
     if after <= 0.0 and leaving:
         return Landing(REPEAT if h * problem.body.frequency > 1e-12 else REST, 0.25 * h, state, 0.0)
     a, f = rates(problem, node.tau + h, taken.x, taken.v)
-    if after > 0.0 and not leaving and side * node.rate < 0.0 < side * _slip_rate(problem, node.tau + h, a):
-        limit = _lowest(problem, node.tau, state, h)
+    if after > 0.0 and not leaving and side * node.rate < 0.0 < side * slip_rate(problem, node.tau + h, a):
+        limit = lowest(problem, node.tau, state, side * node.rate, h)
         after = side * slip(problem, node.tau + limit, step(problem, node.tau, state, limit).v)
     if after <= 0.0:
-        return _land(problem, node.tau, state, 0.0, limit)
+        h, taken = stop(problem, node.tau, state, 0.0, limit)
+        return Landing(REST, h, State(taken.x, taken.v, taken.v, taken.v), taken.rubbed)
     return Landing(ACCEPT, h, State(taken.x, taken.v, a, f), taken.rubbed)
 
 
@@ -451,7 +413,7 @@ def _after_in_the_plane(
     """Whether the slip came close to rest between the nodes: then the step was too long."""
     after = slip(problem, node.tau + h, taken.v)
     a, f = rates(problem, node.tau + h, taken.x, taken.v)
-    if _dips(node.w, node.rate, after, _slip_rate(problem, node.tau + h, a), h):
+    if dips(node.w, node.rate, after, slip_rate(problem, node.tau + h, a), h):
         return Landing(REPEAT, 0.5 * h, node.state, y)
     return Landing(ACCEPT, h, State(taken.x, taken.v, a, f), taken.rubbed)
 
@@ -460,7 +422,7 @@ _after = by_dimension(_after_on_the_line, _after_in_the_plane)
 
 
 @inner
-def _reach(body: Body, sliding: float, accuracy: float) -> float:
+def reach_of(body: Body, sliding: float, accuracy: float) -> float:
     """The longest step: a radian of the loads or of the body's quickest oscillation, less for finer maps.
 
     Were it the same for all, two maps could agree because both are limited by it, and neither be accurate.
@@ -471,7 +433,7 @@ def _reach(body: Body, sliding: float, accuracy: float) -> float:
 
 
 @inner
-def _reference(body: Body, tau: float) -> Any:
+def reference(body: Body, tau: float) -> Any:
     angle = body.frequency * tau
     return body.reference_sine * math.sin(angle) + body.reference_cosine * math.cos(angle)
 
@@ -488,13 +450,13 @@ def _note_slip(track: Track, problem: Problem, node: Node, h: float) -> None:
         part = 0.5 * h * (1.0 + NODES[k])
         taken = step(problem, node.tau, node.state, part)
         tau = node.tau + part
-        sine, cosine = _turned(problem, tau)
+        sine, cosine = turned(problem, tau)
         _a, f = rates(problem, tau, taken.x, taken.v)
         track.tau[row, k] = tau
         track.x[row, k] = (
             taken.x + problem.body.reference_sine * sine + problem.body.reference_cosine * cosine
         )
-        track.v[row, k] = taken.v + _reference_velocity(problem.body, sine, cosine)
+        track.v[row, k] = taken.v + reference_velocity(problem.body, sine, cosine)
         track.friction[row, k] = f
     track.stick[row] = False
     track.filled[0] = row + 1
@@ -547,7 +509,7 @@ def period_map(
     """
     end = span(body)
     room = track.stick.size
-    reach = _reach(body, law.sliding_friction(0.0), accuracy)
+    reach = reach_of(body, law.sliding_friction(0.0), accuracy)
     tau, h, steps = 0.0, 0.1 * reach, 0
     rubbed, stuck, closest, released = 0.0 * y, 0.0, 1e300, -1.0
     w = slip(_anchored(law, body, belt_speed, 1.0, 0.0), 0.0, u)
@@ -558,11 +520,11 @@ def period_map(
         state = _state(problem, tau, y, u)
     while end - tau > 4e-15 * end:  # slip cannot get away from rest in less
         if resting:
-            rest = _rest(law, body, belt_speed, tau, state.x + _reference(body, tau), accuracy, end)
+            rest = _rest(law, body, belt_speed, tau, state.x + reference(body, tau), accuracy, end)
             rubbed = rubbed + rest.rubbed
             stuck += rest.stuck
             if room > 0:
-                x, slips = state.x + _reference(body, tau), tau + rest.stuck
+                x, slips = state.x + reference(body, tau), tau + rest.stuck
                 if rest.stuck > 0.0:
                     _note_stick(track, problem, tau, slips, x)
                 if rest.tau > slips:
@@ -573,26 +535,26 @@ def period_map(
                 released = tau + rest.stuck
             tau, resting, leaving, closest = rest.tau, False, True, 0.0
             problem = _anchored(law, body, belt_speed, rest.side, tau)
-            u = rest.w + belt_speed - _reference_velocity(body, problem.sine, problem.cosine)
-            state = State(rest.x - _reference(body, tau), u, u, u)
+            u = rest.w + belt_speed - reference_velocity(body, problem.sine, problem.cosine)
+            state = State(rest.x - reference(body, tau), u, u, u)
             if tau < end:
                 state = _state(problem, tau, state.x, u)
             h = 0.1 * reach
             continue
         problem = _anchored(law, body, belt_speed, problem.side, tau)
         w = slip(problem, tau, state.v)
-        node = Node(tau, state, w, length(w), _slip_rate(problem, tau, state.a))
+        node = Node(tau, state, w, length(w), slip_rate(problem, tau, state.a))
         closest = min(closest, node.speed)
         done = _before(problem, node, accuracy, min(h, reach, end - tau), state.x)
         if done.verdict == REST:
             if room > 0 and done.h > 0.0:
-                x, rub = state.x + _reference(body, tau), done.rubbed / done.h
+                x, rub = state.x + reference(body, tau), done.rubbed / done.h
                 _note_hop(track, problem, tau, tau + done.h, x, node.w, -node.w, rub)
         else:
             h = done.h
             taken = step(problem, tau, state, h)
             steps += 1
-            growth = _growth(body, taken, accuracy)
+            growth = growth_of(body, taken, accuracy)
             if steps > MOST_STEPS:
                 return Mapped(state.x, state.v, rubbed, stuck, closest, released, -1)
             if growth < 1.0:

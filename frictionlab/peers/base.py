@@ -41,16 +41,23 @@ class Peer(Record, ABC):
 
     name: ClassVar[str]
     package: ClassVar[str]
+    remedy: ClassVar[str] = "pip install frictionlab[peers]"
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Why this peer cannot do this scene and law, or is not there; None when it can."""
         if find_spec(self.package) is None:
-            return "not installed: pip install frictionlab[peers]"
-        if not (law.constant_sliding_friction() and law.monotone()):
-            return f"{self.name} is set up for Coulomb friction, the same at rest and in slip"
+            return f"not installed: {self.remedy}"
+        if (other := self.other_law(law)) is not None:
+            return other
         if scene.degrees_of_freedom == 0 or scene.undriven:
             return f"{self.name} is set up for driven scenes with a mass"
         return None
+
+    def other_law(self, law: FrictionLaw) -> str | None:
+        """Why this peer cannot do this law; None when it can."""
+        if law.constant_sliding_friction() and law.monotone():
+            return None
+        return f"{self.name} is set up for Coulomb friction, the same at rest and in slip"
 
     @abstractmethod
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Floats:

@@ -38,7 +38,7 @@ def _shaken(scene: Scene) -> str:
 def units_sentence(scene: Scene) -> str:
     """In which units its numbers are."""
     if scene.dimensional is not None:
-        return "Given in SI units; the law's parameters are per unit normal load."
+        return "Given in SI units; a law's parameters are per unit normal load, but for those of the contact."
     return (
         "Nondimensional: lengths in L, times in 1/ω₁, forces in K₁L, speeds in ω₁L; friction coefficients are per "
         "unit normal load."
@@ -150,4 +150,5 @@ def _sweep_name(study: Study, path: str) -> Cell:
     if path.startswith("scene."):
         return html(word(path))
     owner, _, name = path.rpartition(".")
-    return Markup("{} of {}").format(html(word(f"law.{name}")), owner.removeprefix("laws."))
+    group = "law" if study.scene.dimensional is None else "law.dimensional"
+    return Markup("{} of {}").format(html(word(f"{group}.{name}")), owner.removeprefix("laws."))

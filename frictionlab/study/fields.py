@@ -11,7 +11,7 @@ from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
-from frictionlab.study.mistakes import Path, closest, described, number_text
+from frictionlab.study.mistakes import Path, closest, described, did_you_mean, number_text
 from frictionlab.study.notes import Notes
 
 R = TypeVar("R", bound=BaseModel)
@@ -59,6 +59,11 @@ def _field(record: type[BaseModel], key: str) -> TypeAdapter[Any]:
     field = record.model_fields[key]
     kind: Any = field.annotation
     return TypeAdapter(Annotated[(kind, *field.metadata)] if field.metadata else kind)
+
+
+def harmless(record: type[BaseModel], key: str) -> float:
+    """A number that this number field takes: 1, or 0.5 for shares."""
+    return 1.0 if wrong_value(record, key, 1.0) is None else 0.5
 
 
 def record_at(record: type[BaseModel], path: Path) -> type[BaseModel] | None:
@@ -129,6 +134,11 @@ class _Check:
             return self._replaced(inside)
         if error["type"] == "value_error" and isinstance(error["input"], dict):
             return any([self._rule(inside, part, what) for part, what in self._said(inside, _message(error))])
+        if error["type"] == "literal_error":
+            names = re.findall("'([^']*)'", error["ctx"]["expected"])
+            hint = did_you_mean(error["input"], names) if isinstance(error["input"], str) else ""
+            self._note(inside, _in_words(error), hint)
+            return self._dropped(inside)
         self._note(inside, _in_words(error))
         return self._filled(inside)
 
@@ -176,13 +186,16 @@ class _Check:
         return tree
 
     def _filled(self, inside: Path) -> bool:
-        """Put in a number that every number field takes, where the field is one."""
+        """Put in a number that the field takes, where it is a number field."""
         record, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
         if not inside or record is None or not isinstance(tree, dict):
             return False
-        if tree.get(inside[-1]) == 1.0 or str(inside[-1]) not in number_paths(record):
+        if str(inside[-1]) not in number_paths(record):
             return False
-        tree[inside[-1]] = 1.0
+        filler = harmless(record, str(inside[-1]))
+        if tree.get(inside[-1]) == filler:
+            return False
+        tree[inside[-1]] = filler
         return True
 
     def _replaced(self, inside: Path) -> bool:
@@ -207,7 +220,7 @@ class _Check:
 def _ones(record: type[BaseModel]) -> dict[str, float]:
     """A one for every number that a record requires."""
     numbers = [key for key in number_paths(record) if key in record.model_fields]
-    return {key: 1.0 for key in numbers if record.model_fields[key].is_required()}
+    return {key: harmless(record, key) for key in numbers if record.model_fields[key].is_required()}
 
 
 def _message(error: Any) -> str:

@@ -11,16 +11,24 @@ from pydantic import BaseModel, ValidationError
 
 from frictionlab import registry
 from frictionlab.dimensional import Dimensional
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.bristle import CompliantLaw
 from frictionlab.scene import Scene
 from frictionlab.study.choices import label_of, sure_law_labels
-from frictionlab.study.fields import number_paths, record_at, wrong_value
+from frictionlab.study.fields import harmless, number_paths, record_at, wrong_value
 from frictionlab.study.mistakes import Path, did_you_mean
 from frictionlab.study.notes import Notes
 from frictionlab.study.record import Study
 from frictionlab.study.sweep import LARGEST_GRID, sweep_values
 
-_PAIRS = ("unbalance", "amplitude"), ("unbalance_kg_m", "amplitude_N"), ("gravity_m_per_s2", "normal_load_N")
-_ALTERNATIVE = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
+_GROUPS = (
+    ("unbalance", "amplitude"),
+    ("unbalance_kg_m", "amplitude_N"),
+    ("gravity_m_per_s2", "normal_load_N"),
+    ("stiffness", "presliding_length", "contact_stiffness"),
+    ("damping", "contact_damping"),
+)
+"""Names of one and the same thing, of which a part of a study gives one."""
 
 
 @dataclass
@@ -75,12 +83,11 @@ def _scene_target(tree: dict[str, Any], steps: list[str], path: Path, notes: Not
         return None
     within = _at(tree, parent)
     name = ".".join(map(str, parent))
-    other = _ALTERNATIVE.get(steps[-1])
     if not isinstance(within, dict):
         if within is None:
             notes.on_key(path, f"the study has no {name}")
         return None
-    if other in within and steps[-1] not in within:
+    if other := _given_instead(within, steps[-1]):
         notes.on_key(path, f"{name} gives {other}, so {steps[-1]} cannot be swept")
         return None
     record = record_at(Scene, tuple(steps[:-1]))
@@ -104,7 +111,16 @@ def _law_target(tree: dict[str, Any], key: str, notes: Notes) -> _Target | None:
         hint = did_you_mean(parameter, number_paths(law))
         notes.on_key(("sweep", key), f"the law '{label}' has no parameter '{parameter}' to sweep", hint)
         return None
+    if other := _given_instead(tree["laws"][index], parameter):
+        notes.on_key(("sweep", key), f"the law '{label}' gives {other}, so {parameter} cannot be swept")
+        return None
     return _Target(("laws", index), parameter, law)
+
+
+def _given_instead(within: dict[str, Any], key: str) -> str | None:
+    """Another name of what ``key`` names, where a part of a study gives it by that."""
+    group = next((names for names in _GROUPS if key in names), ())
+    return None if key in within else next((name for name in group if name in within), None)
 
 
 def _labels(tree: dict[str, Any]) -> dict[str, int]:
@@ -149,7 +165,7 @@ def _stand_in(
     within = _at(tree, target.parent)
     if isinstance(within, dict) and target.key not in within:
         good = [value for value in values if wrong_value(target.record, target.key, value) is None]
-        within[target.key] = good[0] if good else 1.0
+        within[target.key] = good[0] if good else harmless(target.record, target.key)
         stand_ins[(*target.parent, target.key)] = ("sweep", key)
 
 
@@ -160,8 +176,20 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
         notes.add(("sweep",), f"the grid has {size} points, more than {LARGEST_GRID}")
         return
     _build(lambda: study.scenes, study.sweep, "scene.", notes)
-    for choice in study.laws if not notes.all else ():
+    for index, choice in enumerate(study.laws if not notes.all else ()):
         _build(lambda law=choice: study.laws_in_scenes(law), study.sweep, f"laws.{choice.label}.", notes)  # type: ignore[misc]
+        if not notes.all and not all(map(_has_a_stiffness, study.laws_in_scenes(choice))):
+            notes.on_key(
+                ("laws", index), "these values leave no stiffness a number can hold: check their units"
+            )
+
+
+def _has_a_stiffness(law: FrictionLaw) -> bool:
+    """Whether a law with bristles keeps a presliding length and a stiffness > 0, neither infinite."""
+    if not isinstance(law, CompliantLaw):
+        return True
+    stiffness = law.bristle_stiffness
+    return 0.0 < stiffness < math.inf and 0.0 < law.presliding() < math.inf
 
 
 def grid_size(study: Study) -> int:

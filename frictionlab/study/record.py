@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from frictionlab import registry
-from frictionlab.dimensional import scaled_law
+from frictionlab.dimensional import Scales, scaled_law
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.scene import Scene
@@ -107,9 +107,9 @@ class Case:
 
     @property
     def law(self) -> FrictionLaw:
-        """The law as methods take it, in the scene's lengths and times."""
+        """The law as methods take it, in the scene's lengths and times and per unit of its normal load."""
         si = self.scene.dimensional
-        return self.given_law if si is None else scaled_law(self.given_law, si.scales)
+        return _in_scene(self.given_law, None if si is None else si.scales, self.scene.normal_load)
 
 
 @dataclass(frozen=True)
@@ -156,10 +156,13 @@ class Study:
         return tuple(choice.law(point) for point in self.law_points(choice))
 
     def laws_in_scenes(self, choice: LawChoice) -> set[FrictionLaw]:
-        """All that becomes of the law in the scales of the scenes."""
+        """All that becomes of the law in the scales and under the normal loads of the scenes."""
         laws = self.laws_of(choice)
-        scales = {None if scene.dimensional is None else scene.dimensional.scales for scene in self.scenes}
-        return {law if unit is None else scaled_law(law, unit) for law in laws for unit in scales}
+        units = {
+            (None if scene.dimensional is None else scene.dimensional.scales, scene.normal_load)
+            for scene in self.scenes
+        }
+        return {_in_scene(law, scales, load) for law in laws for scales, load in units}
 
     def law_points(self, choice: LawChoice) -> Iterator[dict[str, float]]:
         """The swept parameters of each of this law's records."""
@@ -196,6 +199,13 @@ class Study:
     def _fixed(self, law: LawChoice) -> dict[str, Any]:
         swept = {path for path in self.sweep if path.startswith(f"laws.{law.label}.")}
         return {name: v for name, v in law.parameters.items() if f"laws.{law.label}.{name}" not in swept}
+
+
+def _in_scene(law: FrictionLaw, scales: Scales | None, normal_load: float | None) -> FrictionLaw:
+    """A law as given, in these scales and per unit of this normal load."""
+    assert normal_load is not None  # no valid scene is without
+    scaled = law if scales is None else scaled_law(law, scales)
+    return scaled.under_load(normal_load)
 
 
 def with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:

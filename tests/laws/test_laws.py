@@ -11,14 +11,16 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from pydantic import ValidationError
-from strategies import EXAMPLES, LAWS, angles, sizes, speeds, velocities, velocities_on_the_line
+from strategies import BRISTLE_LAWS, EXAMPLES, LAWS, angles, sizes, speeds, velocities, velocities_on_the_line
 
 from frictionlab.kernel import compiled, njit
+from frictionlab.laws.base import SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.registry import law_class, law_names
 
 every_law = pytest.mark.parametrize("name", LAWS)
+every_sliding_law = pytest.mark.parametrize("name", [name for name in LAWS if name not in BRISTLE_LAWS])
 EXACT = 1e-12  # relative: a thousand roundings
 
 
@@ -39,17 +41,22 @@ def dot(a: complex, b: complex) -> float:
 
 
 def test_every_law_of_ours_is_tested_here():
-    ours = {name for name in law_names() if law_class(name).__module__.startswith("frictionlab.")}
+    ours = {kind for kind in map(law_class, law_names()) if kind.__module__.startswith("frictionlab.")}
 
-    assert ours == set(LAWS)
+    assert ours == {law_class(name) for name in LAWS}
+    assert {name for name in LAWS if issubclass(law_class(name), SlidingLaw)} == set(LAWS) - set(BRISTLE_LAWS)
+
+
+def test_elasto_plastic_friction_goes_by_the_name_of_its_author_too():
+    assert law_class("dupont") is law_class("elasto-plastic")
 
 
 @every_law
 def test_the_registered_name_is_the_name_of_the_class_and_of_its_file(name):
     kind = law_class(name)
 
-    assert kind.__module__ == f"frictionlab.laws.{name}"
-    assert kind.__name__.lower() == name.replace("_", "")
+    assert kind.__module__ == f"frictionlab.laws.{name.replace('-', '_')}"
+    assert kind.__name__.lower() == name.replace("-", "")
 
 
 @every_law
@@ -231,7 +238,7 @@ def test_a_higher_coefficient_at_rest_is_a_jump():
     assert not law.monotone()
 
 
-@every_law
+@every_sliding_law
 @given(data=st.data())
 def test_rest_holds_at_least_as_much_as_vanishing_slip(name, data):
     law = data.draw(LAWS[name])
@@ -239,7 +246,7 @@ def test_rest_holds_at_least_as_much_as_vanishing_slip(name, data):
     assert law.static_friction() >= law.sliding_friction(0.0) * (1.0 - EXACT)
 
 
-@every_law
+@every_sliding_law
 @given(data=st.data(), speed=sizes(1e-4, 1e4), step=sizes(1e-3, 1.0))
 def test_friction_falls_no_faster_than_the_law_says(name, data, speed, step):
     law = data.draw(LAWS[name])

@@ -434,7 +434,7 @@ def test_a_mass_released_between_two_steps_is_covered_by_the_error():
         ({"steps": 10.5}, "must be a whole number"),
         ({"steps": True}, "must be a whole number"),
         ({"steps": 2}, "greater than or equal to 4"),
-        ({"stepper": "euler"}, "'moreau', 'rk4' or 'smoothed'"),
+        ({"stepper": "euler"}, "'smoothed', 'exponential' or 'sdirk2'"),
     ],
 )
 def test_keys_that_do_not_belong_are_refused_by_name(keys, said):

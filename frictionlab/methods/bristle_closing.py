@@ -1,0 +1,138 @@
+"""Closing an orbit of a law with memory: the fixed point of its period map, and how far from it the answer is.
+
+Bristles never stick, and their maps are smooth: quasi-Newton steps close the orbit, Newton's by difference quotients
+where those stall, and plain repetition where nothing else moves on. But no theorem turns a distance of states into a
+bound on the mean: how far the mean moves with the state is measured on the way.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from frictionlab.kernel import inner
+from frictionlab.methods.closing import (
+    FINER,
+    MOST_MAPS,
+    MUCH_WORK,
+    ROUNDING,
+    Closed,
+    Goal,
+    broyden,
+    copy,
+    free_inverse,
+    less,
+    mean_error,
+    newton_inverse,
+    norm,
+    searched,
+    times,
+)
+from frictionlab.methods.period import mapped
+from frictionlab.methods.sliding_map import span
+from frictionlab.methods.track import track_of
+from frictionlab.scene import Body
+
+
+@inner
+def _felt_by_the_mean(body: Body, change: Any, distance: float, slope: float) -> float:
+    """How much the mean may move with a change of the map that moves the orbit by this distance."""
+    return mean_error(body, change, distance) + slope * distance
+
+
+@inner
+def _moved_on(
+    law: Any, body: Body, belt_speed: float, z: Any, residual: Any, inverse: Any, accuracy: float, like: Any
+) -> Any:
+    """From where quasi-Newton steps stall: a searched Newton step, or three periods of the motion; (image, maps)."""
+    regular = newton_inverse(law, body, belt_speed, z, accuracy, inverse, like)
+    maps = 2 * z.size
+    if not regular:
+        free_inverse(body, body.normal_load, inverse)
+    tried = searched(law, body, belt_speed, z, residual, inverse, accuracy, like)
+    maps += tried + 1
+    if not regular or tried == 8:
+        for _ in range(3):
+            mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
+            for i in range(z.size):
+                z[i] = z[i] + residual[i]
+        maps += 3
+    return mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like), maps
+
+
+@inner
+def close_bristle(
+    law: Any,
+    body: Body,
+    belt_speed: float,
+    z: Any,
+    inverse: Any,
+    goal: Goal,
+    expected: float,
+    like: Any,
+) -> Closed:
+    """Find the fixed point from the guess z with the guess of the inverse of (monodromy - identity).
+
+    One criterion ends it: two maps much finer than those the orbit was found with, one from where it was found and
+    one from where the first says it is, change the mean by less than the tolerance, with what is left open in them.
+    """
+    n, tolerance, period = z.size, goal.tolerance, span(body)
+    residual, trial, fresh, step, work = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    floor = 4e-15 * (1.0 + norm(z) + abs(belt_speed))
+    finest = max(tolerance * body.normal_load, floor)
+    accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
+    image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
+    maps, checks, first, stalls = 1, 0, norm(residual), 0
+    while maps < MOST_MAPS:
+        length = norm(residual)
+        if image.steps < 0 or not length < 1e300 or maps * image.steps > MUCH_WORK:
+            break
+        times(inverse, residual, step)
+        if accuracy <= finest and mean_error(body, residual, norm(step)) <= 3.0 * tolerance:
+            accuracy = max(finest / FINER, floor)
+            fine = mapped(law, body, belt_speed, z, fresh, accuracy, track_of(0), like)
+            less(fresh, residual, work)  # what the coarser map has wrong
+            times(inverse, work, trial)
+            jump = abs(fine.rubbed - image.rubbed) / period
+            times(inverse, fresh, step)
+            less(z, step, z)
+            image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
+            maps, checks = maps + 2, checks + 1
+            slope = abs(image.rubbed - fine.rubbed) / period / (norm(step) + 1e-300)
+            doubt = _felt_by_the_mean(body, work, norm(trial), slope) + jump
+            times(inverse, residual, step)
+            rest = _felt_by_the_mean(body, residual, norm(step), slope)
+            error = 2.0 * rest + 0.5 * doubt + floor / body.normal_load + ROUNDING
+            settled = norm(residual) <= 0.5 * norm(fresh) + 10.0 * accuracy
+            if settled and (error <= tolerance or (finest <= floor and checks > 3)):
+                return Closed(image.rubbed, error, maps, 0.0, image.closest, first)
+            if 0.5 * doubt > 0.5 * tolerance:
+                finest = max(finest / FINER, floor)
+            if not settled or checks > 3:
+                image, took = _moved_on(law, body, belt_speed, z, residual, inverse, accuracy, like)
+                maps += took
+            if checks > 12:
+                break
+            continue
+        finer = max(finest, min(accuracy, 1e-4 * length))
+        less(z, step, trial)
+        image = mapped(law, body, belt_speed, trial, fresh, finer, track_of(0), like)
+        maps += 1
+        falls, usable = norm(fresh) < 0.7 * length, norm(fresh) <= 1.5 * length
+        if usable:
+            for i in range(n):
+                step[i] = -step[i]
+                work[i] = fresh[i] - residual[i]
+            copy(trial, z)
+            copy(fresh, residual)
+            if accuracy <= 0.05 * length:
+                broyden(inverse, step, work.copy(), work)
+        accuracy = finer
+        stalls = 0 if falls else stalls + 1
+        if stalls == 0 or (stalls == 1 and usable):
+            continue
+        image, took = _moved_on(law, body, belt_speed, z, residual, inverse, max(accuracy, finest), like)
+        maps += took
+        stalls = 1
+    return Closed(image.rubbed, 1e300, -maps, 0.0, image.closest, first)

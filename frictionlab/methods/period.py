@@ -1,0 +1,178 @@
+"""One span of any law's motion as a map of state vectors, whichever map follows it.
+
+A state is a vector in the norm of energy: sqrt(stiffness)*y and u along x1, then along x2, then the deflection of a
+bristle times sqrt(normal_load*stiffness). In it no two orbits of a monotone law without memory move apart (Leine &
+van de Wouw, 2008), which turns a distance of states into a bound on the mean friction.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.kernel import by_dimension, by_law, inner
+from frictionlab.methods.bristle_map import bristle_map
+from frictionlab.methods.path_map import path_map
+from frictionlab.methods.sliding_map import Mapped, period_map, periods_at_rest
+from frictionlab.methods.track import Track
+from frictionlab.scene import Body
+
+
+def _pack_line(body: Body, state: Any, y: float, u: float) -> None:
+    state[0], state[1] = math.sqrt(body.stiffness_mean) * y, u
+
+
+def _pack_plane(body: Body, state: Any, y: complex, u: complex) -> None:
+    state[0], state[1] = math.sqrt(body.stiffness_mean + body.stiffness_split) * y.real, u.real
+    state[2], state[3] = math.sqrt(body.stiffness_mean - body.stiffness_split) * y.imag, u.imag
+
+
+pack = by_dimension(_pack_line, _pack_plane)
+
+
+def _unpack_line(body: Body, state: Any, like: float) -> Any:
+    return state[0] / math.sqrt(body.stiffness_mean), state[1]
+
+
+def _unpack_plane(body: Body, state: Any, like: complex) -> Any:
+    y = complex(
+        state[0] / math.sqrt(body.stiffness_mean + body.stiffness_split),
+        state[2] / math.sqrt(body.stiffness_mean - body.stiffness_split),
+    )
+    return y, complex(state[1], state[3])
+
+
+unpack = by_dimension(_unpack_line, _unpack_plane)
+
+
+def _dimension_of_the_line(like: float) -> int:
+    return 1
+
+
+def _dimension_of_the_plane(like: complex) -> int:
+    return 2
+
+
+dimension = by_dimension(_dimension_of_the_line, _dimension_of_the_plane)
+
+
+def _size_without_memory(law: Any, like: Any) -> int:
+    return 2 * dimension(like)
+
+
+def _size_with_a_bristle(law: Any, like: Any) -> int:
+    return 3 * dimension(like)
+
+
+size_of = by_law(_size_without_memory, _size_with_a_bristle)
+
+
+@inner
+def bristle_unit(law: Any, body: Body) -> float:
+    """Square root of the contact's stiffness about the undeflected bristle: what a deflection is multiplied by."""
+    length = law.largest_deflection()
+    length = length if length < 1e300 else 1.0
+    return math.sqrt(body.normal_load * abs(law.friction(0.0, length, 0.0)) / length)
+
+
+def _deflection_on_the_line(state: Any, unit: float, like: float) -> float:
+    return state[2] / unit
+
+
+def _deflection_in_the_plane(state: Any, unit: float, like: complex) -> complex:
+    return complex(state[4], state[5]) / unit
+
+
+deflection = by_dimension(_deflection_on_the_line, _deflection_in_the_plane)
+
+
+def _store_on_the_line(state: Any, unit: float, z: float) -> None:
+    state[2] = unit * z
+
+
+def _store_in_the_plane(state: Any, unit: float, z: complex) -> None:
+    state[4], state[5] = unit * z.real, unit * z.imag
+
+
+store = by_dimension(_store_on_the_line, _store_in_the_plane)
+
+
+def _mapped_without_memory(
+    law: Any,
+    body: Body,
+    belt_speed: float,
+    state: Any,
+    residual: Any,
+    accuracy: float,
+    track: Track,
+    like: Any,
+) -> Mapped:
+    y, u = unpack(body, state, like)
+    image = period_map(law, body, belt_speed, y, u, accuracy, track)
+    pack(body, residual, image.y - y, image.u - u)
+    return image
+
+
+def _mapped_with_a_bristle(
+    law: Any,
+    body: Body,
+    belt_speed: float,
+    state: Any,
+    residual: Any,
+    accuracy: float,
+    track: Track,
+    like: Any,
+) -> Mapped:
+    """Mass and deflection are solved for together."""
+    y, u = unpack(body, state, like)
+    unit = bristle_unit(law, body)
+    z = deflection(state, unit, like)
+    image = bristle_map(law, body, belt_speed, y, u, z, accuracy, track)
+    pack(body, residual, image.y - y, image.u - u)
+    store(residual, unit, image.z - z)
+    return Mapped(image.y, image.u, image.rubbed, 0.0, image.closest, -1.0, image.steps)
+
+
+def _mapped_along_a_path(
+    law: Any,
+    body: Body,
+    belt_speed: float,
+    state: Any,
+    residual: Any,
+    accuracy: float,
+    track: Track,
+    like: float,
+) -> Mapped:
+    """The deflection is a function of the way slid."""
+    y, u = unpack(body, state, like)
+    unit = bristle_unit(law, body)
+    z = deflection(state, unit, like)
+    image = path_map(law, body, belt_speed, y, u, z, accuracy, track)
+    pack(body, residual, image.y - y, image.u - u)
+    store(residual, unit, image.z - z)
+    return Mapped(image.y, image.u, image.rubbed, 0.0, image.closest, -1.0, image.steps)
+
+
+mapped = by_law(_mapped_without_memory, _mapped_with_a_bristle, _mapped_along_a_path)
+"""One span from a state, noted on a track with room; leaves image - state in residual."""
+
+
+def _rest_without_memory(law: Any, body: Body, belt_speed: float, y: Any) -> float:
+    return periods_at_rest(law, body, belt_speed, y)
+
+
+def _rest_with_a_bristle(law: Any, body: Body, belt_speed: float, y: Any) -> float:
+    """A bristle is never quite at rest."""
+    return 1.0
+
+
+rest_of = by_law(_rest_without_memory, _rest_with_a_bristle)
+"""How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
+
+
+@inner
+def start_of(law: Any, body: Body, state: Any, x: Any, v: Any) -> None:
+    """The state of a mass at x moving at v at tau = 0, its bristle undeflected."""
+    for row in range(state.size):
+        state[row] = 0.0
+    pack(body, state, x - body.reference_cosine, v - body.frequency * body.reference_sine)

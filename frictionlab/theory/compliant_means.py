@@ -1,0 +1,130 @@
+"""Mean friction of compliant contacts under a prescribed slip, in the limits of soft and of stiff bristles.
+
+Sinusoidal slip of displacement amplitude X rides on the belt's; ratio is belt speed over its velocity amplitude,
+presliding the presliding length over X. A mean is relative to the friction coefficient of steady sliding.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from frictionlab.theory.elliptic import Floats, second_integral
+from frictionlab.theory.loops import moment
+
+
+def slip_back_and_forth(ratio: ArrayLike) -> tuple[Floats, Floats]:
+    """The slip against and along the belt's, per period [X], of a sine along the belt.
+
+    2 (sin t - t cos t) and that plus 2 pi cos t, with cos t = ratio, whose sign does not matter; nothing goes back
+    from ratio 1 on.
+    """
+    size = np.abs(np.asarray(ratio, dtype=np.float64))
+    angle = np.arccos(np.minimum(size, 1.0))
+    small = moment(np.where(angle < 1.0, angle, 0.0), -1.0)
+    back = 2.0 * np.where(angle < 1.0, small, np.sin(angle) - angle * np.cos(angle))
+    return np.asarray(back), np.asarray(back + 2.0 * np.pi * size)
+
+
+def _share_back(ratio: ArrayLike) -> Floats:
+    back, forth = slip_back_and_forth(ratio)
+    return np.asarray(back / forth)
+
+
+def mean_soft_dahl(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
+    """Mean Dahl friction under a sine along the belt, where the bristles are soft: (1 - r)/(1 + r).
+
+    r = (slip back/slip forth)^(1/exponent); for exponent 1 the mean velocity over the mean speed, which LuGre
+    friction of constant g shares. Missed by the order of presliding^-2 at finite stiffness.
+
+    ratio [-]: belt speed over velocity amplitude, any sign; exponent [-] > 0.
+    Source: averaging Dahl (1968) over a period in which friction hardly changes.
+    """
+    remains = _share_back(ratio) ** (1.0 / exponent)
+    return np.copysign((1.0 - remains) / (1.0 + remains), ratio)
+
+
+def mean_soft_transverse(ratio: ArrayLike) -> Floats:
+    """Mean friction of soft vectorial Dahl or LuGre bristles along the belt, under a sine across it.
+
+    Mean velocity over mean speed, ratio/[(2/pi) sqrt(1 + ratio^2) E(1/sqrt(1 + ratio^2))]: below Coulomb's.
+
+    ratio [-]: belt speed over velocity amplitude, any sign. Source: averaging, as ``mean_soft_dahl``.
+    """
+    size = np.asarray(ratio, dtype=np.float64)
+    whole = np.hypot(1.0, size)
+    modulus = np.minimum(1.0 / whole, 1.0 - 1e-16)
+    return np.asarray(0.5 * np.pi * size / whole / second_integral(modulus))
+
+
+def mean_soft_circular(ratio: ArrayLike) -> Floats:
+    """Mean friction of soft vectorial Dahl or LuGre bristles along the belt, under a slip that turns.
+
+    Mean velocity over mean speed, ratio/[(2/pi) (1 + ratio) E(2 sqrt(ratio)/(1 + ratio))]: above Coulomb's.
+
+    ratio [-]: belt speed over the speed of the turning slip, any sign. Source: averaging, as ``mean_soft_dahl``.
+    """
+    size = np.abs(np.asarray(ratio, dtype=np.float64))
+    modulus = np.minimum(2.0 * np.sqrt(size) / (1.0 + size), 1.0 - 1e-16)
+    mean = 0.5 * np.pi * size / (1.0 + size) / second_integral(modulus)
+    return np.copysign(mean, ratio)
+
+
+def mean_soft_elasto_plastic(ratio: ArrayLike, breakaway_ratio: float) -> Floats:
+    """Mean elasto-plastic friction of constant g under a sine along the belt, where the bristles are soft.
+
+    m of m alpha(m) = 1 - slip back/slip forth, alpha rising from 0 at breakaway_ratio to 1 at 1: not less than
+    breakaway_ratio however slow the belt, since nothing drifts below. By bisection; the sign is that of the belt.
+
+    ratio [-]: belt speed over velocity amplitude, not 0; breakaway_ratio [-] in (0, 1).
+    Source: averaging Dupont et al. (2002), IEEE TAC 47, 787, as ``mean_soft_dahl``.
+    """
+    wanted = 1.0 - _share_back(ratio)
+    low, high = np.full_like(wanted, breakaway_ratio), np.ones_like(wanted)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        turn = np.pi * (middle - 0.5 * (1.0 + breakaway_ratio)) / (1.0 - breakaway_ratio)
+        above = middle * (0.5 + 0.5 * np.sin(turn)) > wanted
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return np.copysign(0.5 * (low + high), ratio)
+
+
+def mean_soft_jenkins(ratio: ArrayLike, presliding: ArrayLike) -> Floats:
+    """Mean Jenkins friction under a sine along the belt, exact where the slider never slips back.
+
+    1 - (mean distance of the slip behind its running maximum)/presliding; NaN where the slip back is more than
+    twice the presliding length. Tends to 1 where the spring is soft.
+
+    ratio [-]: belt speed over velocity amplitude, > 0 or < 0; presliding [X] > 0.
+    Source: the play operator of the spring in series with the slider.
+    """
+    size = np.minimum(np.abs(np.asarray(ratio, dtype=np.float64)), 1.0)
+    turn = np.arccos(-size)
+    low, high = 2.0 * np.pi - turn, 2.0 * np.pi + turn
+    most = size * turn + np.sin(turn)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        beyond = size * middle + np.sin(middle) > most
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    again = 0.5 * (low + high)
+    behind = most * (again - turn) - 0.5 * size * (again**2 - turn**2) + np.cos(again) - np.cos(turn)
+    back, length = slip_back_and_forth(ratio)[0], np.asarray(presliding, dtype=np.float64)
+    mean = np.where(back <= 2.0 * length, 1.0 - behind / (2.0 * np.pi * length), np.nan)
+    return np.copysign(mean, ratio)
+
+
+def stiff_correction(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
+    """What a stiff Dahl contact adds to Coulomb's mean under a sine along the belt, per presliding/X.
+
+    (2/(3 pi)) H ratio/(1 - ratio^2), H = 2^(1 - i)/(2 - i) the path, in presliding lengths, over which the jump of
+    friction at a reversal is felt: 1 for exponent i = 1 and for 0, an ideal spring that slips (Jenkins). The terms
+    in sqrt(presliding) of the two reversals of a period cancel. Infinite for i >= 2, where it falls more slowly.
+
+    ratio [-]: belt speed over velocity amplitude, in (-1, 1), not near its ends; exponent [-] >= 0.
+    Source: expansion of ``dahl_path`` after both reversals.
+    """
+    felt = 2.0 ** (1.0 - exponent) / (2.0 - exponent) if exponent < 2.0 else math.inf
+    size = np.asarray(ratio, dtype=np.float64)
+    return np.asarray(2.0 / (3.0 * np.pi) * felt * size / ((1.0 - size) * (1.0 + size)))

@@ -1,0 +1,80 @@
+"""Curves of Coulomb friction by balancing one harmonic."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from frictionlab.scene import Scene
+from frictionlab.theory.elliptic import Floats
+
+
+def one_harmonic_velocity(scene: Scene, friction: float, ratio: ArrayLike) -> Floats:
+    """Velocity amplitude of x1 by balancing one harmonic of Coulomb friction, explicit in belt speed over amplitude.
+
+    With A = 1 - Omega^2, a = 2 beta Omega, c = 4 friction/pi and s = sqrt(1 - ratio^2),
+    V = Omega (P^2 - c^2 s^2) / (a c s + sqrt(P^2 (A^2 + a^2) - A^2 c^2 s^2)): the positive root of Eq. 8, written
+    without cancellation. The belt speed is then ratio*V and the mean (2/pi) arcsin(ratio): a curve without a search.
+
+    friction = mu*normal_load [K_1 L]; ratio [-] in [0, 1]. Zero where the load cannot overcome the friction's first
+    harmonic, P <= c s. Source: Sulollari, van Dalen & Cabboi, Eqs. 8-9, solved for V.
+    """
+    mass = scene.mass()
+    stiffness, damping = mass.stiffness - mass.frequency**2, mass.damping * mass.frequency
+    force = abs(mass.force)
+    held = 4.0 / np.pi * friction * np.sqrt(1.0 - np.asarray(ratio, dtype=np.float64) ** 2)
+    surplus = np.maximum(0.0, (force - held) * (force + held))
+    below = stiffness**2 * surplus + (damping * force) ** 2
+    velocity = mass.frequency * surplus / np.where(surplus > 0.0, damping * held + np.sqrt(below), 1.0)
+    return np.asarray(velocity)
+
+
+def one_harmonic_least_ratio(scene: Scene, friction: float) -> float:
+    """The ratio of belt speed to velocity amplitude at which the one-harmonic curve starts: 0 for P >= 4 friction/pi.
+
+    Below that load the first harmonic of friction holds the mass at a vanishing belt speed, and the curve of the
+    mean starts at (2/pi) arcsin of sqrt(1 - (pi P/(4 friction))^2). friction = mu*normal_load [K_1 L].
+    Source: Sulollari, van Dalen & Cabboi, Eq. 8 at V -> 0.
+    """
+    share = 0.25 * math.pi * abs(scene.mass().force) / friction
+    return math.sqrt(max(0.0, (1.0 - share) * (1.0 + share)))
+
+
+CONCAVE_BY_INITIAL_CURVATURE = math.pi / 16.0
+"""Friction force over unbalance from which on a curve at resonance starts concave, by one harmonic."""
+CONCAVE_BY_AREA = math.pi / 4.0 * (2.0 - math.pi / 2.0)
+"""The same by chord area: ``chord_area_at_resonance`` is zero there."""
+
+
+def chord_area_at_resonance(ratio: ArrayLike) -> Floats:
+    """The signed area between a curve at resonance and its chord, by one harmonic: 1 - 4/pi + 8 ratio/pi^2.
+
+    Twice the integral over v_b/V_lin in [0, 1] of the mean friction, relative to the friction coefficient, less
+    v_b/V_lin; > 0 where the curve is concave. Independent of damping.
+
+    ratio [-]: friction force over unbalance, mu gamma^2/alpha, from 0 to pi/4, where the body still slides on a
+    belt at rest. Source: integral of Sulollari, van Dalen & Cabboi, Eqs. 5 and 8, at Omega = 1.
+    """
+    return np.asarray(1.0 - 4.0 / np.pi + 8.0 / np.pi**2 * np.asarray(ratio, dtype=np.float64))
+
+
+def initial_concavity(scene: Scene, friction: float) -> float:
+    """How far the curve of a scene starts concave, by one harmonic: 4 c (c + a V_0)/P^2 - 1, > 0 if it does.
+
+    Forces of one harmonic at frequency Omega: P of the drive, c = (4/pi) friction, a V of the dashpot; V_0 is the
+    velocity amplitude on a belt at rest. At resonance the sign changes at friction = (pi/16) unbalance, whatever
+    the damping. NaN where the body then sticks, P <= c.
+
+    friction [K_1 L]: friction force, coefficient times normal_load. Raises ValueError without a drive.
+    Source: expansion of Sulollari, van Dalen & Cabboi, Eqs. 5, 8 and 9, for small v_b.
+    """
+    if scene.degrees_of_freedom == 0 or not scene.mass().force:
+        raise ValueError("a curve starts concave or convex by its drive: this scene has none")
+    mass, harmonic = scene.mass(), 4.0 / math.pi * friction
+    force = abs(mass.force)
+    if force <= harmonic:
+        return math.nan
+    at_rest = float(one_harmonic_velocity(scene, friction, 0.0))
+    return 4.0 * harmonic * (harmonic + mass.damping * at_rest) / force**2 - 1.0

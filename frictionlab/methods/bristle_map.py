@@ -47,13 +47,15 @@ COARSEST = 1e-4
 class Problem(NamedTuple):
     """A law and a body on a belt; sine and cosine at the anchor time.
 
-    limit: deflection at which the law yields, 0 for none; radius: of the circle the deflection moves on, 0 where it
-    moves freely. No infinity is met where arithmetic is quick.
+    side: of slip, on the line; in the plane -1 where the bristle only follows the slip, 1 where it gives way, 0 where
+    a law has no corner between the two. limit: deflection at which the law yields, 0 for none; radius: of the circle
+    the deflection moves on, 0 where it moves freely. No infinity is met where arithmetic is quick.
     """
 
     law: Any
     body: Body
     belt_speed: float
+    side: float
     limit: float
     radius: float
     anchor: float
@@ -137,10 +139,10 @@ put = by_dimension(_put_on_the_line, _put_in_the_plane)
 
 
 @inner
-def _anchored(law: Any, body: Body, belt_speed: float, radius: float, tau: float) -> Problem:
+def _anchored(law: Any, body: Body, belt_speed: float, side: float, radius: float, tau: float) -> Problem:
     angle, limit = body.frequency * tau, law.yield_deflection()
     limit = limit if limit < math.inf else 0.0
-    return Problem(law, body, belt_speed, limit, radius, tau, math.sin(angle), math.cos(angle))
+    return Problem(law, body, belt_speed, side, limit, radius, tau, math.sin(angle), math.cos(angle))
 
 
 def _felt_on_the_line(problem: Problem, w: float, z: float) -> Any:
@@ -148,6 +150,8 @@ def _felt_on_the_line(problem: Problem, w: float, z: float) -> Any:
 
 
 def _felt_in_the_plane(problem: Problem, w: complex, z: complex) -> Any:
+    if problem.side < 0.0:  # difference quotients at its end must not see what comes after
+        return w, problem.law.friction(w, z, w)
     if problem.radius > 0.0:  # on the circle, not a rounding error inside it
         z = z * (problem.radius * (1.0 + 1e-15) / abs(z))
     return resistance(problem.law, w, z)
@@ -185,20 +189,24 @@ def _rates(problem: Problem, tau: float, state: Any, out: Any, like: Any) -> Any
 
 
 class Steps(NamedTuple):
-    """How far slip and deflection are moved for a difference quotient, and the side of slip on the line (or 0)."""
+    """How far slip and deflection are moved for a difference quotient."""
 
     slip: float
     deflection: float
-    side: float
 
 
-def _away_on_the_line(w: float, steps: Steps, like: float) -> float:
+def _away_on_the_line(problem: Problem, steps: Steps, z: float, w: float) -> float:
     """Slip far enough from its reversal for a quotient on its own side."""
-    return steps.side * max(steps.side * w, 2.0 * steps.slip)
+    return problem.side * max(problem.side * w, 2.0 * steps.slip)
 
 
-def _away_in_the_plane(w: complex, steps: Steps, like: complex) -> complex:
-    return w
+def _away_in_the_plane(problem: Problem, steps: Steps, z: complex, w: complex) -> complex:
+    """Slip far enough from the corner where unloading begins."""
+    size = abs(z)
+    if problem.side <= 0.0 or size == 0.0:
+        return w
+    along = (z * w.conjugate()).real / size
+    return w + max(2.0 * steps.slip - along, 0.0) * (z / size)
 
 
 away = by_dimension(_away_on_the_line, _away_in_the_plane)
@@ -221,7 +229,7 @@ def _differentiate(problem: Problem, tau: float, steps: Steps, work: Work, like:
     d = dimension(like)
     body = problem.body
     z = taken(work.at, 2, like)
-    w = away(_slip(problem, tau, work.at, like), steps, like)
+    w = away(problem, steps, z, _slip(problem, tau, work.at, like))
     pair = np.empty(2 * d)
     for column in range(d):
         shift = steps.slip * unit(column, like)
@@ -314,32 +322,30 @@ def _stepped(problem: Problem, tau: float, h: float, work: Work, like: Any) -> f
 # --- corners ------------------------------------------------------------------------------------------------------
 
 
-def _corner_on_the_line(problem: Problem, tau: float, state: Any, side: float, like: float) -> float:
+def _corner_on_the_line(problem: Problem, tau: float, state: Any, like: float) -> float:
     """Positive until slip reverses."""
     sine, cosine = turned(problem, tau)
-    return side * (state[1] + reference_velocity(problem.body, sine, cosine) - problem.belt_speed)
+    return problem.side * (state[1] + reference_velocity(problem.body, sine, cosine) - problem.belt_speed)
 
 
-def _corner_in_the_plane(problem: Problem, tau: float, state: Any, side: float, like: complex) -> float:
+def _corner_in_the_plane(problem: Problem, tau: float, state: Any, like: complex) -> float:
     """Positive until unloading begins (side 1) or ends (-1), or until the deflection is as large as it may be."""
     z = taken(state, 2, like)
-    if side < 0.0 and problem.limit > 0.0:
+    if problem.side < 0.0 and problem.limit > 0.0:
         return problem.limit * (1.0 + 1e-12) - abs(z)  # past rounding: it has just left the circle
     sine, cosine = turned(problem, tau)
     w = taken(state, 1, like) + reference_velocity(problem.body, sine, cosine) - problem.belt_speed
-    return side * (z * w.conjugate()).real
+    return problem.side * (z * w.conjugate()).real
 
 
 corner = by_dimension(_corner_on_the_line, _corner_in_the_plane)
 
 
 @inner
-def _located(
-    problem: Problem, tau: float, side: float, before: float, high: float, work: Work, like: Any
-) -> float:
+def _located(problem: Problem, tau: float, before: float, high: float, work: Work, like: Any) -> float:
     """Step size at which the corner lies that a step of ``high`` passes; leaves that step in ``work.end``."""
     low, h, at_low = 0.0, high, max(before, 0.0)
-    at_high = corner(problem, tau + high, work.end, side, like)
+    at_high = corner(problem, tau + high, work.end, like)
     for turn in range(60):
         if high - low <= 4e-16 * (tau + high) or at_high == 0.0:
             break
@@ -347,7 +353,7 @@ def _located(
         if turn % 3 == 2 or not low < h < high:
             h = 0.5 * (low + high)
         _stepped(problem, tau, h, work, like)
-        value = corner(problem, tau + h, work.end, side, like)
+        value = corner(problem, tau + h, work.end, like)
         if value > 0.0:
             low, at_low = h, value
         else:
@@ -419,13 +425,13 @@ def _side_in_the_plane(problem: Problem, tau: float, work: Work, like: complex) 
 side_of = by_dimension(_side_on_the_line, _side_in_the_plane)
 
 
-def _circle_on_the_line(problem: Problem, side: float, work: Work, like: float) -> float:
+def _circle_on_the_line(problem: Problem, work: Work, like: float) -> float:
     return 0.0
 
 
-def _circle_in_the_plane(problem: Problem, side: float, work: Work, like: complex) -> float:
+def _circle_in_the_plane(problem: Problem, work: Work, like: complex) -> float:
     """Radius on which a bristle moves that is loaded at its yield limit; puts it there."""
-    if not (side > 0.0 and problem.limit > 0.0):
+    if not (problem.side > 0.0 and problem.limit > 0.0):
         return 0.0
     z = taken(work.at, 2, like)
     put(work.at, 2, z * (problem.limit / abs(z)))
@@ -438,9 +444,7 @@ circle = by_dimension(_circle_on_the_line, _circle_in_the_plane)
 def _relative_on_the_line(problem: Problem, tau: float, work: Work, like: float) -> float:
     sine, cosine = turned(problem, tau)
     body = problem.body
-    return (
-        work.at[0] + body.reference_sine * sine + body.reference_cosine * cosine - problem.belt_speed * tau
-    )
+    return work.at[0] + body.reference_sine * sine + body.reference_cosine * cosine - problem.belt_speed * tau
 
 
 def _relative_in_the_plane(problem: Problem, tau: float, work: Work, like: complex) -> float:
@@ -513,21 +517,22 @@ def bristle_map(
     put(work.at, 0, y)
     put(work.at, 1, u)
     put(work.at, 2, z)
-    problem = _anchored(law, body, belt_speed, 0.0, 0.0)
+    problem = _anchored(law, body, belt_speed, 0.0, 0.0, 0.0)
     side = side_of(problem, 0.0, work, y)
-    radius = circle(problem, side, work, y)
+    problem = _anchored(law, body, belt_speed, side, 0.0, 0.0)
+    radius = circle(problem, work, y)
     tau, h, steps, closest = 0.0, 0.1 * reach, 0, 1e300
     leaving, fresh, began, covered = True, True, 0.0, math.inf
     w0, rate0 = _rates(problem, 0.0, work.at, work.rates, y)
     before = 0.0
     while end - tau > 4e-15 * end:
         if fresh:
-            problem = _anchored(law, body, belt_speed, radius, tau)
+            problem = _anchored(law, body, belt_speed, side, radius, tau)
             w0, rate0 = _rates(problem, tau, work.at, work.rates, y)
             closest = min(closest, abs(w0))
-            away_from = Steps(1e-5 * abs(w0) + 1e-9 * (swing + abs(w0)), 1e-5 * length, side)
+            away_from = Steps(1e-5 * abs(w0) + 1e-9 * (swing + abs(w0)), 1e-5 * length)
             _differentiate(problem, tau, away_from, work, y)
-            before = corner(problem, tau, work.at, side, y)
+            before = corner(problem, tau, work.at, y)
             if covered < 40.0 * length:
                 covered = abs(relative(problem, tau, work, y) - began)
                 h = min(h, longest(w0, rate0, max(length, covered), y))
@@ -541,14 +546,14 @@ def bristle_map(
             h = h * growth
             continue
         turns = False
-        after = corner(problem, tau + h, work.end, side, y) if side != 0.0 else 1.0
+        after = corner(problem, tau + h, work.end, y) if side != 0.0 else 1.0
         if after <= 0.0 and leaving and before <= -1e-3 * after:
             if h * body.frequency > 1e-12:
                 h = 0.25 * h
                 continue
             turns = True  # it does not get away on this side
         elif after <= 0.0:
-            h = _located(problem, tau, side, before, h, work, y)
+            h = _located(problem, tau, before, h, work, y)
             turns = True
         else:
             w1, rate1 = _rates(problem, tau + h, work.end, work.rates, y)
@@ -558,7 +563,7 @@ def bristle_map(
                 continue
             if inside > 0.0:
                 _stepped(problem, tau, inside, work, y)
-                h = _located(problem, tau, side, before, inside, work, y)
+                h = _located(problem, tau, before, inside, work, y)
                 turns = True
         if track.stick.size > 0:
             _note(track, problem, tau, h, work, y)
@@ -566,13 +571,14 @@ def bristle_map(
         for row in range(work.at.size):
             work.at[row] = work.end[row]
         tau = tau + h if end - tau > h else end
-        radius = circle(problem, side, work, y)
+        radius = circle(problem, work, y)
         leaving, fresh = turns, True
         h = h * growth
         if turns:
             side = -side
-            radius = circle(problem, side, work, y)
-            problem = _anchored(law, body, belt_speed, radius, tau)
+            problem = _anchored(law, body, belt_speed, side, 0.0, tau)
+            radius = circle(problem, work, y)
+            problem = _anchored(law, body, belt_speed, side, radius, tau)
             began, covered = relative(problem, tau, work, y), 0.0
             h = reach
     return Carried(

@@ -14,7 +14,9 @@ from frictionlab.methods.closing import (
     Goal,
     close,
     free_inverse,
+    less,
     monodromy,
+    norm,
 )
 from frictionlab.methods.period import mapped, size_of, start_of
 from frictionlab.methods.sliding_map import span
@@ -122,13 +124,57 @@ def tracked(law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, li
     return Track(track.tau[:n], track.x[:n], track.v[:n], track.friction[:n], track.stick[:n], track.filled)
 
 
+NEAR = 1e-3
+"""Of the size of a state: how near to an orbit that attracts a motion must come to be said to end there."""
+PATIENCE = 300
+"""Periods it may take."""
+
+
+@inner
+def _arrives(law: Any, body: Body, belt_speed: float, start: Any, target: Any, like: Any) -> bool:
+    """Whether a motion comes near to a closed orbit within some hundred periods."""
+    residual, size, steps = np.empty(start.size), 1.0 + norm(target), 0
+    for _ in range(PATIENCE):
+        image = mapped(law, body, belt_speed, start, residual, 1e-5 * body.normal_load, track_of(0), like)
+        steps += image.steps
+        if image.steps < 0 or steps > MUCH_WORK:
+            return False
+        for row in range(start.size):
+            start[row] = start[row] + residual[row]
+        less(start, target, residual)
+        if norm(residual) < NEAR * size:
+            return True
+    return False
+
+
+def _reached_without_memory(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+    """Where it is not sure that all motions end there, four starts are followed to their ends instead."""
+    return False
+
+
+def _reached_with_a_bristle(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+    """Whether the mass set off at rest on the belt, and shaken freely, ends on this orbit."""
+    start = np.empty(target.size)
+    start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like)
+    if not _arrives(law, body, belt_speed, start, target, like):
+        return False
+    for row in range(start.size):
+        start[row] = 0.0
+    return _arrives(law, body, belt_speed, start, target, like)
+
+
+reached = by_law(_reached_without_memory, _reached_with_a_bristle)
+
+
 class Curve(NamedTuple):
-    """States [n, size], results [n, 6] of ``solve_curve``, READ columns [n, 17], monodromies, the last orbit."""
+    """States [n, size], results [n, 6] of ``solve_curve``, READ columns [n, 17], monodromies, whether the starts that
+    are quick to ask end there [n], the last orbit."""
 
     states: Any
     results: Any
     columns: Any
     matrices: Any
+    reached: Any
     last: Track
 
 
@@ -141,6 +187,7 @@ def answer_curve(
     n, size = states.shape
     accuracy = max(0.1 * goal.tolerance * body.normal_load, 1e-13)
     columns, matrices = np.full((n, len(READ)), np.nan), np.zeros((n, size, size))
+    ends_there = np.zeros(n, np.bool_)
     track = track_of(0)
     for i in range(n):
         if results[i, 3] < 0.0:
@@ -150,7 +197,8 @@ def answer_curve(
         for k in range(row.size):
             columns[i, k] = row[k]
         monodromy(law, body, belt_speeds[i], states[i], 1.0, matrices[i], like)
-    return Curve(states, results, columns, matrices, track)
+        ends_there[i] = reached(law, body, belt_speeds[i], states[i], like)
+    return Curve(states, results, columns, matrices, ends_there, track)
 
 
 @inner

@@ -102,6 +102,7 @@ class Found:
     status: list[Status]
     reason: list[str]
     states: list[Floats | None]
+    reached: list[bool]
     columns: dict[str, Floats]
     planar: bool
 
@@ -112,13 +113,16 @@ class Found:
         names = [name for name in READ if not name.startswith("mean_position")]
         names += ["error", "mean_low", "mean_high", "window", "period", "floquet", "seconds"]
         columns = {name: np.full(n, np.nan) for name in names}
-        return cls(["failed"] * n, [""] * n, [None] * n, columns, scenes[0].degrees_of_freedom == 2)
+        return cls(
+            ["failed"] * n, [""] * n, [None] * n, [False] * n, columns, scenes[0].degrees_of_freedom == 2
+        )
 
     def take(self, where: list[int], scene: Scene, curve: Curve, seconds: float) -> None:
         """Take in the closed orbits of the scenes at these places."""
         self.columns["seconds"][where] = seconds / len(where)
         multipliers = np.abs(np.linalg.eigvals(curve.matrices)).max(axis=1)
         for row, i in enumerate(where):
+            self.reached[i] = bool(curve.reached[row])
             maps, error = curve.results[row, 3], curve.results[row, 2]
             if maps < 0.0:
                 self.reason[i] = f"no steady state found in {-maps:.0f} period maps (error {error:.1e})"
@@ -132,8 +136,8 @@ class Found:
                 self.columns["floquet"][i] = multipliers[row] if _whole(curve, scene) else np.nan
 
     def attracts(self, i: int) -> bool:
-        """Whether the answer is an orbit that no small disturbance leaves, to the accuracy of its multipliers."""
-        return self.status[i] == "ok" and not self.columns["floquet"][i] > 1.0 + 1e-6
+        """Whether no small disturbance leaves the answer, and both starts that are quick to ask end there."""
+        return self.status[i] == "ok" and self.reached[i] and not self.columns["floquet"][i] > 1.0 + 1e-6
 
     def holds_elastically(self, i: int, scene: Scene, law: BristleLaw) -> bool:
         """Whether on a belt at rest the bristle only follows the mass: nothing then decides about its mean."""

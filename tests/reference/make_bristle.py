@@ -151,7 +151,7 @@ def _guess(n, softer):
     own = n.mu_kinetic / n.stiffness
     if own >= 2e-3:
         return bristle_steps.shoot(n, 1e-11)[-1]
-    if softer == 1.0 and own >= 5e-4:
+    if softer == 1.0 and own >= 1e-4:
         return bristle_steps.shoot(n, 1e-11)[-1]
     if softer == 1.0:
         raise ArithmeticError(f"too stiff for steps: {n}")

@@ -194,6 +194,10 @@ def _lie_decades_apart(curves: Sequence[pd.Series]) -> bool:
 def _draw_curve(axes: Axes, family: Family, curve: Curve, column: str) -> None:
     x, y = (curve.rows[name].to_numpy(dtype=float) for name in (family.abscissa, column))
     look = _look(family, curve)
+    if np.isnan(x).all():  # a law without the swept parameter: the level that the others are held against
+        ends = [0.0, 0.5, 1.0]
+        axes.plot(ends, y[[0, 0, 0]], markevery=[1], transform=axes.get_yaxis_transform(), **look)
+        return
     axes.plot(x, y, markevery=_marked(y, curve, family), **look)
     data = Data(x, y, curve.rows, look["color"])
     if column == "mean_friction":

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from frictionlab.columns import SCALED, belt_speed, given
 
+POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
 Setting = tuple[str, float | None]  # a swept input and its value; None where a law has no such parameter
 
 
@@ -54,18 +55,25 @@ class Family:
 def family_of(table: pd.DataFrame) -> Family | None:
     """The curves of a table; None where nothing is swept.
 
-    Along the axis: belt speed, or the swept input of most values where belt speed is not swept. Of the others
-    the one of most values tells neighbours apart; each further one sets up panels.
+    Along the axis: belt speed, or the swept input of most values where belt speed takes too few for a curve.
+    Of the others the one of most values tells neighbours apart; each further one sets up panels.
     """
     table = table.rename(columns=_names_in_si(table.columns))
     swept = sorted(_swept_inputs(table), key=lambda name: table[name].nunique())
     if not swept:
         return None
-    speed = belt_speed(table.columns)
-    abscissa = speed if speed in swept else swept[-1]
+    abscissa = _along_the_axis(table, swept)
     others = [name for name in swept if name != abscissa]
     curves = _curves(table, abscissa, others)
     return Family(abscissa, others[-1] if others else None, curves)
+
+
+def _along_the_axis(table: pd.DataFrame, swept: list[str]) -> str:
+    speed = belt_speed(table.columns)
+    if speed not in swept:
+        return swept[-1]
+    of_a_curve = table[speed].nunique() >= min(POINTS_OF_A_CURVE, table[swept[-1]].nunique())
+    return speed if of_a_curve else swept[-1]
 
 
 def _names_in_si(columns: Iterable[str]) -> dict[str, str]:
@@ -125,7 +133,7 @@ def kinks(curve: Curve) -> list[float]:
 
 def is_logarithmic(values: NDArray[np.float64]) -> bool:
     """Whether the distinct values are spaced evenly in their logarithms rather than in themselves."""
-    steps = np.unique(values)
+    steps = np.unique(values[np.isfinite(values)])
     if len(steps) < 3 or steps[0] <= 0 or steps[-1] < 5 * steps[0]:
         return False
     return _unevenness(np.log(steps)) < _unevenness(steps)

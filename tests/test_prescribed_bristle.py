@@ -299,6 +299,12 @@ def test_elasto_plastic_friction_in_the_plane_is_what_small_steps_tend_to(scene)
     assert mean(scene, law) == pytest.approx(fine, abs=2.0 * abs(fine - coarse) + 1e-6)
 
 
+def test_slip_that_turns_and_comes_to_rest_for_an_instant_is_between_its_neighbours():
+    slower, at_rest, faster = (mean(circular(ratio), elasto_plastic(0.3)) for ratio in (0.999, 1.0, 1.001))
+
+    assert slower < at_rest < faster
+
+
 @pytest.mark.parametrize("law", [dahl, elasto_plastic, lambda one: Jenkins(mu=1.0, presliding_length=one)])
 @pytest.mark.parametrize("scene", [slip(0.5), slip(0.5, 1.0, 1.0, 60.0)])
 def test_twenty_decades_of_stiffness_are_one_smooth_curve_of_small_error(law, scene):

@@ -7,6 +7,7 @@ from typing import Any
 
 from frictionlab.laws.base import NonNegative, Positive
 from frictionlab.laws.bristle import CompliantLaw
+from frictionlab.laws.fall import faded
 
 
 class Dahl(CompliantLaw):
@@ -88,7 +89,7 @@ class Dahl(CompliantLaw):
             return z
         end = (self.saturation / length) * path
         if self.exponent == 1.0:
-            return end + (z - end) * math.exp(-length / self.saturation)
+            return end + (z - end) * faded(length / self.saturation)
         left, steeper = 1.0 - z.real / end.real, self.exponent - 1.0
         if left == 0.0:
             return end

@@ -7,6 +7,7 @@ from typing import Any
 
 from frictionlab.laws.base import Positive
 from frictionlab.laws.bristle import CompliantLaw
+from frictionlab.laws.fall import faded
 
 
 class Jenkins(CompliantLaw):
@@ -82,7 +83,7 @@ class Jenkins(CompliantLaw):
             return z + path
         start = z + max(free, 0.0) * direction
         turn = start * direction.conjugate() / self.reach  # exp(i angle) from the slip to the spring
-        left = math.exp(-(length - max(free, 0.0)) / self.reach)
+        left = faded((length - max(free, 0.0)) / self.reach)
         # with c = cos(angle): tan^2(angle/2) = (1 - c)/(1 + c), to be multiplied by left^2
         below, above = (1.0 - turn.real) * left * left, 1.0 + turn.real
         size = below + above

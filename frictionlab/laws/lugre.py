@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
+from frictionlab.laws.fall import faded
 from frictionlab.laws.stribeck_bristle import StribeckBristle, stribeck_curve
 
 
@@ -41,4 +41,4 @@ class LuGre(StribeckBristle):
             return z
         saturation = self.mu_kinetic / self.bristle_stiffness
         end = (saturation / length) * path
-        return end + (z - end) * math.exp(-length / saturation)
+        return end + (z - end) * faded(length / saturation)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from frictionlab.kernel import inner
+from frictionlab.methods.bristle_map import coarsest
 from frictionlab.methods.closing import (
     FINER,
     MOST_MAPS,
@@ -34,11 +35,11 @@ from frictionlab.methods.sliding_map import span
 from frictionlab.methods.track import track_of
 from frictionlab.scene import Body
 
-
-@inner
-def _felt_by_the_mean(body: Body, change: Any, distance: float, slope: float) -> float:
-    """How much the mean may move with a change of the map that moves the orbit by this distance."""
-    return mean_error(body, change, distance) + slope * distance
+SURE = 0.05
+"""Of the bound on the mean that a distance of states gives where no two orbits move apart: it is some hundred times
+what the mean really moves, and a part of it stands in where two means agree by chance."""
+LOOSE = 2.0
+"""How much coarser than the tolerance the maps are that an orbit is found with; the two that end it are finer."""
 
 
 @inner
@@ -80,7 +81,7 @@ def close_bristle(
     n, tolerance, period = z.size, goal.tolerance, span(body)
     residual, trial, fresh, step, work = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     floor = 4e-15 * (1.0 + norm(z) + abs(belt_speed))
-    finest = max(tolerance * body.normal_load, floor)
+    finest = max(min(LOOSE * tolerance * body.normal_load, coarsest(law, body)), floor)
     accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
     image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
     maps, checks, first, stalls = 1, 0, norm(residual), 0
@@ -90,25 +91,29 @@ def close_bristle(
             break
         times(inverse, residual, step)
         if accuracy <= finest and mean_error(body, residual, norm(step)) <= 3.0 * tolerance:
-            accuracy = max(finest / FINER, floor)
+            if accuracy <= floor:  # two maps of one accuracy agree however wrong they are
+                image = mapped(law, body, belt_speed, z, residual, FINER * floor, track_of(0), like)
+                maps += 1
+            accuracy = max(accuracy / FINER, floor)
+            coarse = image
             fine = mapped(law, body, belt_speed, z, fresh, accuracy, track_of(0), like)
             less(fresh, residual, work)  # what the coarser map has wrong
             times(inverse, work, trial)
-            jump = abs(fine.rubbed - image.rubbed) / period
             times(inverse, fresh, step)
             less(z, step, z)
             image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
             maps, checks = maps + 2, checks + 1
             slope = abs(image.rubbed - fine.rubbed) / period / (norm(step) + 1e-300)
-            doubt = _felt_by_the_mean(body, work, norm(trial), slope) + jump
+            doubt = max(
+                abs(image.rubbed - coarse.rubbed) / period, SURE * mean_error(body, work, norm(trial))
+            )
             times(inverse, residual, step)
-            rest = _felt_by_the_mean(body, residual, norm(step), slope)
-            error = 2.0 * rest + 0.5 * doubt + floor / body.normal_load + ROUNDING
+            rest = slope * norm(step) + SURE * mean_error(body, residual, norm(step))
+            error = 2.0 * rest + doubt + floor / body.normal_load + ROUNDING
             settled = norm(residual) <= 0.5 * norm(fresh) + 10.0 * accuracy
             if settled and (error <= tolerance or (finest <= floor and checks > 3)):
                 return Closed(image.rubbed, error, maps, 0.0, image.closest, first)
-            if 0.5 * doubt > 0.5 * tolerance:
-                finest = max(finest / FINER, floor)
+            finest = accuracy
             if not settled or checks > 3:
                 image, took = _moved_on(law, body, belt_speed, z, residual, inverse, accuracy, like)
                 maps += took

@@ -15,7 +15,7 @@ import numpy as np
 from frictionlab.kernel import by_dimension, inner
 from frictionlab.laws.bristle import VECTORIAL
 from frictionlab.methods.bristle import resistance
-from frictionlab.methods.path_map import Carried
+from frictionlab.methods.path_map import Carried, share_of_the_way
 from frictionlab.methods.sliding_map import (
     MOST_STEPS,
     dips,
@@ -42,6 +42,12 @@ from frictionlab.scene import Body
 
 COARSEST = 1e-4
 """Of a step, per unit of friction impulse in a radian: what is coarser jumps over reversals."""
+
+
+@inner
+def coarsest(law: Any, body: Body) -> float:
+    """The coarsest accuracy a map is made with, whatever is asked: two coarser maps are one and the same."""
+    return COARSEST * body.normal_load * law.sliding_friction(0.0) / body.frequency
 
 
 class Problem(NamedTuple):
@@ -508,9 +514,10 @@ def bristle_map(
 
     On a track with room every piece of the way is noted.
     """
-    end, impulse, length = span(body), body.normal_load * law.sliding_friction(0.0), law.largest_deflection()
-    accuracy = min(accuracy, COARSEST * impulse / body.frequency)
+    end, length = span(body), law.largest_deflection()
+    accuracy = min(accuracy, coarsest(law, body))
     reach = reach_of(body, law.sliding_friction(0.0), accuracy)
+    ahead = share_of_the_way(law, body, accuracy)
     swing = body.frequency * (abs(body.reference_sine) + abs(body.reference_cosine)) + abs(belt_speed)
     weight = body.normal_load * abs(law.friction(0.0, length, 0.0)) / length
     work = _work(body, weight, dimension(y))
@@ -535,7 +542,7 @@ def bristle_map(
             before = corner(problem, tau, work.at, y)
             if covered < 40.0 * length:
                 covered = abs(relative(problem, tau, work, y) - began)
-                h = min(h, longest(w0, rate0, max(length, covered), y))
+                h = min(h, longest(w0, rate0, ahead * max(length, covered), y))
             fresh = False
         h = min(h, reach, end - tau)
         growth = _growth(_stepped(problem, tau, h, work, y), accuracy)

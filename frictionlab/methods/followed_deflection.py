@@ -201,7 +201,7 @@ def _jumped(law: Any, slip: Slip, v: Any, angle: float, z: Any, mode: float, car
     turn = complex(math.cos(angle), math.sin(angle)) * slip.frequency
     bend = complex((slip.along * turn).real, (slip.across * turn).real)
     speed = v.real * v.real + v.imag * v.imag + z.real * bend.real + z.imag * bend.imag
-    if abs(speed) < 1e-9 * (v.real * v.real + v.imag * v.imag):
+    if abs(speed) <= 1e-9 * (v.real * v.real + v.imag * v.imag):
         return
     for column in range(carry.shape[0]):
         across = 0.0

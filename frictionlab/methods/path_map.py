@@ -136,14 +136,21 @@ def _slid(leg: Leg, tau: float, y: float) -> float:
 
 
 @inner
-def _longest(leg: Leg, way: float, w: float, rate: float) -> float:
-    """The longest step that does not more than double the way, or than slide the bristle's own length."""
+def share_of_the_way(law: Any, body: Body, accuracy: float) -> float:
+    """How much of the way since a reversal a step may add to it: less for finer maps, or two would agree by it."""
+    impulse = body.normal_load * law.sliding_friction(0.0)
+    return min(1.0, 4.0 * (accuracy / impulse) ** 0.0625)
+
+
+@inner
+def _longest(leg: Leg, way: float, share: float, w: float, rate: float) -> float:
+    """The longest step that adds no more than this share of the way, or of the bristle's own length."""
     law = leg.law
     length = law.largest_deflection()
     here, next_ = law.deflected(leg.z, leg.side * way), law.deflected(leg.z, leg.side * (way + length))
     if abs(next_ - here) <= 1e-13 * length:
         return 1e300
-    ahead = max(length, way)
+    ahead = share * max(length, way)
     return 2.0 * ahead / (abs(w) + math.sqrt(w * w + 2.0 * abs(rate) * ahead) + 1e-300)
 
 
@@ -205,7 +212,10 @@ def path_map(
     On a track with room every piece of the way is noted.
     """
     end = span(body)
-    reach = reach_of(body, law.sliding_friction(0.0), accuracy)
+    reach, share = (
+        reach_of(body, law.sliding_friction(0.0), accuracy),
+        share_of_the_way(law, body, accuracy),
+    )
     tau, h, steps, rubbed, closest = 0.0, 0.1 * reach, 0, 0.0, 1e300
     leg = _leg(law, body, belt_speed, _side(law, body, belt_speed, tau, y, u, z), tau, y, z)
     a, f = rates(leg, tau, y, u)
@@ -216,7 +226,7 @@ def path_map(
         w, rate = slip(leg, tau, state.v), _slip_rate(leg, tau, state.a)
         closest = min(closest, abs(w))
         if corner > way or corner == math.inf:
-            h = min(h, _longest(leg, way, w, rate))
+            h = min(h, _longest(leg, way, share, w, rate))
         h = min(h, reach, end - tau)
         taken = step(leg, tau, state, h)
         steps += 1

@@ -170,7 +170,8 @@ class Found:
             self.reason[i] = "" if unique else f"reached from scene.initial; {told(reached)}"
             return
         self._range(i, min(one.low for one in reached), max(one.high for one in reached))
-        self.reason[i] = f"friction falls with speed: {told(reached)}"
+        why = "the deflection lags behind the slip" if closer.falls_slowly else "friction falls with speed"
+        self.reason[i] = f"{why}: {told(reached)}"
         if unique and first.curve is not None:
             self.columns["period"][i] = first.period
             self.columns["floquet"][i] = _largest(first.curve, scene)

@@ -38,7 +38,7 @@ def turning(step: Any, rates: Any, slip: Any, turned: Any) -> Any:
             trial = h - w / slope if slope < 0.0 else low
             if not low < trial < high:
                 trial = 0.5 * (low + high)
-            done = abs(trial - h) <= 4e-16 * (tau + h)
+            done = abs(trial - h) <= 2e-15 * (tau + h)
             h = trial
             taken = step(problem, tau, state, h)
             if done or high - low <= 4e-16 * (tau + h):

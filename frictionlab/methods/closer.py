@@ -93,13 +93,22 @@ class Closer:
 
     def wandered(self, belt_speed: float, start: Initial | None, most: int) -> Wandered:
         """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
-        reference = self.body.reference_cosine, self.body.frequency * self.body.reference_sine
-        at = reference if start is None else self._at(start)
+        at = self._shaken(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
         means, states = np.empty(most), np.empty((most + 1, self.size))
         accuracy = 1e-9 * self.mass.normal_load
         arguments = self.body, belt_speed, at, accuracy, means, states
         (period, count), seconds = timed(compiled(wander, self.law), *arguments)
         return Wandered(period, means[:count], states[count], seconds)
+
+    def _shaken(self, belt_speed: float) -> tuple[complex, complex, complex]:
+        """On the friction-free orbit; with a bristle, deflected and shifted as in sliding that never reverses."""
+        x, v = self.body.reference_cosine, self.body.frequency * self.body.reference_sine
+        if not isinstance(self.law, BristleLaw):
+            return x, v, 0.0 * self.like
+        forward = math.copysign(1.0, belt_speed)
+        stiffness = self.body.stiffness_mean + self.body.stiffness_split
+        shift = forward * self.mass.normal_load * self.law.sliding_friction(abs(belt_speed)) / stiffness
+        return x + shift, v, 0.0 * self.like - forward * self.law.largest_deflection()
 
     def _at(self, start: Initial) -> tuple[complex, complex]:
         x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)

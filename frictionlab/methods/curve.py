@@ -131,6 +131,13 @@ PATIENCE = 300
 
 
 @inner
+def sliding_on(body: Body, friction: float, like: Any) -> Any:
+    """Position and velocity at tau = 0 of the friction-free orbit, shifted by a constant friction; no deflection."""
+    shift = body.normal_load * friction / (body.stiffness_mean + body.stiffness_split)
+    return body.reference_cosine + shift + 0.0 * like, body.frequency * body.reference_sine, 0.0 * like
+
+
+@inner
 def _arrives(law: Any, body: Body, belt_speed: float, start: Any, target: Any, like: Any) -> bool:
     """Whether a motion comes near to a closed orbit within some hundred periods."""
     residual, size, steps = np.empty(start.size), 1.0 + norm(target), 0
@@ -153,13 +160,16 @@ def _reached_without_memory(law: Any, body: Body, belt_speed: float, target: Any
 
 
 def _reached_with_a_bristle(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
-    """Whether the mass set off at rest on the belt, and shaken freely, ends on this orbit."""
-    start = np.empty(target.size)
-    start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like)
+    """Whether the mass ends on this orbit, set off at rest on the belt and sliding as if it never reversed.
+
+    The second is an orbit of its own where the belt is faster than any vibration and sliding friction constant.
+    """
+    start, forward = np.empty(target.size), math.copysign(1.0, belt_speed)
+    start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
     if not _arrives(law, body, belt_speed, start, target, like):
         return False
-    for row in range(start.size):
-        start[row] = 0.0
+    x, v, z = sliding_on(body, forward * law.sliding_friction(abs(belt_speed)), like)
+    start_of(law, body, start, x, v, z - forward * law.largest_deflection())
     return _arrives(law, body, belt_speed, start, target, like)
 
 
@@ -208,7 +218,7 @@ def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
     Periods: -1 where after many periods the mass still creeps.
     """
     z, residual = np.empty(size_of(law, x)), np.empty(size_of(law, x))
-    start_of(law, body, z, x, v)
+    start_of(law, body, z, x, v, 0.0 * x)
     period = span(body)
     for count in range(1, MOST_PERIODS):
         image = mapped(law, body, 0.0, z, residual, accuracy, track_of(0), x)
@@ -236,15 +246,15 @@ def _apart(states: Any, a: int, b: int) -> float:
 def wander(
     law: Any, body: Body, belt_speed: float, start: Any, accuracy: float, means: Any, states: Any
 ) -> Any:
-    """Follow the motion from a start (x, v), period by period, until it repeats.
+    """Follow the motion from a start (x, v, deflection), period by period, until it repeats.
 
     Fills the one-period means [n] and the states [n + 1, size]; returns after how many periods it repeats (0 where
     it has not after n), and how many it was followed.
     """
-    x, v = start
+    x, v, deflection = start
     steps = 0
     residual = np.empty(states.shape[1])
-    start_of(law, body, states[0], x, v)
+    start_of(law, body, states[0], x, v, deflection)
     for n in range(means.size):
         image = mapped(law, body, belt_speed, states[n], residual, accuracy, track_of(0), x)
         means[n] = -image.rubbed.real / span(body)

@@ -170,9 +170,19 @@ rest_of = by_law(_rest_without_memory, _rest_with_a_bristle)
 """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
 
 
+def _remember_nothing(law: Any, body: Body, state: Any, z: Any) -> None:
+    """A law without memory."""
+
+
+def _remember_a_deflection(law: Any, body: Body, state: Any, z: Any) -> None:
+    store(state, bristle_unit(law, body), z)
+
+
+remember = by_law(_remember_nothing, _remember_a_deflection)
+
+
 @inner
-def start_of(law: Any, body: Body, state: Any, x: Any, v: Any) -> None:
-    """The state of a mass at x moving at v at tau = 0, its bristle undeflected."""
-    for row in range(state.size):
-        state[row] = 0.0
+def start_of(law: Any, body: Body, state: Any, x: Any, v: Any, z: Any) -> None:
+    """The state of a mass at x moving at v at tau = 0, its bristle, if there is one, deflected by z."""
     pack(body, state, x - body.reference_cosine, v - body.frequency * body.reference_sine)
+    remember(law, body, state, z)

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import example, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from oracle import REFERENCE
 
@@ -434,3 +434,35 @@ def test_any_ellipse_at_any_stiffness_has_a_mean_within_the_coefficient_and_its_
     ratio, size, angle, softness
 ):
     assert abs(mean(slip(ratio, 1.0, size, angle), dahl(softness))) <= 1.0 + TOLERANCE
+
+
+@given(
+    belt_speed=st.floats(0.1, 3.0),
+    along=st.floats(0.0, 2.0),
+    across=st.floats(0.3, 2.0),
+    phase=st.floats(20.0, 160.0),
+)
+def test_coulombs_mean_is_the_gradient_of_the_mean_slip_speed(
+    belt_speed: float, along: float, across: float, phase: float
+) -> None:
+    """C1: <T> = mu grad <|slip|> over the steady part of slip, on any ellipse."""
+    angle = np.arange(4096) * 2 * np.pi / 4096
+    shaken = along * np.sin(angle) + 1j * across * np.sin(angle + np.radians(phase))
+
+    def mean_speed(steady: complex) -> float:
+        return float(np.abs(shaken - steady).mean())
+
+    closest = np.abs(shaken - belt_speed).min()
+    assume(closest > 0.02)
+    h = 1e-5
+    gradient = (mean_speed(belt_speed + h) - mean_speed(belt_speed - h)) / (2 * h)
+    gradient += 1j * (mean_speed(belt_speed + 1j * h) - mean_speed(belt_speed - 1j * h)) / (2 * h)
+    scene = Scene(
+        belt_speed=belt_speed,
+        slip=Slip(velocity_amplitude=along, frequency=1.0),
+        transverse_slip=TransverseSlip(velocity_amplitude=across, phase=phase),
+    )
+    answers = Shooting().solve([scene], Coulomb(mu=0.4), 1e-9)
+    means = answers.columns["mean_friction"][0], answers.columns["mean_friction_transverse"][0]
+    assert abs(means[0] - 0.4 * gradient.real) <= 1e-7
+    assert abs(means[1] - 0.4 * gradient.imag) <= 1e-7

@@ -49,8 +49,16 @@ class Shooting(Method):
         return None
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """About 0.3 ms in the plane and 0.1 ms on the line at 1e-9; steps grow as tolerance^(-1/8)."""
-        return (1e-4 if scene.load_along_belt_only else 3e-4) * (1e-9 / tolerance) ** 0.125
+        """About 0.3 ms in the plane and 0.1 ms on the line at 1e-9; steps grow as tolerance^(-1/8).
+
+        With a bristle, other starts included, 1 ms on the line where the path is exact, else ten times as long and as
+        tolerance^(-1/5), and 50 ms in the plane.
+        """
+        if not isinstance(law, BristleLaw):
+            return (1e-4 if scene.load_along_belt_only else 3e-4) * (1e-9 / tolerance) ** 0.125
+        if not scene.load_along_belt_only:
+            return 5e-2 * (1e-6 / tolerance) ** 0.2
+        return 1e-3 * (1e-9 / tolerance) ** 0.125 if law.exact_path() else 1e-2 * (1e-6 / tolerance) ** 0.2
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer a curve by continuation in belt speed."""

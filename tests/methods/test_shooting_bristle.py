@@ -253,6 +253,27 @@ def test_soft_damped_bristles_can_double_the_period() -> None:
     assert answers.columns["floquet"][0] < 1.0
 
 
+def test_a_soft_contact_slides_on_or_reverses_on_one_belt() -> None:
+    """Beyond the vibration speed constant friction lets slip go on without reversal; contact resonance may not."""
+    scene = fl.Scene(
+        damping_ratio=0.0348,
+        normal_load=505.75868775,
+        belt_speed=40.52301704501663,  # 1.047 times the friction-free velocity amplitude
+        drive=fl.Drive(unbalance=10.0, frequency=3.567),
+    )
+    both = Shooting().solve(
+        [scene], fl.Dahl(mu=0.4, contact_stiffness=30.0).under_load(scene.normal_load), 1e-7
+    )
+    assert both.status == ["not_unique"]
+    assert both.columns["mean_high"][0] == pytest.approx(0.4, abs=1e-9)
+    assert both.columns["mean_low"][0] == pytest.approx(0.30541, abs=2e-5)  # Runge-Kutta steps, 1500 a period
+    one = Shooting().solve(
+        [scene], fl.Dahl(mu=0.4, contact_stiffness=15.0).under_load(scene.normal_load), 1e-7
+    )
+    assert one.status == ["ok"]
+    assert one.columns["mean_friction"][0] == pytest.approx(0.4, abs=1e-9)
+
+
 def test_vectors_and_undriven_bristles_are_refused_where_they_mean_nothing() -> None:
     drive = fl.Drive(unbalance=10.0, frequency=1.0)
     across = fl.Transverse(natural_frequency=2.0, damping_ratio=0.1, load=fl.Load(unbalance=10.0))

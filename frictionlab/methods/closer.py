@@ -64,8 +64,8 @@ class Closer:
 
     def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float) -> None:
         self.mass, self.law = scene.mass(), law
-        self.goal = Goal(tolerance, contracts(scene, law))
         self.falls_slowly = falls_slowly(scene, law)
+        self.goal = Goal(tolerance, contracts(scene, law), isinstance(law, BristleLaw) and self.falls_slowly)
         self.body: Body
         self.like: complex  # a number of the kind of its positions
         if along_the_belt(scene, law):
@@ -81,10 +81,9 @@ class Closer:
         """The orbits of these scenes, from a known state at the first where there is one; and kernel time [s]."""
         belt_speeds = np.array([scene.belt_speed for scene in scenes])
         guess = np.empty((0, 0)) if state is None else state[None, :]
+        goal = self.goal if state is None else self.goal._replace(asks=False)
         body = self.body._replace(periods=float(periods))
-        return timed(
-            compiled(answer_curve, self.law), body, self.mass, belt_speeds, guess, self.goal, self.like
-        )
+        return timed(compiled(answer_curve, self.law), body, self.mass, belt_speeds, guess, goal, self.like)
 
     def settled(self, start: Initial) -> tuple[Floats, int]:
         """The state at which the mass stays put on a belt at rest, and in how many periods; -1 for never."""
@@ -95,7 +94,10 @@ class Closer:
         """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
         at = self._shaken(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
         means, states = np.empty(most), np.empty((most + 1, self.size))
-        accuracy = 1e-9 * self.mass.normal_load
+        relative = (
+            1e-6 if isinstance(self.law, BristleLaw) else 1e-9
+        )  # of lower order, and its maps are smooth
+        accuracy = relative * self.mass.normal_load
         arguments = self.body, belt_speed, at, accuracy, means, states
         (period, count), seconds = timed(compiled(wander, self.law), *arguments)
         return Wandered(period, means[:count], states[count], seconds)

@@ -184,10 +184,14 @@ def broyden(inverse: Any, step: Any, change: Any, work: Any) -> None:
 
 
 class Goal(NamedTuple):
-    """What an orbit is closed for: the tolerance on the mean, and whether no two motions ever move apart."""
+    """What an orbit is closed for: the tolerance on the mean, and whether no two motions ever move apart.
+
+    asks: whether starts that are quick to ask are to be followed until they come near.
+    """
 
     tolerance: float
     contracts: bool
+    asks: bool
 
 
 ROUNDING = 2e-14

@@ -15,7 +15,7 @@ from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Answers, Method, Orbit, Status
 from frictionlab.methods.bristle_limits import fewest_steps, friction_falls
 from frictionlab.methods.bristle_sampling import solve_rubbed
-from frictionlab.methods.closer import contracts
+from frictionlab.methods.closer import along_the_belt, contracts
 from frictionlab.methods.marcher import LONGEST_PERIOD, Run, Walker
 from frictionlab.methods.marching import RESTING, STALLED, TOO_FAST
 from frictionlab.methods.refining import FEWEST_LAPS, WORK, Found, Plan, found, restless, why_not
@@ -142,7 +142,7 @@ class March(Method):
             return f"stepper {stepper} knows no friction with memory; use exponential, rk4 or sdirk2"
         if self.theta is not None:
             return "theta is a key of stepper moreau, which knows no friction with memory; leave it out"
-        planar = law.planar == "vectorial" and not scene.load_along_belt_only
+        planar = law.planar == "vectorial" and not along_the_belt(scene, law)
         if planar and law.no_vector_form():
             return f"{law.no_vector_form()}; use planar rotated or per-axis"
         if stepper == "rk4" and math.isinf(law.largest_rate(1.0)):

@@ -14,6 +14,7 @@ from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Floats, Orbit
 from frictionlab.methods.bristle_limits import fastest_slip, spring_of
 from frictionlab.methods.bristle_marching import march_bristle_rk4, march_exponential, march_sdirk2
+from frictionlab.methods.closer import along_the_belt
 from frictionlab.methods.marching import (
     CLOSED,
     RESTING,
@@ -106,7 +107,7 @@ class Walker:
         self.scene, self.law, self.stepper = scene, law, stepper
         self.mass: Mass = scene.mass()
         self.bristles = law if isinstance(law, BristleLaw) else None
-        straight = scene.load_along_belt_only and not _starts_across(scene)
+        straight = along_the_belt(scene, law) and not _starts_across(scene)
         reference = on_the_line(self.mass) if straight else in_the_plane(self.mass)
         self.straight = straight
         self.body = loaded(reference, self.mass, straight)

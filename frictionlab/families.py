@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from frictionlab.columns import SCALED, belt_speed, given
 
+MOST_CURVES_IN_A_PICTURE = 12  # of several laws; more of them cannot be told apart
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
 Setting = tuple[str, float | None]  # a swept input and its value; None where a law has no such parameter
 
@@ -56,7 +57,8 @@ def family_of(table: pd.DataFrame) -> Family | None:
     """The curves of a table; None where nothing is swept.
 
     Along the axis: belt speed, or the swept input of most values where belt speed takes too few for a curve.
-    Of the others the one of most values tells neighbours apart; each further one sets up panels.
+    Of the others the one of most values tells neighbours apart, unless it is one of the scene and several laws
+    have too many curves then; each further one sets up panels.
     """
     table = table.rename(columns=_names_in_si(table.columns))
     swept = sorted(_swept_inputs(table), key=lambda name: table[name].nunique())
@@ -64,8 +66,14 @@ def family_of(table: pd.DataFrame) -> Family | None:
         return None
     abscissa = _along_the_axis(table, swept)
     others = [name for name in swept if name != abscissa]
-    curves = _curves(table, abscissa, others)
-    return Family(abscissa, others[-1] if others else None, curves)
+    member = others.pop() if others and not _crowded(table, others[-1]) else None
+    return Family(abscissa, member, _curves(table, abscissa, others, member))
+
+
+def _crowded(table: pd.DataFrame, member: str) -> bool:
+    laws = table["law"].nunique()
+    curves = laws * table[member].nunique()
+    return laws > 1 and member.startswith("scene.") and curves > MOST_CURVES_IN_A_PICTURE
 
 
 def _along_the_axis(table: pd.DataFrame, swept: list[str]) -> str:
@@ -90,15 +98,16 @@ def _swept_inputs(table: pd.DataFrame) -> list[str]:
     return scene + [name for name in parameters if table.groupby("law")[name].nunique().max() > 1]
 
 
-def _curves(table: pd.DataFrame, abscissa: str, others: list[str]) -> list[Curve]:
+def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str | None) -> list[Curve]:
     laws, methods = table["law"].unique().tolist(), table["method"].unique().tolist()
-    members = sorted(table[others[-1]].dropna().unique().tolist()) if others else []
+    members = sorted(table[member].dropna().unique().tolist()) if member else []
+    names = [*panels, member] if member else panels
     curves = []
-    for (law, method, *values), rows in table.groupby(["law", "method", *others], sort=False, dropna=False):
-        settings = [_setting(name, value) for name, value in zip(others, values, strict=True)]
-        member = settings.pop() if settings else None
-        place = laws.index(law), _index(members, member), methods.index(method)
-        curves.append(Curve(law, method, tuple(settings), member, place, rows.sort_values(abscissa)))
+    for (law, method, *values), rows in table.groupby(["law", "method", *names], sort=False, dropna=False):
+        settings = [_setting(name, value) for name, value in zip(names, values, strict=True)]
+        own = settings.pop() if member else None
+        place = laws.index(law), _index(members, own), methods.index(method)
+        curves.append(Curve(law, method, tuple(settings), own, place, rows.sort_values(abscissa)))
     return sorted(curves, key=_order)
 
 

@@ -247,6 +247,35 @@ def test_without_a_sweep_of_belt_speed_the_longest_sweep_is_the_axis(resonance: 
     assert axes.get_xscale() == "log"
 
 
+def test_a_sweep_of_more_values_than_a_few_belt_speeds_is_the_axis(resonance: pd.DataFrame) -> None:
+    few = [resonance.assign(**{"scene.belt_speed": speed}) for speed in (1.0, 2.0)]
+    loads = {"scene.normal_load": np.logspace(-1, 2, len(resonance))}
+
+    axes = _figure(pd.concat([table.assign(**loads) for table in few], ignore_index=True)).axes[0]
+
+    assert axes.get_xlabel() == r"normal load $\gamma^2$"
+
+
+def test_a_law_without_the_parameter_along_the_axis_is_a_level_line(resonance: pd.DataFrame) -> None:
+    fixed = resonance.head(10).assign(**{"scene.belt_speed": 5.0})
+    soft = fixed.assign(law="dahl", **{"law.stiffness": np.logspace(0, 3, 10)})
+    rigid = fixed.head(1).assign(**{"law.stiffness": np.nan})
+
+    (level, _) = _curves(_figure(pd.concat([rigid, soft], ignore_index=True)))
+
+    assert level[1] == pytest.approx(rigid["mean_friction"].to_numpy().repeat(3))
+
+
+def test_curves_of_several_laws_too_many_for_one_picture_are_drawn_in_several(line: pd.DataFrame) -> None:
+    table = pd.concat(
+        [line.assign(law=law) for law in ("a", "b", "c", "d", "e", "f", "g")], ignore_index=True
+    )
+
+    titles = [axes.get_title(loc="left") for axes in _figure(table).axes]
+
+    assert titles == [rf"drive frequency $\Omega$ = {f:g}" for f in line["scene.drive.frequency"].unique()]
+
+
 def test_a_parameter_that_differs_between_laws_is_no_sweep(resonance: pd.DataFrame) -> None:
     other = resonance.assign(law="slippery", **{"law.mu": 0.2})
 

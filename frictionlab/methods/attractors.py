@@ -117,7 +117,10 @@ def _closed(closer: Closer, scene: Scene, way: Wandered) -> tuple[Attractor, flo
     seconds = 0.0
     if way.period > 0:
         curve, seconds = closer.closed([scene], way.state, way.period)
-        orbit = closed_orbit(curve, way.means[-way.period :])
+        means = way.means[-way.period :]
+        if way.period > 1 and curve.results[0, 3] > 0.0:
+            means = closer.means(scene.belt_speed, curve.states[0], way.period)
+        orbit = closed_orbit(curve, means)
         if orbit is not None:
             return orbit, seconds
     last = way.means[len(way.means) // 2 :]

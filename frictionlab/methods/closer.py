@@ -93,12 +93,33 @@ class Closer:
     def wandered(self, belt_speed: float, start: Initial | None, most: int) -> Wandered:
         """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
         at = self._shaken(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
-        means, states = np.empty(most), np.empty((most + 1, self.size))
         relative = (
             1e-6 if isinstance(self.law, BristleLaw) else 1e-9
         )  # of lower order, and its maps are smooth
-        accuracy = relative * self.mass.normal_load
-        arguments = self.body, belt_speed, at, accuracy, means, states
+        return self._followed(belt_speed, at, most, relative)
+
+    def means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
+        """The one-period means of an orbit of so many periods, from its state."""
+        body, halves = self.body, (0, 2) if isinstance(self.like, complex) else (0,)
+        stiffness = (body.stiffness_mean + body.stiffness_split, body.stiffness_mean - body.stiffness_split)
+        units = (1.0, 1j)
+        y = sum(state[k] / math.sqrt(stiffness[n]) * units[n] for n, k in enumerate(halves))
+        u = sum(state[k + 1] * units[n] for n, k in enumerate(halves))
+        first = 2 * len(halves)  # of the deflection
+        z = sum(value * unit for value, unit in zip(state[first:], units, strict=False)) / self._unit()
+        at = y + body.reference_cosine, u + body.frequency * body.reference_sine, z + 0.0 * self.like
+        return self._followed(belt_speed, at, periods, 1e-9).means
+
+    def _unit(self) -> float:
+        """What a deflection is multiplied by in a state; 1 without one."""
+        if not isinstance(self.law, BristleLaw):
+            return 1.0
+        length = min(self.law.largest_deflection(), 1e300)
+        return math.sqrt(self.mass.normal_load * abs(self.law.friction(0.0, length, 0.0)) / length)
+
+    def _followed(self, belt_speed: float, at: tuple[complex, ...], most: int, relative: float) -> Wandered:
+        means, states = np.empty(most), np.empty((most + 1, self.size))
+        arguments = self.body, belt_speed, at, relative * self.mass.normal_load, means, states
         (period, count), seconds = timed(compiled(wander, self.law), *arguments)
         return Wandered(period, means[:count], states[count], seconds)
 

@@ -254,6 +254,7 @@ def wander(
     """
     x, v, deflection = start
     steps = 0
+    alike = 1e-7 if accuracy <= 1e-8 * body.normal_load else 1e-5  # coarse maps wander on by their own error
     residual = np.empty(states.shape[1])
     start_of(law, body, states[0], x, v, deflection)
     for n in range(means.size):
@@ -264,7 +265,7 @@ def wander(
             states[n + 1, row] = states[n, row] + residual[row]
         nearest = 1e300
         for k in range(1, min(LONGEST_PERIOD, n // 2) + 1):
-            repeats = max(_apart(states, n + 1, n + 1 - k), _apart(states, n, n - k)) < 1e-7
+            repeats = max(_apart(states, n + 1, n + 1 - k), _apart(states, n, n - k)) < alike
             # a spiral into an orbit of fewer periods looks like a longer one while it is still far out
             if repeats and nearest > 1e-4:
                 return k, n + 1

@@ -15,11 +15,12 @@ from strategies import MU, angles, scenes_in_the_plane, scenes_on_the_line, sign
 
 from frictionlab.kernel import compiled, njit
 from frictionlab.laws.coulomb import Coulomb
-from frictionlab.methods.closing import mapped
 from frictionlab.methods.coulomb_curve import body_at
 from frictionlab.methods.coulomb_map import passage
 from frictionlab.methods.exact import Exact
+from frictionlab.methods.period import mapped
 from frictionlab.methods.shooting import Shooting
+from frictionlab.methods.track import track_of
 from frictionlab.orbit import WEIGHTS, sample
 from frictionlab.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip, in_the_plane
 from frictionlab.theory import friction_free_velocity
@@ -155,7 +156,7 @@ def test_two_motions_on_the_line_never_move_apart_in_energy(scene, one, other, e
 
 @njit
 def planar_map(law, body, belt_speed, z, residual, accuracy):
-    mapped(law, body, belt_speed, z, residual, accuracy, 0j)
+    mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), 0j)
 
 
 def planar_image(scene, z, accuracy=1e-11):

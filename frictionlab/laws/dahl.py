@@ -54,7 +54,11 @@ class Dahl(CompliantLaw):
 
     def no_vector_form(self) -> str:
         """For every exponent but 1."""
-        return "" if self.exponent == 1.0 else "Dahl friction has a vector form for exponent 1 alone"
+        return (
+            ""
+            if self.exponent == 1.0
+            else "Dahl friction has a vector form for exponent 1 alone; use planar rotated or per-axis"
+        )
 
     def largest_deflection(self) -> float:
         """Where the spring force is mu."""

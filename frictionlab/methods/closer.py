@@ -40,7 +40,7 @@ def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
 
     A bristle law damps motion across the slip up to some speed: here the largest that the loads could drive.
     """
-    if scene.degrees_of_freedom == 1 or not isinstance(law, BristleLaw):
+    if scene.degrees_of_freedom < 2 or not isinstance(law, BristleLaw):
         return scene.load_along_belt_only
     mass = scene.mass()
     swing = abs(mass.force) / mass.damping if mass.damping > 0.0 else math.inf  # at resonance

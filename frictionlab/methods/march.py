@@ -144,7 +144,7 @@ class March(Method):
             return "theta is a key of stepper moreau, which knows no friction with memory; leave it out"
         planar = law.planar == "vectorial" and not along_the_belt(scene, law)
         if planar and law.no_vector_form():
-            return f"{law.no_vector_form()}; use planar rotated or per-axis"
+            return law.no_vector_form()
         if stepper == "rk4" and math.isinf(law.largest_rate(1.0)):
             return "stepper rk4 needs a bound on how quickly bristles decay, and this law has none; use exponential"
         if stepper == "sdirk2" and scene.degrees_of_freedom == 0:

@@ -37,8 +37,27 @@ def plane_loop(law: BristleLaw, motion: Motion, belt_speed: float, tolerance: fl
     found = followed(law, slip, _stretches(law, slip, belt_speed), accuracy, start)
     if isinstance(found, Open):
         return found
-    return found._replace(
-        loop=_turned(found.loop, slip, belt_speed) if rotated else found.loop, model=FOLLOWED
+    if not rotated:
+        return found._replace(model=FOLLOWED)
+    loop, finer = (_turned(one, slip, belt_speed) for one in (found.loop, _halved(found.loop)))
+    return Closed(finer, found.error + 2.0 * abs(finer.mean - loop.mean), FOLLOWED, found.seconds)
+
+
+def _halved(loop: Loop) -> Loop:
+    """The loop on panels cut in two, deflection and friction by the polynomials of the whole ones."""
+    places = np.concatenate((0.5 * loop.points, 0.5 + 0.5 * loop.points))
+    others = [np.delete(loop.points, k) for k in range(len(loop.points))]
+    pairs = zip(loop.points, others, strict=True)
+    basis = np.stack([np.prod((places[:, None] - rest) / (at - rest), axis=1) for at, rest in pairs])
+    n, k = loop.slip.shape
+    return Loop(
+        np.stack((loop.start, loop.start + 0.5 * loop.width), axis=1).ravel(),
+        np.repeat(0.5 * loop.width, 2),
+        loop.points,
+        loop.shares,
+        (loop.slip @ basis).reshape(2 * n, k),
+        (loop.deflection @ basis).reshape(2 * n, k),
+        (loop.friction @ basis).reshape(2 * n, k),
     )
 
 

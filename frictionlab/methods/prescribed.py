@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Answers, Floats, Orbit, Status
-from frictionlab.methods.prescribed_bristle import BristlePoint
+from frictionlab.methods.prescribed_bristle import BristlePoint, saturates
 from frictionlab.methods.prescribed_motion import (
     Reading,
     prescribed_columns,
@@ -63,7 +63,7 @@ def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
 
 
 def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> _Point | BristlePoint:
-    if isinstance(law, BristleLaw):
+    if isinstance(law, BristleLaw) and not saturates(scene, law):
         return BristlePoint(scene, law, tolerance)
     return _Point(scene, law)
 

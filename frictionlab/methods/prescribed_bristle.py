@@ -29,6 +29,11 @@ def along_one_line(scene: Scene, law: BristleLaw) -> bool:
     return scene.load_along_belt_only and (scene.transverse_slip is None or law.form != ROTATED)
 
 
+def saturates(scene: Scene, law: BristleLaw) -> bool:
+    """Whether the deflection along a slip that only turns ends at its limit: friction is then that of sliding."""
+    return law.form == ROTATED and law.constant_sliding_friction() and not along_one_line(scene, law)
+
+
 def _vectorial(scene: Scene, law: BristleLaw) -> bool:
     return not along_one_line(scene, law) and law.planar == "vectorial"
 

@@ -30,7 +30,8 @@ class Shooting(Method):
     steps where it stalls. The error comes from a last map sixteen times finer: what it leaves open, carried to the
     mean by the contraction of monotone friction, or by the mean's own change where friction falls with speed.
     There the orbit must attract, and starts far from each other must reach it; otherwise the mean is not unique.
-    Without a drive the period is an unknown too, and the answer is the state reached from scene.initial. A prescribed
+    Along the belt a bristle whose path is exact is put in as a function of the way slid; otherwise mass and bristle are
+    solved for together by Rodas5P (Steinebach, 2023). Without a drive the period is an unknown too, and the answer is the state reached from scene.initial. A prescribed
     slip leaves nothing to close: its mean is quadrature.
     """
 
@@ -176,6 +177,9 @@ class Found:
             self._put(i, first.curve, 0)
             self.columns["floquet"][i] = _largest(first.curve, scene)
             self.reason[i] = "" if unique else f"reached from scene.initial; {told(reached)}"
+            return
+        if closer.falls_slowly and all(one.curve is None for one in reached):
+            self.reason[i] = f"no steady state found: {told(reached)}"
             return
         self._range(i, min(one.low for one in reached), max(one.high for one in reached))
         why = "the deflection lags behind the slip" if closer.falls_slowly else "friction falls with speed"

@@ -13,16 +13,14 @@ from frictionlab.study import load_study
 
 STUDIES = sorted((Path(__file__).parent.parent / "studies").glob("*.yaml"))
 DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
-ALWAYS = {"what_a_stiff_contact_adds_to_friction_changes_sign_at_resonance"}
-"""Of the studies of bodies on bristles, whose kernels take minutes to compile, those run by default as well."""
 
 
 def is_for_the_deep_profile(study: Path) -> bool:
-    """Whether a study puts a free body on bristles."""
+    """Whether a study puts a free body on bristles: such kernels take minutes to compile."""
     plan = load_study(study)
     bodies = any(scene.degrees_of_freedom > 0 for scene in plan.scenes)
     bristles = any(isinstance(law, BristleLaw) for choice in plan.laws for law in plan.laws_of(choice))
-    return bodies and bristles and study.stem not in ALWAYS
+    return bodies and bristles
 
 
 def test_there_are_studies() -> None:

@@ -30,9 +30,9 @@ class Shooting(Method):
     steps where it stalls. The error comes from a last map sixteen times finer: what it leaves open, carried to the
     mean by the contraction of monotone friction, or by the mean's own change where friction falls with speed.
     There the orbit must attract, and starts far from each other must reach it; otherwise the mean is not unique.
-    Along the belt a bristle whose path is exact is put in as a function of the way slid; otherwise mass and bristle are
-    solved for together by Rodas5P (Steinebach, 2023). Without a drive the period is an unknown too, and the answer is the state reached from scene.initial. A prescribed
-    slip leaves nothing to close: its mean is quadrature.
+    Along the belt a bristle whose path is exact is put in as a function of the way slid; otherwise mass and bristle
+    are solved for together by Rodas5P (Steinebach, 2023). Without a drive the period is an unknown too, and the
+    answer is the state reached from scene.initial. A prescribed slip leaves nothing to close: its mean is quadrature.
     """
 
     name: ClassVar[str] = "shooting"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -43,6 +44,8 @@ def law_of(row: pd.Series) -> BristleLaw:
 
 @pytest.mark.parametrize("kind", ["dahl", "lugre", "dupont"])
 def test_planar_bristles_are_true_to_the_reference(kind: str) -> None:
+    if kind == "lugre" and os.environ.get("HYPOTHESIS_PROFILE") != "deep":
+        pytest.skip("its kernels take half a minute to compile: in the deep profile")
     rows = MORE[(MORE["omega_r"] != "none") & (MORE["kind"] == kind)].fillna(1.0)
     assert len(rows) >= 6
     for (omega_r, _length), curve in rows.groupby(["omega_r", "presliding_length"]):

@@ -86,7 +86,7 @@ def _open_door(interface: Any, method: str) -> None:
         known = _law_of_numbers.get(self.instance_class)
         return None if known is None else _compilable(getattr(known[0], method))
 
-    resolve.__signature__ = inspect.signature(getattr(interface, method))  # type: ignore[attr-defined]
+    resolve.__signature__ = inspect.signature(getattr(interface, method))  # type: ignore[attr-defined]  # numba compares
     for kind in (numba.types.NamedTuple, numba.types.NamedUniTuple):
         door = _templates.make_overload_method_template(kind, method, resolve, inline="never", strict=False)
         _templates.infer_getattr(type(method, (_OfLaws, door), {}))
@@ -138,26 +138,26 @@ def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
 def by_law(of_sliding: Any, of_bristle: Any, of_path: Any = None) -> Any:
     """A kernel function with several bodies of one signature, chosen by the law its first argument is.
 
-    of_path is for bristle laws on the line (by the type of the last argument) whose path is exact; the choice is made
+    of_path is for bristle laws on the line (no argument is complex) whose path is exact; the choice is made
     when kernels are compiled, so that what a law does not need is never compiled for it.
     """
     bodies = [getattr(body, "py_func", body) for body in (of_sliding, of_bristle, of_path or of_bristle)]
 
     def chosen(*arguments: Any) -> Any:
-        law = arguments[0]
-        return bodies[_which(type(law), law.structure(), isinstance(arguments[-1], complex))](*arguments)
+        law, planar = arguments[0], any(isinstance(argument, complex) for argument in arguments)
+        return bodies[_which(type(law), law.structure(), planar)](*arguments)
 
     def resolve(*types: Any) -> Any:
         law, structure = _law_of_numbers[types[0].instance_class]
-        return bodies[_which(law, structure, isinstance(types[-1], numba.types.Complex))]
+        return bodies[_which(law, structure, any(isinstance(kind, numba.types.Complex) for kind in types))]
 
-    chosen.bodies = tuple(bodies)  # type: ignore[attr-defined]
-    resolve.__signature__ = inspect.signature(bodies[0])  # type: ignore[attr-defined]
+    chosen.bodies = tuple(bodies)  # type: ignore[attr-defined]  # for the fingerprint to find
+    resolve.__signature__ = inspect.signature(bodies[0])  # type: ignore[attr-defined]  # numba compares them
     _extending.overload(chosen, jit_options=_INNER, strict=False)(resolve)
     return chosen
 
 
-def _which(law: type[FrictionLaw], structure: tuple[str, ...], planar: object) -> int:
+def _which(law: type[FrictionLaw], structure: tuple[str, ...], planar: bool) -> int:
     if not issubclass(law, BristleLaw):
         return 0
     return 2 if "exact path" in structure and not planar else 1

@@ -11,7 +11,7 @@ import math
 from typing import Any
 
 from frictionlab.kernel import by_dimension, by_law, inner
-from frictionlab.methods.bristle_map import bristle_map
+from frictionlab.methods.bristle_map import bristle_map, dimension
 from frictionlab.methods.path_map import path_map
 from frictionlab.methods.sliding_map import Mapped, period_map, periods_at_rest
 from frictionlab.methods.track import Track
@@ -43,17 +43,6 @@ def _unpack_plane(body: Body, state: Any, like: complex) -> Any:
 
 
 unpack = by_dimension(_unpack_line, _unpack_plane)
-
-
-def _dimension_of_the_line(like: float) -> int:
-    return 1
-
-
-def _dimension_of_the_plane(like: complex) -> int:
-    return 2
-
-
-dimension = by_dimension(_dimension_of_the_line, _dimension_of_the_plane)
 
 
 def _size_without_memory(law: Any, like: Any) -> int:
@@ -97,6 +86,10 @@ def _store_in_the_plane(state: Any, unit: float, z: complex) -> None:
 store = by_dimension(_store_on_the_line, _store_in_the_plane)
 
 
+carried = by_law(bristle_map, bristle_map, path_map)
+"""The map of a bristle law: by the way slid on the line where that says all, else mass and deflection together."""
+
+
 def _mapped_without_memory(
     law: Any,
     body: Body,
@@ -123,37 +116,16 @@ def _mapped_with_a_bristle(
     track: Track,
     like: Any,
 ) -> Mapped:
-    """Mass and deflection are solved for together."""
     y, u = unpack(body, state, like)
     unit = bristle_unit(law, body)
     z = deflection(state, unit, like)
-    image = bristle_map(law, body, belt_speed, y, u, z, accuracy, track)
+    image = carried(law, body, belt_speed, y, u, z, accuracy, track)
     pack(body, residual, image.y - y, image.u - u)
     store(residual, unit, image.z - z)
     return Mapped(image.y, image.u, image.rubbed, 0.0, image.closest, -1.0, image.steps)
 
 
-def _mapped_along_a_path(
-    law: Any,
-    body: Body,
-    belt_speed: float,
-    state: Any,
-    residual: Any,
-    accuracy: float,
-    track: Track,
-    like: float,
-) -> Mapped:
-    """The deflection is a function of the way slid."""
-    y, u = unpack(body, state, like)
-    unit = bristle_unit(law, body)
-    z = deflection(state, unit, like)
-    image = path_map(law, body, belt_speed, y, u, z, accuracy, track)
-    pack(body, residual, image.y - y, image.u - u)
-    store(residual, unit, image.z - z)
-    return Mapped(image.y, image.u, image.rubbed, 0.0, image.closest, -1.0, image.steps)
-
-
-mapped = by_law(_mapped_without_memory, _mapped_with_a_bristle, _mapped_along_a_path)
+mapped = by_law(_mapped_without_memory, _mapped_with_a_bristle)
 """One span from a state, noted on a track with room; leaves image - state in residual."""
 
 

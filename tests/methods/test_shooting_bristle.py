@@ -132,7 +132,7 @@ def by_free_steps(belt_speed: float, length: float, rtol: float) -> float:
             def turn(t: float, y: np.ndarray, t0: float = t0, side: float = side) -> float:
                 return side * (float(y[1]) - belt_speed) if t > t0 + 1e-9 else 1.0
 
-            turn.terminal, turn.direction = True, -1  # type: ignore[attr-defined]
+            turn.terminal, turn.direction = True, -1  # type: ignore[attr-defined]  # how solve_ivp is told
             way = solve_ivp(rates, (t, end), state, "DOP853", events=turn, rtol=rtol, atol=rtol)
             state, t = way.y[:, -1], float(way.t[-1])
             z = side + (z0 - side) * math.exp(-slid(t, state[0]) / length)

@@ -163,6 +163,7 @@ def cli() -> None:
     "-j", "workers", type=click.IntRange(min=1), metavar="N", help="Threads; all cores if left out."
 )
 @json_option
+@click.option("--cite", is_flag=True, help="Print the publications to cite, as BibTeX, instead of text.")
 @click.option("--force", is_flag=True, help="Replace the results of another study or version in DIR.")
 def run(**options: Any) -> int:
     """Run STUDY, a file or a folder of studies, and write its table, figures and report to DIR.
@@ -172,6 +173,8 @@ def run(**options: Any) -> int:
     from frictionlab import batch  # with pandas
 
     given = RunOptions(**options)
+    if given.as_json and given.cite:
+        raise click.UsageError("--json and --cite print different things; give one of them")
     jobs = batch.jobs(given.study, given.out, given.overrides)
     batch.check_folders(jobs, given.existing)
     index = batch.index_folder(given.study, given.out)
@@ -183,6 +186,8 @@ def run(**options: Any) -> int:
         _print_records(
             [record for job, result in zip(jobs, done, strict=True) for record in _rows(job, result, given)]
         )
+    if given.cite:
+        _cite(done)
     return max(_code(result) for result in done)
 
 
@@ -194,6 +199,7 @@ class RunOptions(NamedTuple):
     overrides: tuple[str, ...]
     workers: int | None
     as_json: bool
+    cite: bool
     force: bool
 
     @property
@@ -221,7 +227,7 @@ def _run(job: Job, given: RunOptions) -> Run:
     finally:
         meter.close()
         pool.shutdown(wait=False, cancel_futures=True)
-    _show_failed(result) if given.as_json else _show(result)
+    _show_failed(result) if given.as_json or given.cite else _show(result)
     _draw(job, result)
     _report(result)
     return result
@@ -275,6 +281,13 @@ def _write_index(folder: Path, done: Sequence[Run]) -> None:
     from frictionlab.saved import saved_as
 
     _tell(f"index in {write_index(folder, [saved_as(result) for result in done])}")
+
+
+def _cite(done: Sequence[Run]) -> None:
+    from frictionlab.report import bibtex
+    from frictionlab.saved import saved_as
+
+    _print(bibtex([saved_as(result) for result in done]))
 
 
 def _rows(job: Job, result: Run, given: RunOptions) -> list[dict[str, Any]]:

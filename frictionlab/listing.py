@@ -8,7 +8,9 @@ from collections.abc import Sequence
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 from frictionlab import registry
+from frictionlab.bibliography import publications
 from frictionlab.laws.base import Dimension, FrictionLaw, Record
+from frictionlab.methods.base import Method
 
 _LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 
@@ -21,6 +23,7 @@ def law_record(name: str) -> dict[str, Any]:
         "description": _text(law),
         "parameters": _parameters(law),
         "declares": _declared(law),
+        "sources": _sources(law),
         "class": f"{law.__module__}.{law.__qualname__}",
     }
 
@@ -33,12 +36,17 @@ def method_record(name: str) -> dict[str, Any]:
         "description": _text(method),
         "refuses": inspect.getdoc(method.refusal) or "",
         "parameters": _parameters(method),
+        "sources": _sources(method),
         "class": f"{method.__module__}.{method.__qualname__}",
     }
 
 
 def _text(kind: type) -> str:
     return inspect.getdoc(kind) or ""
+
+
+def _sources(kind: type[FrictionLaw] | type[Method]) -> list[str]:
+    return [each.text for each in publications(_text(kind), kind.bibtex)]
 
 
 def _declared(law: type[FrictionLaw]) -> dict[str, str]:
@@ -133,7 +141,8 @@ def details(record: dict[str, Any]) -> str:
     lines = [f"{record['name']}  ({record['class']})", "", str(record["description"])]
     for name, words in record.get("declares", {}).items():
         lines.append(f"\n{name}: {words}")
-    return "\n".join([*lines, "", *(_parameter_line(given) for given in record["parameters"])]).rstrip()
+    lines += ["", *(_parameter_line(given) for given in record["parameters"])]
+    return "\n".join([*lines, "", *record.get("sources", [])]).rstrip()
 
 
 def _parameter_line(given: dict[str, Any]) -> str:

@@ -6,6 +6,7 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
+from frictionlab.bibliography import references
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 
@@ -43,7 +44,7 @@ def _doors(group: str) -> dict[str, EntryPoint]:
 
 
 @cache
-def _load(group: str, name: str, kind: type) -> Any:
+def _load(group: str, name: str, kind: type[FrictionLaw] | type[Method]) -> Any:
     door = _doors(group)[name]
     try:
         loaded = door.load()
@@ -58,4 +59,8 @@ def _load(group: str, name: str, kind: type) -> Any:
         raise BrokenPlugin(
             f"{group} entry point '{name}' = {door.value} does not define {', '.join(missing)}"
         )
+    try:
+        references(loaded.bibtex)
+    except ValueError as problem:
+        raise BrokenPlugin(f"{group} entry point '{name}' = {door.value}, its bibtex: {problem}") from problem
     return loaded

@@ -18,6 +18,7 @@ import pytest
 from fake_methods import Fake, breaks_down, is_broken
 
 from frictionlab import cli, collecting, registry, runner
+from frictionlab.bibliography import references
 from frictionlab.yaml_text import yaml_text
 
 POINTS = [4.0, 13.0, -2.0, 9.0]
@@ -299,6 +300,32 @@ def test_a_folder_of_studies_runs_each_into_a_folder_of_its_own(frictionlab: Any
     assert said.code == 0
     assert [record["study"] for record in json.loads(said.out)] == ["one"] * 4 + ["two"] * 4
     assert sorted(path.name for path in Path("runs/set").iterdir()) == ["index.html", "one", "two"]
+
+
+def test_a_run_prints_what_to_cite_for_it_and_computes_nothing_anew_for_that(frictionlab: Any) -> None:
+    frictionlab("run", study(source="Dahl (1976)"), "-o", "out")
+    said = frictionlab("run", "study.yaml", "-o", "out", "--cite")
+
+    assert said.code == 0
+    assert [entry.key for entry in references(said.out)] == [
+        *("frictionlab", "dahl1976", "amontons1699", "coulomb1785", "sulollari"),
+    ]
+    assert len(json.loads(Path("out/provenance.json").read_text())["runs"]) == 1
+
+
+def test_publications_that_several_studies_draw_on_are_cited_once(frictionlab: Any) -> None:
+    study("set/one.yaml")
+    study("set/two.yaml", tolerance=1e-6, source="Dahl (1976)")
+    keys = [entry.key for entry in references(frictionlab("run", "set", "--cite").out)]
+
+    assert len(keys) == len(set(keys)) == 5
+
+
+def test_records_and_citations_are_not_printed_at_once(frictionlab: Any) -> None:
+    said = frictionlab("run", study(), "--cite", "--json")
+
+    assert said.code == 2
+    assert "give one of them" in said.err
 
 
 def test_a_folder_that_holds_another_study_stops_all_of_them(frictionlab: Any) -> None:

@@ -29,6 +29,7 @@ ROOMS = {
     "orbit": ["orbit"],
     "steppers": ["methods.steppers"],
     "methods": ["methods"],
+    "bibliography": ["bibliography"],
     "registry": ["registry"],
     "columns": ["columns"],
     "study": ["study"],
@@ -58,7 +59,8 @@ ARROWS = {
     "orbit": ["kernel", "scene", "method interface"],
     "steppers": ["kernel"],
     "methods": ["steppers", "method interface", "scene", "orbit", "theory", "kernel", "law interface"],
-    "registry": ["law interface", "method interface"],
+    "bibliography": [],
+    "registry": ["law interface", "method interface", "bibliography"],
     "columns": [],
     "study": ["scene", "registry", "columns", "numbers", "law interface", "method interface"],
     "run": [
@@ -72,10 +74,10 @@ ARROWS = {
         *("law interface", "method interface"),
     ],
     "bench chart": ["bench", "charts", "run"],
-    "report": ["charts", "run", "study", "registry", "columns", "scene"],
+    "report": ["charts", "run", "study", "registry", "columns", "scene", "bibliography"],
     "command line": [
         *("report", "charts", "bench chart", "bench", "run", "study", "registry"),
-        *("law interface", "method interface"),
+        *("law interface", "method interface", "bibliography"),
     ],
 }
 

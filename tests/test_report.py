@@ -17,9 +17,10 @@ from pages import Page, complaints
 
 import frictionlab as fl
 from frictionlab import registry, runner
+from frictionlab.bibliography import references
 from frictionlab.failures import FolderError, SaveError
 from frictionlab.new_study import new_study
-from frictionlab.report import pictures, tables, write_index, write_report
+from frictionlab.report import bibtex, pictures, tables, write_index, write_report
 from frictionlab.report.markup import html, symbol_html
 from frictionlab.report.page import report, wall
 from frictionlab.report.sources import sources
@@ -336,7 +337,8 @@ def test_many_expectations_of_which_one_fails_are_not_folded(ran: Runner) -> Non
     assert page.table("What the study expects")[1][0] == "FAILED"
     assert "expectations of the study hold" not in page.all("main")[0].text
     assert [each.text for each in page.all("summary")] == [
-        "The study, with every default and every sweep written out"
+        "As BibTeX, frictionlab included",
+        "The study, with every default and every sweep written out",
     ]
 
 
@@ -387,7 +389,7 @@ def test_a_long_table_says_how_many_rows_it_leaves_to_the_file(
 def test_sources_are_those_of_the_study_its_laws_and_the_methods_at_work(ran: Runner) -> None:
     saved = ran(source="Smith (1999), Fig. 3", methods=["auto"], sweep={"scene.belt_speed": [60.0]})
     saved.table["model"] = "closed form (auto: exact, lowest rung that can)"
-    cited = dict(sources(saved))
+    cited = {each.what: each.words for each in sources(saved)}
 
     assert cited["the study"] == "Smith (1999), Fig. 3"
     assert cited["law coulomb"].startswith("Sources: Amontons (1699)")
@@ -401,8 +403,36 @@ def test_where_auto_does_not_name_its_choice_all_it_may_choose_is_cited_as_such(
     saved.table["model"] = "closed form"
 
     assert {"method exact, which auto may choose", "method shooting, which auto may choose"} <= set(
-        dict(sources(saved))
+        each.what for each in sources(saved)
     )
+
+
+def test_what_gave_no_number_is_not_cited(ran: Runner) -> None:
+    laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "dahl", "mu": 0.4, "stiffness": 1.0}]
+    saved = ran(laws=laws)
+    saved.table.loc[saved.table["kind"] == "dahl", ["mean_friction", "status"]] = [float("nan"), "refused"]
+
+    assert [each.what for each in sources(saved) if each.what.startswith("law")] == ["law coulomb"]
+    assert {each.key for each in references(bibtex([saved]))} == {
+        *("frictionlab", "amontons1699", "coulomb1785", "sulollari"),
+    }
+
+
+def test_sources_in_words_alone_are_cited_in_these_words(ran: Runner) -> None:
+    text = bibtex([ran("one", source="My own & unpublished @ home"), ran("two", source="Yours")])
+    entries = {each.key: each for each in references(text)}
+
+    assert entries["the-study"].fields["note"] == r"My own \& unpublished at home"
+    assert entries["the-study-2"].fields["note"] == "Yours"
+    assert text.count("@misc{frictionlab,") == 1
+
+
+def test_the_page_shows_publications_in_full_and_as_bibtex(ran: Runner) -> None:
+    saved = ran(source="Dahl (1968), section 2")
+    page = Page(report(saved))
+
+    assert any("TOR-0158(3107-18)-1" in item.text for item in page.all("li"))
+    assert bibtex([saved]) in [block.text for block in page.all("pre")]
 
 
 def test_versions_runs_and_overrides_are_those_of_the_account(tmp_path: Path, ran: Runner) -> None:

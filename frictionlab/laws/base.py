@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import Self
+from typing import ClassVar, Self
 
 from frictionlab.quantities import Dimension, Finite, NonNegative, PerSpeed, Positive, Record, Speed
 
@@ -26,7 +26,13 @@ __all__ = [
 
 
 class FrictionLaw(Record, ABC):
-    """A law of dry friction: the friction coefficient, per unit normal load, that resists slip."""
+    """A law of dry friction: the friction coefficient, per unit normal load, that resists slip.
+
+    Its docstring names its sources as in "Source: Dahl (1968)". ``bibtex`` holds their BibTeX entries as one string,
+    but for those of frictionlab's own bibliography; without an entry, what follows "Source:" is cited as it stands.
+    """
+
+    bibtex: ClassVar[str] = ""
 
     @abstractmethod
     def sliding_friction(self, speed: float) -> float:

@@ -18,8 +18,8 @@ class Dahl(CompliantLaw):
     exponent [-], >= 0: i; 1 where left out, 0 an ideal spring that slips (``jenkins``). Only 1 has a vector form.
 
     The power keeps its sign, so that friction beyond its limit falls back to it for every exponent.
-    Sources: Dahl (1968), Aerospace TOR-0158(3107-18)-1; Dahl (1976), AIAA J. 14, 1675; in the plane
-    z' = v - |v| z stiffness/mu, Velenis & Tsiotras (2002).
+    Sources: Dahl (1968); Dahl (1976); in the plane z' = v - |v| z stiffness/mu, as Velenis, Tsiotras & Canudas de Wit
+    (2002) carry LuGre friction there.
     """
 
     mu: Positive

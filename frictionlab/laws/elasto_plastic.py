@@ -26,8 +26,8 @@ class ElastoPlastic(StribeckBristle):
     (mu_kinetic/stiffness) or contact_stiffness [K_1]; damping [1/scene velocity] or contact_damping [M omega_1],
     >= 0 (0); viscosity [1/scene velocity], >= 0 (0).
 
-    Sources: Dupont, Armstrong & Hayward (2000), ACC; Dupont, Hayward, Armstrong & Altpeter (2002), IEEE TAC 47, 787.
-    In the plane alpha is that of |z|, switched off wherever z.v <= 0.
+    Sources: Dupont, Armstrong & Hayward (2000); Dupont, Hayward, Armstrong & Altpeter (2002). In the plane alpha
+    is that of |z|, switched off wherever z.v <= 0.
     """
 
     breakaway_ratio: Share = 0.7

@@ -17,8 +17,7 @@ class Jenkins(CompliantLaw):
     stiffness [1/scene length], presliding_length [scene length] (mu/stiffness) or contact_stiffness [K_1], > 0.
 
     In the plane the slider is dragged as by a rope: it moves along the spring while that holds mu (a tractrix).
-    Sources: Jenkins (1962); Griffin (1980), J. Eng. Power 102, 329; the spring is the contact stiffness of
-    Menq, Bielak & Griffin (1986).
+    Sources: Jenkins (1962); Griffin (1980); the spring is the contact stiffness of Menq, Bielak & Griffin (1986).
     """
 
     mu: Positive

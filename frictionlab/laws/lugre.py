@@ -21,8 +21,8 @@ class LuGre(StribeckBristle):
     damping [1/scene velocity] or contact_damping [M omega_1], >= 0 (0).
     viscosity [1/scene velocity], >= 0 (0).
 
-    Sources: Canudas de Wit, Olsson, Astrom & Lischinsky (1995), IEEE TAC 40, 419; in the plane Velenis, Tsiotras &
-    Canudas de Wit (2005); passivity: Barahanov & Ortega (2000), IEEE TAC 45, 1327.
+    Sources: Canudas de Wit, Olsson, Åström & Lischinsky (1995); in the plane Velenis, Tsiotras, Canudas de Wit &
+    Sorine (2005); passivity: Barahanov & Ortega (2000).
     """
 
     def rate(self, v: Any, z: Any) -> Any:

@@ -25,7 +25,7 @@ class Stribeck(SlidingLaw):
     exponential mu_kinetic + d exp(-u^stribeck_exponent), hyperbolic mu_kinetic + d/(1 + u),
     hess-soom mu_kinetic + d/(1 + u^2), cubic mu_static - d (3 u - u^3)/2, which grows without bound.
 
-    Sources: exponential: Bo & Pavelescu (1982), Armstrong-Helouvry (1991); hyperbolic: Leine, van Campen, de
+    Sources: exponential: Bo & Pavelescu (1982), Armstrong-Hélouvry (1991); hyperbolic: Leine, van Campen, de
     Kraker & van den Steen (1998); hess-soom: Hess & Soom (1990); cubic: Thomsen (1999), Thomsen & Fidlin (2003).
     """
 

@@ -50,9 +50,13 @@ class Answers:
 
 
 class Method(Record, ABC):
-    """A way to find steady states; its fields are the parameters a study may set."""
+    """A way to find steady states; its fields are the parameters a study may set.
+
+    Its sources are told as those of a law: by name in the docstring, their BibTeX entries in ``bibtex``.
+    """
 
     name: ClassVar[str]
+    bibtex: ClassVar[str] = ""
 
     @abstractmethod
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:

@@ -45,11 +45,11 @@ def _refusal_of_legs(scene: Scene, law: BristleLaw) -> str | None:
 class Exact(Method):
     """Steady states of Coulomb friction along one line, to rounding: events in closed form, no steps.
 
-    Between events the motion is that of a linear oscillator under a constant friction force (Den Hartog, Trans.
-    ASME 53, 1931), or rest on the belt. Each event is found by steps that cannot pass it; the period is closed by
-    Newton's method with derivatives carried through the events (saltation: Leine & Nijmeijer, Dynamics and
-    Bifurcations of Non-Smooth Mechanical Systems, 2004), falling back to the map itself, which never expands
-    (Leine & van de Wouw, Stability and Convergence of Mechanical Systems with Unilateral Constraints, 2008).
+    Between events the motion is that of a linear oscillator under a constant friction force, or rest on the belt.
+    Each event is found by steps that cannot pass it; the period is closed by Newton's method with derivatives carried
+    through the events (saltation), falling back to the map itself, which never expands.
+
+    Sources: Den Hartog (1931); of saltation Leine & Nijmeijer (2004); of the map Leine & van de Wouw (2008).
     """
 
     name: ClassVar[str] = "exact"

@@ -86,8 +86,10 @@ class March(Method):
     periods [-], >= 4: most periods to wait for the motion to repeat, 100000.
 
     The motion starts from scene.initial, else on the friction-free orbit, undriven at rest on the belt. Where no
-    theorem makes the steady state unique, starts far from each other must reach the same. Sources: Moreau (1988),
-    Jean (1999); Kutta (1901); Hairer, Norsett & Wanner (1993); Strang (1968); Alexander (1977).
+    theorem makes the steady state unique, starts far from each other must reach the same.
+
+    Sources: moreau: Moreau (1988), Jean (1999); rk4: Kutta (1901); smoothed: Hairer, Nørsett & Wanner (1993);
+    exponential: Strang (1968); sdirk2: Alexander (1977).
     """
 
     name: ClassVar[str] = "march"

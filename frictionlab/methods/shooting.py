@@ -25,14 +25,16 @@ from frictionlab.scene import Scene
 class Shooting(Method):
     """Shooting on the period map of any law without memory or with a bristle, on the line and in the plane.
 
-    Integrates the deviation from the friction-free response by DOP853 (Hairer, Norsett & Wanner, 1993) with the
-    instants of stick and release resolved, and closes the orbit by Broyden's method (1965) with Newton and Picard
-    steps where it stalls. The error comes from a last map sixteen times finer: what it leaves open, carried to the
-    mean by the contraction of monotone friction, or by the mean's own change where friction falls with speed.
-    There the orbit must attract, and starts far from each other must reach it; otherwise the mean is not unique.
+    Integrates the deviation from the friction-free response by DOP853 with the instants of stick and release
+    resolved, and closes the orbit by Broyden's method with Newton and Picard steps where it stalls. The error comes
+    from a last map sixteen times finer: what it leaves open, carried to the mean by the contraction of monotone
+    friction, or by the mean's own change where friction falls with speed. There the orbit must attract, and starts
+    far from each other must reach it; otherwise the mean is not unique.
     Along the belt a bristle whose path is exact is put in as a function of the way slid; otherwise mass and bristle
-    are solved for together by Rodas5P (Steinebach, 2023). Without a drive the period is an unknown too, and the
-    answer is the state reached from scene.initial. A prescribed slip leaves nothing to close: its mean is quadrature.
+    are solved for together by Rodas5P. Without a drive the period is an unknown too, and the answer is the state
+    reached from scene.initial. A prescribed slip leaves nothing to close: its mean is quadrature.
+
+    Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023).
     """
 
     name: ClassVar[str] = "shooting"

@@ -13,8 +13,9 @@ from markupsafe import Markup
 from frictionlab import __version__
 from frictionlab.output import write_page
 from frictionlab.report import asked, found
+from frictionlab.report.citing import bibtex
 from frictionlab.report.pictures import pictures
-from frictionlab.report.sources import sources
+from frictionlab.report.sources import published, sources
 from frictionlab.report.tables import Grid, grid, points, swept_inputs
 from frictionlab.saved import Saved
 from frictionlab.yaml_text import yaml_text
@@ -121,8 +122,11 @@ def _found(saved: Saved) -> dict[str, Any]:
 
 
 def _last(saved: Saved) -> dict[str, Any]:
+    cited = sources(saved)
     return {
-        "sources": sources(saved),
+        "sources": cited,
+        "references": published(cited),
+        "bibtex": bibtex([saved]),
         "versions": _versions(saved),
         "runs": _runs(saved.account["runs"]),
         "commands": _commands(saved),

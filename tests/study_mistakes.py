@@ -85,7 +85,7 @@ EDITS = [
     (", mu: 0.4", "", "14:5: laws[0].mu: required key is missing"),
     ("mu: 0.4", "mu: 0.4, mu_static: 0.1", "14:41: laws[0].mu_static: must be >= mu = 0.4, got 0.1"),
     ("mu: 0.4", "mu: 0.4, mv: 1", "14:30: laws[0].mv: unknown key; allowed: mu"),
-    ("kind: coulomb, mu: 0.4", "kind: colomb, mu: 0.4", "14:12: laws[0].kind: unknown law 'colomb'; installed: coulomb"),
+    ("kind: coulomb, mu: 0.4", "kind: colomb, mu: 0.4", "14:12: laws[0].kind: unknown law 'colomb'; installed: "),
     ("kind: coulomb, mu: 0.4", "kind: dahl, mu: 0.4, label: coulomb",
      "14:5: laws[0].stiffness: required key is missing, or presliding_length or contact_stiffness instead"),
     ("kind: coulomb, mu: 0.4", "kind: dahl, mu: 0.4, stiffness: 40, presliding_length: 1, label: coulomb",

@@ -163,9 +163,9 @@ class CompliantLaw(BristleLaw, ABC):
             )
         return self
 
-    @abstractmethod
-    def _saturated(self) -> float:
-        """The friction coefficient that the presliding length is told by."""
+    def saturated_friction(self) -> float:
+        """The friction coefficient [-] that the presliding length is told by: that of vanishing slip speed."""
+        return self.sliding_friction(0.0)
 
     @property
     def bristle_stiffness(self) -> float:
@@ -173,14 +173,14 @@ class CompliantLaw(BristleLaw, ABC):
         if self.stiffness is not None:
             return self.stiffness
         if self.presliding_length is not None:
-            return self._saturated() / self.presliding_length
+            return self.saturated_friction() / self.presliding_length
         raise ValueError(
             "contact_stiffness: is per normal load only under a load; call under_load(normal_load)"
         )
 
     def presliding(self) -> float:
         """Friction coefficient in slow sliding over stiffness."""
-        return self._saturated() / self.bristle_stiffness
+        return self.saturated_friction() / self.bristle_stiffness
 
     def under_load(self, normal_load: float) -> Self:
         """The same law per unit of this normal load [scene force], without what is given as the contact's."""

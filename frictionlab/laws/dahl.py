@@ -25,9 +25,6 @@ class Dahl(CompliantLaw):
     mu: Positive
     exponent: NonNegative = 1.0
 
-    def _saturated(self) -> float:
-        return self.mu
-
     @property
     def saturation(self) -> float:
         """The deflection in steady sliding [scene length]."""

@@ -22,9 +22,6 @@ class Jenkins(CompliantLaw):
 
     mu: Positive
 
-    def _saturated(self) -> float:
-        return self.mu
-
     @property
     def reach(self) -> float:
         """The deflection at which the slider moves [scene length]."""

@@ -39,7 +39,8 @@ class StribeckBristle(DampedLaw, ABC):
             )
         return self
 
-    def _saturated(self) -> float:
+    def saturated_friction(self) -> float:
+        """mu_kinetic."""
         return self.mu_kinetic
 
     @property

@@ -34,6 +34,7 @@ _HOMES = {
     "LuGre": "frictionlab.laws.lugre",
     "March": "frictionlab.methods.march",
     "Mdsm": "frictionlab.methods.mdsm",
+    "MemoryLaw": "frictionlab.laws.memory",
     "NonNegative": "frictionlab.laws.base",
     "PerSpeed": "frictionlab.laws.base",
     "Positive": "frictionlab.laws.base",

@@ -39,6 +39,7 @@ from numba.core.errors import NumbaError
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import MemoryLaw
 
 # numba links compiled functions by name and types, and tells those of one name apart by a number that every process
 # counts from 1: of two entries kept by two processes one would run the other's code. A random start keeps them apart.
@@ -89,20 +90,41 @@ def _open_door(interface: Any, method: str) -> None:
     resolve.__signature__ = inspect.signature(getattr(interface, method))  # type: ignore[attr-defined]  # numba compares
     for kind in (numba.types.NamedTuple, numba.types.NamedUniTuple):
         door = _templates.make_overload_method_template(kind, method, resolve, inline="never", strict=False)
-        _templates.infer_getattr(type(method, (_OfLaws, door), {}))
+        _templates.infer_getattr(type(method, (_OfLaws, door), {"interface": interface}))
     _extending.overload(resolve, strict=False)(resolve)
 
 
 class _OfLaws:
-    """Opens a door for the numbers of laws alone: other records may have a field of the method's name."""
+    """Opens a door for the numbers of an interface's laws alone.
+
+    Other records may have a field of the method's name, and other laws a method of that name with more arguments:
+    numba knows what it compiles by name, so the interface is made a part of it.
+    """
+
+    interface: Any
+    _attr: str
+
+    def _init_once(self) -> None:
+        own = self._attr
+        self._attr = self._full(own)
+        super()._init_once()  # type: ignore[misc]  # the other base has it
+        self._attr = own
 
     def _resolve(self, typ: Any, attribute: str) -> Any:
-        known = typ.instance_class in _law_of_numbers
-        return super()._resolve(typ, attribute) if known else None  # type: ignore[misc]  # the other base has it
+        law, _structure = _law_of_numbers.get(typ.instance_class, (object, ()))
+        bound = super()._resolve(typ, attribute) if issubclass(law, self.interface) else None  # type: ignore[misc]
+        if bound is None:
+            return None
+        bound.template.key = bound.template.key[0], self._full(attribute)
+        return bound.copy(bound.this)  # which knows itself by the new key
+
+    def _full(self, method: str) -> str:
+        return f"{self.interface.__name__}.{method}"
 
 
-for _method in ("sliding_friction", "sliding_vector", "static_friction"):
-    _open_door(SlidingLaw, _method)
+for _method in ("sliding_friction", "sliding_vector"):
+    _open_door(FrictionLaw, _method)
+_open_door(SlidingLaw, "static_friction")
 for _method in (
     "rate",
     "friction",
@@ -114,6 +136,8 @@ for _method in (
     "yield_deflection",
 ):
     _open_door(BristleLaw, _method)
+for _method in ("count", "rate", "friction", "steady", "stored", "within", "largest_rate"):
+    _open_door(MemoryLaw, _method)
 
 
 def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
@@ -135,13 +159,18 @@ def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
     return chosen
 
 
-def by_law(of_sliding: Any, of_bristle: Any, of_path: Any = None) -> Any:
+def by_law(
+    of_sliding: Any, of_bristle: Any, of_path: Any = None, of_memory: Any = None, of_vectors: Any = None
+) -> Any:
     """A kernel function with several bodies of one signature, chosen by the law its first argument is.
 
-    of_path is for bristle laws on the line (no argument is complex) whose path is exact; the choice is made
-    when kernels are compiled, so that what a law does not need is never compiled for it.
+    of_path is for bristle laws on the line (no argument is complex) whose path is exact, of_memory for memory laws,
+    of_vectors for those whose memories are deflections in the plane; the choice is made when kernels are compiled,
+    so that what a law does not need is never compiled for it.
     """
-    bodies = [getattr(body, "py_func", body) for body in (of_sliding, of_bristle, of_path or of_bristle)]
+    memory = of_memory or of_sliding
+    choices = of_sliding, of_bristle, of_path or of_bristle, memory, of_vectors or memory
+    bodies = [getattr(body, "py_func", body) for body in choices]
 
     def chosen(*arguments: Any) -> Any:
         law, planar = arguments[0], any(isinstance(argument, complex) for argument in arguments)
@@ -158,6 +187,8 @@ def by_law(of_sliding: Any, of_bristle: Any, of_path: Any = None) -> Any:
 
 
 def _which(law: type[FrictionLaw], structure: tuple[str, ...], planar: bool) -> int:
+    if issubclass(law, MemoryLaw):
+        return 4 if law.memory_kind == "deflections" and planar else 3
     if not issubclass(law, BristleLaw):
         return 0
     return 2 if "exact path" in structure and not planar else 1
@@ -202,7 +233,10 @@ def compiled(kernel: Any, law: FrictionLaw | None = None) -> Callable[..., Any]:
         )
     if law is None:
         return entry
-    return partial(_guarded, entry, type(law), numbers_type(**numbers))
+    seen = {name: np.array(value) if isinstance(value, tuple) else value for name, value in numbers.items()}
+    return partial(
+        _guarded, entry, type(law), numbers_type(**seen)
+    )  # arrays: one kernel for tuples of any length
 
 
 def timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:

@@ -19,7 +19,7 @@ PROJECT = HOUSE.parent
 # Rooms, from the ground up. A module belongs to the room that names it, or else to the room of its package.
 ROOMS = {
     "numbers": ["quantities"],
-    "law interface": ["laws.base", "laws.bristle", "laws.fall", "laws.stribeck_bristle"],
+    "law interface": ["laws.base", "laws.bristle", "laws.fall", "laws.memory", "laws.stribeck_bristle"],
     "laws": ["laws"],
     "scene": ["scene", "dimensional"],
     "kernel": ["kernel"],

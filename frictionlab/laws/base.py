@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 from frictionlab.quantities import Dimension, Finite, NonNegative, PerSpeed, Positive, Record, Speed
 
@@ -23,6 +23,10 @@ __all__ = [
     "SlidingLaw",
     "Speed",
 ]
+
+
+Number = float | int | tuple[float, ...]
+"""What a law may know its parameters by: a number, a whole number to count with, numbers to choose from by index."""
 
 
 class FrictionLaw(Record, ABC):
@@ -73,15 +77,15 @@ class FrictionLaw(Record, ABC):
         """What about the parameters decides which kernels are compiled, in words."""
         return ()
 
-    def numbers(self) -> dict[str, float]:
-        """The parameters as the kernels see them: every number, and every property.
+    def numbers(self) -> dict[str, Number]:
+        """The parameters as the kernels see them: every number, whole number, tuple of numbers, and every property.
 
         A number that may be left out (``None``) is for a property to read: the kernels of a law are then the same
-        whether it is given or not.
+        whether it is given or not. To kernels a tuple is an array: ask for its ``len`` and index it.
         """
         required = {name for name, field in type(self).model_fields.items() if field.default is not None}
-        fields = {name: float(value) for name, value in self if isinstance(value, float) and name in required}
-        return fields | {name: float(getattr(self, name)) for name in _properties(type(self))}
+        fields = {name: value for name, value in self if name in required and _is_number(value)}
+        return fields | {name: _number(getattr(self, name)) for name in _properties(type(self))}
 
 
 class SlidingLaw(FrictionLaw, ABC):
@@ -97,6 +101,19 @@ class SlidingLaw(FrictionLaw, ABC):
     def steepest_fall(self) -> float:
         """None where friction is monotone."""
         return 0.0 if self.monotone() else math.inf
+
+
+def _is_number(value: object) -> bool:
+    if isinstance(value, tuple):
+        return all(isinstance(each, float) for each in value)
+    return isinstance(value, float | int) and not isinstance(value, bool)
+
+
+def _number(value: Any) -> Number:
+    """A property as kernels see it; what is neither a whole number nor several numbers is ``float``."""
+    if isinstance(value, tuple):
+        return tuple(float(each) for each in value)
+    return value if isinstance(value, int) and not isinstance(value, bool) else float(value)
 
 
 def _properties(law: type[FrictionLaw]) -> list[str]:

@@ -1,0 +1,85 @@
+"""Laws with several memories, or with scalars: the same interpreted and compiled, on the line and in the plane."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from memory_laws import Ageing, Elements
+
+from frictionlab.kernel import by_law, compiled, njit
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.memory import MemoryLaw
+
+THREE = Elements(stiffness=(5.0, 3.0, 1.0), reach=(0.02, 0.05, 0.2))
+
+
+@njit
+def read(law: Any, v: Any, memory: Any, rates: Any) -> Any:
+    """Friction, and in ``rates`` the rates, of every memory; how many, the largest rate, whether it is within."""
+    for k in range(law.count()):
+        rates[k] = law.rate(v, memory, k)
+    inside = 1.0 if law.within(memory) else 0.0
+    rub = law.friction(v, memory, rates)
+    return rub, law.steady(v, law.count() - 1), law.largest_rate(2.0), inside, law.stored(memory)
+
+
+@pytest.mark.parametrize(
+    ("law", "v", "memory"),
+    [
+        (THREE, 0.7, np.array([0.02, -0.01, 0.15])),
+        (THREE, 0.7 - 0.2j, np.array([0.02 + 0j, -0.03 + 0.04j, 0.1j])),
+        (Ageing(), -1e-9, np.array([40.0])),
+        (Ageing(), 0.3 + 0.4j, np.array([0.02])),
+    ],
+)
+def test_a_law_with_memory_is_the_same_interpreted_and_compiled(law: MemoryLaw, v: Any, memory: Any) -> None:
+    rates, compiled_rates = np.empty_like(memory), np.empty_like(memory)
+
+    known = read.py_func(law, v, memory, rates)
+    found = compiled(read, law)(v, memory, compiled_rates)
+
+    assert found == pytest.approx(known, rel=1e-13)
+    assert compiled_rates == pytest.approx(rates, rel=1e-13)
+
+
+def test_elements_of_any_number_run_in_one_kernel() -> None:
+    two = Elements(stiffness=(1.0, 2.0), reach=(0.1, 0.2))
+    read_two, read_three = compiled(read, two), compiled(read, THREE)
+
+    assert read_two(0.5, np.zeros(2), np.zeros(2))[0] == 0.0
+    assert read_three(0.5, np.full(3, 0.01), np.zeros(3))[0] == pytest.approx(0.09)
+    assert read_two.args[0] is read_three.args[0]  # type: ignore[attr-defined]
+
+
+def _of_sliding(law: Any, like: Any) -> float:
+    return 0.0
+
+
+def _of_bristle(law: Any, like: Any) -> float:
+    return 1.0
+
+
+def _of_memory(law: Any, like: Any) -> float:
+    return 2.0
+
+
+def _of_vectors(law: Any, like: Any) -> float:
+    return 3.0
+
+
+_body = by_law(_of_sliding, _of_bristle, None, _of_memory, _of_vectors)
+
+
+@njit
+def which(law: Any, like: Any) -> Any:
+    """Which body a kernel takes."""
+    return _body(law, like)
+
+
+def test_kernels_take_the_body_made_for_the_kind_of_memory() -> None:
+    cases = [(Coulomb(mu=0.4), 0j), (THREE, 0.0), (THREE, 0j), (Ageing(), 0.0), (Ageing(), 0j)]
+
+    assert [compiled(which, law)(like) for law, like in cases] == [0.0, 2.0, 3.0, 2.0, 2.0]
+    assert [which.py_func(law, like) for law, like in cases] == [0.0, 2.0, 3.0, 2.0, 2.0]

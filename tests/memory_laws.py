@@ -1,0 +1,137 @@
+"""Two laws of other memory than one bristle deflection, for tests: several deflections, and one positive scalar."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar, Literal
+
+from frictionlab.laws.base import Positive
+from frictionlab.laws.memory import MemoryLaw
+
+
+def asinh_of(size: float, logarithm: float) -> float:
+    """asinh(size exp(logarithm)), whatever the exponential."""
+    if size <= 0.0:
+        return 0.0
+    power = logarithm + math.log(size)
+    return power + math.log(2.0) if power > 30.0 else math.asinh(math.exp(power))
+
+
+class Ageing(MemoryLaw):
+    """Rate-and-state friction with the ageing law, regularised at rest; the memory is the contact's age.
+
+    mu0 [-], a [-], b [-], slip_length [scene length], reference_speed [scene velocity]: all > 0.
+    Sources: Dieterich (1979), J. Geophys. Res. 84, 2161; regularised: Rice & Ben-Zion (1996), PNAS 93, 3811.
+    """
+
+    memory_kind: ClassVar[Literal["deflections", "scalars"]] = "scalars"
+
+    mu0: Positive = 0.4
+    a: Positive = 0.01
+    b: Positive = 0.015
+    slip_length: Positive = 0.05
+    reference_speed: Positive = 1.0
+
+    def sliding_friction(self, speed: float) -> float:
+        """Of the age slip_length/speed."""
+        quick = max(speed, 1e-12 * self.reference_speed)
+        state = (self.mu0 - self.b * math.log(quick / self.reference_speed)) / self.a
+        return self.a * asinh_of(speed / (2.0 * self.reference_speed), state)
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """One second a second, less what slip renews."""
+        return 1.0 - abs(v) * memory[k] / self.slip_length
+
+    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
+        """Along the slip."""
+        speed = abs(v)
+        if speed == 0.0:
+            return 0.0 * v
+        state = (self.mu0 + self.b * math.log(self.reference_speed * memory[0] / self.slip_length)) / self.a
+        return (self.a * asinh_of(speed / (2.0 * self.reference_speed), state) / speed) * v
+
+    def steady(self, v: Any, k: int) -> Any:
+        """The time in which a contact is renewed."""
+        return self.slip_length / abs(v)
+
+    def within(self, memory: Any) -> bool:
+        """Ages are positive."""
+        return memory[0] > 0.0
+
+    def largest_rate(self, speed: float) -> float:
+        """That of renewal."""
+        return speed / self.slip_length
+
+
+class Elements(MemoryLaw):
+    """Maxwell-slip friction: springs in parallel, each with a slider of its own.
+
+    stiffness [1/scene length], reach [scene length], > 0: of each element; as many of both.
+    Sources: Iwan (1966), J. Appl. Mech. 33, 893; in the plane each slider is dragged as by a rope.
+    """
+
+    stiffness: tuple[Positive, ...]
+    reach: tuple[Positive, ...]
+
+    def sliding_friction(self, speed: float) -> float:
+        """All sliders move."""
+        total = 0.0
+        for k in range(len(self.stiffness)):
+            total += self.stiffness[k] * self.reach[k]
+        return total
+
+    def count(self) -> int:
+        """One deflection for each element."""
+        return len(self.stiffness)
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """v, less its part along the spring where that is stretched to its reach."""
+        z = memory[k]
+        along = (z * v.conjugate()).real
+        if along <= 0.0 or abs(z) < self.reach[k]:
+            return v
+        return v - (along / (z * z.conjugate()).real) * z
+
+    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
+        """The springs'."""
+        total = 0.0 * v
+        for k in range(len(self.stiffness)):
+            total = total + self.stiffness[k] * memory[k]
+        return total
+
+    def steady(self, v: Any, k: int) -> Any:
+        """At its reach."""
+        return self.reach[k] * (v / abs(v))
+
+    def constant_sliding_friction(self) -> bool:
+        """Always."""
+        return True
+
+    def largest_rate(self, speed: float) -> float:
+        """Of the stiffest, where it turns towards the slip."""
+        quickest = 0.0
+        for k in range(len(self.reach)):
+            quickest = max(quickest, speed / self.reach[k])
+        return quickest
+
+    def within(self, memory: Any) -> bool:
+        """No spring is stretched further than it reaches."""
+        inside = True
+        for k in range(len(self.reach)):
+            inside = inside and abs(memory[k]) <= self.reach[k] * (1.0 + 1e-9)
+        return inside
+
+    def rate_independent(self) -> bool:
+        """Always."""
+        return True
+
+    def passive(self) -> bool:
+        """Always."""
+        return True
+
+    def stored(self, memory: Any) -> float:
+        """In the springs."""
+        total = 0.0
+        for k in range(len(self.stiffness)):
+            total += 0.5 * self.stiffness[k] * abs(memory[k]) ** 2
+        return total

@@ -348,6 +348,9 @@ def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
             yield from _pieces_of_code(value, seen)
         elif isinstance(value, np.ndarray):
             yield f"{value.dtype}{value.shape}{value.tobytes()!r}"
+        elif isinstance(value, list | tuple | dict):  # of functions: their own text is an address
+            yield f"{type(value).__name__} of {len(value)}"
+            yield from _pieces(itertools.chain(*value.items()) if isinstance(value, dict) else value, seen)
         else:
             yield repr(value)
 

@@ -17,6 +17,12 @@ from frictionlab import kernel
 from frictionlab.kernel import CannotCompile, by_dimension, compiled, njit
 from frictionlab.laws.base import Positive, SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.lugre import LuGre
+from frictionlab.methods.bristle_sampling import rubbed
+from frictionlab.methods.curve import answer_curve
+from frictionlab.methods.harmonic_bristle_friction import harmonic_friction
+from frictionlab.methods.limit_cycle import followed
+from frictionlab.methods.sampling import sampled
 
 FILES = {
     "law_constants.py": "LEVEL = 3.0\n",
@@ -44,7 +50,7 @@ class Edited(SlidingLaw):
         return LEVEL + scaled(self.mu, speed) + law_package.inside.SHIFT
 """,
     "pair.py": """
-from frictionlab.kernel import by_dimension
+from frictionlab.kernel import by_dimension, by_law
 
 def on_the_line(v):
     return 100.0
@@ -53,14 +59,22 @@ def in_the_plane(v):
     return 200.0
 
 body = by_dimension(on_the_line, in_the_plane)
+
+def of_sliding(law, v):
+    return 0.0
+
+def of_bristle(law, v):
+    return 1000.0
+
+kind = by_law(of_sliding, of_bristle)
 """,
     "kernel_of_test.py": """
 from frictionlab.kernel import njit
-from pair import body
+from pair import body, kind
 
 @njit
 def answer(law, speed):
-    return law.sliding_friction(speed) + body(speed)
+    return law.sliding_friction(speed) + body(speed) + kind(law, speed)
 """,
     "main.py": """
 from frictionlab.kernel import compiled
@@ -136,6 +150,7 @@ def test_a_second_process_takes_the_compiled_kernel_from_the_cache(compiled_once
         ("law_constants.py", "LEVEL = 3.0", "LEVEL = 5.0", 106.25),
         ("law_package/inside.py", "SHIFT = 0.25", "SHIFT = 0.75", 104.75),
         ("pair.py", "return 100.0", "return 300.0", 304.25),
+        ("pair.py", "return 0.0", "return 7.0", 111.25),
         ("kernel_of_test.py", "+ body(speed)", "- body(speed)", -95.75),
     ],
     ids=[
@@ -146,6 +161,7 @@ def test_a_second_process_takes_the_compiled_kernel_from_the_cache(compiled_once
         "a constant it imports",
         "a constant inside a package",
         "a body chosen by dimension",
+        "a body chosen by law",
         "the kernel",
     ],
 )
@@ -167,6 +183,11 @@ def test_a_comment_and_the_place_in_the_file_change_nothing(compiled_once):
         assert compiled_once.kept() == before
     finally:
         compiled_once.edit("edited.py", "# another\n        # comment", "# a comment")
+
+
+@pytest.mark.parametrize("root", [answer_curve, followed, rubbed, sampled, harmonic_friction, LuGre])
+def test_the_name_of_a_kept_kernel_holds_no_address(root):
+    assert not [piece for piece in kernel._pieces([root], set()) if " at 0x" in piece]
 
 
 def test_two_processes_on_a_cold_cache_are_both_right(tmp_path):

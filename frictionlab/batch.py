@@ -20,15 +20,15 @@ class Job(NamedTuple):
     out: Path
 
 
-def jobs(path: Path, out: Path | None, overrides: Sequence[str]) -> list[Job]:
-    """The studies of a file or of a folder's ``*.yaml``. Raises StudyError with all their mistakes."""
+def jobs(path: Path, out: Path | None, overrides: Sequence[str], law_files: Sequence[Path] = ()) -> list[Job]:
+    """The studies of a file or of a folder's ``*.yaml``. Raises StudyError with all their mistakes, BrokenPlugin."""
     folder = _folder(path, out)
     if not path.is_dir():
-        return [Job(path.stem, load_study(path, overrides), folder)]
+        return [Job(path.stem, load_study(path, overrides, law_files), folder)]
     files = sorted(path.glob("*.yaml"))
     if not files:
         raise StudyError([Mistake(str(path), None, "", "a folder without studies: no *.yaml in it")])
-    studies = _all_read(files, overrides)
+    studies = _all_read(files, overrides, law_files)
     return [Job(file.stem, study, folder / file.stem) for file, study in zip(files, studies, strict=True)]
 
 
@@ -45,12 +45,12 @@ def _folder(path: Path, out: Path | None) -> Path:
     return out or Path("runs") / path.absolute().stem
 
 
-def _all_read(files: Sequence[Path], overrides: Sequence[str]) -> list[Study]:
+def _all_read(files: Sequence[Path], overrides: Sequence[str], law_files: Sequence[Path]) -> list[Study]:
     studies: list[Study] = []
     mistakes: list[Mistake] = []
     for file in files:
         try:
-            studies.append(load_study(file, overrides))
+            studies.append(load_study(file, overrides, law_files))
         except StudyError as problem:
             mistakes += problem.mistakes
     if mistakes:

@@ -35,6 +35,14 @@ overrides_option = click.option(
     metavar="PATH=VALUE",
     help="Replace a value of the study; may be repeated.",
 )
+law_option = click.option(
+    "--law",
+    "law_files",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Take the laws of a Python file, too; may be repeated.",
+)
 json_option = click.option("--json", "as_json", is_flag=True, help="Print a list of records instead of text.")
 
 
@@ -159,6 +167,7 @@ def cli() -> None:
     help="Where to; runs/<study name> if left out.",
 )
 @overrides_option
+@law_option
 @click.option(
     "-j", "workers", type=click.IntRange(min=1), metavar="N", help="Threads; all cores if left out."
 )
@@ -175,7 +184,7 @@ def run(**options: Any) -> int:
     given = RunOptions(**options)
     if given.as_json and given.cite:
         raise click.UsageError("--json and --cite print different things; give one of them")
-    jobs = batch.jobs(given.study, given.out, given.overrides)
+    jobs = batch.jobs(given.study, given.out, given.overrides, given.law_files)
     batch.check_folders(jobs, given.existing)
     index = batch.index_folder(given.study, given.out)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -197,6 +206,7 @@ class RunOptions(NamedTuple):
     study: Path
     out: Path | None
     overrides: tuple[str, ...]
+    law_files: tuple[Path, ...]
     workers: int | None
     as_json: bool
     cite: bool
@@ -350,13 +360,14 @@ def new_study(path: Path) -> None:
 @cli.command()
 @click.argument("study", type=click.Path(path_type=Path))
 @overrides_option
+@law_option
 @json_option
-def check(study: Path, overrides: tuple[str, ...], as_json: bool) -> None:
+def check(study: Path, overrides: tuple[str, ...], law_files: tuple[Path, ...], as_json: bool) -> None:
     """Check STUDY and tell what it will take: models, refusals, cost. Nothing is computed."""
     from frictionlab import batch
     from frictionlab.plan import plan
 
-    planned = [(job.name, plan(job.study)) for job in batch.jobs(study, None, overrides)]
+    planned = [(job.name, plan(job.study)) for job in batch.jobs(study, None, overrides, law_files)]
     if as_json:
         _print_records([{"study": name, **entry.record()} for name, entries in planned for entry in entries])
     else:
@@ -387,15 +398,17 @@ def _time(seconds: float) -> str:
 
 @cli.command()
 @click.argument("name", required=False)
+@law_option
 @json_option
-def laws(name: str | None, as_json: bool) -> None:
+def laws(name: str | None, law_files: tuple[Path, ...], as_json: bool) -> None:
     """List the installed laws, or tell all about the law NAME."""
-    from frictionlab import registry
     from frictionlab.listing import details, law_record, one_line_each
+    from frictionlab.study import laws_of_files
 
-    if name is not None and name not in registry.law_names():
-        raise click.UsageError(f"no law '{name}'; installed: {', '.join(registry.law_names())}")
-    records = [law_record(each) for each in ([name] if name else registry.law_names())]
+    known = laws_of_files(law_files)
+    if name is not None and name not in known.names():
+        raise click.UsageError(f"no law '{name}'; installed: {', '.join(known.names())}")
+    records = [law_record(each, known.named(each)) for each in ([name] if name else known.names())]
     _print_records(records) if as_json else _print(details(records[0]) if name else one_line_each(records))
 
 
@@ -411,11 +424,13 @@ def methods(as_json: bool) -> None:
 
 
 @cli.command()
-def schema() -> None:
+@law_option
+def schema(law_files: tuple[Path, ...]) -> None:
     """Print the JSON Schema of a study file."""
+    from frictionlab.study import laws_of_files
     from frictionlab.study.schema import schema as study_schema
 
-    _print(json.dumps(study_schema(), indent=2))
+    _print(json.dumps(study_schema(laws_of_files(law_files)), indent=2))
 
 
 @cli.command()

@@ -19,10 +19,11 @@ from frictionlab.methods.base import Floats
 from frictionlab.shape import Curve, Measured, Shape, Unreadable, reduction, shape_of
 
 TEXT = frozenset({"shape", "shape_by_initial", "reason"})
+INSTALLED = registry.Laws()
 _NEEDED = [name if name != "belt_speed" else "scene.belt_speed" for name in Rows._fields]
 
 
-def curve_table(table: pd.DataFrame) -> pd.DataFrame:
+def curve_table(table: pd.DataFrame, laws: registry.Laws = INSTALLED) -> pd.DataFrame:
     """One row per curve of a result table, in its order; none where no curve has two belt speeds.
 
     Rows without a number are left out of their curve. A measure that cannot be read is empty, with the reason.
@@ -37,7 +38,7 @@ def curve_table(table: pd.DataFrame) -> pd.DataFrame:
     usable = (table["status"] == "ok").to_numpy() & (numbers[:, 0] > 0.0)
     inputs = [dict(zip(keys, row, strict=True)) for row in heads.itertuples(index=False, name=None)]
     read = [
-        _measures(_rows(numbers[found[usable[found]]]), _loads(given))
+        _measures(_rows(numbers[found[usable[found]]]), _loads(given, laws))
         for found, given in zip(places, inputs, strict=True)
     ]
     return pd.concat([heads, _frame(read)], axis=1)
@@ -63,7 +64,7 @@ def _rows(numbers: Floats) -> Rows:
     return Rows(*(np.ascontiguousarray(column) for column in rising.T))
 
 
-def _loads(given: Mapping[str, Any]) -> Loads:
+def _loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
     """What the inputs of a curve say about its loads."""
 
     def value(name: str) -> float:
@@ -79,26 +80,24 @@ def _loads(given: Mapping[str, Any]) -> Loads:
     static = value("law.mu_static") * value("scene.normal_load")
     slips = [value(f"scene.{slip}.velocity_amplitude") for slip in ("slip", "transverse_slip")]
     forces = force("scene.drive"), force("scene.transverse.load")
-    hold = _hold(given, value, forces, any(slips))
+    bristles = _bristle_law(given, laws)
+    hold = None if bristles is None else _hold(bristles, value, forces, any(slips))
     return Loads(*forces, slips[1], static or math.nan, any(slips), hold)
 
 
-def _hold(
-    given: Mapping[str, Any], value: Value, forces: tuple[complex, complex], prescribed: bool
-) -> Hold | None:
-    """Of the bristles of a curve's law; None without any, and where one direction at a time leaves no memory."""
-    law = _bristle_law(given)
+def _hold(law: BristleLaw, value: Value, forces: tuple[complex, complex], prescribed: bool) -> Hold | None:
+    """Of the bristles of a curve's law; None where one direction at a time leaves no memory."""
     in_a_plane = value("scene.transverse.natural_frequency") or value(
         "scene.transverse_slip.velocity_amplitude"
     )
-    if law is None or (in_a_plane and law.planar == "rotated"):
+    if in_a_plane and law.planar == "rotated":
         return None
     return hold_of_a_slip(law, value) if prescribed else hold_of_a_body(law, value, *forces)
 
 
-def _bristle_law(given: Mapping[str, Any]) -> BristleLaw | None:
-    """The law as methods took it, made again from the inputs; None without bristles or without a registered name."""
-    law = registry.law_class(given["kind"]) if given.get("kind") in registry.law_names() else None
+def _bristle_law(given: Mapping[str, Any], laws: registry.Laws) -> BristleLaw | None:
+    """The law as methods took it, made again from the inputs; None without bristles or without a known name."""
+    law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
     if law is None or not issubclass(law, BristleLaw):
         return None
     told = {name: given.get(f"law.{name}") for name in law.model_fields}

@@ -15,9 +15,8 @@ from frictionlab.methods.base import Method
 _LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 
 
-def law_record(name: str) -> dict[str, Any]:
-    """A law: its name, what it is, its parameters, what it declares. Raises KeyError, BrokenPlugin."""
-    law = registry.law_class(name)
+def law_record(name: str, law: type[FrictionLaw]) -> dict[str, Any]:
+    """A law under this name: what it is, its parameters, what it declares."""
     return {
         "name": name,
         "description": _text(law),

@@ -6,8 +6,8 @@ import errno
 import json
 import os
 import platform
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
@@ -15,6 +15,7 @@ from typing import Any, Literal
 import pandas as pd
 
 from frictionlab.failures import FolderError, SaveError
+from frictionlab.study.record import LAW_COPIES
 from frictionlab.yaml_text import yaml_text
 
 PACKAGES = ("numpy", "numba", "llvmlite", "pandas", "pyarrow", "pydantic", "scipy")
@@ -30,13 +31,16 @@ SHOWN = 72
 class Identity:
     """What a folder's results answer: the study, whole and as a digest of what determines its numbers.
 
-    file: the name of the file it came from, for the record.
+    file: the name of the file it came from, for the record. code: SHA-256 by law, of those from outside.
+    law_texts: the files of laws it brings along, by their names in the folder.
     """
 
     study: dict[str, Any]
     digest: str
     version: str
     file: str | None = None
+    code: Mapping[str, str] = field(default_factory=dict)
+    law_texts: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def text(self) -> str:
@@ -83,6 +87,25 @@ class RunFolder:
             )
         if existing == "reuse" and any(path.exists() for path in self._results()):
             self._check_same_study()
+        self._check_law_files()
+
+    def _check_law_files(self) -> None:
+        """A copy of a law must not replace what a person wrote."""
+        ours = self._copies()
+        for name, text in self.identity.law_texts.items():
+            place = self.path / name
+            if place not in ours and place.exists() and place.read_bytes() != text.encode():
+                raise FolderError(
+                    f"{place} is in the way of the copy of a law that a run keeps; choose another folder with -o"
+                )
+
+    def _copies(self) -> list[Path]:
+        """The copies of laws that the run in this folder kept."""
+        try:
+            names = self._provenance().get("plugins", [])
+        except FolderError:  # without an account nothing here is known to be ours
+            names = []
+        return [self.path / LAW_COPIES / Path(str(name)).name for name in names]
 
     def _check_same_study(self) -> None:
         there = self._provenance()
@@ -115,7 +138,13 @@ class RunFolder:
         old, new = [line for line in there if line not in here], [line for line in here if line not in there]
         lines = [f"  there: {_brief(line, new)}" for line in old[:MOST_DIFFERENCES]]
         lines += [f"  here:  {_brief(line, old)}" for line in new[:MOST_DIFFERENCES]]
-        return "\n".join(lines)
+        return "\n".join(lines + self._edited())
+
+    def _edited(self) -> list[str]:
+        """The laws from outside whose code is no longer what it was."""
+        there = self._provenance().get("code", {})
+        laws = [law for law, code in self.identity.code.items() if there.get(law, code) != code]
+        return [f"  the code of law '{law}' was edited since" for law in laws]
 
     def earlier(self, existing: Existing) -> pd.DataFrame | None:
         """The table of an earlier run of this study; None without one. Raises FolderError."""
@@ -137,7 +166,9 @@ class RunFolder:
         """Make the folder; ``replace`` takes away the results it holds. Raises FolderError, SaveError."""
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            for path in self._results() if existing == "replace" else ():
+            kept = self.identity.law_texts
+            copies = [path for path in self._copies() if path.relative_to(self.path).as_posix() not in kept]
+            for path in [*self._results(), *copies] if existing == "replace" else ():
                 path.unlink(missing_ok=True)
         except OSError as problem:
             _raise_at_the_door(self.path, problem)
@@ -154,10 +185,14 @@ class RunFolder:
             "frictionlab": self.identity.version,
             "study": self.identity.file,
             "digest": self.identity.digest,
+            "code": dict(self.identity.code),
+            "plugins": list(self.identity.law_texts),
             **runs,
             **_platform(),
         }
         text = json.dumps(provenance, indent=2) + "\n"
+        for name, law in self.identity.law_texts.items():
+            _write_copy(self.path / name, law)
         # The account first: a study.yaml without one is taken for a person's own.
         _write(self._account, lambda path: path.write_text(text, encoding="utf-8"))
         _write(self._study, lambda path: path.write_text(self.identity.text, encoding="utf-8"))
@@ -251,6 +286,15 @@ def _write(path: Path, write: Callable[[Path], object]) -> None:
         raise SaveError(f"cannot write {path}: {problem.strerror or problem}") from problem
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _write_copy(path: Path, text: str) -> None:
+    """A file of laws as it was read, line ends and all."""
+    try:
+        path.parent.mkdir(exist_ok=True)
+    except OSError as problem:
+        raise SaveError(f"cannot make the folder {path.parent}: {problem.strerror}") from problem
+    _write(path, lambda file: file.write_bytes(text.encode()))
 
 
 def _raise_at_the_door(path: Path, problem: OSError) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
@@ -36,6 +37,32 @@ def law_class(name: str) -> type[FrictionLaw]:
 def method_class(name: str) -> type[Method]:
     """The method of this name. Raises KeyError for an unknown name, BrokenPlugin for one that is broken."""
     return _load(METHODS, name, Method)
+
+
+class Laws:
+    """The laws a study may name: those of its own files, and those installed."""
+
+    def __init__(self, own: Mapping[str, type[FrictionLaw]] | None = None) -> None:
+        self._own = dict(own or {})
+
+    def names(self) -> list[str]:
+        """The names of all of them, sorted."""
+        return sorted({*law_names(), *self._own})
+
+    def usable(self) -> list[str]:
+        """The names of those that are not broken."""
+        return [name for name in self.names() if not self._broken(name)]
+
+    def _broken(self, name: str) -> bool:
+        try:
+            self.named(name)
+        except BrokenPlugin:
+            return True
+        return False
+
+    def named(self, name: str) -> type[FrictionLaw]:
+        """The law of this name. Raises KeyError for an unknown name, BrokenPlugin for one that cannot be used."""
+        return self._own[name] if name in self._own else law_class(name)
 
 
 @cache

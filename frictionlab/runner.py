@@ -120,7 +120,8 @@ def _loaded(study: str | PathLike[str] | Mapping[str, Any] | Study, overrides: S
 def run_folder(study: Study, out: Path) -> RunFolder:
     """The output folder of a study."""
     file = study.path.name if study.path is not None else None
-    return RunFolder(out, Identity(study.resolved(), study.digest(), __version__, file))
+    told = study.resolved(), study.digest(), __version__, file, study.code, study.law_texts()
+    return RunFolder(out, Identity(*told))
 
 
 def _solve(gathering: Gathering, left: list[Chunk], executor: Executor | None) -> bool:
@@ -155,7 +156,8 @@ def _workers(executor: Executor | None) -> Iterator[Executor]:
 def _finished(study: Study, gathering: Gathering, folder: RunFolder | None, stopped: bool) -> Run:
     """The run, saved and judged. Raises Interrupted or UnsavedError, both with the run."""
     table, orbits = gathering.table, gathering.orbits
-    curves = curve_table(table.iloc[:0] if stopped else table)
+    laws = registry.Laws({law.kind: law.law_class for law in study.laws})
+    curves = curve_table(table.iloc[:0] if stopped else table, laws)
     verdicts = () if stopped else tuple(judge(expectation, table, curves) for expectation in study.expect)
     gathering.judged(verdicts)
     unsaved = _saved(gathering, table, orbits, curves)

@@ -14,7 +14,7 @@ from frictionlab.columns import INPUTS, RESULTS, TEXT
 from frictionlab.expect import Verdict
 from frictionlab.failures import FolderError
 from frictionlab.runner import Run
-from frictionlab.study import Study, load_study
+from frictionlab.study import Study, read_back
 from frictionlab.study.grid import grid_size
 
 WANTED = "RUN is a folder that 'frictionlab run STUDY -o RUN' wrote"
@@ -57,9 +57,10 @@ class Saved:
 def read_saved(folder: Path) -> Saved:
     """The run of this folder. Raises FolderError where it is no run or a damaged one, StudyError."""
     _check_is_a_run(folder)
-    study = load_study(folder / "study.yaml")
+    account = _account(folder)
+    study = read_back(folder / "study.yaml", account["code"])
     table = _table(folder)
-    saved = Saved(folder, study, table, _curves(folder), _account(folder))
+    saved = Saved(folder, study, table, _curves(folder), account)
     _check_belongs_together(saved)
     return saved
 
@@ -131,11 +132,12 @@ def _account(folder: Path) -> dict[str, Any]:
     file = folder / "provenance.json"
     try:
         account = json.loads(file.read_text(encoding="utf-8"))
-        whole = {"expect": [], "runs": [], "packages": {}} | account
+        whole = {"expect": [], "runs": [], "packages": {}, "code": {}} | account
         sound = (
             all(isinstance(each["sentence"], str) and "passed" in each for each in whole["expect"])
             and all(isinstance(run["seconds"], float | int) for run in whole["runs"])
             and isinstance(whole["packages"], dict)
+            and isinstance(whole["code"], dict)
         )
     except (OSError, ValueError, TypeError, KeyError):
         sound = False

@@ -120,7 +120,7 @@ def test_a_law_with_entries_that_cannot_be_read_is_a_broken_plugin(monkeypatch: 
 
 
 def test_a_law_lists_its_publications_in_full() -> None:
-    assert law_record("dahl")["sources"][1] == (
+    assert law_record("dahl", registry.law_class("dahl"))["sources"][1] == (
         "Dahl (1976). Solid friction damping of mechanical vibrations. AIAA Journal 14, 1675-1682. "
         "doi:10.2514/3.61511"
     )

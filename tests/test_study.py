@@ -421,7 +421,7 @@ def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) ->
         .replace("mu: 0.4", "mu: true")
         .replace("tolerance: 1e-6", "tolerance: .inf")
         .replace("num: 120", "num: 1")
-        .replace("keep: {orbit: 200}", "plugins: []")
+        .replace("keep: {orbit: 200}", "plugins: 5")
         .replace("column: error", "column: eror")
     )
 
@@ -436,7 +436,7 @@ def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) ->
         "study.yaml:14:25: laws[0].mu: must be a number, got true",
         "study.yaml:17:12: tolerance: must be a finite number, got .inf",
         "study.yaml:19:49: sweep.scene.belt_speed.num: must be >= 2, got 1",
-        "study.yaml:21:1: plugins: not available yet",
+        "study.yaml:21:10: plugins: must be a list of Python files such as [my_law.py], got 5",
         "study.yaml:23:58: expect[0].column: must be a result column, got the text 'eror'",
     ]
 

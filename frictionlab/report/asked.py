@@ -90,7 +90,7 @@ def laws_grid(study: Study) -> Grid:
         [
             law.label,
             _unless(law.kind, law.label),
-            _first_line(law_text(law.kind)),
+            _first_line(law_text(law)),
             _law_parameters(law, study),
         ]
         for law in study.laws

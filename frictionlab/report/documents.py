@@ -9,14 +9,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from frictionlab import registry
+from frictionlab.study import LawChoice
 
 
-def law_text(name: str) -> str:
-    """The docstring of a law; nothing for one that is not installed here."""
-    try:
-        return inspect.getdoc(registry.law_class(name)) or ""
-    except (KeyError, registry.BrokenPlugin):
-        return ""
+def law_text(law: LawChoice) -> str:
+    """The docstring of a law."""
+    return inspect.getdoc(law.law_class) or ""
 
 
 def method_text(name: str) -> str:

@@ -29,12 +29,12 @@ class Cited(NamedTuple):
 def sources(saved: Saved) -> list[Cited]:
     """The study's source, then those of its laws, then those of its methods, each where it gave a number."""
     study, found = saved.study, _with_numbers(saved.table)
-    laws = _each(law.kind for law in study.laws if law.kind in set(found["kind"]))
+    laws = {law.kind: law for law in study.laws if law.kind in set(found["kind"])}
     methods = _each(choice.name for choice in study.methods if choice.label in set(found["method"]))
     hows = dict.fromkeys(methods, "") | ({} if "auto" not in methods else chosen_by_auto(found))
     cited = [
         _cited("the study", study.source, ""),
-        *(_cited(f"law {name}", _named(law_text(name)), registry.law_class(name).bibtex) for name in laws),
+        *(_cited(f"law {kind}", _named(law_text(law)), law.law_class.bibtex) for kind, law in laws.items()),
         *(_of_method(name, "" if name in methods else how) for name, how in hows.items()),
     ]
     return [each for each in cited if each.words or each.references]

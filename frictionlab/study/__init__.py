@@ -1,7 +1,8 @@
 """The study file: what a person writes, checked as a whole, and the frozen study it becomes."""
 
 from frictionlab.study.mistakes import Mistake, StudyError
-from frictionlab.study.reader import load_study, parse_study
+from frictionlab.study.plugins import laws_of_files
+from frictionlab.study.reader import load_study, parse_study, read_back
 from frictionlab.study.record import Case, Expectation, LawChoice, MethodChoice, Study
 
 __all__ = [
@@ -12,6 +13,8 @@ __all__ = [
     "Mistake",
     "Study",
     "StudyError",
+    "laws_of_files",
     "load_study",
     "parse_study",
+    "read_back",
 ]

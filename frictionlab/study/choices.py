@@ -22,18 +22,20 @@ def items(given: Any, path: Path, example: str, notes: Notes) -> list[Any]:
     return given
 
 
-def law_choice(given: Any, path: Path, notes: Notes) -> LawChoice | None:
+def law_choice(given: Any, path: Path, laws: registry.Laws, notes: Notes) -> LawChoice | None:
     """One law; None, noted, where there is a mistake."""
     if not isinstance(given, dict):
         notes.add(path, f"must be a mapping such as {{kind: coulomb, mu: 0.4}}, got {described(given)}")
         return None
-    kind = _kind(given, path, _named("law", registry.law_names(), notes), notes)
+    if given.get("kind") not in laws.names() and notes.below(("plugins",)):
+        return None  # a file that cannot be read may have brought it
+    kind = _kind(given, path, _named("law", laws.names(), notes), notes)
     label = _label(given, kind, path, notes)
     if kind is None or notes.mapping(given, path) is None:
         return None
     parameters = {key: value for key, value in given.items() if key not in ("kind", "label")}
-    law = built(registry.law_class(kind), parameters, path, notes)
-    return None if law is None else LawChoice(label, kind, law.model_dump(exclude_none=True))
+    law = built(laws.named(kind), parameters, path, notes)
+    return None if law is None else LawChoice(label, kind, law.model_dump(exclude_none=True), type(law))
 
 
 def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:
@@ -72,10 +74,10 @@ def sure_labels(given: Any, installed: Iterable[str]) -> tuple[str, ...] | None:
     return tuple(str(label) for label in labels) if right and unique else None
 
 
-def sure_law_labels(given: Any) -> tuple[str, ...] | None:
+def sure_law_labels(given: Any, laws: registry.Laws) -> tuple[str, ...] | None:
     """The labels of a list of laws; None where they are a matter of guessing."""
     mappings = isinstance(given, list) and all(isinstance(item, dict) for item in given)
-    return sure_labels(given, registry.law_names()) if mappings else None
+    return sure_labels(given, laws.names()) if mappings else None
 
 
 def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:
@@ -98,7 +100,12 @@ def _named(what: str, installed: Iterable[str], notes: Notes) -> Callable[[Any, 
             return given
         if isinstance(given, str):
             hint = did_you_mean(given, names)
-            notes.add(path, f"unknown {what} '{given}'; installed: {', '.join(names)}", hint)
+            remedy = (
+                "; install the package that brings it, or list its file under plugins"
+                if what == "law"
+                else ""
+            )
+            notes.add(path, f"unknown {what} '{given}'; installed: {', '.join(names)}{remedy}", hint)
         else:
             notes.add(path, f"must be the name of a {what}, got {described(given)}")
         return None

@@ -48,26 +48,26 @@ class _Target:
     record: type[BaseModel]
 
 
-def swept(tree: dict[str, Any], notes: Notes) -> Swept:
+def swept(tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> Swept:
     """Read the sweeps; a swept value that the study leaves out is put into the tree."""
     found = Swept()
     given = notes.mapping(tree.get("sweep", {}), ("sweep",)) or {}
     for key, range_ in given.items():
         values = sweep_values(range_, ("sweep", key), notes)
-        if target := _target(tree, key, notes):
+        if target := _target(tree, key, laws, notes):
             _check_values(values, target, ("sweep", key), notes)
             _stand_in(tree, target, values, found.stand_ins, key)
         found.sweep[key] = values
     return found
 
 
-def _target(tree: dict[str, Any], key: str, notes: Notes) -> _Target | None:
+def _target(tree: dict[str, Any], key: str, laws: registry.Laws, notes: Notes) -> _Target | None:
     head, *steps = key.split(".")
     if head == "scene" and key.removeprefix("scene.") in number_paths(Scene):
         return _scene_target(tree, steps, ("sweep", key), notes)
     if head == "laws":
-        return _law_target(tree, key, notes)
-    known = _sweepable(tree)
+        return _law_target(tree, key, laws, notes)
+    known = _sweepable(tree, laws)
     what = "only scene.<value> and laws.<label>.<parameter> can be swept"
     what = "no such value in a scene" if head == "scene" else what
     notes.on_key(("sweep", key), what, did_you_mean(key, known))
@@ -94,19 +94,19 @@ def _scene_target(tree: dict[str, Any], steps: list[str], path: Path, notes: Not
     return _Target(parent, steps[-1], record) if record else None
 
 
-def _law_target(tree: dict[str, Any], key: str, notes: Notes) -> _Target | None:
+def _law_target(tree: dict[str, Any], key: str, laws: registry.Laws, notes: Notes) -> _Target | None:
     label, _, parameter = key.removeprefix("laws.").rpartition(".")
     index = _labels(tree).get(label)
-    if index is None and sure_law_labels(tree.get("laws")) is None:
+    if index is None and sure_law_labels(tree.get("laws"), laws) is None:
         return None
     if index is None:
         what = f"no law is labelled '{label}'" if label else "write laws.<label>.<parameter>"
-        notes.on_key(("sweep", key), what, did_you_mean(key, _sweepable(tree)))
+        notes.on_key(("sweep", key), what, did_you_mean(key, _sweepable(tree, laws)))
         return None
     kind = tree["laws"][index].get("kind")
-    if kind not in registry.law_names():
+    if kind not in laws.names():
         return None
-    law = registry.law_class(kind)
+    law = laws.named(kind)
     if parameter not in number_paths(law):
         hint = did_you_mean(parameter, number_paths(law))
         notes.on_key(("sweep", key), f"the law '{label}' has no parameter '{parameter}' to sweep", hint)
@@ -130,12 +130,12 @@ def _labels(tree: dict[str, Any]) -> dict[str, int]:
     return {label: index for label, index in found.items() if label is not None}
 
 
-def _sweepable(tree: dict[str, Any]) -> list[str]:
+def _sweepable(tree: dict[str, Any], laws: registry.Laws) -> list[str]:
     paths = [f"scene.{path}" for path in number_paths(Scene)]
     for label, index in _labels(tree).items():
         kind = tree["laws"][index].get("kind")
-        if kind in registry.law_names():
-            paths += [f"laws.{label}.{name}" for name in number_paths(registry.law_class(kind))]
+        if kind in laws.names():
+            paths += [f"laws.{label}.{name}" for name in number_paths(laws.named(kind))]
     return paths
 
 

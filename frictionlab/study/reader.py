@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path as FilePath
@@ -28,24 +28,48 @@ from frictionlab.study.grid import Swept, note_impossible_points, swept
 from frictionlab.study.mistakes import Path, StudyError, described
 from frictionlab.study.notes import Notes
 from frictionlab.study.overrides import overridden
+from frictionlab.study.plugins import Bring, Brought, add_law_files, bring
 from frictionlab.study.record import SCHEMA, LawChoice, MethodChoice, Study
+from frictionlab.study.saved_laws import as_saved
 from frictionlab.study.source import Odd, Source, plain_number, read_file
 
-KEYS = ("schema", "title", "source", "scene", "laws", "methods", "tolerance", "sweep", "expect", "keep")
+KEYS = (
+    *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
+    *("sweep", "expect", "keep"),
+)
 REQUIRED = ("schema", "scene", "laws")
-NOT_YET = ("plugins",)
 DEFAULT_TOLERANCE = 1e-8
 DEFAULT_METHODS = ("auto",)
+HERE = FilePath()
 
 
-def load_study(path: str | PathLike[str], overrides: Sequence[str] = ()) -> Study:
-    """The study of this file, with ``path=value`` overrides. Raises StudyError with every mistake."""
+def load_study(
+    path: str | PathLike[str], overrides: Sequence[str] = (), law_files: Sequence[FilePath] = ()
+) -> Study:
+    """The study of this file, with ``path=value`` overrides and more files of laws.
+
+    Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
+    """
     file = FilePath(path)
-    return replace(_study(read_file(file), overrides), path=file)
+    source = read_file(file)
+    if isinstance(source.tree, dict):
+        add_law_files(source, law_files)
+    return replace(_study(source, overrides, file.parent), path=file)
+
+
+def read_back(path: FilePath, codes: Mapping[str, str]) -> Study:
+    """The study that a run kept, its laws from outside as records without physics. codes: their SHA-256, by kind.
+
+    Raises StudyError with every mistake.
+    """
+    return replace(_study(read_file(path), (), path.parent, as_saved(codes)), path=path)
 
 
 def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name: str = "study") -> Study:
-    """The study of a mapping shaped like a study file. Raises StudyError with every mistake."""
+    """The study of a mapping shaped like a study file; its plugins are relative to the working folder.
+
+    Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
+    """
     return _study(Source(name, tree=_plain(mapping)), overrides)
 
 
@@ -54,11 +78,11 @@ def study_of(source: Source) -> Study:
     return _study(source, ())
 
 
-def _study(source: Source, overrides: Sequence[str]) -> Study:
+def _study(source: Source, overrides: Sequence[str], folder: FilePath = HERE, bring: Bring = bring) -> Study:
     if isinstance(source.tree, dict):
         overridden(source, overrides)
     notes = Notes(source.notes)
-    study = _Reading(source, notes).study()
+    study = _Reading(source, notes, lambda tree: bring(tree, folder, notes)).study()
     if study is None or notes.all:
         raise StudyError(source.located(notes.all))
     return study
@@ -67,14 +91,17 @@ def _study(source: Source, overrides: Sequence[str]) -> Study:
 class _Reading:
     """One pass over a study's values, in an order in which each step knows what it needs."""
 
-    def __init__(self, source: Source, notes: Notes) -> None:
-        self._source, self._notes = source, notes
+    def __init__(self, source: Source, notes: Notes, bring: Callable[[dict[str, Any]], Brought]) -> None:
+        self._source, self._notes, self._bring = source, notes, bring
         self._tree: dict[str, Any] = source.tree
+        self._known = registry.Laws()
 
     def study(self) -> Study | None:
         if self._notes.mapping(self._tree, ()) is None:
             return None
         self._keys()
+        brought = self._bring(self._tree)
+        self._known = brought.laws
         sweep = self._sweep()
         laws, methods = self._laws(), self._methods()
         scene = built(Scene, self._tree["scene"], ("scene",), self._notes) if "scene" in self._tree else None
@@ -82,15 +109,15 @@ class _Reading:
         told["expect"] = self._expect(scene)
         if self._notes.all or scene is None:
             return None
+        told["code"] = brought.code(choice.kind for choice in laws)
+        told["plugins"] = brought.files
         study = Study(scene=scene, laws=laws, methods=methods, sweep=sweep.sweep, **told)
         note_impossible_points(study, self._notes)
         return study
 
     def _keys(self) -> None:
         for key in self._tree:
-            if key in NOT_YET:
-                self._notes.on_key((key,), "not available yet")
-            elif key == "dimensional":
+            if key == "dimensional":
                 self._notes.on_key((key,), "is a part of the scene: write scene: {dimensional: {...}}")
             elif key not in KEYS:
                 self._notes.unknown_key((key,), KEYS)
@@ -102,7 +129,7 @@ class _Reading:
             self._notes.add(("schema",), f"must be {SCHEMA}, got {described(given)}")
 
     def _sweep(self) -> Swept:
-        found = swept(self._tree, self._notes)
+        found = swept(self._tree, self._known, self._notes)
         for missing, sweep in found.stand_ins.items():
             if sweep in self._source.origins:
                 self._source.origins[missing] = self._source.origins[sweep]
@@ -124,7 +151,9 @@ class _Reading:
             return ()
         given = items(self._tree["laws"], ("laws",), "[{kind: coulomb, mu: 0.4}]", self._notes)
         note_equal_labels(given, "laws", self._notes)
-        read = [law_choice(item, ("laws", index), self._notes) for index, item in enumerate(given)]
+        read = [
+            law_choice(item, ("laws", index), self._known, self._notes) for index, item in enumerate(given)
+        ]
         return tuple(choice for choice in read if choice is not None)
 
     def _methods(self) -> tuple[MethodChoice, ...]:
@@ -152,11 +181,11 @@ class _Reading:
     def _table(self, scene: Scene | None) -> Table:
         """What ``where`` may name; where the scene or a law has mistakes, whatever one could hold."""
         paths = list(scene.values()) if scene is not None else number_paths(Scene)
-        laws = sure_law_labels(self._tree.get("laws"))
+        laws = sure_law_labels(self._tree.get("laws"), self._known)
         methods = sure_labels(self._tree.get("methods", list(DEFAULT_METHODS)), registry.method_names())
         kinds = tuple(dict.fromkeys(law["kind"] for law in self._tree["laws"])) if laws else None
-        known = registry.law_names() if kinds is None else kinds
-        classes = [registry.law_class(kind) for kind in known]
+        known = self._known.usable() if kinds is None else kinds
+        classes = [self._known.named(kind) for kind in known]
         parameters = {f"law.{name}": None for law in classes for name in number_paths(law)}
         inputs = [*(f"scene.{path}" for path in paths), *parameters]
         if columns.belt_speed(inputs) != columns.BELT_SPEED:

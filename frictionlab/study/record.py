@@ -16,9 +16,12 @@ from frictionlab.dimensional import Scales, scaled_law
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.scene import Scene
+from frictionlab.study.law_file import LawFile
 from frictionlab.study.mistakes import number_text
 
 SCHEMA = 1
+LAW_COPIES = "laws"
+"""The folder in which a run keeps the files of laws it used."""
 
 
 @dataclass(frozen=True)
@@ -28,10 +31,11 @@ class LawChoice:
     label: str
     kind: str
     parameters: dict[str, Any]
+    law_class: type[FrictionLaw] = field(compare=False, repr=False)
 
     def law(self, values: Mapping[str, float] | None = None) -> FrictionLaw:
         """The law, with these values in place of its own."""
-        return registry.law_class(self.kind).model_validate(self.parameters | dict(values or {}))
+        return self.law_class.model_validate(self.parameters | dict(values or {}))
 
     def resolved(self) -> dict[str, Any]:
         """As a study file would say it."""
@@ -118,6 +122,7 @@ class Study:
 
     scene: the one where nothing is swept. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values.
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
+    plugins: the files of laws it brings along. code: SHA-256 of every law that is no part of frictionlab, by kind.
     """
 
     scene: Scene
@@ -129,6 +134,8 @@ class Study:
     keep_orbit: int | None = None
     title: str = ""
     source: str = ""
+    plugins: tuple[LawFile, ...] = ()
+    code: dict[str, str] = field(default_factory=dict)
     path: Path | None = field(default=None, compare=False)
 
     def cases(self) -> list[Case]:
@@ -169,10 +176,12 @@ class Study:
         return _grid(self.sweep, f"laws.{choice.label}.")
 
     def resolved(self) -> dict[str, Any]:
-        """The whole study as plain values that load back to an equal study."""
+        """The whole study as plain values that load back to an equal study, from beside its ``law_texts``."""
         words = {"title": self.title, "source": self.source}
         told: dict[str, Any] = {"schema": SCHEMA, **{key: text for key, text in words.items() if text}}
         told["scene"] = _natural(self.scene.given())
+        if self.plugins:
+            told["plugins"] = list(self.law_texts())
         told["laws"] = [law.resolved() for law in self.laws]
         told["methods"] = [method.resolved() for method in self.methods]
         told["tolerance"] = self.tolerance
@@ -184,6 +193,16 @@ class Study:
             told["expect"] = [expectation.resolved() for expectation in self.expect]
         return told
 
+    def law_texts(self) -> dict[str, str]:
+        """The files of laws, by the names under which a run keeps copies of them."""
+        found: dict[str, str] = {}
+        for file in self.plugins:
+            stem = f"{LAW_COPIES}/{file.path.stem}"
+            others = (f"{stem}_{number}.py" for number in itertools.count(2))
+            names = itertools.chain([f"{stem}.py"], others)
+            found[next(name for name in names if name not in found)] = file.text
+        return found
+
     def digest(self) -> str:
         """SHA-256 of what determines the numbers: scene, laws, methods, tolerance and sweep, nothing else."""
         swept = {path.removeprefix("scene.") for path in self.sweep}
@@ -193,6 +212,7 @@ class Study:
             "methods": [[method.label, method.name, method.parameters] for method in self.methods],
             "tolerance": self.tolerance,
             "sweep": {path: list(values) for path, values in self.sweep.items()},
+            **({"code": self.code} if self.code else {}),
         }
         return hashlib.sha256(json.dumps(_natural(numbers), sort_keys=True).encode()).hexdigest()
 

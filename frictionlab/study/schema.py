@@ -12,13 +12,14 @@ from frictionlab.study import reader
 from frictionlab.study.record import SCHEMA
 from frictionlab.study.sweep import LARGEST_GRID
 
+INSTALLED = registry.Laws()
 _NUMBER = {"type": "number"}
 _TEXT = {"type": "string"}
 # A bound behind a validator of our own keeps pydantic's name for it.
 _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
 
 
-def schema() -> dict[str, Any]:
+def schema(laws: registry.Laws = INSTALLED) -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of a study; what depends on several keys at once is left to ``check``."""
     definitions: dict[str, Any] = {}
     scene = _record(Scene, definitions)
@@ -27,7 +28,8 @@ def schema() -> dict[str, Any]:
         "title": _TEXT,
         "source": _TEXT,
         "scene": scene,
-        "laws": {"type": "array", "minItems": 1, "items": {"oneOf": _laws(definitions)}},
+        "plugins": {"type": "array", "items": _TEXT, "uniqueItems": True},
+        "laws": {"type": "array", "minItems": 1, "items": {"oneOf": _laws(laws, definitions)}},
         "methods": {
             "type": "array",
             "minItems": 1,
@@ -73,8 +75,8 @@ def _as_written(schema: Any) -> Any:
     return kept | (choices[0] if len(choices) == 1 else {"anyOf": choices} if choices else {})
 
 
-def _laws(definitions: dict[str, Any]) -> list[dict[str, Any]]:
-    return [_kind(name, _record(registry.law_class(name), definitions)) for name in registry.law_names()]
+def _laws(laws: registry.Laws, definitions: dict[str, Any]) -> list[dict[str, Any]]:
+    return [_kind(name, _record(laws.named(name), definitions)) for name in laws.usable()]
 
 
 def _methods(definitions: dict[str, Any]) -> list[dict[str, Any]]:

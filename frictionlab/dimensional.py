@@ -222,12 +222,16 @@ def _dimension(annotation: Any, metadata: Any) -> Dimension | None:
     return next((dimension for dimension in inner if dimension is not None), None)
 
 
-def scaled_parameters(record: Record, scales: Scales) -> dict[str, float]:
+def scaled_parameters(record: Record, scales: Scales) -> dict[str, float | tuple[float, ...]]:
     """The parameters of a law that have a dimension, made nondimensional."""
     values = {
-        name: (getattr(record, name), dimension) for name, dimension in dimensions(type(record)).items()
+        name: (getattr(record, name), scales.of(unit)) for name, unit in dimensions(type(record)).items()
     }
-    return {name: value / scales.of(unit) for name, (value, unit) in values.items() if value is not None}
+    return {name: _divided(value, unit) for name, (value, unit) in values.items() if value is not None}
+
+
+def _divided(value: float | tuple[float, ...], unit: float) -> float | tuple[float, ...]:
+    return tuple(each / unit for each in value) if isinstance(value, tuple) else value / unit
 
 
 @lru_cache(maxsize=4096)  # the rows of a curve share theirs

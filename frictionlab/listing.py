@@ -101,7 +101,7 @@ def _parameter(name: str, field: Any, text: str) -> dict[str, Any]:
         "name": name,
         "required": field.is_required(),
         "default": None if field.is_required() else field.default,
-        "limits": " and ".join(limits) or " | ".join(_choices(field)),
+        "limits": _each(field) + " and ".join(limits) or " | ".join(_choices(field)),
         "unit": _unit(field),
         "meaning": _meaning(name, text),
     }
@@ -112,6 +112,11 @@ def _rules(field: Any) -> list[Any]:
     inside = [kind.__metadata__ for kind in get_args(field.annotation) if get_origin(kind) is Annotated]
     rules = [rule for metadata in [field.metadata, *inside] for rule in metadata]
     return [each for rule in rules for each in (rule, *getattr(rule, "metadata", ()))]
+
+
+def _each(field: Any) -> str:
+    """Of a field that holds several numbers, whose limits its limits are."""
+    return "a list, each " if get_origin(field.annotation) is tuple else ""
 
 
 def _choices(field: Any) -> list[str]:

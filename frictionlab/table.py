@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -69,10 +70,10 @@ def inputs(rows: Sequence[Heading | Case]) -> Inputs:
     return Inputs(named | columns, len(rows), _scales([row.scene for row in rows]))
 
 
-def _scaled(row: Heading | Case) -> dict[str, float]:
+def _scaled(row: Heading | Case) -> dict[str, Any]:
     """The parameters of its law that were given in SI units in the scales of the scene."""
     si = row.scene.dimensional
-    return {} if si is None else scaled_parameters(row.given_law, si.scales)
+    return {} if si is None else _cells(scaled_parameters(row.given_law, si.scales))
 
 
 def _scales(scenes: Sequence[Scene]) -> dict[str, Floats] | None:
@@ -85,7 +86,15 @@ def _scales(scenes: Sequence[Scene]) -> dict[str, Floats] | None:
 
 
 def _values(law: FrictionLaw) -> dict[str, Any]:
-    return law.model_dump(exclude_none=True)
+    return _cells(law.model_dump(exclude_none=True, mode="json"))
+
+
+def _cells(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Values as a table holds them: several numbers as the text of a list, ``[2.0, 1.0]``."""
+    return {
+        name: json.dumps(value) if isinstance(value, list | tuple) else value
+        for name, value in values.items()
+    }
 
 
 def _spread(prefix: str, records: list[dict[str, Any]]) -> dict[str, list[Any]]:
@@ -140,7 +149,7 @@ class Results:
 
 def _column_of_words_or_numbers(column: pd.Series) -> pd.Series:
     """Numbers with gaps as floats; words as strings, the empty word as a gap."""
-    if all(value is None or isinstance(value, float) for value in column):
+    if all(value is None or isinstance(value, float | int) for value in column):
         return column.astype(float)
     return column.where(column != "", None).astype("str")
 

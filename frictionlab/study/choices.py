@@ -35,7 +35,9 @@ def law_choice(given: Any, path: Path, laws: registry.Laws, notes: Notes) -> Law
         return None
     parameters = {key: value for key, value in given.items() if key not in ("kind", "label")}
     law = built(laws.named(kind), parameters, path, notes)
-    return None if law is None else LawChoice(label, kind, law.model_dump(exclude_none=True), type(law))
+    if law is None:
+        return None
+    return LawChoice(label, kind, law.model_dump(exclude_none=True, mode="json"), type(law))
 
 
 def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:

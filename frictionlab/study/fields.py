@@ -241,6 +241,10 @@ def _in_words(error: Any) -> str:
         return f"must be {sign} {number_text(error['ctx'][name])}, got {given}"
     if error["type"] == "literal_error":
         return f"must be {error['ctx']['expected']}; got {given}"
+    if error["type"] == "tuple_type":
+        return f"must be a list such as [1, 2], got {given}"
+    if error["type"] == "too_short":
+        return f"must be a list of at least {error['ctx']['min_length']}, got {error['ctx']['actual_length']}"
     message = _message(error)
     if message.startswith("must be a number") or error["type"].startswith(("float", "int")):
         return f"must be a number, got {given}"

@@ -108,8 +108,10 @@ def _law_target(tree: dict[str, Any], key: str, laws: registry.Laws, notes: Note
         return None
     law = laws.named(kind)
     if parameter not in number_paths(law):
-        hint = did_you_mean(parameter, number_paths(law))
-        notes.on_key(("sweep", key), f"the law '{label}' has no parameter '{parameter}' to sweep", hint)
+        what = f"the law '{label}' has no parameter '{parameter}' to sweep"
+        if parameter in law.model_fields:
+            what = f"{parameter} of the law '{label}' is not one number: give a law of its own for each of its values"
+        notes.on_key(("sweep", key), what, did_you_mean(parameter, number_paths(law)))
         return None
     if other := _given_instead(tree["laws"][index], parameter):
         notes.on_key(("sweep", key), f"the law '{label}' gives {other}, so {parameter} cannot be swept")

@@ -7,7 +7,7 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-FOLDERS = sorted(path.parent for path in Path(__file__).parent.glob("*/pyproject.toml"))
+FOLDERS = sorted(path.parent for path in Path(__file__).parent.glob("plugins/*/pyproject.toml"))
 DOORS = tempfile.TemporaryDirectory(prefix="frictionlab-doors-")
 
 

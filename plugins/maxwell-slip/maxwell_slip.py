@@ -1,0 +1,108 @@
+"""Maxwell-slip friction: elements in parallel, each a spring in series with a Coulomb slider."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Self
+
+from pydantic import Field, model_validator
+
+from frictionlab import Jenkins, MemoryLaw, Positive, Stiffness
+
+
+class MaxwellSlip(MemoryLaw):
+    """Maxwell-slip friction: springs in parallel, each with a slider of its own that takes what its spring cannot.
+
+    mu [-], each > 0: the friction coefficient of each element's slider; their sum is that of steady sliding.
+    stiffness [1/scene length], each > 0: the friction coefficient per deflection of each element's spring.
+
+    As many of both as there are elements, in any order; one element is ``jenkins``. Identified as forces over
+    displacements (the breakpoints of a virgin curve), divide both lists by the normal load.
+    In the plane every slider is dragged as by a rope: it moves along its spring while that holds its mu (a tractrix).
+    The generalised law (Al-Bender, Lampaert & Swevers, 2005) is another: its elements remember whether they stick.
+    Sources: Iwan (1966), J. Appl. Mech. 33, 893; Lampaert, Swevers & Al-Bender (2002), IEEE TAC 47, 683; Al-Bender,
+    Lampaert & Swevers (2005), IEEE TAC 50, 1883.
+    """
+
+    mu: Annotated[tuple[Positive, ...], Field(min_length=1)]
+    stiffness: Annotated[tuple[Stiffness, ...], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _of_the_same_elements(self) -> Self:
+        if len(self.stiffness) != len(self.mu):
+            raise ValueError(
+                f"stiffness: must have as many values as mu, {len(self.mu)}, got {len(self.stiffness)}"
+            )
+        return self
+
+    @property
+    def reach(self) -> tuple[float, ...]:
+        """The deflection of each element at which its slider moves [scene length]."""
+        return tuple(mu / stiffness for mu, stiffness in zip(self.mu, self.stiffness, strict=True))
+
+    def sliding_friction(self, speed: float) -> float:
+        """Every slider's, at every speed."""
+        total = 0.0
+        for k in range(len(self.mu)):
+            total += self.mu[k]
+        return total
+
+    def count(self) -> int:
+        """A deflection for each element."""
+        return len(self.mu)
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """v, less its part along the spring where that is stretched to its reach and would be stretched further."""
+        z = memory[k]
+        along = (z * v.conjugate()).real
+        if along <= 0.0 or abs(z) < self.reach[k]:
+            return v
+        return v - (along / (z * z.conjugate()).real) * z
+
+    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
+        """The springs'."""
+        total = 0.0 * v
+        for k in range(len(self.stiffness)):
+            total = total + self.stiffness[k] * memory[k]
+        return total
+
+    def deflected(self, memory: Any, path: Any) -> list[Any]:
+        """The memory after slip along a straight ``path`` [scene length], exactly: each element's as ``Jenkins``."""
+        elements = zip(self.mu, self.stiffness, memory, strict=True)
+        return [Jenkins(mu=mu, stiffness=stiffness).deflected(z, path) for mu, stiffness, z in elements]
+
+    def steady(self, v: Any, k: int) -> Any:
+        """At its reach, along the slip."""
+        return (self.reach[k] / abs(v)) * v
+
+    def stored(self, memory: Any) -> float:
+        """In the springs."""
+        total = 0.0
+        for k in range(len(self.stiffness)):
+            total += 0.5 * self.stiffness[k] * (memory[k] * memory[k].conjugate()).real
+        return total
+
+    def within(self, memory: Any) -> bool:
+        """No spring is stretched further than its reach."""
+        inside = True
+        for k in range(len(self.mu)):
+            inside = inside and abs(memory[k]) <= self.reach[k] * (1.0 + 1e-9)
+        return inside
+
+    def constant_sliding_friction(self) -> bool:
+        """Always."""
+        return True
+
+    def largest_rate(self, speed: float) -> float:
+        """In the plane, where the shortest spring turns towards the slip."""
+        quickest = 0.0
+        for k in range(len(self.mu)):
+            quickest = max(quickest, speed / self.reach[k])
+        return quickest
+
+    def rate_independent(self) -> bool:
+        """Always."""
+        return True
+
+    def passive(self) -> bool:
+        """Always: what the springs do not store, the sliders take."""
+        return True

@@ -1,0 +1,109 @@
+"""Maxwell-slip friction: the springs and sliders one by one, what a loop remembers, what a slip forgets."""
+
+from __future__ import annotations
+
+import cmath
+import itertools
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from maxwell_slip import MaxwellSlip
+
+import frictionlab as fl
+
+LAW = MaxwellSlip(mu=[0.2, 0.15, 0.05], stiffness=[1, 3, 10])
+REST = [0.0, 0.0, 0.0]
+sizes = st.floats(0.01, 10.0)
+elements = st.lists(st.tuples(sizes, sizes), min_size=1, max_size=5)
+paths = st.lists(st.floats(-3.0, 3.0), min_size=1, max_size=8)
+turns = st.floats(-3.1, 3.1).map(lambda angle: cmath.rect(1.0, angle))
+
+
+def law_of(pairs: list[tuple[float, float]]) -> MaxwellSlip:
+    return MaxwellSlip(mu=[mu for mu, _ in pairs], stiffness=[stiffness for _, stiffness in pairs])
+
+
+def force(law: MaxwellSlip, memory: list[float]) -> float:
+    return float(law.friction(0.0, memory, memory).real)
+
+
+def virgin(law: MaxwellSlip, x: float) -> float:
+    """The force of the first loading, each element's own."""
+    return sum(min(stiffness * x, mu) for mu, stiffness in zip(law.mu, law.stiffness, strict=True))
+
+
+def test_one_element_of_stiffness_two_and_limit_three_goes_round_its_loop_exactly():
+    law, memory, forces = MaxwellSlip(mu=[3], stiffness=[2]), [0.0], []
+    for start, end in itertools.pairwise([0, 0, 5, 3.5, 2, -5, -3.5, -2, 0]):
+        memory = law.deflected(memory, end - start)
+        forces.append(force(law, memory))
+
+    assert forces == [0, 3, 0, -3, -3, 0, 3, 3]
+
+
+@given(mu=sizes, stiffness=sizes, v=turns, z=turns, share=st.floats(0.0, 1.0) | st.just(1.0))
+def test_one_element_is_jenkins_in_the_plane_and_along_a_line(mu, stiffness, v, z, share):
+    law, jenkins = MaxwellSlip(mu=[mu], stiffness=[stiffness]), fl.Jenkins(mu=mu, stiffness=stiffness)
+
+    for slip, deflection in ((v, share * jenkins.reach * z), (v.real, share * jenkins.reach)):
+        dz = jenkins.rate(slip, deflection)
+        assert law.rate(slip, [deflection], 0) == dz
+        assert law.friction(slip, [deflection], [dz]) == jenkins.friction(slip, deflection, dz)
+
+
+@pytest.mark.parametrize("turned", [0.1, 0.4, 1.0])
+def test_unloading_is_the_first_loading_twice_as_large_by_masing(turned):
+    memory = LAW.deflected(REST, turned)
+
+    for back in (0.01, 0.15, 0.3, 0.7):
+        away = force(LAW, memory) - force(LAW, LAW.deflected(memory, -back))
+        assert away == pytest.approx(2.0 * virgin(LAW, back / 2.0), abs=1e-14) or back > 2.0 * turned
+
+
+@given(pairs=elements, before=paths, minor=st.floats(0.0, 1.0))
+def test_after_a_closed_minor_loop_force_is_what_it_was_before(pairs, before, minor):
+    law, memory = law_of(pairs), [0.0] * len(pairs)
+    for path in before:
+        memory = law.deflected(memory, path)
+
+    loop = minor * abs(before[-1])  # no longer than the branch it leaves, else it is no minor loop
+    back = law.deflected(memory, -loop if before[-1] > 0.0 else loop)
+    closed = law.deflected(back, loop if before[-1] > 0.0 else -loop)
+
+    assert force(law, closed) == pytest.approx(force(law, memory), abs=1e-12 * law.sliding_friction(0.0))
+
+
+@given(pairs=elements, turn=turns)
+def test_after_a_long_slide_every_element_is_at_its_steady_deflection(pairs, turn):
+    law = law_of(pairs)
+    memory = law.deflected([0.5j * reach for reach in law.reach], 100.0 * max(law.reach) * turn)
+
+    assert memory == pytest.approx([law.steady(turn, k) for k in range(law.count())], rel=1e-12)
+    assert abs(law.friction(turn, memory, memory)) == pytest.approx(law.sliding_friction(1.0))
+    assert law.within(memory)
+
+
+@settings(deadline=None, max_examples=20)
+@given(pairs=elements, path=turns)
+def test_its_rates_lead_where_the_exact_path_does(pairs, path):
+    law, steps = law_of(pairs), 4000
+    memory = [0.3j * reach for reach in law.reach]
+    end = law.deflected(memory, path)
+
+    for _ in range(steps):
+        memory = [z + law.rate(path, memory, k) / steps for k, z in enumerate(memory)]
+    assert memory == pytest.approx(end, abs=20.0 / steps)
+
+
+@settings(deadline=None, max_examples=20)
+@given(pairs=elements, path=turns)
+def test_the_work_of_a_slip_is_stored_or_lost(pairs, path):
+    law, steps = law_of(pairs), 200
+    memory, work = [0.0j] * len(pairs), 0.0
+    for _ in range(steps):
+        work += (law.friction(path, memory, memory) * path.conjugate()).real / steps
+        memory = law.deflected(memory, path / steps)
+        work += (law.friction(path, memory, memory) * path.conjugate()).real / steps
+
+    assert work / 2.0 >= law.stored(memory) - 1e-9

@@ -1,0 +1,104 @@
+"""A law's parameter may be several numbers: in a study, in the table, in SI units, in lists of what is installed."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import frictionlab as fl
+from frictionlab.listing import law_record
+from frictionlab.registry import law_class
+from frictionlab.study import StudyError, parse_study
+from frictionlab.study.schema import schema
+
+LAW = {"kind": "maxwell-slip", "mu": [0.3, 0.1], "stiffness": [40, 5.5]}
+SLIP = {"belt_speed": 5, "slip": {"velocity_amplitude": 10, "frequency": 1}}
+BODY = {
+    **{"mass_kg": 2, "stiffness_N_per_m": 800, "damping_N_s_per_m": 4, "length_m": 0.01, "belt_speed_m_per_s": 0.1},
+    "drive": {"amplitude_N": 3, "frequency_rad_per_s": 15},
+}  # fmt: skip
+
+
+def study(law: dict[str, Any], **more: Any) -> dict[str, Any]:
+    return {"schema": 1, "scene": SLIP, "laws": [law], **more}
+
+
+def mistakes(tree: dict[str, Any]) -> list[str]:
+    with pytest.raises(StudyError) as problem:
+        parse_study(tree)
+    return [f"{mistake.path}: {mistake.what}" for mistake in problem.value.mistakes]
+
+
+def test_a_study_with_a_list_loads_back_to_the_same_study() -> None:
+    plan = parse_study(study(LAW))
+
+    assert plan.resolved()["laws"] == [LAW]
+    assert parse_study(plan.resolved()).resolved() == plan.resolved()
+    assert parse_study(plan.resolved()).digest() == plan.digest()
+    assert parse_study(study(LAW | {"stiffness": [40, 5.4]})).digest() != plan.digest()
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"mu": 3}, "laws[0].mu: must be a list such as [1, 2], got 3"),
+        ({"mu": []}, "laws[0].mu: must be a list of at least 1, got 0"),
+        ({"mu": [1, "x"]}, "laws[0].mu[1]: must be a number, got the text 'x'"),
+        ({"mu": [1, -1]}, "laws[0].mu[1]: must be > 0, got -1"),
+        ({"mu": [1, 2, 3]}, "laws[0].stiffness: must have as many values as mu, 3, got 2"),
+    ],
+)
+def test_a_mistake_in_a_list_is_told_at_its_place(change: dict[str, Any], said: str) -> None:
+    assert said in mistakes(study(LAW | change))
+
+
+def test_a_list_is_not_swept() -> None:
+    assert mistakes(study(LAW, sweep={"laws.maxwell-slip.mu": [1, 2]})) == [
+        "sweep.laws.maxwell-slip.mu: mu of the law 'maxwell-slip' is not one number: "
+        "give a law of its own for each of its values"
+    ]
+
+
+def test_lists_are_text_in_every_table_and_a_run_is_taken_over(tmp_path: Path) -> None:
+    plan = study(LAW, methods=["mdsm"])
+    first = fl.run(plan, out=tmp_path / "run").table
+    again = fl.run(plan, out=tmp_path / "run").table
+
+    assert json.loads(first["law.stiffness"][0]) == [40.0, 5.5]
+    for table in (
+        again,
+        pd.read_csv(tmp_path / "run" / "results.csv"),
+        pd.read_parquet(tmp_path / "run" / "results.parquet"),
+    ):
+        assert list(table["law.stiffness"]) == ["[40.0, 5.5]"]
+        assert list(table["seconds"].fillna(-1.0)) == list(first["seconds"].fillna(-1.0))
+
+
+def test_every_number_of_a_list_in_si_units_is_scaled() -> None:
+    plan = study(LAW, methods=["mdsm"]) | {"scene": {"dimensional": BODY}}
+    table = fl.run(plan).table
+
+    (law,) = parse_study(plan).laws_in_scenes(parse_study(plan).laws[0])
+    assert law.numbers()["stiffness"] == pytest.approx((0.4, 0.055))  # times L = 0.01 m
+    assert law.numbers()["mu"] == (0.3, 0.1)
+    assert json.loads(table["law.stiffness"][0]) == [40.0, 5.5]
+    assert np.array(json.loads(table["law.nondimensional.stiffness"][0])) == pytest.approx([0.4, 0.055])
+
+
+def test_a_listing_and_the_schema_say_that_it_is_a_list() -> None:
+    found = {
+        parameter["name"]: parameter
+        for parameter in law_record("maxwell-slip", law_class("maxwell-slip"))["parameters"]
+    }
+    kinds = {kind["title"]: kind for kind in schema()["properties"]["laws"]["items"]["oneOf"]}
+
+    assert found["stiffness"]["limits"] == "a list, each > 0"
+    assert found["stiffness"]["unit"] == "1/m"
+    assert kinds["maxwell-slip"]["properties"]["mu"]["type"] == "array"
+    assert kinds["maxwell-slip"]["properties"]["mu"]["items"] == {"exclusiveMinimum": 0, "type": "number"}
+    assert kinds["maxwell-slip"]["properties"]["mu"]["minItems"] == 1

@@ -1,0 +1,160 @@
+"""Rate-and-state friction: steps of the load, steady values, impedance, when it is unstable, what it does at rest."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rate_and_state import RateAndState
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+AGEING = RateAndState(mu=0.6, a=0.01, b=0.015, slip_length=10)
+both = pytest.mark.parametrize("law", [AGEING, AGEING.model_copy(update={"state_law": "slip"})])
+speeds = st.floats(1e-6, 1e6)
+
+
+def speed_at(law: RateAndState, friction: float, age: float) -> float:
+    """The slip speed at which the law resists so much."""
+    return math.exp(
+        brentq(lambda log: law.friction(math.exp(log), [age], [0.0]) - friction, -200.0, 50.0, xtol=1e-14)
+    )
+
+
+def pulled(law: RateAndState, stiffness: float, times: list[float]) -> list[float]:
+    """Friction of a massless slider on a spring that is pulled at speed 1, for long, and from time 10 on at 10."""
+
+    def rates(_: float, state: Any) -> list[float]:
+        speed = speed_at(law, *state)
+        return [stiffness * (10.0 - speed), law.rate(speed, state[1:], 0)]
+
+    start = [law.sliding_friction(1.0), law.slip_length]
+    found = solve_ivp(rates, (10.0, times[-1]), start, method="LSODA", t_eval=times, rtol=1e-9, atol=1e-10)
+    return list(found.y[0])
+
+
+# A load that steps from 1 to 10 at time 10, mu* = 0.6, D_c = 10, stiffness 1e-3: the tests of rsfmodel
+STEPS = [
+    (
+        RateAndState(mu=0.6, a=0.005, b=0.01, slip_length=10),
+        [0.60720485, 0.60186637, 0.5840091, 0.58563096, 0.58899543],
+        0.58848708,
+    ),
+    (
+        RateAndState(mu=0.6, a=0.01, b=0.005, slip_length=10, state_law="slip"),
+        [0.60839299, 0.6146288, 0.61663335, 0.61451424, 0.61239234],
+        0.61151293,
+    ),
+]
+
+
+@pytest.mark.parametrize(("law", "known", "steady"), STEPS, ids=["ageing", "slip"])
+def test_a_slider_pulled_through_a_spring_answers_a_step_as_in_rsfmodel(law, known, steady):
+    assert pulled(law, 1e-3, [11.0, 12.0, 13.0, 14.0, 15.0]) == pytest.approx(known, abs=1e-6)
+    assert law.sliding_friction(10.0) == pytest.approx(steady, abs=1e-8)
+
+
+@both
+@given(speed=speeds)
+def test_steady_sliding_is_where_the_age_rests_and_logarithmic_in_speed(law, speed):
+    age = law.steady(speed, 0)
+
+    assert law.rate(speed, [age], 0) == pytest.approx(0.0, abs=1e-14 * max(1.0, speed))
+    assert law.friction(speed, [age], [0.0]) == pytest.approx(law.sliding_friction(speed), rel=1e-13)
+    assert law.sliding_friction(speed) == pytest.approx(0.6 - 0.005 * math.log(speed), rel=1e-12)
+
+
+@both
+def test_a_step_of_speed_jumps_by_a_and_settles_by_a_less_b(law):
+    before, after, step = 1.0, 5.0, math.log(5.0)
+    jump = law.friction(after, [law.steady(before, 0)], [0.0]) - law.sliding_friction(before)
+    found = solve_ivp(
+        lambda _, age: [law.rate(after, age, 0)],
+        (0.0, 80.0),
+        [law.steady(before, 0)],
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-12,
+    )
+
+    assert jump == pytest.approx(law.a * step, rel=1e-12)
+    assert law.friction(after, found.y[:, -1], [0.0]) == pytest.approx(0.6 + (law.a - law.b) * step, abs=1e-9)
+
+
+@both
+@pytest.mark.parametrize("frequency", [0.02, 0.2, 2.0])
+def test_the_impedance_of_small_vibration_is_that_of_the_linear_law(law, frequency):
+    speed, small = 2.0, 1e-4
+
+    def slip(t: float) -> float:
+        return speed * (1.0 + small * math.sin(frequency * t))
+
+    period = 2 * math.pi / frequency
+    waited = period * math.ceil(20.0 * law.slip_length / speed / period)
+    times = waited + period * np.arange(64) / 64
+    found = solve_ivp(
+        lambda t, age: [law.rate(slip(t), age, 0)],
+        (0.0, times[-1]),
+        [law.steady(speed, 0)],
+        t_eval=times,
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-13,
+    )
+    friction = [law.friction(slip(t), [age], [0.0]) for t, age in zip(times, found.y[0], strict=True)]
+    first = 2j * np.mean(friction * np.exp(-1j * frequency * times)) / (small * speed)
+
+    linear = (law.a - law.b / (1.0 + 1j * frequency * law.slip_length / speed)) / speed
+    assert abs(first - linear) <= 1e-4 * abs(linear)
+
+
+@both
+def test_a_mass_on_a_spring_is_unstable_below_the_stiffness_of_rice_and_ruina(law):
+    mass, speed, age = 3.0, 2.0, law.steady(2.0, 0)
+
+    def slope(value: Any, at: float) -> float:
+        h = 1e-6 * at
+        return (value(at - 2 * h) - 8 * value(at - h) + 8 * value(at + h) - value(at + 2 * h)) / (12 * h)
+
+    def growth(stiffness: float) -> float:
+        jacobian = [
+            [0.0, 1.0, 0.0],
+            [
+                -stiffness / mass,
+                -slope(lambda v: law.friction(v, [age], [0.0]), speed) / mass,
+                -slope(lambda theta: law.friction(speed, [theta], [0.0]), age) / mass,
+            ],
+            [
+                0.0,
+                slope(lambda v: law.rate(v, [age], 0), speed),
+                slope(lambda theta: law.rate(speed, [theta], 0), age),
+            ],
+        ]
+        return float(np.linalg.eigvals(np.array(jacobian)).real.max())
+
+    critical = (law.b - law.a) / law.slip_length * (1.0 + mass * speed**2 / (law.a * law.slip_length))
+    assert brentq(growth, 0.5 * critical, 2.0 * critical, xtol=1e-12) == pytest.approx(critical, rel=1e-6)
+
+
+@both
+@given(v=st.floats(-10.0, 10.0), age=st.floats(1e-3, 1e3), turn=st.floats(-3.1, 3.1))
+def test_it_turns_with_the_slip_and_is_continuous_through_rest(law, v, age, turn):
+    turned = cmath.rect(1.0, turn)
+    friction = law.friction(v, [age], [0.0])
+
+    assert law.friction(-v, [age], [0.0]) == -friction
+    assert law.friction(turned * v, [age], [0.0]) == pytest.approx(turned * friction, rel=1e-12)
+    assert law.friction(0.0, [age], [0.0]) == 0.0
+    assert abs(law.friction(1e-60, [age], [0.0])) < 1e-20
+
+
+def test_a_contact_at_rest_heals_by_the_ageing_law_alone():
+    slip = AGEING.model_copy(update={"state_law": "slip"})
+
+    assert AGEING.rate(0.0, [3.0], 0) == 1.0
+    assert slip.rate(0.0, [3.0], 0) == 0.0

@@ -104,6 +104,11 @@ def _spread(prefix: str, records: list[dict[str, Any]]) -> dict[str, list[Any]]:
     return {f"{prefix}{name}": [record.get(name) for record in records] for name in names}
 
 
+def of_cell(value: Any) -> Any:
+    """What a cell made by ``_cells`` was made of."""
+    return json.loads(value) if isinstance(value, str) and value.startswith("[") else value
+
+
 class Results:
     """The result columns of a run, filled as its parts come in; what has not come in is ``killed``."""
 

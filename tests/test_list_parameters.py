@@ -102,3 +102,24 @@ def test_a_listing_and_the_schema_say_that_it_is_a_list() -> None:
     assert kinds["maxwell-slip"]["properties"]["mu"]["type"] == "array"
     assert kinds["maxwell-slip"]["properties"]["mu"]["items"] == {"exclusiveMinimum": 0, "type": "number"}
     assert kinds["maxwell-slip"]["properties"]["mu"]["minItems"] == 1
+
+
+def test_the_curves_of_a_bristle_law_with_a_list_are_read(tmp_path: Path) -> None:
+    (tmp_path / "two.py").write_text(
+        "import frictionlab as fl\n"
+        "class Two(fl.BristleLaw):\n"
+        "    'Dahl friction of two limits that add up. Source: Dahl (1968).'\n"
+        "    mu: tuple[fl.Positive, ...]\n"
+        "    def sliding_friction(self, speed): return self.mu[0] + self.mu[1]\n"
+        "    def rate(self, v, z): return v - abs(v) / (self.mu[0] + self.mu[1]) * z\n"
+        "    def friction(self, v, z, dz): return z\n"
+        "    def largest_deflection(self): return self.mu[0] + self.mu[1]\n"
+    )
+    (tmp_path / "study.yaml").write_text(
+        "schema: 1\nplugins: [two.py]\nlaws: [{kind: two, mu: [0.3, 0.1]}]\nmethods: [mdsm]\n"
+        "scene: {belt_speed: 1, slip: {velocity_amplitude: 10, frequency: 1}}\n"
+        "sweep: {scene.belt_speed: {start: 1, stop: 9, num: 3}}\n"
+    )
+
+    fl.run(tmp_path / "study.yaml", out=tmp_path / "run")
+    assert list(pd.read_csv(tmp_path / "run" / "curves.csv")["law.mu"]) == ["[0.3, 0.1]"]

@@ -96,7 +96,7 @@ def _explained(problem: BaseException) -> int:
 
 def _classified(problem: BaseException) -> tuple[int, str]:
     from frictionlab.failures import FolderError, SaveError
-    from frictionlab.registry import BrokenPlugin
+    from frictionlab.faults import BrokenPlugin, blamed
     from frictionlab.study import StudyError
 
     if isinstance(problem, CommandError):
@@ -109,6 +109,8 @@ def _classified(problem: BaseException) -> tuple[int, str]:
         return BROKEN_PLUGIN, str(problem)
     if isinstance(problem, OSError) and problem.errno in (errno.ENOSPC, errno.EDQUOT):
         return FAILED, f"cannot write the output: {problem.strerror}"
+    if law := blamed(problem):
+        return BROKEN_PLUGIN, law
     text = "".join(traceback.format_exception(problem))
     return BUG, f"{text}\nThis is a bug of frictionlab; please report it with the lines above and the study."
 
@@ -314,6 +316,10 @@ def _print_records(records: list[dict[str, Any]]) -> None:
 
 
 def _code(result: Run) -> int:
+    from frictionlab.faults import MARK
+
+    if result.table["reason"].astype("str").str.startswith(MARK).any():
+        return BROKEN_PLUGIN
     bad = result.counts.keys() & {"failed", "killed"}
     return FAILED if bad or not all(verdict.passed for verdict in result.verdicts) else OK
 
@@ -400,16 +406,23 @@ def _time(seconds: float) -> str:
 @click.argument("name", required=False)
 @law_option
 @json_option
-def laws(name: str | None, law_files: tuple[Path, ...], as_json: bool) -> None:
-    """List the installed laws, or tell all about the law NAME."""
+def laws(name: str | None, law_files: tuple[Path, ...], as_json: bool) -> int:
+    """List the installed laws, or tell all about the law NAME.
+
+    Broken ones are told on stderr, and the exit code is then 4.
+    """
     from frictionlab.listing import details, law_record, one_line_each
     from frictionlab.study import laws_of_files
 
     known = laws_of_files(law_files)
     if name is not None and name not in known.names():
         raise click.UsageError(f"no law '{name}'; installed: {', '.join(known.names())}")
-    records = [law_record(each, known.named(each)) for each in ([name] if name else known.names())]
+    records = [law_record(each, known.named(each)) for each in ([name] if name else known.usable())]
     _print_records(records) if as_json else _print(details(records[0]) if name else one_line_each(records))
+    broken = [] if name else known.broken()
+    for message in broken:
+        _tell(message)
+    return BROKEN_PLUGIN if broken else OK
 
 
 @cli.command()

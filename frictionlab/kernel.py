@@ -35,8 +35,9 @@ import numba.core.typing.templates
 import numba.extending
 import numpy as np
 from numba.core.bytecode import FunctionIdentity
-from numba.core.errors import NumbaError
+from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
+from frictionlab.faults import cannot_compile
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
 from frictionlab.laws.memory import MemoryLaw
@@ -68,10 +69,6 @@ def inner(function: Callable[..., Any]) -> Any:
 def fast(function: Callable[..., Any]) -> Any:
     """The same for inner arithmetic that never meets NaN or infinity on purpose."""
     return numba.njit(fastmath=True, **_INNER)(function)
-
-
-class CannotCompile(Exception):
-    """A law that runs interpreted but not compiled; the message names the law, the kernel and the remedy."""
 
 
 _one_at_a_time = threading.Lock()
@@ -243,7 +240,7 @@ def timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
     """What a compiled entry returns, and the seconds it took, compilation left out."""
     entry: Any = call.args[0] if isinstance(call, partial) else call
     bound = call.args[2:] if isinstance(call, partial) else ()
-    with contextlib.suppress(NumbaError):  # the call itself says what is wrong
+    with contextlib.suppress(NumbaError, UnsupportedBytecodeError):  # the call itself says what is wrong
         entry.compile(tuple(_typeof(argument) for argument in (*bound, *arguments)))
     start = time.perf_counter()
     result = call(*arguments)
@@ -253,11 +250,8 @@ def timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
 def _guarded(entry: Callable[..., Any], law: type[FrictionLaw], *arguments: Any) -> Any:
     try:
         return entry(*arguments)
-    except NumbaError as problem:
-        raise CannotCompile(
-            f"law {law.__name__} ({law.__module__}) cannot be compiled by numba for this method: "
-            f"{str(problem).strip()}\nUse only float and complex arithmetic and the math module in its methods."
-        ) from problem
+    except (NumbaError, UnsupportedBytecodeError) as problem:
+        raise cannot_compile(law, str(problem)) from problem
 
 
 @cache

@@ -10,8 +10,8 @@ import numpy as np
 
 from frictionlab.chunks import Chunk
 from frictionlab.derived import derived_columns
+from frictionlab.faults import MARK, BrokenPlugin, CannotCompile, blamed
 from frictionlab.methods.base import Answers, Floats, refused
-from frictionlab.registry import BrokenPlugin
 
 if TYPE_CHECKING:
     from frictionlab.orbit import Samples
@@ -84,10 +84,20 @@ def _numerical(problem: Exception) -> bool:
 
 
 def _failed(size: int, problem: Exception) -> Answers:
-    """Answers of points whose method raised; what is not arithmetic is said to be a defect of the program."""
+    """Answers of points whose method raised; what is not arithmetic is a defect of a law from outside, or ours."""
+    return replace(refused([_reason(problem)] * size), status=["failed"] * size)
+
+
+def _reason(problem: Exception) -> str:
     sentence = f"{type(problem).__name__}: {problem}"
-    reason = sentence if _numerical(problem) else f"internal error: {sentence}"
-    return replace(refused([reason] * size), status=["failed"] * size)
+    if _numerical(problem):
+        return sentence
+    law = str(problem) if isinstance(problem, CannotCompile) else blamed(problem)
+    return (
+        f"internal error: {sentence}"
+        if law is None
+        else MARK + "; ".join(line.strip() for line in law.splitlines())
+    )
 
 
 def _believable(answers: Answers, size: int) -> Answers:

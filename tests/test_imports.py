@@ -22,6 +22,7 @@ ROOMS = {
     "law interface": ["laws.base", "laws.bristle", "laws.fall", "laws.memory", "laws.stribeck_bristle"],
     "laws": ["laws"],
     "scene": ["scene", "dimensional"],
+    "faults": ["faults"],
     "kernel": ["kernel"],
     "theory": ["theory"],
     "shape": ["shape", "course", "monotone"],
@@ -30,7 +31,7 @@ ROOMS = {
     "steppers": ["methods.steppers"],
     "methods": ["methods"],
     "bibliography": ["bibliography"],
-    "registry": ["registry"],
+    "registry": ["registry", "doors", "trial"],
     "columns": ["columns"],
     "study": ["study"],
     "run": [
@@ -52,7 +53,8 @@ ARROWS = {
     "law interface": ["numbers"],
     "laws": ["law interface"],
     "scene": ["numbers"],
-    "kernel": ["law interface"],
+    "faults": ["law interface"],
+    "kernel": ["law interface", "faults"],
     "theory": ["scene"],
     "shape": [],
     "method interface": ["law interface", "numbers", "scene"],
@@ -60,11 +62,11 @@ ARROWS = {
     "steppers": ["kernel"],
     "methods": ["steppers", "method interface", "scene", "orbit", "theory", "kernel", "law interface"],
     "bibliography": [],
-    "registry": ["law interface", "method interface", "bibliography"],
+    "registry": ["law interface", "method interface", "bibliography", "faults"],
     "columns": [],
-    "study": ["scene", "registry", "columns", "numbers", "law interface", "method interface"],
+    "study": ["scene", "registry", "columns", "numbers", "law interface", "method interface", "faults"],
     "run": [
-        *("study", "registry", "orbit", "theory", "shape", "columns", "scene"),
+        *("study", "registry", "orbit", "theory", "shape", "columns", "scene", "faults"),
         *("law interface", "method interface"),
     ],
     "charts": ["theory", "columns"],
@@ -77,7 +79,7 @@ ARROWS = {
     "report": ["charts", "run", "study", "registry", "columns", "scene", "bibliography"],
     "command line": [
         *("report", "charts", "bench chart", "bench", "run", "study", "registry"),
-        *("law interface", "method interface", "bibliography"),
+        *("law interface", "method interface", "bibliography", "faults"),
     ],
 }
 
@@ -90,6 +92,7 @@ OUTSIDE = {
         "scene",
         "method interface",
         "methods",
+        "registry",
         "study",
         "peers",
     ],

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 from frictionlab import kernel
-from frictionlab.kernel import CannotCompile, by_dimension, compiled, njit
+from frictionlab.faults import CannotCompile
+from frictionlab.kernel import by_dimension, compiled, njit
 from frictionlab.laws.base import Positive, SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.lugre import LuGre

@@ -37,6 +37,7 @@ def law_choice(given: Any, path: Path, laws: registry.Laws, notes: Notes) -> Law
     law = built(laws.named(kind), parameters, path, notes)
     if law is None:
         return None
+    laws.check(kind, law)
     return LawChoice(label, kind, law.model_dump(exclude_none=True, mode="json"), type(law))
 
 

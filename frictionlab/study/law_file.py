@@ -11,7 +11,8 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-from frictionlab import registry
+from frictionlab.doors import Home, unloadable
+from frictionlab.faults import LAW_FILE
 from frictionlab.laws.base import FrictionLaw
 
 LARGEST_FILE = 1_000_000
@@ -21,6 +22,11 @@ class Unreadable(Exception):
     """There is no file of Python text to read; the message says why."""
 
 
+def home_of_file(path: Path) -> Home:
+    """The home of what is wrong with a file as a whole."""
+    return Home(f"file {path}", "mend the file")
+
+
 @dataclass(frozen=True)
 class LawFile:
     """A file of laws. text: what it holds; laws: its concrete law classes by the names studies give them."""
@@ -28,6 +34,10 @@ class LawFile:
     path: Path = field(compare=False)
     text: str = field(repr=False)
     laws: dict[str, type[FrictionLaw]] = field(compare=False)
+
+    def home(self, name: str) -> Home:
+        """The home of one of its laws."""
+        return Home(f"law '{name}' (class {self.laws[name].__name__}) of file {self.path}", "mend the file")
 
     @property
     def code(self) -> str:
@@ -39,7 +49,7 @@ def read_law_file(path: Path) -> LawFile:
     """The laws of this file. Raises Unreadable, BrokenPlugin."""
     text = text_of(path)
     name = re.sub(r"\W", "_", path.stem)
-    module = _module(f"frictionlab_law_{name}_{_sha256(text)[:12]}", path, text)
+    module = _module(f"{LAW_FILE}{name}_{_sha256(text)[:12]}", path, text)
     return LawFile(path, text, _laws(module, path))
 
 
@@ -98,9 +108,7 @@ def _module(name: str, path: Path, text: str) -> ModuleType:
         del sys.modules[name]
         if isinstance(problem, KeyboardInterrupt):
             raise
-        raise registry.BrokenPlugin(
-            f"{path} cannot be loaded: {type(problem).__name__}: {problem}"
-        ) from problem
+        raise unloadable(home_of_file(path), problem) from problem
     return module
 
 
@@ -110,8 +118,8 @@ def _laws(module: ModuleType, path: Path) -> dict[str, type[FrictionLaw]]:
     bases = {base for kind in own for base in kind.__mro__[1:]}
     laws = {law_name(kind.__name__): kind for kind in own if kind not in bases}
     if not laws:
-        raise registry.BrokenPlugin(
-            f"{path} defines no law: give it a class derived from frictionlab.SlidingLaw or frictionlab.BristleLaw"
+        raise home_of_file(path).broken(
+            "defines no law: give it a class derived from frictionlab.SlidingLaw, BristleLaw or MemoryLaw"
         )
     return laws
 

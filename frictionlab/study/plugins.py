@@ -74,16 +74,16 @@ def _read(name: str, path: Path, folder: FilePath, notes: Notes) -> LawFile | No
 def laws_of(files: Sequence[LawFile]) -> registry.Laws:
     """The laws that files bring, beside those installed. Raises BrokenPlugin where two have one name."""
     own: dict[str, type[FrictionLaw]] = {}
+    homes = {name: file.home(name) for file in files for name in file.laws}
     for file in files:
         for name, law in file.laws.items():
             if name in registry.law_names():
-                raise _clash(name, file, "an installed law has that name")
+                raise file.home(name).broken("an installed law has that name; rename the class")
             if name in own:
-                raise _clash(
-                    name, file, f"{next(f.path for f in files if name in f.laws)} has one of that name"
-                )
+                other = next(each.path for each in files if name in each.laws)
+                raise file.home(name).broken(f"{other} has one of that name; rename one of the classes")
             own[name] = law
-    return registry.Laws(own)
+    return registry.Laws(own, homes)
 
 
 def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:
@@ -95,8 +95,3 @@ def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:
         except Unreadable as problem:
             raise StudyError([Mistake(f"--law {path}", None, "", str(problem))]) from None
     return laws_of(list(dict.fromkeys(files)))
-
-
-def _clash(name: str, file: LawFile, why: str) -> registry.BrokenPlugin:
-    law = file.laws[name].__name__
-    return registry.BrokenPlugin(f"law '{name}' (class {law}) of {file.path}: {why}; rename the class")

@@ -10,6 +10,7 @@ import pandas as pd
 from frictionlab.columns import belt_speed, given
 from frictionlab.expect import Verdict
 from frictionlab.runner import Run
+from frictionlab.sentences import alike, pattern
 
 MOST_REASONS = 10
 
@@ -20,7 +21,7 @@ def summary(run: Run) -> str:
         [run.study.title] if run.study.title else [],
         [f"{_points(len(run.table))}: {statuses(run.table)}"],
         ["", *columns([_HEAD, *_curve_lines(run.table)])],
-        [f"model {number}: {model}" for model, number in _models(run.table).items()],
+        _model_lines(run.table),
         _reasons(run.table),
         verdict_lines(run.verdicts),
         [f"table in {run.table_file}"] if run.table_file else [],
@@ -43,8 +44,16 @@ def _curve_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
 
 
 def _models(table: pd.DataFrame) -> dict[str, int]:
-    """Numbers for the models, whose sentences are too long for a line per curve."""
-    return {model: number for number, model in enumerate(table["model"].dropna().unique(), 1)}
+    """Numbers for the models, whose sentences are too long for a line per curve; the same for those alike."""
+    found = table["model"].dropna().unique()
+    numbers = {form: number for number, form in enumerate(dict.fromkeys(map(pattern, found)), 1)}
+    return {model: numbers[pattern(model)] for model in found}
+
+
+def _model_lines(table: pd.DataFrame) -> list[str]:
+    models = _models(table)
+    groups = {number: [model for model in models if models[model] == number] for number in models.values()}
+    return [f"model {number}: {alike(group)}" for number, group in groups.items()]
 
 
 def _curve_line(inputs: dict[str, Any], rows: pd.DataFrame, models: dict[str, int]) -> tuple[str, ...]:
@@ -53,7 +62,7 @@ def _curve_line(inputs: dict[str, Any], rows: pd.DataFrame, models: dict[str, in
     found = rows["mean_friction"].dropna()
     span = dict.fromkeys(f"{value:.6g}" for value in (found.min(), found.max())) if len(found) else {}
     error = f"{rows['error'].max():.1e}" if rows["error"].notna().any() else ""
-    used = ", ".join(str(models[model]) for model in rows["model"].dropna().unique())
+    used = ", ".join(dict.fromkeys(str(models[model]) for model in rows["model"].dropna().unique()))
     return law, method, where, statuses(rows), " ... ".join(span), error, used
 
 

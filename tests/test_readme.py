@@ -5,14 +5,19 @@ from __future__ import annotations
 import re
 import shlex
 import subprocess
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
 
 import frictionlab as fl
+from frictionlab import registry
 from frictionlab.charts import FIGURES
-from frictionlab.columns import CURVES, RESULTS, SI
+from frictionlab.columns import CURVES, RESULTS, SI, TEXT
+from frictionlab.dimensional import Dimensional
+from frictionlab.scene import Scene
 from frictionlab.study import load_study
+from frictionlab.study.fields import number_paths
 
 PROJECT = Path(__file__).parent.parent
 README = (PROJECT / "README.md").read_text()
@@ -123,8 +128,27 @@ def test_the_study_reference_lists_the_columns_of_the_table_in_their_order() -> 
     ]
 
 
-def test_the_nomenclature_has_every_symbol_of_a_figure_by_its_key() -> None:
-    listed = (PROJECT / "docs" / "nomenclature.md").read_text()
+NOMENCLATURE = (PROJECT / "docs" / "nomenclature.md").read_text()
+KEYS = re.findall(r"`([\w.*]+)`", NOMENCLATURE)
+PARAMETERS = {
+    f"law.{key}"
+    for name in ("coulomb", "stribeck", "dahl", "lugre", "elasto-plastic", "jenkins")
+    for key in registry.law_class(name).model_fields
+}
+VALUES = [f"scene.{path}" for path in number_paths(Scene) if not path.startswith("dimensional.")]
+VALUES += number_paths(Dimensional)
+NUMBERS = [column for column in RESULTS if column not in TEXT and column != "seconds"]
 
+
+@pytest.mark.parametrize("key", [*VALUES, *sorted(PARAMETERS), *NUMBERS])
+def test_the_nomenclature_has_every_number_of_a_scene_every_parameter_and_every_column(key: str) -> None:
+    assert any(fnmatchcase(key, listed) for listed in KEYS)
+
+
+def test_the_nomenclature_has_no_parameter_that_no_law_has() -> None:
+    assert {key for key in KEYS if key.startswith("law.")} == PARAMETERS
+
+
+def test_the_nomenclature_has_every_symbol_of_a_figure_by_its_key() -> None:
     for column in (column for columns in FIGURES.values() for column in columns):
-        assert f"`{column.removeprefix('transverse_')}`" in listed
+        assert f"`{column.removeprefix('transverse_')}`" in NOMENCLATURE

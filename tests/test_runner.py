@@ -30,6 +30,7 @@ from frictionlab.failures import FolderError, SaveError
 from frictionlab.progress import Meter
 from frictionlab.solving import solve
 from frictionlab.study import load_study, parse_study
+from frictionlab.summary import summary
 from frictionlab.table import headings, inputs, records
 from frictionlab.yaml_text import yaml_text
 
@@ -741,3 +742,16 @@ def test_what_is_no_scene_law_or_tolerance_is_told_in_python(wrong: dict[str, An
         fl.steady_state(**given)
     with pytest.raises((TypeError, ValueError), match=message):
         fl.curve(**given, belt_speed=[1.0])
+
+
+def test_models_that_differ_in_numbers_alone_are_one_line_of_the_summary() -> None:
+    done = fl.run(study(methods=["fake"]))
+    models = [f"closed form: belt speed >= {speed}" for speed in range(len(done.table))]
+    done.table["model"] = [*models[:-1], "another"]
+    lines = summary(done).splitlines()
+
+    assert [line for line in lines if line.startswith("model")] == [
+        f"model 1: closed form: belt speed >= 0 (and {len(models) - 2} more that differ in the numbers)",
+        "model 2: another",
+    ]
+    assert any(line.endswith(" 1, 2") for line in lines)

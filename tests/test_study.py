@@ -413,6 +413,26 @@ def test_the_caret_stands_under_the_column_of_a_line_with_tabs(written: Any) -> 
     assert line.expandtabs()[caret.expandtabs().index("^")] == "x"
 
 
+@pytest.mark.parametrize(("swept", "told"), [("laws.sofd.mu", True), ("laws.dahl.mu", False)])
+def test_a_sweep_of_no_law_is_told_beside_a_law_of_unknown_kind_unless_that_may_be_the_one(
+    swept: str, told: bool
+) -> None:
+    laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "dhal", "mu": 0.4, "stiffness": 1}]
+    with pytest.raises(StudyError) as caught:
+        parse_study({"schema": 1, "scene": good()["scene"], "laws": laws, "sweep": {swept: [0.1, 0.2]}})
+
+    assert "laws[1].kind: unknown law 'dhal'" in str(caught.value)
+    assert ("no law is labelled 'sofd'" in str(caught.value)) == told
+
+
+def test_a_parameter_that_is_a_word_is_not_swept_and_the_way_to_vary_it_is_told() -> None:
+    laws, sweep = [{"kind": "dahl", "mu": 0.4, "stiffness": 1}], {"laws.dahl.planar": [1, 2]}
+    with pytest.raises(
+        StudyError, match=r"planar of the law 'dahl' is not one number: give a law of its own for each"
+    ):
+        parse_study({"schema": 1, "scene": good()["scene"], "laws": laws, "sweep": sweep})
+
+
 def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) -> None:
     text = (
         GOOD.replace("schema: 1", "schema: 2")

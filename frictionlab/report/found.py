@@ -15,12 +15,10 @@ from frictionlab.report.tables import (
     Cell,
     CurveRows,
     Grid,
-    alike,
     curve_rows,
     grid,
     listed,
     number,
-    pattern,
     points,
     setting,
     settings,
@@ -29,6 +27,7 @@ from frictionlab.report.tables import (
     swept_inputs,
 )
 from frictionlab.saved import Saved
+from frictionlab.sentences import alike, pattern
 from frictionlab.summary import statuses
 
 FEW_ROWS = 4
@@ -166,7 +165,7 @@ def _trouble(status: str, rows: pd.DataFrame, swept: Sequence[str]) -> list[Cell
     more = f"; and {points(len(rows) - shown)} more" if len(rows) > shown else ""
     words = status.replace("_", " ") if status != "ok" else "ok, but"
     who = listed(rows["law"]), listed(rows["method"])
-    return [words, str(len(rows)), alike(rows["reason"]), *who, told + more]
+    return [words, str(len(rows)), alike(rows["reason"].fillna("")), *who, told + more]
 
 
 def _example(row: pd.Series, swept: Sequence[str]) -> Markup:

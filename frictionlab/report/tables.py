@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -15,7 +14,6 @@ from frictionlab.report.markup import symbol_html, unit_html
 Cell = str | Markup
 MOST_ROWS = 200
 """Rows of one table on a page; how many more there are is said below it."""
-_NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
 
 
 class Grid(NamedTuple):
@@ -107,16 +105,3 @@ def points(count: int) -> str:
 def listed(words: Iterable[Cell]) -> Markup:
     """Words, each once, with commas."""
     return Markup(", ").join(dict.fromkeys(escape(word) for word in words))
-
-
-def pattern(sentence: Any) -> str:
-    """A sentence without its numbers: those alike but for numbers say the same thing."""
-    return _NUMBER.sub("#", sentence) if isinstance(sentence, str) else ""
-
-
-def alike(sentences: pd.Series) -> Markup:
-    """The first of sentences that differ in their numbers at most, and how many others there are."""
-    different = sentences.fillna("").unique()
-    more = len(different) - 1
-    others = f" (and {more} more that differ in the numbers)" if more else ""
-    return escape(different[0] + others)

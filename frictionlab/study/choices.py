@@ -83,6 +83,16 @@ def sure_law_labels(given: Any, laws: registry.Laws) -> tuple[str, ...] | None:
     return sure_labels(given, laws.names()) if mappings else None
 
 
+def may_become_a_label(label: str, given: Any, laws: registry.Laws) -> bool:
+    """Whether a label that no law has may be one once other mistakes in the laws are mended."""
+    if not isinstance(given, list) or not given or not all(isinstance(item, dict) for item in given):
+        return True
+    labels = [label_of(item) for item in given if "label" in item or "kind" in item]
+    if not all(each and each.isprintable() for each in labels) or len(set(labels)) < len(labels):
+        return True
+    return sure_law_labels(given, laws) is None and label in laws.names()
+
+
 def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:
     """Note every item whose label an earlier one has."""
     first: dict[str, int] = {}

@@ -14,7 +14,7 @@ from frictionlab.dimensional import Dimensional
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.bristle import CompliantLaw
 from frictionlab.scene import Scene
-from frictionlab.study.choices import label_of, sure_law_labels
+from frictionlab.study.choices import label_of, may_become_a_label
 from frictionlab.study.fields import harmless, number_paths, record_at, wrong_value
 from frictionlab.study.mistakes import Path, did_you_mean
 from frictionlab.study.notes import Notes
@@ -97,7 +97,7 @@ def _scene_target(tree: dict[str, Any], steps: list[str], path: Path, notes: Not
 def _law_target(tree: dict[str, Any], key: str, laws: registry.Laws, notes: Notes) -> _Target | None:
     label, _, parameter = key.removeprefix("laws.").rpartition(".")
     index = _labels(tree).get(label)
-    if index is None and sure_law_labels(tree.get("laws"), laws) is None:
+    if index is None and may_become_a_label(label, tree.get("laws"), laws):
         return None
     if index is None:
         what = f"no law is labelled '{label}'" if label else "write laws.<label>.<parameter>"

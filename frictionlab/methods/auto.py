@@ -35,7 +35,7 @@ class Auto(Method):
                 why = against[-1].split(";")[0] if against else "it accepts the scene"
                 return rung, f"lowest rung that can: {why}"
             against.append(reason)
-        return None, "; ".join(dict.fromkeys(against))
+        return None, "; ".join(dict.fromkeys(part for reason in against for part in reason.split("; ")))
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Why every rung refuses, where all do."""

@@ -14,6 +14,7 @@ from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods import coulomb_curve as curve
 from frictionlab.methods.base import Answers, Floats, Method, Orbit, Status
 from frictionlab.methods.coulomb_orbit import make_orbit, read_orbits
+from frictionlab.methods.instead import or_shooting
 from frictionlab.methods.prescribed import solve_prescribed
 from frictionlab.methods.prescribed_bristle import along_one_line
 from frictionlab.orbit import READ
@@ -36,9 +37,24 @@ UNBOUNDED = (
 def _refusal_of_legs(scene: Scene, law: BristleLaw) -> str | None:
     """Why a prescribed slip has no two legs along which the deflection is known."""
     if not law.exact_path():
-        return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction); use shooting"
+        return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction)"
     if not along_one_line(scene, law):
-        return "exact works along one line: this slip goes across the belt too; use shooting"
+        return "exact works along one line: this slip goes across the belt too"
+    return None
+
+
+def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
+    """Why the motion between events is not known in closed form."""
+    if not isinstance(law, SlidingLaw):
+        return "exact needs friction without memory (Coulomb)"
+    if not law.constant_sliding_friction():
+        return "exact needs friction that does not vary with speed (Coulomb)"
+    if scene.degrees_of_freedom > 0 and not law.monotone():
+        return "exact needs friction at rest to be that of slip (no mu_static)"
+    if scene.undriven:
+        return "exact needs a drive, whose period is the motion's"
+    if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
+        return "exact works along one line: this scene has a transverse load"
     return None
 
 
@@ -57,18 +73,10 @@ class Exact(Method):
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
         if isinstance(law, BristleLaw) and scene.degrees_of_freedom == 0:
-            return _refusal_of_legs(scene, law)
-        if not isinstance(law, SlidingLaw):
-            return "exact needs friction without memory (Coulomb); use shooting"
-        if not law.constant_sliding_friction():
-            return "exact needs friction that does not vary with speed (Coulomb); use shooting"
-        if scene.degrees_of_freedom > 0 and not law.monotone():
-            return "exact needs friction at rest to be that of slip (no mu_static); use shooting"
-        if scene.undriven:
-            return "exact needs a drive, whose period is the motion's; use shooting"
-        if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
-            return "exact works along one line: this scene has a transverse load; use shooting"
-        return None
+            reason = _refusal_of_legs(scene, law)
+        else:
+            reason = _refusal_of_flow(scene, law)
+        return or_shooting(reason, scene, law) if reason else None
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""

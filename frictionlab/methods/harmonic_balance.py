@@ -12,6 +12,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Answers, Floats, Method
 from frictionlab.methods.harmonic_bristle import answer_bristle, bristle_refusal
+from frictionlab.methods.instead import or_shooting
 from frictionlab.methods.monotone_root import monotone_root
 from frictionlab.methods.reduced import Harmonic, answer_line, line_refusal
 from frictionlab.scene import Scene
@@ -45,7 +46,8 @@ class HarmonicBalance(Method):
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb or bristle friction on one line under a drive that bounds the friction-free motion."""
         if scene.degrees_of_freedom == 0:
-            return "harmonic_balance seeks the motion of the mass, and a prescribed slip leaves it none; use exact"
+            reason = "harmonic_balance seeks the motion of the mass, and a prescribed slip leaves it none"
+            return or_shooting(reason, scene, law)
         if isinstance(law, BristleLaw):
             return bristle_refusal(self.name, scene, law)
         return line_refusal(self.name, scene, law)

@@ -19,6 +19,7 @@ from frictionlab.methods.base import Answers, Floats, Orbit
 from frictionlab.methods.harmonic_bristle_balance import Balance, balances, contact_of
 from frictionlab.methods.harmonic_bristle_orbit import orbit_of_one_harmonic
 from frictionlab.methods.harmonic_bristle_settle import Line, Settled, settle
+from frictionlab.methods.instead import or_shooting
 from frictionlab.methods.reduced import ROUNDING, Harmonic, judged, motion_columns
 from frictionlab.scene import Scene
 from frictionlab.theory import friction_free_velocity
@@ -55,7 +56,9 @@ def bristle_refusal(name: str, scene: Scene, law: BristleLaw) -> str | None:
     if scene.undriven:
         return f"{name} needs a drive: it starts from the driven motion"
     if scene.degrees_of_freedom == 2:
-        return f"{name} follows bristle friction along one line: this scene has two directions; use shooting"
+        return or_shooting(
+            f"{name} follows bristle friction along one line: this scene has two directions", scene, law
+        )
     if not math.isfinite(law.under_load(scene.mass().normal_load).largest_deflection()):
         return f"{name} needs a law that says how far its bristles can deflect; use shooting"
     if not math.isfinite(friction_free_velocity(scene)):

@@ -16,6 +16,7 @@ from frictionlab.methods.base import Answers, Method, Orbit, Status
 from frictionlab.methods.bristle_limits import fewest_steps, friction_falls
 from frictionlab.methods.bristle_sampling import solve_rubbed
 from frictionlab.methods.closer import along_the_belt, contracts
+from frictionlab.methods.instead import or_shooting
 from frictionlab.methods.marcher import LONGEST_PERIOD, Run, Walker
 from frictionlab.methods.marching import RESTING, STALLED, TOO_FAST
 from frictionlab.methods.refining import FEWEST_LAPS, WORK, Found, Plan, found, restless, why_not
@@ -127,9 +128,11 @@ class March(Method):
             )
         jumps = law.static_friction() > law.sliding_friction(0.0)
         if jumps and scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
-            return (
+            return or_shooting(
                 "static friction above that of slip: in the plane a step catches a mass that would slip past rest, "
-                "and no bound on what that does is known; use shooting"
+                "and no bound on what that does is known",
+                scene,
+                law,
             )
         if self._stepper(law) != "moreau" and jumps:
             return (

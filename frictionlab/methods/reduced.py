@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.methods.base import Answers, Floats, Orbit, Status
 from frictionlab.methods.feedback import WIDEST, mistrusted, settle
+from frictionlab.methods.instead import or_shooting
 from frictionlab.methods.prescribed import orbit_of_slip
 from frictionlab.methods.two_reversals import Line, bounds
 from frictionlab.scene import Motion, Scene
@@ -54,7 +55,7 @@ def line_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
     if scene.undriven:
         return f"{name} needs a drive: it starts from the driven motion"
     if not scene.load_along_belt_only:
-        return f"{name} works along one line: this scene has a transverse load; use shooting"
+        return or_shooting(f"{name} works along one line: this scene has a transverse load", scene, law)
     if not isinstance(law, SlidingLaw):
         return f"{name} needs friction without memory (Coulomb)"
     if not law.constant_sliding_friction():

@@ -343,6 +343,45 @@ def test_bristles_that_only_bend_keep_what_they_began_with():
     assert np.isnan(answers.columns["mean_friction"][0])
 
 
+ACROSS = TransverseSlip(velocity_amplitude=1.2310254529015219, phase=40)
+NEARLY_BACK = TransverseSlip(velocity_amplitude=0.4508060362819711, phase=167.61212592399406)
+BENT_BACK = TransverseSlip(velocity_amplitude=0.7020434447685906, phase=154.06421298900176)
+
+
+@pytest.mark.parametrize(
+    ("law", "belt_speed", "frequency", "across", "tolerance", "mean"),
+    [
+        # three grids can agree by chance on reversals of an axis, on a lag finer than steps, on unloading
+        (
+            Jenkins(mu=0.4, presliding_length=0.011003229075035235, planar="per-axis"),
+            *(0.97, 0.7599995519720324, ACROSS, 1e-4, 0.36898091867),
+        ),
+        (
+            Jenkins(mu=0.4, presliding_length=0.0012444663977646652),
+            *(1.0684317736735658, 0.8552844715063177, NEARLY_BACK, 1e-4, 0.32894053117),
+        ),
+        (
+            ElastoPlastic(mu_kinetic=0.4, presliding_length=0.7315027763453661),
+            *(0.19375812042639326, 0.6308845703395107, BENT_BACK, 1e-5, 0.07371751281),
+        ),
+    ],
+    ids=["reversals of an axis", "lag", "unloading"],
+)
+def test_corners_inside_steps_of_a_prescribed_slip_in_the_plane_are_in_the_error(
+    law, belt_speed, frequency, across, tolerance, mean
+):
+    """Means: shooting, which steps from corner to corner; march comes to them with its steps."""
+    slip = Slip(velocity_amplitude=1.0, frequency=frequency)
+    found = solve(Scene(belt_speed=belt_speed, slip=slip, transverse_slip=across), law, tolerance).columns
+    assert abs(found["mean_friction"][0] - mean) <= found["error"][0] <= tolerance
+
+
+def test_friction_that_nears_its_limit_ever_more_slowly_is_as_far_off_as_the_error_says():
+    law = Dahl(mu=0.4, presliding_length=0.1, exponent=2.0)
+    found = solve(Scene(damping_ratio=0.1, normal_load=10.0, belt_speed=1.0), law, 1e-6).columns
+    assert 1e-8 < 0.4 - found["mean_friction"][0] <= found["error"][0] <= 1e-6
+
+
 def test_a_motion_on_bristles_that_never_repeats_shows_the_range_of_its_means():
     law = LuGre(
         mu_kinetic=0.2,

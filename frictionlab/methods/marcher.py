@@ -10,7 +10,7 @@ import numpy as np
 
 from frictionlab.kernel import compiled, timed
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.bristle import PER_AXIS, BristleLaw
 from frictionlab.methods.base import Floats, Orbit
 from frictionlab.methods.bristle_limits import fastest_slip, spring_of
 from frictionlab.methods.bristle_marching import march_bristle_rk4, march_exponential, march_sdirk2
@@ -140,6 +140,14 @@ class Walker:
     def converges(self) -> bool:
         """Whether that motion is the same from every start: on a belt at rest the mass may stay where it stops."""
         return self.follows_the_drive and self.scene.belt_speed != 0.0
+
+    @property
+    def has_corners(self) -> bool:
+        """Whether the bristles' rate may jump while slip does not turn round: by axis, at yield, in unloading."""
+        law = self.bristles
+        if law is None or self.straight:
+            return False
+        return law.form == PER_AXIS or law.elastic_unloading() or math.isfinite(law.yield_deflection())
 
     def place(self, start: Initial | None) -> Place:
         """A start as a state; None for the friction-free orbit."""
@@ -304,13 +312,24 @@ class Walker:
         integral of dx, which their distance bounds.
         """
         if march.verdict == RESTING:
-            return 1e-12
+            return 1e-12 + self._from_sliding(march)
         if march.verdict == STALLED:
             led = self._apart(march, len(march.rubbed), len(march.rubbed) - self.window)
             return spread + 2.0 * led / self.mass.normal_load
         ends = (1.0 + self.mass.damping) * drift
         doubt = 2.0 if self.bristles is None else 4.0  # with bristles, orbits may move apart before they meet
         return doubt * float(march.distance + ends / self.lap) / self.mass.normal_load
+
+    def _from_sliding(self, march: March) -> float:
+        """How far friction is from that of steady sliding, where bristles under a mass at rest on a moving belt go.
+
+        Their way there may be algebraic, or slower than any swing of the mass can tell.
+        """
+        speed = abs(self.scene.belt_speed)
+        if self.bristles is None or speed == 0.0:
+            return 0.0
+        mean = -march.rubbed[-1].real / float(march.duration[-1])
+        return abs(abs(mean) - self.bristles.sliding_friction(speed))
 
     def _apart(self, march: March, a: int, b: int) -> float:
         b = max(b, 0)

@@ -106,7 +106,7 @@ def _limit(walker: Walker, plan: Plan, runs: list[Run]) -> Found:
     runs = runs if len(runs) > 1 else every
     unseen = _unseen(walker, runs[-3:])
     reversing = unseen > 0.0 or len(runs) < len(every) or any(run.crossings > 0 for run in runs[-3:])
-    reversing = reversing or last.verdict == STALLED
+    reversing = reversing or last.verdict == STALLED or walker.has_corners
     least = REVERSING if reversing else STICKING if last.stuck > 0.0 else SMOOTH
     along = limit_of([run.mean.real for run in runs], plan.order, least)
     across = limit_of([run.mean.imag for run in runs], plan.order, least)

@@ -104,6 +104,8 @@ def _place(reference: Reference, words: str) -> int:
 
 def references(bibtex: str) -> tuple[Reference, ...]:
     """The entries of a text of BibTeX; what stands between them is comment. Raises ValueError for a broken one."""
+    if not isinstance(bibtex, str):
+        raise ValueError(f"must be one text of BibTeX entries, not a {type(bibtex).__name__}")
     found, at = [], 0
     while (at := bibtex.find("@", at)) >= 0:
         begin = _BEGIN.match(bibtex, at)

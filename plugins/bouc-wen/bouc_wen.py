@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
@@ -25,9 +25,23 @@ class BoucWen(CompliantLaw):
 
     In the plane |z.v| stands for |z v|: the law turns with the slip, as Park, Wen & Ang's with its |v1 z1| + |v2 z2|
     does not, and large n is a slider dragged as by a rope.
-    Sources: Bouc (1967), 4th Conf. on Nonlinear Oscillation, Prague; Wen (1976), J. Eng. Mech. Div. ASCE 102, 249;
-    normalised: Ikhouane & Rodellar (2005), Nonlinear Dyn. 42, 63; passivity: Erlicher & Point (2004), C. R. Mecanique
-    332, 51; in the plane: Park, Wen & Ang (1986), Earthq. Eng. Struct. Dyn. 14, 543.
+    Sources: Bouc (1967); Wen (1976); normalised: Ikhouane & Rodellar (2005); passivity: Erlicher & Point (2004); in
+    the plane: Park, Wen & Ang (1986).
+    """
+
+    bibtex: ClassVar[str] = """
+    @inproceedings{bouc1967, author = {Bouc, R.}, title = {Forced vibration of mechanical systems with hysteresis},
+      booktitle = {Proceedings of the 4th Conference on Nonlinear Oscillation}, address = {Prague}, year = {1967}}
+    @article{wen1976, author = {Wen, Y.-K.}, title = {Method for random vibration of hysteretic systems}, journal =
+      {Journal of the Engineering Mechanics Division, ASCE}, volume = {102}, pages = {249--263}, year = {1976}}
+    @article{ikhouane2005, author = {Ikhouane, F. and Rodellar, J.}, title = {On the hysteretic {Bouc-Wen} model, part
+      {I}: forced limit cycle characterization}, journal = {Nonlinear Dynamics}, volume = {42}, pages = {63--78},
+      year = {2005}}
+    @article{erlicher2004, author = {Erlicher, S. and Point, N.}, title = {Thermodynamic admissibility of {Bouc-Wen}
+      type hysteresis models}, journal = {Comptes Rendus Mécanique}, volume = {332}, pages = {51--57}, year = {2004}}
+    @article{park1986, author = {Park, Y. J. and Wen, Y. K. and Ang, A. H.-S.}, title = {Random vibration of
+      hysteretic systems under bi-directional ground motions}, journal = {Earthquake Engineering and Structural Dynamics},
+      volume = {14}, pages = {543--557}, year = {1986}}
     """
 
     mu: Positive

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
@@ -19,8 +19,19 @@ class MaxwellSlip(MemoryLaw):
     displacements (the breakpoints of a virgin curve), divide both lists by the normal load.
     In the plane every slider is dragged as by a rope: it moves along its spring while that holds its mu (a tractrix).
     The generalised law (Al-Bender, Lampaert & Swevers, 2005) is another: its elements remember whether they stick.
-    Sources: Iwan (1966), J. Appl. Mech. 33, 893; Lampaert, Swevers & Al-Bender (2002), IEEE TAC 47, 683; Al-Bender,
-    Lampaert & Swevers (2005), IEEE TAC 50, 1883.
+    Sources: Iwan (1966); Lampaert, Swevers & Al-Bender (2002); Al-Bender, Lampaert & Swevers (2005).
+    """
+
+    bibtex: ClassVar[str] = """
+    @article{iwan1966, author = {Iwan, W. D.}, title = {A distributed-element model for hysteresis and its
+      steady-state dynamic response}, journal = {Journal of Applied Mechanics}, volume = {33}, pages = {893--900},
+      year = {1966}}
+    @article{lampaert2002, author = {Lampaert, V. and Swevers, J. and Al-Bender, F.}, title = {Modification of the
+      {Leuven} integrated friction model structure}, journal = {IEEE Transactions on Automatic Control}, volume =
+      {47}, pages = {683--687}, year = {2002}}
+    @article{albender2005, author = {Al-Bender, F. and Lampaert, V. and Swevers, J.}, title = {The generalized
+      {Maxwell}-slip model: a novel model for friction simulation and compensation}, journal = {IEEE Transactions on
+      Automatic Control}, volume = {50}, pages = {1883--1887}, year = {2005}}
     """
 
     mu: Annotated[tuple[Positive, ...], Field(min_length=1)]

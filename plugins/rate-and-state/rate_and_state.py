@@ -24,8 +24,17 @@ class RateAndState(MemoryLaw):
 
     At rest the law is continuous and odd, hence one of creep: nothing sticks for good. In the plane it acts along the
     slip, and age knows no direction.
-    Sources: Dieterich (1979), J. Geophys. Res. 84, 2161; Ruina (1983), J. Geophys. Res. 88, 10359; at low speeds:
-    Rice & Ben-Zion (1996), PNAS 93, 3811.
+    Sources: Dieterich (1979); Ruina (1983); at low speeds: Rice & Ben-Zion (1996).
+    """
+
+    bibtex: ClassVar[str] = """
+    @article{dieterich1979, author = {Dieterich, J. H.}, title = {Modeling of rock friction: 1. Experimental results
+      and constitutive equations}, journal = {Journal of Geophysical Research}, volume = {84}, pages = {2161--2168},
+      year = {1979}}
+    @article{ruina1983, author = {Ruina, A.}, title = {Slip instability and state variable friction laws}, journal =
+      {Journal of Geophysical Research}, volume = {88}, pages = {10359--10370}, year = {1983}}
+    @article{rice1996, author = {Rice, J. R. and Ben-Zion, Y.}, title = {Slip complexity in earthquake fault models},
+      journal = {Proceedings of the National Academy of Sciences}, volume = {93}, pages = {3811--3818}, year = {1996}}
     """
 
     memory_kind: ClassVar[Literal["deflections", "scalars"]] = "scalars"

@@ -40,8 +40,8 @@ class BoucWen(CompliantLaw):
     @article{erlicher2004, author = {Erlicher, S. and Point, N.}, title = {Thermodynamic admissibility of {Bouc-Wen}
       type hysteresis models}, journal = {Comptes Rendus Mécanique}, volume = {332}, pages = {51--57}, year = {2004}}
     @article{park1986, author = {Park, Y. J. and Wen, Y. K. and Ang, A. H.-S.}, title = {Random vibration of
-      hysteretic systems under bi-directional ground motions}, journal = {Earthquake Engineering and Structural Dynamics},
-      volume = {14}, pages = {543--557}, year = {1986}}
+      hysteretic systems under bi-directional ground motions}, journal = {Earthquake Engineering and Structural
+      Dynamics}, volume = {14}, pages = {543--557}, year = {1986}}
     """
 
     mu: Positive

@@ -37,7 +37,9 @@ import numpy as np
 from numba.core.bytecode import FunctionIdentity
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
+from frictionlab import kernel_parts
 from frictionlab.faults import cannot_compile
+from frictionlab.kernel_parts import PARTS
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
 from frictionlab.laws.memory import MemoryLaw
@@ -50,7 +52,7 @@ _extending: Any = numba.extending  # its published types lag behind what it acce
 _typeof: Any = numba.typeof
 _templates: Any = numba.core.typing.templates
 _COMMON: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-_INNER: dict[str, Any] = _COMMON | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INNER: dict[str, Any] = _COMMON | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True} | PARTS
 
 
 def njit(function: Callable[..., Any]) -> Any:
@@ -321,7 +323,8 @@ def _fingerprint(*roots: Any) -> str:
     """A hash of everything the roots can reach: code, constants, helpers in any file, and the compiler."""
     versions = (sys.version, platform.machine(), numba.__version__, llvmlite.__version__, np.__version__)
     digest = hashlib.sha256(repr(versions).encode())
-    digest.update(Path(__file__).read_bytes())
+    for file in (__file__, kernel_parts.__file__):
+        digest.update(Path(file).read_bytes())
     for piece in _pieces(roots, set()):
         digest.update(piece.encode())
         digest.update(b"\0")

@@ -23,7 +23,7 @@ ROOMS = {
     "laws": ["laws"],
     "scene": ["scene", "dimensional"],
     "faults": ["faults"],
-    "kernel": ["kernel"],
+    "kernel": ["kernel", "kernel_parts"],
     "theory": ["theory"],
     "shape": ["shape", "course", "monotone"],
     "method interface": ["methods.base"],

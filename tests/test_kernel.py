@@ -15,7 +15,7 @@ import pytest
 
 from frictionlab import kernel
 from frictionlab.faults import CannotCompile
-from frictionlab.kernel import by_dimension, compiled, njit
+from frictionlab.kernel import by_dimension, compiled, inner, njit
 from frictionlab.laws.base import Positive, SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.lugre import LuGre
@@ -353,6 +353,26 @@ def test_a_pair_of_bodies_is_chosen_by_the_type_of_the_last_argument(v, expected
 @njit
 def quotient(a, b):
     return a / b
+
+
+@inner
+def _twice(v):
+    return 2.0 * v
+
+
+@njit
+def twice_twice(v):
+    return _twice(_twice(v))
+
+
+def test_what_only_kernels_call_is_made_to_run_within_their_entries_alone():
+    assert compiled(twice_twice)(3.0) == 12.0
+    (part,) = _twice.overloads.values()
+    (whole,) = twice_twice.overloads.values()
+    engine = whole.library.codegen._engine
+
+    assert engine.is_symbol_defined(whole.fndesc.llvm_func_name)
+    assert not engine.is_symbol_defined(part.fndesc.llvm_func_name)
 
 
 def test_compiled_division_follows_ieee_754():

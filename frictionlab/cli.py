@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from frictionlab.batch import Job
     from frictionlab.bench import Measured
     from frictionlab.plan import Planned
+    from frictionlab.registry import Laws
     from frictionlab.runner import Run
 
 OK, BUG, WRONG, FAILED, BROKEN_PLUGIN, INTERRUPTED = 0, 1, 2, 3, 4, 130
@@ -363,31 +364,6 @@ def new_study(path: Path) -> None:
     _tell(f"change what it says, then: frictionlab run {shlex.quote(str(file))}")
 
 
-@new.command("law")
-@click.argument("path", metavar="NAME", type=click.Path(path_type=Path))
-@click.option(
-    "--memory",
-    type=click.Choice(["none", "bristle"]),
-    default="bristle",
-    show_default=True,
-    help="What friction remembers: none, set by slip alone; bristle, a deflection of the contact.",
-)
-def new_law(path: Path, memory: Literal["none", "bristle"]) -> None:
-    """Write the folder NAME: a law that installs, with its test and a study. Never replaces anything."""
-    from frictionlab import new_law
-
-    try:
-        folder = new_law.new_law(path, memory)
-    except new_law.BadName as problem:
-        raise click.UsageError(str(problem)) from None
-    module = folder / f"{path.name.replace('-', '_')}.py"
-    _print(str(folder))
-    _tell(
-        f"the law is in {module}; try it: "
-        f"frictionlab run {shlex.quote(str(folder / 'study.yaml'))} --law {shlex.quote(str(module))}"
-    )
-
-
 @cli.command()
 @click.argument("study", type=click.Path(path_type=Path))
 @overrides_option
@@ -428,26 +404,88 @@ def _time(seconds: float) -> str:
 
 
 @cli.command()
-@click.argument("name", required=False)
+@click.argument("names", nargs=-1, metavar="[NAME | test NAME...]")
 @law_option
 @json_option
-def laws(name: str | None, law_files: tuple[Path, ...], as_json: bool) -> int:
-    """List the installed laws, or tell all about the law NAME.
+@click.option("--markdown", is_flag=True, help="With test: print a table to publish beside the law.")
+@click.option(
+    "--examples",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="With test: examples per check, 100 if left out; fewer where they are dear.",
+)
+def laws(names: tuple[str, ...], law_files: tuple[Path, ...], **options: Any) -> int:
+    """List the installed laws, tell all about the law NAME, or test NAME: put it through the conformance battery.
 
-    Broken ones are told on stderr, and the exit code is then 4.
+    With test and no NAME, the laws of --law, else every installed law. Broken laws are told on stderr, and the exit
+    code is then 4; it is 3 where a check fails that was not expected to.
     """
-    from frictionlab.listing import details, law_record, one_line_each
     from frictionlab.study import laws_of_files
 
     known = laws_of_files(law_files)
-    if name is not None and name not in known.names():
-        raise click.UsageError(f"no law '{name}'; installed: {', '.join(known.names())}")
-    records = [law_record(each, known.named(each)) for each in ([name] if name else known.usable())]
-    _print_records(records) if as_json else _print(details(records[0]) if name else one_line_each(records))
-    broken = [] if name else known.broken()
+    testing = names[:1] == ("test",)
+    asked = names[1:] if testing else names
+    for name in asked:
+        if name not in known.names():
+            raise click.UsageError(f"no law '{name}'; installed: {', '.join(known.names())}")
+    if testing:
+        return _test_laws(asked or _to_test(known, law_files), known, TestOptions(**options))
+    if len(names) > 1 or options["markdown"] or options["examples"]:
+        raise click.UsageError("one NAME, or: laws test NAME; --markdown and --examples go with test")
+    return _list_laws(asked, known, options["as_json"])
+
+
+def _list_laws(asked: tuple[str, ...], known: Laws, as_json: bool) -> int:
+    from frictionlab.listing import details, law_record, one_line_each
+
+    records = [law_record(each, known.named(each)) for each in asked or known.usable()]
+    _print_records(records) if as_json else _print(details(records[0]) if asked else one_line_each(records))
+    return OK if asked else _told_broken(known)
+
+
+def _told_broken(known: Laws) -> int:
+    """Tell which laws are broken; the exit code."""
+    broken = known.broken()
     for message in broken:
         _tell(message)
     return BROKEN_PLUGIN if broken else OK
+
+
+class TestOptions(NamedTuple):
+    """The options of ``laws test``."""
+
+    as_json: bool
+    markdown: bool
+    examples: int | None
+
+
+def _to_test(known: Laws, law_files: Sequence[Path]) -> tuple[str, ...]:
+    """The laws of the files given, else every law; one of two names of the same law."""
+    from frictionlab import registry
+
+    names = [name for name in known.usable() if not law_files or name not in registry.law_names()]
+    first = {known.named(name): name for name in reversed(names)}
+    return tuple(name for name in names if first[known.named(name)] == name)
+
+
+def _test_laws(names: Sequence[str], known: Laws, given: TestOptions) -> int:
+    """Put laws through the battery, one after the other; the table grows as checks end."""
+    from frictionlab.testing import EXAMPLES, check_law, heading
+
+    reports = []
+    say = _tell if given.as_json or given.markdown else _print
+    for name in names:
+        say(heading(name))
+        examples = given.examples or EXAMPLES
+        law = known.named(name)
+        report = check_law(law, examples=examples, on_failure="return", tell=lambda one: say(one.line()))
+        say(report.summary(name))
+        reports.append((name, report))
+        if given.markdown:
+            _print(f"{report.markdown(name)}\n")
+    if given.as_json:
+        _print_records([{"name": name, **record} for name, report in reports for record in report.records()])
+    return OK if all(report.passed for _, report in reports) else FAILED
 
 
 @cli.command()

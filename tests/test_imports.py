@@ -48,7 +48,6 @@ ROOMS = {
             "yaml_text",
             "saved",
             "new_study",
-            "new_law",
         ),
     ],
     "charts": ["charts", "families", "symbols"],
@@ -56,7 +55,9 @@ ROOMS = {
     "bench": ["bench"],
     "bench chart": ["bench.chart"],
     "report": ["report"],
-    "command line": ["cli", "listing"],
+    "listing": ["listing"],
+    "testing": ["testing"],
+    "command line": ["cli"],
 }
 
 # room -> the rooms it may import. Modules of one room may import each other, but no law imports another law.
@@ -89,8 +90,13 @@ ARROWS = {
     ],
     "bench chart": ["bench", "charts", "run"],
     "report": ["charts", "run", "study", "registry", "columns", "scene", "bibliography"],
+    "listing": ["registry", "law interface", "method interface", "bibliography", "run"],
+    "testing": [
+        *("listing", "registry", "methods", "laws", "kernel", "scene", "faults"),
+        *("law interface", "method interface"),
+    ],
     "command line": [
-        *("report", "charts", "bench chart", "bench", "run", "study", "registry"),
+        *("report", "charts", "bench chart", "bench", "run", "study", "registry", "listing", "testing"),
         *("law interface", "method interface", "bibliography", "faults"),
     ],
 }
@@ -107,6 +113,7 @@ OUTSIDE = {
         "registry",
         "study",
         "peers",
+        "testing",
     ],
     "numpy": [
         "kernel",
@@ -121,7 +128,9 @@ OUTSIDE = {
         "charts",
         "peers",
         "bench",
+        "testing",
     ],
+    "hypothesis": ["testing"],
     "numba": ["kernel", "peers"],  # the peers' integrators are called with numba's C functions
     "llvmlite": ["kernel"],
     "ruamel": ["study", "run"],

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, ClassVar, Self
 
 from frictionlab.quantities import Dimension, Finite, NonNegative, PerSpeed, Positive, Record, Speed
@@ -34,9 +36,11 @@ class FrictionLaw(Record, ABC):
 
     Its docstring names its sources as in "Source: Dahl (1968)". ``bibtex`` holds their BibTeX entries as one string,
     but for those of frictionlab's own bibliography; without an entry, what follows "Source:" is cited as it stands.
+    ``expected_failures`` names checks of the conformance battery that the law fails, and why it must.
     """
 
     bibtex: ClassVar[str] = ""
+    expected_failures: ClassVar[Mapping[str, str]] = MappingProxyType({})
 
     @abstractmethod
     def sliding_friction(self, speed: float) -> float:

@@ -84,6 +84,10 @@ class BristleLaw(FrictionLaw, ABC):
         """Whether the work of friction from any slip history is at least minus what the bristle has stored."""
         return False
 
+    def stored(self, z: Any) -> float:
+        """The work per unit normal load [scene length] that the bristle can give back: that of a linear spring."""
+        return 0.5 * float((z * self.friction(0.0 * z, z, 0.0 * z).conjugate()).real)
+
     def damps_across(self, speed: float) -> bool:
         """Whether friction never feeds a motion across the slip, at slip speeds up to this.
 

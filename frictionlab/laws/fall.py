@@ -7,7 +7,12 @@ import math
 
 def fallen(u: float, power: float) -> float:
     """What is left of the fall at speed u [Stribeck speeds]: exp(-u^power) (Bo & Pavelescu, 1982)."""
-    return faded(u * u if power == 2.0 else u**power)  # a product is quicker than a power
+    if power == 2.0:  # a product is quicker than a power
+        return faded(u * u)
+    if u <= 0.0:
+        return 1.0
+    way = power * math.log(u)
+    return faded(math.exp(way)) if way < 5.0 else 0.0  # the power itself may overflow
 
 
 def steepest_fall(power: float) -> float:

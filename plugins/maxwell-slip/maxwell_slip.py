@@ -64,12 +64,10 @@ class MaxwellSlip(MemoryLaw):
     def rate(self, v: Any, memory: Any, k: int) -> Any:
         """v, less its part along the spring where that is stretched to its reach and would be stretched further."""
         z = memory[k]
-        along, size = (z * v.conjugate()).real, abs(z)
-        if along <= 0.0 or size < self.reach[k]:
+        along = (z * v.conjugate()).real
+        if along <= 0.0 or abs(z) < self.reach[k]:
             return v
-        return (
-            v - (along / (size * self.reach[k])) * z
-        )  # size*reach, not size^2: what a step overshot is taken back
+        return v - (along / (z * z.conjugate()).real) * z
 
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
         """The springs'."""
@@ -106,7 +104,7 @@ class MaxwellSlip(MemoryLaw):
         return True
 
     def largest_rate(self, speed: float) -> float:
-        """Of the shortest spring: where it turns towards the slip, or comes back to its reach."""
+        """In the plane, where the shortest spring turns towards the slip."""
         quickest = 0.0
         for k in range(len(self.mu)):
             quickest = max(quickest, speed / self.reach[k])

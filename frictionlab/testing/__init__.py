@@ -1,0 +1,7 @@
+"""The conformance battery any friction law must pass: ``check_law(MyLaw)`` in Python or in one line of a test."""
+
+from frictionlab.testing.battery import CHECKS, EXAMPLES, check_law
+from frictionlab.testing.check import Check
+from frictionlab.testing.outcome import LawFailed, Outcome, Report, heading
+
+__all__ = ["CHECKS", "EXAMPLES", "Check", "LawFailed", "Outcome", "Report", "check_law", "heading"]

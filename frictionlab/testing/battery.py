@@ -1,0 +1,124 @@
+"""The conformance battery: every check there is, and how a law is put through them."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import replace
+from typing import Literal
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.testing import compiled, declared, form, limits, path, symmetry
+from frictionlab.testing.check import Check
+from frictionlab.testing.outcome import LawFailed, Outcome, Report
+from frictionlab.testing.running import run
+
+CHECKS: tuple[Check, ...] = (
+    form.loads_by_name,
+    form.documented,
+    form.frozen,
+    form.unknown_parameters_refused,
+    form.limits_kept,
+    form.defaults_valid,
+    form.answers,
+    form.extremes,
+    form.repeatable,
+    form.instances_apart,
+    form.parameters_matter,
+    symmetry.oddness,
+    symmetry.rotation,
+    symmetry.reflection,
+    symmetry.straight_planar_slide,
+    symmetry.unit_scaling,
+    declared.constant_sliding_friction,
+    declared.steepest_fall,
+    declared.monotone,
+    declared.static_friction,
+    declared.not_smoothed,
+    path.steady_sliding,
+    declared.held_at_rest,
+    declared.invariant_set,
+    declared.passivity,
+    declared.not_passive,
+    declared.damps_across,
+    declared.rate_independence,
+    declared.largest_rate,
+    path.exact_path,
+    path.path_splitting,
+    path.saturation_path,
+    path.elastic_deflection,
+    path.elastic_unloading,
+    path.yield_deflection,
+    compiled.compiled_on_the_line,
+    compiled.compiled_in_the_plane,
+    limits.coulomb_limit_of_prescribed_slip,
+    limits.coulomb_limit_of_a_body,
+    limits.two_methods,
+)
+"""In the order they run: what a law must have before anything else can be asked of it comes first."""
+
+EXAMPLES = 100
+SECONDS = 60.0
+"""Most time a check may take, ten times that where it compiles; compiled code is waited for."""
+NEEDED = "answers"
+
+
+def check_law(
+    law: type[FrictionLaw],
+    *,
+    expected_failures: Mapping[str, str] | None = None,
+    only: Collection[str] = (),
+    examples: int = EXAMPLES,
+    seconds: float = SECONDS,
+    on_failure: Literal["raise", "return"] = "raise",
+    tell: Callable[[Outcome], None] = lambda outcome: None,
+) -> Report:
+    """Put a law class through every check that is for it.
+
+    expected_failures: check -> why the law fails it, beside those the law itself names; one that passes after all
+    is a failure. only: names of the checks to run; all where left out. examples: per check,
+    fewer where they are dear. seconds: the most a check may
+    take, ten times that where it compiles. tell: called with each outcome as it comes.
+    Raises LawFailed, an AssertionError, where a check fails, unless on_failure is ``return``; ValueError for the name
+    of a check there is none of.
+    """
+    expected = {**law.expected_failures, **(expected_failures or {})}
+    _known("only", only)
+    _known("expected_failures", expected)
+    for name in [name for name, reason in expected.items() if not reason.strip()]:
+        raise ValueError(f"expected_failures: {name}: say why the law fails it")
+    outcomes: list[Outcome] = []
+    for check in [check for check in CHECKS if not only or check.name in only]:
+        outcomes.append(_outcome(check, law, (examples, seconds), outcomes, expected.get(check.name)))
+        tell(outcomes[-1])
+    report = Report(law.__name__, tuple(outcomes))
+    if on_failure == "raise" and not report.passed:
+        raise LawFailed(report)
+    return report
+
+
+def _known(whose: str, names: Collection[str]) -> None:
+    known = [check.name for check in CHECKS]
+    for name in names:
+        if name not in known:
+            close = difflib.get_close_matches(name, known, 1)
+            meant = f"; did you mean '{close[0]}'?" if close else ""
+            raise ValueError(f"{whose}: no check '{name}'{meant} The checks are {', '.join(known)}")
+
+
+def _outcome(
+    check: Check,
+    law: type[FrictionLaw],
+    most: tuple[int, float],
+    before: list[Outcome],
+    expected: str | None,
+) -> Outcome:
+    if any(outcome.check == NEEDED and outcome.result == "failed" for outcome in before):
+        return Outcome(check.name, "skipped", 0, f"{NEEDED} failed: the law cannot be asked")
+    outcome = run(check, law, *most)
+    if expected is None:
+        return outcome
+    if outcome.result == "failed":
+        return replace(outcome, result="expected failure", reason=expected)
+    unmet = f"expected to fail ({expected}), but {outcome.result}: take it out of expected_failures"
+    return replace(outcome, result="failed", counterexample=unmet)

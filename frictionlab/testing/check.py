@@ -1,0 +1,52 @@
+"""What a check is: a name, a sentence, the laws it is for, and a body that draws an example and judges it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.testing.given import Given
+
+Body = Callable[[Given], None]
+Skips = Callable[[type[FrictionLaw]], str]
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing that holds for every law it is for.
+
+    name: of a few words with underscores, as ``expected_failures`` takes it. about: what holds, in a sentence.
+    skips: why a law needs no such check, or ''. share: of the examples asked for, below one where examples are dear;
+    0 for what is looked at once. seldom: what it means where no parameters drawn let the check run. after: judges
+    what all examples noted. patience: how many times the time limit it may take.
+    """
+
+    name: str
+    about: str
+    body: Body
+    skips: Skips
+    share: float = 1.0
+    seldom: str = ""
+    after: Body | None = None
+    patience: float = 1.0
+
+
+def for_every_law(law: type[FrictionLaw]) -> str:
+    """No reason to skip."""
+    return ""
+
+
+def for_laws_of(*kinds: Any, without: str) -> Skips:
+    """For laws of these kinds; ``without`` is why the others need it not."""
+    return lambda law: "" if issubclass(law, kinds) else without
+
+
+def check(name: str, *, skips: Skips = for_every_law, **told: Any) -> Callable[[Body], Check]:
+    """Make a check of a body; its docstring is what the check is about, ``told`` the fields of Check."""
+
+    def made(body: Body) -> Check:
+        return Check(name, " ".join((body.__doc__ or "").split()), body, skips, **told)
+
+    return made

@@ -1,0 +1,92 @@
+"""A law asked as one contact: slip and memory in, rates and friction out, whatever kind of memory it has."""
+
+from __future__ import annotations
+
+import cmath
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.bristle import BristleLaw, in_the_plane, on_the_line
+from frictionlab.laws.memory import MemoryLaw
+
+Memory = tuple[Any, ...]
+
+
+class Response(NamedTuple):
+    """How a contact answers a slip velocity: rates of its memory and the friction coefficient along the slip."""
+
+    rates: Memory
+    friction: Any
+
+
+def response(law: FrictionLaw, v: Any, memory: Memory) -> Response:
+    """The law at slip velocity ``v``: ``float`` on the line, ``complex`` in the plane."""
+    if isinstance(law, BristleLaw):
+        rate, friction = (in_the_plane if isinstance(v, complex) else on_the_line)(law, v, memory[0])
+        return Response((rate,), friction)
+    if isinstance(law, MemoryLaw):
+        kept = np.array(memory)
+        rates = tuple(law.rate(v, kept, k) for k in range(len(memory)))
+        return Response(rates, law.friction(v, kept, np.array(rates)))
+    return Response((), law.sliding_vector(v))
+
+
+def size_of(law: BristleLaw) -> float:
+    """The largest deflection, or else one of the law's size [scene length]."""
+    return next(
+        (size for size in (law.largest_deflection(), law.presliding()) if 0.0 < size < float("inf")), 1.0
+    )
+
+
+def stored(law: FrictionLaw, memory: Memory) -> float:
+    """The work per unit normal load that the memory can give back [scene length]."""
+    if isinstance(law, BristleLaw):
+        return law.stored(memory[0])
+    return law.stored(np.array(memory)) if isinstance(law, MemoryLaw) else 0.0
+
+
+def turned(law: FrictionLaw, memory: Memory, turn: complex) -> Memory:
+    """The memory after everything was turned: deflections turn too, scalars and a deflection along slip do not."""
+    if not turns_with_slip(law):
+        return memory
+    return tuple(turn * each for each in memory)
+
+
+def mirrored(law: FrictionLaw, memory: Memory) -> Memory:
+    """The memory reflected in the belt's line."""
+    return tuple(each.conjugate() for each in memory) if turns_with_slip(law) else memory
+
+
+def turns_with_slip(law: FrictionLaw) -> bool:
+    """Whether the memory has a direction."""
+    if isinstance(law, BristleLaw):
+        return law.planar != "rotated"
+    return not isinstance(law, MemoryLaw) or law.memory_kind == "deflections"
+
+
+def no_plane(law: FrictionLaw) -> str:
+    """Why the law has no meaning in the plane, or ''."""
+    return law.no_vector_form() if isinstance(law, BristleLaw) and law.planar == "vectorial" else ""
+
+
+def dot(a: Any, b: Any) -> float:
+    """The scalar product of two vectors of the plane, or the product on the line."""
+    return float((a * b.conjugate()).real)
+
+
+def noise(law: FrictionLaw, v: Any, memory: Memory, step: float = 1e-13) -> Response:
+    """How much the response moves with its arguments' own rounding: what no comparison can ask less of."""
+    base = response(law, v, memory)
+    rates, friction = [0.0] * len(memory), 0.0
+    shifts = (1.0 + step, 1.0 - step, cmath.exp(1j * step))
+    for shift in shifts if isinstance(v, complex) else shifts[:2]:
+        moved = [response(law, shift * v, memory)]
+        for k, each in enumerate(memory):
+            if isinstance(each, complex) or not isinstance(shift, complex):
+                moved.append(response(law, v, (*memory[:k], shift * each, *memory[k + 1 :])))
+        for other in moved:
+            friction = max(friction, abs(other.friction - base.friction))
+            rates = [max(was, abs(a - b)) for was, a, b in zip(rates, other.rates, base.rates, strict=True)]
+    return Response(tuple(rates), friction)

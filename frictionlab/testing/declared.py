@@ -1,0 +1,225 @@
+"""Checks of what a law declares: each predicate is used by some method, so each must be true."""
+
+from __future__ import annotations
+
+import math
+
+from hypothesis import assume
+from hypothesis import strategies as st
+
+from frictionlab.laws.base import SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import MemoryLaw
+from frictionlab.testing.check import check, for_laws_of
+from frictionlab.testing.contact import dot, no_plane, noise, response, size_of, stored
+from frictionlab.testing.drawing import sizes, speeds, turns
+from frictionlab.testing.given import Given
+
+WITH_MEMORY = for_laws_of(BristleLaw, MemoryLaw, without="without memory")
+BRISTLES = for_laws_of(BristleLaw, without="of laws with one bristle deflection")
+SLIDING = for_laws_of(SlidingLaw, without="of laws without memory")
+QUICK = 1e9
+"""How many times as fast as any speed drawn a slip may be that draws work out of a law that is not passive."""
+
+
+@check("constant_sliding_friction", seldom="constant_sliding_friction() is false for all parameters drawn")
+def constant_sliding_friction(one: Given) -> None:
+    """Where sliding friction is declared constant it is the same at every speed."""
+    law = one.law(lambda law: law.constant_sliding_friction())
+    one.slip()
+    slow, quick = (law.sliding_friction(one.draw(name, speeds)) for name in ("speed", "other speed"))
+    one.require(abs(quick - slow) <= 1e-12 * abs(slow), "sliding friction differs", got=quick, expected=slow)
+
+
+@check("steepest_fall")
+def steepest_fall(one: Given) -> None:
+    """Sliding friction falls nowhere steeper with speed than declared."""
+    law = one.law(lambda law: law.steepest_fall() < math.inf)
+    speed = one.draw("speed", speeds)
+    step = speed * one.draw("step over speed", sizes(1e-3, 1e1))
+    before, after = law.sliding_friction(speed), law.sliding_friction(speed + step)
+    most = law.steepest_fall() * step * (1.0 + 1e-9) + 1e-12 * abs(before)
+    one.require(before - after <= most, "sliding friction falls by", got=before - after, declared=most)
+
+
+@check("monotone", skips=SLIDING, seldom="monotone() is false for all parameters drawn")
+def monotone(one: Given) -> None:
+    """Where friction is declared monotone, more slip never meets less friction, rest included."""
+    law = one.law(lambda law: law.monotone())
+    v, w = one.planar_slip(), one.draw("other slip velocity", st.builds(lambda s, t: s * t, speeds, turns))
+    a, b = law.sliding_vector(v), law.sliding_vector(w)
+    scale = (abs(a) + abs(b)) * (abs(v) + abs(w))
+    one.require(
+        dot(a - b, v - w) >= -1e-12 * scale, "(T(v) - T(w)).(v - w) is negative", got=dot(a - b, v - w)
+    )
+    held = law.static_friction()
+    one.require(held <= abs(a) * (1.0 + 1e-12), "rest holds more than slip", rest=held, slip=abs(a))
+
+
+@check("static_friction", skips=SLIDING)
+def static_friction(one: Given) -> None:
+    """Rest holds at least what slip that has only just begun meets."""
+    law = one.law()
+    held, first = law.static_friction(), law.sliding_friction(0.0)
+    one.require(held >= first * (1.0 - 1e-12), "rest holds less than slip", rest=held, slip=first)
+
+
+@check("invariant_set", skips=WITH_MEMORY, seldom="no parameters drawn have a bounded set")
+def invariant_set(one: Given) -> None:
+    """No slip leads a memory out of its set, and from just outside every slip leads back or leaves it."""
+    law = one.law(_bounded)
+    v = one.slip()
+    if isinstance(law, MemoryLaw):
+        _stays_within(one, law, v)
+        return
+    radius = law.largest_deflection() * (1.0 + one.draw("share outside", st.just(1e-13) | sizes(1e-6, 1e-1)))
+    for side in (1.0, -1.0):
+        out = side * law.rate(v, side * radius)
+        one.require(
+            out <= 1e-11 * abs(v), "the deflection grows beyond its largest", z=side * radius, rate=out
+        )
+    if not law.no_vector_form():
+        turn, slip = one.draw("turn", turns), one.planar_slip()
+        out = dot(law.rate(slip, radius * turn), turn)
+        one.require(out <= 1e-11 * abs(slip), "the deflection grows beyond its largest", rate=out)
+
+
+def _bounded(law: BristleLaw | MemoryLaw) -> bool:
+    return isinstance(law, MemoryLaw) or law.largest_deflection() < math.inf
+
+
+def _stays_within(one: Given, law: MemoryLaw, v: float) -> None:
+    memory = one.memory(law)
+    one.require(law.within(memory), "the memory of slow slip is outside the set", memory=memory)
+    rate = law.largest_rate(abs(v))
+    assume(0.0 < rate < math.inf)
+    for _ in range(20):
+        rates = response(law, v, memory).rates
+        memory = tuple(each + 0.05 / rate * slope for each, slope in zip(memory, rates, strict=True))
+        one.require(law.within(memory), "slip leads the memory out of its set", memory=memory)
+
+
+@check("held_at_rest", skips=BRISTLES)
+def held_at_rest(one: Given) -> None:
+    """A contact at rest keeps its deflection: one that creeps there has a smoothing width in it."""
+    law = one.law()
+    one.slip()
+    memory = one.memory(law)
+    rate = response(law, 0.0, memory).rates[0]
+    one.require(rate == 0.0, "the deflection moves at rest", rate=rate)
+
+
+@check("not_smoothed", skips=SLIDING)
+def not_smoothed(one: Given) -> None:
+    """Friction does not vanish with slip: a law of dry friction has no width about rest, a method may have one."""
+    law = one.law()
+    slow = law.sliding_friction(1e-12)
+    most = max(law.sliding_friction(10.0**exponent) for exponent in range(-9, 1))
+    one.require(slow >= 1e-3 * most, "friction vanishes with slip", at_1e_12=slow, largest_below_1=most)
+
+
+@check("passivity", skips=WITH_MEMORY, seldom="passive() is false for all parameters drawn")
+def passivity(one: Given) -> None:
+    """Where a law is declared passive, friction takes at least as much work as its memory stores."""
+    law = one.law(lambda law: law.passive())
+    planar = not no_plane(law) and one.draw("in the plane", st.booleans())
+    v = one.planar_slip() if planar else one.slip()
+    memory = one.memory(law, planar)
+    lost, room = _lost(law, v, memory)
+    one.require(lost >= -room, "friction gives work that was never stored", lost_per_time=lost)
+
+
+def _lost(law: BristleLaw | MemoryLaw, v: complex, memory: tuple[complex, ...]) -> tuple[float, float]:
+    """The work lost per time and unit load, and how much of it is rounding."""
+    rates, friction = response(law, v, memory)
+    work, own = dot(friction, v), noise(law, v, memory)
+    kept, scale = 0.0, abs(work)
+    for k, rate in enumerate(rates):
+        slope = _slope_of_stored(law, memory, k)
+        kept += dot(slope, rate)
+        scale += abs(slope) * abs(rate) + 20.0 * abs(slope) * own.rates[k] * 1e12
+    return work - kept, 1e-9 * scale + 20.0 * own.friction * abs(v)
+
+
+def _slope_of_stored(law: BristleLaw | MemoryLaw, memory: tuple[complex, ...], k: int) -> complex:
+    """The gradient of the stored work with respect to one memory."""
+    size = abs(memory[k]) or (size_of(law) if isinstance(law, BristleLaw) else 1.0)
+    ways = (1.0, 1j) if isinstance(memory[k], complex) else (1.0,)
+    slope = 0.0 * memory[k]
+    for way in ways:
+        ahead, behind = ((*memory[:k], memory[k] + s * 1e-4 * size * way, *memory[k + 1 :]) for s in (1, -1))
+        slope += way * (stored(law, ahead) - stored(law, behind)) / (2e-4 * size)
+    return slope
+
+
+@check("not_passive", skips=WITH_MEMORY, share=0.2, seldom="passive() is true for all parameters drawn")
+def not_passive(one: Given) -> None:
+    """Where a law is declared not passive, some slip gives work that was never stored."""
+    law = one.law(lambda law: not law.passive())
+    found = any(
+        lost < -room
+        for speed in (10.0**exponent for exponent in range(-6, 1 + round(math.log10(1e6 * QUICK))))
+        for memory in _charged(law)
+        for lost, room in [_lost(law, speed, memory)]
+    )
+    one.require(found, "no slip was found that gives work which was not stored: is the law passive?")
+
+
+def _charged(law: BristleLaw | MemoryLaw) -> list[tuple[float, ...]]:
+    """Memories that slow slip brings, whole and in part."""
+    if isinstance(law, BristleLaw):
+        return [(share * size_of(law),) for share in (1.0, 0.7, 0.3, -0.5, -1.0)]
+    slow = [[law.steady(10.0**exponent, k) for k in range(law.count())] for exponent in (-6, -3, 0)]
+    return [tuple(memory) for memory in slow]
+
+
+@check("rate_independence", skips=WITH_MEMORY, seldom="rate_independent() is false for all parameters drawn")
+def rate_independence(one: Given) -> None:
+    """Where friction is declared to know only the path, slip so many times faster moves memory as much faster."""
+    law = one.law(lambda law: law.rate_independent())
+    planar = not no_plane(law) and one.draw("in the plane", st.booleans())
+    v = one.planar_slip() if planar else one.slip()
+    memory = one.memory(law, planar)
+    faster = one.draw("times faster", sizes(1e-3, 1e3))
+    quick = response(law, faster * v, memory)
+    got = quick._replace(rates=tuple(rate / faster for rate in quick.rates))
+    one.require_same(law, (v, memory), got, response(law, v, memory), "slip so many times faster")
+
+
+@check("largest_rate", skips=WITH_MEMORY, seldom="largest_rate() is infinite for all parameters drawn")
+def largest_rate(one: Given) -> None:
+    """The rate of the memory changes no faster with the memory than declared."""
+    law = one.law(lambda law: 0.0 < law.largest_rate(1.0) < math.inf)
+    v = one.slip()
+    memory = one.memory(law)
+    declared = law.largest_rate(abs(v))
+    for k, each in enumerate(memory):
+        size = size_of(law) if isinstance(law, BristleLaw) else abs(each) or 1.0
+        step = 1e-6 * size
+        ends = [response(law, v, (*memory[:k], each + s * step, *memory[k + 1 :])).rates[k] for s in (1, -1)]
+        change = abs(ends[0] - ends[1]) / (2.0 * step)
+        corner = abs(abs(ends[0] + ends[1] - 2.0 * response(law, v, memory).rates[k])) > 1e-3 * abs(
+            ends[0] - ends[1]
+        )
+        assume(not corner)
+        room = 1e-6 * declared + 1e-8 * abs(v) / size
+        one.require(change <= declared + room, "the rate changes faster", got=change, declared=declared)
+
+
+@check("damps_across", skips=BRISTLES, seldom="damps_across() is false for all parameters drawn")
+def damps_across(one: Given) -> None:
+    """Where declared, a small motion across the slip only loses energy to friction."""
+    law = one.planar_law()
+    v, memory = one.slip(), one.memory(law)
+    assume(law.damps_across(abs(v)))
+    tilt = 1e-5
+    slip = complex(v, tilt * v * one.draw("slip across", st.floats(-1.0, 1.0)))
+    across = tilt * size_of(law) * one.draw("deflection across", st.floats(-1.0, 1.0))
+    z = complex(memory[0], across)
+    rates, friction = response(law, slip, (z,))
+    spring = law.friction(0j, complex(0.0, across), 0j).imag
+    lost = friction.imag * slip.imag - spring * rates[0].imag
+    terms = abs(friction.imag * slip.imag) + abs(spring * rates[0].imag)
+    one.require(
+        lost >= -1e-4 * terms, "friction feeds a motion across the slip", lost_per_time=lost, terms=terms
+    )

@@ -1,0 +1,120 @@
+"""Running a check: examples drawn and counted, the smallest counterexample kept, no answer waited for too long."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+import threading
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from hypothesis import Phase, given
+from hypothesis import strategies as st
+from hypothesis.errors import Unsatisfiable
+
+from frictionlab.faults import in_words
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.testing.check import Check
+from frictionlab.testing.drawing import quietly
+from frictionlab.testing.given import Given
+from frictionlab.testing.outcome import Outcome
+
+
+class TooLong(BaseException):
+    """No answer within the time limit; no ``except Exception`` of a law can swallow it."""
+
+
+class Counted:
+    """What the examples of one check came to."""
+
+    def __init__(self) -> None:
+        self.examples = 0
+        self.last: Given | None = None
+        self.notes: set[str] = set()
+
+
+def run(check: Check, law: type[FrictionLaw], examples: int, seconds: float) -> Outcome:
+    """One check of one law. A check that ran nothing has failed, unless what it is about never comes up."""
+    if reason := check.skips(law):
+        return Outcome(check.name, "skipped", 0, reason)
+    counted, start = Counted(), time.perf_counter()
+    problem = _problem(check, law, counted, max(1, round(check.share * examples)), seconds * check.patience)
+    spent = time.perf_counter() - start
+    if problem is None and counted.examples == 0:
+        if check.seldom:
+            return Outcome(check.name, "skipped", 0, check.seldom, seconds=spent)
+        problem = "the check ran no example: nothing was tested"
+    if problem is None:
+        return Outcome(check.name, "passed", counted.examples, seconds=spent)
+    return Outcome(check.name, "failed", counted.examples, counterexample=problem, seconds=spent)
+
+
+def _problem(
+    check: Check, law: type[FrictionLaw], counted: Counted, examples: int, seconds: float
+) -> str | None:
+    """What is wrong, with the smallest counterexample; None where nothing is."""
+    try:
+        with time_limit(seconds), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            _examples(check, law, counted, examples)()
+            if check.after is not None and counted.last is not None:
+                check.after(counted.last)
+    except Unsatisfiable:
+        return None
+    except TooLong:
+        return f"no answer within {seconds:g} s; does a method of the law never return? {_told(counted)}"
+    except Exception as problem:
+        return f"{_said(problem, law)}; {_told(counted)}".rstrip("; ")
+    return None
+
+
+def _examples(check: Check, law: type[FrictionLaw], counted: Counted, examples: int) -> Callable[[], None]:
+    """The body on so many drawn examples; Hypothesis ends with the smallest one that fails."""
+
+    def body(data: Any) -> None:
+        counted.last = one = Given(law, data.draw, counted.notes)
+        check.body(one)
+        counted.examples += 1
+
+    body.__name__ = check.name  # part of what a derandomized run is seeded by
+    return quietly(examples, Phase.shrink)(given(st.data())(body))
+
+
+def _told(counted: Counted) -> str:
+    told = counted.last.told() if counted.last is not None else ""
+    return f"seen with {told}" if told else ""
+
+
+def _said(problem: Exception, law: type[FrictionLaw]) -> str:
+    """A violation's own words; of any other exception, the line of the law's file it came from too."""
+    if isinstance(problem, AssertionError):
+        return str(problem)
+    files = {getattr(sys.modules.get(kind.__module__), "__file__", None) for kind in law.__mro__[:-1]}
+    return in_words(problem, {file for file in files if file is not None and "pydantic" not in file})
+
+
+@contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """Raise TooLong in this thread where the block takes longer; compiled code is waited for."""
+    thread, done, turn = threading.get_ident(), threading.Event(), threading.Lock()
+
+    def watch() -> None:
+        wait = seconds
+        while not done.wait(wait):
+            wait = 0.5  # again: what is raised inside a callback of the collector is lost
+            with turn:
+                if not done.is_set():
+                    ctypes.pythonapi.PyThreadState_SetAsyncExc(
+                        ctypes.c_ulong(thread), ctypes.py_object(TooLong)
+                    )
+
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
+    try:
+        yield
+    finally:
+        with turn:
+            done.set()

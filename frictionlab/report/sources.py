@@ -10,7 +10,7 @@ import pandas as pd
 
 from frictionlab import registry
 from frictionlab.bibliography import Reference, publications, remark
-from frictionlab.report.documents import law_text, method_text
+from frictionlab.report.documents import law_text, method_bibtex, method_text
 from frictionlab.saved import Saved
 
 _YEAR = re.compile(r"\b1[6-9]\d\d\b|\b20\d\d\b")
@@ -65,7 +65,7 @@ def chosen_by_auto(found: pd.DataFrame) -> dict[str, str]:
 
 
 def _of_method(name: str, how: str) -> Cited:
-    return _cited(f"method {name}{how}", _named(method_text(name)), registry.method_class(name).bibtex)
+    return _cited(f"method {name}{how}", _named(method_text(name)), method_bibtex(name))
 
 
 def _cited(what: str, words: str, bibtex: str) -> Cited:

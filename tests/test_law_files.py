@@ -13,6 +13,7 @@ import pytest
 import frictionlab as fl
 from frictionlab import cli, registry
 from frictionlab.failures import FolderError
+from frictionlab.kernel import compiled, njit
 from frictionlab.report import write_report
 from frictionlab.saved import read_saved
 from frictionlab.study import StudyError, load_study
@@ -89,7 +90,17 @@ def test_a_law_of_a_file_beside_the_study_is_a_law_like_any() -> None:
     assert table["law.mu"].tolist() == [0.4]
 
 
-@pytest.mark.parametrize(
+@njit
+def friction_at(law: Any, speed: float) -> float:
+    return law.sliding_friction(speed)
+
+
+def compiled_strength(path: Path) -> float:
+    (law,) = load_study(path).laws
+    return float(compiled(friction_at, law.law())(1.0))
+
+
+EDITS = pytest.mark.parametrize(
     ("old", "new", "share"),
     [
         ("return told(self.mu)", "return 0.5 * told(self.mu)", 0.5),
@@ -98,9 +109,26 @@ def test_a_law_of_a_file_beside_the_study_is_a_law_like_any() -> None:
     ],
     ids=["method", "helper", "constant"],
 )
+
+
+@EDITS
 def test_an_edited_file_gives_new_numbers(old: str, new: str, share: float) -> None:
     assert mean(study()) == pytest.approx(CLOSED, abs=1e-8)
     assert mean(study(law=LAW.replace(old, new))) == pytest.approx(share * CLOSED, abs=1e-8)
+
+
+@EDITS
+def test_kernels_compiled_for_a_file_are_not_those_of_the_edited_one(
+    old: str, new: str, share: float
+) -> None:
+    assert compiled_strength(study()) == pytest.approx(0.4)
+    assert compiled_strength(study(law=LAW.replace(old, new))) == pytest.approx(share * 0.4)
+
+
+def test_kernels_of_two_files_of_one_name_do_not_mix() -> None:
+    one, two = study("one"), study("two", LAW.replace("SHARE = 1.0", "SHARE = 0.5"))
+
+    assert [compiled_strength(path) for path in (one, two, one)] == pytest.approx([0.4, 0.2, 0.4])
 
 
 def test_two_files_of_one_name_in_two_folders_do_not_mix() -> None:
@@ -270,3 +298,17 @@ def test_a_study_given_as_a_mapping_takes_files_of_laws() -> None:
 )
 def test_the_class_is_named_in_capitals_and_the_law_with_hyphens(name: str, law: str) -> None:
     assert law_name(name) == law
+
+
+def test_a_file_may_be_called_as_a_module_of_python_and_is_still_followed() -> None:
+    path = study(plugins=["math.py"])
+    for share in (0.5, 0.25):
+        Path("math.py").write_text(LAW.replace("SHARE = 1.0", f"SHARE = {share}"))
+        assert compiled_strength(path) == pytest.approx(share * 0.4)
+
+
+def test_a_file_that_is_named_twice_is_one() -> None:
+    path = study()
+
+    assert cli.main(["run", str(path), "--law", "laws/my_law.py", "-o", "out"]) == 0
+    assert load_study("out/study.yaml").resolved()["plugins"] == ["laws/my_law.py"]

@@ -364,6 +364,31 @@ def new_study(path: Path) -> None:
     _tell(f"change what it says, then: frictionlab run {shlex.quote(str(file))}")
 
 
+@new.command("law")
+@click.argument("path", metavar="NAME", type=click.Path(path_type=Path))
+@click.option(
+    "--memory",
+    type=click.Choice(["none", "bristle"]),
+    default="bristle",
+    show_default=True,
+    help="What friction remembers: none, set by slip alone; bristle, a deflection of the contact.",
+)
+def new_law(path: Path, memory: Literal["none", "bristle"]) -> None:
+    """Write the folder NAME: a law that installs, with its test and a study. Never replaces anything."""
+    from frictionlab import new_law
+
+    try:
+        folder = new_law.new_law(path, memory)
+    except new_law.BadName as problem:
+        raise click.UsageError(str(problem)) from None
+    module = folder / f"{path.name.replace('-', '_')}.py"
+    _print(str(folder))
+    _tell(
+        f"the law is in {module}; try it: "
+        f"frictionlab run {shlex.quote(str(folder / 'study.yaml'))} --law {shlex.quote(str(module))}"
+    )
+
+
 @cli.command()
 @click.argument("study", type=click.Path(path_type=Path))
 @overrides_option

@@ -48,6 +48,7 @@ ROOMS = {
             "yaml_text",
             "saved",
             "new_study",
+            "new_law",
         ),
     ],
     "charts": ["charts", "families", "symbols"],

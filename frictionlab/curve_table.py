@@ -17,7 +17,7 @@ from frictionlab.curve_ends import Loads, Rows, end_of_reversal, friction_at_res
 from frictionlab.laws.bristle import BristleLaw
 from frictionlab.methods.base import Floats
 from frictionlab.shape import Curve, Measured, Shape, Unreadable, reduction, shape_of
-from frictionlab.table import of_cell
+from frictionlab.table import value_in
 
 TEXT = frozenset({"shape", "shape_by_initial", "reason"})
 INSTALLED = registry.Laws()
@@ -101,13 +101,10 @@ def _bristle_law(given: Mapping[str, Any], laws: registry.Laws) -> BristleLaw | 
     law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
     if law is None or not issubclass(law, BristleLaw):
         return None
-    told = {name: given.get(f"law.{name}") for name in law.model_fields}
-    scaled = {name: given[f"{SCALED}{name}"] for name in told if f"{SCALED}{name}" in given}
-    values = {
-        name: of_cell(value)
-        for name, value in (told | scaled).items()
-        if value is not None and value == value
-    }
+    told = {name: value_in(given, f"law.{name}") for name in law.model_fields}
+    scaled = {name: value_in(given, f"{SCALED}{name}") for name in told}
+    values = {name: value for name, value in told.items() if value is not None}
+    values |= {name: value for name, value in scaled.items() if value is not None}
     return law.model_validate(values).under_load(float(given["scene.normal_load"]))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -90,11 +89,14 @@ def _values(law: FrictionLaw) -> dict[str, Any]:
 
 
 def _cells(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Values as a table holds them: several numbers as the text of a list, ``[2.0, 1.0]``."""
-    return {
-        name: json.dumps(value) if isinstance(value, list | tuple) else value
-        for name, value in values.items()
-    }
+    """Values as a table holds them: several numbers in cells of their own, ``mu[0]``, ``mu[1]``."""
+    cells: dict[str, Any] = {}
+    for name, value in values.items():
+        several = (
+            {f"{name}[{k}]": each for k, each in enumerate(value)} if isinstance(value, list | tuple) else {}
+        )
+        cells |= several or {name: value}
+    return cells
 
 
 def _spread(prefix: str, records: list[dict[str, Any]]) -> dict[str, list[Any]]:
@@ -104,9 +106,11 @@ def _spread(prefix: str, records: list[dict[str, Any]]) -> dict[str, list[Any]]:
     return {f"{prefix}{name}": [record.get(name) for record in records] for name in names}
 
 
-def of_cell(value: Any) -> Any:
-    """What a cell made by ``_cells`` was made of."""
-    return json.loads(value) if isinstance(value, str) and value.startswith("[") else value
+def value_in(cells: Mapping[str, Any], name: str) -> Any:
+    """The value of this name, one or several, of a row's cells; None where they are empty."""
+    given = {key: cells[key] for key in cells if key == name or key.startswith(f"{name}[")}
+    filled = {key: value for key, value in given.items() if value is not None and value == value}
+    return filled[name] if name in filled else [*filled.values()] or None
 
 
 class Results:

@@ -6,9 +6,9 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from frictionlab import CompliantLaw, Positive
+from frictionlab import CompliantLaw, Finite, Positive
 
-Exponent = Annotated[Positive, Field(ge=1, le=20)]
+Exponent = Annotated[Finite, Field(ge=1, le=20)]
 
 
 class BoucWen(CompliantLaw):

@@ -64,10 +64,12 @@ class MaxwellSlip(MemoryLaw):
     def rate(self, v: Any, memory: Any, k: int) -> Any:
         """v, less its part along the spring where that is stretched to its reach and would be stretched further."""
         z = memory[k]
-        along = (z * v.conjugate()).real
-        if along <= 0.0 or abs(z) < self.reach[k]:
+        along, size = (z * v.conjugate()).real, abs(z)
+        if along <= 0.0 or size < self.reach[k]:
             return v
-        return v - (along / (z * z.conjugate()).real) * z
+        return (
+            v - (along / (size * self.reach[k])) * z
+        )  # size*reach, not size^2: what a step overshot is taken back
 
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
         """The springs'."""
@@ -104,7 +106,7 @@ class MaxwellSlip(MemoryLaw):
         return True
 
     def largest_rate(self, speed: float) -> float:
-        """In the plane, where the shortest spring turns towards the slip."""
+        """Of the shortest spring: where it turns towards the slip, or comes back to its reach."""
         quickest = 0.0
         for k in range(len(self.mu)):
             quickest = max(quickest, speed / self.reach[k])

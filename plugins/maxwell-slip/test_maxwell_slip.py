@@ -6,7 +6,7 @@ import cmath
 import itertools
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from maxwell_slip import MaxwellSlip
 
@@ -48,7 +48,7 @@ def test_one_element_is_jenkins_in_the_plane_and_along_a_line(mu, stiffness, v, 
 
     for slip, deflection in ((v, share * jenkins.reach * z), (v.real, share * jenkins.reach)):
         dz = jenkins.rate(slip, deflection)
-        assert law.rate(slip, [deflection], 0) == dz
+        assert law.rate(slip, [deflection], 0) == pytest.approx(dz, abs=1e-13)
         assert law.friction(slip, [deflection], [dz]) == jenkins.friction(slip, deflection, dz)
 
 
@@ -107,3 +107,13 @@ def test_the_work_of_a_slip_is_stored_or_lost(pairs, path):
         work += (law.friction(path, memory, memory) * path.conjugate()).real / steps
 
     assert work / 2.0 >= law.stored(memory) - 1e-9
+
+
+@given(mu=sizes, stiffness=sizes, v=turns, z=turns, beyond=st.floats(1e-9, 0.5))
+def test_a_spring_beyond_its_reach_comes_back_to_it(mu, stiffness, v, z, beyond):
+    law = MaxwellSlip(mu=[mu], stiffness=[stiffness])
+    memory = [(1.0 + beyond) * law.reach[0] * z]
+    assume(abs((v * z.conjugate()).real) > 1e-6)
+
+    assert not law.within(memory) or beyond < 2e-9
+    assert (law.rate(v, memory, 0) * memory[0].conjugate()).real < 0.0

@@ -13,11 +13,12 @@ class RateAndState(MemoryLaw):
 
     friction = a asinh(|v|/(2 V*) exp((mu + b ln(V* theta/D_c))/a)) along v: mu + a ln(|v|/V*) + b ln(V* theta/D_c)
     but at speeds so low that this is not positive. theta, the memory, is an age [scene time]: theta' = 1 - x (ageing,
-    Dieterich) or -x ln(x) (slip, Ruina), with x = |v| theta/D_c. In steady sliding x = 1 and friction is
-    mu + (a - b) ln(|v|/V*).
+    Dieterich) or -x ln(x) (slip, Ruina), with x = |v| theta/D_c. In steady sliding x = 1: friction is then
+    (a - b) ln(|v|/V*) above mu.
 
     mu [-], > 0: friction coefficient in steady sliding at V*.
-    a [-], > 0: direct effect of speed. b [-], >= 0: effect of age; steady friction falls with speed where b > a.
+    a [-], > 0: direct effect of speed.
+    b [-], >= 0: effect of age; steady friction falls with speed where b > a.
     slip_length [scene length], > 0: D_c, the slip that renews the contact.
     reference_speed [scene velocity], > 0: V*, 1 where left out.
     state_law: ageing (a contact at rest strengthens) or slip (it does not).

@@ -382,6 +382,13 @@ def test_friction_that_nears_its_limit_ever_more_slowly_is_as_far_off_as_the_err
     assert 1e-8 < 0.4 - found["mean_friction"][0] <= found["error"][0] <= 1e-6
 
 
+def test_a_driven_mass_that_slips_one_way_is_as_far_from_steady_sliding_as_the_error_says():
+    law = Dahl(mu=0.4, presliding_length=0.1, exponent=3.0)
+    driven = scene(15.0, normal_load=1.0, drive=Drive(unbalance=1.0, frequency=1.0))
+    found = solve(driven, law, 0.01).columns
+    assert 1e-4 < 0.4 - found["mean_friction"][0] <= found["error"][0] <= 0.01
+
+
 def test_a_motion_on_bristles_that_never_repeats_shows_the_range_of_its_means():
     law = LuGre(
         mu_kinetic=0.2,

@@ -318,10 +318,16 @@ class Walker:
             return spread + 2.0 * led / self.mass.normal_load
         ends = (1.0 + self.mass.damping) * drift
         doubt = 2.0 if self.bristles is None else 4.0  # with bristles, orbits may move apart before they meet
-        return doubt * float(march.distance + ends / self.lap) / self.mass.normal_load
+        left = doubt * float(march.distance + ends / self.lap) / self.mass.normal_load
+        return left + (self._from_sliding(march) if self._only_slides(march) else 0.0)
+
+    def _only_slides(self, march: March) -> bool:
+        """Whether friction must end at one number: slip on a line that never turns, a law of one sliding friction."""
+        one = self.bristles is not None and self.bristles.constant_sliding_friction()
+        return one and self.straight and not self.scene.undriven and march.crossings == 0
 
     def _from_sliding(self, march: March) -> float:
-        """How far friction is from that of steady sliding, where bristles under a mass at rest on a moving belt go.
+        """How far friction is from that of steady sliding, where bristles go under slip that does not turn.
 
         Their way there may be algebraic, or slower than any swing of the mass can tell.
         """

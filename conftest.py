@@ -1,13 +1,20 @@
-"""Lets the tests of a checkout see the plugins without installing them, by the door they enter when installed."""
+"""Lets the tests of a checkout see the plugins without installing them, by the door they enter when installed.
+
+The battery of checks that each plugin's law must pass takes minutes: it is in the deep profile.
+"""
 
 from __future__ import annotations
 
+import os
 import sys
 import tempfile
 import tomllib
 from pathlib import Path
 
 FOLDERS = sorted(path.parent for path in Path(__file__).parent.glob("plugins/*/pyproject.toml"))
+collect_ignore_glob = (
+    [] if os.environ.get("HYPOTHESIS_PROFILE") == "deep" else ["plugins/*/test_*_conforms.py"]
+)
 DOORS = tempfile.TemporaryDirectory(prefix="frictionlab-doors-")
 
 

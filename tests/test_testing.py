@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 from hypothesis import strategies as st
+from maxwell_slip import MaxwellSlip
+from memory_laws import Ageing
 
 from frictionlab.cli import main
 from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
@@ -162,3 +164,25 @@ def test_the_command_ends_with_3_where_a_check_fails(monkeypatch: Any) -> None:
 
     monkeypatch.setattr("frictionlab.testing.battery.CHECKS", (never,))
     assert main(["laws", "test", "coulomb", "--examples", "2"]) == 3
+
+
+class Leaking(MaxwellSlip):
+    """Springs whose sliders hold back a little less than they should."""
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """A hundredth of the slip too much."""
+        return super().rate(v, memory, k) + 0.01 * v
+
+
+def test_a_slider_that_meets_its_limit_between_two_steps_keeps_within_it_and_one_that_leaks_does_not() -> (
+    None
+):
+    kept = check_law(MaxwellSlip, only=["invariant_set"], on_failure="return")
+    left = check_law(Leaking, only=["invariant_set"], on_failure="return")
+
+    assert kept.passed
+    assert "leads the memory out of its set" in (left.outcomes[0].counterexample or "")
+
+
+def test_memories_that_know_no_direction_are_never_asked_turned_round() -> None:
+    assert check_law(Ageing, only=["instances_apart", "largest_rate"], on_failure="return").passed

@@ -195,7 +195,7 @@ def instances_apart(one: Given) -> None:
     memory = one.memory(law)
     twin = type(law)(**law.model_dump(exclude_none=True))
     first = asked(law, v, memory)
-    asked(one.draw("other law", laws(one.kind)), -2.0 * v, tuple(-0.5 * each for each in memory))
+    asked(one.draw("other law", laws(one.kind)), -2.0 * v, tuple(0.5 * each for each in memory))
     one.require(asked(twin, v, memory) == first, "a law of the same parameters answers otherwise")
 
 

@@ -85,7 +85,7 @@ class MaxwellSlip(MemoryLaw):
 
     def steady(self, v: Any, k: int) -> Any:
         """At its reach, along the slip."""
-        return (self.reach[k] / abs(v)) * v
+        return self.reach[k] * (v / abs(v))
 
     def stored(self, memory: Any) -> float:
         """In the springs."""

@@ -72,7 +72,7 @@ def cannot_compile(law: type[FrictionLaw], said: str) -> CannotCompile:
     where = shown(_own(spots[0]["file"], law), int(spots[0]["line"] or spots[0]["number"])) if spots else ""
     why = _why(said[: spots[0].start()], law) if spots else said.strip().partition("\n")[0]
     return CannotCompile(
-        f"law {law.__name__} ({_home(law)}) cannot be compiled by numba: {why}{where}\n{_REMEDY}"
+        f"law {law.__name__} ({home_of_law(law)}) cannot be compiled by numba: {why}{where}\n{_REMEDY}"
     )
 
 
@@ -97,7 +97,7 @@ def _why(before: str, law: type[FrictionLaw]) -> str:
     return "it cannot tell what this line means" if said.startswith(("During:", "^")) else said
 
 
-def _home(law: type[FrictionLaw]) -> str:
+def home_of_law(law: type[FrictionLaw]) -> str:
     """The module of a law, as its author knows it: one that a study brings along has but a file."""
     return law.__module__ if not law.__module__.startswith(LAW_FILE) else ", ".join(sorted(files_of(law)))
 

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 
 from frictionlab import registry
 from frictionlab.bibliography import publications
+from frictionlab.faults import home_of_law
 from frictionlab.laws.base import Dimension, FrictionLaw, Record
 from frictionlab.methods.base import Method
 
@@ -23,7 +24,7 @@ def law_record(name: str, law: type[FrictionLaw]) -> dict[str, Any]:
         "parameters": _parameters(law),
         "declares": _declared(law),
         "sources": _sources(law),
-        "class": f"{law.__module__}.{law.__qualname__}",
+        "class": _class(law),
     }
 
 
@@ -38,6 +39,12 @@ def method_record(name: str) -> dict[str, Any]:
         "sources": _sources(method),
         "class": f"{method.__module__}.{method.__qualname__}",
     }
+
+
+def _class(law: type[FrictionLaw]) -> str:
+    """Where a law is written: ``module.Class``, or ``file.py:Class`` where a study brings it along."""
+    home = home_of_law(law)
+    return f"{home}:{law.__qualname__}" if home.endswith(".py") else f"{home}.{law.__qualname__}"
 
 
 def _text(kind: type) -> str:

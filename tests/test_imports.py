@@ -91,7 +91,7 @@ ARROWS = {
     ],
     "bench chart": ["bench", "charts", "run"],
     "report": ["charts", "run", "study", "registry", "columns", "scene", "bibliography"],
-    "listing": ["registry", "law interface", "method interface", "bibliography", "run"],
+    "listing": ["registry", "law interface", "method interface", "bibliography", "run", "faults"],
     "testing": [
         *("listing", "registry", "methods", "laws", "kernel", "scene", "faults"),
         *("law interface", "method interface"),

@@ -276,7 +276,9 @@ def test_the_command_line_takes_files_of_laws(capsys: pytest.CaptureFixture[str]
     assert cli.main(["check", str(path), "--law", law]) == 0
     capsys.readouterr()
     assert cli.main(["laws", "--law", law, "--json"]) == 0
-    assert "my-law" in [record["name"] for record in json.loads(capsys.readouterr().out)]
+    classes = {record["name"]: record["class"] for record in json.loads(capsys.readouterr().out)}
+    assert classes["my-law"].endswith("laws/my_law.py:MyLaw")
+    assert classes["dahl"] == "frictionlab.laws.dahl.Dahl"
     assert cli.main(["schema", "--law", law]) == 0
     assert '"my-law"' in capsys.readouterr().out
     assert cli.main(["laws", "my-law", "--law", "no.py"]) == 2

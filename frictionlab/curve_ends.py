@@ -20,7 +20,8 @@ class Loads(NamedTuple):
 
     along, across: phasors of the forces along and across the belt. static_limit: the largest friction force at
     rest, where the law has one of its own; NaN otherwise. prescribed: the slip itself is given. hold: of a law
-    with bristles, what they do on a belt that creeps. Forces in K_1 L.
+    with bristles, what they do on a belt that creeps. unread: why the start of the curve is not known, '' where it
+    is. Forces in K_1 L.
     """
 
     along: complex
@@ -29,6 +30,7 @@ class Loads(NamedTuple):
     static_limit: float
     prescribed: bool
     hold: Hold | None = None
+    unread: str = ""
 
     @property
     def along_belt_only(self) -> bool:
@@ -104,6 +106,8 @@ def friction_at_rest(rows: Rows, loads: Loads) -> Measured:
     body that constant friction holds against its load creeps with the belt until the load's peak frees it: the
     spring then carries what the peak leaves, and the limit is mu (1 - load/friction).
     """
+    if loads.unread:
+        raise Unreadable(loads.unread)
     if loads.hold is not None:
         return _on_bristles(rows, loads.hold, loads.prescribed)
     if loads.prescribed:

@@ -15,6 +15,7 @@ from frictionlab.bristle_hold import Hold, Value, hold_of_a_body, hold_of_a_slip
 from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS, SCALED
 from frictionlab.curve_ends import Loads, Rows, end_of_reversal, friction_at_rest
 from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Floats
 from frictionlab.shape import Curve, Measured, Shape, Unreadable, reduction, shape_of
 from frictionlab.table import value_in
@@ -83,7 +84,15 @@ def _loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
     forces = force("scene.drive"), force("scene.transverse.load")
     bristles = _bristle_law(given, laws)
     hold = None if bristles is None else _hold(bristles, value, forces, any(slips))
-    return Loads(*forces, slips[1], static or math.nan, any(slips), hold)
+    return Loads(*forces, slips[1], static or math.nan, any(slips), hold, _unread(given, laws))
+
+
+def _unread(given: Mapping[str, Any], laws: registry.Laws) -> str:
+    """Why nothing is known of the friction on a belt that creeps; '' where it is."""
+    law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
+    if law is None or not issubclass(law, MemoryLaw) or law.memory_kind != "deflections":
+        return ""
+    return "deflections may hold the body on a slow belt: where the curve starts is known for a single one"
 
 
 def _hold(law: BristleLaw, value: Value, forces: tuple[complex, complex], prescribed: bool) -> Hold | None:

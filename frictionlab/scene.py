@@ -123,7 +123,8 @@ class Body(NamedTuple):
     A direction-dependent constant acts as mean*x + split*conj(x). The motion is split into a harmonic reference,
     the friction-free response where it is bounded, and the deviation from it: ``force`` is what drives the
     deviation besides friction. A sine/cosine pair stands for sine*sin(Omega tau) + cosine*cos(Omega tau).
-    The motion is followed over ``periods`` of the drive at a time.
+    The motion is followed over ``periods`` of the drive at a time. Where it is ``prescribed`` it is the reference,
+    whatever friction does.
     """
 
     damping_mean: float
@@ -137,6 +138,7 @@ class Body(NamedTuple):
     reference_sine: Any
     reference_cosine: Any
     periods: float
+    prescribed: bool = False
 
 
 def on_the_line(mass: Mass, periods: float = 1.0) -> Body:

@@ -30,6 +30,11 @@ class MemoryLaw(FrictionLaw, ABC):
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
         """Friction coefficient [-] along ``v`` that resists slip, at a memory that moves at ``rates``."""
 
+    @property
+    def turning(self) -> float:
+        """``memory_kind`` as kernels know it: 1 for deflections, 0 for scalars."""
+        return 1.0 if self.memory_kind == "deflections" else 0.0
+
     def structure(self) -> tuple[str, ...]:
         """Which kind of memory it is."""
         return (self.memory_kind,)

@@ -16,6 +16,8 @@ from frictionlab.theory import friction_free_velocity
 
 STABLE = 1.0 - 1e-7
 """Largest Floquet multiplier of an orbit that is said to attract."""
+CREEP = 1e-9
+"""Slip speed that counts as slow."""
 FEWEST, MOST = 200, 20_000
 """Periods a start is followed for."""
 
@@ -72,7 +74,11 @@ def starts(scene: Scene, limit: float) -> list[Initial | None]:
 
 def friction_at_rest(law: FrictionLaw) -> float:
     """The coefficient that slip must overcome to begin, slowly."""
-    return law.static_friction() if isinstance(law, SlidingLaw) else law.sliding_friction(0.0)
+    if isinstance(law, SlidingLaw):
+        return law.static_friction()
+    return law.sliding_friction(0.0) or law.sliding_friction(
+        CREEP
+    )  # regularised at rest it is that of slow slip
 
 
 def force_swing(scene: Scene) -> float:

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from frictionlab.kernel import inner
-from frictionlab.methods.bristle_map import coarsest
 from frictionlab.methods.closing import (
     FINER,
     MOST_MAPS,
@@ -30,7 +29,7 @@ from frictionlab.methods.closing import (
     searched,
     times,
 )
-from frictionlab.methods.period import mapped
+from frictionlab.methods.period import coarsest_of, grain_of, mapped
 from frictionlab.methods.sliding_map import span
 from frictionlab.methods.track import track_of
 from frictionlab.scene import Body
@@ -50,7 +49,7 @@ def _moved_on(
     regular = newton_inverse(law, body, belt_speed, z, accuracy, inverse, like)
     maps = 2 * z.size
     if not regular:
-        free_inverse(body, body.normal_load, inverse)
+        free_inverse(body, body.normal_load, inverse, like)
     tried = searched(law, body, belt_speed, z, residual, inverse, accuracy, like)
     maps += tried + 1
     if not regular or tried == 8:
@@ -81,7 +80,7 @@ def close_bristle(
     n, tolerance, period = z.size, goal.tolerance, span(body)
     residual, trial, fresh, step, work = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     floor = 4e-15 * (1.0 + norm(z) + abs(belt_speed))
-    finest = max(min(LOOSE * tolerance * body.normal_load, coarsest(law, body)), floor)
+    finest = max(min(LOOSE * tolerance * body.normal_load, coarsest_of(law, body)), floor)
     accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
     image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
     maps, checks, first, stalls = 1, 0, norm(residual), 0
@@ -110,6 +109,7 @@ def close_bristle(
             times(inverse, residual, step)
             rest = slope * norm(step) + SURE * mean_error(body, residual, norm(step))
             error = 2.0 * rest + doubt + floor / body.normal_load + ROUNDING
+            error += grain_of(law, body, accuracy, like)
             settled = norm(residual) <= 0.5 * norm(fresh) + 10.0 * accuracy
             if settled and (error <= tolerance or (finest <= floor and checks > 3)):
                 return Closed(image.rubbed, error, maps, 0.0, image.closest, first)

@@ -11,9 +11,10 @@ import numpy as np
 from frictionlab.kernel import compiled, timed
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Floats
 from frictionlab.methods.closing import Goal
-from frictionlab.methods.curve import Curve, answer_curve, settle, wander
+from frictionlab.methods.curve import Curve, answer_curve, begin, settle, wander
 from frictionlab.scene import Body, Initial, Scene, in_the_plane, on_the_line
 
 
@@ -47,6 +48,13 @@ def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
     return scene.load_along_belt_only and law.damps_across(abs(scene.belt_speed) + swing)
 
 
+def remembered(law: FrictionLaw, directions: int) -> int:
+    """How many numbers a law remembers in so many directions."""
+    if isinstance(law, MemoryLaw):
+        return law.count() * (directions if law.memory_kind == "deflections" else 1)
+    return directions if isinstance(law, BristleLaw) else 0
+
+
 class Wandered(NamedTuple):
     """A motion followed until it repeats: after how many periods (0: never), its one-period means, its end."""
 
@@ -65,7 +73,8 @@ class Closer:
     def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float) -> None:
         self.mass, self.law = scene.mass(), law
         self.falls_slowly = falls_slowly(scene, law)
-        self.goal = Goal(tolerance, contracts(scene, law), isinstance(law, BristleLaw) and self.falls_slowly)
+        asks = not isinstance(law, SlidingLaw) and self.falls_slowly
+        self.goal = Goal(tolerance, contracts(scene, law), asks)
         self.body: Body
         self.like: complex  # a number of the kind of its positions
         if along_the_belt(scene, law):
@@ -73,7 +82,7 @@ class Closer:
         else:
             self.body, self.like = in_the_plane(self.mass), 0j
         directions = 2 if isinstance(self.like, complex) else 1
-        self.size = (3 if isinstance(law, BristleLaw) else 2) * directions  # of a state
+        self.size = 2 * directions + remembered(law, directions)  # of a state
 
     def closed(
         self, scenes: Sequence[Scene], state: Floats | None = None, periods: float = 1.0
@@ -93,45 +102,32 @@ class Closer:
     def wandered(self, belt_speed: float, start: Initial | None, most: int) -> Wandered:
         """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
         at = self._shaken(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
-        relative = (
-            1e-6 if isinstance(self.law, BristleLaw) else 1e-9
-        )  # of lower order, and its maps are smooth
-        return self._followed(belt_speed, at, most, relative)
+        state = np.empty(self.size)
+        compiled(begin, self.law)(self.body, at, state)
+        # bristles' maps are of lower order, and smooth
+        return self._followed(belt_speed, state, most, 1e-9 if isinstance(self.law, SlidingLaw) else 1e-6)
 
     def means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
         """The one-period means of an orbit of so many periods, from its state."""
-        body, halves = self.body, (0, 2) if isinstance(self.like, complex) else (0,)
-        stiffness = (body.stiffness_mean + body.stiffness_split, body.stiffness_mean - body.stiffness_split)
-        units = (1.0, 1j)
-        y = sum(state[k] / math.sqrt(stiffness[n]) * units[n] for n, k in enumerate(halves))
-        u = sum(state[k + 1] * units[n] for n, k in enumerate(halves))
-        first = 2 * len(halves)  # of the deflection
-        z = sum(value * unit for value, unit in zip(state[first:], units, strict=False)) / self._unit()
-        at = y + body.reference_cosine, u + body.frequency * body.reference_sine, z + 0.0 * self.like
-        return self._followed(belt_speed, at, periods, 1e-9).means
+        return self._followed(belt_speed, state, periods, 1e-9).means
 
-    def _unit(self) -> float:
-        """What a deflection is multiplied by in a state; 1 without one."""
-        if not isinstance(self.law, BristleLaw):
-            return 1.0
-        length = min(self.law.largest_deflection(), 1e300)
-        return math.sqrt(self.mass.normal_load * abs(self.law.friction(0.0, length, 0.0)) / length)
-
-    def _followed(self, belt_speed: float, at: tuple[complex, ...], most: int, relative: float) -> Wandered:
+    def _followed(self, belt_speed: float, state: Floats, most: int, relative: float) -> Wandered:
         means, states = np.empty(most), np.empty((most + 1, self.size))
-        arguments = self.body, belt_speed, at, relative * self.mass.normal_load, means, states
+        states[0] = state
+        arguments = self.body, belt_speed, relative * self.mass.normal_load, means, states, self.like
         (period, count), seconds = timed(compiled(wander, self.law), *arguments)
         return Wandered(period, means[:count], states[count], seconds)
 
     def _shaken(self, belt_speed: float) -> tuple[complex, complex, complex]:
-        """On the friction-free orbit; with a bristle, deflected and shifted as in sliding that never reverses."""
+        """On the friction-free orbit; with memory, remembering and shifted as in sliding that never reverses."""
         x, v = self.body.reference_cosine, self.body.frequency * self.body.reference_sine
-        if not isinstance(self.law, BristleLaw):
+        if isinstance(self.law, SlidingLaw):
             return x, v, 0.0 * self.like
         forward = math.copysign(1.0, belt_speed)
         stiffness = self.body.stiffness_mean + self.body.stiffness_split
         shift = forward * self.mass.normal_load * self.law.sliding_friction(abs(belt_speed)) / stiffness
-        return x + shift, v, 0.0 * self.like - forward * self.law.largest_deflection()
+        behind = forward * self.law.largest_deflection() if isinstance(self.law, BristleLaw) else belt_speed
+        return x + shift, v, 0.0 * self.like - behind
 
     def _at(self, start: Initial) -> tuple[complex, complex]:
         x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.kernel import by_law, inner
+from frictionlab.methods.bristle_map import dimension
 from frictionlab.methods.period import mapped, rest_of, unpack
 from frictionlab.methods.sliding_map import Mapped, span
 from frictionlab.methods.track import track_of
@@ -93,20 +94,20 @@ def _free_block(damping: float, stiffness: float, period: float, jacobian: Any, 
 
 
 @inner
-def free_inverse(body: Body, rubbing: float, inverse: Any) -> None:
+def free_inverse(body: Body, rubbing: float, inverse: Any, like: Any) -> None:
     """Inverse of (monodromy - identity) of the body with friction as a dashpot of this coefficient."""
-    n = inverse.shape[0]
+    n, d = inverse.shape[0], dimension(like)
     period = span(body)
     jacobian = np.zeros((n, n))
     damping, stiffness = body.damping_mean + body.damping_split, body.stiffness_mean + body.stiffness_split
     _free_block(damping + rubbing, stiffness, period, jacobian, 0)
-    if n >= 4:
+    if d == 2:
         damping, stiffness = (
             body.damping_mean - body.damping_split,
             body.stiffness_mean - body.stiffness_split,
         )
         _free_block(damping + rubbing, stiffness, period, jacobian, 2)
-    for row in range(4 if n >= 4 else 2, n):
+    for row in range(2 * d, n):
         jacobian[row, row] = -1.0  # a bristle remembers nothing of a period ago
     inverted(jacobian, inverse)
 
@@ -120,7 +121,7 @@ def _shift_with_a_bristle(law: Any, n: int) -> float:
     return 1e-4
 
 
-shift_of = by_law(_shift_without_memory, _shift_with_a_bristle)
+shift_of = by_law(_shift_without_memory, _shift_with_a_bristle, None, _shift_with_a_bristle)
 """Relative shift of a state for a difference quotient, and accuracy of the maps relative to the shift."""
 
 
@@ -360,7 +361,7 @@ def close(
             regular = newton_inverse(law, body, belt_speed, z, finest, inverse, like)
             maps += 2 * n
             if not regular:
-                free_inverse(body, body.normal_load, inverse)
+                free_inverse(body, body.normal_load, inverse, like)
             tried = searched(law, body, belt_speed, z, residual, inverse, accuracy, like)
             maps += tried
             for _ in range(0 if regular and tried < 8 else 3):

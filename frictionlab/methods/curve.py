@@ -72,7 +72,7 @@ def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) ->
     return best
 
 
-closed_by = by_law(close, close_bristle)
+closed_by = by_law(close, close_bristle, None, close_bristle)
 """The fixed point of the period map from a guess, by the way that suits the law."""
 
 
@@ -86,7 +86,7 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, 
     known, order, expected = 0, 1, 1e300
     for i in range(n):
         if known == 0:
-            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse)
+            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
             if i == 0 and guess.shape[0] > 0:
                 for row in range(size):
                     z[row] = guess[0, row]
@@ -94,7 +94,7 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, 
             _extrapolated(states, belt_speeds, i, min(order, known), z)
         closed = closed_by(law, body, belt_speeds[i], z, inverse, goal, expected, like)
         if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
-            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse)
+            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
             closed = closed_by(law, body, belt_speeds[i], z, inverse, goal, 1e300, like)
         for row in range(size):
             states[i, row] = z[row]
@@ -173,7 +173,18 @@ def _reached_with_a_bristle(law: Any, body: Body, belt_speed: float, target: Any
     return _arrives(law, body, belt_speed, start, target, like)
 
 
-reached = by_law(_reached_without_memory, _reached_with_a_bristle)
+def _reached_with_memory(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+    """The same two starts, with the memory of a contact at rest, and of sliding on."""
+    start, forward = np.empty(target.size), math.copysign(1.0, belt_speed)
+    start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
+    if not _arrives(law, body, belt_speed, start, target, like):
+        return False
+    x, v, z = sliding_on(body, forward * law.sliding_friction(abs(belt_speed)), like)
+    start_of(law, body, start, x, v, z - belt_speed)
+    return _arrives(law, body, belt_speed, start, target, like)
+
+
+reached = by_law(_reached_without_memory, _reached_with_a_bristle, None, _reached_with_memory)
 
 
 class Curve(NamedTuple):
@@ -244,21 +255,26 @@ def _apart(states: Any, a: int, b: int) -> float:
 
 
 @inner
+def begin(law: Any, body: Body, start: Any, state: Any) -> None:
+    """Fill the state of a start (x, v, deflection); see ``start_of``."""
+    x, v, deflection = start
+    start_of(law, body, state, x, v, deflection)
+
+
+@inner
 def wander(
-    law: Any, body: Body, belt_speed: float, start: Any, accuracy: float, means: Any, states: Any
+    law: Any, body: Body, belt_speed: float, accuracy: float, means: Any, states: Any, like: Any
 ) -> Any:
-    """Follow the motion from a start (x, v, deflection), period by period, until it repeats.
+    """Follow the motion from ``states[0]``, period by period, until it repeats.
 
     Fills the one-period means [n] and the states [n + 1, size]; returns after how many periods it repeats (0 where
     it has not after n), and how many it was followed.
     """
-    x, v, deflection = start
     steps = 0
     alike = 1e-7 if accuracy <= 1e-8 * body.normal_load else 1e-5  # coarse maps wander on by their own error
     residual = np.empty(states.shape[1])
-    start_of(law, body, states[0], x, v, deflection)
     for n in range(means.size):
-        image = mapped(law, body, belt_speed, states[n], residual, accuracy, track_of(0), x)
+        image = mapped(law, body, belt_speed, states[n], residual, accuracy, track_of(0), like)
         means[n] = -image.rubbed.real / span(body)
         steps += image.steps
         for row in range(residual.size):

@@ -121,7 +121,7 @@ class March(Method):
             assert scene.normal_load is not None
             return self._bristle_refusal(scene, law.under_load(scene.normal_load))
         if not isinstance(law, SlidingLaw):
-            return "march steps sliding laws and laws with one bristle deflection"
+            return "march steps friction without memory, or with one bristle deflection; use shooting"
         if self._stepper(law) not in FOR_SLIDING:
             return (
                 f"stepper {self.stepper} steps bristles, and this law has none; use moreau, rk4 or smoothed"

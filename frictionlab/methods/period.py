@@ -11,7 +11,20 @@ import math
 from typing import Any
 
 from frictionlab.kernel import by_dimension, by_law, inner
-from frictionlab.methods.bristle_map import bristle_map, dimension
+from frictionlab.methods.bristle_map import bristle_map, coarsest, dimension, taken
+from frictionlab.methods.memory_map import begun, coarsest_of_memory, follow, grain_of_memory
+from frictionlab.methods.memory_motion import work_of
+from frictionlab.methods.memory_state import (
+    filled,
+    kept,
+    memory_of,
+    parts,
+    pulled,
+    recalled,
+    scales_of,
+    slid,
+    spilled,
+)
 from frictionlab.methods.path_map import path_map
 from frictionlab.methods.sliding_map import Mapped, period_map, periods_at_rest
 from frictionlab.methods.track import Track
@@ -53,7 +66,23 @@ def _size_with_a_bristle(law: Any, like: Any) -> int:
     return 3 * dimension(like)
 
 
-size_of = by_law(_size_without_memory, _size_with_a_bristle)
+def _size_with_memory(law: Any, like: Any) -> int:
+    memory = memory_of(law, like)
+    return 2 * dimension(like) + memory.size * parts(memory[0])
+
+
+size_of = by_law(_size_without_memory, _size_with_a_bristle, None, _size_with_memory)
+
+coarsest_of = by_law(coarsest, coarsest, None, coarsest_of_memory)
+"""(law, body): the coarsest accuracy a map is made with, whatever is asked."""
+
+
+def _no_grain(law: Any, body: Body, accuracy: float, like: Any) -> float:
+    return 0.0
+
+
+grain_of = by_law(_no_grain, _no_grain, None, grain_of_memory)
+"""What the steps of a map leave in the mean even if two maps agree."""
 
 
 @inner
@@ -125,7 +154,34 @@ def _mapped_with_a_bristle(
     return Mapped(image.y, image.u, image.rubbed, 0.0, image.closest, -1.0, image.steps)
 
 
-mapped = by_law(_mapped_without_memory, _mapped_with_a_bristle)
+def _mapped_with_memory(
+    law: Any,
+    body: Body,
+    belt_speed: float,
+    state: Any,
+    residual: Any,
+    accuracy: float,
+    track: Track,
+    like: Any,
+) -> Mapped:
+    y, u = unpack(body, state, like)
+    scales, work, d = scales_of(law, body, like), work_of(law, body, like), dimension(like)
+    begun(body, belt_speed, y, u, work)
+    recalled(work.memory, law, scales, state, 2 * d, work.memory[0])
+    pulled(law, work.memory, work.moving)
+    spilled(work.memory, work.at, 3 * d, work.memory[0])
+    closest, steps = follow(law, body, belt_speed, scales, accuracy, track, work, like)
+    end_y = taken(work.at, 0, like)
+    end_u = taken(work.at, 1, like) + belt_speed - body.frequency * body.reference_sine
+    filled(work.memory, work.at, 3 * d, work.memory[0])
+    kept(work.memory, law, scales, residual, 2 * d, work.memory[0])
+    pack(body, residual, end_y - y, end_u - u)
+    for row in range(2 * d, residual.size):
+        residual[row] = residual[row] - state[row]
+    return Mapped(end_y, end_u, taken(work.at, 2, like), 0.0, closest, -1.0, steps)
+
+
+mapped = by_law(_mapped_without_memory, _mapped_with_a_bristle, None, _mapped_with_memory)
 """One span from a state, noted on a track with room; leaves image - state in residual."""
 
 
@@ -138,7 +194,7 @@ def _rest_with_a_bristle(law: Any, body: Body, belt_speed: float, y: Any) -> flo
     return 1.0
 
 
-rest_of = by_law(_rest_without_memory, _rest_with_a_bristle)
+rest_of = by_law(_rest_without_memory, _rest_with_a_bristle, None, _rest_with_a_bristle)
 """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
 
 
@@ -150,11 +206,21 @@ def _remember_a_deflection(law: Any, body: Body, state: Any, z: Any) -> None:
     store(state, bristle_unit(law, body), z)
 
 
-remember = by_law(_remember_nothing, _remember_a_deflection)
+def _remember_sliding(law: Any, body: Body, state: Any, z: Any) -> None:
+    """The memory of steady sliding at slip velocity z."""
+    memory = memory_of(law, z)
+    slid(law, body, memory, z)
+    kept(memory, law, scales_of(law, body, z), state, 2 * dimension(z), memory[0])
+
+
+remember = by_law(_remember_nothing, _remember_a_deflection, None, _remember_sliding)
 
 
 @inner
 def start_of(law: Any, body: Body, state: Any, x: Any, v: Any, z: Any) -> None:
-    """The state of a mass at x moving at v at tau = 0, its bristle, if there is one, deflected by z."""
+    """The state of a mass at x moving at v at tau = 0, its bristle, if there is one, deflected by z.
+
+    With another memory, z is the velocity of steady sliding that it remembers.
+    """
     pack(body, state, x - body.reference_cosine, v - body.frequency * body.reference_sine)
     remember(law, body, state, z)

@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Answers, Floats, Orbit, Status
 from frictionlab.methods.prescribed_bristle import BristlePoint, saturates
+from frictionlab.methods.prescribed_memory import MemoryPoint
 from frictionlab.methods.prescribed_motion import (
     Reading,
     prescribed_columns,
@@ -62,7 +64,9 @@ def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
     )
 
 
-def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> _Point | BristlePoint:
+def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> _Point | BristlePoint | MemoryPoint:
+    if isinstance(law, MemoryLaw):
+        return MemoryPoint(scene, law, tolerance)
     if isinstance(law, BristleLaw) and not saturates(scene, law):
         return BristlePoint(scene, law, tolerance)
     return _Point(scene, law)

@@ -11,6 +11,7 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.attractors import attractors, closed_orbit, multiplier, told
 from frictionlab.methods.base import Answers, Floats, Method, Orbit, Status
 from frictionlab.methods.closer import Closer, along_the_belt
@@ -23,7 +24,7 @@ from frictionlab.scene import Scene
 
 
 class Shooting(Method):
-    """Shooting on the period map of any law without memory or with a bristle, on the line and in the plane.
+    """Shooting on the period map of any law, with whatever memory, on the line and in the plane.
 
     Integrates the deviation from the friction-free response by DOP853 with the instants of stick and release
     resolved, and closes the orbit by Broyden's method with Newton and Picard steps where it stalls. The error comes
@@ -31,8 +32,9 @@ class Shooting(Method):
     friction, or by the mean's own change where friction falls with speed. There the orbit must attract, and starts
     far from each other must reach it; otherwise the mean is not unique.
     Along the belt a bristle whose path is exact is put in as a function of the way slid; otherwise mass and bristle
-    are solved for together by Rodas5P. Without a drive the period is an unknown too, and the answer is the state
-    reached from scene.initial. A prescribed slip leaves nothing to close: its mean is quadrature.
+    are solved for together by Rodas5P, as mass and any other memory are. Without a drive the period is an unknown
+    too, and the answer is the state reached from scene.initial. A prescribed slip leaves a mass nothing to close: the
+    mean is quadrature, or that of the closed loop of the memory.
 
     Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023).
     """
@@ -40,11 +42,13 @@ class Shooting(Method):
     name: ClassVar[str] = "shooting"
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Other memory than a bristle's; bristles where nothing drives; an undriven start across the belt."""
+        """Memory where nothing drives; an undriven start across the belt; a law of none of the kinds known."""
         if isinstance(law, BristleLaw) and scene.degrees_of_freedom == 0:
             return refusal_of_prescribed(scene, law)
+        if isinstance(law, MemoryLaw):
+            return _refusal_with_memory(scene)
         if not isinstance(law, SlidingLaw | BristleLaw):
-            return "shooting needs friction without memory, or with one bristle deflection"
+            return "shooting knows friction laws that are a SlidingLaw, a BristleLaw or a MemoryLaw"
         if isinstance(law, BristleLaw):
             return _refusal_with_a_bristle(scene, law)
         if scene.undriven and (scene.start.x2 != 0.0 or scene.start.velocity2 != 0.0):
@@ -55,8 +59,10 @@ class Shooting(Method):
         """About 0.3 ms in the plane and 0.1 ms on the line at 1e-9; steps grow as tolerance^(-1/8).
 
         With a bristle, other starts included, 1 ms on the line where the path is exact, else ten times as long and as
-        tolerance^(-1/5), and 50 ms in the plane.
+        tolerance^(-1/5), and 50 ms in the plane. With another memory 20 ms on the line and 200 ms in the plane.
         """
+        if isinstance(law, MemoryLaw):
+            return (2e-2 if scene.load_along_belt_only else 2e-1) * (1e-6 / tolerance) ** 0.2
         if not isinstance(law, BristleLaw):
             return (1e-4 if scene.load_along_belt_only else 3e-4) * (1e-9 / tolerance) ** 0.125
         if not scene.load_along_belt_only:
@@ -71,7 +77,7 @@ class Shooting(Method):
             assert isinstance(law, SlidingLaw)
             return solve_undriven(scenes, law, tolerance)
         closer = Closer(scenes[0], law, tolerance)
-        found = Found.empty(scenes)
+        found = Found.empty(scenes, closer)
         resting = [i for i, scene in enumerate(scenes) if stays_at_rest(scene, law)]
         moving = [i for i in range(len(scenes)) if i not in resting]
         if moving:
@@ -116,17 +122,20 @@ class Found:
     reached: list[bool]
     columns: dict[str, Floats]
     planar: bool
+    whole: (
+        bool  # states have every degree of freedom: along the line, multipliers across the belt are left out
+    )
 
     @classmethod
-    def empty(cls, scenes: Sequence[Scene]) -> Found:
+    def empty(cls, scenes: Sequence[Scene], closer: Closer) -> Found:
         """Nothing found yet for these scenes."""
         n = len(scenes)
         names = [name for name in READ if not name.startswith("mean_position")]
         names += ["error", "mean_low", "mean_high", "window", "period", "floquet", "seconds"]
         columns = {name: np.full(n, np.nan) for name in names}
-        return cls(
-            ["failed"] * n, [""] * n, [None] * n, [False] * n, columns, scenes[0].degrees_of_freedom == 2
-        )
+        planar = scenes[0].degrees_of_freedom == 2
+        whole = planar == isinstance(closer.like, complex)
+        return cls(["failed"] * n, [""] * n, [None] * n, [False] * n, columns, planar, whole)
 
     def take(self, where: list[int], scene: Scene, curve: Curve, seconds: float) -> None:
         """Take in the closed orbits of the scenes at these places."""
@@ -144,7 +153,7 @@ class Found:
                 self._range(i, curve.results[row, 0], curve.results[row, 0])
             else:
                 self._put(i, curve, row)
-                self.columns["floquet"][i] = multipliers[row] if _whole(curve, scene) else np.nan
+                self.columns["floquet"][i] = multipliers[row] if self.whole else np.nan
 
     def attracts(self, i: int) -> bool:
         """Whether no small disturbance leaves the answer, and both starts that are quick to ask end there."""
@@ -177,18 +186,23 @@ class Found:
         self._clear(i)
         if first.period == 1 and first.curve is not None and (unique or scene.initial is not None):
             self._put(i, first.curve, 0)
-            self.columns["floquet"][i] = _largest(first.curve, scene)
+            self.columns["floquet"][i] = self._largest(first.curve)
             self.reason[i] = "" if unique else f"reached from scene.initial; {told(reached)}"
             return
         if closer.falls_slowly and all(one.curve is None for one in reached):
             self.reason[i] = f"no steady state found: {told(reached)}"
             return
         self._range(i, min(one.low for one in reached), max(one.high for one in reached))
-        why = "the deflection lags behind the slip" if closer.falls_slowly else "friction falls with speed"
+        lags = "the memory" if isinstance(closer.law, MemoryLaw) else "the deflection"
+        why = f"{lags} lags behind the slip" if closer.falls_slowly else "friction falls with speed"
         self.reason[i] = f"{why}: {told(reached)}"
         if unique and first.curve is not None:
             self.columns["period"][i] = first.period
-            self.columns["floquet"][i] = _largest(first.curve, scene)
+            self.columns["floquet"][i] = self._largest(first.curve)
+
+    def _largest(self, curve: Curve) -> float:
+        """The largest Floquet multiplier, where those of every degree of freedom are known."""
+        return multiplier(curve) if self.whole else math.nan
 
     def _clear(self, i: int) -> None:
         self.status[i], self.reason[i], self.states[i] = "failed", "", None
@@ -237,6 +251,12 @@ def _refusal_with_a_bristle(scene: Scene, law: BristleLaw) -> str | None:
     return None
 
 
+def _refusal_with_memory(scene: Scene) -> str | None:
+    if scene.undriven:
+        return "shooting follows undriven scenes for friction without memory alone: give a drive"
+    return None
+
+
 def stays_at_rest(scene: Scene, law: FrictionLaw) -> bool:
     """Whether friction can hold the loads for ever on a belt at rest; a bristle always gives a little."""
     if not isinstance(law, SlidingLaw):
@@ -270,16 +290,6 @@ def resting_range(scene: Scene, law: SlidingLaw) -> float:
     return best / mass.normal_load
 
 
-def _largest(curve: Curve, scene: Scene) -> float:
-    """The largest Floquet multiplier, where those of every degree of freedom are known."""
-    return multiplier(curve) if _whole(curve, scene) else math.nan
-
-
-def _whole(curve: Curve, scene: Scene) -> bool:
-    """Whether states have every degree of freedom: along the line, multipliers across the belt are left out."""
-    return curve.states.shape[1] in ((2, 3) if scene.degrees_of_freedom == 1 else (4, 6))
-
-
 def _undamped(scene: Scene) -> bool:
     mass = scene.mass()
     return mass.damping == 0.0 or (scene.transverse is not None and mass.transverse_damping == 0.0)
@@ -295,6 +305,8 @@ def _model(scene: Scene, closer: Closer) -> str:
         model = "shooting, one degree of freedom: with no load across the belt x2 dies out"
     else:
         model = f"shooting, {directions} of freedom"
+    if isinstance(closer.law, MemoryLaw):
+        return f"{model}; mass and memory solved for together (Rodas5P)"
     if not isinstance(closer.law, BristleLaw):
         return model
     if directions == "one degree" and closer.law.exact_path():

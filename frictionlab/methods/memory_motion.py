@@ -1,0 +1,167 @@
+"""The motion of a mass and of the memory of its friction, of any size, as one array of numbers.
+
+They are the deviation y from the harmonic reference, the slip w itself, friction's integral and the memory. A law may
+creep at 1e-26 of the belt speed in stick: as a difference of two velocities such a slip would be lost.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.kernel import by_dimension, inner
+from frictionlab.methods.bristle_map import dimension, put, taken
+from frictionlab.methods.memory_state import filled, memory_of, parts, spilled
+from frictionlab.methods.sliding_map import reference_velocity, restoring_force, turned
+from frictionlab.methods.steppers.rodas5p import STAGES
+from frictionlab.methods.turning import reference_acceleration
+from frictionlab.scene import Body
+
+YIELDS = 1e-9
+"""Of the slip along a deflection: one that is stretched by less yields."""
+
+
+class Problem(NamedTuple):
+    """A law and a body on a belt; sine and cosine at the anchor time."""
+
+    law: Any
+    body: Body
+    belt_speed: float
+    anchor: float
+    sine: float
+    cosine: float
+
+
+class Work(NamedTuple):
+    """Room for one step; values are [y, w, friction's integral, memory], the first three of d numbers each."""
+
+    at: Any  # where the step starts
+    k: Any  # [stages, n] increments
+    stage: Any
+    rates: Any
+    slope: Any  # derivative of the rates with respect to time
+    end: Any  # where the step ends
+    kept: Any  # the same, while the way there is noted
+    matrix: Any  # [d + m, d + m]
+    right: Any
+    rows: Any
+    by: Any  # [m + d, d + m] rates of memory and friction by slip and memory
+    drag: Any  # [2, d] damping and stiffness of the body
+    memory: Any  # as the law knows it
+    moving: Any  # its rates
+    trial: Any  # [3, m + d] rates of memory and friction, for quotients
+    radius: Any  # of the circle on which a deflection in the plane yields, 0 where it does not
+
+
+@inner
+def work_of(law: Any, body: Body, like: Any) -> Work:
+    """Room for the steps of a law."""
+    d, memory = dimension(like), memory_of(law, like)
+    m = memory.size * parts(memory[0])
+    n = 3 * d + m
+    drag = np.empty((2, d))
+    drag[0, 0] = body.damping_mean + body.damping_split
+    drag[1, 0] = body.stiffness_mean + body.stiffness_split
+    if d == 2:
+        drag[0, 1] = body.damping_mean - body.damping_split
+        drag[1, 1] = body.stiffness_mean - body.stiffness_split
+    return Work(
+        np.zeros(n),
+        np.zeros((STAGES, n)),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros((d + m, d + m)),
+        np.zeros(d + m),
+        np.zeros(d + m, np.int64),
+        np.zeros((m + d, d + m)),
+        drag,
+        memory,
+        memory_of(law, like),
+        np.zeros((3, m + d)),
+        np.zeros(memory.size),
+    )
+
+
+@inner
+def anchored(law: Any, body: Body, belt_speed: float, tau: float) -> Problem:
+    """The problem with its sine and cosine at this time."""
+    angle = body.frequency * tau
+    return Problem(law, body, belt_speed, tau, math.sin(angle), math.cos(angle))
+
+
+def _rounded_on_the_line(memory: Any, radius: Any, item: float) -> None:
+    """On the line a deflection that yields stays what it is."""
+
+
+def _rounded_in_the_plane(memory: Any, radius: Any, item: complex) -> None:
+    """Put what yields on its circle, not a rounding error inside it."""
+    for k in range(memory.size):
+        if radius[k] > 0.0:
+            memory[k] = memory[k] * (radius[k] * (1.0 + 1e-15) / abs(memory[k]))
+
+
+rounded = by_dimension(_rounded_on_the_line, _rounded_in_the_plane)
+
+
+def _yielding_on_the_line(w: float, work: Any, item: float) -> None:
+    """Nothing to tell."""
+
+
+def _yielding_in_the_plane(w: complex, work: Any, item: complex) -> None:
+    """Tell from ``work.moving`` which deflections slip loads without stretching them."""
+    for k in range(work.memory.size):
+        z = work.memory[k]
+        loaded = (w * z.conjugate()).real
+        stretched = abs((work.moving[k] * z.conjugate()).real)
+        work.radius[k] = abs(z) if loaded > 0.0 and stretched <= YIELDS * loaded else 0.0
+
+
+_yielding = by_dimension(_yielding_on_the_line, _yielding_in_the_plane)
+
+
+@inner
+def begin_step(law: Any, w: Any, work: Work, like: Any) -> None:
+    """Tell which deflections yield at the start of a step, and put those on their circles."""
+    filled(work.memory, work.at, 3 * dimension(like), work.memory[0])
+    work.radius[:] = 0.0
+    if law.turning > 0.0:
+        felt(law, w, work)
+        _yielding(w, work, work.memory[0])
+
+
+@inner
+def felt(law: Any, w: Any, work: Work) -> Any:
+    """Friction of ``work.memory`` at a slip velocity; leaves the memory's rates in ``work.moving``."""
+    rounded(work.memory, work.radius, work.memory[0])
+    for k in range(work.memory.size):
+        work.moving[k] = law.rate(w, work.memory, k)
+    return law.friction(w, work.memory, work.moving)
+
+
+@inner
+def pushed(body: Body) -> float:
+    """The normal load by which friction moves the mass."""
+    return 0.0 if body.prescribed else body.normal_load
+
+
+@inner
+def rates(problem: Problem, tau: float, values: Any, work: Work, out: Any, like: Any) -> Any:
+    """The rate of the values; returns the slip's."""
+    body = problem.body
+    sine, cosine = turned(problem, tau)
+    y, w = taken(values, 0, like), taken(values, 1, like)
+    u = w + problem.belt_speed - reference_velocity(body, sine, cosine)
+    filled(work.memory, values, 3 * dimension(like), work.memory[0])
+    rub = felt(problem.law, w, work)
+    a = body.force_sine * sine + body.force_cosine * cosine - restoring_force(body, y, u)
+    a = a - pushed(body) * rub + reference_acceleration(body, sine, cosine)
+    put(out, 0, u)
+    put(out, 1, a)
+    put(out, 2, rub)
+    spilled(work.moving, out, 3 * dimension(like), work.moving[0])
+    return a

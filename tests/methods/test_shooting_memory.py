@@ -1,0 +1,164 @@
+"""Bodies on contacts with several memories or with scalars: against other laws, and against scipy."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import os
+from typing import Any
+
+import numpy as np
+import pytest
+from memory_laws import Ageing, Elements
+from scipy.integrate import solve_ivp
+
+import frictionlab as fl
+
+DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
+deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
+ONE = Elements(stiffness=(40.0,), reach=(0.01,))
+THREE = Elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
+TOLERANCES = [1e-4, 1e-6, 1e-8]
+
+
+def driven(belt_speed: float, damping: float = 0.4) -> fl.Scene:
+    """A body that forgets where it started within some ten periods."""
+    drive = fl.Drive(unbalance=10, frequency=1.5)
+    return fl.Scene(damping_ratio=damping, normal_load=10, belt_speed=belt_speed, drive=drive)
+
+
+def by_lsoda(scene: fl.Scene, law: Ageing, periods: int) -> float:
+    """The mean friction of the last of so many periods, with the interpreted law; slip is integrated as such."""
+    mass = scene.mass()
+    span = 2.0 * math.pi / mass.frequency
+
+    def rates(tau: float, state: Any) -> list[float]:
+        x, w, age, _ = state.tolist()
+        rub = law.friction(w, [age], [0.0])
+        v = w + scene.belt_speed
+        push = (mass.force * cmath.exp(1j * mass.frequency * tau)).imag - mass.damping * v - x
+        return [v, push - mass.normal_load * rub, law.rate(w, [age], 0), rub]
+
+    state = np.array([0.0, -scene.belt_speed, law.steady(scene.belt_speed, 0), 0.0])
+    for _ in range(periods):
+        state[3] = 0.0
+        found = solve_ivp(rates, (0.0, span), state, "LSODA", rtol=1e-10, atol=1e-12)
+        state = found.y[:, -1]
+    return float(-state[3] / span)
+
+
+def by_legs(scene: fl.Scene, law: Elements, periods: int) -> float:
+    """The same for elements: between reversals of slip each deflection is the way slid, cut off at its reach."""
+    mass = scene.mass()
+    span, reach = 2.0 * math.pi / mass.frequency, np.array(law.reach)
+    z, state, tau, rubbed = -reach, np.array([0.0, -scene.belt_speed, 0.0]), 0.0, 0.0
+
+    def slip(tau: float, state: Any, start: Any) -> float:
+        return float(state[1])
+
+    def rates(tau: float, state: Any, start: Any) -> list[float]:
+        way = state[0] - start[0] - scene.belt_speed * (tau - start[1])
+        rub = float(np.dot(law.stiffness, np.clip(start[2] + way, -reach, reach)))
+        v = state[1] + scene.belt_speed
+        push = (mass.force * cmath.exp(1j * mass.frequency * tau)).imag - mass.damping * v - state[0]
+        return [v, push - mass.normal_load * rub, rub]
+
+    slip.terminal = True  # type: ignore[attr-defined]
+    for n in range(1, periods + 1):
+        state[2] = 0.0
+        while tau < n * span:
+            start = state[0], tau, z
+            slip.direction = -math.copysign(1.0, state[1])  # type: ignore[attr-defined]
+            options = {"events": slip, "rtol": 1e-12, "atol": 1e-13}
+            leg = solve_ivp(rates, (tau, n * span), state, "DOP853", args=(start,), **options)
+            way = leg.y[0, -1] - start[0] - scene.belt_speed * (leg.t[-1] - tau)
+            z, tau, state = np.clip(z + way, -reach, reach), leg.t[-1], leg.y[:, -1].copy()
+            if leg.status == 1:
+                state[1] = math.copysign(1e-14, slip.direction)  # type: ignore[attr-defined]
+        rubbed = state[2]
+    return float(-rubbed / span)
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("belt_speed", [0.5, 5.0])
+def test_one_element_is_jenkins_friction(belt_speed: float, tolerance: float) -> None:
+    scene = driven(belt_speed, damping=0.1)
+
+    known = fl.steady_state(scene, fl.Jenkins(mu=0.4, stiffness=40), "shooting")
+    found = fl.steady_state(scene, ONE, tolerance=tolerance)
+
+    assert found.status == "ok", found.reason
+    assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("belt_speed", [0.1, 0.5, 1.5])
+def test_one_element_is_jenkins_friction_under_a_prescribed_slip(belt_speed: float, tolerance: float) -> None:
+    slip = fl.Slip(velocity_amplitude=1, frequency=2, phase=30)
+    scene = fl.Scene(belt_speed=belt_speed, normal_load=3, slip=slip)
+
+    known = fl.steady_state(scene, fl.Jenkins(mu=0.4, stiffness=4))
+    found = fl.steady_state(scene, Elements(stiffness=(4.0,), reach=(0.1,)), tolerance=tolerance)
+
+    assert found.status == "ok", found.reason
+    assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
+    assert found.energy_contact == pytest.approx(known.energy_contact, rel=1e-3)
+
+
+@deep
+def test_elements_that_never_yield_leave_the_mean_open() -> None:
+    slip = fl.Slip(velocity_amplitude=0.05, frequency=2)
+
+    found = fl.steady_state(fl.Scene(belt_speed=0, slip=slip), Elements(stiffness=(4.0,), reach=(0.1,)))
+
+    assert found.status == "not_unique"
+    assert "start" in found.reason
+
+
+SLIPPERY = Ageing(a=0.03, b=0.02)
+
+
+@pytest.mark.parametrize(
+    ("law", "belt_speed"),
+    [
+        pytest.param(THREE, 1.0, id="three elements"),
+        pytest.param(SLIPPERY, 40.0, id="no reversal", marks=deep),
+        pytest.param(SLIPPERY, 3.0, id="two reversals", marks=deep),
+    ],
+)
+def test_the_error_covers_what_scipy_finds_on_the_interpreted_law(
+    law: Ageing | Elements, belt_speed: float
+) -> None:
+    scene = driven(belt_speed)
+    known = by_legs(scene, law, 14) if isinstance(law, Elements) else by_lsoda(scene, law, 14)
+
+    for tolerance in TOLERANCES:
+        found = fl.steady_state(scene, law, tolerance=tolerance)
+
+        assert found.status == "ok", found.reason
+        assert found.error <= tolerance
+        assert abs(found.mean_friction - known) <= found.error + 3e-9
+
+
+def test_a_curve_of_elements_has_every_column_of_a_steady_state() -> None:
+    table = fl.curve(driven(1.0), THREE, belt_speed=np.linspace(0.5, 25.0, 8), tolerance=1e-6)
+
+    assert set(table["status"]) == {"ok"}
+    assert "mass and memory" in table["model"][0]
+    balance = table["energy_input"] - table["energy_viscous"] - table["energy_friction"]
+    assert np.abs(balance).max() <= 1e-4 * table["energy_input"].abs().max()
+    assert table["floquet"].max() < 1.0
+
+
+@deep
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+def test_one_element_is_jenkins_friction_in_the_plane(tolerance: float) -> None:
+    drive, load = fl.Drive(unbalance=10, frequency=1.5), fl.Load(unbalance=6)
+    across = fl.Transverse(natural_frequency=0.7, damping_ratio=0.1, load=load)
+    scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=2, drive=drive, transverse=across)
+
+    known = fl.steady_state(scene, fl.Jenkins(mu=0.4, stiffness=4))
+    found = fl.steady_state(scene, Elements(stiffness=(4.0,), reach=(0.1,)), tolerance=tolerance)
+
+    assert found.status == "ok", found.reason
+    assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error

@@ -21,6 +21,7 @@ from frictionlab.methods.sliding_map import (
     restoring_force,
     span,
     turned,
+    wary_growth_of,
 )
 from frictionlab.methods.steppers.dop853 import State, stepper
 from frictionlab.methods.track import Track
@@ -139,7 +140,7 @@ def _slid(leg: Leg, tau: float, y: float) -> float:
 def share_of_the_way(law: Any, body: Body, accuracy: float) -> float:
     """How much of the way since a reversal a step may add to it: less for finer maps, or two would agree by it."""
     impulse = body.normal_load * law.sliding_friction(0.0)
-    return min(1.0, 4.0 * (accuracy / impulse) ** 0.0625)
+    return min(1.0, 2.0 * (accuracy / impulse) ** 0.0625)
 
 
 @inner
@@ -225,12 +226,11 @@ def path_map(
         leg = _anchored(leg, tau)
         w, rate = slip(leg, tau, state.v), _slip_rate(leg, tau, state.a)
         closest = min(closest, abs(w))
-        if corner > way or corner == math.inf:
-            h = min(h, _longest(leg, way, share, w, rate))
-        h = min(h, reach, end - tau)
+        ahead = _longest(leg, way, share, w, rate) if corner > way or corner == math.inf else 1e300
+        h = min(h, ahead, reach, end - tau)
         taken = step(leg, tau, state, h)
         steps += 1
-        growth = growth_of(body, taken, accuracy)
+        growth = wary_growth_of(body, taken, accuracy) if ahead < 1e300 else growth_of(body, taken, accuracy)
         if steps > MOST_STEPS:
             return Carried(state.x, state.v, z, rubbed, closest, -1)
         if growth < 1.0:

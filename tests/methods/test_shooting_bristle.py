@@ -253,6 +253,21 @@ def test_soft_damped_bristles_can_double_the_period() -> None:
     assert answers.columns["floquet"][0] < 1.0
 
 
+@pytest.mark.parametrize("tolerance", [1e-5, 1e-6, 5e-7, 1e-7])
+def test_the_layer_after_a_reversal_is_not_passed_in_one_step_that_seems_exact(tolerance: float) -> None:
+    """Found at random: maps of two accuracies agreed to 3e-10, both 4e-8 off in the layer."""
+    scene = fl.Scene(
+        damping_ratio=0.2487779453056568,
+        normal_load=107.5938382561669,
+        belt_speed=28.78139268177265,
+        drive=fl.Drive(amplitude=68.96230366392348, phase=262.47097753883526, frequency=1.4455318085738338),
+    )
+    law = fl.Dahl(mu=0.21570801037813447, presliding_length=0.028157999408187733, exponent=1.9345098511021104)
+    compared(
+        Shooting().solve([scene], law, tolerance), 0.0745405342, 1e-10, tolerance
+    )  # scipy's LSODA at 1e-11
+
+
 def test_a_soft_contact_slides_on_or_reverses_on_one_belt() -> None:
     """Beyond the vibration speed constant friction lets slip go on without reversal; contact resonance may not."""
     scene = fl.Scene(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import itertools
+from pathlib import Path
 
 import pytest
 from hypothesis import assume, given, settings
@@ -117,3 +118,21 @@ def test_a_spring_beyond_its_reach_comes_back_to_it(mu, stiffness, v, z, beyond)
 
     assert not law.within(memory) or beyond < 2e-9
     assert (law.rate(v, memory, 0) * memory[0].conjugate()).real < 0.0
+
+
+def test_under_a_given_slip_the_means_of_its_elements_add_up():
+    law, mean = MaxwellSlip(mu=[0.2, 0.1, 0.1], stiffness=[0.2, 0.02, 0.005]), 0.0
+    scene = fl.Scene(belt_speed=5, slip=fl.Slip(velocity_amplitude=10, frequency=1))
+    for mu, stiffness in zip(law.mu, law.stiffness, strict=True):
+        mean += fl.steady_state(scene, fl.Jenkins(mu=mu, stiffness=stiffness), method="exact").mean_friction
+
+    state = fl.steady_state(scene, law)
+    assert state.status == "ok"
+    assert abs(state.mean_friction - mean) <= state.error + 1e-13
+
+
+def test_its_study_keeps_its_promises():
+    done = fl.run(Path(__file__).parent / "study.yaml")
+
+    assert [verdict.sentence for verdict in done.verdicts if not verdict.passed] == []
+    assert set(done.table["status"]) == {"ok"}

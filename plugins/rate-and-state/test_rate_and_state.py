@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,8 @@ from hypothesis import strategies as st
 from rate_and_state import RateAndState
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+
+import frictionlab as fl
 
 AGEING = RateAndState(mu=0.6, a=0.01, b=0.015, slip_length=10)
 both = pytest.mark.parametrize("law", [AGEING, AGEING.model_copy(update={"state_law": "slip"})])
@@ -158,3 +161,25 @@ def test_a_contact_at_rest_heals_by_the_ageing_law_alone():
 
     assert AGEING.rate(0.0, [3.0], 0) == 1.0
     assert slip.rate(0.0, [3.0], 0) == 0.0
+
+
+@pytest.mark.parametrize("belt_speed", [6.0, 10.0])
+@both
+def test_quick_vibration_lowers_the_mean_as_the_averaged_law_says(law, belt_speed):
+    """Age answers to the mean of what renews it: <v>, or in the slip law <v ln v>."""
+    share = 5.0 / belt_speed
+    root = math.sqrt(1.0 - share**2)
+    logarithm = math.log(belt_speed * (1.0 + root) / 2.0)  # <ln v>
+    renewal = math.log(belt_speed) if law.heals else logarithm + 1.0 - root  # ln <v> or <v ln v>/<v>
+    slow = law.model_copy(update={"slip_length": 1e3})
+    scene = fl.Scene(belt_speed=belt_speed, slip=fl.Slip(velocity_amplitude=5, frequency=1))
+
+    mean = fl.steady_state(scene, slow).mean_friction
+    assert mean == pytest.approx(0.6 + law.a * logarithm - law.b * renewal, abs=1e-6)
+
+
+def test_its_study_keeps_its_promises():
+    done = fl.run(Path(__file__).parent / "study.yaml")
+
+    assert [verdict.sentence for verdict in done.verdicts if not verdict.passed] == []
+    assert set(done.table["status"]) == {"ok"}

@@ -1,0 +1,69 @@
+"""The plugins of this project: complete folders, which install, run and are missed when they are gone."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from frictionlab.study import load_study
+
+PROJECT = Path(__file__).parent.parent
+FOLDERS = sorted(path.parent for path in PROJECT.glob("plugins/*/pyproject.toml"))
+DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
+every_folder = pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
+
+
+def _project(folder: Path) -> dict[str, str]:
+    return dict(tomllib.loads((folder / "pyproject.toml").read_text())["project"])
+
+
+def _laws(folder: Path) -> dict[str, str]:
+    return dict(_project(folder)["entry-points"]["frictionlab.laws"])  # type: ignore[index,arg-type]
+
+
+def test_there_are_plugins() -> None:
+    assert FOLDERS
+
+
+@every_folder
+def test_a_folder_holds_a_law_a_study_that_runs_it_and_is_told_of(folder: Path) -> None:
+    plan = load_study(folder / "study.yaml")
+
+    assert {law.kind for law in plan.laws} >= set(_laws(folder))
+    assert plan.title
+    assert plan.source
+    assert plan.expect
+    assert all(expectation.because for expectation in plan.expect)
+    assert all(f"kind: {name}" in (folder / "README.md").read_text() for name in _laws(folder))
+    assert f"[{folder.name}]({folder.name})" in (PROJECT / "plugins" / "README.md").read_text()
+
+
+@pytest.mark.skipif(not DEEP, reason="making an environment is in the deep profile")
+def test_in_a_fresh_environment_a_plugin_is_listed_and_run_and_missed_when_it_is_gone(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, "-m", "venv", tmp_path / "venv"], check=True)
+    python, frictionlab = tmp_path / "venv" / "bin" / "python", tmp_path / "venv" / "bin" / "frictionlab"
+
+    def pip(*arguments: str | Path) -> None:
+        subprocess.run([python, "-m", "pip", "--quiet", *arguments], check=True)
+
+    def said(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([frictionlab, *arguments], cwd=tmp_path, capture_output=True, text=True)
+
+    pip("install", PROJECT, *FOLDERS)
+    listed, schema = said("laws").stdout, said("schema").stdout
+    for folder in FOLDERS:
+        done = said("run", folder / "study.yaml", "-o", folder.name)
+        assert done.returncode == 0, done.stderr
+        assert all(name in listed and f'"{name}"' in schema for name in _laws(folder))
+
+    pip("uninstall", "--yes", *(_project(folder)["name"] for folder in FOLDERS))
+    for folder in FOLDERS:
+        done = said("run", folder / "study.yaml", "-o", "again")
+        assert done.returncode == 2
+        assert all(f"unknown law '{name}'" in done.stderr for name in _laws(folder))
+        assert "install the package that brings it" in done.stderr

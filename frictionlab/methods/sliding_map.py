@@ -139,7 +139,7 @@ def growth_of(body: Body, taken: Any, accuracy: float) -> float:
 
 @inner
 def wary_growth_of(body: Body, taken: Any, accuracy: float) -> float:
-    """The same by the fifth-order error alone, which sees what the mixture of orders does not: a layer in one step."""
+    """The same by the fifth-order error alone: the mixture of orders does not see a layer passed in one step."""
     fifth = squared(body, taken.x_error5, taken.v_error5)
     if not fifth < 1e300:
         return 0.1

@@ -18,6 +18,7 @@ from frictionlab.methods.base import Answers, Orbit
 from frictionlab.methods.shooting import Shooting
 
 REFERENCE = Path(__file__).parents[1] / "reference"
+BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 W4 = pd.read_csv(REFERENCE / "bristle_w4.csv")
 MORE = pd.read_csv(REFERENCE / "bristle_more.csv")
 SYSTEM = pd.read_csv(REFERENCE / "dynamic_laws_system.csv")
@@ -251,6 +252,19 @@ def test_soft_damped_bristles_can_double_the_period() -> None:
     assert answers.status == ["not_unique"]
     assert answers.columns["period"][0] == 2.0
     assert answers.columns["floquet"][0] < 1.0
+
+
+@pytest.mark.parametrize("workload", ["W4a", "W4b", "W4c", "W4d", "W4_0.5", "W4_5e-06"])
+def test_errors_cover_along_whole_curves(workload: str) -> None:
+    """Against collocation (tests/benchmarks), known to 1e-12."""
+    curve = pd.read_csv(BENCHMARKS / f"bristle_{workload}.csv")
+    kinds = {"W4a": 5e-2, "W4b": 5e-4, "W4c": 5e-2, "W4d": 5e-4, "W4_0.5": 0.5, "W4_5e-06": 5e-6}
+    law: BristleLaw = fl.LuGre(mu_kinetic=0.4, damping=4e-4, presliding_length=kinds[workload])
+    if workload in ("W4c", "W4d"):
+        law = fl.Dahl(mu=0.4, presliding_length=kinds[workload])
+    for tolerance in (1e-5, 1e-6, 1e-7):
+        answers = Shooting().solve(scenes(curve["belt_speed"].to_numpy()), law, tolerance)
+        compared(answers, curve["mean_friction"].to_numpy(), 1e-12, tolerance)
 
 
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-6, 5e-7, 1e-7])

@@ -104,8 +104,13 @@ class Closer:
         at = self._shaken(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
         state = np.empty(self.size)
         compiled(begin, self.law)(self.body, at, state)
-        # bristles' maps are of lower order, and smooth
-        return self._followed(belt_speed, state, most, 1e-9 if isinstance(self.law, SlidingLaw) else 1e-6)
+        return self._followed(belt_speed, state, most, self._rough())
+
+    def _rough(self) -> float:
+        """Accuracy of the maps that follow a motion: with memory of lower order, with one bristle smooth."""
+        if isinstance(self.law, SlidingLaw):
+            return 1e-9
+        return 1e-6 if isinstance(self.law, BristleLaw) else 1e-7
 
     def means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
         """The one-period means of an orbit of so many periods, from its state."""

@@ -6,11 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import MemoryLaw
 from frictionlab.testing.given import Given
 
 Body = Callable[[Given], None]
 Skips = Callable[[type[FrictionLaw]], str]
+BASES = (FrictionLaw, SlidingLaw, BristleLaw, MemoryLaw)
 
 
 @dataclass(frozen=True)
@@ -19,7 +22,8 @@ class Check:
 
     name: of a few words with underscores, as ``expected_failures`` takes it. about: what holds, in a sentence.
     skips: why a law needs no such check, or ''. share: of the examples asked for, below one where examples are dear;
-    0 for what is looked at once. seldom: what it means where no parameters drawn let the check run. after: judges
+    0 for what is looked at once. seldom: what it means where no parameters drawn let the check run. declares: the
+    method by which a law says that it is for it; one that leaves it as its base has it needs no check. after: judges
     what all examples noted. patience: how many times the time limit it may take.
     """
 
@@ -29,8 +33,20 @@ class Check:
     skips: Skips
     share: float = 1.0
     seldom: str = ""
+    declares: str = ""
     after: Body | None = None
     patience: float = 1.0
+
+    def needless(self, law: type[FrictionLaw]) -> str:
+        """Why this law needs no such check, or ''."""
+        if reason := self.skips(law):
+            return reason
+        return self.seldom if self.declares and _owner(law, self.declares) in BASES else ""
+
+
+def _owner(law: type[FrictionLaw], method: str) -> type:
+    """The class that a law has a method from."""
+    return next(kind for kind in law.__mro__ if method in vars(kind))
 
 
 def for_every_law(law: type[FrictionLaw]) -> str:

@@ -18,6 +18,7 @@ from frictionlab.laws.base import FrictionLaw
 
 DECADES = 3.0
 """A number without an upper limit is drawn within so many decades of one."""
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 TRIES = 50
 """Sets of parameters before these count as ones that cannot be given together."""
 MOST_PRESENCES = 256
@@ -28,14 +29,33 @@ class NoParameters(AssertionError):
     """Nothing was drawn that the law accepts."""
 
 
+def evenly(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers spread evenly, the middle the simplest.
+
+    Hypothesis prefers round and small numbers; steps of the golden ratio spread even the smallest whole ones.
+    """
+    return st.integers(0, 65_535).map(lambda n: low + (high - low) * ((0.5 + n * GOLDEN) % 1.0))
+
+
 def sizes(low: float, high: float) -> st.SearchStrategy[float]:
     """Positive numbers, log-uniform."""
-    return st.floats(math.log10(low), math.log10(high)).map(lambda exponent: 10.0**exponent)
+    return evenly(math.log10(low), math.log10(high)).map(lambda exponent: 10.0**exponent)
+
+
+def seldom(special: st.SearchStrategy[Any], usual: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
+    """What is special one time in four, and simplest; else what is usual."""
+    return st.integers(0, 3).flatmap(lambda way: usual if way else special)
 
 
 signs = st.sampled_from([1.0, -1.0])
-angles = st.floats(-math.pi, math.pi)
-turns = angles.map(lambda angle: complex(math.cos(angle), math.sin(angle)))
+shares = seldom(st.sampled_from([0.0, 1.0, -1.0, 1.0, -1.0]), evenly(-1.0, 1.0))
+"""Of what a memory can hold, either way: none and all of it often enough to be seen."""
+angles = evenly(-math.pi, math.pi)
+turns = seldom(
+    st.sampled_from([1.0 + 0j, -1.0 + 0j, 1j, -1j]),
+    angles.map(lambda angle: complex(math.cos(angle), math.sin(angle))),
+)
+"""Directions in the plane; along the axes often enough that a form of its own there is seen."""
 speeds = sizes(1e-6, 1e6)
 
 
@@ -161,7 +181,7 @@ def values(field: FieldInfo) -> st.SearchStrategy[Any]:
     """What a field may hold, by its annotation; its default often enough to be seen."""
     drawn = _of(field.annotation, tuple(field.metadata))
     default = None if field.is_required() else field.get_default(call_default_factory=True)
-    return drawn if default is None else st.just(default) | drawn
+    return drawn if default is None else seldom(st.just(default), drawn)
 
 
 def words(law: type[FrictionLaw], name: str) -> tuple[str, ...]:
@@ -215,10 +235,9 @@ def numbers(low: float, high: float) -> st.SearchStrategy[float]:
     """Numbers between two limits: log-uniform away from a limit at zero, even between two others."""
     if low >= 0.0 and high == math.inf:
         spread = sizes(10.0**-DECADES, 10.0**DECADES).map(lambda size: low + size)
-        return spread if low > 0.0 else spread | st.just(0.0)
+        return spread if low > 0.0 else seldom(st.just(0.0), spread)
     if math.isfinite(low) and math.isfinite(high):
-        inside = st.floats(0.0, 1.0).map(lambda share: low + (high - low) * (1e-6 + share * (1.0 - 2e-6)))
-        return inside
+        return evenly(low + 1e-6 * (high - low), high - 1e-6 * (high - low))
     size = sizes(10.0**-DECADES, 10.0**DECADES)
     if math.isfinite(high):
         return size.map(lambda distance: high - distance)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 from hypothesis import assume
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.bristle import BristleLaw
@@ -39,6 +41,14 @@ class Given:
         assume(when(law))
         return law
 
+    def law_near_the_edge(self, when: Callable[[Any], bool]) -> Any:
+        """The same, one number of it often driven to where this only just holds: bounds are wrong there first."""
+        law = self.law(when)
+        name = self.draw("parameter driven to the edge", st.sampled_from(["", *_numbers(law)]))
+        if name:
+            self.drawn["law"] = law = _at_the_edge(law, name, when)
+        return law
+
     def planar_law(self, when: Callable[[Any], bool] = lambda law: True) -> Any:
         """The same with a meaning in the plane."""
         return self.law(lambda law: not no_plane(law) and when(law))
@@ -55,12 +65,11 @@ class Given:
 
     def memory(self, law: FrictionLaw, planar: bool = False) -> Memory:
         """A memory that the law can have."""
-        shares = st.floats(-1.0, 1.0).map(lambda share: round(share, 12))  # no denormal numbers
         directions = drawing.turns if planar else st.just(1.0)
-        vectors = st.builds(lambda share, turn: share * turn, shares, directions)
+        vectors = st.builds(lambda share, turn: share * turn, drawing.shares, directions)
         if isinstance(law, BristleLaw):
             if planar and law.planar == "rotated":
-                vectors = shares.map(complex)
+                vectors = drawing.shares.map(complex)
             return (self.draw("deflection", vectors.map(lambda share: share * size_of(law))),)
         if isinstance(law, MemoryLaw):
             return self._memories(law, vectors if law.memory_kind == "deflections" else None)
@@ -98,6 +107,43 @@ class Given:
     def told(self) -> str:
         """The numbers drawn, in one line."""
         return ", ".join(f"{name} {_short(value)}" for name, value in self.drawn.items())
+
+
+def _numbers(law: FrictionLaw) -> list[str]:
+    return [name for name, value in law if isinstance(value, float)]
+
+
+def _at_the_edge(law: FrictionLaw, name: str, when: Callable[[Any], bool]) -> FrictionLaw:
+    """The law with one number so large or small that the condition only just holds, if there is such a one."""
+    value = getattr(law, name)
+    for end in (1e6 * value, 1e-6 * value):
+        beyond = _changed(law, name, end)
+        if beyond is not None and not when(beyond):
+            return _between(law, name, (value, end), when)
+    return law
+
+
+def _between(
+    law: FrictionLaw, name: str, ends: tuple[float, float], when: Callable[[Any], bool]
+) -> FrictionLaw:
+    """Where the condition only just holds, by bisection from where it does to where it does not."""
+    inside, outside = ends
+    best = law
+    for _ in range(40):
+        middle = math.sqrt(inside * outside)
+        tried = _changed(law, name, middle)
+        if tried is not None and when(tried):
+            inside, best = middle, tried
+        else:
+            outside = middle
+    return best
+
+
+def _changed(law: FrictionLaw, name: str, value: float) -> FrictionLaw | None:
+    try:
+        return type(law)(**law.model_dump(exclude_none=True) | {name: value})
+    except ValidationError:
+        return None
 
 
 def _scale(law: FrictionLaw, v: Any) -> float:

@@ -46,7 +46,14 @@ def _with_deflections(law: FrictionLaw) -> bool:
     return isinstance(law, BristleLaw) or getattr(law, "memory_kind", "") == "deflections"
 
 
-@check("coulomb_limit_of_prescribed_slip", patience=10.0, skips=WITH_MEMORY, share=0.02, seldom=NOT_CONSTANT)
+@check(
+    "coulomb_limit_of_prescribed_slip",
+    declares="constant_sliding_friction",
+    patience=10.0,
+    skips=WITH_MEMORY,
+    share=0.02,
+    seldom=NOT_CONSTANT,
+)
 def coulomb_limit_of_prescribed_slip(one: Given) -> None:
     """Under a prescribed slip the mean nears that of Coulomb friction as one over stiffness."""
     law = one.law(lambda law: law.constant_sliding_friction() and _with_deflections(law))
@@ -61,7 +68,14 @@ def coulomb_limit_of_prescribed_slip(one: Given) -> None:
     one.require(near, "ten times the stiffness must leave a tenth of the gap", gaps=tuple(gaps))
 
 
-@check("coulomb_limit_of_a_body", patience=10.0, skips=WITH_MEMORY, share=0.01, seldom=NOT_CONSTANT)
+@check(
+    "coulomb_limit_of_a_body",
+    declares="constant_sliding_friction",
+    patience=10.0,
+    skips=WITH_MEMORY,
+    share=0.01,
+    seldom=NOT_CONSTANT,
+)
 def coulomb_limit_of_a_body(one: Given) -> None:
     """The mean friction of a body driven above resonance nears Coulomb's as one over the root of stiffness."""
     law = one.law(lambda law: law.constant_sliding_friction() and _with_deflections(law))

@@ -38,7 +38,7 @@ class Counted:
 
 def run(check: Check, law: type[FrictionLaw], examples: int, seconds: float) -> Outcome:
     """One check of one law. A check that ran nothing has failed, unless what it is about never comes up."""
-    if reason := check.skips(law):
+    if reason := check.needless(law):
         return Outcome(check.name, "skipped", 0, reason)
     counted, start = Counted(), time.perf_counter()
     problem = _problem(check, law, counted, max(1, round(check.share * examples)), seconds * check.patience)

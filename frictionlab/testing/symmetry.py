@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from hypothesis import strategies as st
+
 from frictionlab.dimensional import Scales, scaled_law
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.testing.check import check
@@ -28,7 +30,12 @@ def rotation(one: Given) -> None:
     """In the plane everything turned by an angle gives friction turned by that angle (but for per-axis forms)."""
     law = one.planar_law(_isotropic)
     v = one.planar_slip()
+    beyond = one.draw(
+        "times what it can hold", st.sampled_from([1.0, 1.0, 1.5])
+    )  # yields wholly, not just so
     memory = one.memory(law, planar=True)
+    if turns_with_slip(law):
+        memory = tuple(beyond * each for each in memory)
     turn = one.draw("turn", turns)
     there = response(law, v, memory)
     got = response(law, turn * v, turned(law, memory, turn))
@@ -91,10 +98,11 @@ def _same_pace(
     one: Given, here: tuple[MemoryLaw, float, float], there: tuple[MemoryLaw, float, float], time: float
 ) -> None:
     """Scalars have units of their own: told by the speed of steady sliding that brings them, they need none."""
-    paces, others = _paces(*here), _paces(*there)
-    for k, (pace, other) in enumerate(zip(paces, others, strict=True)):
+    law, v, before = here
+    paces, others, quicker = _paces(law, v, before), _paces(*there), _paces(law, 2.0 * v, before)
+    for k, (pace, other, size) in enumerate(zip(paces, others, quicker, strict=True)):
         gap = abs(other / time - pace)
-        room = 1e-4 * (abs(pace) + abs(other) / time) + 1e-300
+        room = 1e-4 * (abs(pace) + abs(other) / time) + 1e-9 * abs(size) + 1e-300
         one.require(gap <= room, f"rate of memory {k} in other units", got=other / time, expected=pace)
 
 

@@ -1,0 +1,121 @@
+"""Mistakes of laws that remember scalars or several deflections."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Self
+
+from memory_laws import Ageing, Elements
+from pydantic import Field, model_validator
+
+from broken_laws.case import Case
+from frictionlab.laws.base import Speed
+from frictionlab.laws.bristle import Length, Stiffness
+
+
+class Springs(Elements):
+    """Maxwell-slip friction that refuses lists of two lengths, and knows its units."""
+
+    stiffness: Annotated[tuple[Stiffness, ...], Field(min_length=1)]
+    reach: Annotated[tuple[Length, ...], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _as_many_of_both(self) -> Self:
+        if len(self.reach) != len(self.stiffness):
+            raise ValueError("reach: as many values as stiffness")
+        return self
+
+
+class Renewed(Ageing):
+    """Rate-and-state friction that knows its units."""
+
+    slip_length: Length = 0.05
+    reference_speed: Speed = 1.0
+
+
+class SignedElements(Springs):
+    """Sliders that hold one way only."""
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """Backward springs bend for ever."""
+        return v if memory[k].real < 0.0 else super().rate(v, memory, k)
+
+
+class BackwardsLost(Springs):
+    """Sliders that never let go."""
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """All slip goes into the springs."""
+        return v
+
+
+class ElementsApart(Springs):
+    """In the plane each axis for itself."""
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """Two laws of one direction."""
+        if not isinstance(v, complex):
+            return super().rate(v, memory, k)
+        one, two = ([each.real for each in memory], [each.imag for each in memory])
+        return complex(super().rate(v.real, one, k), super().rate(v.imag, two, k))
+
+
+class StoresTwice(Springs):
+    """Springs that hold less than told."""
+
+    def stored(self, memory: Any) -> float:
+        """Half."""
+        return 0.5 * super().stored(memory)
+
+
+class SteadyTwice(Ageing):
+    """A steady age of twice what the rate tends to."""
+
+    def steady(self, v: Any, k: int) -> Any:
+        """Twice."""
+        return 2.0 * super().steady(v, k)
+
+
+class OtherAgeing(Ageing):
+    """Friction in steady sliding of another age."""
+
+    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
+        """Of twice the age."""
+        return super().friction(v, [2.0 * memory[0]], rates)
+
+
+class GrowsYounger(Ageing):
+    """Ages that slip takes below zero."""
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """Slip takes a constant."""
+        return 1.0 - 50.0 * abs(v) / self.slip_length
+
+
+class RenewsQuicker(Ageing):
+    """A largest rate half of what it is."""
+
+    def largest_rate(self, speed: float) -> float:
+        """Half."""
+        return 0.5 * super().largest_rate(speed)
+
+
+class Backwards(Ageing):
+    """Friction that does not turn round."""
+
+    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
+        """Along the speed."""
+        return super().friction(abs(v), memory, rates) * (1.0 if v.real > 0.0 else -0.99)
+
+
+CASES = (
+    Case(SignedElements, Springs, "oddness"),
+    Case(BackwardsLost, Springs, "invariant_set"),
+    Case(ElementsApart, Springs, "rotation", examples=60),
+    Case(StoresTwice, Springs, "passivity"),
+    Case(Ageing, Renewed, "unit_scaling"),
+    Case(SteadyTwice, Ageing, "steady_sliding"),
+    Case(OtherAgeing, Ageing, "steady_sliding"),
+    Case(GrowsYounger, Ageing, "invariant_set"),
+    Case(RenewsQuicker, Ageing, "largest_rate"),
+    Case(Backwards, Ageing, "oddness"),
+)

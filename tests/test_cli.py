@@ -496,7 +496,7 @@ def test_a_stopped_run_keeps_what_is_done_and_the_same_command_continues(
     surroundings: dict[str, str], number: int
 ) -> None:
     ratios = [0.1 * k for k in range(1, 9)]
-    slow = [{"kind": "fake", "pause": 0.25}]
+    slow = [{"kind": "fake", "pause": 0.5}]
     study(methods=slow, sweep={"scene.damping_ratio": ratios, "scene.belt_speed": POINTS})
     command = [*COMMAND, "run", "study.yaml", "-o", "out", "-j", "1"]
     process = subprocess.Popen(
@@ -531,7 +531,7 @@ def test_an_interrupted_run_does_not_wait_for_a_method_that_takes_for_ever(
     monkeypatch.setattr(collecting, "GRACE", 0.05)
     monkeypatch.setattr(cli.os, "_exit", left.append)
     monkeypatch.setattr("frictionlab.progress.Meter.__call__", lambda *_: signal.raise_signal(signal.SIGINT))
-    said = frictionlab("run", study(methods=[{"kind": "fake", "pause": 1.0}]), "-o", "out")
+    said = frictionlab("run", study(methods=[{"kind": "fake", "pause": 4.0}]), "-o", "out")
 
     assert left == [130]
     assert "interrupted: 0 of 4 points are done; the same command continues" in said.err

@@ -326,9 +326,14 @@ def test_every_law_and_method_plans_an_answer_or_a_reason(scene: dict[str, Any])
 # What is listed and documented
 
 
+def listed(kind: str) -> dict[str, Any]:
+    """A law as ``frictionlab laws`` tells of it."""
+    return law_record(kind, registry.law_class(kind))
+
+
 @pytest.mark.parametrize("kind", LAWS)
 def test_the_listing_of_a_law_has_every_parameter_with_limits_unit_and_meaning(kind: str) -> None:
-    given = {parameter["name"]: parameter for parameter in law_record(kind)["parameters"]}
+    given = {parameter["name"]: parameter for parameter in listed(kind)["parameters"]}
 
     assert set(given) == set(registry.law_class(kind).model_fields)
     assert {
@@ -340,7 +345,7 @@ def test_the_listing_of_a_law_has_every_parameter_with_limits_unit_and_meaning(k
     }
     assert given["planar"]["limits"] == "vectorial | rotated | per-axis"
     assert all(parameter["limits"] and parameter["meaning"] for parameter in given.values())
-    assert {"passive", "rate_independent"} <= set(law_record(kind)["declares"])
+    assert {"passive", "rate_independent"} <= set(listed(kind)["declares"])
 
 
 def test_the_schema_knows_every_parameter_of_every_law() -> None:
@@ -360,7 +365,7 @@ def test_the_study_reference_has_every_parameter_of_every_law_with_its_unit() ->
     reference = (DOCS / "study.md").read_text()
     section = reference.partition("### Laws with bristles")[2].partition("\n##")[0]
     rows = re.findall(r"^\| `(\w+)` \| ([^|]*) \|", section, re.MULTILINE)
-    parameters = {p["name"]: p["unit"] or "-" for kind in LAWS for p in law_record(kind)["parameters"]}
+    parameters = {p["name"]: p["unit"] or "-" for kind in LAWS for p in listed(kind)["parameters"]}
 
     assert dict(rows) == parameters
     assert len(rows) == len(parameters)
@@ -370,7 +375,7 @@ def test_the_study_reference_has_every_parameter_of_every_law_with_its_unit() ->
 def test_the_study_reference_names_the_parameters_and_defaults_of_a_law(kind: str) -> None:
     (line,) = re.findall(rf"^\| `{kind}` \| (.*) \|$", (DOCS / "study.md").read_text(), re.MULTILINE)
     told = dict(re.findall(r"([a-z_]+)(?: \(([^)]*)\))?(?:,|;|$)", line.partition("; a stiffness")[0]))
-    own = {p["name"]: p for p in law_record(kind)["parameters"]}
+    own = {p["name"]: p for p in listed(kind)["parameters"]}
     shared = {"stiffness", "presliding_length", "contact_stiffness", "damping", "contact_damping", "planar"}
 
     assert set(told) == set(own) - shared

@@ -64,6 +64,10 @@ class Wandered(NamedTuple):
     seconds: float
 
 
+FINEST = 1e-15
+"""Tolerance below which nothing is asked of an orbit: rounding moves the mean more, and steps would go on for ever."""
+
+
 class Closer:
     """The kernels of shooting for scenes that differ in belt speed alone; on the line where nothing pushes across.
 
@@ -74,7 +78,7 @@ class Closer:
         self.mass, self.law = scene.mass(), law
         self.falls_slowly = falls_slowly(scene, law)
         asks = not isinstance(law, SlidingLaw) and self.falls_slowly
-        self.goal = Goal(tolerance, contracts(scene, law), asks)
+        self.goal = Goal(max(tolerance, FINEST), contracts(scene, law), asks)
         self.body: Body
         self.like: complex  # a number of the kind of its positions
         if along_the_belt(scene, law):

@@ -279,7 +279,9 @@ def marcher(stepper: Marcher) -> Any:
         speed, before, swing, mark = length(w), -1.0, length(v), 2.0 * math.pi
         marked, halted = rubbed, stuck
         while tau < end and steps < way.work:
-            last = end - tau <= h * (1.0 + 1e-9)
+            last = end - tau <= h * (
+                1.5 if way.driven else 1.0 + 1e-9
+            )  # loads end with the last of equal steps
             node, step = Node(k, tau, x, v, z), end - tau if last else h
             taken = advance(problem, node, step)
             steps += 1

@@ -475,7 +475,7 @@ def test_what_it_cannot_do_is_refused_with_the_way_out():
         def sliding_friction(self, speed):
             return 0.4 / (1.0 + speed)
 
-    assert "without memory" in Shooting().refusal(scene(5.0), Remembers())
+    assert "a SlidingLaw, a BristleLaw or a MemoryLaw" in Shooting().refusal(scene(5.0), Remembers())
 
 
 def test_a_prescribed_slip_is_answered_by_quadrature():

@@ -127,6 +127,14 @@ def test_planar_slip_without_rest_is_stepped_at_the_declared_order(kernel, theta
     assert math.log(coarse / fine, 4.0) == pytest.approx(order, abs=0.25 if order < 4 else 1.0)
 
 
+@pytest.mark.parametrize("steps", [12_800, 51_200, 102_403, 1_638_400])
+@pytest.mark.parametrize("kernel", [march_rk4, march_moreau])
+def test_equal_steps_end_with_the_lap_however_their_sum_is_rounded(kernel, steps):
+    """One more, of rounding's length, would read a load beyond the last."""
+    march = compiled(kernel, LAW)(body_of(CROSSING), way_of(CROSSING, steps, 1.0), 0.0, 0.0)
+    assert march.steps == steps
+
+
 # --- moreau -------------------------------------------------------------------------------------------------------
 
 

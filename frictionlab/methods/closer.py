@@ -65,7 +65,7 @@ class Wandered(NamedTuple):
 
 
 FINEST = 1e-15
-"""Tolerance below which nothing is asked of an orbit: rounding moves the mean more, and steps would go on for ever."""
+"""No orbit is asked to be closed to less: rounding moves the mean more, and steps would go on for ever."""
 
 
 class Closer:

@@ -52,6 +52,6 @@ CASES = (
     Case(BeyondNumba, Bristles, "compiled_on_the_line"),
     Case(BeyondNumba, Bristles, "compiled_in_the_plane"),
     Case(StopsShort, Jenkins, "coulomb_limit_of_prescribed_slip"),
-    Case(MemoryOfItsOwnLength, Jenkins, "coulomb_limit_of_a_body"),
+    Case(MemoryOfItsOwnLength, Dahl, "coulomb_limit_of_a_body"),
     Case(TwiceAsFar, Dahl, "two_methods"),
 )

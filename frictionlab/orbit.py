@@ -229,7 +229,7 @@ def sample(orbit: Orbit, scene: Scene, n: int) -> Samples:
     times: Floats = orbit.tau[0, 0] + np.arange(n, dtype=np.float64) * (np.ptp(orbit.tau) / n)
     panels = np.clip(np.searchsorted(orbit.tau[:, 0], times, side="right") - 1, 0, len(orbit.tau) - 1)
     start, end = orbit.tau[panels, 0], orbit.tau[panels, -1]
-    weights = _interpolation_weights((2.0 * times - start - end) / (end - start))
+    weights = interpolation_weights((2.0 * times - start - end) / (end - start))
     x, v, rub = ((weights * part[panels]).sum(axis=1) for part in (orbit.x, orbit.v, orbit.friction))
     turn = np.exp(1j * scene.frequency * times)
     force, force_2 = (
@@ -239,7 +239,7 @@ def sample(orbit: Orbit, scene: Scene, n: int) -> Samples:
     return Samples(times, x.real, v.real, x.imag, v.imag, rub.real, rub.imag, *loads)
 
 
-def _interpolation_weights(at: Floats) -> Floats:
+def interpolation_weights(at: Floats) -> Floats:
     """Rows of weights that interpolate from the nodes to each place in [-1, 1]."""
     gaps = at[:, None] - NODES[None, :]
     hit = gaps == 0.0

@@ -13,12 +13,14 @@ from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.attractors import attractors, closed_orbit, multiplier, told
+from frictionlab.methods.axes_apart import axes_apart, solve_apart
 from frictionlab.methods.base import Answers, Floats, Method, Orbit, Status
 from frictionlab.methods.closer import Closer, along_the_belt
 from frictionlab.methods.curve import MOST_PERIODS, Curve
 from frictionlab.methods.limit_cycle import solve_undriven
 from frictionlab.methods.prescribed import solve_prescribed
 from frictionlab.methods.prescribed_bristle import refusal_of_prescribed
+from frictionlab.methods.saturated_bristle import saturates, solve_saturated
 from frictionlab.orbit import READ
 from frictionlab.scene import Scene
 
@@ -32,9 +34,10 @@ class Shooting(Method):
     friction, or by the mean's own change where friction falls with speed. There the orbit must attract, and starts
     far from each other must reach it; otherwise the mean is not unique.
     Along the belt a bristle whose path is exact is put in as a function of the way slid; otherwise mass and bristle
-    are solved for together by Rodas5P, as mass and any other memory are. Without a drive the period is an unknown
-    too, and the answer is the state reached from scene.initial. A prescribed slip leaves a mass nothing to close: the
-    mean is quadrature, or that of the closed loop of the memory.
+    are solved for together by Rodas5P, as mass and any other memory are. In the plane, friction by axis leaves two
+    bodies of one direction, and a deflection along the slip ends at its limit: friction is then without memory.
+    Without a drive the period is an unknown too, and the answer is the state reached from scene.initial. A prescribed
+    slip leaves a mass nothing to close: the mean is quadrature, or that of the closed loop of the memory.
 
     Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023).
     """
@@ -76,6 +79,10 @@ class Shooting(Method):
         if scenes[0].undriven:
             assert isinstance(law, SlidingLaw)
             return solve_undriven(scenes, law, tolerance)
+        if isinstance(law, BristleLaw) and saturates(scenes[0], law):
+            return solve_saturated(self.solve, scenes, law, tolerance)
+        if isinstance(law, BristleLaw) and axes_apart(scenes[0], law):
+            return solve_apart(self.solve, scenes, law, tolerance)
         closer = Closer(scenes[0], law, tolerance)
         found = Found.empty(scenes, closer)
         resting = [i for i, scene in enumerate(scenes) if stays_at_rest(scene, law)]

@@ -62,6 +62,8 @@ def monotone(one: Given) -> None:
     )
     held = law.static_friction()
     one.require(held <= abs(a) * (1.0 + 1e-12), "rest holds more than slip", rest=held, slip=abs(a))
+    fall = law.steepest_fall()
+    one.require(fall == 0.0, "monotone friction falls nowhere, yet its steepest fall is declared", got=fall)
 
 
 @check("static_friction", skips=SLIDING)

@@ -1,0 +1,79 @@
+"""What laws claim by saying nothing: nothing that a method could lean on."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import MemoryLaw
+
+
+class Silent(FrictionLaw):
+    """Friction of nothing."""
+
+    def sliding_friction(self, speed: float) -> float:
+        """One over the speed."""
+        return 1.0 / (1.0 + speed)
+
+
+class SilentSliding(Silent, SlidingLaw):
+    """Without memory."""
+
+
+class SilentBristles(Silent, BristleLaw):
+    """With a bristle."""
+
+    def rate(self, v: Any, z: Any) -> Any:
+        """Follows."""
+        return v - abs(v) * z
+
+    def friction(self, v: Any, z: Any, dz: Any) -> Any:
+        """A spring."""
+        return 3.0 * z
+
+
+class SilentMemory(Silent, MemoryLaw):
+    """With a memory."""
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """Follows."""
+        return v
+
+    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
+        """Of one."""
+        return memory[0]
+
+
+def test_a_law_that_says_nothing_of_its_friction_over_speed_may_fall_and_jump() -> None:
+    for law in (SilentSliding(), SilentBristles(), SilentMemory()):
+        assert not law.constant_sliding_friction()
+        assert not law.monotone()
+        assert law.steepest_fall() == math.inf
+    assert SilentSliding().static_friction() == 1.0
+
+
+def test_bristles_that_say_nothing_are_unbounded_stiff_without_end_and_not_known_to_be_passive() -> None:
+    law = SilentBristles()
+
+    assert law.largest_deflection() == law.presliding() == law.yield_deflection() == math.inf
+    assert law.largest_rate(1.0) == law.saturation_path(0.0, 1.0) == math.inf
+    assert law.elastic_deflection() == 0.0
+    assert not law.elastic_unloading()
+    assert not law.rate_independent()
+    assert not law.passive()
+    assert not law.exact_path()
+    assert law.no_vector_form() == ""
+    assert law.stored(0.5 + 0.5j) == 0.75
+    assert law.structure() == ()
+
+
+def test_a_memory_that_says_nothing_is_one_number_of_any_size_that_stores_nothing() -> None:
+    law = SilentMemory()
+
+    assert (law.count(), law.steady(2.0, 0), law.stored([1.0])) == (1, 0.0, 0.0)
+    assert law.within([1e300])
+    assert law.largest_rate(1.0) == math.inf
+    assert not law.rate_independent()
+    assert not law.passive()

@@ -168,7 +168,7 @@ def stepped(stepper, mass, steps, h, law=STEADY, **start):
     )  # fmt: skip
     body = loaded(on_the_line(mass), mass, True)
     march = compiled(KERNELS[stepper], law)(body, way, 0.0, values["v"])
-    return np.array([march.x[-1].real, march.v[-1].real, march.z[-1].real])
+    return np.array([march.x[-1].real, march.v[-1].real, march.z[-1, 0].real])
 
 
 def order_of(stepper, grids, shifts, **case):

@@ -8,6 +8,7 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.steppers import bristle_rk4, exponential
 from frictionlab.scene import Mass, Scene
 from frictionlab.theory import friction_free_velocity
@@ -28,14 +29,17 @@ def dashpot_of(law: BristleLaw) -> float:
     return float(law.friction(1.0, 0.0, 1.0))
 
 
-def fastest_slip(law: BristleLaw, h: float) -> float:
-    """The slip speed at which bristles decay as quickly as steps of length h of rk4 can bear."""
+def fastest_slip(law: BristleLaw | MemoryLaw, h: float, decay: float = bristle_rk4.DECAY) -> float:
+    """The slip speed at which what is remembered decays as quickly as steps of length h of rk4 can bear.
+
+    decay: the largest step times rate.
+    """
     low, high = 0.0, 1e12
-    if h * law.largest_rate(high) <= bristle_rk4.DECAY:
+    if h * law.largest_rate(high) <= decay:
         return high
     for _ in range(200):
         middle = math.sqrt(low * high) if low > 0.0 else 1e-12 if high > 1e-12 else 0.5 * high
-        if h * law.largest_rate(middle) <= bristle_rk4.DECAY:
+        if h * law.largest_rate(middle) <= decay:
             low = middle
         else:
             high = middle

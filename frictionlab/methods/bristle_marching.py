@@ -8,7 +8,7 @@ from typing import Any
 from frictionlab.kernel import inner
 from frictionlab.methods.bristle import resistance
 from frictionlab.methods.carrying import carried, caught
-from frictionlab.methods.marching import Advance, Marcher, Node, Problem, marcher, note_straight
+from frictionlab.methods.marching import Advance, Marcher, Node, Problem, keep_number, marcher, note_straight
 from frictionlab.methods.sliding_map import restoring_force
 from frictionlab.methods.steppers import bristle_rk4, exponential, sdirk2
 
@@ -55,11 +55,11 @@ def _by_sdirk2(problem: Problem, node: Node, h: float) -> Advance:
 
 
 @inner
-def _nothing_held(law: Any) -> float:
-    """Bristles never rest."""
+def nothing_held(law: Any) -> float:
+    """A contact that gives never rests."""
     return 0.0
 
 
-march_bristle_rk4 = marcher(Marcher("bristle_rk4", _by_rk4, note_straight, _nothing_held))
-march_exponential = marcher(Marcher("exponential", _by_exponential, note_straight, _nothing_held))
-march_sdirk2 = marcher(Marcher("sdirk2", _by_sdirk2, note_straight, _nothing_held))
+march_bristle_rk4 = marcher(Marcher("bristle_rk4", _by_rk4, note_straight, nothing_held, keep_number))
+march_exponential = marcher(Marcher("exponential", _by_exponential, note_straight, nothing_held, keep_number))
+march_sdirk2 = marcher(Marcher("sdirk2", _by_sdirk2, note_straight, nothing_held, keep_number))

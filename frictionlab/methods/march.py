@@ -12,14 +12,25 @@ from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import MemoryLaw
+from frictionlab.methods import memory_limits
 from frictionlab.methods.base import Answers, Method, Orbit, Status
 from frictionlab.methods.bristle_limits import fewest_steps, friction_falls
 from frictionlab.methods.bristle_sampling import solve_rubbed
 from frictionlab.methods.closer import along_the_belt, contracts
 from frictionlab.methods.instead import or_shooting
 from frictionlab.methods.marcher import LONGEST_PERIOD, Run, Walker
-from frictionlab.methods.marching import RESTING, STALLED, TOO_FAST
-from frictionlab.methods.refining import FEWEST_LAPS, WORK, Found, Plan, found, restless, why_not
+from frictionlab.methods.marching import RESTING, STALLED, TOO_FAST, TOO_STIFF
+from frictionlab.methods.refining import (
+    FEWEST_LAPS,
+    WORK,
+    Found,
+    Plan,
+    found,
+    restless,
+    steps_needed,
+    why_not,
+)
 from frictionlab.methods.rivals import Reached, Search, first_reached, one_motion, told
 from frictionlab.methods.sampling import solve_sampled
 from frictionlab.methods.shooting import resting_range, stays_at_rest
@@ -51,6 +62,7 @@ OWN_KEYS = {
 }
 FOR_SLIDING = "moreau", "rk4", "smoothed"
 FOR_BRISTLES = "exponential", "rk4", "sdirk2"
+FOR_MEMORY = ("rk4",)
 """The steppers of each kind of law, the one taken where none is named first."""
 ORDERS = {
     ("moreau", 0.5): 2,
@@ -76,7 +88,7 @@ class March(Method):
     order 4 on the jump itself, blind to it) or smoothed (DOP853 with step control on friction smoothed at rest); of
     laws with bristles exponential (default: bristles carried exactly along the slip, of order 2, steps limited by the
     mass held by its bristles alone), rk4 (steps limited by stiffness*speed/friction as well) or sdirk2 (L-stable, of
-    order 2, no limit).
+    order 2, no limit); of laws with several memories or scalars rk4 (steps limited by their largest rate).
     theta [-]: of moreau, 0.5 (default) or 1.
     steps [-], >= 4: of all but smoothed, per period of the drive, per 2 pi where nothing drives. The mean is that of
     so many steps, its error told by two and four times as many. Left out, steps are doubled until the error is
@@ -120,8 +132,11 @@ class March(Method):
         if isinstance(law, BristleLaw):
             assert scene.normal_load is not None
             return self._bristle_refusal(scene, law.under_load(scene.normal_load))
+        if isinstance(law, MemoryLaw):
+            assert scene.normal_load is not None
+            return self._refusal_with_memory(scene, law.under_load(scene.normal_load))
         if not isinstance(law, SlidingLaw):
-            return "march steps friction without memory, or with one bristle deflection; use shooting"
+            return "march knows friction laws that are a SlidingLaw, a BristleLaw or a MemoryLaw"
         if self._stepper(law) not in FOR_SLIDING:
             return (
                 f"stepper {self.stepper} steps bristles, and this law has none; use moreau, rk4 or smoothed"
@@ -156,20 +171,41 @@ class March(Method):
             return "under a prescribed slip there is nothing to solve for; use exponential, for any stiffness"
         if stepper == "sdirk2" and math.isfinite(law.yield_deflection()):
             return "stepper sdirk2 needs rates that do not jump, and those of this law do at yield; use exponential"
-        return self._too_few(fewest_steps(scene, law, stepper), stepper)
+        return self._too_few(fewest_steps(scene, law, stepper), law, stepper)
 
-    def _too_few(self, fewest: int, stepper: str) -> str | None:
+    def _refusal_with_memory(self, scene: Scene, law: MemoryLaw) -> str | None:
+        if self._stepper(law) not in FOR_MEMORY:
+            return f"stepper {self.stepper} knows no friction with several memories or scalars; use rk4"
+        if self.theta is not None:
+            return "theta is a key of stepper moreau, which knows no friction with memory; leave it out"
+        if scene.degrees_of_freedom == 0:
+            return (
+                "march steps a law with several memories or scalars under a driven mass alone; use shooting"
+            )
+        if scene.undriven:
+            return (
+                "march steps a law with several memories or scalars under a driven mass alone: give a drive"
+            )
+        if math.isinf(law.largest_rate(1.0)):
+            return (
+                "stepper rk4 needs a bound on how quickly memory decays, and this law has none; use shooting"
+            )
+        return self._too_few(memory_limits.fewest_steps(scene, law), law, "rk4")
+
+    def _too_few(self, fewest: int, law: FrictionLaw, stepper: str) -> str | None:
         """Why so many steps cannot be taken, where this many are needed."""
         if self.steps is not None and self.steps < fewest:
-            return _unstable(self.steps, fewest, stepper)
+            return _unstable(self.steps, fewest, law, stepper)
         if self.steps is None and 3 * FEWEST_LAPS * fewest > WORK:
             return (
-                f"stepper {stepper} is unstable on bristles this stiff below about {fewest:,} steps per period, too "
-                f"many to be doubled with {WORK:,} steps in all; give steps, or use stepper sdirk2"
+                f"stepper {stepper} is unstable on {_stiff(law)} below about {fewest:,} steps per period, too "
+                f"many to be doubled with {WORK:,} steps in all; give steps, or use {_others(law, 'exponential')}"
             )
         return None
 
     def _stepper(self, law: FrictionLaw) -> str:
+        if isinstance(law, MemoryLaw):
+            return self.stepper or FOR_MEMORY[0]
         return self.stepper or (FOR_BRISTLES if isinstance(law, BristleLaw) else FOR_SLIDING)[0]
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
@@ -180,6 +216,10 @@ class March(Method):
             assert scene.normal_load is not None
             fewest = fewest_steps(scene, law.under_load(scene.normal_load), self._stepper(law))
             return 1e-7 * min(30.0 * max(4.0 * (self.steps or 4096), 2.0 * fewest), WORK)
+        if isinstance(law, MemoryLaw):
+            assert scene.normal_load is not None
+            fewest = memory_limits.fewest_steps(scene, law.under_load(scene.normal_load))
+            return 3e-7 * min(30.0 * max(4.0 * (self.steps or 4096), 2.0 * fewest), WORK)
         steps = 4.0 * self.steps if self.steps else 2.0 * law.sliding_friction(1.0) / tolerance
         return 5e-8 * min(30.0 * steps, WORK)
 
@@ -216,13 +256,22 @@ class March(Method):
         )
 
 
-def _unstable(steps: int, fewest: int, stepper: str) -> str:
+def _unstable(steps: int, fewest: int, law: FrictionLaw, stepper: str) -> str:
     """Why an explicit stepper cannot do with so many steps, and how many would do."""
-    others = "exponential or sdirk2" if stepper == "rk4" else "sdirk2"
     return (
-        f"stepper {stepper} is unstable on bristles this stiff with {steps:,} steps per period: about {fewest:,} "
-        f"would do; or use stepper {others}"
+        f"stepper {stepper} is unstable on {_stiff(law)} with {steps:,} steps per period: about {fewest:,} "
+        f"would do; or use {_others(law, stepper)}"
     )
+
+
+def _stiff(law: FrictionLaw) -> str:
+    return "memory this quick" if isinstance(law, MemoryLaw) else "bristles this stiff"
+
+
+def _others(law: FrictionLaw, stepper: str) -> str:
+    if isinstance(law, MemoryLaw):
+        return "method shooting"
+    return "stepper exponential or sdirk2" if stepper == "rk4" else "stepper sdirk2"
 
 
 class _Point:
@@ -262,8 +311,13 @@ class _Point:
         self.model = f"march, {self.plan.stepper}{self._theta()}: {answer.how or 'no steady state'}"
         if last.verdict == TOO_FAST:
             self.status = "refused"
-            fewest = math.ceil(1.5 * last.pace.steps * last.met / self.walker.fastest(last.pace))
-            self.reason = _unstable(last.pace.steps, fewest, self.plan.stepper)
+            fewest = math.ceil(steps_needed(self.walker, last))
+            self.reason = _unstable(last.pace.steps, fewest, self.law, self.plan.stepper)
+            return
+        if last.verdict == TOO_STIFF:
+            self.status = "refused"
+            would_do = f"about {steps_needed(self.walker, last):.2g} would do; or use method shooting"
+            self.reason = f"the motion {why_not(last)}: {would_do}"
             return
         if not last.settled:
             self.reason = f"the motion {why_not(last)}"
@@ -300,6 +354,8 @@ class _Point:
             return False
         if isinstance(self.law, SlidingLaw):
             return not contracts(self.scene, self.law)
+        if isinstance(self.law, MemoryLaw):
+            return self.scene.belt_speed == 0.0 or not self.walker.has_corners or friction_falls(self.law)
         assert isinstance(self.law, BristleLaw)
         at_rest = self.scene.belt_speed == 0.0 and self.law.elastic_deflection() > 0.0
         return at_rest or friction_falls(self.law)
@@ -356,7 +412,9 @@ class _Point:
 
     def _moves_on(self) -> bool:
         """Whether bristles that a moving belt drags along forget where the mass started."""
-        return self.walker.bristles is not None and not self.scene.undriven and self.scene.belt_speed != 0.0
+        return (
+            not isinstance(self.law, SlidingLaw) and not self.scene.undriven and self.scene.belt_speed != 0.0
+        )
 
     def _period(self, answer: Found, last: Run) -> float:
         if not self.scene.undriven:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -11,26 +12,33 @@ import numpy as np
 from frictionlab.kernel import compiled, timed
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import PER_AXIS, BristleLaw
+from frictionlab.laws.memory import MemoryLaw
+from frictionlab.methods import memory_limits
+from frictionlab.methods.attractors import friction_at_rest
 from frictionlab.methods.base import Floats, Orbit
-from frictionlab.methods.bristle_limits import fastest_slip, spring_of
+from frictionlab.methods.bristle_limits import fastest_slip, fewest_steps, spring_of
 from frictionlab.methods.bristle_marching import march_bristle_rk4, march_exponential, march_sdirk2
 from frictionlab.methods.closer import along_the_belt
 from frictionlab.methods.marching import (
     CLOSED,
+    NOTHING,
     RESTING,
     STALLED,
+    TOO_STIFF,
     March,
     Way,
     march_moreau,
     march_rk4,
     march_smoothed,
 )
+from frictionlab.methods.memory_marching import march_memory_rk4
 from frictionlab.methods.steppers.smoothed import ARCTAN, SQUARE_ROOT, TANH
 from frictionlab.orbit import READ, read
 from frictionlab.scene import Body, Initial, Mass, Scene, in_the_plane, on_the_line
 
 KERNELS = {"moreau": march_moreau, "rk4": march_rk4, "smoothed": march_smoothed}
 BRISTLE_KERNELS = {"rk4": march_bristle_rk4, "exponential": march_exponential, "sdirk2": march_sdirk2}
+MEMORY_KERNELS = {"rk4": march_memory_rk4}
 SHAPES = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
 GRIDDED = "moreau", "rk4", "exponential"
 """Steppers that meet the load at half steps alone."""
@@ -56,11 +64,11 @@ class Pace:
 
 
 class Place(NamedTuple):
-    """A state of the motion: x1 + i x2 and its rate, and the deflection of the bristles, if there are any."""
+    """A state of the motion: x1 + i x2 and its rate, and what the law remembers, if anything, one by one."""
 
     x: complex
     v: complex
-    z: complex = 0j
+    z: Floats = NOTHING
 
 
 @dataclass(frozen=True)
@@ -107,13 +115,17 @@ class Walker:
         self.scene, self.law, self.stepper = scene, law, stepper
         self.mass: Mass = scene.mass()
         self.bristles = law if isinstance(law, BristleLaw) else None
+        self.memory = law if isinstance(law, MemoryLaw) else None
+        self.through_rest = (
+            memory_limits.steps_through_rest(scene, law) if isinstance(law, MemoryLaw) else 0.0
+        )
         straight = along_the_belt(scene, law) and not _starts_across(scene)
         reference = on_the_line(self.mass) if straight else in_the_plane(self.mass)
         self.straight = straight
         self.body = loaded(reference, self.mass, straight)
-        self._free = Place(
-            complex(reference.reference_cosine), complex(scene.frequency * reference.reference_sine)
-        )
+        self._free = complex(reference.reference_cosine), complex(scene.frequency * reference.reference_sine)
+        self._fresh = memory_limits.first_memory(scene, law) if isinstance(law, MemoryLaw) else NOTHING
+        self._spring = self._springs()
         self.start = self.place(scene.start if scene.undriven else scene.initial)
         self.forgets = scene.belt_speed != 0.0  # on a belt at rest the mass stays wherever a run left it
         self.lap = 2.0 * math.pi / self.mass.frequency
@@ -122,10 +134,20 @@ class Walker:
 
     @property
     def at_rest(self) -> float:
-        """The coefficient that slip must overcome to begin; of bristles, that of the slowest slip."""
-        return (
-            self.law.static_friction() if isinstance(self.law, SlidingLaw) else self.law.sliding_friction(0.0)
-        )
+        """The coefficient that slip must overcome to begin; with memory, that of the slowest slip."""
+        return friction_at_rest(self.law)
+
+    @property
+    def slipping(self) -> float:
+        """The coefficient of slow slip."""
+        return self.law.sliding_friction(0.0) or self.at_rest
+
+    @property
+    def presliding(self) -> float:
+        """The slip within which friction turns round after a reversal; 0 where it jumps, or none is known."""
+        if self.memory is not None:
+            return memory_limits.presliding_of(self.memory)
+        return self.bristles.presliding() if self.bristles is not None else 0.0
 
     @property
     def follows_the_drive(self) -> bool:
@@ -143,7 +165,9 @@ class Walker:
 
     @property
     def has_corners(self) -> bool:
-        """Whether the bristles' rate may jump while slip does not turn round: by axis, at yield, in unloading."""
+        """Whether a memory's rate may jump while slip does not turn round: by axis, at yield, in unloading."""
+        if self.memory is not None:
+            return self.memory.memory_kind == "deflections"
         law = self.bristles
         if law is None or self.straight:
             return False
@@ -152,8 +176,14 @@ class Walker:
     def place(self, start: Initial | None) -> Place:
         """A start as a state; None for the friction-free orbit."""
         if start is None:
-            return self._free
-        return Place(complex(start.x, start.x2), complex(start.velocity, start.velocity2))
+            return Place(*self._free, self._fresh)
+        return Place(complex(start.x, start.x2), complex(start.velocity, start.velocity2), self._fresh)
+
+    def fewest(self) -> int:
+        """Steps per period that the stepper needs not to explode; 1 where any number will do."""
+        if self.memory is not None:
+            return memory_limits.fewest_steps(self.scene, self.memory)
+        return fewest_steps(self.scene, self.bristles, self.stepper) if self.bristles is not None else 1
 
     def run(self, pace: Pace, place: Place | None = None) -> Run:
         """March to the steady state, period doublings included."""
@@ -195,6 +225,8 @@ class Walker:
 
     def fastest(self, pace: Pace) -> float:
         """The slip speed that steps of this pace can bear."""
+        if self.memory is not None:
+            return fastest_slip(self.memory, self.lap / pace.steps, memory_limits.decay(self.memory))
         if self.bristles is None or self.stepper != "rk4":
             return 1e300
         return fastest_slip(self.bristles, self.lap / pace.steps)
@@ -208,12 +240,27 @@ class Walker:
     def _marched(self, way: Way, place: Place) -> March:
         x, v = (place.x.real, place.v.real) if self.straight else (place.x, place.v)
         if self.bristles is not None:
-            way = way._replace(z=place.z.real if self.straight else place.z)
-        kernels = KERNELS if self.bristles is None else BRISTLE_KERNELS
-        call = compiled(kernels[self.stepper], self.law)
+            way = way._replace(z=float(place.z[0].real) if self.straight else complex(place.z[0]))
+        if self.memory is not None:
+            real = self.straight or self.memory.memory_kind == "scalars"
+            way = way._replace(z=np.array(place.z.real) if real else place.z.astype(complex))
+        call = compiled(self._kernels()[self.stepper], self.law)
         march, seconds = timed(call, self.body, way, x, v)
         self.seconds += seconds
         return march
+
+    def _kernels(self) -> Mapping[str, Any]:
+        if self.memory is not None:
+            return MEMORY_KERNELS
+        return KERNELS if self.bristles is None else BRISTLE_KERNELS
+
+    def _springs(self) -> Floats:
+        """The stiffness of what is remembered, in the norm of energy."""
+        if self.memory is not None:
+            return memory_limits.springs_of(self.scene, self.memory)
+        return np.array(
+            [self.mass.normal_load * spring_of(self.bristles) if self.bristles is not None else 0.0]
+        )
 
     def _way(self, pace: Pace) -> Way:
         driven, h = not self.scene.undriven, self.lap / pace.steps
@@ -238,7 +285,7 @@ class Walker:
             work=pace.work,
             window=self.window,
             room=0,
-            bristles=self.mass.normal_load * spring_of(self.bristles) if self.bristles is not None else 0.0,
+            spring=self._spring,
             fastest=self.fastest(pace),
         )
 
@@ -247,7 +294,7 @@ class Walker:
         if self.stepper == "smoothed":
             return 3.0 * pace.width
         force = self.mass.normal_load * self.law.sliding_friction(0.0)
-        blind = self.stepper == "rk4" and self.bristles is None
+        blind = self.stepper == "rk4" and isinstance(self.law, SlidingLaw)
         return 2.0 * force * self.lap / pace.steps if blind else 0.0
 
     def _creeping(self, pace: Pace, march: March) -> float:
@@ -276,9 +323,10 @@ class Walker:
         each = -march.rubbed[-window:].real / march.duration[-window:]
         low, high = float(each.min()), float(each.max())
         drift = self._apart(march, laps, laps - stride)
+        stiff = march.crossings > 0 and pace.steps < self.through_rest
         return Run(
             pace=pace,
-            place=Place(complex(march.x[-1]), complex(march.v[-1]), complex(march.z[-1])),
+            place=Place(complex(march.x[-1]), complex(march.v[-1]), march.z[-1]),
             mean=mean,
             closing=self._closing(march, drift, high - low),
             low=low,
@@ -286,7 +334,7 @@ class Walker:
             laps=laps,
             period=time / window * stride,
             stuck=float(march.stuck[-1]),
-            verdict=int(march.verdict),
+            verdict=TOO_STIFF if stiff else int(march.verdict),
             dip=float(march.dip),
             bend=float(march.bend),
             crossings=int(march.crossings) * stride,
@@ -317,7 +365,9 @@ class Walker:
             led = self._apart(march, len(march.rubbed), len(march.rubbed) - self.window)
             return spread + 2.0 * led / self.mass.normal_load
         ends = (1.0 + self.mass.damping) * drift
-        doubt = 2.0 if self.bristles is None else 4.0  # with bristles, orbits may move apart before they meet
+        doubt = (
+            2.0 if isinstance(self.law, SlidingLaw) else 4.0
+        )  # with memory, orbits may part before they meet
         left = doubt * float(march.distance + ends / self.lap) / self.mass.normal_load
         return left + (self._from_sliding(march) if self._only_slides(march) else 0.0)
 
@@ -341,11 +391,7 @@ class Walker:
         b = max(b, 0)
         dx, dv, dz = march.x[a] - march.x[b], march.v[a] - march.v[b], march.z[a] - march.z[b]
         across = self.mass.transverse_stiffness * dx.imag**2
-        bent = (
-            self.mass.normal_load * spring_of(self.bristles) * abs(dz) ** 2
-            if self.bristles is not None
-            else 0.0
-        )
+        bent = float(np.dot(self._spring, np.abs(dz) ** 2))
         return float(math.sqrt(dx.real**2 + across + abs(dv) ** 2 + bent))
 
 

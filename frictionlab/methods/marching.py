@@ -19,6 +19,9 @@ from frictionlab.methods.track import Track, track_of
 from frictionlab.orbit import NODES
 from frictionlab.scene import Body
 
+NOTHING = np.zeros(1)
+"""Of a memory that is none."""
+
 
 class Way(NamedTuple):
     """How to step: what the drive does, the stepper's numbers, and when to stop."""
@@ -41,8 +44,8 @@ class Way(NamedTuple):
     work: int  # most steps
     window: int  # laps over which a motion that does not close is judged, twice
     room: int  # panels of the record of the last lap
-    z: Any = 0.0  # deflection of the bristles to begin with, if the law has any
-    bristles: float = 0.0  # their stiffness, in the norm of energy
+    z: Any = 0.0  # deflection of the bristles to begin with, or an array of memories, if the law has any
+    spring: Any = NOTHING  # stiffness of each memory, in the norm of energy
     fastest: float = 1e300  # slip that the steps are short enough for
 
 
@@ -106,7 +109,7 @@ class March(NamedTuple):
 
     x: Any
     v: Any
-    z: Any
+    z: Any  # [laps + 1, memories]
     rubbed: Any
     stuck: Any
     duration: Any
@@ -126,7 +129,7 @@ class March(NamedTuple):
 SHORT = 3
 """Steps at rest within which a reversal counts as one without stick."""
 
-CLOSED, STALLED, LATE, LOST, RESTING, TIRED, TOO_FAST = 0, 1, 2, 3, 4, 5, 6
+CLOSED, STALLED, LATE, LOST, RESTING, TIRED, TOO_FAST, TOO_STIFF = range(8)
 
 
 # --- steppers -----------------------------------------------------------------------------------------------------
@@ -222,12 +225,13 @@ def _note_curved(problem: Problem, track: Track, node: Node, end: Advance, h: fl
 
 
 class Marcher(NamedTuple):
-    """How one stepper advances and is noted, and what friction can hold, as kernel functions; and its name."""
+    """How one stepper advances, is noted and keeps a memory, and what friction can hold, as kernel functions."""
 
     name: str
     advance: Any
     note: Any
     held: Any
+    keep: Any
 
 
 def _named(name: str) -> Any:
@@ -247,7 +251,7 @@ def _named(name: str) -> Any:
 
 def marcher(stepper: Marcher) -> Any:
     """The kernel ``marched(law, body, way, x, v)`` of a stepper; numba caches none that is handed a function."""
-    name, advance, note, held = stepper
+    name, advance, note, held, keep = stepper
     inner_of = _named(name)
 
     @inner_of  # type: ignore[untyped-decorator]
@@ -344,10 +348,10 @@ def marcher(stepper: Marcher) -> Any:
         rubs = np.empty(way.most, np.complex128)
         stuck, duration, gaps = np.empty(way.most), np.empty(way.most), np.empty(way.most)
         track = track_of(way.room)
-        zs = np.empty(way.most + 1, np.complex128)
-        z = way.z + 0.0 * x
-        xs[0], vs[0], zs[0] = x + 0j, v + 0j, z + 0j
-        one = Lap(x, v, 0.0 * x, 0.0, 0.0, 1e300, 1.0, 0, 0.0, 0.0, way.first, 0, True, z, 0.0, 0.0)
+        zs = np.empty((way.most + 1, way.spring.size), np.complex128)
+        xs[0], vs[0] = x + 0j, v + 0j
+        keep(zs, 0, way.z)
+        one = Lap(x, v, 0.0 * x, 0.0, 0.0, 1e300, 1.0, 0, 0.0, 0.0, way.first, 0, True, way.z, 0.0, 0.0)
         carried = 0.0
         distance, good, steps, verdict, n = 1e300, 0, 0, LATE, 0
         drift = (
@@ -357,7 +361,8 @@ def marcher(stepper: Marcher) -> Any:
             one = lap(problem, way, Node(0, 0.0, one.x + carried, one.v, one.z), one.step, track)
             carried = 0.0
             steps += one.steps
-            xs[n + 1], vs[n + 1], zs[n + 1], rubs[n] = one.x + 0j, one.v + 0j, one.z + 0j, one.rubbed + 0j
+            xs[n + 1], vs[n + 1], rubs[n] = one.x + 0j, one.v + 0j, one.rubbed + 0j
+            keep(zs, n + 1, one.z)
             stuck[n], duration[n] = one.stuck, one.duration
             n += 1
             if one.met > way.fastest:
@@ -367,9 +372,10 @@ def marcher(stepper: Marcher) -> Any:
             elif not one.returned:
                 verdict = RESTING if one.step == 0.0 else LOST if one.steps < way.work else TIRED
             elif n >= way.stride:
-                bent = abs(zs[n] - zs[n - way.stride])
                 gap = squared(body, xs[n] - xs[n - way.stride], vs[n] - vs[n - way.stride])
-                gap = math.sqrt(gap + way.bristles * bent * bent)
+                for k in range(way.spring.size):
+                    gap += way.spring[k] * abs(zs[n, k] - zs[n - way.stride, k]) ** 2
+                gap = math.sqrt(gap)
                 gaps[n - 1] = gap
                 floor = 4e-16 * math.sqrt((100.0 + one.steps) * squared(body, one.x, one.v))
                 distance = _distance(gaps, n, way, floor)
@@ -440,6 +446,12 @@ def _at_rest(law: Any) -> float:
     return law.static_friction()
 
 
-march_moreau = marcher(Marcher("moreau", _by_moreau, note_straight, _at_rest))
-march_rk4 = marcher(Marcher("rk4", _by_rk4, note_straight, _at_rest))
-march_smoothed = marcher(Marcher("smoothed", _by_smoothed, _note_curved, _at_rest))
+@inner
+def keep_number(kept: Any, row: int, z: Any) -> None:
+    """Write down a memory that is one number."""
+    kept[row, 0] = z
+
+
+march_moreau = marcher(Marcher("moreau", _by_moreau, note_straight, _at_rest, keep_number))
+march_rk4 = marcher(Marcher("rk4", _by_rk4, note_straight, _at_rest, keep_number))
+march_smoothed = marcher(Marcher("smoothed", _by_smoothed, _note_curved, _at_rest, keep_number))

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from frictionlab.laws.bristle import BristleLaw
-from frictionlab.methods.bristle_limits import fewest_steps
+from frictionlab.laws.base import SlidingLaw
+from frictionlab.methods.bristle_limits import MARGIN
 from frictionlab.methods.halving import FEWEST, REVERSING, SMOOTH, STICKING, bias, first_error, limit_of
 from frictionlab.methods.marcher import Pace, Run, Walker
-from frictionlab.methods.marching import CLOSED, LATE, STALLED, TIRED, TOO_FAST
+from frictionlab.methods.marching import CLOSED, LATE, STALLED, TIRED, TOO_FAST, TOO_STIFF
 
 COARSEST, WORK = 64, 16_000_000
 """Steps per period to begin with, and steps in all that a point may cost, where ``steps`` is left out."""
@@ -81,23 +81,34 @@ def _by_given_steps(walker: Walker, plan: Plan, tolerance: float) -> Found:
 
 def _by_halving(walker: Walker, plan: Plan, tolerance: float) -> Found:
     """Steps are doubled until the error is below the tolerance or the work is done."""
-    steps, work = _coarsest(walker, plan), 0
+    steps, work = _coarsest(walker), 0
     runs: list[Run] = []
     best: Found | None = None
     while best is None or best.error > tolerance:
         run = _next_run(walker, plan, steps, runs, tolerance, WORK - work)
         work += run.steps
         if not run.settled:
-            break
+            more = steps_needed(walker, run)
+            if 3 * FEWEST_LAPS * more > WORK - work:
+                break
+            runs, steps = [], math.ceil(more)
+            continue
         runs.append(run)
         if len(runs) >= FEWEST:
             best = _limit(walker, plan, runs)
         if work + 2 * run.steps * min(1.0, 12 / run.laps) > WORK or _changes_for_ever(runs, walker):
             break
         steps *= 2
-    if best is None and len(runs) > 1:
+    if best is None and len(runs) > 1 and run.verdict != TOO_STIFF:
         best = _limit(walker, plan, runs)
     return best or _unsettled([*runs, run])
+
+
+def steps_needed(walker: Walker, run: Run) -> float:
+    """Steps per period that would be stable where those of a run were not; infinite where it failed otherwise."""
+    if run.verdict == TOO_FAST:
+        return 1.5 * run.pace.steps * run.met / walker.fastest(run.pace)
+    return MARGIN * walker.through_rest if run.verdict == TOO_STIFF else math.inf
 
 
 def _limit(walker: Walker, plan: Plan, runs: list[Run]) -> Found:
@@ -157,14 +168,14 @@ def crossing(walker: Walker, run: Run) -> float:
     the same way, and then no change between them tells of it.
     """
     per_period = run.pace.steps * run.period / walker.lap
-    slip = walker.law.sliding_friction(0.0)
-    if walker.bristles is not None:
-        return slip * run.crossings / per_period * _unresolved(walker.bristles, run)
+    slip = walker.slipping
+    if not isinstance(walker.law, SlidingLaw):
+        return slip * run.crossings / per_period * _unresolved(walker.presliding, run)
     release = walker.at_rest - slip if run.stuck > 0.0 else 0.0
     return (slip * run.crossings + release * run.stride) / per_period
 
 
-def _unresolved(law: BristleLaw, run: Run) -> float:
+def _unresolved(presliding: float, run: Run) -> float:
     """How much of the impulse of the step in which slip reverses is in doubt: bristles take time to bend back.
 
     Until slip that gathers speed at the rate a has covered the presliding length d: sqrt(2 d/a). A step h misplaces
@@ -174,8 +185,8 @@ def _unresolved(law: BristleLaw, run: Run) -> float:
     step = run.period / run.stride / run.pace.steps if run.pace.steps else 0.0
     if run.turn == 0.0:
         return 0.0
-    bending = math.sqrt(2.0 * law.presliding() / run.turn)
-    return min(1.0, 0.5 * step / bending)
+    bending = math.sqrt(2.0 * presliding / run.turn)
+    return min(1.0, 0.5 * step / bending) if bending > 0.0 else 1.0
 
 
 def _creep(walker: Walker, run: Run) -> float:
@@ -203,15 +214,12 @@ def _unseen(walker: Walker, runs: Sequence[Run]) -> float:
     if not (depth > 0.0 and bend > 0.0):
         return 0.0
     lasts = min(2.0 * math.sqrt(2.0 * depth / bend), fine.period)
-    return 2.0 * walker.law.sliding_friction(0.0) * lasts / fine.period
+    return 2.0 * walker.slipping * lasts / fine.period
 
 
-def _coarsest(walker: Walker, plan: Plan) -> int:
+def _coarsest(walker: Walker) -> int:
     """Steps to begin with: what the motion asks for, and what the stepper needs not to explode."""
-    steps = COARSEST * _slowness(walker)
-    if walker.bristles is None:
-        return steps
-    return max(steps, fewest_steps(walker.scene, walker.bristles, plan.stepper))
+    return max(COARSEST * _slowness(walker), walker.fewest())
 
 
 def _slowness(walker: Walker) -> int:
@@ -248,6 +256,8 @@ def why_not(run: Run) -> str:
         )
     if run.verdict == TOO_FAST:
         return f"slips faster, at {run.met:.3g}, than {run.pace.steps} steps per period are stable for"
+    if run.verdict == TOO_STIFF:
+        return f"comes to rest, where the law is too stiff for {run.pace.steps} explicit steps per period"
     if run.verdict == TIRED:
         return f"does not repeat within {run.steps:.1g} steps ({run.laps} periods); give fewer or wider ones"
     return f"is lost after {run.laps} periods: it grows without bound, or never returns; give shorter steps"

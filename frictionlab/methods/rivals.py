@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 from frictionlab.methods.attractors import starts
 from frictionlab.methods.marcher import Run, Walker
-from frictionlab.methods.marching import CLOSED, STALLED
-from frictionlab.methods.refining import WORK, Found, crossing, why_not
+from frictionlab.methods.marching import CLOSED, STALLED, TOO_FAST
+from frictionlab.methods.refining import WORK, Found, crossing, steps_needed, why_not
 
 NOISE = 1e-3
 """Spread of the means of a motion that does not repeat, over friction at rest, that passes for noise of the steps."""
@@ -51,6 +51,9 @@ class Search:
         pace = replace(self.like.pace, rate=0.0, enough=enough, work=max(self.like.pace.work, WORK))
         for start in starts(scene, limit)[1:]:
             run = walker.run(pace, walker.place(start))
+            if run.verdict == TOO_FAST:  # flung: it needs more steps than where it ends
+                steps = math.ceil(steps_needed(walker, run))
+                run = walker.run(replace(pace, steps=steps), walker.place(start))
             if not run.settled:
                 return known, f"from another start the motion {why_not(run)}"
             found = self._led(run)

@@ -122,15 +122,31 @@ def _closed(closer: Closer, scene: Scene, way: Wandered) -> tuple[Attractor, flo
     """The orbit at the end of a way, or the spread of what never repeats."""
     seconds = 0.0
     if way.period > 0:
-        curve, seconds = closer.closed([scene], way.state, way.period)
-        means = way.means[-way.period :]
-        if way.period > 1 and curve.results[0, 3] > 0.0:
-            means = closer.means(scene.belt_speed, curve.states[0], way.period)
+        curve, period, seconds = _shortest(closer, scene, way)
+        means = way.means[-period:]
+        if period > 1 and curve.results[0, 3] > 0.0:
+            means = closer.means(scene.belt_speed, curve.states[0], period)
         orbit = closed_orbit(curve, means)
         if orbit is not None:
             return orbit, seconds
     last = way.means[len(way.means) // 2 :]
     return Attractor(len(way.means), 0, float(last.min()), float(last.max()), None), seconds
+
+
+def _shortest(closer: Closer, scene: Scene, way: Wandered) -> tuple[Curve, int, float]:
+    """The orbit at the end of a way, and how many periods it takes: fewer than seen where it was still alternating."""
+    curve, seconds = closer.closed([scene], way.state, way.period)
+    for period in [each for each in range(1, way.period) if way.period % each == 0]:
+        shorter, more = closer.closed([scene], curve.states[0], period)
+        seconds += more
+        if curve.results[0, 3] > 0.0 and shorter.results[0, 3] > 0.0 and _same(shorter, curve):
+            return shorter, period, seconds
+    return curve, way.period, seconds
+
+
+def _same(one: Curve, other: Curve) -> bool:
+    a, b = one.states[0], other.states[0]
+    return bool(np.abs(a - b).max() <= 1e-5 * max(1.0, float(np.abs(b).max())))
 
 
 def told(reached: list[Attractor]) -> str:

@@ -134,7 +134,7 @@ def _closed(closer: Closer, scene: Scene, way: Wandered) -> tuple[Attractor, flo
 
 
 def _shortest(closer: Closer, scene: Scene, way: Wandered) -> tuple[Curve, int, float]:
-    """The orbit at the end of a way, and how many periods it takes: fewer than seen where it was still alternating."""
+    """The orbit at the end of a way, and its periods: fewer than seen where the motion was still alternating."""
     curve, seconds = closer.closed([scene], way.state, way.period)
     for period in [each for each in range(1, way.period) if way.period % each == 0]:
         shorter, more = closer.closed([scene], curve.states[0], period)

@@ -182,7 +182,9 @@ def not_passive(one: Given) -> None:
         for memory in _charged(law)
         for lost, room in [_lost(law, speed, memory)]
     )
-    assume(found or law.steepest_fall() < math.inf)  # a fall without a steepest place may go on beyond any speed
+    assume(
+        found or law.steepest_fall() < math.inf
+    )  # a fall without a steepest place may go on beyond any speed
     one.require(found, "no slip was found that gives work which was not stored: is the law passive?")
 
 

@@ -12,16 +12,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frictionlab.laws.bristle import PER_AXIS, BristleLaw
 from frictionlab.methods.attractors import multiplier
 from frictionlab.methods.base import Answers, Floats, Orbit
 from frictionlab.methods.closer import Closer, along_the_belt
-from frictionlab.orbit import NODES, READ, interpolation_weights
+from frictionlab.methods.joined_orbit import joined
+from frictionlab.orbit import READ
 from frictionlab.scene import Drive, Initial, Mass, Scene, Transverse
 
-Complexes = NDArray[np.complex128]
 Solver = Callable[[Sequence[Scene], BristleLaw, float], Answers]
 
 APART = "shooting, two degrees of freedom, each by itself: friction by axis does not couple them"
@@ -73,14 +72,14 @@ def solve_apart(solve: Solver, scenes: Sequence[Scene], law: BristleLaw, toleran
     ]
     columns = along.columns | {
         name: np.where(ok, values, along.columns[name])
-        for name, values in _joined(scenes[0], along, across).items()
+        for name, values in _columns(scenes[0], along, across).items()
     }
     columns["seconds"] = along.columns["seconds"] + across.seconds / len(scenes)
     models = [f"{APART}; {model.partition('; ')[2]}" for model in along.model]
 
     def orbit(i: int) -> Orbit | None:
         both = along.orbit(i), across.orbit()
-        return None if both[0] is None or both[1] is None else _together(both[0], both[1])
+        return None if both[0] is None or both[1] is None else joined(both[0], both[1])
 
     return replace(along, reason=reasons, model=models, columns=columns, orbit=orbit)
 
@@ -136,16 +135,16 @@ def _held(turned: OneAxis, law: BristleLaw, tolerance: float) -> Across | None:
     )
 
 
-def _joined(scene: Scene, along: Answers, across: Across) -> dict[str, Floats]:
+def _columns(scene: Scene, along: Answers, across: Across) -> dict[str, Floats]:
     """The columns that both motions have a part in, and those of the motion across."""
     one = np.ones(len(along.status))
-    joined = {f"transverse_{name}": across.column(name) * one for name in OF_THE_AXIS}
-    joined |= {name: along.columns[name] + across.column(name) for name in ENERGIES}
-    joined["mean_friction_transverse"] = across.column("mean_friction") * one
-    joined["transverse_velocity_phase"] = _lead(scene, across.column("velocity_phase")) * one
-    joined["floquet"] = np.maximum(along.columns["floquet"], across.column("floquet"))
-    joined["error"] = np.fmax(along.columns["error"], across.column("error"))
-    return joined
+    found = {f"transverse_{name}": across.column(name) * one for name in OF_THE_AXIS}
+    found |= {name: along.columns[name] + across.column(name) for name in ENERGIES}
+    found["mean_friction_transverse"] = across.column("mean_friction") * one
+    found["transverse_velocity_phase"] = _lead(scene, across.column("velocity_phase")) * one
+    found["floquet"] = np.maximum(along.columns["floquet"], across.column("floquet"))
+    found["error"] = np.fmax(along.columns["error"], across.column("error"))
+    return found
 
 
 def _lead(scene: Scene, lead: float) -> float:
@@ -155,24 +154,3 @@ def _lead(scene: Scene, lead: float) -> float:
         return math.nan
     turn = cmath.rect(1.0, math.radians(lead)) * mass.transverse_force * mass.force.conjugate()
     return math.degrees(cmath.phase(turn))
-
-
-def _together(along: Orbit, across: Orbit) -> Orbit:
-    """Both motions on panels that reach over no edge of either's."""
-    end = along.tau[-1, -1]
-    edges = np.unique(np.concatenate([along.tau[:, 0], across.tau[:, 0]]))
-    edges = edges[(np.diff(edges, append=end) > 1e-12 * end)]
-    half = 0.5 * np.diff(edges, append=end)[:, None]
-    tau: Floats = edges[:, None] + half * (1.0 + NODES)
-    first, second = _on(along, tau), _on(across, tau)
-    x, v, friction = (one.real + 1j * other.real for one, other in zip(first, second, strict=True))
-    return Orbit(tau, x, v, friction, np.zeros(len(tau), np.bool_))
-
-
-def _on(orbit: Orbit, tau: Floats) -> list[Complexes]:
-    """Position, velocity and friction on panels, each inside one of the orbit's."""
-    inside = np.searchsorted(orbit.tau[:, 0], 0.5 * (tau[:, 0] + tau[:, -1]), side="right") - 1
-    start, end = orbit.tau[inside, :1], orbit.tau[inside, -1:]
-    weights = interpolation_weights(((2.0 * tau - start - end) / (end - start)).ravel())
-    weights = weights.reshape(*tau.shape, len(NODES))
-    return [(weights * part[inside, None, :]).sum(axis=2) for part in (orbit.x, orbit.v, orbit.friction)]

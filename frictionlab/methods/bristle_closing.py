@@ -40,6 +40,9 @@ what the mean really moves, and a part of it stands in where two means agree by 
 LOOSE = 2.0
 """How much coarser than the tolerance the maps are that an orbit is found with; the two that end it are finer."""
 
+PATIENCE = 3
+"""How often quasi-Newton steps stall before the maps that an orbit is found with are made finer."""
+
 
 @inner
 def _moved_on(
@@ -83,7 +86,7 @@ def close_bristle(
     finest = max(min(LOOSE * tolerance * body.normal_load, coarsest_of(law, body)), floor)
     accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
     image = mapped(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
-    maps, checks, first, stalls = 1, 0, norm(residual), 0
+    maps, checks, first, stalls, stuck = 1, 0, norm(residual), 0, 0
     while maps < MOST_MAPS:
         length = norm(residual)
         if image.steps < 0 or not length < 1e300 or maps * image.steps > MUCH_WORK:
@@ -139,5 +142,7 @@ def close_bristle(
             continue
         image, took = _moved_on(law, body, belt_speed, z, residual, inverse, max(accuracy, finest), like)
         maps += took
-        stalls = 1
+        stalls, stuck = 1, stuck + 1
+        if stuck % PATIENCE == 0:  # what is open is no more than what the steps of a map jump about by
+            finest = max(finest / FINER, floor)
     return Closed(image.rubbed, 1e300, -maps, 0.0, image.closest, first)

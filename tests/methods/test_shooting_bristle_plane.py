@@ -73,6 +73,36 @@ def test_planar_systems_on_bristles_agree_with_the_reference() -> None:
         assert (miss <= answers.columns["error"] + 2e-7).all()
 
 
+def test_an_orbit_is_found_where_the_steps_of_a_map_jump_by_as_much_as_is_asked() -> None:
+    """Bristles that begin to break away twice a period: two tolerances closed nothing, and those between them did.
+
+    The mean is that of scipy's LSODA on the interpreted law at rtol 1e-12, give or take 3e-10.
+    """
+    across = fl.Transverse(
+        natural_frequency=1.6488055973299363,
+        damping_ratio=0.05603843509478128,
+        load=fl.Load(amplitude=7.3925836394616615),
+    )
+    scene = fl.Scene(
+        damping_ratio=0.31398282805326316,
+        normal_load=1.5608333069584945,
+        belt_speed=1.218650369925577,
+        drive=fl.Drive(amplitude=40.7426499128653, phase=160.67156911920316, frequency=0.6440665334178808),
+        transverse=across,
+    )
+    law = fl.ElastoPlastic(
+        mu_kinetic=0.305324651762114,
+        breakaway_ratio=0.3204256771436784,
+        presliding_length=205.49119705685237,
+        damping=2.3255240619590335e-06,
+    )
+    for tolerance in (1e-6, 1e-8):
+        answers = Shooting().solve([scene], law, tolerance)
+        assert answers.status == ["ok"]
+        assert answers.columns["error"][0] <= tolerance
+        assert abs(answers.columns["mean_friction"][0] - 0.13038352) <= answers.columns["error"][0] + 1e-10
+
+
 @deep
 def test_planar_jenkins_friction_moves_on_its_circle_and_tends_to_coulombs() -> None:
     gaps = []

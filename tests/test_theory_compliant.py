@@ -93,6 +93,14 @@ def test_creep_needs_forces_of_unequal_size_and_goes_the_way_of_the_larger(low: 
     assert dahl_drift(low, high) > 0
 
 
+@pytest.mark.parametrize("exponent", [0.0, 0.5, 1.0, 1.5, 3.0])
+@pytest.mark.parametrize("start", [-1.0, 0.3, 1.4])
+def test_a_path_of_no_length_changes_nothing_and_its_parts_add_up(start: float, exponent: float) -> None:
+    assert dahl_path(start, 0.0, exponent) == pytest.approx(start)
+    parts = dahl_path(dahl_path(start, 0.2, exponent), 0.5, exponent)
+    assert parts == pytest.approx(dahl_path(start, 0.7, exponent), abs=1e-14)
+
+
 @given(st.floats(-3, 3), sizes(1e-6, 1e3), st.floats(1e-12, 1e-4))
 def test_exponents_near_one_are_the_exponential(start: float, path: float, gap: float) -> None:
     one = float(dahl_path(start, path))

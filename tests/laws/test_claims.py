@@ -77,3 +77,30 @@ def test_a_memory_that_says_nothing_is_one_number_of_any_size_that_stores_nothin
     assert law.largest_rate(1.0) == math.inf
     assert not law.rate_independent()
     assert not law.passive()
+
+
+class Counting(SilentSliding):
+    """Properties of every kind."""
+
+    @property
+    def elements(self) -> int:
+        """A whole number."""
+        return 3
+
+    @property
+    def hardens(self) -> bool:
+        """A truth value."""
+        return True
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """Several numbers, told as whole ones."""
+        return (1, 2)
+
+
+def test_kernels_know_whole_numbers_as_such_and_truth_values_and_lists_as_numbers() -> None:
+    numbers = Counting().numbers()
+
+    assert numbers == {"elements": 3, "hardens": 1.0, "lengths": (1.0, 2.0)}
+    assert [type(numbers[name]) for name in ("elements", "hardens")] == [int, float]
+    assert {type(each) for each in numbers["lengths"]} == {float}  # type: ignore[union-attr]

@@ -243,6 +243,13 @@ def test_a_mass_slides_steadily_where_every_root_of_its_equation_decays(
         )
 
 
+def test_damping_steadies_bristles_that_lead_a_falling_characteristic() -> None:
+    contact = SteadySliding(slope=-0.5, lag=0.1, lead=1.0, viscosity=0.1)
+
+    assert max(np.roots([0.1, 1 + 0.11 - 0.5, 0.1 + 1.1 - 0.5, 1.0]).real) < 0
+    assert contact.stable(damping=1.0, stiffness=1.0)
+
+
 def test_the_impedance_runs_from_the_slope_to_that_of_the_bristle_dashpots() -> None:
     contact = SteadySliding(slope=-0.3, lag=2.0, lead=0.5, viscosity=0.1)
 

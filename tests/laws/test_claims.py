@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import pytest
+
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import MemoryLaw
+from frictionlab.laws.stribeck import Stribeck
 
 
 class Silent(FrictionLaw):
@@ -77,6 +81,14 @@ def test_a_memory_that_says_nothing_is_one_number_of_any_size_that_stores_nothin
     assert law.largest_rate(1.0) == math.inf
     assert not law.rate_independent()
     assert not law.passive()
+
+
+@pytest.mark.parametrize("viscosity", [0.0, 0.1, 10.0])
+@pytest.mark.parametrize("mu_static", [0.3, 0.5])
+def test_bristles_fall_as_steeply_as_the_curve_they_are_on(mu_static: float, viscosity: float) -> None:
+    curve = {"mu_kinetic": 0.3, "mu_static": mu_static, "stribeck_exponent": 3.0, "viscosity": viscosity}
+
+    assert LuGre(stiffness=10.0, **curve).steepest_fall() == Stribeck(**curve).steepest_fall()
 
 
 class Counting(SilentSliding):

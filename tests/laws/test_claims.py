@@ -85,8 +85,11 @@ def test_a_memory_that_says_nothing_is_one_number_of_any_size_that_stores_nothin
 
 @pytest.mark.parametrize("viscosity", [0.0, 0.1, 10.0])
 @pytest.mark.parametrize("mu_static", [0.3, 0.5])
-def test_bristles_fall_as_steeply_as_the_curve_they_are_on(mu_static: float, viscosity: float) -> None:
-    curve = {"mu_kinetic": 0.3, "mu_static": mu_static, "stribeck_exponent": 3.0, "viscosity": viscosity}
+@pytest.mark.parametrize("exponent", [0.5, 3.0])
+def test_bristles_fall_as_steeply_as_the_curve_they_are_on(
+    exponent: float, mu_static: float, viscosity: float
+) -> None:
+    curve = {"mu_kinetic": 0.3, "mu_static": mu_static, "stribeck_exponent": exponent, "viscosity": viscosity}
 
     assert LuGre(stiffness=10.0, **curve).steepest_fall() == Stribeck(**curve).steepest_fall()
 

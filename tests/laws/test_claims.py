@@ -84,7 +84,7 @@ def test_a_memory_that_says_nothing_is_one_number_of_any_size_that_stores_nothin
 
 
 @pytest.mark.parametrize("viscosity", [0.0, 0.1, 10.0])
-@pytest.mark.parametrize("mu_static", [0.3, 0.5])
+@pytest.mark.parametrize("mu_static", [0.3, 0.5, 1.3])
 @pytest.mark.parametrize("exponent", [0.5, 3.0])
 def test_bristles_fall_as_steeply_as_the_curve_they_are_on(
     exponent: float, mu_static: float, viscosity: float

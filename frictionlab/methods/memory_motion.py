@@ -22,6 +22,9 @@ from frictionlab.scene import Body
 YIELDS = 1e-9
 """Of the slip along a deflection: one that is stretched by less yields."""
 
+BEYOND = 1.0 + 1e-12
+"""Of a deflection on the line that yields: so far out its rate is told, beyond what rounding leaves of it."""
+
 
 class Problem(NamedTuple):
     """A law and a body on a belt; sine and cosine at the anchor time."""
@@ -95,7 +98,37 @@ def anchored(law: Any, body: Body, belt_speed: float, tau: float) -> Problem:
 
 
 def _rounded_on_the_line(memory: Any, radius: Any, item: float) -> None:
-    """On the line a deflection that yields stays what it is."""
+    """Put what yields just beyond where it does, not a rounding error inside."""
+    for k in range(memory.size):
+        if radius[k] > 0.0:
+            memory[k] = math.copysign(radius[k] * BEYOND, memory[k])
+
+
+def _held_on_the_line(w: float, work: Any, item: float) -> None:
+    """What yields stays what it is for as long as slip loads it: its rate there is nothing but rounding."""
+    for k in range(work.memory.size):
+        if work.radius[k] > 0.0 and w * work.memory[k] > 0.0:
+            work.moving[k] = 0.0
+
+
+def _held_in_the_plane(w: complex, work: Any, item: complex) -> None:
+    """In the plane what yields still turns."""
+
+
+_held = by_dimension(_held_on_the_line, _held_in_the_plane)
+
+
+def _pushed_out_on_the_line(memory: Any, item: float) -> None:
+    """A rounding error inside, what yields would seem to bend on."""
+    for k in range(memory.size):
+        memory[k] = memory[k] * BEYOND
+
+
+def _pushed_out_in_the_plane(memory: Any, item: complex) -> None:
+    """Left where it is."""
+
+
+_pushed_out = by_dimension(_pushed_out_on_the_line, _pushed_out_in_the_plane)
 
 
 def _rounded_in_the_plane(memory: Any, radius: Any, item: complex) -> None:
@@ -109,7 +142,10 @@ rounded = by_dimension(_rounded_on_the_line, _rounded_in_the_plane)
 
 
 def _yielding_on_the_line(w: float, work: Any, item: float) -> None:
-    """Nothing to tell."""
+    """Tell from ``work.moving``, the rates just beyond, which deflections slip loads without stretching them."""
+    for k in range(work.memory.size):
+        yields = w * work.memory[k] > 0.0 and abs(work.moving[k]) <= YIELDS * abs(w)
+        work.radius[k] = abs(work.memory[k]) / BEYOND if yields else 0.0
 
 
 def _yielding_in_the_plane(w: complex, work: Any, item: complex) -> None:
@@ -130,6 +166,7 @@ def begin_step(law: Any, w: Any, work: Work, like: Any) -> None:
     filled(work.memory, work.at, 3 * dimension(like), work.memory[0])
     work.radius[:] = 0.0
     if law.turning > 0.0:
+        _pushed_out(work.memory, work.memory[0])
         felt(law, w, work)
         _yielding(w, work, work.memory[0])
 
@@ -140,6 +177,7 @@ def felt(law: Any, w: Any, work: Work) -> Any:
     rounded(work.memory, work.radius, work.memory[0])
     for k in range(work.memory.size):
         work.moving[k] = law.rate(w, work.memory, k)
+    _held(w, work, work.memory[0])
     return law.friction(w, work.memory, work.moving)
 
 

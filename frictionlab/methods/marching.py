@@ -252,6 +252,7 @@ def _named(name: str) -> Any:
 def marcher(stepper: Marcher) -> Any:
     """The kernel ``marched(law, body, way, x, v)`` of a stepper; numba caches none that is handed a function."""
     name, advance, note, held, keep = stepper
+    slack = 1e-9 if name == "smoothed" else 0.5  # loads end with the last of equal steps, however rounded
     inner_of = _named(name)
 
     @inner_of  # type: ignore[untyped-decorator]
@@ -283,9 +284,7 @@ def marcher(stepper: Marcher) -> Any:
         speed, before, swing, mark = length(w), -1.0, length(v), 2.0 * math.pi
         marked, halted = rubbed, stuck
         while tau < end and steps < way.work:
-            last = end - tau <= h * (
-                1.5 if way.driven else 1.0 + 1e-9
-            )  # loads end with the last of equal steps
+            last = end - tau <= h * (1.0 + (slack if way.driven else 1e-9))
             node, step = Node(k, tau, x, v, z), end - tau if last else h
             taken = advance(problem, node, step)
             steps += 1

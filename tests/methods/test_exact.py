@@ -20,7 +20,7 @@ from frictionlab.methods.coulomb_curve import body_at
 from frictionlab.methods.coulomb_flow import first_zero
 from frictionlab.methods.coulomb_map import Fixed, mean_error, passage
 from frictionlab.methods.exact import Exact
-from frictionlab.orbit import WEIGHTS, _interpolation_weights
+from frictionlab.orbit import WEIGHTS, interpolation_weights
 from frictionlab.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
 from frictionlab.theory import (
     friction_free_velocity,
@@ -336,7 +336,7 @@ def brute_difference(one, law, answers):
 def _at(orbit, values, place):
     panel = min(np.searchsorted(orbit.tau[:, -1], place), len(orbit.tau) - 1)
     start, end = orbit.tau[panel, 0], orbit.tau[panel, -1]
-    weights = _interpolation_weights(np.array([(2.0 * place - start - end) / (end - start)]))
+    weights = interpolation_weights(np.array([(2.0 * place - start - end) / (end - start)]))
     return float((weights[0] * values[panel].real).sum())
 
 

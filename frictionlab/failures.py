@@ -1,6 +1,8 @@
-"""What can go wrong with the folder of a run."""
+"""What can go wrong with the folder of a run, and with files begun anew."""
 
 from __future__ import annotations
+
+from pathlib import Path
 
 
 class FolderError(Exception):
@@ -9,3 +11,14 @@ class FolderError(Exception):
 
 class SaveError(Exception):
     """The results could not be written, for want of room or of a working disk."""
+
+
+def not_written(path: Path, problem: OSError) -> FolderError | SaveError:
+    """Why what is begun anew could not be written there, and what to do."""
+    if isinstance(problem, FileExistsError):
+        return FolderError(f"{path} is there already and stays as it is; choose another name")
+    if isinstance(problem, FileNotFoundError | NotADirectoryError):
+        return FolderError(f"{path}: there is no folder {path.parent}; make it first, or choose another")
+    if isinstance(problem, PermissionError):
+        return FolderError(f"{path}: no permission to write in {path.parent}; choose another folder")
+    return SaveError(f"cannot write {path}: {problem.strerror}")

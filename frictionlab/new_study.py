@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from frictionlab.failures import FolderError, SaveError
+from frictionlab.failures import FolderError, not_written
 
 TEMPLATE = Path(__file__).with_suffix(".yaml")
 ENDINGS = (".yaml", ".yml")
@@ -23,15 +23,5 @@ def new_study(path: Path) -> Path:
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
     except OSError as problem:
-        raise _explained(file, problem) from problem
+        raise not_written(file, problem) from problem
     return file
-
-
-def _explained(file: Path, problem: OSError) -> FolderError | SaveError:
-    if isinstance(problem, FileExistsError):
-        return FolderError(f"{file} is there already and stays as it is; choose another name")
-    if isinstance(problem, FileNotFoundError | NotADirectoryError):
-        return FolderError(f"{file}: there is no folder {file.parent}; make it first, or choose another")
-    if isinstance(problem, PermissionError):
-        return FolderError(f"{file}: no permission to write in {file.parent}; choose another folder")
-    return SaveError(f"cannot write {file}: {problem.strerror}")

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from frictionlab import registry
-from frictionlab.failures import FolderError, SaveError
+from frictionlab.failures import not_written
 from frictionlab.study.law_file import law_name
 
 Memory = Literal["none", "bristle"]
@@ -36,7 +36,7 @@ def new_law(path: Path, memory: Memory) -> Path:
         for file, text in _files(name, memory).items():
             (path / file).write_text(text, encoding="utf-8")
     except OSError as problem:
-        raise _explained(path, problem) from problem
+        raise not_written(path, problem) from problem
     return path
 
 
@@ -81,13 +81,3 @@ def _module(name: str) -> str:
 
 def _class(name: str) -> str:
     return "".join(part.capitalize() for part in name.split("-"))
-
-
-def _explained(path: Path, problem: OSError) -> FolderError | SaveError:
-    if isinstance(problem, FileExistsError):
-        return FolderError(f"{path} is there already and stays as it is; choose another name")
-    if isinstance(problem, FileNotFoundError | NotADirectoryError):
-        return FolderError(f"{path}: there is no folder {path.parent}; make it first, or choose another")
-    if isinstance(problem, PermissionError):
-        return FolderError(f"{path}: no permission to write in {path.parent}; choose another folder")
-    return SaveError(f"cannot write {path}: {problem.strerror}")

@@ -40,6 +40,16 @@ def size_of(law: BristleLaw) -> float:
     )
 
 
+def slid(law: FrictionLaw, v: Any, share: float) -> Memory:
+    """A share of the deflections that long slip at velocity ``v`` brings; of scalars, those of steady sliding."""
+    if isinstance(law, BristleLaw):
+        return (share * size_of(law) * (v / abs(v)),)
+    if isinstance(law, MemoryLaw):
+        share = share if law.memory_kind == "deflections" else 1.0
+        return tuple(share * law.steady(v, k) for k in range(law.count()))
+    return ()
+
+
 def stored(law: FrictionLaw, memory: Memory) -> float:
     """The work per unit normal load that the memory can give back [scene length]."""
     if isinstance(law, BristleLaw):

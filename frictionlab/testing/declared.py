@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from itertools import pairwise, product
 
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from frictionlab.laws.base import SlidingLaw
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.testing.check import check, for_laws_of
-from frictionlab.testing.contact import Memory, dot, no_plane, noise, response, size_of, stored
+from frictionlab.testing.contact import (
+    Memory,
+    dot,
+    no_plane,
+    noise,
+    response,
+    size_of,
+    slid,
+    stored,
+    turns_with_slip,
+)
 from frictionlab.testing.drawing import sizes, speeds, turns
 from frictionlab.testing.given import Given
 
@@ -142,11 +152,13 @@ def passivity(one: Given) -> None:
     law = one.law_near_the_edge(lambda law: law.passive())
     planar = not no_plane(law) and one.draw("in the plane", st.booleans())
     v = one.planar_slip() if planar else one.slip()
-    memory = one.memory(law, planar)
-    for slip in (v, *(speed * v / abs(v) for speed in SLOW_TO_QUICK)):
+    memories = [one.memory(law, planar)]
+    if not planar or turns_with_slip(law):
+        memories += [slid(law, v, share) for share in (1.0, 0.7, 0.3, -0.5)]
+    for slip, memory in product((v, *(speed * v / abs(v) for speed in SLOW_TO_QUICK)), memories):
         lost, room = _lost(law, slip, memory)
         what = f"at slip speed {abs(slip):g} friction gives work that was never stored"
-        one.require(lost >= -room, what, lost_per_time=lost)
+        one.require(lost >= -room, what, lost_per_time=lost, memory=memory)
 
 
 def _lost(law: BristleLaw | MemoryLaw, v: complex, memory: tuple[complex, ...]) -> tuple[float, float]:
@@ -224,19 +236,28 @@ def largest_rate(one: Given) -> None:
     """The rate of the memory changes no faster with the memory than declared."""
     law = one.law(lambda law: 0.0 < law.largest_rate(1.0) < math.inf)
     v = one.slip()
-    memory = one.memory(law)
     declared = law.largest_rate(abs(v))
-    for k, each in enumerate(memory):
-        size = size_of(law) if isinstance(law, BristleLaw) else abs(each) or 1.0
-        step = 1e-6 * size
-        ends = [response(law, v, (*memory[:k], each + s * step, *memory[k + 1 :])).rates[k] for s in (1, -1)]
-        change = abs(ends[0] - ends[1]) / (2.0 * step)
-        corner = abs(abs(ends[0] + ends[1] - 2.0 * response(law, v, memory).rates[k])) > 1e-3 * abs(
-            ends[0] - ends[1]
-        )
-        assume(not corner)
-        room = 1e-6 * declared + (1e-8 * abs(v) + 1e-9 * abs(ends[0])) / size
-        one.require(change <= declared + room, "the rate changes faster", got=change, declared=declared)
+    for memory in (one.memory(law), *(slid(law, v, share) for share in (0.95, 0.8, 0.5))):
+        for k, each in enumerate(memory):
+            size = size_of(law) if isinstance(law, BristleLaw) else abs(each) or 1.0
+            change, ends = _change_of_rate(law, v, memory, k, 1e-6 * size)
+            room = 1e-6 * declared + (1e-8 * abs(v) + 1e-9 * ends) / size
+            one.require(
+                change <= declared + room,
+                "the rate changes faster",
+                got=change,
+                declared=declared,
+                memory=memory,
+            )
+
+
+def _change_of_rate(law: FrictionLaw, v: float, memory: Memory, k: int, step: float) -> tuple[float, float]:
+    """How fast the rate of a memory changes with it, 0 across a corner; and the size of the rates."""
+    behind, here, ahead = (
+        response(law, v, (*memory[:k], memory[k] + s * step, *memory[k + 1 :])).rates[k] for s in (-1, 0, 1)
+    )
+    corner = abs(ahead + behind - 2.0 * here) > 1e-3 * abs(ahead - behind)
+    return (0.0 if corner else abs(ahead - behind) / (2.0 * step)), abs(ahead)
 
 
 @check("damps_across", skips=BRISTLES, seldom="damps_across() is false for all parameters drawn")

@@ -44,9 +44,9 @@ class Given:
     def law_near_the_edge(self, when: Callable[[Any], bool]) -> Any:
         """The same, one number of it often driven to where this only just holds: bounds are wrong there first."""
         law = self.law(when)
-        name = self.draw("parameter driven to the edge", st.sampled_from(["", *_numbers(law)]))
-        if name:
-            self.drawn["law"] = law = _at_the_edge(law, name, when)
+        edges = {name: edge for name in _numbers(law) if (edge := _at_the_edge(law, name, when)) is not None}
+        name = self.draw("parameter driven to the edge", st.sampled_from(["", *edges]))
+        self.drawn["law"] = law = edges.get(name, law)
         return law
 
     def planar_law(self, when: Callable[[Any], bool] = lambda law: True) -> Any:
@@ -113,14 +113,14 @@ def _numbers(law: FrictionLaw) -> list[str]:
     return [name for name, value in law if isinstance(value, float)]
 
 
-def _at_the_edge(law: FrictionLaw, name: str, when: Callable[[Any], bool]) -> FrictionLaw:
-    """The law with one number so large or small that the condition only just holds, if there is such a one."""
+def _at_the_edge(law: FrictionLaw, name: str, when: Callable[[Any], bool]) -> FrictionLaw | None:
+    """The law with one number so large or small that the condition only just holds; None if there is no such one."""
     value = getattr(law, name)
     for end in (1e6 * value, 1e-6 * value):
         beyond = _changed(law, name, end)
         if beyond is not None and not when(beyond):
             return _between(law, name, (value, end), when)
-    return law
+    return None
 
 
 def _between(

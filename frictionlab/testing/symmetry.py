@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from hypothesis import strategies as st
-
 from frictionlab.dimensional import Scales, scaled_law
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.testing.check import check
-from frictionlab.testing.contact import Response, mirrored, response, turned, turns_with_slip
+from frictionlab.testing.contact import Response, mirrored, response, slid, turned, turns_with_slip
 from frictionlab.testing.drawing import sizes, turns
 from frictionlab.testing.given import Given
+
+BEYOND = 1.5
+"""Times what a memory can hold: it yields wholly, not only just."""
 
 
 @check("oddness")
@@ -17,12 +18,12 @@ def oddness(one: Given) -> None:
     """Slip and deflections turned round turn friction round, and change it in nothing else."""
     law = one.law(lambda law: getattr(law, "planar", "") != "rotated")
     v = one.slip()
-    memory = one.memory(law)
     back = -1.0 if turns_with_slip(law) else 1.0
-    got = response(law, -v, tuple(back * each for each in memory))
-    there = response(law, v, memory)
-    should = Response(tuple(back * rate for rate in there.rates), -there.friction)
-    one.require_same(law, (v, memory), got, should, "slip turned round")
+    for memory in (one.memory(law), slid(law, v, BEYOND)):
+        got = response(law, -v, tuple(back * each for each in memory))
+        there = response(law, v, memory)
+        should = Response(tuple(back * rate for rate in there.rates), -there.friction)
+        one.require_same(law, (v, memory), got, should, "slip turned round")
 
 
 @check("rotation", seldom="no parameters drawn have a form in the plane that turns with the slip")
@@ -30,17 +31,15 @@ def rotation(one: Given) -> None:
     """In the plane everything turned by an angle gives friction turned by that angle (but for per-axis forms)."""
     law = one.planar_law(_isotropic)
     v = one.planar_slip()
-    beyond = one.draw(
-        "times what it can hold", st.sampled_from([1.0, 1.0, 1.5])
-    )  # yields wholly, not just so
-    memory = one.memory(law, planar=True)
-    if turns_with_slip(law):
-        memory = tuple(beyond * each for each in memory)
     turn = one.draw("turn", turns)
-    there = response(law, v, memory)
-    got = response(law, turn * v, turned(law, memory, turn))
-    should = Response(turned(law, there.rates, turn), turn * there.friction)
-    one.require_same(law, (v, memory), got, should, "everything turned")
+    memories = [one.memory(law, planar=True)]
+    if turns_with_slip(law):
+        memories.append(slid(law, v, BEYOND))
+    for memory in memories:
+        there = response(law, v, memory)
+        got = response(law, turn * v, turned(law, memory, turn))
+        should = Response(turned(law, there.rates, turn), turn * there.friction)
+        one.require_same(law, (v, memory), got, should, "everything turned")
 
 
 @check("reflection", seldom="no parameters drawn have a form in the plane")

@@ -110,7 +110,7 @@ class Backwards(Ageing):
 CASES = (
     Case(SignedElements, Springs, "oddness"),
     Case(BackwardsLost, Springs, "invariant_set"),
-    Case(ElementsApart, Springs, "rotation", examples=60),
+    Case(ElementsApart, Springs, "rotation"),
     Case(StoresTwice, Springs, "passivity"),
     Case(Ageing, Renewed, "unit_scaling"),
     Case(SteadyTwice, Ageing, "steady_sliding"),

@@ -264,23 +264,36 @@ def _entry(
     parameters = ", ".join(inspect.signature(kernel.py_func).parameters)
     source = (
         '"""A compiled kernel entry of frictionlab, named by its content; safe to delete."""\n'
-        "from typing import NamedTuple\n"
         "from numba import njit\n\n\n"
-        f"# {', '.join(structure)}\n"
-        "class Numbers(NamedTuple):\n    "
-        + "\n    ".join(f"{name}: float" for name in fields or ("none",))
-        + "\n\n\n"
+        f"# {', '.join((*fields, *structure))}\n"
         '@njit(nogil=True, error_model="numpy", cache=True)\n'
         f"def entry({parameters}):\n    return kernel({parameters})\n"
     )
+    numbers = _numbers(law, fields, structure) if law is not None else None
     name = f"frictionlab_{kernel.py_func.__name__}_{_fingerprint(source, kernel, law)}"
-    module = _load(name, source, kernel)
-    if law is not None:
-        _law_of_numbers[module.Numbers] = law, structure
-    return module.entry, module.Numbers if law is not None else None
+    return _load(name, source, kernel=kernel).entry, numbers
 
 
-def _load(name: str, source: str, kernel: Any) -> ModuleType:
+@cache
+def _numbers(law: type[FrictionLaw], fields: tuple[str, ...], structure: tuple[str, ...]) -> Any:
+    """The type of a law's numbers, one for all entries: what they share is compiled once in a process."""
+    source = (
+        '"""The numbers of a law as kernels of frictionlab see them, named by content; safe to delete."""\n'
+        "from typing import NamedTuple\n\n\n"
+        f"# {', '.join(structure)}\n"
+        "class Numbers(NamedTuple):\n    "
+        + "\n    ".join(f"{name}: float" for name in fields or ("none",))
+        + "\n"
+    )
+    name = f"frictionlab_numbers_{_fingerprint(source, law)}"
+    known = sys.modules.get(name)  # of another class of the same code: entries may be kept that name its type
+    numbers = (known or _load(name, source)).Numbers
+    _law_of_numbers[numbers] = law, structure
+    return numbers
+
+
+def _load(name: str, source: str, **given: Any) -> ModuleType:
+    """The module of this content, some names given before it runs."""
     path = _written(cache_folder() / f"{name}.py", source)
     if path is None:  # nowhere to write: compile afresh in every process
         folder = Path(tempfile.mkdtemp(prefix="frictionlab-"))
@@ -291,7 +304,7 @@ def _load(name: str, source: str, kernel: Any) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    module.kernel = kernel  # type: ignore[attr-defined]
+    vars(module).update(given)
     sys.modules[name] = module
     spec.loader.exec_module(module)
     return module

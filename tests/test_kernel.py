@@ -252,14 +252,19 @@ def heavy(law, speed):  # heavy, and called from three places: it is linked and 
 @njit
 def answer(law, speed):
     return heavy(law, speed) + 0.0 * heavy(law, 2.0 * speed) + 0.0 * heavy(law, 3.0 * speed)
+
+@njit
+def thrice(law, speed):  # shares it with the entry before
+    return 3.0 * heavy(law, speed) + 0.0 * heavy(law, 2.0 * speed)
 """.replace("WORK", " + ".join(f"math.sin(speed + {k}.5) * math.exp(-{k}.0 * speed)" for k in range(80))),
     "look.py": """
 import sys
 from frictionlab.kernel import compiled
-from heavy import answer
+from heavy import answer, thrice
 import lookalikes
-for name in sys.argv[1:]:
-    print(compiled(answer, getattr(lookalikes, name)(mu=0.5))(2.0))
+for word in sys.argv[1:]:
+    kernel, name = {"3": (thrice, word[2:]), "1": (answer, word[2:])}[word[0]]
+    print(compiled(kernel, getattr(lookalikes, name)(mu=0.5))(2.0))
 """,
 }
 
@@ -276,10 +281,11 @@ def test_kernels_kept_by_two_processes_do_not_take_each_others_place(tmp_path):
         )
         return [float(line) for line in done.stdout.split()]
 
-    assert answers("Single") == [0.5]
-    assert answers("Double") == [1.0]
-    assert answers("Single", "Double") == [0.5, 1.0]
-    assert answers("Double", "Single") == [1.0, 0.5]
+    assert answers("1 Single") == [0.5]
+    assert answers("1 Double", "3 Double") == [1.0, 3.0]
+    assert answers("3 Single") == [1.5]
+    assert answers("1 Single", "3 Double", "3 Single", "1 Double") == [0.5, 3.0, 1.5, 1.0]
+    assert answers("3 Double", "1 Single") == [3.0, 0.5]
 
 
 def test_a_law_that_numba_cannot_compile_says_so_and_still_runs_interpreted():
@@ -315,6 +321,32 @@ class Linear(SlidingLaw):
     def sliding_friction(self, speed):
         """Rises with speed."""
         return self.mu + self.slope * speed
+
+
+def same_code():
+    class Doubled(SlidingLaw):
+        """Made anew by each call, as by a file that is read twice."""
+
+        mu: Positive
+
+        def sliding_friction(self, speed):
+            """Twice mu."""
+            return 2.0 * self.mu
+
+    return Doubled
+
+
+def test_entries_of_one_law_see_it_as_one_type_and_another_class_of_its_code_takes_nothing_from_it():
+    law, other = same_code()(mu=0.3), same_code()(mu=0.4)
+
+    assert compiled(friction_at, law)(1.0) == 0.6
+    assert compiled(friction_at, other)(1.0) == 0.8
+    assert compiled(summed_friction, law)(np.ones(2)) == 1.2
+    assert compiled(summed_friction, other)(np.ones(2)) == 1.6
+    kinds = {
+        type(compiled(run, each).args[2]) for run in (friction_at, summed_friction) for each in (law, other)
+    }
+    assert len(kinds) == 1
 
 
 def test_one_kernel_serves_laws_of_different_kinds_and_parameters():
@@ -365,7 +397,8 @@ def twice_twice(v):
     return _twice(_twice(v))
 
 
-def test_what_only_kernels_call_is_made_to_run_within_their_entries_alone():
+def test_what_only_kernels_call_is_made_to_run_within_their_entries_alone(tmp_path, monkeypatch):
+    monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path))
     assert compiled(twice_twice)(3.0) == 12.0
     (part,) = _twice.overloads.values()
     (whole,) = twice_twice.overloads.values()

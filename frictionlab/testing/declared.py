@@ -165,23 +165,25 @@ def _lost(law: BristleLaw | MemoryLaw, v: complex, memory: tuple[complex, ...]) 
     """The work lost per time and unit load, and how much of it is rounding."""
     rates, friction = response(law, v, memory)
     work, own = dot(friction, v), noise(law, v, memory)
-    kept, scale = 0.0, abs(work)
+    kept, room = 0.0, 1e-9 * abs(work) + 20.0 * own.friction * abs(v)
     for k, rate in enumerate(rates):
-        slope = _slope_of_stored(law, memory, k)
+        slope, doubt = _slope_of_stored(law, memory, k)
         kept += dot(slope, rate)
-        scale += abs(slope) * abs(rate) + 20.0 * abs(slope) * own.rates[k] * 1e12
-    return work - kept, 1e-9 * scale + 20.0 * own.friction * abs(v)
+        room += (1e-9 * abs(slope) + doubt) * abs(rate) + 20.0 * abs(slope) * own.rates[k] * 1e3
+    return work - kept, room
 
 
-def _slope_of_stored(law: BristleLaw | MemoryLaw, memory: tuple[complex, ...], k: int) -> complex:
-    """The gradient of the stored work with respect to one memory."""
-    size = abs(memory[k]) or (size_of(law) if isinstance(law, BristleLaw) else 1.0)
+def _slope_of_stored(
+    law: BristleLaw | MemoryLaw, memory: tuple[complex, ...], k: int
+) -> tuple[complex, float]:
+    """The gradient of the stored work with respect to one memory, and what rounding of the whole leaves of it."""
+    step = 1e-4 * (abs(memory[k]) or (size_of(law) if isinstance(law, BristleLaw) else 1.0))
     ways = (1.0, 1j) if isinstance(memory[k], complex) else (1.0,)
     slope = 0.0 * memory[k]
     for way in ways:
-        ahead, behind = ((*memory[:k], memory[k] + s * 1e-4 * size * way, *memory[k + 1 :]) for s in (1, -1))
-        slope += way * (stored(law, ahead) - stored(law, behind)) / (2e-4 * size)
-    return slope
+        ahead, behind = ((*memory[:k], memory[k] + s * step * way, *memory[k + 1 :]) for s in (1, -1))
+        slope += way * (stored(law, ahead) - stored(law, behind)) / (2.0 * step)
+    return slope, 1e-15 * stored(law, memory) / step
 
 
 @check("not_passive", skips=WITH_MEMORY, share=0.2, seldom="passive() is true for all parameters drawn")

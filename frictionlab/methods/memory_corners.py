@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
-from frictionlab.kernel import by_dimension, inner
-from frictionlab.methods.memory_motion import Problem, Work
-from frictionlab.methods.memory_state import Scales
+from frictionlab.kernel import by_dimension, inner, length
+from frictionlab.methods.bristle_map import dimension, taken
+from frictionlab.methods.memory_motion import BEYOND, YIELDS, Problem, Work
+from frictionlab.methods.memory_state import Scales, filled, spilled
 from frictionlab.methods.memory_step import stepped
 from frictionlab.methods.sliding_map import dips
+
+ROUNDED = 1e-13
+"""Of a reach: a smaller excess is rounding."""
 
 
 def _ahead_on_the_line(values: Any, work: Any, like: float) -> float:
@@ -58,12 +62,117 @@ def turning_point(
     return high, error, tries + 1
 
 
+def _along_on_the_line(w: float, z: float) -> float:
+    return w * z
+
+
+def _along_in_the_plane(w: complex, z: complex) -> float:
+    return w.real * z.real + w.imag * z.imag
+
+
+_along = by_dimension(_along_on_the_line, _along_in_the_plane)
+
+
+class Begun(NamedTuple):
+    """Whether a deflection has begun to yield within a step, how far it went on (energy), how long ago that was."""
+
+    yields: bool
+    over: float
+    ago: float
+
+
+@inner
+def _excess(law: Any, w: Any, k: int, work: Work) -> float:
+    """By how much of its reach the k-th of ``work.memory`` is beyond it; -1 where it is not, nor has begun to lag.
+
+    Told by what the law says of slip straight outward: beyond its reach a deflection may come back by its excess. Of
+    one that only stays where it is the excess is unknown: 0.
+    """
+    z = work.memory[k]
+    size, speed = length(z), length(w)
+    if work.follows[k] == 0.0 or size == 0.0 or speed == 0.0:
+        return -1.0
+    followed = _along(law.rate(z * (speed / size), work.memory, k), z) / (speed * size)
+    if followed >= 1.0 - YIELDS:
+        return -1.0
+    return -followed if -followed > ROUNDED else 0.0
+
+
+@inner
+def begun(law: Any, scales: Scales, work: Work, like: Any) -> Begun:
+    """Which deflections that move with the slip from ``work.at`` should not do so at ``work.end`` any more."""
+    first, w = 3 * dimension(like), taken(work.end, 1, like)
+    filled(work.memory, work.at, first, work.memory[0])
+    for k in range(work.memory.size):
+        work.moving[k] = work.memory[k]
+    filled(work.memory, work.end, first, work.memory[0])
+    yields, over, ago = False, 0.0, 0.0
+    for k in range(work.memory.size):
+        z = work.memory[k]
+        outward = _along(w, z)
+        if outward <= 0.0 and length(z) <= length(work.moving[k]):
+            continue
+        excess = _excess(law, w, k, work)
+        if excess < 0.0:
+            continue
+        beyond = length(z) * excess / (1.0 + excess)
+        yields, over = True, max(over, scales.unit[k] * beyond)
+        if outward > 0.0:
+            ago = max(ago, beyond * length(z) / outward)
+    return Begun(yields, over, ago)
+
+
+@inner
+def _set_back(law: Any, work: Work, like: Any) -> None:
+    """Put what has just begun to yield where it did, and not a rounding error inside."""
+    w = taken(work.end, 1, like)
+    filled(work.memory, work.end, 3 * dimension(like), work.memory[0])
+    for k in range(work.memory.size):
+        excess = _excess(law, w, k, work)
+        if excess > 0.0:
+            work.memory[k] = work.memory[k] * (BEYOND / (1.0 + excess))
+    spilled(work.memory, work.end, 3 * dimension(like), work.memory[0])
+
+
+@inner
+def yield_point(
+    problem: Problem, tau: float, high: float, scales: Scales, accuracy: float, work: Work, like: Any
+) -> Any:
+    """The step at whose end a deflection has just begun to yield, left in ``work.end``; its error, and how many were
+    tried.
+    """
+    low, tries, close, steepest = 0.0, 0, 1e-2 * accuracy, 0.0
+    for k in range(scales.unit.size):
+        steepest = max(steepest, scales.unit[k])
+    last = begun(problem.law, scales, work, like)
+    error, at = 0.0, high
+    while tries < 60 and high - low > 2e-15 * (tau + high):
+        speed = steepest * length(taken(work.end, 1, like))
+        if (last.over > 0.0 and last.over <= close) or (high - low) * speed <= close:
+            break
+        h = 0.5 * (low + high)
+        if tries % 4 < 3 and last.over > 0.0:
+            aimed = high - last.ago * (1.0 - 0.5 * close / last.over)
+            h = aimed if low < aimed < high else h
+        error, at = stepped(problem, tau, h, scales, work, like), h
+        tries += 1
+        found = begun(problem.law, scales, work, like)
+        if found.yields:
+            high, last = h, found
+        else:
+            low = h
+    if at != high or tries == 0:
+        error = stepped(problem, tau, high, scales, work, like)
+    _set_back(problem.law, work, like)
+    return high, error, tries + 1
+
+
 @inner
 def located(
     problem: Problem, tau: float, high: float, scales: Scales, accuracy: float, work: Work, like: Any
 ) -> Any:
     """Where in a step a rate jumps that is not accurate for it: the step up to there, left in ``work.end``, and the
-    short one that passes the jump; and how many were tried.
+    short one that passes the jump; and how many were tried. Without a sharp jump there is nothing to pass.
     """
     low, tries, close = 0.0, 0, 1e-3 * accuracy
     missed = stepped(problem, tau, high, scales, work, like) / high
@@ -75,6 +184,10 @@ def located(
             low = middle
         else:
             high, missed = middle, error / middle
+    if high - low > 0.01 * high:
+        h = low if low > 0.0 else high
+        stepped(problem, tau, h, scales, work, like)
+        return h, 0.0, tries + 1
     if low > 0.0:
         stepped(problem, tau, low, scales, work, like)
     return low, 2.0 * max(high - low, close / missed), tries + 1

@@ -11,8 +11,9 @@ from typing import Any
 
 from frictionlab.kernel import inner, length
 from frictionlab.methods.bristle_map import COARSEST, put, taken
-from frictionlab.methods.memory_corners import located, passed, turning_point, turns
-from frictionlab.methods.memory_motion import Problem, Work, anchored, rates
+from frictionlab.methods.memory_corners import begun as begun_to_yield
+from frictionlab.methods.memory_corners import located, passed, turning_point, turns, yield_point
+from frictionlab.methods.memory_motion import Problem, Work, anchored, rates, settled
 from frictionlab.methods.memory_quotients import differentiate
 from frictionlab.methods.memory_state import Scales, scales_of, swing_of
 from frictionlab.methods.memory_step import crossed, stepped
@@ -22,7 +23,9 @@ from frictionlab.orbit import NODES
 from frictionlab.scene import Body
 
 JUMP = 2
-"""Repetitions of a step after which a deflection is taken to yield within it."""
+"""Repetitions of a step after which a rate is taken to jump within it, if errors fall slower than smooth ones."""
+MOST_REJECTED = 8
+"""The same however errors fall."""
 MEANT = 1e4
 """Times the accuracy: an error beyond which a step says nothing about where slip reverses."""
 
@@ -101,6 +104,7 @@ def follow(
     reach = reach_of(body, usual_friction(law, body), accuracy)
     tau, h, steps, rejected, closest = 0.0, 0.1 * reach, 0, 0, 1e300
     beyond, usual, fresh = 0.0, 0.1 * reach, True
+    missed, tried = 0.0, 1.0
     problem = anchored(law, body, belt_speed, 0.0)
     if body.prescribed:
         _held(problem, 0.0, work, like)
@@ -124,13 +128,17 @@ def follow(
             if cornered and turns(work, 1e-3 * accuracy, like):
                 h, error, tries = turning_point(problem, tau, h, scales, accuracy, work, like)
                 steps += tries
+            if cornered and begun_to_yield(law, scales, work, like).yields:
+                h, error, tries = yield_point(problem, tau, h, scales, accuracy, work, like)
+                steps += tries
             growth = _growth(error, accuracy)
         if steps > MOST_STEPS:
             return closest, -1
         if growth < 1.0:
             usual = h if rejected == 0 else usual
-            rejected += 1
-            if law.turning == 0.0 or rejected < JUMP:
+            smooth = rejected > 0 and error <= missed * (h / tried) ** 3
+            rejected, missed, tried = rejected + 1, error, h
+            if law.turning == 0.0 or rejected < JUMP or (smooth and rejected < MOST_REJECTED):
                 h = h * growth
                 continue
             h, beyond, tries = located(problem, tau, h, scales, accuracy, work, like)
@@ -151,6 +159,7 @@ def follow(
                 work.end[row] = work.kept[row]
         for row in range(work.at.size):
             work.at[row] = work.end[row]
+        settled(work, like)
         tau = tau + h if end - tau > h else end
         if body.prescribed:
             _held(problem, tau, work, like)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.kernel import by_dimension, inner
+from frictionlab.kernel import by_dimension, inner, length
 from frictionlab.methods.bristle_map import dimension, put, taken
 from frictionlab.methods.memory_state import filled, memory_of, parts, spilled
 from frictionlab.methods.sliding_map import reference_velocity, restoring_force, turned
@@ -20,7 +20,7 @@ from frictionlab.methods.turning import reference_acceleration
 from frictionlab.scene import Body
 
 YIELDS = 1e-9
-"""Of the slip along a deflection: one that is stretched by less yields."""
+"""Of the slip along a deflection: one that is stretched by less yields, one that lags by less moves with it."""
 
 BEYOND = 1.0 + 1e-12
 """Of a deflection on the line that yields: so far out its rate is told, beyond what rounding leaves of it."""
@@ -55,7 +55,8 @@ class Work(NamedTuple):
     memory: Any  # as the law knows it
     moving: Any  # its rates
     trial: Any  # [3, m + d] rates of memory and friction, for quotients
-    radius: Any  # of the circle on which a deflection in the plane yields, 0 where it does not
+    radius: Any  # at which a deflection yields, 0 where it does not
+    follows: Any  # 1 for a deflection that moves with the slip, else 0
 
 
 @inner
@@ -87,6 +88,7 @@ def work_of(law: Any, body: Body, like: Any) -> Work:
         memory_of(law, like),
         np.zeros((3, m + d)),
         np.zeros(memory.size),
+        np.zeros(memory.size),
     )
 
 
@@ -105,14 +107,19 @@ def _rounded_on_the_line(memory: Any, radius: Any, item: float) -> None:
 
 
 def _held_on_the_line(w: float, work: Any, item: float) -> None:
-    """What yields stays what it is for as long as slip loads it: its rate there is nothing but rounding."""
+    """What yields stays what it is, what moves with the slip goes on to: corners are met by the ends of steps."""
     for k in range(work.memory.size):
-        if work.radius[k] > 0.0 and w * work.memory[k] > 0.0:
+        if work.radius[k] > 0.0:
             work.moving[k] = 0.0
+        elif work.follows[k] > 0.0:
+            work.moving[k] = w
 
 
 def _held_in_the_plane(w: complex, work: Any, item: complex) -> None:
-    """In the plane what yields still turns."""
+    """The same; but what yields turns on its circle as the law says."""
+    for k in range(work.memory.size):
+        if work.follows[k] > 0.0:
+            work.moving[k] = w
 
 
 _held = by_dimension(_held_on_the_line, _held_in_the_plane)
@@ -162,13 +169,34 @@ _yielding = by_dimension(_yielding_on_the_line, _yielding_in_the_plane)
 
 @inner
 def begin_step(law: Any, w: Any, work: Work, like: Any) -> None:
-    """Tell which deflections yield at the start of a step, and put those on their circles."""
+    """Tell at the start of a step which deflections yield, which are put on their circles, and which follow the slip.
+
+    Each goes on so to the end of the step, which is smooth for that.
+    """
     filled(work.memory, work.at, 3 * dimension(like), work.memory[0])
     work.radius[:] = 0.0
+    work.follows[:] = 0.0
     if law.turning > 0.0:
         _pushed_out(work.memory, work.memory[0])
         felt(law, w, work)
         _yielding(w, work, work.memory[0])
+        for k in range(work.memory.size):
+            alike = length(work.moving[k] - w) <= YIELDS * length(w)
+            work.follows[k] = 1.0 if alike and work.radius[k] == 0.0 else 0.0
+
+
+def _settled_on_the_line(work: Work, like: float) -> None:
+    """On the line nothing has moved it."""
+
+
+def _settled_in_the_plane(work: Work, like: complex) -> None:
+    filled(work.memory, work.at, 6, work.memory[0])
+    rounded(work.memory, work.radius, work.memory[0])
+    spilled(work.memory, work.at, 6, work.memory[0])
+
+
+settled = by_dimension(_settled_on_the_line, _settled_in_the_plane)
+"""Put what yielded in the step that led to ``work.at`` back on its circle, which errors of the step lead off."""
 
 
 @inner

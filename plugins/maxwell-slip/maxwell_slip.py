@@ -34,10 +34,6 @@ class MaxwellSlip(MemoryLaw):
       Automatic Control}, volume = {50}, pages = {1883--1887}, year = {2005}}
     """
 
-    expected_failures: ClassVar = {
-        "coulomb_limit_of_a_body": "shooting does not close orbits of elements this stiff to 1e-9 yet"
-    }
-
     mu: Annotated[tuple[Positive, ...], Field(min_length=1)]
     stiffness: Annotated[tuple[Stiffness, ...], Field(min_length=1)]
 

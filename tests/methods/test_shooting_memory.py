@@ -18,6 +18,7 @@ DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
 ONE = Elements(stiffness=(40.0,), reach=(0.01,))
 THREE = Elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
+STIFF = Elements(stiffness=(1e4, 2e3, 5e2), reach=(1.5e-5, 5e-5, 3e-4))
 TOLERANCES = [1e-4, 1e-6, 1e-8]
 
 
@@ -79,6 +80,49 @@ def by_legs(scene: fl.Scene, law: Elements, periods: int) -> float:
     return float(-rubbed / span)
 
 
+def by_planar_legs(scene: fl.Scene, law: Elements, periods: int) -> float:
+    """In the plane: each deflection goes with the slip, or turns on its circle, until it reaches or leaves that."""
+    mass = scene.mass()
+    span, reach, stiffness = 2.0 * math.pi / mass.frequency, np.array(law.reach), np.array(law.stiffness)
+    yields, state, tau = np.zeros(reach.size, bool), np.zeros(6 + 2 * reach.size), 0.0
+
+    def deflections(state: Any) -> Any:
+        return np.where(yields, reach * np.exp(1j * state[6::2]), state[6::2] + 1j * state[7::2])
+
+    def rates(tau: float, state: Any) -> Any:
+        z, w = deflections(state), complex(state[2] - scene.belt_speed, state[3])
+        rub, sine = (stiffness * z).sum(), math.sin(mass.frequency * tau)
+        along = mass.force.real * sine - mass.damping * state[2] - mass.stiffness * state[0]
+        across = mass.transverse_force.real * sine - mass.transverse_damping * state[3]
+        across -= mass.transverse_stiffness * state[1]
+        turning = (w * z.conjugate()).imag / reach**2
+        moved = [np.where(yields, turning, w.real), np.where(yields, 0.0, w.imag)]
+        push = along - mass.normal_load * rub.real, across - mass.normal_load * rub.imag
+        return np.array([*state[2:4], *push, rub.real, rub.imag, *np.column_stack(moved).ravel()])
+
+    def until(k: int) -> Any:
+        def corner(tau: float, state: Any) -> float:
+            z, w = deflections(state)[k], complex(state[2] - scene.belt_speed, state[3])
+            return float((w * z.conjugate()).real if yields[k] else abs(z) - reach[k])
+
+        corner.terminal = True  # type: ignore[attr-defined]
+        corner.direction = -1.0 if yields[k] else 1.0  # type: ignore[attr-defined]
+        return corner
+
+    for n in range(1, periods + 1):
+        state[4] = 0.0
+        while tau < n * span:
+            events = [until(k) for k in range(reach.size)]
+            options = {"events": events, "rtol": 1e-11, "atol": 1e-13, "max_step": span / 60.0}
+            leg = solve_ivp(rates, (tau, n * span), state, "DOP853", **options)
+            tau, state = leg.t[-1], leg.y[:, -1].copy()
+            for k in [k for k, met in enumerate(leg.t_events) if met.size]:
+                z = deflections(state)[k] * (1.0 - 1e-13)
+                state[6 + 2 * k : 8 + 2 * k] = (z.real, z.imag) if yields[k] else (cmath.phase(z), 0.0)
+                yields[k] = not yields[k]
+    return float(-state[4] / span)
+
+
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 @pytest.mark.parametrize("belt_speed", [0.5, 5.0])
 def test_one_element_is_jenkins_friction(belt_speed: float, tolerance: float) -> None:
@@ -122,6 +166,7 @@ SLIPPERY = Ageing(a=0.03, b=0.02)
     ("law", "belt_speed"),
     [
         pytest.param(THREE, 1.0, id="three elements"),
+        pytest.param(STIFF, 1.0, id="three stiff elements"),
         pytest.param(SLIPPERY, 40.0, id="no reversal", marks=deep),
         pytest.param(SLIPPERY, 3.0, id="two reversals", marks=deep),
     ],
@@ -162,3 +207,16 @@ def test_one_element_is_jenkins_friction_in_the_plane(tolerance: float) -> None:
 
     assert found.status == "ok", found.reason
     assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
+
+
+@deep
+def test_the_error_covers_what_scipy_finds_of_elements_in_the_plane() -> None:
+    across = fl.Transverse(natural_frequency=0.7, damping_ratio=0.4, load=fl.Load(unbalance=6))
+    scene = driven(2.0).model_copy(update={"transverse": across})
+    known = by_planar_legs(scene, THREE, 16)
+
+    for tolerance in TOLERANCES:
+        found = fl.steady_state(scene, THREE, tolerance=tolerance)
+
+        assert found.status == "ok", found.reason
+        assert abs(found.mean_friction - known) <= found.error + 3e-9

@@ -1,7 +1,8 @@
 """The memory of a law as kernels keep it: an array for the law, real numbers for a stepper, coordinates for a state.
 
 In the plane a deflection is complex to its law and two numbers to a stepper. In a state a deflection is measured by
-the square root of its stiffness, as energy is; a positive scalar by its logarithm, for it may range over decades.
+the square root of its stiffness, as energy is; a positive scalar by its logarithm as long as it is small, for it may
+range over decades, and by itself where it is large: what decays there then nears its orbit period by period.
 """
 
 from __future__ import annotations
@@ -119,7 +120,8 @@ def _kept_numbers(memory: Any, law: Any, scales: Scales, state: Any, at: int, it
         if law.turning > 0.0:
             state[at + k] = unit * memory[k]
         elif scales.positive[k]:
-            state[at + k] = unit * math.log(max(memory[k], 1e-300) / scales.size[k])
+            share = max(memory[k], 1e-300) / scales.size[k]
+            state[at + k] = unit * (math.log(share) if share < 1.0 else share - 1.0)
         else:
             state[at + k] = unit * memory[k] / scales.size[k]
 
@@ -140,7 +142,7 @@ def _recalled_numbers(memory: Any, law: Any, scales: Scales, state: Any, at: int
         if law.turning > 0.0:
             memory[k] = value
         elif scales.positive[k]:
-            memory[k] = scales.size[k] * math.exp(value)
+            memory[k] = scales.size[k] * (math.exp(value) if value < 0.0 else 1.0 + value)
         else:
             memory[k] = scales.size[k] * value
 

@@ -13,6 +13,7 @@ from memory_laws import Ageing, Elements
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
+from frictionlab.methods.memory_state import Scales, kept, recalled
 
 DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
@@ -220,3 +221,18 @@ def test_the_error_covers_what_scipy_finds_of_elements_in_the_plane() -> None:
 
         assert found.status == "ok", found.reason
         assert abs(found.mean_friction - known) <= found.error + 3e-9
+
+
+@pytest.mark.parametrize("share", [1e-30, 1e-3, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 40.0, 1e9])
+def test_an_age_of_any_size_is_kept_in_a_state_and_grows_no_faster_there_than_it_does(share: float) -> None:
+    law, like = Ageing(), 0.0
+    scales = Scales(np.array([2.0]), np.array([3.0]), np.array([True]))
+    write, read = kept.bodies[0], recalled.bodies[0]
+    state, memory = np.zeros(2), np.zeros(1)
+
+    write(np.array([3.0 * share]), law, scales, state[:1], 0, like)
+    write(np.array([3.0 * share + 1e-3]), law, scales, state[1:], 0, like)
+    read(memory, law, scales, state, 0, like)
+
+    assert memory[0] == pytest.approx(3.0 * share, rel=1e-12)
+    assert 0.0 < state[1] - state[0] <= 2.0 * (1e-3 / 3.0) * 1.0001 or share < 1.0

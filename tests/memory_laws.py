@@ -1,9 +1,11 @@
-"""Two laws of other memory than one bristle deflection, for tests: several deflections, and one positive scalar."""
+"""Laws of other memory than one bristle deflection, for tests: several deflections, and one positive scalar."""
 
 from __future__ import annotations
 
 import math
 from typing import Any, ClassVar, Literal
+
+from maxwell_slip import MaxwellSlip
 
 from frictionlab.laws.base import Positive
 from frictionlab.laws.memory import MemoryLaw
@@ -63,8 +65,13 @@ class Ageing(MemoryLaw):
         return speed / self.slip_length
 
 
+def elements(stiffness: tuple[float, ...], reach: tuple[float, ...]) -> MaxwellSlip:
+    """The plugin's law told by the reach of each element."""
+    return MaxwellSlip(mu=[k * z for k, z in zip(stiffness, reach, strict=True)], stiffness=stiffness)
+
+
 class Elements(MemoryLaw):
-    """Maxwell-slip friction: springs in parallel, each with a slider of its own.
+    """The same friction by other rates: a slider drags its spring and never takes back what a step overshot.
 
     stiffness [1/scene length], reach [scene length], > 0: of each element; as many of both.
     Sources: Iwan (1966), J. Appl. Mech. 33, 893; in the plane each slider is dragged as by a rope.

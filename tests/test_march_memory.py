@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
-from memory_laws import Ageing, Elements
+from memory_laws import Ageing, elements
 
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.methods.march import March
@@ -11,8 +13,10 @@ from frictionlab.methods.memory_limits import fewest_steps
 from frictionlab.methods.shooting import Shooting
 from frictionlab.scene import Drive, Scene, Slip, Transverse
 
-ONE = Elements(stiffness=(4.0,), reach=(0.1,))
-THREE = Elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
+DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
+deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
+ONE = elements(stiffness=(4.0,), reach=(0.1,))
+THREE = elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
 AGEING = Ageing(mu0=0.4, a=0.01, b=0.008, slip_length=2.0)
 
 
@@ -54,6 +58,7 @@ def test_march_and_shooting_agree_about_three_elements():
     assert agree(solve(March(), scene, THREE, 1e-4), solve(Shooting(), scene, THREE, 1e-6))
 
 
+@deep
 @pytest.mark.parametrize("law", [AGEING, AGEING.model_copy(update={"b": 0.015})], ids=["rising", "falling"])
 def test_march_and_shooting_agree_about_an_age_where_slip_never_reverses(law):
     scene = driven(20.0)
@@ -81,7 +86,7 @@ def test_an_age_that_grows_too_quickly_for_the_steps_asked_for_is_refused_with_t
 
 def test_a_motion_faster_than_without_friction_takes_more_steps_by_itself():
     """The longer spring brings the body to resonance."""
-    soft = Elements(stiffness=(0.1, 0.35), reach=(4.0, 0.07))
+    soft = elements(stiffness=(0.1, 0.35), reach=(4.0, 0.07))
     scene = driven(2.0, damping_ratio=0.1)
     fewest = fewest_steps(scene, soft)
     given = March(steps=fewest).solve([scene], soft, 1e-2)
@@ -118,7 +123,7 @@ def test_in_the_plane_without_a_load_across_march_answers_as_along_the_belt():
         (driven(1.0, drive=None, initial={"x": 1.0}), {}, ONE, "give a drive"),
         (driven(1.0), {"stepper": "moreau"}, ONE, "use rk4"),
         (driven(1.0), {"theta": 1}, ONE, "leave it out"),
-        (driven(1.0), {}, Elements(stiffness=(1e6,), reach=(1e-6,)), "steps per period"),
+        (driven(1.0), {}, elements(stiffness=(1e6,), reach=(1e-6,)), "steps per period"),
     ],
     ids=["prescribed", "undriven", "stepper", "theta", "stiff"],
 )

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from memory_laws import Ageing, Elements
+from maxwell_slip import MaxwellSlip
+from memory_laws import Ageing, Elements, elements
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
@@ -17,9 +18,9 @@ from frictionlab.methods.memory_state import Scales, kept, recalled
 
 DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
-ONE = Elements(stiffness=(40.0,), reach=(0.01,))
-THREE = Elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
-STIFF = Elements(stiffness=(1e4, 2e3, 5e2), reach=(1.5e-5, 5e-5, 3e-4))
+ONE = elements(stiffness=(40.0,), reach=(0.01,))
+THREE = elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
+STIFF = elements(stiffness=(1e4, 2e3, 5e2), reach=(1.5e-5, 5e-5, 3e-4))
 TOLERANCES = [1e-4, 1e-6, 1e-8]
 
 
@@ -49,7 +50,7 @@ def by_lsoda(scene: fl.Scene, law: Ageing, periods: int) -> float:
     return float(-state[3] / span)
 
 
-def by_legs(scene: fl.Scene, law: Elements, periods: int) -> float:
+def by_legs(scene: fl.Scene, law: MaxwellSlip | Elements, periods: int) -> float:
     """The same for elements: between reversals of slip each deflection is the way slid, cut off at its reach."""
     mass = scene.mass()
     span, reach = 2.0 * math.pi / mass.frequency, np.array(law.reach)
@@ -81,7 +82,7 @@ def by_legs(scene: fl.Scene, law: Elements, periods: int) -> float:
     return float(-rubbed / span)
 
 
-def by_planar_legs(scene: fl.Scene, law: Elements, periods: int) -> float:
+def by_planar_legs(scene: fl.Scene, law: MaxwellSlip | Elements, periods: int) -> float:
     """In the plane: each deflection goes with the slip, or turns on its circle, until it reaches or leaves that."""
     mass = scene.mass()
     span, reach, stiffness = 2.0 * math.pi / mass.frequency, np.array(law.reach), np.array(law.stiffness)
@@ -143,7 +144,7 @@ def test_one_element_is_jenkins_friction_under_a_prescribed_slip(belt_speed: flo
     scene = fl.Scene(belt_speed=belt_speed, normal_load=3, slip=slip)
 
     known = fl.steady_state(scene, fl.Jenkins(mu=0.4, stiffness=4))
-    found = fl.steady_state(scene, Elements(stiffness=(4.0,), reach=(0.1,)), tolerance=tolerance)
+    found = fl.steady_state(scene, elements(stiffness=(4.0,), reach=(0.1,)), tolerance=tolerance)
 
     assert found.status == "ok", found.reason
     assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
@@ -154,13 +155,14 @@ def test_one_element_is_jenkins_friction_under_a_prescribed_slip(belt_speed: flo
 def test_elements_that_never_yield_leave_the_mean_open() -> None:
     slip = fl.Slip(velocity_amplitude=0.05, frequency=2)
 
-    found = fl.steady_state(fl.Scene(belt_speed=0, slip=slip), Elements(stiffness=(4.0,), reach=(0.1,)))
+    found = fl.steady_state(fl.Scene(belt_speed=0, slip=slip), elements(stiffness=(4.0,), reach=(0.1,)))
 
     assert found.status == "not_unique"
     assert "start" in found.reason
 
 
 SLIPPERY = Ageing(a=0.03, b=0.02)
+TAKING_NOTHING_BACK = Elements(stiffness=THREE.stiffness, reach=THREE.reach)
 
 
 @pytest.mark.parametrize(
@@ -168,15 +170,16 @@ SLIPPERY = Ageing(a=0.03, b=0.02)
     [
         pytest.param(THREE, 1.0, id="three elements"),
         pytest.param(STIFF, 1.0, id="three stiff elements"),
+        pytest.param(TAKING_NOTHING_BACK, 1.0, id="springs that stay where a step overshot", marks=deep),
         pytest.param(SLIPPERY, 40.0, id="no reversal", marks=deep),
         pytest.param(SLIPPERY, 3.0, id="two reversals", marks=deep),
     ],
 )
 def test_the_error_covers_what_scipy_finds_on_the_interpreted_law(
-    law: Ageing | Elements, belt_speed: float
+    law: Ageing | MaxwellSlip | Elements, belt_speed: float
 ) -> None:
     scene = driven(belt_speed)
-    known = by_legs(scene, law, 14) if isinstance(law, Elements) else by_lsoda(scene, law, 14)
+    known = by_lsoda(scene, law, 14) if isinstance(law, Ageing) else by_legs(scene, law, 14)
 
     for tolerance in TOLERANCES:
         found = fl.steady_state(scene, law, tolerance=tolerance)
@@ -204,20 +207,21 @@ def test_one_element_is_jenkins_friction_in_the_plane(tolerance: float) -> None:
     scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=2, drive=drive, transverse=across)
 
     known = fl.steady_state(scene, fl.Jenkins(mu=0.4, stiffness=4))
-    found = fl.steady_state(scene, Elements(stiffness=(4.0,), reach=(0.1,)), tolerance=tolerance)
+    found = fl.steady_state(scene, elements(stiffness=(4.0,), reach=(0.1,)), tolerance=tolerance)
 
     assert found.status == "ok", found.reason
     assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
 
 
 @deep
-def test_the_error_covers_what_scipy_finds_of_elements_in_the_plane() -> None:
+@pytest.mark.parametrize("law", [THREE, TAKING_NOTHING_BACK], ids=["takes back", "stays"])
+def test_the_error_covers_what_scipy_finds_of_elements_in_the_plane(law: MaxwellSlip | Elements) -> None:
     across = fl.Transverse(natural_frequency=0.7, damping_ratio=0.4, load=fl.Load(unbalance=6))
     scene = driven(2.0).model_copy(update={"transverse": across})
-    known = by_planar_legs(scene, THREE, 16)
+    known = by_planar_legs(scene, law, 16)
 
     for tolerance in TOLERANCES:
-        found = fl.steady_state(scene, THREE, tolerance=tolerance)
+        found = fl.steady_state(scene, law, tolerance=tolerance)
 
         assert found.status == "ok", found.reason
         assert abs(found.mean_friction - known) <= found.error + 3e-9

@@ -99,7 +99,7 @@ def _excess(law: Any, w: Any, k: int, work: Work) -> float:
 
 
 @inner
-def begun(law: Any, scales: Scales, work: Work, like: Any) -> Begun:
+def begun_to_yield(law: Any, scales: Scales, work: Work, like: Any) -> Begun:
     """Which deflections that move with the slip from ``work.at`` should not do so at ``work.end`` any more."""
     first, w = 3 * dimension(like), taken(work.end, 1, like)
     filled(work.memory, work.at, first, work.memory[0])
@@ -144,7 +144,7 @@ def yield_point(
     low, tries, close, steepest = 0.0, 0, 1e-2 * accuracy, 0.0
     for k in range(scales.unit.size):
         steepest = max(steepest, scales.unit[k])
-    last = begun(problem.law, scales, work, like)
+    last = begun_to_yield(problem.law, scales, work, like)
     error, at = 0.0, high
     while tries < 60 and high - low > 2e-15 * (tau + high):
         speed = steepest * length(taken(work.end, 1, like))
@@ -156,7 +156,7 @@ def yield_point(
             h = aimed if low < aimed < high else h
         error, at = stepped(problem, tau, h, scales, work, like), h
         tries += 1
-        found = begun(problem.law, scales, work, like)
+        found = begun_to_yield(problem.law, scales, work, like)
         if found.yields:
             high, last = h, found
         else:

@@ -1,8 +1,9 @@
 """The period map of laws with other memory than one bristle: mass and memory together, on the line and in the plane.
 
-However stiff the contact, steps follow the motion (Rodas5P). Corners of a law, where an element yields or slip
-reverses, are met by steps that are repeated until they are short enough. Where the slip is prescribed, friction moves
-nothing, and only the memory is followed.
+However stiff the contact, steps follow the motion (Rodas5P). Within a step what moves with the slip goes on to, and
+what yields too; where an element begins to yield or slip reverses, the step ends. Other corners of a law are met by
+steps that are repeated until they are short enough. Where the slip is prescribed, friction moves nothing: only the
+memory is followed.
 """
 
 from __future__ import annotations
@@ -11,8 +12,14 @@ from typing import Any
 
 from frictionlab.kernel import inner, length
 from frictionlab.methods.bristle_map import COARSEST, put, taken
-from frictionlab.methods.memory_corners import begun as begun_to_yield
-from frictionlab.methods.memory_corners import located, passed, turning_point, turns, yield_point
+from frictionlab.methods.memory_corners import (
+    begun_to_yield,
+    located,
+    passed,
+    turning_point,
+    turns,
+    yield_point,
+)
 from frictionlab.methods.memory_motion import Problem, Work, anchored, rates, settled
 from frictionlab.methods.memory_quotients import differentiate
 from frictionlab.methods.memory_state import Scales, scales_of, swing_of

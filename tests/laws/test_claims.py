@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.bristle import BristleLaw, CompliantLaw, in_the_plane
+from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.laws.stribeck import Stribeck
@@ -38,6 +39,10 @@ class SilentBristles(Silent, BristleLaw):
         return 3.0 * z
 
 
+class SilentCompliant(SilentBristles, CompliantLaw):
+    """Of a stiffness."""
+
+
 class SilentMemory(Silent, MemoryLaw):
     """With a memory."""
 
@@ -56,6 +61,39 @@ def test_a_law_that_says_nothing_of_its_friction_over_speed_may_fall_and_jump() 
         assert not law.monotone()
         assert law.steepest_fall() == math.inf
     assert SilentSliding().static_friction() == 1.0
+
+
+def test_bristles_that_say_nothing_store_what_a_spring_does() -> None:
+    law = SilentBristles()
+
+    assert law.stored(0.0) == law.stored(0j) == 0.0
+    assert law.stored(2.0) == law.stored(2j) == 6.0
+    assert SilentCompliant(stiffness=1).saturated_friction() == 1.0
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        ("stiffness", "presliding_length"),
+        ("stiffness", "contact_stiffness"),
+        ("presliding_length", "contact_stiffness"),
+    ],
+)
+def test_a_stiffness_told_twice_is_refused_and_the_second_named(pair: tuple[str, str]) -> None:
+    with pytest.raises(ValueError, match=f"{pair[1]}: leave it out where {pair[0]} is given"):
+        SilentCompliant(**dict.fromkeys(pair, 1.0))
+
+
+def test_a_bristle_along_the_slip_rubs_no_way_at_rest() -> None:
+    law = LuGre(mu_kinetic=0.3, stiffness=2, damping=0.1, planar="rotated")
+
+    assert in_the_plane(law, 0j, 0.1 + 0j) == (0j, 0j)
+
+
+def test_dahl_friction_has_a_vector_form_for_exponent_one_alone() -> None:
+    assert Dahl(mu=0.4, stiffness=1).no_vector_form() == ""
+    for exponent in (0.9, 1.1, 2.0):
+        assert "exponent 1 alone" in Dahl(mu=0.4, stiffness=1, exponent=exponent).no_vector_form()
 
 
 def test_bristles_that_say_nothing_are_unbounded_stiff_without_end_and_not_known_to_be_passive() -> None:

@@ -64,6 +64,14 @@ def test_v_lin_is_infinite_at_undamped_resonance_and_zero_without_a_load() -> No
     assert friction_free_velocity(_scene(2.0, drive=silent)) == 0.0
 
 
+def test_v_lin_knows_nothing_of_the_phase_of_the_load() -> None:
+    shifted = Drive(unbalance=10, frequency=1.5, phase=70)
+
+    assert friction_free_velocity(_scene(1.5, drive=shifted)) == pytest.approx(
+        friction_free_velocity(_scene(1.5))
+    )
+
+
 def test_v_lin_knows_nothing_of_friction_belt_speed_or_what_happens_across_the_belt() -> None:
     across = Transverse(natural_frequency=3, damping_ratio=0.2, load=Load(unbalance=7))
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 from scipy.special import i1e
 from strategies import sizes
 
@@ -83,6 +83,19 @@ def test_jenkins_friction_is_a_spring_until_its_slider_moves_and_coulombs_far_be
     assert complex(jenkins_describing_function(2.0)) == pytest.approx(0.5 + 1j / math.pi, rel=1e-15)
     np.testing.assert_allclose(found.real * a, 16 / (3 * np.pi) / np.sqrt(a), rtol=1 / a[0])
     np.testing.assert_allclose(found.imag * a, 4 / np.pi * (1 - 1 / a), rtol=1e-14)
+
+
+@pytest.mark.parametrize("a", [1.0 + 1e-9, 1.05, 1.3, 2.5, 15.0, 20.0])
+def test_jenkins_friction_over_a_sine_has_the_fundamental_of_its_loop(a: float) -> None:
+    def unloading(angle: float) -> float:  # from the end of a stroke: the spring first, then the slider
+        return max(1.0 - a * (1.0 - math.cos(angle)), -1.0)
+
+    corner = [2.0 * math.asin(1.0 / math.sqrt(a))]
+    cosine = quad(lambda angle: unloading(angle) * math.cos(angle), 0, math.pi, points=corner)[0]
+    sine = quad(lambda angle: unloading(angle) * math.sin(angle), 0, math.pi, points=corner)[0]
+
+    expected = 2.0 / (math.pi * a) * complex(cosine, -sine)
+    assert abs(complex(jenkins_describing_function(a)) - expected) <= 1e-10
 
 
 @given(st.floats(-0.999, 0.999), st.floats(-0.999, 0.999))
@@ -248,6 +261,13 @@ def test_damping_steadies_bristles_that_lead_a_falling_characteristic() -> None:
 
     assert max(np.roots([0.1, 1 + 0.11 - 0.5, 0.1 + 1.1 - 0.5, 1.0]).real) < 0
     assert contact.stable(damping=1.0, stiffness=1.0)
+
+
+def test_bristles_that_lead_a_falling_characteristic_too_far_let_go() -> None:
+    contact = SteadySliding(slope=-0.5, lag=0.1, lead=2.0, viscosity=0.1)
+
+    assert max(np.roots([0.1, 1 + 0.11 - 1.0, 0.1 + 1.1 - 0.5, 1.0]).real) > 0
+    assert not contact.stable(damping=1.0, stiffness=1.0)
 
 
 def test_the_impedance_runs_from_the_slope_to_that_of_the_bristle_dashpots() -> None:

@@ -10,6 +10,7 @@ import pytest
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw, CompliantLaw, in_the_plane
 from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.laws.stribeck import Stribeck
@@ -41,6 +42,20 @@ class SilentBristles(Silent, BristleLaw):
 
 class SilentCompliant(SilentBristles, CompliantLaw):
     """Of a stiffness."""
+
+
+class SilentAge(Silent, MemoryLaw):
+    """With a memory that knows no direction."""
+
+    memory_kind = "scalars"
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """Ages."""
+        return 1.0
+
+    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
+        """Of its age."""
+        return v * memory[0]
 
 
 class SilentMemory(Silent, MemoryLaw):
@@ -82,6 +97,27 @@ def test_bristles_that_say_nothing_store_what_a_spring_does() -> None:
 def test_a_stiffness_told_twice_is_refused_and_the_second_named(pair: tuple[str, str]) -> None:
     with pytest.raises(ValueError, match=f"{pair[1]}: leave it out where {pair[0]} is given"):
         SilentCompliant(**dict.fromkeys(pair, 1.0))
+
+
+def test_a_memory_that_says_nothing_turns_with_the_slip_and_is_none_in_steady_sliding() -> None:
+    assert SilentMemory().turning == 1.0
+    assert SilentAge().turning == 0.0
+    assert SilentMemory().steady(0.0, 0) == SilentMemory().steady(2.0, 0) == 0.0
+
+
+def test_jenkins_friction_knows_its_way_along_a_path() -> None:
+    assert Jenkins(mu=0.4, stiffness=1).exact_path()
+
+
+@pytest.mark.parametrize(("curve", "steepest"), [("hyperbolic", 1.0), ("hess-soom", 0.375 * math.sqrt(3.0))])
+def test_a_rational_fall_is_as_steep_as_at_its_inflection(curve: Any, steepest: float) -> None:
+    law = Stribeck(mu_kinetic=0.3, mu_static=0.5, stribeck_speed=2, curve=curve)
+
+    assert law.steepest_fall() == pytest.approx(0.1 * steepest, rel=1e-15)
+    assert not law.constant_sliding_friction()
+    assert not Stribeck(
+        mu_kinetic=0.3, mu_static=0.3, stribeck_speed=2, viscosity=1
+    ).constant_sliding_friction()
 
 
 def test_a_bristle_along_the_slip_rubs_no_way_at_rest() -> None:

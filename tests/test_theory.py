@@ -249,6 +249,18 @@ def test_the_one_harmonic_velocity_solves_its_balance(damping, frequency, fricti
         assert velocity == 0
 
 
+@pytest.mark.parametrize("ratio", [0.0, 0.3, 1.0])
+def test_load_and_friction_of_twice_the_size_move_the_mass_twice_as_fast(ratio: float) -> None:
+    once = _scene(0.6, drive=Drive(amplitude=1.5, frequency=0.6))
+    twice = _scene(0.6, drive=Drive(amplitude=3, frequency=0.6))
+
+    assert one_harmonic_velocity(twice, 2.0, ratio) == pytest.approx(
+        2.0 * one_harmonic_velocity(once, 1.0, ratio), rel=1e-14
+    )
+    assert one_harmonic_least_ratio(twice, 6.0) == pytest.approx(one_harmonic_least_ratio(once, 3.0))
+    assert one_harmonic_least_ratio(once, 3.0) == pytest.approx(math.sqrt(1 - (math.pi / 8) ** 2))
+
+
 def test_the_one_harmonic_velocity_ends_at_v_lin_and_is_the_closed_form_at_resonance() -> None:
     scene = _scene(1.0, normal_load=10)
 

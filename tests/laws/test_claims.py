@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw, CompliantLaw, in_the_plane
 from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.fall import fallen, steepest_fall
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import MemoryLaw
@@ -118,6 +120,15 @@ def test_a_rational_fall_is_as_steep_as_at_its_inflection(curve: Any, steepest: 
     assert not Stribeck(
         mu_kinetic=0.3, mu_static=0.3, stribeck_speed=2, viscosity=1
     ).constant_sliding_friction()
+
+
+@pytest.mark.parametrize("power", [1.0, 1.05, 1.5, 2.0, 4.0, 30.0])
+def test_an_exponential_fall_is_as_steep_as_its_largest_slope(power: float) -> None:
+    u = np.linspace(0.0, 3.0, 300_001)
+    falls = -np.diff([fallen(speed, power) for speed in u.tolist()]) / np.diff(u)
+
+    assert fallen(0.0, power) == 1.0
+    assert steepest_fall(power) == pytest.approx(falls.max(), rel=1e-4)
 
 
 def test_a_bristle_along_the_slip_rubs_no_way_at_rest() -> None:

@@ -221,6 +221,9 @@ def test_a_spring_whose_slider_never_slips_back_has_its_mean_in_closed_form(
     assert mean_soft_jenkins(-ratio, presliding) == -mean_soft_jenkins(ratio, presliding)
     assert math.isnan(float(mean_soft_jenkins(0.05, 0.5)))
     assert mean_soft_jenkins(1.2, 0.5) == 1.0
+    back = float(slip_back_and_forth(0.3)[0])
+    assert math.isnan(float(mean_soft_jenkins(0.3, back / 2.01)))
+    assert mean_soft_jenkins(0.3, back / 1.99) < 1.0
 
 
 @given(below_one, st.floats(0.05, 0.95))

@@ -11,6 +11,7 @@ import pytest
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.bristle import BristleLaw, CompliantLaw, in_the_plane
 from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.fall import fallen, steepest_fall
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
@@ -128,7 +129,47 @@ def test_an_exponential_fall_is_as_steep_as_its_largest_slope(power: float) -> N
     falls = -np.diff([fallen(speed, power) for speed in u.tolist()]) / np.diff(u)
 
     assert fallen(0.0, power) == 1.0
+    assert fallen(1e9, power) == 0.0
     assert steepest_fall(power) == pytest.approx(falls.max(), rel=1e-4)
+
+
+class Even(Silent):
+    """The same friction at every speed, and says no more."""
+
+    def constant_sliding_friction(self) -> bool:
+        """Always."""
+        return True
+
+
+class Rising(SilentSliding):
+    """Never falls, and says no more."""
+
+    def monotone(self) -> bool:
+        """Always."""
+        return True
+
+
+def test_friction_that_does_not_fall_has_a_steepest_fall_of_zero_without_saying_so() -> None:
+    assert Even().steepest_fall() == Rising().steepest_fall() == 0.0
+
+
+@pytest.mark.parametrize("law", [LuGre, ElastoPlastic])
+@pytest.mark.parametrize("mu_static", [0.3, 0.5, 1.3])
+def test_steady_friction_of_bristles_is_the_curve_of_stribeck_friction(law: Any, mu_static: float) -> None:
+    told = {"mu_kinetic": 0.3, "mu_static": mu_static, "stribeck_speed": 2.0, "stribeck_exponent": 1.3}
+    bristles = law(**told, stiffness=5)
+
+    for speed in (0.0, 0.1, 1.7, 3.0, 40.0):
+        assert bristles.sliding_friction(speed) == pytest.approx(
+            Stribeck(**told).sliding_friction(speed), rel=1e-15
+        )
+
+
+def test_viscosity_helps_bristles_to_damp_motion_across_up_to_a_speed() -> None:
+    law = LuGre(mu_kinetic=0.3, stiffness=5, damping=0.6, viscosity=0.15)
+
+    assert law.damps_across(0.3 * 4.0 * 0.75 / 0.36 * (1.0 - 1e-12))
+    assert not law.damps_across(0.3 * 4.0 * 0.75 / 0.36 * (1.0 + 1e-12))
 
 
 def test_a_bristle_along_the_slip_rubs_no_way_at_rest() -> None:

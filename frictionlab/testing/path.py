@@ -147,6 +147,14 @@ def saturation_path(one: Given) -> None:
     one.require(abs(further - end) <= 1e-6 * size_of(law), "the deflection still moves", at=end, then=further)
 
 
+def _follows(one: Given, law: BristleLaw, v: Any, z: Any, back: str = "") -> None:
+    """Require that a deflection moves with the slip."""
+    rate = law.rate(v, z)
+    one.require(
+        abs(rate - v) <= 1e-12 * abs(v), f"the bristle does not follow the slip{back}", z=z, rate=rate
+    )
+
+
 @check(
     "elastic_deflection",
     declares="elastic_deflection",
@@ -158,9 +166,7 @@ def elastic_deflection(one: Given) -> None:
     law = one.law(lambda law: law.elastic_deflection() > 0.0)
     v = one.slip()
     for share in (one.draw("share", evenly(-0.999, 0.999)), 0.999, -0.999):
-        z = share * min(law.elastic_deflection(), 1e300)
-        rate = law.rate(v, z)
-        one.require(abs(rate - v) <= 1e-12 * abs(v), "the bristle does not follow the slip", z=z, rate=rate)
+        _follows(one, law, v, share * min(law.elastic_deflection(), 1e300))
 
 
 @check(
@@ -174,11 +180,7 @@ def elastic_unloading(one: Given) -> None:
     law = one.law(lambda law: law.elastic_unloading())
     v = one.slip()
     for share in (one.draw("share", sizes(1e-6, 1.0)), 0.9, 1.0):
-        z = -math.copysign(share * size_of(law), v)
-        rate = law.rate(v, z)
-        one.require(
-            abs(rate - v) <= 1e-12 * abs(v), "the bristle does not follow the slip back", z=z, rate=rate
-        )
+        _follows(one, law, v, -math.copysign(share * size_of(law), v), back=" back")
 
 
 @check(
@@ -191,10 +193,8 @@ def yield_deflection(one: Given) -> None:
     """Below the deflection of yield the bristle follows the slip; at it, it moves along a circle."""
     law = one.law(lambda law: law.yield_deflection() < math.inf and not law.no_vector_form())
     v, turn = one.planar_slip(), one.draw("turn", turns)
-    inside = law.rate(
-        v, one.draw("share", seldom(st.just(0.999), evenly(0.0, 0.999))) * law.yield_deflection() * turn
-    )
-    one.require(abs(inside - v) <= 1e-12 * abs(v), "the bristle does not follow the slip", rate=inside)
+    share = one.draw("share", seldom(st.just(0.999), evenly(0.0, 0.999)))
+    _follows(one, law, v, share * law.yield_deflection() * turn)
     at = (1.0 + 1e-14) * law.yield_deflection() * turn
     assume(dot(v, turn) > 1e-6 * abs(v))
     out = dot(law.rate(v, at), turn)

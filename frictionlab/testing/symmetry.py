@@ -34,7 +34,7 @@ def rotation(one: Given) -> None:
     turn = one.draw("turn", turns)
     memories = [one.memory(law, planar=True)]
     if turns_with_slip(law):
-        memories.append(slid(law, v, BEYOND))
+        memories += [tuple(BEYOND * each for each in memories[0]), slid(law, v, BEYOND)]
     for memory in memories:
         there = response(law, v, memory)
         got = response(law, turn * v, turned(law, memory, turn))

@@ -1,0 +1,195 @@
+"""Every number of some four hundred scenes is what it was when tests/reference/make_golden.py wrote it down.
+
+Statuses and kinds of error are compared exactly, numbers to ``HERE`` on a machine that rounds as the one they were
+written on (golden_made_on.json) and to ``ELSEWHERE`` on others, absolute and relative; sentences (reason, model) are
+kept in the tables and not compared. A column that has come since is not compared either.
+
+A row whose path of computation was changed on purpose is listed in tests/reference/golden_changes.csv: ``key`` (a
+pattern of fnmatch), ``reason``, and ``status`` where that is another one now. Such a row must agree with the old one
+within the errors of both, state no more than twice the old error, and keep its other columns to ``LOOSE`` and ten
+times its error; one that was not ok and is listed with a new status is compared no further.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+import sys
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+sys.path.append(str(Path(__file__).parent / "reference"))
+
+import golden_files
+import golden_scenes
+
+DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
+HERE, ELSEWHERE, LOOSE = 1e-13, 1e-11, 1e-6
+VERDICTS = "shape", "shape_by_initial"
+SLACK: dict[str, float] = {}
+"""Columns that are compared no closer than this, absolute and relative, and why."""
+OLD = {"results": golden_files.read(golden_files.RESULTS), "curves": golden_files.read(golden_files.CURVES)}
+KNOWN = {name for rows in OLD.values() for row in rows.values() for name in row} - {"reason", "model"}
+"""Columns that are compared: those of the day the tables were made, but for sentences."""
+slow = pytest.mark.skipif(not DEEP, reason="kernels slow to compile: in the deep profile")
+GROUPS = [pytest.param(group.name, marks=slow if group.deep else ()) for group in golden_scenes.GROUPS]
+
+
+def changes() -> list[dict[str, str]]:
+    """The rows whose path of computation was changed: key, reason, status."""
+    if not golden_files.CHANGES.exists():
+        return []
+    with golden_files.CHANGES.open(newline="") as file:
+        return [
+            {"status": "", **{name: text or "" for name, text in row.items()}} for row in csv.DictReader(file)
+        ]
+
+
+CHANGES = changes()
+
+
+def change_of(key: str) -> dict[str, str] | None:
+    """The first change that names this row."""
+    return next((change for change in CHANGES if fnmatchcase(key, change["key"])), None)
+
+
+def apart(old: float, new: float, slack: float) -> bool:
+    """Whether two numbers differ by more than the slack, absolute and relative."""
+    if not (math.isfinite(old) and math.isfinite(new)):
+        return old != new
+    return abs(new - old) > slack * max(1.0, abs(old), abs(new))
+
+
+def differs(column: str, old: Any, new: Any) -> bool:
+    """Whether a cell is another one: None where it is empty."""
+    if isinstance(old, float) and isinstance(new, int | float):
+        slack = HERE if golden_files.made_here() else ELSEWHERE
+        return apart(old, float(new), max(slack, SLACK.get(column, 0.0)))
+    return bool(old != new)
+
+
+def line(key: str, column: str, old: Any, new: Any) -> str:
+    """What is told of a cell that differs."""
+    return (
+        f"{key}: {column}: {'empty' if old is None else repr(old)} -> {'empty' if new is None else repr(new)}"
+    )
+
+
+def different(key: str, old: dict[str, Any], new: dict[str, Any]) -> list[str]:
+    """The cells of a row that are not what they were: all that were told, and those of old columns told now."""
+    names = [name for name in dict.fromkeys((*old, *new)) if name in KNOWN]
+    return [
+        line(key, name, old.get(name), new.get(name))
+        for name in names
+        if differs(name, old.get(name), new.get(name))
+    ]
+
+
+def disagrees(key: str, old: dict[str, Any], new: dict[str, Any], status: str) -> list[str]:
+    """The cells of a row of another path of computation that are not what they must be."""
+    wanted = status or old["status"]
+    if new["status"] != wanted:
+        return [line(key, "status", wanted, new["status"])]
+    if status and "ok" not in (old["status"], status):
+        return []
+    found, error = [], float(new.get("error", math.nan))
+    before = float(old.get("error", math.nan))
+    if (
+        abs(float(new.get("mean_friction", math.nan)) - float(old.get("mean_friction", math.nan)))
+        > error + before
+    ):
+        found.append(line(key, "mean_friction", old["mean_friction"], new["mean_friction"]))
+    if not status and error > 2.0 * before:
+        found.append(line(key, "error", before, error))
+    if status:
+        return found
+    slack = LOOSE + (10.0 * error if math.isfinite(error) else 0.0)
+    for name in old:
+        number = isinstance(old[name], float) and name not in ("mean_friction", "error")
+        if number and apart(old[name], float(new.get(name, math.nan)), slack):
+            found.append(line(key, name, old[name], new.get(name)))
+    return found
+
+
+def curve_disagrees(key: str, old: dict[str, Any], new: dict[str, Any]) -> list[str]:
+    """What is not as it must be of a curve with points of another path of computation."""
+    found = [
+        line(key, name, old.get(name), new.get(name)) for name in VERDICTS if old.get(name) != new.get(name)
+    ]
+    for name in (name for name in old if f"{name}_error" in old):
+        errors = old[f"{name}_error"] + float(new.get(f"{name}_error", math.nan))
+        if not abs(old[name] - float(new.get(name, math.nan))) <= errors:
+            found.append(line(key, name, old[name], new.get(name)))
+    return found
+
+
+def changed_points(key: str) -> bool:
+    """Whether a curve or any of its points is listed as changed: those of the same group, law and method."""
+    of_curve = "/".join(key.split("/")[:3]) + "/"
+    points = [point for point in OLD["results"] if point.startswith(of_curve)]
+    return any(change_of(each) for each in (key, *points))
+
+
+def compared(old: golden_files.Rows, new: golden_files.Rows) -> list[str]:
+    """Every cell of these rows that is not as it must be, and rows that came or went."""
+    found = [f"{key}: the row is gone" for key in old if key not in new]
+    found += [f"{key}: a new row; make the tables anew for its group" for key in new if key not in old]
+    for key in old.keys() & new.keys():
+        change = change_of(key)
+        if "status" not in old[key] and changed_points(key):
+            found += curve_disagrees(key, old[key], new[key])
+        elif change is not None and "status" in old[key]:
+            found += disagrees(key, old[key], new[key], change["status"])
+        else:
+            found += different(key, old[key], new[key])
+    return sorted(found)
+
+
+def of_group(rows: golden_files.Rows, name: str) -> golden_files.Rows:
+    """The rows of one group."""
+    return {key: row for key, row in rows.items() if key.split("/")[0] == name}
+
+
+@pytest.mark.parametrize("name", GROUPS)
+def test_every_number_is_what_it_was(name: str) -> None:
+    results, curves = golden_scenes.solved(name)
+
+    found = compared(of_group(OLD["results"], name), results) + compared(
+        of_group(OLD["curves"], name), curves
+    )
+
+    print(*found, sep="\n")
+    assert not found, f"{len(found)} cells differ, key: column: old -> new:\n" + "\n".join(found)
+
+
+def test_a_pinned_row_has_its_group_and_a_change_its_row() -> None:
+    names = {group.name for group in golden_scenes.GROUPS}
+    assert len(names) == len(golden_scenes.GROUPS)
+    assert {key.split("/")[0] for key in OLD["results"]} == names
+    assert [
+        change["key"]
+        for change in CHANGES
+        if not any(fnmatchcase(key, change["key"]) for key in OLD["results"])
+    ] == []
+    assert all(change["reason"] for change in CHANGES)
+
+
+def test_a_number_that_moves_is_told_and_one_that_was_changed_on_purpose_may_move_within_its_error() -> None:
+    key, old = next(
+        (key, row) for key, row in OLD["results"].items() if row["status"] == "ok" and row["error"] > 1e-11
+    )
+    near = {**old, "mean_friction": old["mean_friction"] + 1.5 * old["error"], "reason": "told otherwise"}
+    far = {**old, "mean_friction": old["mean_friction"] + 2.5 * old["error"]}
+
+    assert different(key, old, {**old, "model": "told otherwise", "a new column": 1.0}) == []
+    assert [told.split(": ")[1] for told in different(key, old, near)] == ["mean_friction"]
+    assert [told.split(": ")[1] for told in different(key, old, {**old, "status": "failed"})] == ["status"]
+    assert disagrees(key, old, near, "") == []
+    assert disagrees(key, old, far, "") != []
+    assert disagrees(key, old, {**near, "error": 3.0 * old["error"]}, "") != []
+    assert disagrees(key, old, {**near, "status": "not_unique"}, "") != []
+    assert disagrees(key, old, {**near, "status": "not_unique"}, "not_unique") == []

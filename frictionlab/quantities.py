@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Annotated
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 
@@ -37,6 +39,10 @@ Speed = Annotated[Positive, Dimension(length=1, time=-1)]
 """A speed > 0 [m/s in SI, else scene velocity]."""
 PerSpeed = Annotated[NonNegative, Dimension(length=-1, time=1)]
 """A coefficient >= 0 per speed [s/m in SI, else 1/scene velocity]."""
+
+
+Floats = NDArray[np.float64]
+"""An array of real numbers of any shape."""
 
 
 class Record(BaseModel):

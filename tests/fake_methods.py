@@ -10,10 +10,11 @@ from typing import ClassVar
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method, Orbit
+from frictionlab.methods.base import Answers, Method
+from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import NonNegative
 from frictionlab.registry import BrokenPlugin
-from frictionlab.scene import Scene
+from frictionlab.scene.scene import Scene
 
 
 def breaks_down() -> None:

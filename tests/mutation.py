@@ -4,7 +4,7 @@
 
 FILEs of frictionlab/laws and frictionlab/theory, all where left out; every N-th mutant of each. For a law the
 conformance battery runs (what compiles nothing, few examples a check), then the tests of ``tests/laws`` that compile
-nothing; for a closed form the tests of ``tests/test_theory*.py``, then those. Everything is imported once; each
+nothing; for a closed form the tests of ``tests/theory/test_*.py``, then those. Everything is imported once; each
 mutant is tried in a fork of this process. The last lines are the survivors and the score.
 """
 
@@ -28,7 +28,7 @@ from mutants import Mutant, mutants
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.testing import CHECKS, check_law, running
-from frictionlab.testing.drawing import quietly, unloaded_laws
+from frictionlab.testing.strategies import quietly, unloaded_laws
 
 ROOT = Path(__file__).parents[1]
 SECONDS = 40.0
@@ -70,7 +70,7 @@ class Session:
 def _noticing(mutant: Mutant, items: list[Any]) -> Callable[[], bool]:
     """What must notice a mutant."""
     theory = mutant.file.parent.name == "theory"
-    of_theory = [item for item in items if "test_theory" in str(item.path)]
+    of_theory = [item for item in items if "theory" in item.path.parts]
     of_laws = [item for item in items if item not in of_theory]
     if theory:
         return lambda: _tests_notice(of_theory + of_laws)
@@ -154,7 +154,7 @@ def main() -> None:
             registry.law_class(name)
         )  # which parameters go together is found out once, for all forks
     session = Session(_of(asked.files, asked.every))
-    where = [str(ROOT / "tests" / name) for name in ("laws", "test_theory.py", "test_theory_compliant.py")]
+    where = [str(ROOT / "tests" / name) for name in ("laws", "theory")]
     quiet = ["-n", "0", "-q", "-W", "ignore", "-p", "no:cacheprovider", "--hypothesis-profile", "mutation"]
     pytest.main([*where, *quiet, "-k", "not compiled and not machine"], plugins=[session])
     _report(session.ends)

@@ -15,7 +15,7 @@ from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.stribeck import Stribeck
-from frictionlab.scene import Drive, Load, Scene, Transverse
+from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 from frictionlab.theory import friction_free_velocity
 
 

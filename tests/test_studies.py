@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import frictionlab as fl
-from frictionlab.laws.bristle import BristleLaw
+from frictionlab.laws.memory import BristleLaw
 from frictionlab.study import load_study
 
 STUDIES = sorted((Path(__file__).parent.parent / "studies").glob("*.yaml"))

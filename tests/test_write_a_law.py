@@ -14,7 +14,7 @@ import pytest
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.saved import read_saved
+from frictionlab.run.saved import read_saved
 from frictionlab.study import load_study
 
 DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"

@@ -1,5 +1,7 @@
 """Work against precision: what each method and each peer pays for its error, measured in one run."""
 
+from __future__ import annotations
+
 from frictionlab.bench.measure import Interrupted, Measured, measure
 from frictionlab.bench.reader import load_bench
 from frictionlab.bench.record import Bench, UnknownCurve

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from frictionlab.bench.peers.base import Peer
+from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.record import Contender, Setting, Trusted
 from frictionlab.methods.base import Method
-from frictionlab.peers.base import Peer
-from frictionlab.peers.listing import PEERS
 from frictionlab.study.choices import items, method_choice
-from frictionlab.study.fields import built
-from frictionlab.study.mistakes import Path, described
-from frictionlab.study.notes import Notes
+from frictionlab.study.mistakes import Notes, Path, described
+from frictionlab.study.validation import built
 
 OWN = ("tolerance", "points")
 TOLERANCE = 1e-8

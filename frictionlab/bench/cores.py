@@ -6,15 +6,16 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from frictionlab.kernel import compiled
+from frictionlab.compile.cache import compiled
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.laws.bristle import BristleLaw
-from frictionlab.methods import coulomb_curve, curve
+from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Method
-from frictionlab.methods.closer import Closer
-from frictionlab.methods.exact import Exact
-from frictionlab.methods.shooting import Shooting
-from frictionlab.scene import Scene
+from frictionlab.methods.exact import continuation as exact_continuation
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.periodic import continuation
+from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Scene
 
 
 def core(
@@ -32,15 +33,15 @@ def core(
 def _exact(scenes: Sequence[Scene], law: SlidingLaw) -> Callable[[], object]:
     speeds = np.array([scene.belt_speed for scene in scenes])
     mass, friction, rows = scenes[0].mass(), law.sliding_friction(1.0), np.zeros((len(speeds), 9))
-    solve = compiled(coulomb_curve.solve_curve)
+    solve = compiled(exact_continuation.solve_curve)
     return lambda: solve(mass, friction, speeds, rows)
 
 
 def _shooting(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Callable[[], object] | None:
     law = law.under_load(scenes[0].mass().normal_load)
-    closer = Closer(scenes[0], law, tolerance)
+    closer = PeriodicProblem(scenes[0], law, tolerance)
     if not (closer.goal.contracts or (isinstance(law, BristleLaw) and closer.falls_slowly)):
         return None  # other starts are part of the answer
     speeds, no_guess = np.array([scene.belt_speed for scene in scenes]), np.empty((0, 0))
-    solve = compiled(curve.solve_curve, law)
+    solve = compiled(continuation.solve_curve, law)
     return lambda: solve(closer.body, speeds, no_guess, closer.goal, closer.like)

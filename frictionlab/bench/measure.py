@@ -9,12 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Bench, Contender, Reference, Setting, Workload
 from frictionlab.bench.references import independent, worked_out
 from frictionlab.bench.solvers import Outcome, answered, mean_task, whole_task
 from frictionlab.bench.timing import Times, timed
-from frictionlab.methods.base import Floats, Method
-from frictionlab.peers.base import Peer
+from frictionlab.methods.base import Method
+from frictionlab.quantities import Floats
 
 STATUSES = ("ok", "refused", "failed", "not_unique")
 NO_TIME = Times(math.nan, (math.nan,) * 3, 0)

@@ -13,10 +13,9 @@ from frictionlab.bench.record import Bench, Workload
 from frictionlab.bench.references import references
 from frictionlab.study import Mistake, Study, StudyError
 from frictionlab.study.choices import items
-from frictionlab.study.mistakes import Path, described
-from frictionlab.study.notes import Notes
+from frictionlab.study.mistakes import Notes, Path, described
 from frictionlab.study.reader import study_of
-from frictionlab.study.source import Source, read_file
+from frictionlab.study.yaml_source import Source, read_file
 
 KEYS = ("schema", "title", "scenes", "references", "methods", "peers", "repeats", "seconds")
 SCENE_KEYS = ("name", "title", "scene", "laws", "sweep", "references", "methods", "peers")

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from frictionlab.bench.peers.base import Peer
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Floats, Method
-from frictionlab.peers.base import Peer
-from frictionlab.scene import Scene
+from frictionlab.methods.base import Method
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
 
 
 class UnknownCurve(Exception):

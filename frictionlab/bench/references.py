@@ -13,8 +13,7 @@ import numpy as np
 from frictionlab.bench.record import Reference, Trusted, Workload
 from frictionlab.bench.solvers import answered
 from frictionlab.study.choices import items, method_choice
-from frictionlab.study.mistakes import Path, described
-from frictionlab.study.notes import Notes
+from frictionlab.study.mistakes import Notes, Path, described
 
 COLUMNS = ("belt_speed", "mean_friction")
 

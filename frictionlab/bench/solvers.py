@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictionlab.bench.cores import core
-from frictionlab.chunks import Chunk, Task
+from frictionlab.bench.peers.base import Peer
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Floats, Method
-from frictionlab.peers.base import Peer
-from frictionlab.scene import Scene
-from frictionlab.solving import answer
+from frictionlab.methods.base import Method
+from frictionlab.quantities import Floats
+from frictionlab.run.chunks import Chunk, Task
+from frictionlab.run.solve import answer
+from frictionlab.scene.scene import Scene
 
 
 @dataclass(frozen=True)

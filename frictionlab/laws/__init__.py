@@ -1,1 +1,3 @@
 """Laws of friction, one per file."""
+
+from __future__ import annotations

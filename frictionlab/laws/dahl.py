@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 from frictionlab.laws.base import NonNegative, Positive
-from frictionlab.laws.bristle import CompliantLaw
-from frictionlab.laws.fall import faded
+from frictionlab.laws.compliant import CompliantLaw
+from frictionlab.laws.decay import faded
 
 
 class Dahl(CompliantLaw):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from frictionlab.laws.fall import faded
+from frictionlab.laws.decay import faded
 from frictionlab.laws.stribeck_bristle import StribeckBristle, stribeck_curve
 
 

@@ -12,6 +12,123 @@ from typing import Any, ClassVar, Literal
 
 from frictionlab.laws.base import FrictionLaw
 
+VECTORIAL, ROTATED, PER_AXIS = 0.0, 1.0, 2.0
+
+
+class BristleLaw(FrictionLaw, ABC):
+    """A law whose memory is a bristle deflection z [scene length], moved by slip and felt as friction.
+
+    planar: how the law of one direction is carried into the plane. ``vectorial``: |v| and z become the vectors'
+    (isotropic; Velenis & Tsiotras, 2002); ``rotated``: one deflection along the slip direction, whatever it was
+    (isotropic, without memory of direction); ``per-axis``: each axis for itself (not isotropic: its yield set is a
+    square).
+    """
+
+    planar: Literal["vectorial", "rotated", "per-axis"] = "vectorial"
+
+    @abstractmethod
+    def rate(self, v: Any, z: Any) -> Any:
+        """dz/dtau [scene velocity] at slip velocity ``v`` and deflection ``z``: ``float`` or ``complex`` alike."""
+
+    @abstractmethod
+    def friction(self, v: Any, z: Any, dz: Any) -> Any:
+        """Friction coefficient [-] along ``v`` that resists slip, at deflection ``z`` moving at ``dz``."""
+
+    @property
+    def form(self) -> float:
+        """``planar`` as kernels know it."""
+        return {"vectorial": VECTORIAL, "rotated": ROTATED, "per-axis": PER_AXIS}[self.planar]
+
+    def structure(self) -> tuple[str, ...]:
+        """Whether the path is exact."""
+        return ("exact path",) if self.exact_path() else ()
+
+    def no_vector_form(self) -> str:
+        """Why ``planar: vectorial`` has no meaning for this law, as a sentence; empty where it has one."""
+        return ""
+
+    def largest_deflection(self) -> float:
+        """Radius of the set of deflections [scene length] that no slip history leaves once inside."""
+        return math.inf
+
+    def presliding(self) -> float:
+        """The presliding length [scene length]: deflection that steady sliding in quick slip tends to."""
+        return self.largest_deflection()
+
+    def elastic_deflection(self) -> float:
+        """Deflection [scene length] up to which z moves with the slip whatever its direction: nothing drifts."""
+        return 0.0
+
+    def largest_rate(self, speed: float) -> float:
+        """Largest modulus of d(rate)/dz [1/scene time] at this slip speed: what explicit steps are limited by."""
+        return math.inf
+
+    def rate_independent(self) -> bool:
+        """Whether friction depends on the path of the slip alone, not on how fast it is travelled."""
+        return False
+
+    def passive(self) -> bool:
+        """Whether the work of friction from any slip history is at least minus what the bristle has stored."""
+        return False
+
+    def stored(self, z: Any) -> float:
+        """The work per unit normal load [scene length] that the bristle can give back: that of a linear spring."""
+        return 0.5 * float((z * self.friction(0.0 * z, z, 0.0 * z).conjugate()).real)
+
+    def damps_across(self, speed: float) -> bool:
+        """Whether friction never feeds a motion across the slip, at slip speeds up to this.
+
+        Spring and bristle across then only lose energy, and with no load across the belt x2 dies out.
+        """
+        return self.planar != "rotated"
+
+    def exact_path(self) -> bool:
+        """Whether ``deflected`` is exact for slip along a straight line at whatever speed."""
+        return False
+
+    def deflected(self, z: Any, path: Any) -> Any:
+        """The deflection after slip along a straight ``path`` [scene length] from ``z``; for ``exact_path`` laws."""
+        return z
+
+    def saturation_path(self, z: float, side: float) -> float:
+        """Length of one-directional slip (side: 1 or -1) after which friction stays what it is, exactly.
+
+        Infinite where that is only approached: there ``deflected`` is smooth along the whole path.
+        """
+        return math.inf
+
+    def elastic_unloading(self) -> bool:
+        """Whether z moves with the slip wherever z.v <= 0: friction may have a corner where that begins or ends."""
+        return False
+
+    def yield_deflection(self) -> float:
+        """Deflection [scene length] below which z moves with the slip, and which it never exceeds; infinite for none.
+
+        At it and with z.v > 0, ``rate`` moves z along the circle of that radius.
+        """
+        return math.inf
+
+
+def on_the_line(law: Any, v: float, z: float) -> Any:
+    """Rate of deflection and friction coefficient of a bristle law along one direction."""
+    dz = law.rate(v, z)
+    return dz, law.friction(v, z, dz)
+
+
+def in_the_plane(law: Any, v: complex, z: complex) -> Any:
+    """Rate of deflection and friction coefficient of a bristle law in the plane, in the form it names."""
+    if law.form == VECTORIAL:
+        dz = law.rate(v, z)
+        return dz, law.friction(v, z, dz)
+    if law.form == PER_AXIS:
+        dz1, dz2 = law.rate(v.real, z.real), law.rate(v.imag, z.imag)
+        along = law.friction(v.real, z.real, dz1)
+        return complex(dz1, dz2), complex(along, law.friction(v.imag, z.imag, dz2))
+    speed = abs(v)
+    rate = law.rate(speed, z.real)
+    direction = v / speed if speed > 0.0 else complex(0.0, 0.0)
+    return complex(rate, 0.0), law.friction(speed, z.real, rate) * direction
+
 
 class MemoryLaw(FrictionLaw, ABC):
     """A law whose memory is a fixed number of numbers, all of one kind.

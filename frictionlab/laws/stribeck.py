@@ -8,7 +8,7 @@ from typing import Any, Literal
 from pydantic import model_validator
 
 from frictionlab.laws.base import NonNegative, PerSpeed, Positive, SlidingLaw, Speed
-from frictionlab.laws.fall import fallen, steepest_fall
+from frictionlab.laws.decay import fallen, steepest_fall
 
 EXPONENTIAL, RATIONAL, CUBIC = 0.0, 1.0, 2.0
 

@@ -8,8 +8,8 @@ from typing import Any, Self
 from pydantic import model_validator
 
 from frictionlab.laws.base import PerSpeed, Positive, Speed
-from frictionlab.laws.bristle import DampedLaw
-from frictionlab.laws.fall import fallen, steepest_fall
+from frictionlab.laws.compliant import DampedLaw
+from frictionlab.laws.decay import fallen, steepest_fall
 
 
 class StribeckBristle(DampedLaw, ABC):

@@ -1,1 +1,3 @@
 """Ways to find a steady state, one per file."""
+
+from __future__ import annotations

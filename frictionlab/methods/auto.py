@@ -8,9 +8,9 @@ from typing import ClassVar
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method
-from frictionlab.methods.exact import Exact
-from frictionlab.methods.shooting import Shooting
-from frictionlab.scene import Scene
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Scene
 
 LADDER: tuple[Method, ...] = (Exact(), Shooting())
 """From the cheapest method to the most general one. Reduced models have no rung: an honest bound on what they

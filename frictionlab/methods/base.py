@@ -7,30 +7,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.quantities import Record
-from frictionlab.scene import Scene
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats, Record
+from frictionlab.scene.scene import Scene
 
 Status = Literal["ok", "refused", "failed", "not_unique", "killed"]
-Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Orbit:
-    """One period of a steady state in smooth pieces, each sampled at the same Gauss-Lobatto nodes.
-
-    tau [panels, nodes] increases; x, v, friction [panels, nodes] are complex (x1 + i x2), friction being the
-    coefficient along the slip velocity (what resists); stick [panels] marks pieces at rest on the belt.
-    """
-
-    tau: Floats
-    x: NDArray[np.complex128]
-    v: NDArray[np.complex128]
-    friction: NDArray[np.complex128]
-    stick: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,9 @@
 """Reports: the page of a run, and the page of a folder of runs."""
 
-from frictionlab.report.citing import bibtex
+from __future__ import annotations
+
 from frictionlab.report.index import write_index
 from frictionlab.report.page import write_report
+from frictionlab.report.sources import bibtex
 
 __all__ = ["bibtex", "write_index", "write_report"]

@@ -8,7 +8,7 @@ from html.entities import html5
 
 from markupsafe import Markup, escape
 
-from frictionlab.symbols import symbol, word
+from frictionlab.columns import symbol, word
 
 _RENAMED = {"varphi": "phi", "varepsilon": "epsilon"}  # what TeX calls so
 _ACCENTS = {"bar": "\u0304", "hat": "\u0302", "dot": "\u0307", "tilde": "\u0303"}

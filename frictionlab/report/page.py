@@ -11,14 +11,13 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from frictionlab import __version__
-from frictionlab.output import write_page
-from frictionlab.report import asked, found
-from frictionlab.report.citing import bibtex
-from frictionlab.report.pictures import pictures
-from frictionlab.report.sources import published, sources
+from frictionlab.report import findings, question
+from frictionlab.report.figures import pictures
+from frictionlab.report.sources import bibtex, published, sources
 from frictionlab.report.tables import Grid, grid, points, swept_inputs
-from frictionlab.saved import Saved
-from frictionlab.yaml_text import yaml_text
+from frictionlab.run.folder import write_page
+from frictionlab.run.saved import Saved
+from frictionlab.run.yaml_text import yaml_text
 
 TEMPLATES = Path(__file__).parent / "templates"
 GENERATOR = f"frictionlab {__version__}"
@@ -90,13 +89,13 @@ def _unfinished(saved: Saved) -> str:
 def _asked(saved: Saved) -> dict[str, Any]:
     study = saved.study
     return {
-        "scene_sentence": asked.scene_sentence(study.scene),
-        "units_sentence": asked.units_sentence(study.scene),
+        "scene_sentence": question.scene_sentence(study.scene),
+        "units_sentence": question.units_sentence(study.scene),
         "source": study.source,
-        "scene": asked.scene_grid(study),
-        "laws": asked.laws_grid(study),
-        "methods": asked.methods_grid(study),
-        "sweep": asked.sweep_grid(study),
+        "scene": question.scene_grid(study),
+        "laws": question.laws_grid(study),
+        "methods": question.methods_grid(study),
+        "sweep": question.sweep_grid(study),
         "tolerance": f"{study.tolerance:g}",
         "keep": study.keep_orbit,
         "yaml": yaml_text(study.resolved()),
@@ -104,20 +103,22 @@ def _asked(saved: Saved) -> dict[str, Any]:
 
 
 def _found(saved: Saved) -> dict[str, Any]:
-    curves = found.curves_of(saved)
+    curves = findings.curves_of(saved)
     verdicts = saved.verdicts
     return {
-        "brief": found.brief_grid(curves),
-        "whole": found.whole_grid(saved.table),
-        "shape": None if saved.curves is None else found.shape_grid(saved.curves, swept_inputs(saved.table)),
+        "brief": findings.brief_grid(curves),
+        "whole": findings.whole_grid(saved.table),
+        "shape": None
+        if saved.curves is None
+        else findings.shape_grid(saved.curves, swept_inputs(saved.table)),
         "pictures": pictures(saved),
-        "verdicts": found.verdicts_grid(verdicts),
+        "verdicts": findings.verdicts_grid(verdicts),
         "fold": len(verdicts) > MOST_SHOWN_AT_ONCE and all(verdict.passed for verdict in verdicts),
         "expected": len(saved.study.expect),
-        "odd": found.trouble_grid(saved.table),
-        "models": found.models_grid(saved.table),
-        "errors": found.errors_grid(curves, saved.study.tolerance),
-        "errors_sentence": found.sentence_of_errors(saved),
+        "odd": findings.trouble_grid(saved.table),
+        "models": findings.models_grid(saved.table),
+        "errors": findings.errors_grid(curves, saved.study.tolerance),
+        "errors_sentence": findings.sentence_of_errors(saved),
     }
 
 

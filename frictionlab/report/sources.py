@@ -2,16 +2,101 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from functools import cache
+from importlib.metadata import entry_points
+from importlib.util import find_spec
+from pathlib import Path
 from typing import NamedTuple
 
 import pandas as pd
 
 from frictionlab import registry
-from frictionlab.bibliography import Reference, publications, remark
-from frictionlab.report.documents import law_text, method_bibtex, method_text
-from frictionlab.saved import Saved
+from frictionlab.registry.bibliography import Reference, publications, remark
+from frictionlab.run.saved import Saved
+from frictionlab.study import LawChoice
+
+
+def bibtex(runs: Sequence[Saved]) -> str:
+    """One entry for each publication, under a comment that says what used it; keys differ."""
+    users: dict[Reference, list[str]] = {}
+    for run in runs:
+        users.setdefault(itself(str(run.account.get("frictionlab", ""))), ["the program"])
+        for cited in sources(run):
+            for reference in cited.references:
+                users.setdefault(reference, []).append(cited.what)
+    whom = [", ".join(dict.fromkeys(each)) for each in users.values()]
+    entries = zip(whom, with_keys_of_their_own(users), strict=True)
+    return "\n\n".join(f"% {who}\n{entry}" for who, entry in entries)
+
+
+def itself(version: str) -> Reference:
+    """The entry of frictionlab. version: that which made the numbers."""
+    fields = {
+        "author": "{The frictionlab authors}",
+        "title": "frictionlab: average-friction curves of vibrated sliding bodies",
+        "note": f"Python package, version {version}",
+    }
+    lines = "".join(f"  {name} = {{{value}}},\n" for name, value in fields.items())
+    return Reference("misc", "frictionlab", fields, f"@misc{{frictionlab,\n{lines}}}")
+
+
+def with_keys_of_their_own(references: Iterable[Reference]) -> list[str]:
+    """The entries as written, but for a key that another entry has already: it gets a number."""
+    entries, taken = [], set[str]()
+    for each in references:
+        key, number = each.key, 1
+        while key in taken:
+            number += 1
+            key = f"{each.key}-{number}"
+        taken.add(key)
+        kind, brace, rest = each.bibtex.partition("{")
+        entries.append(kind + brace + rest.replace(each.key, key, 1))
+    return entries
+
+
+def law_text(law: LawChoice) -> str:
+    """The docstring of a law."""
+    return inspect.getdoc(law.law_class) or ""
+
+
+def method_text(name: str) -> str:
+    """The docstring of a method; nothing for one that is not installed here."""
+    written = _written(name)
+    return (ast.get_docstring(written) or "") if written else ""
+
+
+def method_bibtex(name: str) -> str:
+    """The ``bibtex`` of a method; nothing for one that is not installed here."""
+    written = _written(name)
+    given = [node for node in written.body if _sets_bibtex(node)] if written else []
+    if not given:
+        return ""
+    value = getattr(given[0], "value", None)
+    return str(value.value) if isinstance(value, ast.Constant) else registry.method_class(name).bibtex
+
+
+def _sets_bibtex(node: ast.stmt) -> bool:
+    targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+    return any(isinstance(target, ast.Name) and target.id == "bibtex" for target in targets)
+
+
+@cache
+def _written(name: str) -> ast.ClassDef | None:
+    """The class of a method as its file has it: reading it is quicker than importing what it needs."""
+    for door in entry_points(group=registry.METHODS, name=name):
+        try:
+            spec = find_spec(door.module)
+            source = Path(str(spec.origin if spec else "")).read_text(encoding="utf-8")
+            classes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ClassDef)]
+        except (ImportError, OSError, ValueError, SyntaxError):
+            return None
+        return next((node for node in classes if node.name == door.attr), None)
+    return None
+
 
 _YEAR = re.compile(r"\b1[6-9]\d\d\b|\b20\d\d\b")
 _SAID = re.compile(r"\bSources?:.*", re.DOTALL)

@@ -1,9 +1,11 @@
 """The study file: what a person writes, checked as a whole, and the frozen study it becomes."""
 
+from __future__ import annotations
+
+from frictionlab.study.law_files import laws_of_files
 from frictionlab.study.mistakes import Mistake, StudyError
-from frictionlab.study.plugins import laws_of_files
 from frictionlab.study.reader import load_study, parse_study, read_back
-from frictionlab.study.record import Case, Expectation, LawChoice, MethodChoice, Study
+from frictionlab.study.study import Case, Expectation, LawChoice, MethodChoice, Study
 
 __all__ = [
     "Case",

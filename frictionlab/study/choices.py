@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from frictionlab import registry
-from frictionlab.study.fields import built
-from frictionlab.study.mistakes import Path, described, did_you_mean
-from frictionlab.study.notes import Notes
-from frictionlab.study.record import LawChoice, MethodChoice
+from frictionlab.study.mistakes import Notes, Path, described, did_you_mean
+from frictionlab.study.study import LawChoice, MethodChoice
+from frictionlab.study.validation import built
 
 
 def items(given: Any, path: Path, example: str, notes: Notes) -> list[Any]:

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab import columns
-from frictionlab.study.mistakes import Path, described, did_you_mean
-from frictionlab.study.notes import Notes
-from frictionlab.study.record import Expectation
+from frictionlab.study.mistakes import Notes, Path, described, did_you_mean
+from frictionlab.study.study import Expectation
 
 KEYS = (
     *("where", "column", "equals", "below", "above", "within"),

@@ -5,21 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from frictionlab import registry
-from frictionlab.dimensional import Dimensional
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.bristle import CompliantLaw
-from frictionlab.scene import Scene
+from frictionlab.laws.compliant import CompliantLaw
+from frictionlab.scene.dimensional import Dimensional
+from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import label_of, may_become_a_label
-from frictionlab.study.fields import harmless, number_paths, record_at, wrong_value
-from frictionlab.study.mistakes import Path, did_you_mean
-from frictionlab.study.notes import Notes
-from frictionlab.study.record import Study
-from frictionlab.study.sweep import LARGEST_GRID, sweep_values
+from frictionlab.study.mistakes import Notes, Path, described, did_you_mean, number_text
+from frictionlab.study.study import Study
+from frictionlab.study.validation import harmless, number_paths, record_at, wrong_value
 
 _GROUPS = (
     ("unbalance", "amplitude"),
@@ -215,3 +214,67 @@ def _build(build: Callable[[], Any], sweep: Mapping[str, Any], prefix: str, note
         own = [path for path in sweep if path.startswith(prefix)]
         path: Path = ("sweep", own[-1]) if own else ("laws",)
         notes.on_key(path, f"a point of the grid cannot be built: {what}")
+
+
+LARGEST_GRID = 1_000_000
+
+_KEYS = ("start", "stop", "num", "spacing")
+_SPACINGS = ("linear", "log")
+
+
+def sweep_values(given: Any, path: Path, notes: Notes) -> tuple[float, ...]:
+    """The values of one sweep, from a list or a range; empty, noted, where there is a mistake."""
+    if isinstance(given, list):
+        return _listed(given, path, notes)
+    if isinstance(given, dict):
+        return _ranged(given, path, notes)
+    notes.add(path, f"must be a list or {{start, stop, num, spacing}}, got {described(given)}")
+    return ()
+
+
+def _listed(given: list[Any], path: Path, notes: Notes) -> tuple[float, ...]:
+    if not given:
+        notes.add(path, "the list is empty: there is nothing to run")
+    values = [notes.number(item, (*path, index)) for index, item in enumerate(given)]
+    seen: dict[float, int] = {}
+    for index, value in enumerate(values):
+        if value is not None and seen.setdefault(value, index) != index:
+            notes.add((*path, index), f"{number_text(value)} is in the list twice")
+    return tuple(value for value in values if value is not None)
+
+
+def _ranged(given: dict[str, Any], path: Path, notes: Notes) -> tuple[float, ...]:
+    notes.mapping(given, path, _KEYS)
+    for key in ("start", "stop", "num"):
+        if key not in given:
+            notes.add((*path, key), "required key is missing")
+    ends = [notes.number(given[key], (*path, key)) if key in given else None for key in ("start", "stop")]
+    start, stop = ends
+    num = notes.whole_number(given["num"], (*path, "num"), 2) if "num" in given else None
+    spacing = notes.one_of(given.get("spacing", "linear"), (*path, "spacing"), _SPACINGS)
+    if start is not None and spacing == "log" and start <= 0:
+        notes.add((*path, "start"), f"must be > 0 for log spacing, got {number_text(start)}")
+    if start is not None and stop is not None and stop <= start:
+        notes.add((*path, "stop"), f"must be > start = {number_text(start)}, got {number_text(stop)}")
+    if num is not None and num > LARGEST_GRID:
+        notes.add((*path, "num"), f"must be <= {LARGEST_GRID}, got {num}")
+    if notes.below(path) or start is None or stop is None or num is None:
+        return ()
+    values = _log(start, stop, num) if spacing == "log" else _linear(start, stop, num)
+    if len(set(values)) < num:
+        notes.add(path, f"there are no {num} different numbers between start and stop")
+    return values
+
+
+def _linear(start: float, stop: float, num: int) -> tuple[float, ...]:
+    """Evenly spaced and correctly rounded: {0.1, 1, 10} holds 0.3, not 0.30000000000000004."""
+    first, last = Fraction(repr(start)), Fraction(repr(stop))
+    step = (last - first) / (num - 1)
+    return tuple(float(first + index * step) for index in range(num))
+
+
+def _log(start: float, stop: float, num: int) -> tuple[float, ...]:
+    """Evenly spaced in the logarithm, both ends exact."""
+    low, high = math.log(start), math.log(stop)
+    inner = (math.exp(low + (high - low) * index / (num - 1)) for index in range(1, num - 1))
+    return (start, *inner, stop)

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from frictionlab import columns, registry
-from frictionlab.dimensional import dimensions
-from frictionlab.scene import Scene
+from frictionlab.scene.dimensional import dimensions
+from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import (
     items,
     label_of,
@@ -23,15 +23,13 @@ from frictionlab.study.choices import (
     sure_law_labels,
 )
 from frictionlab.study.expectations import Table, expectations
-from frictionlab.study.fields import built, number_paths
 from frictionlab.study.grid import Swept, note_impossible_points, swept
-from frictionlab.study.mistakes import Path, StudyError, described
-from frictionlab.study.notes import Notes
+from frictionlab.study.law_files import Bring, Brought, add_law_files, as_saved, bring
+from frictionlab.study.mistakes import Notes, Path, StudyError, described
 from frictionlab.study.overrides import overridden
-from frictionlab.study.plugins import Bring, Brought, add_law_files, bring
-from frictionlab.study.record import SCHEMA, LawChoice, MethodChoice, Study
-from frictionlab.study.saved_laws import as_saved
-from frictionlab.study.source import Odd, Source, plain_number, read_file
+from frictionlab.study.study import SCHEMA, LawChoice, MethodChoice, Study
+from frictionlab.study.validation import built, number_paths
+from frictionlab.study.yaml_source import Odd, Source, plain_number, read_file
 
 KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),

@@ -7,10 +7,10 @@ from typing import Any
 from pydantic import BaseModel
 
 from frictionlab import columns, registry
-from frictionlab.scene import Scene
+from frictionlab.scene.scene import Scene
 from frictionlab.study import reader
-from frictionlab.study.record import SCHEMA
-from frictionlab.study.sweep import LARGEST_GRID
+from frictionlab.study.grid import LARGEST_GRID
+from frictionlab.study.study import SCHEMA
 
 INSTALLED = registry.Laws()
 _NUMBER = {"type": "number"}

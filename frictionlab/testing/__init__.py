@@ -1,5 +1,7 @@
 """The conformance battery any friction law must pass: ``check_law(MyLaw)`` in Python or in one line of a test."""
 
+from __future__ import annotations
+
 from frictionlab.testing.battery import CHECKS, EXAMPLES, check_law
 from frictionlab.testing.check import Check
 from frictionlab.testing.outcome import LawFailed, Outcome, Report, heading

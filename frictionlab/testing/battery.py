@@ -8,23 +8,23 @@ from dataclasses import replace
 from typing import Literal
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.testing import compiled, declared, form, limits, path, symmetry
 from frictionlab.testing.check import Check
+from frictionlab.testing.checks import compiled, declared, limits, path, record, symmetry
 from frictionlab.testing.outcome import LawFailed, Outcome, Report
 from frictionlab.testing.running import run
 
 CHECKS: tuple[Check, ...] = (
-    form.loads_by_name,
-    form.documented,
-    form.frozen,
-    form.unknown_parameters_refused,
-    form.limits_kept,
-    form.defaults_valid,
-    form.answers,
-    form.extremes,
-    form.repeatable,
-    form.instances_apart,
-    form.parameters_matter,
+    record.loads_by_name,
+    record.documented,
+    record.frozen,
+    record.unknown_parameters_refused,
+    record.limits_kept,
+    record.defaults_valid,
+    record.answers,
+    record.extremes,
+    record.repeatable,
+    record.instances_apart,
+    record.parameters_matter,
     symmetry.oddness,
     symmetry.rotation,
     symmetry.reflection,

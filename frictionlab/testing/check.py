@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.laws.bristle import BristleLaw
-from frictionlab.laws.memory import MemoryLaw
-from frictionlab.testing.given import Given
+from frictionlab.laws.memory import BristleLaw, MemoryLaw
+from frictionlab.testing.example import Given
 
 Body = Callable[[Given], None]
 Skips = Callable[[type[FrictionLaw]], str]

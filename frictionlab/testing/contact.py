@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.bristle import BristleLaw, in_the_plane, on_the_line
-from frictionlab.laws.memory import MemoryLaw
+from frictionlab.laws.memory import BristleLaw, MemoryLaw, in_the_plane, on_the_line
 
 Memory = tuple[Any, ...]
 

@@ -18,9 +18,9 @@ from hypothesis.errors import Unsatisfiable
 from frictionlab.faults import in_words
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.testing.check import Check
-from frictionlab.testing.drawing import quietly
-from frictionlab.testing.given import Given
+from frictionlab.testing.example import Given
 from frictionlab.testing.outcome import Outcome
+from frictionlab.testing.strategies import quietly
 
 
 class TooLong(BaseException):

@@ -4,6 +4,9 @@ Velocities are in the scene's scale (omega_1 L); a mean friction is given relati
 of steady sliding.
 """
 
+from __future__ import annotations
+
+from frictionlab.quantities import Floats
 from frictionlab.theory.compliant_means import (
     mean_soft_circular,
     mean_soft_dahl,
@@ -13,7 +16,6 @@ from frictionlab.theory.compliant_means import (
     slip_back_and_forth,
     stiff_correction,
 )
-from frictionlab.theory.elliptic import Floats
 from frictionlab.theory.linear import friction_free_velocity
 from frictionlab.theory.loops import (
     coulomb_describing_function,

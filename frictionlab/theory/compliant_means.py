@@ -11,7 +11,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from frictionlab.theory.elliptic import Floats, second_integral
+from frictionlab.quantities import Floats
+from frictionlab.theory.elliptic import second_integral
 from frictionlab.theory.loops import moment
 
 

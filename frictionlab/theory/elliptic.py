@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from frictionlab.quantities import Floats
 
 
 def _ladder(modulus: Floats, complement: Floats) -> tuple[Floats, Floats]:

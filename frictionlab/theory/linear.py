@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from frictionlab.scene import Scene
+from frictionlab.scene.scene import Scene
 
 
 def friction_free_velocity(scene: Scene) -> float:

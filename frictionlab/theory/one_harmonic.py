@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from frictionlab.scene import Scene
-from frictionlab.theory.elliptic import Floats
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
 
 
 def one_harmonic_velocity(scene: Scene, friction: float, ratio: ArrayLike) -> Floats:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from frictionlab.theory.elliptic import Floats, first_integral, second_integral, second_less_first
+from frictionlab.quantities import Floats
+from frictionlab.theory.elliptic import first_integral, second_integral, second_less_first
 
 
 def mean_prescribed_longitudinal(ratio: ArrayLike) -> Floats:

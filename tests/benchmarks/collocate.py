@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent / "methods"))
+sys.path.insert(0, str(HERE.parent))
 
 import collocation  # noqa: E402  # lies beside the tests it was written for
 

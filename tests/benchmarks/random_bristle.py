@@ -22,16 +22,16 @@ from typing import Any
 import numpy as np
 
 import frictionlab as fl
-from frictionlab.laws.bristle import BristleLaw
+from frictionlab.bench.peers import scipy_bristle
+from frictionlab.bench.peers.bristle_motion import BristleMotion
+from frictionlab.bench.peers.scipy_bristle import scales
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
-from frictionlab.methods.base import Floats
-from frictionlab.peers import scipy_bristle
-from frictionlab.peers.bristle_motion import BristleMotion
-from frictionlab.peers.scipy_bristle import scales
-from frictionlab.scene import Drive, Load, Scene, Transverse
+from frictionlab.laws.memory import BristleLaw
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 from frictionlab.theory import friction_free_velocity
 
 KINDS = "dahl", "dahl exponent", "lugre", "lugre stribeck", "elasto-plastic", "jenkins"

@@ -13,11 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "methods"))
+sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "methods" / "exact"))
 from random_scenes import draw
 from test_exact import against_brute_force
 
-from frictionlab.methods.exact import Exact
+from frictionlab.methods.exact.method import Exact
 
 
 def count(scenes: int, seed: int) -> Counter[str]:

@@ -18,11 +18,11 @@ import numpy as np
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.base import Method
-from frictionlab.methods.exact import Exact
-from frictionlab.methods.harmonic_balance import HarmonicBalance
-from frictionlab.methods.mdsm import Mdsm
-from frictionlab.methods.shooting import Shooting
-from frictionlab.scene import Drive, Load, Scene, Transverse
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
+from frictionlab.methods.reduced.mdsm import Mdsm
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 from frictionlab.theory import friction_free_velocity
 
 LAW = Coulomb(mu=0.4)

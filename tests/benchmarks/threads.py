@@ -19,11 +19,12 @@ import frictionlab as fl
 from frictionlab import bench
 from frictionlab.bench.cores import core
 from frictionlab.bench.timing import timed
-from frictionlab.kernel import compiled, njit
+from frictionlab.compile.cache import compiled
+from frictionlab.compile.decorators import njit
 from frictionlab.methods.base import Method
-from frictionlab.methods.exact import Exact
-from frictionlab.methods.shooting import Shooting
-from frictionlab.scene import Scene
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Scene
 
 STANDARD = Path(__file__).parent / "standard.yaml"
 POINTS, CHUNK, THREADS = 2_000, 125, 2

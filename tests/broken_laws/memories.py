@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from broken_laws.case import Case
 from frictionlab.laws.base import Speed
-from frictionlab.laws.bristle import Length, Stiffness
+from frictionlab.laws.compliant import Length, Stiffness
 
 
 class Springs(Elements):

@@ -7,7 +7,7 @@ from typing import Any
 from broken_laws.case import Case
 from broken_laws.twins import BreakingAway, Bristles, Falling, curve
 from frictionlab.laws.base import NonNegative, Positive
-from frictionlab.laws.bristle import Stiffness
+from frictionlab.laws.compliant import Stiffness
 
 
 class MissingAbs(Bristles):

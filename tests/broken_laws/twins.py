@@ -6,7 +6,8 @@ import math
 from typing import Any
 
 from frictionlab.laws.base import NonNegative, PerSpeed, Positive, SlidingLaw, Speed
-from frictionlab.laws.bristle import BristleLaw, Damping, Stiffness
+from frictionlab.laws.compliant import Damping, Stiffness
+from frictionlab.laws.memory import BristleLaw
 
 
 class Falling(SlidingLaw):

@@ -22,14 +22,15 @@ from strategies import (
     velocities_on_the_line,
 )
 
-from frictionlab.dimensional import Scales, scaled_law
-from frictionlab.kernel import compiled, njit
-from frictionlab.laws.bristle import in_the_plane, on_the_line
+from frictionlab.compile.cache import compiled
+from frictionlab.compile.decorators import njit
+from frictionlab.dynamics.contact import resistance
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic, broken_away
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
-from frictionlab.methods.bristle import resistance
+from frictionlab.laws.memory import in_the_plane, on_the_line
+from frictionlab.scene.dimensional import Scales, scaled_law
 from frictionlab.theory import (
     SteadySliding,
     dahl_describing_function,

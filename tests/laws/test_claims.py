@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.laws.bristle import BristleLaw, CompliantLaw, in_the_plane
+from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.decay import fallen, steepest_fall
 from frictionlab.laws.elasto_plastic import ElastoPlastic
-from frictionlab.laws.fall import fallen, steepest_fall
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
-from frictionlab.laws.memory import MemoryLaw
+from frictionlab.laws.memory import BristleLaw, MemoryLaw, in_the_plane
 from frictionlab.laws.stribeck import Stribeck
 
 

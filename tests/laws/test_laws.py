@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 from strategies import BRISTLE_LAWS, EXAMPLES, LAWS, angles, sizes, speeds, velocities, velocities_on_the_line
 
-from frictionlab.kernel import compiled, njit
+from frictionlab.compile.cache import compiled
+from frictionlab.compile.decorators import njit
 from frictionlab.laws.base import SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck

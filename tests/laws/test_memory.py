@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from memory_laws import Ageing, Elements
 
-from frictionlab.kernel import by_law, compiled, njit
+from frictionlab.compile.cache import compiled
+from frictionlab.compile.decorators import njit
+from frictionlab.compile.dispatch import by_law
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.memory import MemoryLaw
 

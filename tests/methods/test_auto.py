@@ -9,9 +9,9 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.auto import LADDER, Auto
-from frictionlab.methods.exact import Exact
-from frictionlab.methods.shooting import Shooting
-from frictionlab.scene import Drive, Load, Scene, Slip, Transverse
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse
 
 LAW = Coulomb(mu=0.4)
 

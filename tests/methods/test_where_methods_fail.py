@@ -16,8 +16,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
-from frictionlab.methods.march import March
-from frictionlab.methods.marcher import Pace, Walker
+from frictionlab.methods.march.method import March
+from frictionlab.methods.march.run import MarchRun, Resolution
 
 # Strong friction at resonance: x'' + 0.2 x' + x + 4 Sgn(x' - v_b) = 10 sin(tau); slip reverses below v_b = 50.
 DAMPING, LOAD, FRICTION, MU = 0.1, 10.0, 4.0, 0.4
@@ -240,10 +240,10 @@ def test_a_motion_takes_many_periods_from_rest_until_it_repeats(
     )
     hasty = marched(slow, [speed], stepper="moreau", steps=400, periods=8)
     patient = marched(slow, [speed], stepper="moreau", steps=400)
-    walker = Walker(slow, fl.Coulomb(mu=MU), "moreau")
+    walker = MarchRun(slow, fl.Coulomb(mu=MU), "moreau")
 
     assert hasty["status"][0] == "failed"
     assert "still changes by" in hasty["reason"][0]
     assert patient["off"][0] <= patient["error"][0]
-    laps = [walker.run(Pace(steps=400, enough=enough, most=1000)).laps for enough in (1e-6, 1e-12)]
+    laps = [walker.run(Resolution(steps=400, enough=enough, most=1000)).laps for enough in (1e-6, 1e-12)]
     assert low <= laps[0] < laps[1] <= high

@@ -1,0 +1,3 @@
+"""Other people's integrators on our scenes, driven as a skilled user would: what our methods are timed beside."""
+
+from __future__ import annotations

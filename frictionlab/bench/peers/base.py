@@ -1,0 +1,66 @@
+"""What every peer is: another library's road to the mean friction, with no error of its own."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from importlib.util import find_spec
+from typing import ClassVar
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.quantities import Floats, Record
+from frictionlab.scene.scene import Scene
+
+CLOSED = 1.0
+"""Gap of a closed period in tolerances, as the change of velocity that so much mean friction makes in a period."""
+NOISE = 8
+"""Periods in a row that come no nearer: the rest is the integrator's own error."""
+MOST_PERIODS = 5000
+
+
+class Closing:
+    """Whether a motion has closed: its gap from period to period against what is asked, or against its own noise."""
+
+    def __init__(self, tolerance: float, normal_load: float, period: float) -> None:
+        self._enough = CLOSED * tolerance * normal_load * period
+        self._least, self._since = math.inf, 0
+
+    def done(self, gap: float) -> bool:
+        """Take in the gap of one more period. Raises ArithmeticError where it is no number."""
+        if not math.isfinite(gap):
+            raise ArithmeticError("the state is not finite")
+        self._since = 0 if gap < self._least else self._since + 1
+        self._least = min(gap, self._least)
+        return gap <= self._enough or self._since >= NOISE
+
+
+class Peer(Record, ABC):
+    """A library's road to steady states; its fields are the settings a bench list may give."""
+
+    name: ClassVar[str]
+    package: ClassVar[str]
+    remedy: ClassVar[str] = "pip install frictionlab[peers]"
+
+    def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
+        """Why this peer cannot do this scene and law, or is not there; None when it can."""
+        if find_spec(self.package) is None:
+            return f"not installed: {self.remedy}"
+        if (other := self.other_law(law)) is not None:
+            return other
+        if scene.degrees_of_freedom == 0 or scene.undriven:
+            return f"{self.name} is set up for driven scenes with a mass"
+        return None
+
+    def other_law(self, law: FrictionLaw) -> str | None:
+        """Why this peer cannot do this law; None when it can."""
+        if law.constant_sliding_friction() and law.monotone():
+            return None
+        return f"{self.name} is set up for Coulomb friction, the same at rest and in slip"
+
+    @abstractmethod
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Floats:
+        """The mean friction of scenes that differ in belt speed alone.
+
+        Raises ArithmeticError, with a reason, where the integrator gives up.
+        """

@@ -1,0 +1,1 @@
+"""Everything that knows numba: decorators, dispatch by law and dimension, and the cache of compiled entries."""

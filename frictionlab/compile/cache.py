@@ -1,0 +1,230 @@
+"""Compiled kernel entries kept on disk, each in a module named by a hash of all the code it can reach.
+
+numba's own cache misses an edit in another file, so an entry is named by every piece of code and every constant the
+kernel and the law can reach.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import hashlib
+import importlib.util
+import inspect
+import itertools
+import os
+import platform
+import secrets
+import shutil
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from functools import cache, partial
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import llvmlite
+import numba
+import numba.core.typing.templates
+import numba.extending
+import numpy as np
+from numba.core.bytecode import FunctionIdentity
+from numba.core.errors import NumbaError, UnsupportedBytecodeError
+
+from frictionlab.compile.dispatch import law_of_numbers, names_used
+from frictionlab.faults import cannot_compile
+from frictionlab.laws.base import FrictionLaw
+
+# numba links compiled functions by name and types, and tells those of one name apart by a number that every process
+# counts from 1: of two entries kept by two processes one would run the other's code. A random start keeps them apart.
+FunctionIdentity._unique_ids = itertools.count(secrets.randbits(60))
+_typeof: Any = numba.typeof
+
+
+_one_at_a_time = threading.Lock()
+"""Two threads that loaded one entry twice would hold two types of the same numbers, and compile for ever."""
+
+
+def compiled(kernel: Any, law: FrictionLaw | None = None) -> Callable[..., Any]:
+    """The disk-cached entry of a kernel; with a law, the kernel's first argument is already filled in.
+
+    Raises CannotCompile, when called, where numba cannot compile the law's methods.
+    """
+    numbers, structure = (law.numbers(), law.structure()) if law is not None else ({}, ())
+    with _one_at_a_time:
+        entry, numbers_type = _entry(
+            kernel, type(law) if law is not None else None, tuple(numbers), structure
+        )
+    if law is None:
+        return entry
+    seen = {name: np.array(value) if isinstance(value, tuple) else value for name, value in numbers.items()}
+    return partial(
+        _guarded, entry, type(law), numbers_type(**seen)
+    )  # arrays: one kernel for tuples of any length
+
+
+def timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
+    """What a compiled entry returns, and the seconds it took, compilation left out."""
+    entry: Any = call.args[0] if isinstance(call, partial) else call
+    bound = call.args[2:] if isinstance(call, partial) else ()
+    with contextlib.suppress(NumbaError, UnsupportedBytecodeError):  # the call itself says what is wrong
+        entry.compile(tuple(_typeof(argument) for argument in (*bound, *arguments)))
+    start = time.perf_counter()
+    result = call(*arguments)
+    return result, time.perf_counter() - start
+
+
+def _guarded(entry: Callable[..., Any], law: type[FrictionLaw], *arguments: Any) -> Any:
+    try:
+        return entry(*arguments)
+    except (NumbaError, UnsupportedBytecodeError) as problem:
+        raise cannot_compile(law, str(problem)) from problem
+
+
+@cache
+def _entry(
+    kernel: Any, law: type[FrictionLaw] | None, fields: tuple[str, ...], structure: tuple[str, ...]
+) -> tuple[Any, Any]:
+    """The compiled entry and the type of the law's numbers (None without a law)."""
+    parameters = ", ".join(inspect.signature(kernel.py_func).parameters)
+    source = (
+        '"""A compiled kernel entry of frictionlab, named by its content; safe to delete."""\n'
+        "from numba import njit\n\n\n"
+        f"# {', '.join((*fields, *structure))}\n"
+        '@njit(nogil=True, error_model="numpy", cache=True)\n'
+        f"def entry({parameters}):\n    return kernel({parameters})\n"
+    )
+    numbers = _numbers(law, fields, structure) if law is not None else None
+    name = f"frictionlab_{kernel.py_func.__name__}_{_fingerprint(source, kernel, law)}"
+    return _load(name, source, kernel=kernel).entry, numbers
+
+
+@cache
+def _numbers(law: type[FrictionLaw], fields: tuple[str, ...], structure: tuple[str, ...]) -> Any:
+    """The type of a law's numbers, one for all entries: what they share is compiled once in a process."""
+    source = (
+        '"""The numbers of a law as kernels of frictionlab see them, named by content; safe to delete."""\n'
+        "from typing import NamedTuple\n\n\n"
+        f"# {', '.join(structure)}\n"
+        "class Numbers(NamedTuple):\n    "
+        + "\n    ".join(f"{name}: float" for name in fields or ("none",))
+        + "\n"
+    )
+    name = f"frictionlab_numbers_{_fingerprint(source, law)}"
+    known = sys.modules.get(name)  # of another class of the same code: entries may be kept that name its type
+    numbers = (known or _load(name, source)).Numbers
+    law_of_numbers[numbers] = law, structure
+    return numbers
+
+
+def _load(name: str, source: str, **given: Any) -> ModuleType:
+    """The module of this content, some names given before it runs."""
+    path = _written(cache_folder() / f"{name}.py", source)
+    if path is None:  # nowhere to write: compile afresh in every process
+        folder = Path(tempfile.mkdtemp(prefix="frictionlab-"))
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+        path = folder / f"{name}.py"
+        path.write_text(source)
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    vars(module).update(given)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _written(path: Path, source: str) -> Path | None:
+    """The module file, written once and whole, or None where that is not possible."""
+    try:
+        if not path.exists():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+            with os.fdopen(handle, "w") as file:
+                file.write(source)
+            os.replace(temporary, path)
+    except OSError:
+        return None
+    return path
+
+
+def cache_folder() -> Path:
+    """Where compiled entries are kept: $FRICTIONLAB_CACHE, else the user's cache folder."""
+    if chosen := os.environ.get("FRICTIONLAB_CACHE"):
+        return Path(chosen)
+    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"
+    return Path(base) / "frictionlab"
+
+
+def _fingerprint(*roots: Any) -> str:
+    """A hash of everything the roots can reach: code, constants, helpers in any file, and the compiler."""
+    versions = (sys.version, platform.machine(), numba.__version__, llvmlite.__version__, np.__version__)
+    digest = hashlib.sha256(repr(versions).encode())
+    for file in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(file.read_bytes())
+    for piece in _pieces(roots, set()):
+        digest.update(piece.encode())
+        digest.update(b"\0")
+    return digest.hexdigest()[:24]
+
+
+_FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "typing", "pydantic", "abc"}
+
+
+def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
+    """Text that changes whenever what these values compute changes; each object is visited once."""
+    for value in values:
+        value = getattr(value, "py_func", value)
+        if id(value) in seen:
+            continue
+        if isinstance(value, FunctionType | type | ModuleType):
+            seen.add(id(value))
+            yield from _pieces_of_code(value, seen)
+        elif isinstance(value, np.ndarray):
+            yield f"{value.dtype}{value.shape}{value.tobytes()!r}"
+        elif isinstance(value, list | tuple | dict):  # of functions: their own text is an address
+            yield f"{type(value).__name__} of {len(value)}"
+            yield from _pieces(itertools.chain(*value.items()) if isinstance(value, dict) else value, seen)
+        else:
+            yield repr(value)
+
+
+def _pieces_of_code(value: Any, seen: set[int]) -> Iterator[str]:
+    home: str = getattr(value, "__module__", None) or getattr(value, "__name__", None) or ""
+    yield f"{home}.{getattr(value, '__qualname__', '')}"
+    if home.partition(".")[0] in _FOREIGN or isinstance(value, ModuleType):
+        return
+    if isinstance(value, type):
+        yield repr(getattr(value, "_fields", ()))
+        yield from _pieces([base for base in value.__mro__[1:] if base is not object], seen)
+        yield from _pieces([m for m in vars(value).values() if isinstance(m, FunctionType)], seen)
+        return
+    yield from _pieces_of_bytecode(value.__code__)
+    cells = [cell.cell_contents for cell in value.__closure__ or ()]
+    yield from _pieces([*(value.__defaults__ or ()), *cells, *_globals_used(value)], seen)
+
+
+def _pieces_of_bytecode(code: CodeType) -> Iterator[str]:
+    yield repr((code.co_code, code.co_names, code.co_varnames))
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _pieces_of_bytecode(constant)
+        else:
+            yield repr(constant)
+
+
+def _globals_used(function: FunctionType) -> Iterator[Any]:
+    """The globals a function names, and what it takes from the modules among them, packages included."""
+    names = list(names_used(function.__code__))
+    waiting = [function.__globals__[name] for name in names if name in function.__globals__]
+    opened: set[int] = set()
+    for value in waiting:  # grows while modules are opened
+        yield value
+        foreign = not isinstance(value, ModuleType) or value.__name__.partition(".")[0] in _FOREIGN
+        if not foreign and id(value) not in opened:
+            opened.add(id(value))
+            waiting += [getattr(value, attribute) for attribute in names if hasattr(value, attribute)]

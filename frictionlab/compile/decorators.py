@@ -1,0 +1,33 @@
+"""How kernels are compiled: the only options ever given to numba."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numba.core.typing.templates
+import numba.extending
+
+from frictionlab.compile.linking import PARTS
+
+_COMMON: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+INNER: dict[str, Any] = _COMMON | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True} | PARTS
+
+
+def njit(function: Callable[..., Any]) -> Any:
+    """Compile a kernel function; it runs without the interpreter lock and divides as IEEE 754 says."""
+    return numba.njit(**_COMMON)(function)
+
+
+def inner(function: Callable[..., Any]) -> Any:
+    """The same for a function only other kernels call: it compiles faster, having no entry from Python.
+
+    Never call one from Python: nothing stands in the way of the crash.
+    """
+    return numba.njit(**INNER)(function)
+
+
+def fast(function: Callable[..., Any]) -> Any:
+    """The same for inner arithmetic that never meets NaN or infinity on purpose."""
+    return numba.njit(fastmath=True, **INNER)(function)

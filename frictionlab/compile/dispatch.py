@@ -1,0 +1,177 @@
+"""How kernels see a law: compiled, it is a named tuple of its numbers whose type leads numba to its methods.
+
+A kernel takes a law as its first argument and calls its methods, ``law.sliding_vector(v)``. Interpreted, that is
+the law itself. A kernel with several bodies is chosen here too, by dimension or by the kind of law.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Iterator
+from functools import cache
+from types import CodeType, FunctionType
+from typing import Any
+
+import numba
+import numba.core.typing.templates
+import numba.extending
+
+from frictionlab.compile.decorators import INNER, fast
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.memory import BristleLaw, MemoryLaw
+
+_extending: Any = numba.extending  # its published types lag behind what it accepts
+_templates: Any = numba.core.typing.templates
+
+law_of_numbers: dict[type, tuple[type[FrictionLaw], tuple[str, ...]]] = {}
+
+
+def _open_door(interface: Any, method: str) -> None:
+    """Let kernels call this method of an interface on a law's numbers."""
+
+    def resolve(self: Any, *_: Any) -> Any:
+        known = law_of_numbers.get(self.instance_class)
+        return None if known is None else compilable(getattr(known[0], method))
+
+    resolve.__signature__ = inspect.signature(getattr(interface, method))  # type: ignore[attr-defined]  # numba compares
+    for kind in (numba.types.NamedTuple, numba.types.NamedUniTuple):
+        door = _templates.make_overload_method_template(kind, method, resolve, inline="never", strict=False)
+        _templates.infer_getattr(type(method, (_OfLaws, door), {"interface": interface}))
+    _extending.overload(resolve, strict=False)(resolve)
+
+
+class _OfLaws:
+    """Opens a door for the numbers of an interface's laws alone.
+
+    Other records may have a field of the method's name, and other laws a method of that name with more arguments:
+    numba knows what it compiles by name, so the interface is made a part of it.
+    """
+
+    interface: Any
+    _attr: str
+
+    def _init_once(self) -> None:
+        own = self._attr
+        self._attr = self._full(own)
+        super()._init_once()  # type: ignore[misc]  # the other base has it
+        self._attr = own
+
+    def _resolve(self, typ: Any, attribute: str) -> Any:
+        law, _structure = law_of_numbers.get(typ.instance_class, (object, ()))
+        bound = super()._resolve(typ, attribute) if issubclass(law, self.interface) else None  # type: ignore[misc]
+        if bound is None:
+            return None
+        bound.template.key = bound.template.key[0], self._full(attribute)
+        return bound.copy(bound.this)  # which knows itself by the new key
+
+    def _full(self, method: str) -> str:
+        return f"{self.interface.__name__}.{method}"
+
+
+for _method in ("sliding_friction", "sliding_vector"):
+    _open_door(FrictionLaw, _method)
+_open_door(SlidingLaw, "static_friction")
+for _method in (
+    "rate",
+    "friction",
+    "exact_path",
+    "deflected",
+    "saturation_path",
+    "largest_deflection",
+    "elastic_unloading",
+    "yield_deflection",
+):
+    _open_door(BristleLaw, _method)
+for _method in ("count", "rate", "friction", "steady", "stored", "within", "largest_rate"):
+    _open_door(MemoryLaw, _method)
+
+
+def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
+    """A kernel function with two bodies, chosen by the type of its last argument: ``float`` or ``complex``.
+
+    numba types a branch it never takes; this keeps the other dimension's code out. Both bodies are plain
+    functions of the same signature.
+    """
+
+    def chosen(*arguments: Any) -> Any:
+        return (in_the_plane if isinstance(arguments[-1], complex) else on_the_line)(*arguments)
+
+    def resolve(*types: Any) -> Any:
+        return in_the_plane if isinstance(types[-1], numba.types.Complex) else on_the_line
+
+    chosen.bodies = (on_the_line, in_the_plane)  # type: ignore[attr-defined]
+    resolve.__signature__ = inspect.signature(on_the_line)  # type: ignore[attr-defined]
+    _extending.overload(chosen, jit_options=INNER | {"fastmath": True}, strict=False)(resolve)
+    return chosen
+
+
+def by_law(
+    of_sliding: Any, of_bristle: Any, of_path: Any = None, of_memory: Any = None, of_vectors: Any = None
+) -> Any:
+    """A kernel function with several bodies of one signature, chosen by the law its first argument is.
+
+    of_path is for bristle laws on the line (no argument is complex) whose path is exact, of_memory for memory laws,
+    of_vectors for those whose memories are deflections in the plane; the choice is made when kernels are compiled,
+    so that what a law does not need is never compiled for it.
+    """
+    memory = of_memory or of_sliding
+    choices = of_sliding, of_bristle, of_path or of_bristle, memory, of_vectors or memory
+    bodies = [getattr(body, "py_func", body) for body in choices]
+
+    def chosen(*arguments: Any) -> Any:
+        law, planar = arguments[0], any(isinstance(argument, complex) for argument in arguments)
+        return bodies[_which(type(law), law.structure(), planar)](*arguments)
+
+    def resolve(*types: Any) -> Any:
+        law, structure = law_of_numbers[types[0].instance_class]
+        return bodies[_which(law, structure, any(isinstance(kind, numba.types.Complex) for kind in types))]
+
+    chosen.bodies = tuple(bodies)  # type: ignore[attr-defined]  # for the fingerprint to find
+    resolve.__signature__ = inspect.signature(bodies[0])  # type: ignore[attr-defined]  # numba compares them
+    _extending.overload(chosen, jit_options=INNER, strict=False)(resolve)
+    return chosen
+
+
+def _which(law: type[FrictionLaw], structure: tuple[str, ...], planar: bool) -> int:
+    if issubclass(law, MemoryLaw):
+        return 4 if law.memory_kind == "deflections" and planar else 3
+    if not issubclass(law, BristleLaw):
+        return 0
+    return 2 if "exact path" in structure and not planar else 1
+
+
+def _length_on_the_line(v: float) -> float:
+    return math.fabs(v)
+
+
+def _length_in_the_plane(v: complex) -> float:
+    return math.sqrt(v.real * v.real + v.imag * v.imag)
+
+
+length = by_dimension(_length_on_the_line, _length_in_the_plane)
+"""``abs`` for kernels: no kernel meets slip near 1e-150, and without that guard it takes a third of the time."""
+
+
+@cache
+def compilable(function: FunctionType) -> FunctionType:
+    """The function with the plain helpers it names compiled too, and ``abs`` quick: laws do not know numba."""
+    names = {
+        name
+        for name in names_used(function.__code__)
+        if isinstance(function.__globals__.get(name), FunctionType)
+    }
+    helpers = {name: fast(compilable(function.__globals__[name])) for name in names - {function.__name__}}
+    scope = {**function.__globals__, **helpers, "abs": length}
+    twin = FunctionType(
+        function.__code__, scope, function.__name__, function.__defaults__, function.__closure__
+    )
+    twin.__annotations__ = {}
+    return twin
+
+
+def names_used(code: CodeType) -> Iterator[str]:
+    yield from code.co_names
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from names_used(constant)

@@ -1,0 +1,1 @@
+"""The equation of motion, the contact, and the events of a motion."""

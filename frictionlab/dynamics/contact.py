@@ -1,0 +1,88 @@
+"""Rate and friction of one bristle, its exact advance along a slip path, its projection onto the yield surface."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.laws.memory import PER_AXIS, VECTORIAL, in_the_plane, on_the_line
+
+resistance = by_dimension(on_the_line, in_the_plane)
+"""(law, slip velocity, deflection) -> (rate of deflection, friction coefficient), interpreted and compiled."""
+
+
+NEARBY = 1e-6
+"""Share of a path or a deflection at which the rate at rest of the bristles is told."""
+
+
+@inner
+def _decay(law: Any, v: Any, z: Any) -> float:
+    """a of z' = v - a z: the rate at which slip v forgets the deflection z, as the law's own rate has it."""
+    lost = v - law.rate(v, z)
+    return (lost * z.conjugate()).real / (z * z.conjugate()).real
+
+
+@inner
+def _after(law: Any, h: float, v: Any, at: Any, z: Any) -> Any:
+    """z after the time h, a taken as at the deflection ``at``."""
+    if length(at) == 0.0:
+        at = (NEARBY * min(h, law.largest_deflection() / length(v))) * v
+    gone = h * _decay(law, v, at)
+    share = -math.expm1(-gone) / gone if gone != 0.0 else 1.0
+    return z * math.exp(-gone) + (h * share) * v
+
+
+@inner
+def _within(radius: float, z: Any) -> Any:
+    """The deflection, or the nearest one of that size."""
+    size = length(z)
+    return (radius / size) * z if size > radius else z
+
+
+@inner
+def _moved(law: Any, h: float, v: Any, z: Any) -> Any:
+    """Of order two in h for any law; exact where a does not change with z."""
+    if length(v) * h == 0.0:
+        return z
+    if law.exact_path():
+        return law.deflected(z, h * v)
+    largest = max(law.largest_deflection(), length(z))
+    middle = _within(largest, _after(law, 0.5 * h, v, z, z))
+    return _within(largest, _after(law, h, v, middle, z))
+
+
+def _carried_on_the_line(law: Any, h: float, v: float, z: float) -> float:
+    return _moved(law, h, v, z)
+
+
+def _carried_in_the_plane(law: Any, h: float, v: complex, z: complex) -> complex:
+    if law.form == VECTORIAL:
+        return _moved(law, h, v, z)
+    if law.form == PER_AXIS:
+        return complex(_moved(law, h, v.real, z.real), _moved(law, h, v.imag, z.imag))
+    return complex(_moved(law, h, abs(v), z.real), 0.0)
+
+
+advance_bristle = by_dimension(_carried_on_the_line, _carried_in_the_plane)
+"""carried(law, h, v, z): the deflection after slip velocity v for the time h, in the form the law names."""
+
+
+@inner
+def _yielded(law: Any, z: Any) -> Any:
+    return _within((1.0 + 2e-15) * law.yield_deflection(), z)  # not inside by rounding: it would bend on
+
+
+def _caught_on_the_line(law: Any, z: float) -> float:
+    return _yielded(law, z)
+
+
+def _caught_in_the_plane(law: Any, z: complex) -> complex:
+    if law.form == PER_AXIS:
+        return complex(_yielded(law, z.real), _yielded(law, z.imag))
+    return _yielded(law, z)
+
+
+project_to_yield = by_dimension(_caught_on_the_line, _caught_in_the_plane)
+"""caught(law, z): the deflection, brought back to where the law yields if a step has left it beyond."""

@@ -1,0 +1,288 @@
+"""One step of a deflection under a prescribed slip: five-stage Radau IIA collocation (order 9, L-stable).
+
+The unknowns are what the stages add to the deflection, so that a soft contact's small changes keep their digits; the
+last stage is the end of the step, so that a stiff one's rounding does not grow (Hairer & Wanner, Solving Ordinary
+Differential Equations II, 1996, sections IV.5 and IV.8).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_dimension
+from frictionlab.dynamics.contact import resistance
+from frictionlab.quantities import Floats
+
+STAGES = 5
+MOST_ITERATIONS = 12
+
+
+def _radau() -> tuple[Floats, Floats]:
+    """Nodes in (0, 1] and the matrix that integrates the polynomial through them from 0 to each."""
+    legendre = np.polynomial.legendre.Legendre.basis
+    inside = (legendre(STAGES) - legendre(STAGES - 1)) // np.polynomial.Polynomial([-1.0, 1.0]).convert(
+        kind=np.polynomial.Legendre
+    )
+    nodes = np.concatenate((0.5 * (1.0 + np.sort(inside.roots().real)), [1.0]))
+    powers = np.arange(STAGES)
+    values = nodes[:, None] ** powers
+    sums = nodes[:, None] ** (powers + 1) / (powers + 1)
+    return nodes, sums @ np.linalg.inv(values)
+
+
+NODES, MATRIX = _radau()
+WEIGHTS: Floats = MATRIX[-1].copy()
+
+
+class Slip(NamedTuple):
+    """Prescribed oscillation, velocities Im(phasor exp(i angle)); rotated: 1 where its speed alone moves bristles."""
+
+    along: complex
+    across: complex
+    frequency: float
+    rotated: float
+
+
+class Place(NamedTuple):
+    """Where a stretch of the period begins: its angle, and the slip velocity there."""
+
+    angle: float
+    slip: complex
+
+
+class Scale(NamedTuple):
+    """What numbers are measured by: deflection [length] for differences, and for changes; friction coefficient.
+
+    circle: > 0 where a yielding deflection moves along its circle, 0 where it follows the slip, < 0 for the law's.
+    """
+
+    reach: float
+    change: float
+    friction: float
+    circle: float
+
+
+class Work(NamedTuple):
+    """Room for one panel: stages' gains, slips, rates, frictions, and the linear system."""
+
+    gain: Any
+    slip: Any
+    rate: Any
+    friction: Any
+    slope: Any
+    matrix: Any
+    right: Any
+    carry: Any
+
+
+@inner
+def slip_in_the_plane(slip: Slip, place: Place, angle: float) -> complex:
+    """The slip velocity this angle after a place, to rounding of the change since there."""
+    turn = place.angle + 0.5 * angle
+    swing = complex(math.cos(turn), math.sin(turn)) * (2.0 * math.sin(0.5 * angle))
+    return place.slip + complex((slip.along * swing).real, (slip.across * swing).real)
+
+
+def _slip_on_the_line(slip: Slip, place: Place, angle: float, z: float) -> float:
+    v = slip_in_the_plane(slip, place, angle)
+    return math.sqrt(v.real * v.real + v.imag * v.imag) if slip.rotated > 0.0 else v.real
+
+
+def _slip_in_the_plane(slip: Slip, place: Place, angle: float, z: complex) -> complex:
+    return slip_in_the_plane(slip, place, angle)
+
+
+def _parts_on_the_line(z: float) -> int:
+    return 1
+
+
+def _parts_in_the_plane(z: complex) -> int:
+    return 2
+
+
+def _part_on_the_line(which: int, z: float) -> float:
+    return z
+
+
+def _part_in_the_plane(which: int, z: complex) -> float:
+    return z.real if which == 0 else z.imag
+
+
+def _made_on_the_line(first: float, second: float, z: float) -> float:
+    return first
+
+
+def _made_in_the_plane(first: float, second: float, z: complex) -> complex:
+    return complex(first, second)
+
+
+def _bound_on_the_line(law: Any, v: float, circle: float, z: float) -> Any:
+    return resistance(law, v, z)
+
+
+def _bound_in_the_plane(law: Any, v: complex, circle: float, z: complex) -> Any:
+    if circle < 0.0:
+        return resistance(law, v, z)
+    dz = v
+    if circle > 0.0:
+        # along the circle, and back to it from wherever rounding has put the deflection
+        dz = v - ((v.real * z.real + v.imag * z.imag) / (circle * circle)) * z
+    return dz, law.friction(v, z, dz)
+
+
+slip_at = by_dimension(_slip_on_the_line, _slip_in_the_plane)
+"""(slip, place, angle after it, deflection for its type) -> slip velocity as the law takes it."""
+parts = by_dimension(_parts_on_the_line, _parts_in_the_plane)
+part = by_dimension(_part_on_the_line, _part_in_the_plane)
+made = by_dimension(_made_on_the_line, _made_in_the_plane)
+bound = by_dimension(_bound_on_the_line, _bound_in_the_plane)
+"""(law, slip velocity, circle, deflection) -> (rate, friction); circle: negative for the law's own rate, 0 where the
+deflection follows the slip, positive where it moves along a circle."""
+
+
+@inner
+def work_for(z: Any) -> Work:
+    """Room for panels of this kind of deflection."""
+    n = parts(z)
+    size = STAGES * n
+    kind = np.full(STAGES, z)
+    return Work(
+        kind,
+        kind.copy(),
+        kind.copy(),
+        kind.copy(),
+        np.empty((STAGES, n, n)),
+        np.empty((size, size)),
+        np.empty((size, n + 1)),
+        np.eye(n),
+    )
+
+
+@inner
+def _evaluate(law: Any, scale: Scale, z: Any, work: Work) -> None:
+    """Rates and frictions at the stages, and by differences the slopes of the rates."""
+    n, small = parts(z), 1e-7 * scale.reach
+    for stage in range(STAGES):
+        v, here = work.slip[stage], z + work.gain[stage]
+        rate, friction = bound(law, v, scale.circle, here)
+        work.rate[stage], work.friction[stage] = rate, friction
+        for column in range(n):
+            nudge = made(small, 0.0, z) if column == 0 else made(0.0, small, z)
+            moved, _ = bound(law, v, scale.circle, here + nudge)
+            for row in range(n):
+                work.slope[stage, row, column] = part(row, moved - rate) / small
+
+
+@inner
+def _assemble(width: float, n: int, work: Work) -> None:
+    """identity - width * (integration matrix) x (slopes)."""
+    for i in range(STAGES):
+        for j in range(STAGES):
+            for row in range(n):
+                for column in range(n):
+                    same = 1.0 if i == j and row == column else 0.0
+                    slope = work.slope[j, row, column]
+                    work.matrix[i * n + row, j * n + column] = same - width * MATRIX[i, j] * slope
+
+
+@inner
+def _solve(matrix: Any, right: Any) -> None:
+    """Gaussian elimination with partial pivoting, in place."""
+    n, columns = matrix.shape[0], right.shape[1]
+    for k in range(n):
+        pivot = k
+        for row in range(k + 1, n):
+            if abs(matrix[row, k]) > abs(matrix[pivot, k]):
+                pivot = row
+        if pivot != k:
+            for column in range(n):
+                matrix[k, column], matrix[pivot, column] = matrix[pivot, column], matrix[k, column]
+            for column in range(columns):
+                right[k, column], right[pivot, column] = right[pivot, column], right[k, column]
+        for row in range(k + 1, n):
+            factor = matrix[row, k] / matrix[k, k]
+            if factor != 0.0:
+                for column in range(k + 1, n):
+                    matrix[row, column] -= factor * matrix[k, column]
+                for column in range(columns):
+                    right[row, column] -= factor * right[k, column]
+    for column in range(columns):
+        for row in range(n - 1, -1, -1):
+            total = right[row, column]
+            for k in range(row + 1, n):
+                total -= matrix[row, k] * right[k, column]
+            right[row, column] = total / matrix[row, row]
+
+
+@inner
+def solve_panel(law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: Any, work: Work) -> bool:
+    """Fill ``work`` with the step over span = (angle after the place, width) from ``z``; False where it fails.
+
+    ``carry`` becomes the derivative of the deflection at the end by that at the start.
+    """
+    n, width = parts(z), span[1] / slip.frequency
+    for stage in range(STAGES):
+        work.slip[stage] = slip_at(slip, place, span[0] + NODES[stage] * span[1], z)
+        work.gain[stage] = 0.0 * z
+    for turn in range(MOST_ITERATIONS):
+        _evaluate(law, scale, z, work)
+        _assemble(width, n, work)
+        _residuals(width, n, work)
+        _solve(work.matrix, work.right)
+        change, size = 0.0, 0.0
+        for stage in range(STAGES):
+            first = work.right[stage * n, 0]
+            second = work.right[stage * n + n - 1, 0]
+            step = made(first, second, z)
+            work.gain[stage] = work.gain[stage] + step
+            change, size = max(change, abs(step)), max(size, abs(work.gain[stage]))
+        if not change < 1e300:
+            return False
+        rounding = (4e-15 if turn < 3 else 5e-14) * scale.change
+        if change <= max(1e-8 * size, rounding):
+            _evaluate(law, scale, z, work)
+            _carried(n, work)
+            return True
+    return False
+
+
+@inner
+def _residuals(width: float, n: int, work: Work) -> None:
+    """The right sides: what the stages lack, and the effect of the start."""
+    for i in range(STAGES):
+        lack = -work.gain[i]
+        for j in range(STAGES):
+            lack = lack + width * MATRIX[i, j] * work.rate[j]
+        for row in range(n):
+            work.right[i * n + row, 0] = part(row, lack)
+            for column in range(n):
+                total = 0.0
+                for j in range(STAGES):
+                    total += width * MATRIX[i, j] * work.slope[j, row, column]
+                work.right[i * n + row, 1 + column] = total
+
+
+@inner
+def _carried(n: int, work: Work) -> None:
+    for row in range(n):
+        for column in range(n):
+            same = 1.0 if row == column else 0.0
+            work.carry[row, column] = same + work.right[(STAGES - 1) * n + row, 1 + column]
+
+
+@inner
+def crawl(law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: Any, work: Work) -> None:
+    """The same for a step too short to matter, across a jump of the law's rate that no iteration settles on."""
+    n, width = parts(z), span[1] / slip.frequency
+    rate, friction = bound(law, slip_at(slip, place, span[0], z), scale.circle, z)
+    for stage in range(STAGES):
+        work.slip[stage] = slip_at(slip, place, span[0] + NODES[stage] * span[1], z)
+        work.gain[stage] = NODES[stage] * width * rate
+        work.rate[stage], work.friction[stage] = rate, friction
+    for row in range(n):
+        for column in range(n):
+            work.carry[row, column] = 1.0 if row == column else 0.0

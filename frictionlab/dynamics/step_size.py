@@ -1,0 +1,53 @@
+"""How much longer the next step of an adaptive method may be."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.compile.decorators import fast, inner
+from frictionlab.scene.body import Body
+
+
+@fast
+def squared(body: Body, x: Any, v: Any) -> float:
+    """Twice the energy of a state."""
+    elastic = body.stiffness_mean * x + body.stiffness_split * x.conjugate()
+    return (elastic * x.conjugate()).real + (v * v.conjugate()).real
+
+
+@inner
+def growth_of(body: Body, taken: Any, accuracy: float) -> float:
+    """By how much to change the step: below one, it is to be repeated (Hairer et al., 1993, II.10)."""
+    fifth = squared(body, taken.x_error5, taken.v_error5)
+    third = squared(body, taken.x_error3, taken.v_error3)
+    if not fifth < 1e300:
+        return 0.1
+    if fifth == 0.0:
+        return 6.0
+    return growth_factor(fifth / math.sqrt(fifth + 0.01 * third) / accuracy)
+
+
+@inner
+def wary_growth_of(body: Body, taken: Any, accuracy: float) -> float:
+    """The same by the fifth-order error alone: the mixture of orders does not see a layer passed in one step."""
+    fifth = squared(body, taken.x_error5, taken.v_error5)
+    if not fifth < 1e300:
+        return 0.1
+    return growth_factor(math.sqrt(fifth) / accuracy) if fifth > 0.0 else 6.0
+
+
+@inner
+def growth_factor(error: float) -> float:
+    return min(6.0, max(0.1 if error > 1.0 else 1.0, 0.9 / math.sqrt(math.sqrt(math.sqrt(error)))))
+
+
+@inner
+def longest_step(body: Body, sliding: float, accuracy: float) -> float:
+    """The longest step: a radian of the loads or of the body's quickest oscillation, less for finer maps.
+
+    Were it the same for all, two maps could agree because both are limited by it, and neither be accurate.
+    """
+    stiffest = body.stiffness_mean + abs(body.stiffness_split)
+    radian = min(1.0 / body.frequency, 1.0 / math.sqrt(stiffest))
+    return radian * min(1.0, 2.4 * (accuracy / (body.normal_load * sliding)) ** 0.125)

@@ -1,0 +1,106 @@
+"""Parameters of laws with a compliant contact: stiffness in three ways, damping in two."""
+
+from __future__ import annotations
+
+from abc import ABC
+from typing import Annotated, Self
+
+from pydantic import model_validator
+
+from frictionlab.laws.base import Dimension, NonNegative, Positive
+from frictionlab.laws.memory import BristleLaw
+
+Stiffness = Annotated[Positive, Dimension(length=-1)]
+"""A bristle stiffness > 0 per unit normal load [1/m in SI, else 1/scene length]."""
+Length = Annotated[Positive, Dimension(length=1)]
+"""A length > 0 [m in SI, else scene length]."""
+ContactStiffness = Annotated[Positive, Dimension(force=1, length=-1)]
+"""A stiffness > 0 of the contact [N/m in SI, else K_1]."""
+Damping = Annotated[NonNegative, Dimension(length=-1, time=1)]
+"""A bristle damping >= 0 per unit normal load [s/m in SI, else 1/scene velocity]."""
+ContactDamping = Annotated[NonNegative, Dimension(force=1, length=-1, time=1)]
+"""A damping >= 0 of the contact [N s/m in SI, else M omega_1]."""
+
+
+class CompliantLaw(BristleLaw, ABC):
+    """A bristle law of a known stiffness, given per unit normal load, by its presliding length or as the contact's.
+
+    stiffness [1/scene length], > 0: friction coefficient per deflection, or instead
+    presliding_length [scene length], > 0: friction coefficient in slow sliding over stiffness, or instead
+    contact_stiffness [K_1], > 0: stiffness times normal load.
+    """
+
+    stiffness: Stiffness | None = None
+    presliding_length: Length | None = None
+    contact_stiffness: ContactStiffness | None = None
+
+    @model_validator(mode="after")
+    def _one_stiffness(self) -> Self:
+        names = "stiffness", "presliding_length", "contact_stiffness"
+        given = [name for name in names if getattr(self, name) is not None]
+        if not given:
+            raise ValueError("stiffness: required, or presliding_length or contact_stiffness instead")
+        if len(given) > 1:
+            raise ValueError(
+                "; ".join(f"{name}: leave it out where {given[0]} is given" for name in given[1:])
+            )
+        return self
+
+    def saturated_friction(self) -> float:
+        """The friction coefficient [-] that the presliding length is told by: that of vanishing slip speed."""
+        return self.sliding_friction(0.0)
+
+    @property
+    def bristle_stiffness(self) -> float:
+        """Friction coefficient per deflection [1/scene length], however it was given."""
+        if self.stiffness is not None:
+            return self.stiffness
+        if self.presliding_length is not None:
+            return self.saturated_friction() / self.presliding_length
+        raise ValueError(
+            "contact_stiffness: is per normal load only under a load; call under_load(normal_load)"
+        )
+
+    def presliding(self) -> float:
+        """Friction coefficient in slow sliding over stiffness."""
+        return self.saturated_friction() / self.bristle_stiffness
+
+    def under_load(self, normal_load: float) -> Self:
+        """The same law per unit of this normal load [scene force], without what is given as the contact's."""
+        if self.contact_stiffness is None:
+            return self
+        stiffness = self.contact_stiffness / normal_load
+        return self.model_copy(update={"stiffness": stiffness, "contact_stiffness": None})
+
+
+class DampedLaw(CompliantLaw, ABC):
+    """A compliant law whose bristles are damped as well.
+
+    damping [1/scene velocity], >= 0: friction coefficient per rate of deflection, 0 where left out; or instead
+    contact_damping [M omega_1], >= 0: damping times normal load.
+    """
+
+    damping: Damping | None = None
+    contact_damping: ContactDamping | None = None
+
+    @model_validator(mode="after")
+    def _one_damping(self) -> Self:
+        if self.damping is not None and self.contact_damping is not None:
+            raise ValueError("contact_damping: leave it out where damping is given")
+        return self
+
+    @property
+    def bristle_damping(self) -> float:
+        """Friction coefficient per rate of deflection [1/scene velocity], however it was given."""
+        if self.contact_damping is not None:
+            raise ValueError(
+                "contact_damping: is per normal load only under a load; call under_load(normal_load)"
+            )
+        return self.damping or 0.0
+
+    def under_load(self, normal_load: float) -> Self:
+        """The same law per unit of this normal load [scene force], without what is given as the contact's."""
+        law = super().under_load(normal_load)
+        if law.contact_damping is None:
+            return law
+        return law.model_copy(update={"damping": law.contact_damping / normal_load, "contact_damping": None})

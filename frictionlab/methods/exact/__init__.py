@@ -1,0 +1,1 @@
+"""Coulomb friction along the belt, leg by leg in closed form."""

@@ -1,0 +1,94 @@
+"""Steady states of a mass under Coulomb friction along a curve in belt speed, each started from its neighbour's."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.compile.decorators import inner, njit
+from frictionlab.methods.exact.legs import EPSILON, Body, canonical
+from frictionlab.methods.exact.return_map import (
+    Fixed,
+    fixed_point,
+    friction_free_start,
+    largest_multiplier,
+    mean_error,
+    passage,
+    rounding,
+)
+from frictionlab.scene.body import Mass
+
+MEAN, ERROR, FLOQUET, STATE_X, STATE_W, LEGS, RESIDUAL, ROUNDING, FOUND = range(9)
+MOST_MAPS = 2000
+MOST_PERIODS = 100_000
+
+
+@njit
+def solve_curve(mass: Mass, coefficient: float, belt_speeds: Any, out: Any) -> None:
+    """Row i of ``out``: MEAN to FOUND for belt_speeds[i] >= 0, ascending; FOUND: 1 without slip reversal, else 2."""
+    x, w, last = 0.0, 0.0, math.inf
+    for i in range(belt_speeds.size):
+        body = body_at(mass, coefficient, belt_speeds[i])
+        x_free, w_free = friction_free_start(body)
+        if belt_speeds[i] >= friction_free_speed(mass) and body.damping > 0.0:
+            x, w = x_free, w_free
+            write_reversal_free(body, coefficient, x, w, out[i])
+        else:
+            x, w = (x_free, w_free) if last == math.inf else (x, w + (last - belt_speeds[i]))
+            fixed = fixed_point(body, x, w, MOST_MAPS)
+            x, w = fixed.x, fixed.w
+            write_fixed(body, fixed, mass.normal_load, out[i])
+        last = belt_speeds[i]
+
+
+@inner
+def body_at(mass: Mass, coefficient: float, belt_speed: float) -> Body:
+    """The canonical scene at this belt speed (>= 0)."""
+    friction = coefficient * mass.normal_load
+    return canonical(0.5 * mass.damping, mass.frequency, abs(mass.force), friction, belt_speed)
+
+
+@inner
+def friction_free_speed(mass: Mass) -> float:
+    """V_lin, the velocity amplitude without friction; infinite at undamped resonance."""
+    stiffness = (1.0 - mass.frequency) * (1.0 + mass.frequency)
+    return abs(mass.force) * mass.frequency / math.hypot(stiffness, mass.damping * mass.frequency)
+
+
+@inner
+def write_reversal_free(body: Body, coefficient: float, x: float, w: float, row: Any) -> None:
+    """The answer where slip never reverses: friction is constant, the motion linear."""
+    rate = body.damping if body.damping <= 1.0 else 1.0 / (body.damping + body.rate)
+    row[MEAN], row[ERROR] = coefficient, 8.0 * EPSILON * coefficient
+    row[FLOQUET] = math.exp(-rate * body.period)
+    row[STATE_X], row[STATE_W], row[LEGS] = x, w, 2.0
+    row[RESIDUAL], row[ROUNDING], row[FOUND] = 0.0, rounding(body, x, w), 1.0
+
+
+@inner
+def write_fixed(body: Body, fixed: Fixed, normal_load: float, row: Any) -> None:
+    """The answer of a fixed point of the return map."""
+    unit = normal_load * body.period
+    row[MEAN], row[ERROR] = -fixed.map.friction / unit, mean_error(body, fixed) / unit
+    row[FLOQUET] = largest_multiplier(fixed.map)
+    row[STATE_X], row[STATE_W], row[LEGS] = fixed.x, fixed.w, fixed.map.legs
+    row[RESIDUAL], row[ROUNDING], row[FOUND] = fixed.residual, rounding(body, fixed.x, fixed.w), 2.0
+
+
+@njit
+def settle(mass: Mass, coefficient: float, belt_speed: float, start: Any, row: Any) -> int:
+    """Follow the motion from start = (x, w, canonical time) until a period changes nothing; -1 where it never does.
+
+    Writes MEAN to ROUNDING (ERROR: rounding alone) and returns the number of periods.
+    """
+    body = body_at(mass, coefficient, belt_speed)
+    first = passage(body, start[0], start[1], start[2], body.period)
+    x, w = first.x, first.w
+    for periods in range(MOST_PERIODS):
+        here = passage(body, x, w, 0.0, body.period)
+        residual = math.hypot(here.x - x, here.w - w)
+        if residual <= rounding(body, x, w):
+            write_fixed(body, Fixed(x, w, here, residual, periods), mass.normal_load, row)
+            return periods
+        x, w = here.x, here.w
+    return -1

@@ -1,0 +1,314 @@
+"""One mass on a moving belt under Coulomb friction: closed-form legs of slip and stick between events.
+
+The canonical scene: x'' + 2 damping x' + x + friction Sgn(w) = load sin(frequency tau), with the slip velocity
+w = x' - belt_speed and belt_speed >= 0. In slip of constant sign, x is the friction-free response plus a free
+oscillation about -friction*sign; in stick it moves with the belt. An event is the first zero of a function whose
+third derivative is bounded over the whole leg: every step goes at most to the first zero of the cubic that lies
+below the function, so it cannot pass an event, not even a grazing pair, and it closes in from the left with
+third order.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from frictionlab.compile.decorators import inner
+
+EPSILON = 2.0**-52
+TINY = 1e-300
+STICK = 0.0
+MOST_CREEPING = 1000
+"""Steps of rounding size before a leg is given up as NaN: there the motion is below the rounding of its position."""
+
+
+class Body(NamedTuple):
+    """The canonical scene and its friction-free response in_phase sin + quadrature cos.
+
+    rate: |1 - damping^2|^(1/2); size: bound on the response; jolt: bound on its fourth derivative; resonant: 1.0
+    where the response grows from rest at tau = 0 instead (near undamped resonance the periodic one is useless).
+    """
+
+    damping: float
+    rate: float
+    frequency: float
+    period: float
+    load: float
+    friction: float
+    belt_speed: float
+    in_phase: float
+    quadrature: float
+    size: float
+    jolt: float
+    resonant: float
+
+
+class Leg(NamedTuple):
+    """The end of a leg: how long it lasted, the state there, the net force, the leg that follows.
+
+    straight, bent: the free motion's C + b S, S and C - b S through ``keep``; event: 1.0 if it ended in an event.
+    """
+
+    duration: float
+    x: float
+    w: float
+    net: float
+    following: float
+    event: float
+    keep: float
+    turn: float
+    damp: float
+
+
+RESONANT = 1e-3
+
+
+@inner
+def canonical(damping: float, frequency: float, load: float, friction: float, belt_speed: float) -> Body:
+    """The record of a canonical scene."""
+    rate = math.sqrt(abs((1.0 - damping) * (1.0 + damping)))
+    stiffness = (1.0 - frequency) * (1.0 + frequency)
+    viscous = 2.0 * damping * frequency
+    square = stiffness * stiffness + viscous * viscous
+    period = 2.0 * math.pi / frequency
+    if square < RESONANT * RESONANT:
+        return Body(
+            damping,
+            rate,
+            frequency,
+            period,
+            load,
+            friction,
+            belt_speed,
+            0.0,
+            0.0,
+            4.0 * load,
+            8.0 * load,
+            1.0,
+        )
+    size = load / math.sqrt(square)
+    in_phase, quadrature = load * stiffness / square, -load * viscous / square
+    jolt = size * frequency**4
+    return Body(
+        damping, rate, frequency, period, load, friction, belt_speed, in_phase, quadrature, size, jolt, 0.0
+    )
+
+
+@inner
+def load_and_response(body: Body, tau: float) -> tuple[float, float, float, float]:
+    """The load and its rate, the friction-free displacement and its velocity."""
+    angle = body.frequency * tau
+    sine, cosine = math.sin(angle), math.cos(angle)
+    load, rate = body.load * sine, body.load * body.frequency * cosine
+    if body.resonant != 0.0:
+        u, speed = _growing_response(body, tau, sine, cosine)
+        return load, rate, u, speed
+    u = body.in_phase * sine + body.quadrature * cosine
+    speed = body.frequency * (body.in_phase * cosine - body.quadrature * sine)
+    return load, rate, u, speed
+
+
+@inner
+def _growing_response(body: Body, tau: float, sine: float, cosine: float) -> tuple[float, float]:
+    """The response from rest at tau = 0, without the cancellation of the periodic one near resonance.
+
+    With lambda = -b + i rate and zeta = u' - conj(lambda) u, zeta' = lambda zeta + load sin(frequency tau); in real
+    numbers, since complex ones take numba a second to compile.
+    """
+    b, both = body.damping, body.frequency + body.rate
+    size = math.exp(-b * tau)
+    free, free_i = size * math.cos(body.rate * tau), size * math.sin(body.rate * tau)
+    detuning = (body.frequency - 1.0) + b * b / (1.0 + body.rate)
+    quotient, quotient_i = _exponential_quotient(b * tau, detuning * tau)
+    near = tau * (free * quotient - free_i * quotient_i)
+    near_i = tau * (free * quotient_i + free_i * quotient)
+    gap, gap_i = (cosine - free) / (b * b + both * both), (-sine - free_i) / (b * b + both * both)
+    far, far_i = gap * b - gap_i * both, gap_i * b + gap * both
+    u = -0.5 * body.load * (near - far) / body.rate
+    return u, 0.5 * body.load * (near_i - far_i) - b * u
+
+
+@inner
+def _exponential_quotient(z: float, z_i: float) -> tuple[float, float]:
+    """Real and imaginary part of (exp(z) - 1)/z for small complex z."""
+    total, total_i, term, term_i = 1.0, 0.0, 1.0, 0.0
+    for n in range(2, 9):
+        term, term_i = (term * z - term_i * z_i) / n, (term * z_i + term_i * z) / n
+        total, total_i = total + term, total_i + term_i
+    return total, total_i
+
+
+@inner
+def decay(body: Body, r: float) -> tuple[float, float]:
+    """exp(-b r) times cos and sin/rate of the free oscillation (cosh, sinh where overdamped), critical included."""
+    b, rate = body.damping, body.rate
+    if b < 1.0:
+        e = math.exp(-b * r)
+        return e * math.cos(rate * r), e * math.sin(rate * r) / rate
+    slow = math.exp(-r / (b + rate))
+    if rate == 0.0:
+        return slow, slow * r
+    gone = math.expm1(-2.0 * rate * r)
+    return slow * (1.0 + 0.5 * gone), -slow * gone / (2.0 * rate)
+
+
+@inner
+def first_zero(g: float, g1: float, g2: float, bound: float) -> float:
+    """A lower estimate, close from below, of the first positive zero of g + g1 r + g2 r^2/2 - bound r^3/6; g >= 0."""
+    discriminant = g2 * g2 + 2.0 * bound * g1
+    base = -1.0  # where the cubic is positive and has begun to fall ever faster
+    if g1 >= 0.0:
+        root = math.sqrt(discriminant)
+        base = (g2 + root) / bound if g2 >= 0.0 else 2.0 * g1 / (root - g2)
+    elif g2 <= 0.0:
+        base = 0.0
+    else:
+        root = math.sqrt(max(discriminant, 0.0))
+        bottom = -2.0 * g1 / (g2 + root) if discriminant > 0.0 else g2 / bound
+        if g + bottom * (g1 + bottom * (0.5 * g2 - bottom * bound / 6.0)) > 0.0:
+            base = (g2 + root) / bound
+    if base >= 0.0:
+        return _zero_beyond(base, g, g1, g2, bound)
+    return _zero_of_the_convex_part(g, g1, g2, bound)
+
+
+@inner
+def _cubic(r: float, g: float, g1: float, g2: float, bound: float) -> float:
+    return g + r * (g1 + r * (0.5 * g2 - r * bound / 6.0))
+
+
+@inner
+def _zero_of_the_convex_part(g: float, g1: float, g2: float, bound: float) -> float:
+    """Newton from 0: falls short at every step."""
+    r = 0.0
+    for _ in range(8):
+        step = -_cubic(r, g, g1, g2, bound) / (g1 + r * (g2 - 0.5 * bound * r))
+        if not step > 1e-3 * r:
+            break
+        r = r + step
+    return r
+
+
+@inner
+def _zero_beyond(base: float, g: float, g1: float, g2: float, bound: float) -> float:
+    """Beyond ``base`` the cubic falls ever faster: Newton from the right, then the chord, which falls short."""
+    height = max(_cubic(base, g, g1, g2, bound), 0.0)
+    if height == 0.0:
+        return base
+    slope = max(-(g1 + base * (g2 - 0.5 * bound * base)), TINY)
+    bend = max(bound * base - g2, TINY)
+    r = min(height / slope, math.sqrt(2.0 * height / bend), (6.0 * height / bound) ** (1.0 / 3.0))
+    below = height
+    for _ in range(6):
+        below = r * (slope + r * (0.5 * bend + r * bound / 6.0))
+        excess = below - height
+        if excess <= 1e-3 * height:
+            break
+        r = r - excess / (slope + r * (bend + 0.5 * bound * r))
+    return base + r * height / max(below, height)
+
+
+@inner
+def slip_leg(body: Body, tau: float, x: float, w: float, sign: float, left: float) -> Leg:
+    """Slip of one sign from (x, w) at tau until it stops, for at most ``left``."""
+    b, friction = body.damping, body.friction * sign
+    load, load_rate, u, speed = load_and_response(body, tau)
+    y0, z0 = x - u + friction, w + (body.belt_speed - speed)
+    noise = slip_noise(body, y0, z0)
+    y, z, r = y0, z0, 0.0
+    keep, turn, damp, event, crept = 1.0, 0.0, 1.0, 0.0, 0
+    while r < left:
+        free = -2.0 * b * z - y
+        forced = load - 2.0 * b * speed - u
+        slope = sign * (free + forced)
+        if r > 0.0:
+            w = z + (speed - body.belt_speed)
+        g = sign * w
+        if g <= noise and r > 0.0 and slope < 0.0:
+            event = 1.0
+            break
+        third = -2.0 * b * free - z
+        fourth = -2.0 * b * third - free
+        bend = sign * (third + load_rate - 2.0 * b * forced - speed)
+        bound = max(math.sqrt(third * third + fourth * fourth) + body.jolt, TINY)
+        touches = g <= noise  # the zero the leg starts from, or a touch: look for the next one
+        step = first_zero(0.0 if touches else g, max(slope, 0.0) if touches else slope, bend, bound)
+        least = EPSILON * (tau + r + 1e-3 * body.period)
+        if step < least:
+            if slope < 0.0 and r > 0.0:
+                event = 1.0
+                break
+            step = 8.0 * least
+            crept = crept + 1
+            if crept > MOST_CREEPING:
+                y = math.nan
+                break
+        r = min(r + step, left)
+        load, load_rate, u, speed = load_and_response(body, tau + r)
+        cosine, turn = decay(body, r)
+        keep, damp = cosine + b * turn, cosine - b * turn
+        y, z = keep * y0 + turn * z0, damp * z0 - turn * y0
+    x = y + (u - friction)
+    if event == 0.0:
+        return Leg(r, x, z + (speed - body.belt_speed), 0.0, sign, 0.0, keep, turn, damp)
+    net = load - 2.0 * b * body.belt_speed - x
+    return Leg(r, x, 0.0, net, after_rest(body, net), 1.0, keep, turn, damp)
+
+
+@inner
+def slip_noise(body: Body, y: float, z: float) -> float:
+    """Rounding of a slip velocity."""
+    return (
+        4.0
+        * EPSILON
+        * (abs(z) + min(body.period, 1.0) * abs(y) + body.frequency * body.size + body.belt_speed)
+    )
+
+
+@inner
+def after_rest(body: Body, net: float) -> float:
+    """What follows slip velocity zero under this net force: stick, or slip along the force."""
+    if abs(net) <= body.friction:
+        return STICK
+    return math.copysign(1.0, net)
+
+
+@inner
+def stick_leg(body: Body, tau: float, x: float, left: float) -> Leg:
+    """Rest on the belt from x at tau until the net force exceeds friction, for at most ``left``."""
+    noise = 4.0 * EPSILON * (body.friction + body.load + abs(x) + 2.0 * body.damping * body.belt_speed)
+    bound = max(body.load * body.frequency**3, TINY)
+    r, event, side, net, crept = 0.0, 0.0, 1.0, 0.0, 0
+    while True:
+        angle = body.frequency * (tau + r)
+        sine, cosine = math.sin(angle), math.cos(angle)
+        net = body.load * sine - 2.0 * body.damping * body.belt_speed - (x + body.belt_speed * r)
+        if r >= left:
+            break
+        slope = body.load * body.frequency * cosine - body.belt_speed
+        bend = -body.load * body.frequency**2 * sine
+        step = left
+        for direction in (1.0, -1.0):
+            margin, rise, curve = body.friction - direction * net, -direction * slope, -direction * bend
+            if margin <= noise and (rise < 0.0 or (rise == 0.0 and curve < 0.0)):
+                event, side = 1.0, direction
+                break
+            if margin <= noise:
+                margin, rise = 0.0, max(rise, 0.0)
+            step = min(step, first_zero(margin, rise, curve, bound))
+        if event != 0.0:
+            break
+        least = 8.0 * EPSILON * (tau + r + 1e-3 * body.period)
+        crept = crept + 1 if step < least else crept
+        r = left if crept > MOST_CREEPING else min(r + max(step, least), left)
+    x = math.nan if crept > MOST_CREEPING else x + body.belt_speed * r
+    return Leg(r, x, 0.0, net, side * event, event, 1.0, 0.0, 0.0)
+
+
+@inner
+def starting_mode(body: Body, tau: float, x: float, w: float) -> float:
+    """Slip of either sign, or stick, at an arbitrary state; a slip velocity of rounding size is zero."""
+    load, _, u, _ = load_and_response(body, tau)
+    if abs(w) > slip_noise(body, x - u, w):
+        return math.copysign(1.0, w)
+    return after_rest(body, load - 2.0 * body.damping * body.belt_speed - x)

@@ -1,0 +1,264 @@
+"""The exact method: closed-form motion between events under Coulomb friction, closed by Newton's method."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import ClassVar
+
+import numpy as np
+
+from frictionlab.compile.cache import compiled, timed
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.memory import BristleLaw
+from frictionlab.methods.base import Answers, Method, Status
+from frictionlab.methods.exact import continuation as curve
+from frictionlab.methods.exact.orbit import make_orbit, read_orbits
+from frictionlab.methods.prescribed.bristle import along_one_line
+from frictionlab.methods.prescribed.method import solve_prescribed
+from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.orbit.read import READ
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
+from frictionlab.theory import friction_free_velocity
+
+EVENTS = "closed-form legs of slip and stick between events, return map closed by Newton's method"
+REDUCED = (
+    " (one degree of freedom: without a load across the belt x2 dies out for every isotropic sliding law)"
+)
+NO_DAMPING = (
+    "without damping and without slip reversal the free oscillation never dies: the friction is mu at every "
+    "instant of every motion, but the motion depends on the start; give scene.initial"
+)
+UNBOUNDED = (
+    "amplitude grows without bound: undamped resonance with friction mu*normal_load below pi/4 of the force"
+)
+
+
+def _refusal_of_legs(scene: Scene, law: BristleLaw) -> str | None:
+    """Why a prescribed slip has no two legs along which the deflection is known."""
+    if not law.exact_path():
+        return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction)"
+    if not along_one_line(scene, law):
+        return "exact works along one line: this slip goes across the belt too"
+    return None
+
+
+def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
+    """Why the motion between events is not known in closed form."""
+    if not isinstance(law, SlidingLaw):
+        return "exact needs friction without memory (Coulomb)"
+    if not law.constant_sliding_friction():
+        return "exact needs friction that does not vary with speed (Coulomb)"
+    if scene.degrees_of_freedom > 0 and not law.monotone():
+        return "exact needs friction at rest to be that of slip (no mu_static)"
+    if scene.undriven:
+        return "exact needs a drive, whose period is the motion's"
+    if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
+        return "exact works along one line: this scene has a transverse load"
+    return None
+
+
+class Exact(Method):
+    """Steady states of Coulomb friction along one line, to rounding: events in closed form, no steps.
+
+    Between events the motion is that of a linear oscillator under a constant friction force, or rest on the belt.
+    Each event is found by steps that cannot pass it; the period is closed by Newton's method with derivatives carried
+    through the events (saltation), falling back to the map itself, which never expands.
+
+    Sources: Den Hartog (1931); of saltation Leine & Nijmeijer (2004); of the map Leine & van de Wouw (2008).
+    """
+
+    name: ClassVar[str] = "exact"
+
+    def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
+        """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
+        if isinstance(law, BristleLaw) and scene.degrees_of_freedom == 0:
+            reason = _refusal_of_legs(scene, law)
+        else:
+            reason = _refusal_of_flow(scene, law)
+        return suggest_shooting(reason, scene, law) if reason else None
+
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        """Answer scenes that differ in belt speed alone."""
+        if scenes[0].degrees_of_freedom == 0:
+            return solve_prescribed(scenes, law, tolerance)
+        return _Curve(scenes, law.sliding_friction(1.0), tolerance).answers()
+
+    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
+        """A few period maps of two legs or more; slow drives meet the free motion many times."""
+        if scene.degrees_of_freedom == 0:
+            return 1e-3
+        return 1e-5 * max(1.0, 0.3 / scene.frequency)
+
+
+class _Curve:
+    """The scenes of one curve on their way to answers."""
+
+    def __init__(self, scenes: Sequence[Scene], coefficient: float, tolerance: float) -> None:
+        self.scenes, self.coefficient, self.tolerance = scenes, coefficient, tolerance
+        self.mass = scenes[0].mass()
+        self.limit = coefficient * self.mass.normal_load
+        self.belt_speeds = np.array([scene.belt_speed for scene in scenes])
+        n = len(scenes)
+        self.status: list[Status] = ["ok"] * n
+        self.reason, self.model, self.error_kind = [""] * n, [EVENTS] * n, ["estimated"] * n
+        self.rows = np.full((n, 9), np.nan)
+        self.window = np.full(n, np.nan)
+        self.bounds = np.full((n, 2), np.nan)
+        self.seconds = 0.0
+
+    def answers(self) -> Answers:
+        """Solve, judge, read the orbits."""
+        open_points = [i for i in range(len(self.scenes)) if not self._has_no_single_answer(i)]
+        self._solve(np.array(open_points, dtype=np.int64))
+        for i in open_points:
+            self._judge(i)
+        read = self._read()
+        if self.scenes[0].degrees_of_freedom == 2:
+            self.model = [text + REDUCED if text else text for text in self.model]
+        return Answers(
+            self.status, self.reason, self.model, self.error_kind, self._columns(read), self._orbit
+        )
+
+    def _has_no_single_answer(self, i: int) -> bool:
+        """Settle the cases where the steady state depends on the start, or does not exist."""
+        force, speed = abs(self.mass.force), self.belt_speeds[i]
+        undamped = self.mass.damping == 0.0
+        if speed == 0.0 and force <= self.limit:
+            spread = (self.limit - force) / self.mass.normal_load
+            self._depends_on_start(i, spread, _permanent_stick(spread))
+        elif undamped and (force == 0.0 or abs(speed) >= friction_free_velocity(self.scenes[i])):
+            self._depends_on_start(i, math.nan, NO_DAMPING)
+        elif undamped and self.mass.frequency == 1.0 and self.limit < 0.25 * math.pi * force:
+            self.status[i], self.reason[i], self.model[i], self.error_kind[i] = "failed", UNBOUNDED, "", ""
+        else:
+            return False
+        return True
+
+    def _depends_on_start(self, i: int, spread: float, reason: str) -> None:
+        """Not unique, unless the scene says where it starts; spread NaN: mu for every start."""
+        if self.scenes[i].initial is not None and self._settles(i):
+            return
+        low, high = (
+            (0.0 - spread, spread)
+            if spread == spread
+            else (math.copysign(self.coefficient, self.belt_speeds[i]),) * 2
+        )
+        self.status[i], self.reason[i], self.error_kind[i] = "not_unique", reason, ""
+        self.model[i] = "closed form"
+        self.bounds[i], self.window[i] = (low, high), 1.0
+        self.rows[i, curve.LEGS] = 0.0
+
+    def _settles(self, i: int) -> bool:
+        """Simulate from scene.initial until nothing changes."""
+        initial, side = self.scenes[i].initial, self._side(i)
+        assert initial is not None
+        w = side * (initial.velocity - self.belt_speeds[i])
+        start = np.array([side * initial.x, w, self._shift(i)])
+        row = np.full(9, np.nan)
+        periods = compiled(curve.settle)(self.mass, self.coefficient, abs(self.belt_speeds[i]), start, row)
+        if periods < 0:
+            return False
+        # The adjoint of a map that leaves some direction as it was does not exist: only rounding is left to say.
+        row[curve.ERROR] = (periods + 8.0) * 16.0 * row[curve.ROUNDING] / self.mass.normal_load
+        self.rows[i] = row
+        self.reason[i] = (
+            f"reached from scene.initial after {periods} periods; other starts reach other states"
+        )
+        return True
+
+    def _side(self, i: int) -> float:
+        return -1.0 if self.belt_speeds[i] < 0.0 else 1.0
+
+    def _shift(self, i: int) -> float:
+        """The canonical time of tau = 0: the drive's phase, half a period on for a belt that moves the other way."""
+        force = self._side(i) * self.mass.force
+        return math.atan2(force.imag, force.real) % (2.0 * math.pi) / self.mass.frequency
+
+    def _solve(self, places: np.ndarray) -> None:
+        """Both directions of the belt share one solution: the mean is exactly odd."""
+        speeds, back = np.unique(np.abs(self.belt_speeds[places]), return_inverse=True)
+        rows = np.full((len(speeds), 9), np.nan)
+        _, self.seconds = timed(compiled(curve.solve_curve), self.mass, self.coefficient, speeds, rows)
+        rows[speeds == 0.0, curve.MEAN] = 0.0  # the orbit is its own mirror image half a period later
+        self.rows[places] = rows[back]
+
+    def _judge(self, i: int) -> None:
+        row = self.rows[i]
+        if row[curve.FOUND] == 1.0:
+            v_lin = friction_free_velocity(self.scenes[i])
+            self.model[i] = f"closed form: slip never reverses (belt speed >= V_lin = {v_lin:.6g})"
+            self.error_kind[i] = "guaranteed"
+        elif not row[curve.RESIDUAL] <= 1e3 * row[curve.ROUNDING]:
+            self._fail(i, f"the return map did not close: residual {row[curve.RESIDUAL]:.1e}")
+        elif self.mass.damping == 0.0 and not row[curve.FLOQUET] < 1.0 - 1e-9:
+            self._fail(
+                i, f"no damping, and friction does not attract: largest multiplier {row[curve.FLOQUET]:.9f}"
+            )
+        elif not row[curve.ERROR] < math.inf:
+            self._fail(i, "the motion over one period is lost in the rounding of its own position")
+        elif row[curve.ERROR] > self.tolerance:
+            self.reason[i] = (
+                f"error {row[curve.ERROR]:.1e} above the tolerance: rounding is all that is left in it"
+            )
+
+    def _fail(self, i: int, reason: str) -> None:
+        self.status[i], self.reason[i], self.error_kind[i] = "failed", reason, ""
+        self.rows[i] = np.nan
+
+    def _read(self) -> Floats:
+        """What READ lists, of every orbit found."""
+        n = len(self.scenes)
+        out = np.full((n, len(READ)), np.nan)
+        shifts = np.array([self._shift(i) for i in range(n)])
+        states = np.ascontiguousarray(self.rows[:, [curve.STATE_X, curve.STATE_W]])
+        arguments = self.mass, self.coefficient, self.belt_speeds, states, self._legs(), shifts, out
+        self.seconds += timed(compiled(read_orbits), *arguments)[1]
+        return out
+
+    def _legs(self) -> np.ndarray:
+        return np.nan_to_num(self.rows[:, curve.LEGS]).astype(np.int64)
+
+    def _columns(self, read: Floats) -> dict[str, Floats]:
+        columns = {
+            name: read[:, k].copy() for k, name in enumerate(READ) if not name.startswith("mean_position")
+        }
+        side = np.where(self.belt_speeds < 0.0, -1.0, 1.0)
+        columns["mean_friction"] = side * self.rows[:, curve.MEAN]
+        columns["error"] = self.rows[:, curve.ERROR]
+        columns["floquet"] = self._floquet()
+        columns["mean_low"], columns["mean_high"], columns["window"] = *self.bounds.T, self.window
+        found = np.isfinite(self.rows[:, curve.MEAN])
+        columns["period"] = np.where(found, 1.0, np.nan)
+        columns["seconds"] = np.full(len(found), self.seconds / len(found))
+        if self.scenes[0].degrees_of_freedom == 1:
+            for name in columns:
+                if "transverse" in name:
+                    columns[name] = np.full(len(found), np.nan)
+        return columns
+
+    def _floquet(self) -> Floats:
+        """In the plane the multipliers of x2 count too; they are known only where friction turns them aside."""
+        if self.scenes[0].degrees_of_freedom == 1:
+            return self.rows[:, curve.FLOQUET]
+        # x2 obeys x2'' + (2 b2 wr + f/|w|) x2' + wr^2 x2 = 0 along the orbit: no closed form, and not computed.
+        return np.full(len(self.scenes), np.nan)
+
+    def _orbit(self, i: int) -> Orbit | None:
+        legs = int(self._legs()[i])
+        if legs <= 0:
+            return None
+        state = self.rows[i, [curve.STATE_X, curve.STATE_W]]
+        arrays = compiled(make_orbit)(
+            self.mass, self.coefficient, self.belt_speeds[i], state, legs, self._shift(i)
+        )
+        return Orbit(*arrays)
+
+
+def _permanent_stick(spread: float) -> str:
+    return (
+        "the belt does not move and the force never exceeds friction: the mass stays wherever it is left, "
+        f"with any mean friction within {spread:.6g} of zero; give scene.initial"
+    )

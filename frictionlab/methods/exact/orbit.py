@@ -1,0 +1,145 @@
+"""One period of a Coulomb orbit as smooth panels, for whatever is read from an orbit."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner, njit
+from frictionlab.methods.exact.continuation import body_at
+from frictionlab.methods.exact.legs import (
+    STICK,
+    Body,
+    decay,
+    load_and_response,
+    slip_leg,
+    starting_mode,
+    stick_leg,
+)
+from frictionlab.orbit.panels import NODES
+from frictionlab.orbit.read import read
+from frictionlab.scene.body import Mass
+
+TAU, DURATION, X, W, MODE, FACTS = 0, 1, 2, 3, 4, 5
+
+
+@inner
+def follow(
+    body: Body, x: float, w: float, start: float, end: float, legs: Any, first: int
+) -> tuple[float, float, int]:
+    """Write every leg from ``start`` to ``end`` into the table ``legs``; return the end state and the row after."""
+    tau, mode, row = start, starting_mode(body, start, x, w), first
+    while tau < end and row < legs.shape[0]:
+        left = end - tau
+        leg = stick_leg(body, tau, x, left) if mode == STICK else slip_leg(body, tau, x, w, mode, left)
+        legs[row, TAU], legs[row, DURATION] = tau, leg.duration
+        legs[row, X], legs[row, W], legs[row, MODE] = x, w, mode
+        row = row + 1
+        tau = tau + leg.duration if leg.event != 0.0 else end
+        x, w, mode = leg.x, leg.w, leg.following
+    return x, w, row
+
+
+@inner
+def panel_length(body: Body, r: float, left: float) -> float:
+    """The next panel, r into a leg: short against drive and free motion, graded where an overdamped part decays."""
+    fast, slow = 1.0, body.damping
+    if body.damping > 1.0:
+        fast = body.damping + body.rate
+        slow = 1.0 / fast
+    free = 0.25 * math.pi if r * slow < 40.0 else body.period
+    return min(min(0.125 * body.period, free), min(max(1.0 / fast, 0.5 * r), left))
+
+
+@inner
+def count_panels(body: Body, legs: Any, rows: int) -> int:
+    """How many panels the legs need; a leg of no duration needs none."""
+    panels = 0
+    for row in range(rows):
+        r = 0.0
+        while r < legs[row, DURATION]:
+            r = r + panel_length(body, r, legs[row, DURATION] - r)
+            panels = panels + 1
+    return panels
+
+
+@inner
+def sample_leg(body: Body, leg: Any, r: float) -> tuple[float, float, float]:
+    """Displacement, velocity and friction force a time r into a leg."""
+    tau = leg[TAU] + r
+    load, _, u, speed = load_and_response(body, tau)
+    if leg[MODE] == STICK:
+        x = leg[X] + body.belt_speed * r
+        return x, body.belt_speed, load - 2.0 * body.damping * body.belt_speed - x
+    friction = body.friction * leg[MODE]
+    _, _, u0, speed0 = load_and_response(body, leg[TAU])
+    y, z = leg[X] - u0 + friction, leg[W] + (body.belt_speed - speed0)
+    cosine, turn = decay(body, r)
+    b = body.damping
+    return (
+        (cosine + b * turn) * y + turn * z + (u - friction),
+        (cosine - b * turn) * z - turn * y + speed,
+        friction,
+    )
+
+
+@inner
+def orbit_panels(
+    body: Body, x: float, w: float, shift: float, legs: int, normal_load: float, side: float
+) -> Any:
+    """The orbit through the canonical state (x, w) from canonical time ``shift`` on, for one period.
+
+    side: -1.0 turns it round, for a belt that moves the other way. Returns tau, x, v, friction, stick of an Orbit.
+    """
+    table = np.empty((2 * legs + 8, FACTS))
+    x, w, before = follow(body, x, w, 0.0, shift, table, 0)
+    x, w, rows = follow(body, x, w, shift, body.period, table, before)
+    order = np.empty(rows, np.int64)
+    for row in range(rows):
+        order[row] = (row + before) % rows
+    panels, nodes = count_panels(body, table, rows), NODES.size
+    tau = np.empty((panels, nodes))
+    xs, vs = np.empty((panels, nodes), np.complex128), np.empty((panels, nodes), np.complex128)
+    friction, stick = np.empty((panels, nodes), np.complex128), np.empty(panels, np.bool_)
+    panel, now = 0, 0.0
+    for row in order:
+        leg, r = table[row], 0.0
+        while r < leg[DURATION]:
+            length = panel_length(body, r, leg[DURATION] - r)
+            for node in range(nodes):
+                part = 0.5 * (1.0 + NODES[node]) * length
+                a, b, force = sample_leg(body, leg, r + part)
+                tau[panel, node] = now + part
+                xs[panel, node], vs[panel, node] = complex(side * a, 0.0), complex(side * b, 0.0)
+                friction[panel, node] = complex(side * force / normal_load, 0.0)
+            stick[panel] = leg[MODE] == STICK
+            r, now, panel = r + length, now + length, panel + 1
+    return tau, xs, vs, friction, stick
+
+
+@njit
+def read_orbits(
+    mass: Mass, coefficient: float, belt_speeds: Any, states: Any, legs: Any, shifts: Any, out: Any
+) -> None:
+    """Row i of ``out``: everything read from the orbit of belt speed i, whose canonical state is states[i]."""
+    for i in range(belt_speeds.size):
+        if legs[i] <= 0:
+            continue
+        body = body_at(mass, coefficient, abs(belt_speeds[i]))
+        side = -1.0 if belt_speeds[i] < 0.0 else 1.0
+        tau, x, v, rub, stick = orbit_panels(
+            body, states[i, 0], states[i, 1], shifts[i], legs[i], mass.normal_load, side
+        )
+        row = read(tau, x, v, rub, stick, mass, belt_speeds[i])
+        for column in range(row.size):
+            out[i, column] = row[column]
+
+
+@njit
+def make_orbit(mass: Mass, coefficient: float, belt_speed: float, state: Any, legs: int, shift: float) -> Any:
+    """The panels of one orbit through the canonical state (x, w); shift: canonical time of tau = 0."""
+    body = body_at(mass, coefficient, abs(belt_speed))
+    side = -1.0 if belt_speed < 0.0 else 1.0
+    return orbit_panels(body, state[0], state[1], shift, legs, mass.normal_load, side)

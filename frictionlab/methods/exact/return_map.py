@@ -1,0 +1,209 @@
+"""The return map of a mass under Coulomb friction over one drive period, its derivative and its fixed point.
+
+State (x, w) at a whole number of periods, w = x' - belt_speed. In the energy norm sqrt(x^2 + w^2) two orbits of one
+scene never move apart (Leine & van de Wouw, 2008), so a step of the map itself never makes things worse: that
+is what Newton's method falls back to. Derivatives through events: saltation (Leine & Nijmeijer, 2004, ch. 7).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from frictionlab.compile.decorators import inner
+from frictionlab.methods.exact.legs import (
+    EPSILON,
+    STICK,
+    Body,
+    load_and_response,
+    slip_leg,
+    starting_mode,
+    stick_leg,
+)
+
+MOST_LEGS = 1_000_000
+"""A period of more legs is given up: motion lost in the rounding of its own position."""
+SHORTEST = 1e-6
+
+
+class Passage(NamedTuple):
+    """What a stretch of motion leads to.
+
+    xx .. ww: derivative of the end by the start; friction: integral of the friction force (it resists); by_x,
+    by_w: its derivative by the start; legs: how many; stick: time at rest on the belt.
+    """
+
+    x: float
+    w: float
+    xx: float
+    xw: float
+    wx: float
+    ww: float
+    friction: float
+    by_x: float
+    by_w: float
+    legs: int
+    stick: float
+
+
+@inner
+def passage(body: Body, x: float, w: float, start: float, end: float) -> Passage:
+    """Follow the motion from (x, w) at ``start`` to ``end``, both within one period."""
+    tau, mode = start, starting_mode(body, start, x, w)
+    xx, xw, wx, ww = 1.0, 0.0, 0.0, 1.0
+    friction, by_x, by_w, stick, legs = 0.0, 0.0, 0.0, 0.0, 0
+    while tau < end and legs < MOST_LEGS:
+        left = end - tau
+        leg = stick_leg(body, tau, x, left) if mode == STICK else slip_leg(body, tau, x, w, mode, left)
+        xx, wx = leg.keep * xx + leg.turn * wx, leg.damp * wx - leg.turn * xx
+        xw, ww = leg.keep * xw + leg.turn * ww, leg.damp * ww - leg.turn * xw
+        if mode == STICK:
+            friction = friction + stuck_impulse(body, tau, x, leg.duration)
+            by_x, by_w = by_x - leg.duration * xx, by_w - leg.duration * xw
+            stick = stick + leg.duration
+        else:
+            friction = friction + mode * body.friction * leg.duration
+            if leg.event != 0.0:
+                kept, jump = saltation(body, leg.net, mode, leg.following)
+                by_x, by_w = by_x + jump * wx, by_w + jump * ww
+                wx, ww = kept * wx, kept * ww
+        x, w, mode = leg.x, leg.w, leg.following
+        tau = tau + leg.duration if leg.event != 0.0 else end
+        legs = legs + 1
+    return Passage(x, w, xx, xw, wx, ww, friction, by_x, by_w, legs, stick)
+
+
+@inner
+def saltation(body: Body, net: float, before: float, after: float) -> tuple[float, float]:
+    """Where slip of sign ``before`` ends: the share of a velocity difference that is left, and the change of the
+    friction impulse per velocity difference."""
+    if after == STICK:
+        return 0.0, 1.0
+    fall = net - body.friction * before
+    return (net - body.friction * after) / fall, body.friction * (after - before) / fall
+
+
+@inner
+def stuck_impulse(body: Body, tau: float, x: float, r: float) -> float:
+    """Integral of the net force over a time r of stick that starts at tau."""
+    half = 0.5 * body.frequency * r
+    pushed = 2.0 * body.load / body.frequency * math.sin(half) * math.sin(body.frequency * tau + half)
+    return pushed - r * (2.0 * body.damping * body.belt_speed + x + 0.5 * body.belt_speed * r)
+
+
+class Fixed(NamedTuple):
+    """A fixed point, the map from it, the residual of closing and the number of maps it took."""
+
+    x: float
+    w: float
+    map: Passage
+    residual: float
+    maps: int
+
+
+@inner
+def fixed_point(body: Body, x: float, w: float, most: int) -> Fixed:
+    """The periodic state near (x, w): Newton's method, with the map itself wherever Newton does not come closer.
+
+    The residual falls along a Newton step wherever the map is smooth, so a step that is too long is shortened
+    before it is given up: onset of stick or of slip makes the map bend sharply.
+    """
+    x_next, w_next, here, size, maps, stalled = x, w, unknown(x, w), math.inf, 0, 0
+    share, picard = 1.0, True
+    while True:
+        trial = passage(body, x_next, w_next, 0.0, body.period)
+        trial_size = math.hypot(trial.x - x_next, trial.w - w_next)
+        maps = maps + 1
+        if picard or trial_size < (1.0 - 0.25 * share) * size:
+            stuck = picard and trial_size >= size and size < 1e3 * rounding(body, x, w)
+            stalled = stalled + 1 if stuck else 0
+            share = 1.0 if picard else min(1.0, 4.0 * share)
+            x, w, here, size = x_next, w_next, trial, trial_size
+        else:
+            share = 0.25 * share
+        if trial.legs >= MOST_LEGS or not trial_size < math.inf:
+            return Fixed(x, w, here, math.inf, maps)
+        if size <= rounding(body, x, w) or maps >= most or stalled >= 4:
+            return Fixed(x, w, here, size, maps)
+        dx, dw = newton_step(here, x, w)
+        picard = share < SHORTEST or not abs(dx) + abs(dw) < math.inf
+        x_next, w_next = x + share * dx, w + share * dw
+        if picard:
+            x_next, w_next = here.x + whole_periods_of_stick(body, here), here.w
+
+
+@inner
+def unknown(x: float, w: float) -> Passage:
+    """Before the first map."""
+    return Passage(x, w, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0, 0.0)
+
+
+@inner
+def newton_step(here: Passage, x: float, w: float) -> tuple[float, float]:
+    """Solve (I - M) step = map - state; infinite where the period leaves some direction as it was."""
+    a, b, c, d = 1.0 - here.xx, -here.xw, -here.wx, 1.0 - here.ww
+    determinant = a * d - b * c
+    if abs(determinant) < 1e-14:
+        return math.inf, math.inf
+    rx, rw = here.x - x, here.w - w
+    return (d * rx - b * rw) / determinant, (a * rw - c * rx) / determinant
+
+
+@inner
+def whole_periods_of_stick(body: Body, here: Passage) -> float:
+    """How far the belt carries a mass that stayed at rest all period until just before friction lets go."""
+    if here.stick < body.period or body.belt_speed == 0.0:
+        return 0.0
+    carried = body.belt_speed * body.period
+    room = body.friction - body.load - 2.0 * body.damping * body.belt_speed - here.x - carried
+    return max(math.floor(room / carried), 0.0) * carried
+
+
+@inner
+def scales(body: Body, x: float, w: float) -> tuple[float, float]:
+    """The sizes of the numbers whose rounding enters x and w over one period."""
+    length = body.size + body.friction + abs(x)
+    speed = body.frequency * body.size + body.belt_speed + abs(w)
+    reach = min(body.period, 1.0)
+    return length + reach * speed, speed + reach * length
+
+
+@inner
+def rounding(body: Body, x: float, w: float) -> float:
+    """A residual of closing that is nothing but rounding."""
+    sx, sw = scales(body, x, w)
+    return 4.0 * EPSILON * (sx + sw)
+
+
+@inner
+def mean_error(body: Body, fixed: Fixed) -> float:
+    """Error of the friction impulse over one period, by the adjoint of the map: closing and rounding of the period
+    times what the steady state makes of them."""
+    here = fixed.map
+    a, b, c, d = 1.0 - here.xx, -here.xw, -here.wx, 1.0 - here.ww
+    determinant = a * d - b * c
+    of_x = abs((here.by_x * d - here.by_w * c) / determinant)
+    of_w = abs((here.by_w * a - here.by_x * b) / determinant)
+    sx, sw = scales(body, fixed.x, fixed.w)
+    share = 2.0 * EPSILON * (4.0 + here.legs)
+    dx = abs(here.x - fixed.x) + share * sx
+    dw = abs(here.w - fixed.w) + share * sw
+    carried = (2.0 * of_x + abs(here.by_x)) * dx + (2.0 * of_w + abs(here.by_w)) * dw
+    return carried + 4.0 * EPSILON * (4.0 + here.legs) * body.friction * body.period
+
+
+@inner
+def largest_multiplier(here: Passage) -> float:
+    """The largest modulus of the eigenvalues of the map's derivative."""
+    half, determinant = 0.5 * (here.xx + here.ww), here.xx * here.ww - here.xw * here.wx
+    square = half * half - determinant
+    if square < 0.0:
+        return math.sqrt(determinant)
+    return abs(half) + math.sqrt(square)
+
+
+@inner
+def friction_free_start(body: Body) -> tuple[float, float]:
+    """The friction-free response at tau = 0, shifted by friction that never changes its side."""
+    _, _, u, speed = load_and_response(body, 0.0)
+    return u + body.friction, speed - body.belt_speed

@@ -1,0 +1,1 @@
+"""Time stepping until the motion repeats, with an error estimate."""

@@ -1,0 +1,312 @@
+"""The mean of one marched motion and its error, from runs at several steps or smoothing widths."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from frictionlab.laws.base import SlidingLaw
+from frictionlab.methods.march.laps import CLOSED, LATE, STALLED, TIRED, TOO_FAST, TOO_STIFF
+from frictionlab.methods.march.run import MarchResult, MarchRun, Resolution
+from frictionlab.methods.march.stability import MARGIN
+from frictionlab.numerics.richardson import FEWEST, REVERSING, SMOOTH, STICKING, bias, first_error, richardson
+
+COARSEST, WORK = 64, 16_000_000
+"""Steps per period to begin with, and steps in all that a point may cost, where ``steps`` is left out."""
+MOST_WORK, MOST_ADAPTIVE = 500_000_000, 10_000_000
+"""Steps of one run, where they are given, and where they are adaptive."""
+FEWEST_LAPS = 10
+NONE = 1e200
+"""A least slip speed above this stands for none."""
+ROUNDING = 1e-13
+"""What the sums of a period's impulses lose to rounding, in the mean coefficient."""
+
+
+class Plan(NamedTuple):
+    """How a motion is to be marched: the numbers of a study, defaults filled in."""
+
+    stepper: str
+    theta: float
+    order: int  # on smooth motion; of fixed steps
+    steps: int | None
+    width: float
+    smoothing: str
+    periods: int
+
+
+@dataclass(frozen=True)
+class Found:
+    """A mean with its error, the period [time], and the runs behind them, the last of them the finest."""
+
+    mean: complex
+    error: float
+    period: float
+    runs: tuple[MarchResult, ...]
+    how: str
+
+
+def found(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
+    """The mean by this plan; without an error where a run did not settle."""
+    if plan.stepper == "smoothed":
+        return _by_widths(walker, plan, tolerance)
+    return _by_given_steps(walker, plan, tolerance) if plan.steps else _by_halving(walker, plan, tolerance)
+
+
+# --- fixed steps --------------------------------------------------------------------------------------------------
+
+
+def _by_given_steps(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
+    """The mean of so many steps; runs of twice and four times as many tell its error."""
+    assert plan.steps is not None
+    runs: list[MarchResult] = []
+    for steps in (plan.steps, 2 * plan.steps, 4 * plan.steps):
+        runs.append(_next_run(walker, plan, steps, runs, tolerance))
+        if not runs[-1].settled:
+            return _unsettled(runs)
+    first = runs[0]
+    doubt = first_error([run.mean.real for run in runs]) + max(
+        _unseen(walker, runs[:2]), _unseen(walker, runs[1:])
+    )
+    error = (
+        doubt
+        + crossing(walker, first)
+        + _creep(walker, first)
+        + sum(run.closing for run in runs)
+        + _rounding(first)
+    )
+    return Found(first.mean, error, first.period, tuple(runs), f"{plan.steps} steps per period")
+
+
+def _by_halving(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
+    """Steps are doubled until the error is below the tolerance or the work is done."""
+    steps, work = _coarsest(walker), 0
+    runs: list[MarchResult] = []
+    best: Found | None = None
+    while best is None or best.error > tolerance:
+        run = _next_run(walker, plan, steps, runs, tolerance, WORK - work)
+        work += run.steps
+        if not run.settled:
+            more = steps_needed(walker, run)
+            if 3 * FEWEST_LAPS * more > WORK - work:
+                break
+            runs, steps = [], math.ceil(more)
+            continue
+        runs.append(run)
+        if len(runs) >= FEWEST:
+            best = _limit(walker, plan, runs)
+        if work + 2 * run.steps * min(1.0, 12 / run.laps) > WORK or _changes_for_ever(runs, walker):
+            break
+        steps *= 2
+    if best is None and len(runs) > 1 and run.verdict != TOO_STIFF:
+        best = _limit(walker, plan, runs)
+    return best or _unsettled([*runs, run])
+
+
+def steps_needed(walker: MarchRun, run: MarchResult) -> float:
+    """Steps per period that would be stable where those of a run were not; infinite where it failed otherwise."""
+    if run.verdict == TOO_FAST:
+        return 1.5 * run.pace.steps * run.met / walker.fastest(run.pace)
+    return MARGIN * walker.through_rest if run.verdict == TOO_STIFF else math.inf
+
+
+def _limit(walker: MarchRun, plan: Plan, runs: list[MarchResult]) -> Found:
+    last, every = runs[-1], runs
+    runs = [run for run in runs if (run.verdict, run.stride) == (last.verdict, last.stride)]
+    runs = runs if len(runs) > 1 else every
+    unseen = _unseen(walker, runs[-3:])
+    reversing = unseen > 0.0 or len(runs) < len(every) or any(run.crossings > 0 for run in runs[-3:])
+    reversing = reversing or last.verdict == STALLED or walker.has_corners
+    least = REVERSING if reversing else STICKING if last.stuck > 0.0 else SMOOTH
+    along = richardson([run.mean.real for run in runs], plan.order, least)
+    across = richardson([run.mean.imag for run in runs], plan.order, least)
+    period = richardson([run.period for run in runs], plan.order, least)
+    error = (
+        along.error + unseen + crossing(walker, last) + _creep(walker, last) + last.closing + _rounding(last)
+    )
+    error += runs[-2].closing if along.order else 0.0
+    how = f"{last.pace.steps} steps per period"
+    how += f", extrapolated at order {along.order}" if along.order else ""
+    return Found(complex(along.value, across.value), error, period.value, tuple(runs), how)
+
+
+def _rounding(run: MarchResult) -> float:
+    """Of the sums of a period's impulses."""
+    return ROUNDING * (1.0 + 1e-3 * run.pace.steps)
+
+
+def _next_run(
+    walker: MarchRun,
+    plan: Plan,
+    steps: int,
+    runs: Sequence[MarchResult],
+    tolerance: float,
+    work: int = MOST_WORK,
+) -> MarchResult:
+    """A run of so many steps per period, from where the last one ended."""
+    before = runs[-1] if runs else None
+    share = max(0.05 * tolerance, 0.02 * _expected(walker, runs, steps))
+    pace = Resolution(
+        steps=steps,
+        theta=plan.theta,
+        enough=0.25 * share * walker.mass.normal_load,
+        most=plan.periods,
+        work=max(work, FEWEST_LAPS * steps),
+        rate=before.rate if before is not None and before.verdict == CLOSED else 0.0,
+    )
+    return walker.run(pace, before.place if before is not None and walker.forgets else None)
+
+
+def _expected(walker: MarchRun, runs: Sequence[MarchResult], steps: int) -> float:
+    """About what this many steps leave of an error in the mean; small enough at first to spoil nothing."""
+    if len(runs) < 2:
+        return 0.1 * walker.law.sliding_friction(1.0) / steps
+    change = abs(runs[-1].mean.real - runs[-2].mean.real)
+    return max(0.25 * change, crossing(walker, runs[-1]) * runs[-1].pace.steps / steps)
+
+
+def crossing(walker: MarchRun, run: MarchResult) -> float:
+    """What reversals inside a step may cost: of the impulse of that step, a grid knows the sign but not the share.
+
+    A release costs the drop of friction from rest to slip in the same way. Several grids in a row can round either
+    the same way, and then no change between them tells of it.
+    """
+    per_period = run.pace.steps * run.period / walker.lap
+    slip = walker.slipping
+    if not isinstance(walker.law, SlidingLaw):
+        return slip * run.crossings / per_period * _unresolved(walker.presliding, run)
+    release = walker.at_rest - slip if run.stuck > 0.0 else 0.0
+    return (slip * run.crossings + release * run.stride) / per_period
+
+
+def _unresolved(presliding: float, run: MarchResult) -> float:
+    """How much of the impulse of the step in which slip reverses is in doubt: bristles take time to bend back.
+
+    Until slip that gathers speed at the rate a has covered the presliding length d: sqrt(2 d/a). A step h misplaces
+    a path of at most a h^2/8 to either side, a part (h/time)^2/4 of that length, and for as long as that time the
+    friction is off by this part of its jump, 2 at most.
+    """
+    step = run.period / run.stride / run.pace.steps if run.pace.steps else 0.0
+    if run.turn == 0.0:
+        return 0.0
+    bending = math.sqrt(2.0 * presliding / run.turn)
+    return min(1.0, 0.5 * step / bending) if bending > 0.0 else 1.0
+
+
+def _creep(walker: MarchRun, run: MarchResult) -> float:
+    """Where creep hides stick, friction may have any value while it does."""
+    return 2.0 * walker.at_rest * run.creeping
+
+
+def _unseen(walker: MarchRun, runs: Sequence[MarchResult]) -> float:
+    """What a reversal would cost that the last grid does not see, slip being least between two of its nodes.
+
+    The least slip is known as well as it agrees between runs, and as the nodes around it are close. A reversal
+    that deep in a parabola of that bend lasts so long, with friction reversed. Where the last grid sees contact and
+    the one before did not, it may still be as much deeper.
+    """
+    *earlier, fine = runs
+    missed = [run.dip for run in earlier if run.dip < NONE]
+    if fine.dip < NONE:
+        node = fine.period / fine.stride / fine.pace.steps
+        depth = 1.5 * max([abs(dip - fine.dip) for dip in missed] or [fine.dip])
+        depth += 0.125 * fine.bend * node**2 - fine.dip
+        bend = fine.bend
+    else:
+        depth = 1.5 * max(missed, default=0.0)
+        bend = max((run.bend for run in earlier if run.dip < NONE), default=0.0)
+    if not (depth > 0.0 and bend > 0.0):
+        return 0.0
+    lasts = min(2.0 * math.sqrt(2.0 * depth / bend), fine.period)
+    return 2.0 * walker.slipping * lasts / fine.period
+
+
+def _coarsest(walker: MarchRun) -> int:
+    """Steps to begin with: what the motion asks for, and what the stepper needs not to explode."""
+    return max(COARSEST * _slowness(walker), walker.fewest())
+
+
+def _slowness(walker: MarchRun) -> int:
+    """Steps are counted per period; a slow drive needs more of them for the body's own motion."""
+    mass = walker.mass
+    quickest = max(1.0, mass.damping)
+    if not walker.straight:
+        quickest = max(quickest, math.sqrt(mass.transverse_stiffness), mass.transverse_damping)
+    return max(1, math.ceil(quickest / mass.frequency))
+
+
+def _changes_for_ever(runs: Sequence[MarchResult], walker: MarchRun) -> bool:
+    """Whether finer steps calm a motion that does not repeat no more."""
+    return len(runs) >= FEWEST and all(run.verdict == STALLED for run in runs[-3:]) and restless(runs, walker)
+
+
+def restless(runs: Sequence[MarchResult], walker: MarchRun) -> bool:
+    """Whether the motion itself never repeats: the spread of its means is there, and does not shrink with the steps.
+
+    A thousandth of the friction at rest passes for noise, and is left to the error.
+    """
+    early, last = runs[max(0, len(runs) - 3)], runs[-1]
+    spread = last.high - last.low
+    seen = last.verdict == STALLED == early.verdict and spread > 1e-3 * walker.at_rest
+    return not walker.converges and seen and spread > 0.5 * (early.high - early.low)
+
+
+def why_not(run: MarchResult) -> str:
+    """Why a run has no steady state, in words that follow "the motion"."""
+    if run.verdict == LATE:
+        return (
+            f"still changes by {run.drift:.1e} a period after {run.laps} periods (at most {run.pace.most}); "
+            f"give more periods"
+        )
+    if run.verdict == TOO_FAST:
+        return f"slips faster, at {run.met:.3g}, than {run.pace.steps} steps per period are stable for"
+    if run.verdict == TOO_STIFF:
+        return f"comes to rest, where the law is too stiff for {run.pace.steps} explicit steps per period"
+    if run.verdict == TIRED:
+        return f"does not repeat within {run.steps:.1g} steps ({run.laps} periods); give fewer or wider ones"
+    return f"is lost after {run.laps} periods: it grows without bound, or never returns; give shorter steps"
+
+
+def _unsettled(runs: Sequence[MarchResult]) -> Found:
+    return Found(complex(math.nan), math.nan, math.nan, tuple(runs), "")
+
+
+# --- smoothed friction --------------------------------------------------------------------------------------------
+
+
+def _by_widths(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
+    """The mean of this width; twice, half and a quarter of it tell the bias, a run of looser steps their error."""
+    load = walker.mass.normal_load * walker.law.sliding_friction(plan.width)
+    accuracy = max(min(1e-5 * tolerance * load, 1e-3 * plan.width, 1e-6 * load), 1e-13 * load)
+    pace = Resolution(
+        width=plan.width,
+        smoothing=plan.smoothing,
+        accuracy=accuracy,
+        enough=1e3 * accuracy,
+        most=plan.periods,
+        work=MOST_ADAPTIVE,
+    )
+    paces = {
+        "loose": replace(pace, accuracy=32.0 * accuracy, enough=32e3 * accuracy),
+        "wide": replace(pace, width=2.0 * plan.width),
+        "narrow": replace(pace, width=0.5 * plan.width),
+        "narrowest": replace(pace, width=0.25 * plan.width),
+        "asked": pace,
+    }
+    runs: dict[str, MarchResult] = {}
+    place = None
+    for name, one in paces.items():
+        runs[name] = walker.run(one, place)
+        if not runs[name].settled:
+            return _unsettled(list(runs.values()))
+        place = runs[name].place if walker.forgets else None
+    means = {name: run.mean.real for name, run in runs.items()}
+    error = bias(means["wide"], means["asked"], means["narrow"], means["narrowest"]) + abs(
+        means["loose"] - means["asked"]
+    )
+    error += runs["asked"].closing + runs["narrowest"].closing + _creep(walker, runs["asked"]) + ROUNDING
+    asked = runs["asked"]
+    return Found(
+        asked.mean, error, asked.period, tuple(runs.values()), f"{plan.smoothing} of width {plan.width:g}"
+    )

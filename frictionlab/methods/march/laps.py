@@ -1,0 +1,459 @@
+"""Kernels of time stepping: laps of a motion, one after the other, until it repeats.
+
+A lap is a period of the drive, or, undriven, from one falling zero of the velocity along the belt to the next. The
+motion is stepped as it is, not as a deviation from a known response: that is how everybody does it, and its errors
+are to be seen.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import length
+from frictionlab.dynamics import smoothing
+from frictionlab.dynamics.motion import restoring_force
+from frictionlab.dynamics.step_size import squared
+from frictionlab.numerics.steppers import dop853, moreau, rk4
+from frictionlab.orbit.panels import NODES
+from frictionlab.orbit.recorder import Track, track_of
+from frictionlab.scene.body import Body
+
+NOTHING = np.zeros(1)
+"""Of a memory that is none."""
+
+
+class MarchSettings(NamedTuple):
+    """How to step: what the drive does, the stepper's numbers, and when to stop."""
+
+    belt_speed: float
+    driven: bool
+    loads: Any  # at every half step [2 steps + 1]; on the line float, in the plane complex
+    span: float  # a lap of a driven motion; undriven, the longest lap
+    first: float  # step
+    theta: float
+    width: float
+    shape: float
+    accuracy: float
+    reach: float  # longest step
+    enough: float  # distance from the closed orbit, in the norm of energy
+    most: int  # laps
+    stride: int  # laps after which the motion is to repeat
+    rate: float  # at which gaps are known to shrink from lap to lap; 0: unknown
+    near: float  # slip speed below which the stepper cannot tell stick from creep
+    work: int  # most steps
+    window: int  # laps over which a motion that does not close is judged, twice
+    room: int  # panels of the record of the last lap
+    z: Any = 0.0  # deflection of the bristles to begin with, or an array of memories, if the law has any
+    spring: Any = NOTHING  # stiffness of each memory, in the norm of energy
+    fastest: float = 1e300  # slip that the steps are short enough for
+
+
+class Problem(NamedTuple):
+    """What a stepper sees."""
+
+    law: Any
+    body: Body
+    belt_speed: float
+    loads: Any
+    theta: float
+    width: float
+    shape: float
+    accuracy: float
+
+
+class Node(NamedTuple):
+    """Where a step starts."""
+
+    k: int
+    tau: float
+    x: Any
+    v: Any
+    z: Any
+
+
+class Advance(NamedTuple):
+    """Where a step ends; growth: by how much to change the next one, below one where it is to be repeated."""
+
+    x: Any
+    v: Any
+    rubbed: Any
+    stuck: bool
+    growth: float
+    z: Any
+
+
+class Lap(NamedTuple):
+    """A lap's end and what was met on it."""
+
+    x: Any
+    v: Any
+    rubbed: Any  # integral of the friction coefficient
+    stuck: float  # time
+    duration: float
+    dip: float  # least slip speed between two nodes of more slip, no reversal seen
+    bend: float  # second derivative of slip speed there
+    crossings: int  # reversals of slip within a few steps; a run of them counts once
+    peak: float  # largest friction coefficient over one step
+    lingered: float  # time with less slip than ``near``
+    step: float  # the next one
+    steps: int
+    returned: bool
+    z: Any
+    turn: float  # largest rate at which slip passed through zero
+    met: float  # most slip
+
+
+class March(NamedTuple):
+    """Laps of a motion: states [laps + 1], integrals of friction, times at rest and durations [laps]."""
+
+    x: Any
+    v: Any
+    z: Any  # [laps + 1, memories]
+    rubbed: Any
+    stuck: Any
+    duration: Any
+    dip: float
+    bend: float
+    crossings: int
+    lingered: float
+    rate: float  # at which the last gaps shrank
+    distance: float  # to the closed orbit, in the norm of energy
+    verdict: int
+    steps: int
+    track: Track
+    turn: float
+    met: float
+
+
+SHORT = 3
+"""Steps at rest within which a reversal counts as one without stick."""
+
+CLOSED, STALLED, LATE, LOST, RESTING, TIRED, TOO_FAST, TOO_STIFF = range(8)
+
+
+# --- steppers -----------------------------------------------------------------------------------------------------
+
+_moreau_step = moreau.stepper(restoring_force)
+
+
+@inner
+def _jumping_rates(problem: Problem, j: int, x: Any, v: Any) -> Any:
+    """Acceleration and friction coefficient, friction along the slip wherever there is any."""
+    body, w = problem.body, v - problem.belt_speed
+    rub = problem.law.sliding_vector(w) if length(w) > 0.0 else 0.0 * w
+    return problem.loads[j] - restoring_force(body, x, v) - body.normal_load * rub, rub
+
+
+_rk4_step = rk4.stepper(_jumping_rates)
+
+
+@inner
+def _smooth_rates(problem: Problem, tau: float, x: Any, v: Any) -> Any:
+    """Acceleration and friction coefficient of smoothed friction."""
+    body, angle = problem.body, problem.body.frequency * tau
+    rub = smoothing.friction(problem, v - problem.belt_speed)
+    load = body.force_sine * math.sin(angle) + body.force_cosine * math.cos(angle)
+    return load - restoring_force(body, x, v) - body.normal_load * rub, rub
+
+
+_smooth_step = dop853.stepper(_smooth_rates)
+
+
+@inner
+def _by_moreau(problem: Problem, node: Node, h: float) -> Advance:
+    taken = _moreau_step(problem, node.k, node.x, node.v, h)
+    return Advance(taken.x, taken.v, taken.rubbed, taken.stuck, 1.0, node.z)
+
+
+@inner
+def _by_rk4(problem: Problem, node: Node, h: float) -> Advance:
+    taken = _rk4_step(problem, node.k, node.x, node.v, h)
+    return Advance(taken.x, taken.v, taken.rubbed, taken.stuck, 1.0, node.z)
+
+
+@inner
+def _by_smoothed(problem: Problem, node: Node, h: float) -> Advance:
+    """A step whose error decides how long it may be (Hairer et al., 1993, II.10)."""
+    a, f = _smooth_rates(problem, node.tau, node.x, node.v)
+    taken = _smooth_step(problem, node.tau, dop853.State(node.x, node.v, a, f), h)
+    fifth = squared(problem.body, taken.x_error5, taken.v_error5)
+    third = squared(problem.body, taken.x_error3, taken.v_error3)
+    error = fifth / math.sqrt(fifth + 0.01 * third) / problem.accuracy if fifth > 0.0 else 0.0
+    growth = min(6.0, max(0.1 if error > 1.0 else 1.0, 0.9 / math.sqrt(math.sqrt(math.sqrt(error + 1e-300)))))
+    if not fifth < 1e300:
+        growth = 0.1
+    leap = length(taken.v - node.v)
+    if growth >= 1.0 and leap > 2.0 * length(node.v - problem.belt_speed) + 8.0 * problem.width:
+        growth = 0.5  # slip may have come and gone within the step: the error estimate can be blind to that
+    return Advance(taken.x, taken.v, taken.rubbed, False, growth, node.z)
+
+
+# --- the record of an orbit ---------------------------------------------------------------------------------------
+
+
+@inner
+def note_straight(problem: Problem, track: Track, node: Node, end: Advance, h: float) -> None:
+    """A step of which only the ends are known: velocity changes evenly, friction is its mean."""
+    row, rub = track.filled[0], end.rubbed / h
+    stray = end.x - node.x - 0.5 * h * (node.v + end.v)
+    for i in range(NODES.size):
+        part = 0.5 * (1.0 + NODES[i])
+        track.tau[row, i] = node.tau + part * h
+        track.x[row, i] = node.x + part * (h * (node.v + 0.5 * part * (end.v - node.v)) + stray)
+        track.v[row, i] = node.v + part * (end.v - node.v)
+        track.friction[row, i] = rub
+    track.stick[row] = end.stuck
+    track.filled[0] = row + 1
+
+
+@inner
+def _note_curved(problem: Problem, track: Track, node: Node, end: Advance, h: float) -> None:
+    """A step of high order, taken anew to every node of its panel."""
+    row = track.filled[0]
+    for i in range(NODES.size):
+        part = 0.5 * (1.0 + NODES[i]) * h
+        taken = _by_smoothed(problem, node, part)
+        track.tau[row, i] = node.tau + part
+        track.x[row, i] = taken.x
+        track.v[row, i] = taken.v
+        track.friction[row, i] = smoothing.friction(problem, taken.v - problem.belt_speed)
+    track.filled[0] = row + 1
+
+
+# --- laps ---------------------------------------------------------------------------------------------------------
+
+
+class Marcher(NamedTuple):
+    """How one stepper advances, is noted and keeps a memory, and what friction can hold, as kernel functions."""
+
+    name: str
+    advance: Any
+    note: Any
+    held: Any
+    keep: Any
+
+
+def _named(name: str) -> Any:
+    """``inner`` for a function made once for each stepper, under a name of its own.
+
+    Compiled functions are linked by name and types alone: of two with the same, loaded from two caches, one would
+    run in the place of the other.
+    """
+
+    def compile_as(function: Any) -> Any:
+        function.__name__ = f"{function.__name__}_{name}"
+        function.__qualname__ = function.__name__
+        return inner(function)
+
+    return compile_as
+
+
+def marcher(stepper: Marcher) -> Any:
+    """The kernel ``marched(law, body, way, x, v)`` of a stepper; numba caches none that is handed a function."""
+    name, advance, note, held, keep = stepper
+    slack = 1e-9 if name == "smoothed" else 0.5  # loads end with the last of equal steps, however rounded
+    inner_of = _named(name)
+
+    @inner_of  # type: ignore[untyped-decorator]
+    def falling_zero(problem: Problem, node: Node, h: float) -> float:
+        """When within a step the velocity along the belt falls to zero (Illinois regula falsi)."""
+        low, high, side = 0.0, h, 0
+        at_low, at_high = node.v.real, advance(problem, node, h).v.real
+        part = h
+        for _ in range(100):
+            if at_high == 0.0 or high - low <= 1e-15 * (node.tau + h):
+                break
+            part = (low * at_high - high * at_low) / (at_high - at_low)
+            value = advance(problem, node, part).v.real
+            if value <= 0.0:
+                high, at_high, at_low = part, value, 0.5 * at_low if side > 0 else at_low
+                side = 1
+            else:
+                low, at_low, at_high = part, value, 0.5 * at_high if side < 0 else at_high
+                side = -1
+        return high
+
+    @inner_of  # type: ignore[untyped-decorator]
+    def lap(problem: Problem, way: MarchSettings, start: Node, h: float, track: Track) -> Lap:
+        """From tau = 0 once around."""
+        x, v, z = start.x, start.v, start.z
+        end, tau, k, steps, turn, met = way.span, 0.0, 0, 0, 0.0, 0.0
+        rubbed, stuck, dip, bend, crossings, peak, crossed = 0.0 * x, 0.0, 1e300, 1.0, 0, 0.0, False
+        w, resting, lingered = v - problem.belt_speed, 0, 0.0
+        speed, before, swing, mark = length(w), -1.0, length(v), 2.0 * math.pi
+        marked, halted = rubbed, stuck
+        while tau < end and steps < way.work:
+            last = end - tau <= h * (1.0 + (slack if way.driven else 1e-9))
+            node, step = Node(k, tau, x, v, z), end - tau if last else h
+            taken = advance(problem, node, step)
+            steps += 1
+            if taken.growth < 1.0:
+                h = step * taken.growth
+                continue
+            back = not way.driven and v.real > 0.0 and taken.v.real <= 0.0
+            if back:
+                last, step = True, falling_zero(problem, node, step)
+                taken = advance(problem, node, step)
+            if way.room > 0 and track.filled[0] < way.room:
+                note(problem, track, node, taken, step)
+            x, v, z = taken.x, taken.v, taken.z
+            rubbed = rubbed + taken.rubbed
+            stuck += step if taken.stuck else 0.0
+            k += 1 if way.driven else 0
+            tau = end if last and not back else tau + step
+            ahead = v - problem.belt_speed
+            slip, turned = length(ahead), (w * ahead.conjugate()).real
+            if before >= speed < slip and turned > 0.0 and speed < dip:
+                dip, bend = speed, (before - 2.0 * speed + slip) / (step * step)
+            crossings += 1 if turned < 0.0 and not crossed and resting <= SHORT else 0
+            turn = max(turn, length(ahead - w) / step) if turned < 0.0 else turn
+            met = max(met, slip)
+            crossed = turned < 0.0
+            before = speed if turned > 0.0 else -1.0
+            peak = max(peak, length(taken.rubbed) / step)
+            lingered += step if slip < way.near else 0.0
+            speed, resting = slip, resting + 1 if slip == 0.0 else 0
+            w = ahead if slip > 0.0 else w
+            if back:
+                return Lap(
+                    x, v - v.real, rubbed, stuck, tau, dip, bend, crossings, peak, lingered, h, steps, True,
+                    z, turn, met,
+                )  # fmt: skip
+            h = min(h * taken.growth, way.reach) if taken.growth > 1.0 else h
+            if not way.driven:
+                swing = max(swing, length(v))
+                if tau >= mark:  # a mass at rest in the spring never returns
+                    late = tau - mark + 2.0 * math.pi
+                    if swing <= 1e-12 * (length(x) + 1e-3):
+                        rubbed, stuck = rubbed - marked, stuck - halted
+                        return Lap(
+                            x, v, rubbed, stuck, late, dip, bend, crossings, peak, lingered, 0.0, steps, False,
+                            z, turn, met,
+                        )  # fmt: skip
+                    marked, halted, mark, swing = rubbed, stuck, tau + 2.0 * math.pi, 0.0
+            if slip > way.fastest:
+                break
+        done = way.driven and tau >= end
+        return Lap(
+            x, v, rubbed, stuck, tau, dip, bend, crossings, peak, lingered, h, steps, done, z, turn, met
+        )
+
+    @inner_of  # type: ignore[untyped-decorator]
+    def marched(law: Any, body: Body, way: MarchSettings, x: Any, v: Any) -> March:
+        """From the state x, v lap by lap, until it repeats, stalls, or the laps are used up."""
+        problem = Problem(law, body, way.belt_speed, way.loads, way.theta, way.width, way.shape, way.accuracy)
+        xs, vs = np.empty(way.most + 1, np.complex128), np.empty(way.most + 1, np.complex128)
+        rubs = np.empty(way.most, np.complex128)
+        stuck, duration, gaps = np.empty(way.most), np.empty(way.most), np.empty(way.most)
+        track = track_of(way.room)
+        zs = np.empty((way.most + 1, way.spring.size), np.complex128)
+        xs[0], vs[0] = x + 0j, v + 0j
+        keep(zs, 0, way.z)
+        one = Lap(x, v, 0.0 * x, 0.0, 0.0, 1e300, 1.0, 0, 0.0, 0.0, way.first, 0, True, way.z, 0.0, 0.0)
+        carried = 0.0
+        distance, good, steps, verdict, n = 1e300, 0, 0, LATE, 0
+        drift = (
+            abs(way.belt_speed) * way.span * (body.stiffness_mean + body.stiffness_split) / body.normal_load
+        )
+        while n < way.most and verdict == LATE:
+            one = lap(problem, way, Node(0, 0.0, one.x + carried, one.v, one.z), one.step, track)
+            carried = 0.0
+            steps += one.steps
+            xs[n + 1], vs[n + 1], rubs[n] = one.x + 0j, one.v + 0j, one.rubbed + 0j
+            keep(zs, n + 1, one.z)
+            stuck[n], duration[n] = one.stuck, one.duration
+            n += 1
+            if one.met > way.fastest:
+                verdict = TOO_FAST
+            elif not squared(body, one.x, one.v) < 1e300:
+                verdict = LOST
+            elif not one.returned:
+                verdict = RESTING if one.step == 0.0 else LOST if one.steps < way.work else TIRED
+            elif n >= way.stride:
+                gap = squared(body, xs[n] - xs[n - way.stride], vs[n] - vs[n - way.stride])
+                for k in range(way.spring.size):
+                    gap += way.spring[k] * abs(zs[n, k] - zs[n - way.stride, k]) ** 2
+                gap = math.sqrt(gap)
+                gaps[n - 1] = gap
+                floor = 4e-16 * math.sqrt((100.0 + one.steps) * squared(body, one.x, one.v))
+                distance = _distance(gaps, n, way, floor)
+                good = good + 1 if distance <= way.enough else 0
+                if good > (0 if way.rate > 0.0 else 2 * way.stride) or gap == 0.0:
+                    verdict = CLOSED
+                elif (
+                    way.driven and one.stuck > 0.999999 * way.span
+                ):  # carried by the belt: not before release
+                    many = math.floor((held(law) - one.peak) / drift) - 1.0
+                    if way.stride == 1 and many > 1.0:
+                        carried = many * way.span * way.belt_speed
+                elif _stalled(body, gaps, xs, vs, n, way):
+                    verdict = STALLED
+                elif steps > way.work:
+                    verdict = TIRED
+        return March(
+            xs[: n + 1], vs[: n + 1], zs[: n + 1], rubs[:n], stuck[:n], duration[:n],
+            one.dip, one.bend, one.crossings, one.lingered, _rate(gaps, n, way.stride), distance, verdict, steps,
+            track,
+            one.turn, one.met,
+        )  # fmt: skip
+
+    return marched
+
+
+@inner
+def _rate(gaps: Any, n: int, stride: int) -> float:
+    """At which the last gaps shrank, by the slowest of three looks back; 0 where there are too few."""
+    if n < 7 * stride or gaps[n - 1 - 6 * stride] == 0.0:
+        return 0.0
+    gap, rate = gaps[n - 1], 0.0
+    for back in (1, 5, 50):
+        if n > (back + 1) * stride and gaps[n - 1 - back * stride] > 0.0:
+            rate = max(rate, math.pow(gap / gaps[n - 1 - back * stride], 1.0 / back))
+    return rate
+
+
+@inner
+def _distance(gaps: Any, n: int, way: MarchSettings, floor: float) -> float:
+    """What is left to the closed orbit, from the last gap and the rate at which gaps shrink."""
+    gap = gaps[n - 1]
+    if gap <= floor:
+        return 10.0 * gap
+    rate = _rate(gaps, n, way.stride)
+    if rate == 0.0:
+        rate = way.rate
+    return gap / (1.0 - rate) if 0.0 < rate < 0.9999999 else 1e7 * gap
+
+
+@inner
+def _stalled(body: Body, gaps: Any, xs: Any, vs: Any, n: int, way: MarchSettings) -> bool:
+    """Whether the gaps have stopped to shrink, and lead nowhere: a slow drift towards the orbit is no stall."""
+    half = way.window * way.stride
+    if n < 2 * half + way.stride:
+        return False
+    early, late = 0.0, 0.0
+    for i in range(n - half, n):
+        late += gaps[i]
+        early += gaps[i - half]
+    led = math.sqrt(squared(body, xs[n] - xs[n - half], vs[n] - vs[n - half]))
+    return late > 0.98 * early and led < 0.3 * late / way.stride
+
+
+@inner
+def _at_rest(law: Any) -> float:
+    """What friction of a law without memory can hold."""
+    return law.static_friction()
+
+
+@inner
+def keep_number(kept: Any, row: int, z: Any) -> None:
+    """Write down a memory that is one number."""
+    kept[row, 0] = z
+
+
+march_moreau = marcher(Marcher("moreau", _by_moreau, note_straight, _at_rest, keep_number))
+march_rk4 = marcher(Marcher("rk4", _by_rk4, note_straight, _at_rest, keep_number))
+march_smoothed = marcher(Marcher("smoothed", _by_smoothed, _note_curved, _at_rest, keep_number))

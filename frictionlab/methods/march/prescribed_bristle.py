@@ -1,0 +1,321 @@
+"""Time stepping of bristles under a prescribed slip: only their deflection is stepped, until it repeats."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.cache import compiled, timed
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.dynamics.contact import advance_bristle, project_to_yield, resistance
+from frictionlab.laws.memory import PER_AXIS, VECTORIAL, BristleLaw
+from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.march.error import COARSEST, ROUNDING, Plan
+from frictionlab.methods.march.stability import fewest_steps
+from frictionlab.numerics.richardson import REVERSING, SMOOTH, first_error, richardson
+from frictionlab.orbit.panels import NODES
+from frictionlab.orbit.record import Orbit
+from frictionlab.scene.body import Motion
+from frictionlab.scene.scene import Scene
+
+MOST_STEPS, WORK = 1 << 20, 16_000_000
+"""Steps per period, and in all, of one point."""
+PANELS = 128
+"""Of the record of an orbit."""
+REPEATED = 1e-13
+"""Change of the deflection over a period, over the largest met, that counts as none."""
+
+
+class Slipping(NamedTuple):
+    """What the bristles are dragged along by."""
+
+    motion: Motion
+    belt_speed: float
+    steps: int  # per period
+    by_rk4: bool
+    most: int  # periods
+
+
+class Rubbed(NamedTuple):
+    """Over the last period: mean coefficient, heat and work per unit load; reversals; how often bristles begin or end
+    to be bent back, z.v = 0; deflection at its end.
+
+    open: by how much the deflection still changes in all, over the largest met; each: friction of every step.
+    """
+
+    mean: complex
+    contact: float
+    taken: float
+    reversals: int
+    bends: int
+    z: complex
+    open: float
+    periods: int
+    each: Any
+
+
+def _wave_on_the_line(motion: Motion, turn: complex, like: float) -> float:
+    return (motion.velocity * turn).imag
+
+
+def _wave_in_the_plane(motion: Motion, turn: complex, like: complex) -> complex:
+    return complex((motion.velocity * turn).imag, (motion.transverse_velocity * turn).imag)
+
+
+_wave = by_dimension(_wave_on_the_line, _wave_in_the_plane)
+
+
+@inner
+def _velocity(motion: Motion, angle: float, like: Any) -> Any:
+    return _wave(motion, complex(math.cos(angle), math.sin(angle)), like)
+
+
+@inner
+def _place(motion: Motion, angle: float, like: Any) -> Any:
+    return _wave(motion, complex(math.sin(angle), -math.cos(angle)), like) / motion.frequency
+
+
+class Bent(NamedTuple):
+    """Deflection at the end of a step, and friction over it."""
+
+    z: Any
+    rub: Any
+
+
+@inner
+def _by_rk4(law: Any, slipping: Slipping, angle: float, h: float, z: Any) -> Bent:
+    """The classical Runge-Kutta method (W. Kutta, 1901)."""
+    motion, half = slipping.motion, 0.5 * h
+    w1 = _velocity(motion, angle, z) - slipping.belt_speed
+    w2 = _velocity(motion, angle + half * motion.frequency, z) - slipping.belt_speed
+    w4 = _velocity(motion, angle + h * motion.frequency, z) - slipping.belt_speed
+    r1, f1 = resistance(law, w1, z)
+    r2, f2 = resistance(law, w2, z + half * r1)
+    r3, f3 = resistance(law, w2, z + half * r2)
+    r4, f4 = resistance(law, w4, z + h * r3)
+    after = z + (h / 6.0) * (r1 + 2.0 * r2 + 2.0 * r3 + r4)
+    return Bent(project_to_yield(law, after), (f1 + 2.0 * f2 + 2.0 * f3 + f4) / 6.0)
+
+
+@inner
+def _exponentially(law: Any, slipping: Slipping, angle: float, h: float, z: Any) -> Bent:
+    """Straight slip over as much path as there is; friction is that of the middle."""
+    motion, half = slipping.motion, 0.5 * h
+    turned = half * motion.frequency
+    start, middle = _place(motion, angle, z), _place(motion, angle + turned, z)
+    end = _place(motion, angle + 2.0 * turned, z)
+    bent = advance_bristle(law, half, (middle - start) / half - slipping.belt_speed, z)
+    _, rub = resistance(law, _velocity(motion, angle + turned, z) - slipping.belt_speed, bent)
+    return Bent(advance_bristle(law, half, (end - middle) / half - slipping.belt_speed, bent), rub)
+
+
+@inner
+def rubbed(law: Any, slipping: Slipping, z: Any) -> Rubbed:
+    """Period after period from the deflection z, until it repeats or the periods are used up."""
+    motion, n = slipping.motion, slipping.steps
+    h = 2.0 * math.pi / (motion.frequency * n)
+    each = np.empty(n, np.complex128)
+    period, last_gap, left, total, contact, taken, reversals = 0, 0.0, 1e300, 0.0 * z, 0.0, 0.0, 0
+    bends = 0
+    while period < slipping.most and left > REPEATED:
+        before, deepest, total, contact, taken, reversals = z, 1e-300, 0.0 * z, 0.0, 0.0, 0
+        bends = 0
+        slip = _velocity(motion, 0.0, z) - slipping.belt_speed
+        for i in range(n):
+            angle, bent = 2.0 * math.pi * i / n, (z * slip.conjugate()).real
+            step = (
+                _by_rk4(law, slipping, angle, h, z)
+                if slipping.by_rk4
+                else _exponentially(law, slipping, angle, h, z)
+            )
+            z, deepest = step.z, max(deepest, length(step.z))
+            total = total + step.rub
+            each[i] = step.rub + 0j
+            v = _velocity(motion, angle + math.pi / n, z)
+            w = v - slipping.belt_speed
+            contact += (step.rub * w.conjugate()).real
+            taken += (step.rub * v.conjugate()).real
+            ahead = _velocity(motion, angle + 2.0 * math.pi / n, z) - slipping.belt_speed
+            reversals += 1 if (ahead * slip.conjugate()).real < 0.0 else 0
+            bends += 1 if (z * ahead.conjugate()).real * bent < 0.0 else 0
+            slip = ahead
+        gap = length(z - before) / deepest
+        rate = min(gap / last_gap, 0.9999999) if last_gap > 0.0 else 0.0
+        left = gap / (1.0 - rate) if period > 0 else 1e300
+        left = gap if gap <= REPEATED else left
+        last_gap, period = gap, period + 1
+    return Rubbed(-total / n + 0j, contact * h, taken * h, reversals, bends, z + 0j, left, period, each)
+
+
+def solve_rubbed(scenes: Sequence[Scene], law: BristleLaw, tolerance: float, plan: Plan) -> Answers:
+    """Answer scenes of prescribed slip."""
+    rows = [_Point(scene, law, tolerance, plan) for scene in scenes]
+    return Answers(
+        [row.status for row in rows],
+        [row.reason for row in rows],
+        [row.model for row in rows],
+        ["estimated" if row.status == "ok" else "" for row in rows],
+        {name: np.array([row.columns[name] for row in rows]) for name in rows[0].columns},
+        lambda i: rows[i].orbit(),
+    )
+
+
+class _Point:
+    """One scene of prescribed slip, stepped."""
+
+    def __init__(self, scene: Scene, law: BristleLaw, tolerance: float, plan: Plan) -> None:
+        self.scene, self.law, self.plan, self.motion = scene, law, plan, scene.motion()
+        self.straight = scene.load_along_belt_only
+        self.seconds, self.reason = 0.0, ""
+        self.status: Status = "ok"
+        self.runs: list[Rubbed] = []
+        self.mean, self.error = self._given() if plan.steps else self._halved(tolerance)
+        self.model = f"prescribed slip, {plan.stepper}: {len(self.runs[0].each)} steps per period"
+        self.columns = self._row(self.runs[0])
+        self._judge(tolerance)
+
+    def _judge(self, tolerance: float) -> None:
+        last = self.runs[-1]
+        if last.open > 1e-6:
+            self._leave(
+                "failed", f"the deflection still changes after {last.periods} periods; give more periods"
+            )
+            return
+        starts = [self._run(len(self.runs[0].each), side * self.law.presliding()) for side in (1, -1)]
+        others = [other.mean.real for other in starts]
+        apart = max(abs(other - self.runs[0].mean.real) for other in others)
+        changing = 2.0 * self.law.sliding_friction(0.0) * max(other.open for other in starts)
+        if apart > max(self.error, 1e-9) + changing:
+            low, high = min(*others, self.mean.real), max(*others, self.mean.real)
+            self._leave("not_unique", "the mean depends on the deflection at the start: bristles only bend")
+            self.columns |= {"mean_low": low, "mean_high": high, "window": 1.0}
+        elif self.error > tolerance:
+            self.reason = f"the error is above the tolerance {tolerance:.1e}"
+
+    def _leave(self, status: Status, reason: str) -> None:
+        self.status, self.reason = status, reason
+        self.columns |= dict.fromkeys(self.columns, math.nan) | {"seconds": self.seconds}
+
+    def _run(self, steps: int, start: complex) -> Rubbed:
+        call = compiled(rubbed, self.law)
+        most = max(2, min(self.plan.periods, WORK // steps))
+        slipping = Slipping(self.motion, self.scene.belt_speed, steps, self.plan.stepper == "rk4", most)
+        z = float(start.real) if self.straight else complex(start)
+        found, seconds = timed(call, slipping, z)
+        self.seconds += seconds
+        return found
+
+    def _given(self) -> tuple[complex, float]:
+        """The mean of so many steps; twice and four times as many tell its error."""
+        assert self.plan.steps is not None
+        self.runs = [self._run(part * self.plan.steps, 0.0) for part in (1, 2, 4)]
+        means = [run.mean.real for run in self.runs]
+        return self.runs[0].mean, first_error(means) + self._beside(self.runs[0])
+
+    def _halved(self, tolerance: float) -> tuple[complex, float]:
+        """Steps doubled until the error is below the tolerance; ``runs`` keeps the finest, and one before it."""
+        steps = max(COARSEST, fewest_steps(self.scene, self.law, self.plan.stepper))
+        runs, error, value, across = [self._run(steps, 0.0)], math.inf, 0.0, 0.0
+        while error > tolerance and (2 * steps <= MOST_STEPS or len(runs) < 3):
+            steps *= 2
+            runs.append(self._run(steps, runs[-1].z))
+            least = REVERSING if self._has_corners(runs[-1]) else SMOOTH
+            found = richardson([run.mean.real for run in runs], self.plan.order, least)
+            across = richardson([run.mean.imag for run in runs], self.plan.order, least).value
+            value, error = found.value, found.error + self._beside(runs[-1])
+            error = error if len(runs) > 2 else math.inf
+        self.runs = runs[-1:]
+        return complex(value, across), error
+
+    def _beside(self, run: Rubbed) -> float:
+        """Rounding, what is open, and what steps in which slip reverses may misplace."""
+        friction, n = self.law.sliding_friction(0.0), len(run.each)
+        turn = self.motion.frequency * math.hypot(
+            abs(self.motion.velocity), abs(self.motion.transverse_velocity)
+        )
+        bending = math.sqrt(2.0 * self.law.presliding() / turn) if turn > 0.0 else math.inf
+        step = 2.0 * math.pi / self.motion.frequency / n
+        missed = friction * self._turns(run) / n * min(1.0, 0.5 * step / bending)
+        missed += (
+            0.5 * friction * self._jumps(run) / n
+        )  # half a step, for as long as the friction takes to build up
+        return missed + friction * self._lag(n) + 2.0 * friction * run.open + ROUNDING
+
+    def _lag(self, n: int) -> float:
+        """Mean angle by which bristles trail behind slip that turns, over the steps that pass the presliding length.
+
+        Steps as long as that tell nothing of it, nor does the change to others as long.
+        """
+        if self.straight or self.law.form != VECTORIAL:
+            return 0.0
+        motion, angle = self.motion, (np.arange(n) + 0.5) * (2.0 * math.pi / n)
+        along, across = motion.velocity * np.exp(1j * angle), motion.transverse_velocity * np.exp(1j * angle)
+        slip = along.imag - self.scene.belt_speed + 1j * across.imag
+        speed, rate = np.abs(slip), motion.frequency * (along.real + 1j * across.real)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            trailed = self.law.presliding() * np.abs((slip.conj() * rate).imag) / speed**3
+        passed = speed * (2.0 * math.pi / motion.frequency / n) > self.law.presliding()
+        return float(np.where(passed, np.fmin(trailed, 1.0), 0.0).mean())
+
+    def _along(self) -> int:
+        """How often per period slip reverses along x1."""
+        return 2 if abs(self.motion.velocity) > abs(self.scene.belt_speed) else 0
+
+    def _turns(self, run: Rubbed) -> int:
+        """How often slip turns round for the law: of a law of each axis, along either."""
+        if self.law.form != PER_AXIS or self.straight:
+            return run.reversals
+        return self._along() + (2 if self.motion.transverse_velocity != 0 else 0)
+
+    def _jumps(self, run: Rubbed) -> int:
+        """How often the rate of bristles jumps: in the plane slip need not stop for z.v = 0."""
+        return (
+            0
+            if self.straight or self.law.form != VECTORIAL or not self.law.elastic_unloading()
+            else run.bends
+        )
+
+    def _has_corners(self, run: Rubbed) -> bool:
+        """Whether friction has corners within steps: an order is then seen by chance alone."""
+        yields = math.isfinite(self.law.yield_deflection()) and not self.straight
+        return self._turns(run) + self._jumps(run) > 0 or yields
+
+    def _row(self, found: Rubbed) -> dict[str, float]:
+        planar, load = self.scene.transverse_slip is not None, self.motion.normal_load
+        along, across = abs(self.motion.velocity), abs(self.motion.transverse_velocity)
+        return {
+            "mean_friction": self.mean.real,
+            "error": self.error,
+            "mean_friction_transverse": self.mean.imag if planar else math.nan,
+            "velocity_amplitude": along,
+            "velocity_harmonic": along,
+            "transverse_velocity_amplitude": across if planar else math.nan,
+            "transverse_velocity_harmonic": across if planar else math.nan,
+            "stick_fraction": math.nan,
+            "reversals": float(self._along()),
+            "energy_friction": load * found.taken,
+            "energy_contact": load * found.contact,
+            "period": 1.0,
+            "mean_low": math.nan,
+            "mean_high": math.nan,
+            "window": math.nan,
+            "seconds": self.seconds,
+        }
+
+    def orbit(self) -> Orbit | None:
+        """The prescribed motion and the friction along it."""
+        if self.status != "ok":
+            return None
+        angle = (np.arange(PANELS)[:, None] + 0.5 * (1.0 + NODES)) * (2.0 * math.pi / PANELS)
+        turn = np.exp(1j * angle)
+        phasors = self.motion.velocity, self.motion.transverse_velocity
+        v = (phasors[0] * turn).imag + 1j * (phasors[1] * turn).imag
+        x = -((phasors[0] * turn).real + 1j * (phasors[1] * turn).real) / self.motion.frequency
+        each = self.runs[0].each
+        middles = (np.arange(len(each)) + 0.5) * (2.0 * math.pi / len(each))
+        rub = np.interp(angle.ravel(), middles, each, period=2.0 * math.pi).reshape(angle.shape)
+        return Orbit(angle / self.motion.frequency, x, v, rub, np.zeros(PANELS, np.bool_))

@@ -1,0 +1,433 @@
+"""One motion marched to its steady state: from scene numbers to kernel and back, one run per step size or width."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.cache import compiled, timed
+from frictionlab.dynamics.smoothing import ARCTAN, SQUARE_ROOT, TANH
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.memory import PER_AXIS, BristleLaw, MemoryLaw
+from frictionlab.methods.march import memory_stability
+from frictionlab.methods.march.bristle_adapter import march_bristle_rk4, march_exponential, march_sdirk2
+from frictionlab.methods.march.laps import (
+    CLOSED,
+    NOTHING,
+    RESTING,
+    STALLED,
+    TOO_STIFF,
+    March,
+    MarchSettings,
+    march_moreau,
+    march_rk4,
+    march_smoothed,
+)
+from frictionlab.methods.march.memory_adapter import march_memory_rk4
+from frictionlab.methods.march.stability import fastest_slip, fewest_steps, spring_of
+from frictionlab.methods.periodic.problem import along_the_belt
+from frictionlab.orbit.read import READ, read
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Body, Mass, in_the_plane, on_the_line
+from frictionlab.scene.scene import Initial, Scene
+from frictionlab.theory.rest import friction_at_rest
+
+KERNELS = {"moreau": march_moreau, "rk4": march_rk4, "smoothed": march_smoothed}
+BRISTLE_KERNELS = {"rk4": march_bristle_rk4, "exponential": march_exponential, "sdirk2": march_sdirk2}
+MEMORY_KERNELS = {"rk4": march_memory_rk4}
+SHAPES = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
+GRIDDED = "moreau", "rk4", "exponential"
+"""Steppers that meet the load at half steps alone."""
+LONGEST_PERIOD = 8
+"""Of a response that repeats only after several laps."""
+SUMMED = np.array(["energy" in name or "reversals" in name for name in READ])
+"""Of what is read from an orbit, sums and counts over the whole of it; all else is a mean, a phase or an extreme."""
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How finely to step, and how well to close: numbers of one run."""
+
+    steps: int = 1  # per period of the drive, or per 2 pi; of fixed steps
+    theta: float = 0.5
+    width: float = 1.0
+    smoothing: str = "tanh"
+    accuracy: float = 1.0  # of each adaptive step, in the norm of energy
+    enough: float = 0.0  # distance from the closed orbit, in the same norm
+    most: int = 1  # laps
+    work: int = 1_000_000_000  # steps
+    rate: float = 0.0  # at which gaps are known to shrink, 0: unknown
+
+
+class MarchState(NamedTuple):
+    """A state of the motion: x1 + i x2 and its rate, and what the law remembers, if anything, one by one."""
+
+    x: complex
+    v: complex
+    z: Floats = NOTHING
+
+
+@dataclass(frozen=True)
+class MarchResult:
+    """What a run came to: means over one period of the response, and how well they are known.
+
+    closing bounds what is missing in the mean because the motion does not close; low and high are the extremes of
+    the mean over one lap, over the laps it was watched for.
+    """
+
+    pace: Resolution
+    place: MarchState
+    mean: complex
+    closing: float
+    low: float
+    high: float
+    laps: int
+    period: float  # time
+    stuck: float  # time, in the last lap
+    verdict: int
+    dip: float  # least slip speed between two nodes of more slip, no reversal seen
+    bend: float  # second derivative of slip speed there
+    crossings: int  # per period of the response
+    rate: float
+    creeping: (
+        float  # share of the period in which the stepper cannot tell stick from creep, where that matters
+    )
+    steps: int
+    stride: int
+    drift: float  # gap of the last lap, in the norm of energy
+    turn: float  # largest rate at which slip passed through zero
+    met: float  # most slip
+
+    @property
+    def settled(self) -> bool:
+        """Whether there is a mean to speak of."""
+        return self.verdict in (CLOSED, STALLED, RESTING)
+
+
+class MarchRun:
+    """Everything of a scene and a law that does not change from run to run; counts the seconds."""
+
+    def __init__(self, scene: Scene, law: FrictionLaw, stepper: str) -> None:
+        self.scene, self.law, self.stepper = scene, law, stepper
+        self.mass: Mass = scene.mass()
+        self.bristles = law if isinstance(law, BristleLaw) else None
+        self.memory = law if isinstance(law, MemoryLaw) else None
+        self.through_rest = (
+            memory_stability.steps_through_rest(scene, law) if isinstance(law, MemoryLaw) else 0.0
+        )
+        straight = along_the_belt(scene, law) and not _starts_across(scene)
+        reference = on_the_line(self.mass) if straight else in_the_plane(self.mass)
+        self.straight = straight
+        self.body = loaded(reference, self.mass, straight)
+        self._free = complex(reference.reference_cosine), complex(scene.frequency * reference.reference_sine)
+        self._fresh = memory_stability.first_memory(scene, law) if isinstance(law, MemoryLaw) else NOTHING
+        self._spring = self._springs()
+        self.start = self.place(scene.start if scene.undriven else scene.initial)
+        self.forgets = scene.belt_speed != 0.0  # on a belt at rest the mass stays wherever a run left it
+        self.lap = 2.0 * math.pi / self.mass.frequency
+        self.window = self._relaxing()
+        self.seconds = 0.0
+
+    @property
+    def at_rest(self) -> float:
+        """The coefficient that slip must overcome to begin; with memory, that of the slowest slip."""
+        return friction_at_rest(self.law)
+
+    @property
+    def slipping(self) -> float:
+        """The coefficient of slow slip."""
+        return self.law.sliding_friction(0.0) or self.at_rest
+
+    @property
+    def presliding(self) -> float:
+        """The slip within which friction turns round after a reversal; 0 where it jumps, or none is known."""
+        if self.memory is not None:
+            return memory_stability.presliding_of(self.memory)
+        return self.bristles.presliding() if self.bristles is not None else 0.0
+
+    @property
+    def follows_the_drive(self) -> bool:
+        """Whether a theorem gives every motion the drive's period in the end (Leine & van de Wouw, 2008)."""
+        if not isinstance(self.law, SlidingLaw):
+            return False
+        mass = self.mass
+        damping = mass.damping if self.straight else min(mass.damping, mass.transverse_damping)
+        return mass.normal_load * self.law.steepest_fall() < damping and not self.scene.undriven
+
+    @property
+    def converges(self) -> bool:
+        """Whether that motion is the same from every start: on a belt at rest the mass may stay where it stops."""
+        return self.follows_the_drive and self.scene.belt_speed != 0.0
+
+    @property
+    def has_corners(self) -> bool:
+        """Whether a memory's rate may jump while slip does not turn round: by axis, at yield, in unloading."""
+        if self.memory is not None:
+            return self.memory.memory_kind == "deflections"
+        law = self.bristles
+        if law is None or self.straight:
+            return False
+        return law.form == PER_AXIS or law.elastic_unloading() or math.isfinite(law.yield_deflection())
+
+    def place(self, start: Initial | None) -> MarchState:
+        """A start as a state; None for the friction-free orbit."""
+        if start is None:
+            return MarchState(*self._free, self._fresh)
+        return MarchState(complex(start.x, start.x2), complex(start.velocity, start.velocity2), self._fresh)
+
+    def fewest(self) -> int:
+        """Steps per period that the stepper needs not to explode; 1 where any number will do."""
+        if self.memory is not None:
+            return memory_stability.fewest_steps(self.scene, self.memory)
+        return fewest_steps(self.scene, self.bristles, self.stepper) if self.bristles is not None else 1
+
+    def run(self, pace: Resolution, place: MarchState | None = None) -> MarchResult:
+        """March to the steady state, period doublings included."""
+        place = place or self.start
+        march = self._marched(self._way(pace), place)
+        run = self._read(march, pace, 1)
+        stride = _stride(march) if march.verdict == STALLED else 1
+        if stride > 1:
+            longer = self._marched(self._way(pace)._replace(stride=stride, rate=0.0), run.place)
+            other = self._read(longer, pace, self._least(longer, stride, 2.0 * pace.enough))
+            run = replace(other, steps=run.steps + other.steps) if other.verdict == CLOSED else run
+        return run
+
+    def watch(self, run: MarchResult, laps: int) -> MarchResult:
+        """So many more laps of a motion that does not repeat."""
+        way = self._way(run.pace)._replace(most=laps, stride=laps)
+        march = self._marched(way, run.place)
+        return self._read(march, run.pace, len(march.rubbed))
+
+    def track(self, run: MarchResult, laps: int) -> Orbit:
+        """So many laps, from the end of a run that settled."""
+        room = 2 * laps * (run.steps // run.laps + 50)
+        way = self._way(run.pace)._replace(most=laps, stride=laps + 1, room=room)
+        if run.verdict == RESTING:
+            way = way._replace(span=2.0 * math.pi)
+        march = self._marched(way, run.place)
+        track, n = march.track, int(march.track.filled[0])
+        tau = track.tau[:n] + _offsets(track.tau[:n])[:, None]
+        return Orbit(tau, track.x[:n], track.v[:n], track.friction[:n], track.stick[:n])
+
+    def columns(self, orbit: Orbit, periods: int) -> Floats:
+        """What is read from so many periods of the response; of what is summed up or counted, the share of one."""
+        own = 2.0 * math.pi * periods / float(orbit.tau[-1, -1] - orbit.tau[0, 0])
+        mass = self.mass._replace(frequency=own) if self.scene.undriven else self.mass
+        parts = orbit.tau, orbit.x, orbit.v, orbit.friction, orbit.stick
+        values, seconds = timed(compiled(read), *parts, mass, self.scene.belt_speed)
+        self.seconds += seconds
+        return np.where(SUMMED, values / periods, values)
+
+    def fastest(self, pace: Resolution) -> float:
+        """The slip speed that steps of this pace can bear."""
+        if self.memory is not None:
+            return fastest_slip(self.memory, self.lap / pace.steps, memory_stability.decay(self.memory))
+        if self.bristles is None or self.stepper != "rk4":
+            return 1e300
+        return fastest_slip(self.bristles, self.lap / pace.steps)
+
+    def _relaxing(self) -> int:
+        """Laps in which a drift towards the steady state dies out by a third, at least fifty and at most 2000."""
+        damping = self.mass.damping if self.straight else min(self.mass.damping, self.mass.transverse_damping)
+        slow = max(1.0, 2.0 / damping if damping > 0.0 else 1.0, self.mass.damping)
+        return int(min(2000.0, max(50.0, slow / self.lap)))
+
+    def _marched(self, way: MarchSettings, place: MarchState) -> March:
+        x, v = (place.x.real, place.v.real) if self.straight else (place.x, place.v)
+        if self.bristles is not None:
+            way = way._replace(z=float(place.z[0].real) if self.straight else complex(place.z[0]))
+        if self.memory is not None:
+            real = self.straight or self.memory.memory_kind == "scalars"
+            way = way._replace(z=np.array(place.z.real) if real else place.z.astype(complex))
+        call = compiled(self._kernels()[self.stepper], self.law)
+        march, seconds = timed(call, self.body, way, x, v)
+        self.seconds += seconds
+        return march
+
+    def _kernels(self) -> Mapping[str, Any]:
+        if self.memory is not None:
+            return MEMORY_KERNELS
+        return KERNELS if self.bristles is None else BRISTLE_KERNELS
+
+    def _springs(self) -> Floats:
+        """The stiffness of what is remembered, in the norm of energy."""
+        if self.memory is not None:
+            return memory_stability.springs_of(self.scene, self.memory)
+        return np.array(
+            [self.mass.normal_load * spring_of(self.bristles) if self.bristles is not None else 0.0]
+        )
+
+    def _way(self, pace: Resolution) -> MarchSettings:
+        driven, h = not self.scene.undriven, self.lap / pace.steps
+        adaptive = self.stepper == "smoothed"
+        reach = self.lap / 12.0 if adaptive else h
+        return MarchSettings(
+            belt_speed=self.scene.belt_speed,
+            driven=driven,
+            loads=self._loads(pace.steps if driven and self.stepper in GRIDDED else 1),
+            span=self.lap if driven else self.lap * pace.most,
+            first=1e-3 * reach if adaptive else h,
+            theta=pace.theta,
+            width=pace.width,
+            shape=SHAPES[pace.smoothing],
+            accuracy=pace.accuracy,
+            reach=reach,
+            enough=pace.enough,
+            most=pace.most,
+            stride=1,
+            rate=pace.rate,
+            near=self._near(pace),
+            work=pace.work,
+            window=self.window,
+            room=0,
+            spring=self._spring,
+            fastest=self.fastest(pace),
+        )
+
+    def _near(self, pace: Resolution) -> float:
+        """Slip speed that smoothing makes of stick, or the jump of slip over a step that is blind to stick."""
+        if self.stepper == "smoothed":
+            return 3.0 * pace.width
+        force = self.mass.normal_load * self.law.sliding_friction(0.0)
+        blind = self.stepper == "rk4" and isinstance(self.law, SlidingLaw)
+        return 2.0 * force * self.lap / pace.steps if blind else 0.0
+
+    def _creeping(self, pace: Resolution, march: March) -> float:
+        """The belt carries a mass that sticks; one that creeps as fast as the belt moves stays where it is.
+
+        Chatter of a stepper that is blind to stick is erratic: its creep is trusted at an eighth of that alone.
+        """
+        trusted = 1.0 if self.stepper == "smoothed" else 8.0
+        near, belt_speed = self._near(pace), abs(self.scene.belt_speed)
+        if trusted * near < belt_speed or march.lingered == 0.0:
+            return 0.0
+        share = float(march.lingered / march.duration[-1])
+        return min(1.0, share * (1.0 + near / belt_speed)) if belt_speed > 0.0 else 1.0
+
+    def _loads(self, steps: int) -> Any:
+        angle = np.arange(2 * steps + 1) * (math.pi / steps)
+        turn = np.exp(1j * angle)
+        along, across = (self.mass.force * turn).imag, (self.mass.transverse_force * turn).imag
+        return along if self.straight else along + 1j * across
+
+    def _read(self, march: March, pace: Resolution, stride: int) -> MarchResult:
+        laps = len(march.rubbed)
+        window = min(self.window * stride if march.verdict == STALLED else stride, laps)
+        time = float(march.duration[-window:].sum())
+        mean = -complex(march.rubbed[-window:].sum()) / time
+        each = -march.rubbed[-window:].real / march.duration[-window:]
+        low, high = float(each.min()), float(each.max())
+        drift = self._apart(march, laps, laps - stride)
+        stiff = march.crossings > 0 and pace.steps < self.through_rest
+        return MarchResult(
+            pace=pace,
+            place=MarchState(complex(march.x[-1]), complex(march.v[-1]), march.z[-1]),
+            mean=mean,
+            closing=self._closing(march, drift, high - low),
+            low=low,
+            high=high,
+            laps=laps,
+            period=time / window * stride,
+            stuck=float(march.stuck[-1]),
+            verdict=TOO_STIFF if stiff else int(march.verdict),
+            dip=float(march.dip),
+            bend=float(march.bend),
+            crossings=int(march.crossings) * stride,
+            rate=float(march.rate),
+            creeping=self._creeping(pace, march),
+            steps=int(march.steps),
+            stride=stride,
+            drift=drift,
+            turn=float(march.turn),
+            met=float(march.met),
+        )
+
+    def _least(self, march: March, stride: int, within: float) -> int:
+        """The fewest laps after which a motion known to repeat after ``stride`` laps has repeated already."""
+        last = len(march.rubbed)
+        whole = [laps for laps in range(1, stride) if stride % laps == 0]
+        return next((laps for laps in whole if self._apart(march, last, last - laps) <= within), stride)
+
+    def _closing(self, march: March, drift: float, spread: float) -> float:
+        """What the mean may still change by: integrate the motion along x1 over a period, as shooting does.
+
+        The friction impulses of two orbits differ by the change of dv + damping*dx, which the gap is, plus the
+        integral of dx, which their distance bounds.
+        """
+        if march.verdict == RESTING:
+            return 1e-12 + self._from_sliding(march)
+        if march.verdict == STALLED:
+            led = self._apart(march, len(march.rubbed), len(march.rubbed) - self.window)
+            return spread + 2.0 * led / self.mass.normal_load
+        ends = (1.0 + self.mass.damping) * drift
+        doubt = (
+            2.0 if isinstance(self.law, SlidingLaw) else 4.0
+        )  # with memory, orbits may part before they meet
+        left = doubt * float(march.distance + ends / self.lap) / self.mass.normal_load
+        return left + (self._from_sliding(march) if self._only_slides(march) else 0.0)
+
+    def _only_slides(self, march: March) -> bool:
+        """Whether friction must end at one number: slip on a line that never turns, a law of one sliding friction."""
+        one = self.bristles is not None and self.bristles.constant_sliding_friction()
+        return one and self.straight and not self.scene.undriven and march.crossings == 0
+
+    def _from_sliding(self, march: March) -> float:
+        """How far friction is from that of steady sliding, where bristles go under slip that does not turn.
+
+        Their way there may be algebraic, or slower than any swing of the mass can tell.
+        """
+        speed = abs(self.scene.belt_speed)
+        if self.bristles is None or speed == 0.0:
+            return 0.0
+        mean = -march.rubbed[-1].real / float(march.duration[-1])
+        return abs(abs(mean) - self.bristles.sliding_friction(speed))
+
+    def _apart(self, march: March, a: int, b: int) -> float:
+        b = max(b, 0)
+        dx, dv, dz = march.x[a] - march.x[b], march.v[a] - march.v[b], march.z[a] - march.z[b]
+        across = self.mass.transverse_stiffness * dx.imag**2
+        bent = float(np.dot(self._spring, np.abs(dz) ** 2))
+        return float(math.sqrt(dx.real**2 + across + abs(dv) ** 2 + bent))
+
+
+def _starts_across(scene: Scene) -> bool:
+    initial = scene.initial
+    return initial is not None and (initial.x2 != 0.0 or initial.velocity2 != 0.0)
+
+
+def loaded(body: Body, mass: Mass, straight: bool) -> Body:
+    """The body driven by the loads themselves: nothing is taken off as a known response."""
+    sine, cosine = mass.force.real, mass.force.imag
+    if straight:
+        force: tuple[Any, Any, Any] = sine, cosine, 0.0
+    else:
+        across = mass.transverse_force
+        force = complex(sine, across.real), complex(cosine, across.imag), 0j
+    return body._replace(
+        force_sine=force[0], force_cosine=force[1], reference_sine=force[2], reference_cosine=force[2]
+    )
+
+
+def _stride(march: March) -> int:
+    """After how many laps a motion that does not close every lap comes nearest to repeating."""
+    points = np.stack([march.x.real, march.v.real, march.x.imag, march.v.imag], axis=1)[-3 * LONGEST_PERIOD :]
+    gaps = [
+        float(np.abs(points[n:] - points[:-n]).max(axis=1)[-LONGEST_PERIOD:].mean())
+        for n in range(1, LONGEST_PERIOD + 1)
+    ]
+    best = int(np.argmin(gaps))
+    return best + 1 if gaps[best] < 0.1 * gaps[0] else 1
+
+
+def _offsets(tau: Floats) -> Floats:
+    """What to add to each panel's time so that laps, each from zero, follow each other."""
+    offsets = np.zeros(len(tau))
+    for i in np.flatnonzero(tau[1:, 0] < tau[:-1, 0]):
+        offsets[i + 1 :] += tau[i, -1]
+    return offsets

@@ -1,0 +1,150 @@
+"""Whether motions from far starts end on an orbit: transients followed period by period."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_law
+from frictionlab.dynamics.motion import span
+from frictionlab.methods.periodic.fixed_point import MUCH_WORK
+from frictionlab.methods.periodic.period_map import period_map, size_of, start_of
+from frictionlab.numerics.linalg import norm, subtract
+from frictionlab.orbit.recorder import track_of
+from frictionlab.scene.body import Body
+
+MOST_PERIODS = 5000
+
+
+NEAR = 1e-3
+"""Of the size of a state: how near to an orbit that attracts a motion must come to be said to end there."""
+PATIENCE = 300
+"""Periods it may take."""
+
+
+@inner
+def sliding_on(body: Body, friction: float, like: Any) -> Any:
+    """Position and velocity at tau = 0 of the friction-free orbit, shifted by a constant friction; no deflection."""
+    shift = body.normal_load * friction / (body.stiffness_mean + body.stiffness_split)
+    return body.reference_cosine + shift + 0.0 * like, body.frequency * body.reference_sine, 0.0 * like
+
+
+@inner
+def _arrives(law: Any, body: Body, belt_speed: float, start: Any, target: Any, like: Any) -> bool:
+    """Whether a motion comes near to a closed orbit within some hundred periods."""
+    residual, size, steps = np.empty(start.size), 1.0 + norm(target), 0
+    for _ in range(PATIENCE):
+        image = period_map(law, body, belt_speed, start, residual, 1e-5 * body.normal_load, track_of(0), like)
+        steps += image.steps
+        if image.steps < 0 or steps > MUCH_WORK // 4:
+            return False
+        for row in range(start.size):
+            start[row] = start[row] + residual[row]
+        subtract(start, target, residual)
+        if norm(residual) < NEAR * size:
+            return True
+    return False
+
+
+def _reached_without_memory(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+    """Where it is not sure that all motions end there, four starts are followed to their ends instead."""
+    return False
+
+
+def _reached_with_a_bristle(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+    """Whether the mass ends on this orbit, set off at rest on the belt and sliding as if it never reversed.
+
+    The second is an orbit of its own where the belt is faster than any vibration and sliding friction constant.
+    """
+    start, forward = np.empty(target.size), math.copysign(1.0, belt_speed)
+    start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
+    if not _arrives(law, body, belt_speed, start, target, like):
+        return False
+    x, v, z = sliding_on(body, forward * law.sliding_friction(abs(belt_speed)), like)
+    start_of(law, body, start, x, v, z - forward * law.largest_deflection())
+    return _arrives(law, body, belt_speed, start, target, like)
+
+
+def _reached_with_memory(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+    """The same two starts, with the memory of a contact at rest, and of sliding on."""
+    start, forward = np.empty(target.size), math.copysign(1.0, belt_speed)
+    start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
+    if not _arrives(law, body, belt_speed, start, target, like):
+        return False
+    x, v, z = sliding_on(body, forward * law.sliding_friction(abs(belt_speed)), like)
+    start_of(law, body, start, x, v, z - belt_speed)
+    return _arrives(law, body, belt_speed, start, target, like)
+
+
+reached = by_law(_reached_without_memory, _reached_with_a_bristle, None, _reached_with_memory)
+
+
+@inner
+def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
+    """From position x and velocity v on a belt at rest: the state once the mass stays put, and the periods it took.
+
+    Periods: -1 where after many periods the mass still creeps.
+    """
+    z, residual = np.empty(size_of(law, x)), np.empty(size_of(law, x))
+    start_of(law, body, z, x, v, 0.0 * x)
+    period = span(body)
+    for count in range(1, MOST_PERIODS):
+        image = period_map(law, body, 0.0, z, residual, accuracy, track_of(0), x)
+        for row in range(z.size):
+            z[row] = z[row] + residual[row]
+        if image.stuck >= period * (1.0 - 1e-12):
+            return z, count
+    return z, -1
+
+
+LONGEST_PERIOD = 8
+"""Of a subharmonic response that is looked for [drive periods]."""
+
+
+@inner
+def _apart(states: Any, a: int, b: int) -> float:
+    total, size = 0.0, 1.0
+    for row in range(states.shape[1]):
+        total += (states[a, row] - states[b, row]) ** 2
+        size = max(size, abs(states[a, row]))
+    return math.sqrt(total) / size
+
+
+@inner
+def begin(law: Any, body: Body, start: Any, state: Any) -> None:
+    """Fill the state of a start (x, v, deflection); see ``start_of``."""
+    x, v, deflection = start
+    start_of(law, body, state, x, v, deflection)
+
+
+@inner
+def iterate_until_periodic(
+    law: Any, body: Body, belt_speed: float, accuracy: float, means: Any, states: Any, like: Any
+) -> Any:
+    """Follow the motion from ``states[0]``, period by period, until it repeats.
+
+    Fills the one-period means [n] and the states [n + 1, size]; returns after how many periods it repeats (0 where
+    it has not after n), and how many it was followed.
+    """
+    steps = 0
+    alike = 1e-7 if accuracy <= 1e-8 * body.normal_load else 1e-5  # coarse maps wander on by their own error
+    residual = np.empty(states.shape[1])
+    for n in range(means.size):
+        image = period_map(law, body, belt_speed, states[n], residual, accuracy, track_of(0), like)
+        means[n] = -image.rubbed.real / span(body)
+        steps += image.steps
+        for row in range(residual.size):
+            states[n + 1, row] = states[n, row] + residual[row]
+        nearest = 1e300
+        for k in range(1, min(LONGEST_PERIOD, n // 2) + 1):
+            repeats = max(_apart(states, n + 1, n + 1 - k), _apart(states, n, n - k)) < alike
+            # a spiral into an orbit of fewer periods looks like a longer one while it is still far out
+            if repeats and nearest > 1e-4:
+                return k, n + 1
+            nearest = min(nearest, _apart(states, n + 1, n + 1 - k))
+        if image.steps < 0 or steps > MUCH_WORK:
+            return 0, n + 1
+    return 0, means.size

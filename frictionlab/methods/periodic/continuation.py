@@ -1,0 +1,154 @@
+"""Kernels of shooting: the orbits of one curve, closed by continuation in belt speed, and what is read from them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_law
+from frictionlab.dynamics.motion import span
+from frictionlab.methods.periodic.attraction import reached
+from frictionlab.methods.periodic.fixed_point import Goal, fixed_point
+from frictionlab.methods.periodic.memory_fixed_point import fixed_point_with_memory
+from frictionlab.methods.periodic.monodromy import free_inverse, monodromy
+from frictionlab.methods.periodic.period_map import period_map, size_of
+from frictionlab.orbit.read import READ, read
+from frictionlab.orbit.recorder import Track, track_of
+from frictionlab.scene.body import Body, Mass
+
+
+@inner
+def _first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
+    """The spring deflection by the mean friction of a harmonic slip; returns friction's coefficient as a dashpot."""
+    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine))
+    ratio = abs(belt_speed) / (swing + 1e-300)
+    mean = law.sliding_friction(swing + abs(belt_speed)) * (
+        math.asin(ratio) * 2.0 / math.pi if ratio < 1.0 else 1.0
+    )
+    for i in range(z.size):
+        z[i] = 0.0
+    stiffness = body.stiffness_mean + body.stiffness_split
+    z[0] = math.copysign(body.normal_load * mean / math.sqrt(stiffness), belt_speed)
+    return body.normal_load * law.sliding_friction(swing) / (swing + abs(belt_speed) + 1e-3)
+
+
+MOST_KNOWN = 6
+
+
+@inner
+def _extrapolated(states: Any, belt_speeds: Any, i: int, known: int, z: Any) -> None:
+    """The polynomial through the known states before i, at i."""
+    for row in range(z.size):
+        z[row] = 0.0
+    for a in range(i - known, i):
+        weight = 1.0
+        for b in range(i - known, i):
+            if a != b:
+                weight *= (belt_speeds[i] - belt_speeds[b]) / (belt_speeds[a] - belt_speeds[b])
+        for row in range(z.size):
+            z[row] = z[row] + weight * states[a, row]
+
+
+@inner
+def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) -> int:
+    """How many states before i would have predicted state i best: kinks of a curve want few, smooth parts many."""
+    best, least = 1, 1e300
+    for count in range(1, known + 1):
+        _extrapolated(states, belt_speeds, i, count, work)
+        miss = 0.0
+        for row in range(work.size):
+            miss += (work[row] - states[i, row]) ** 2
+        if miss < least:
+            best, least = count, miss
+    return best
+
+
+closed_by = by_law(fixed_point, fixed_point_with_memory, None, fixed_point_with_memory)
+"""The fixed point of the period map from a guess, by the way that suits the law."""
+
+
+@inner
+def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, like: Any) -> Any:
+    """States [n, size] and results [n, 6]: mean friction, across, error, maps, share of stick, slowest slip."""
+    size, n = size_of(law, like), belt_speeds.size
+    states, results = np.zeros((n, size)), np.empty((n, 6))
+    z, work, inverse = np.empty(size), np.empty(size), np.empty((size, size))
+    period = span(body)
+    known, order, expected = 0, 1, 1e300
+    for i in range(n):
+        if known == 0:
+            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
+            if i == 0 and guess.shape[0] > 0:
+                for row in range(size):
+                    z[row] = guess[0, row]
+        else:
+            _extrapolated(states, belt_speeds, i, min(order, known), z)
+        closed = closed_by(law, body, belt_speeds[i], z, inverse, goal, expected, like)
+        if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
+            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
+            closed = closed_by(law, body, belt_speeds[i], z, inverse, goal, 1e300, like)
+        for row in range(size):
+            states[i, row] = z[row]
+        if closed.maps > 0 and known > 1:
+            order = min(_best_order(states, belt_speeds, i, known, work) + 1, MOST_KNOWN)
+        else:
+            order = known + 1
+        known = min(known + 1, MOST_KNOWN) if closed.maps > 0 else 0
+        expected = closed.first if known > 1 else 1e300
+        results[i, 0], results[i, 1] = -closed.rubbed.real / period, -closed.rubbed.imag / period
+        results[i, 2], results[i, 3] = closed.error, closed.maps
+        results[i, 4], results[i, 5] = closed.stuck / period, closed.closest
+    return states, results
+
+
+@inner
+def record_orbit(law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, like: Any) -> Track:
+    """The closed orbit from z, piece by piece."""
+    room, residual = 128, np.empty(z.size)
+    track = track_of(room)
+    period_map(law, body, belt_speed, z, residual, accuracy, track, like)
+    while track.filled[0] == room:
+        room *= 4
+        track = track_of(room)
+        period_map(law, body, belt_speed, z, residual, accuracy, track, like)
+    n = track.filled[0]
+    return Track(track.tau[:n], track.x[:n], track.v[:n], track.friction[:n], track.stick[:n], track.filled)
+
+
+class Curve(NamedTuple):
+    """States [n, size], results [n, 6] of ``solve_curve``, READ columns [n, 17], monodromies, whether the starts that
+    are quick to ask end there [n], the last orbit."""
+
+    states: Any
+    results: Any
+    columns: Any
+    matrices: Any
+    reached: Any
+    last: Track
+
+
+@inner
+def answer_curve(
+    law: Any, body: Body, mass: Mass, belt_speeds: Any, guess: Any, goal: Goal, like: Any
+) -> Curve:
+    """Close the orbits of a curve and read them; guess [0 or 1, size] is a state to start from."""
+    states, results = solve_curve(law, body, belt_speeds, guess, goal, like)
+    n, size = states.shape
+    accuracy = max(0.1 * goal.tolerance * body.normal_load, 1e-13)
+    columns, matrices = np.full((n, len(READ)), np.nan), np.zeros((n, size, size))
+    ends_there = np.zeros(n, np.bool_)
+    track = track_of(0)
+    for i in range(n):
+        if results[i, 3] < 0.0:
+            continue
+        track = record_orbit(law, body, belt_speeds[i], states[i], accuracy, like)
+        row = read(track.tau, track.x, track.v, track.friction, track.stick, mass, belt_speeds[i])
+        for k in range(row.size):
+            columns[i, k] = row[k]
+        monodromy(law, body, belt_speeds[i], states[i], 1.0, matrices[i], like)
+        if goal.asks:
+            ends_there[i] = reached(law, body, belt_speeds[i], states[i], like)
+    return Curve(states, results, columns, matrices, ends_there, track)

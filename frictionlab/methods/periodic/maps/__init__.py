@@ -1,0 +1,1 @@
+"""Period maps: Coulomb and Stribeck sliding, exact bristle paths, laws with memory."""

@@ -1,0 +1,264 @@
+"""The period map of a bristle law whose deflection is known along a straight slip path, in one direction.
+
+Between two reversals of slip the deflection is a function of the way slid since the last one: it is put in where
+friction is evaluated, and what is left to integrate is the mass, by DOP853, without the stiffness of the bristles.
+A leg ends where slip does, or where friction saturates for good. The layer after a reversal is stepped through by
+doubling the way, so that no tolerance can jump over it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from frictionlab.compile.decorators import fast, inner
+from frictionlab.dynamics.events import reference_acceleration, slip_events
+from frictionlab.dynamics.motion import reference_position, reference_velocity, restoring_force, span, turned
+from frictionlab.dynamics.step_size import growth_of, longest_step, wary_growth_of
+from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
+from frictionlab.numerics.steppers.dop853 import State, stepper
+from frictionlab.orbit.panels import NODES
+from frictionlab.orbit.recorder import Track
+from frictionlab.scene.body import Body
+
+
+class Leg(NamedTuple):
+    """Slip in one direction: what it began with, and sine and cosine at the anchor time."""
+
+    law: Any
+    body: Body
+    belt_speed: float
+    side: float
+    anchor: float
+    sine: float
+    cosine: float
+    z: float  # at the beginning, as what follows
+    y: float
+    tau: float
+    reference: float
+
+
+class Carried(NamedTuple):
+    """A state with its deflection after the span of the body, and what was met on the way."""
+
+    y: Any
+    u: Any
+    z: Any
+    rubbed: Any  # integral of the friction coefficient
+    closest: float  # smallest slip speed at a node
+    steps: int  # -1: gave up
+
+
+@inner
+def _anchored(leg: Leg, tau: float) -> Leg:
+    angle = leg.body.frequency * tau
+    return Leg(
+        leg.law,
+        leg.body,
+        leg.belt_speed,
+        leg.side,
+        tau,
+        math.sin(angle),
+        math.cos(angle),
+        leg.z,
+        leg.y,
+        leg.tau,
+        leg.reference,
+    )
+
+
+@inner
+def _leg(law: Any, body: Body, belt_speed: float, side: float, tau: float, y: float, z: float) -> Leg:
+    angle = body.frequency * tau
+    return Leg(
+        law,
+        body,
+        belt_speed,
+        side,
+        tau,
+        math.sin(angle),
+        math.cos(angle),
+        z,
+        y,
+        tau,
+        reference_position(body, tau),
+    )
+
+
+@fast
+def slip(leg: Leg, tau: float, u: Any) -> Any:
+    """Slip velocity: of the mass against the belt."""
+    sine, cosine = turned(leg, tau)
+    return u + reference_velocity(leg.body, sine, cosine) - leg.belt_speed
+
+
+@fast
+def _way(leg: Leg, tau: float, y: float, sine: float, cosine: float) -> float:
+    """How far the leg has slid, in its direction."""
+    body = leg.body
+    swung = body.reference_sine * sine + body.reference_cosine * cosine - leg.reference
+    return max(leg.side * ((y - leg.y) + swung - leg.belt_speed * (tau - leg.tau)), 0.0)
+
+
+@fast
+def rates(leg: Leg, tau: float, y: float, u: float) -> Any:
+    """Acceleration of the deviation, and the friction coefficient."""
+    body, side, law = leg.body, leg.side, leg.law
+    sine, cosine = turned(leg, tau)
+    w = side * max(side * (u + reference_velocity(body, sine, cosine) - leg.belt_speed), 0.0)
+    z = law.deflected(leg.z, side * _way(leg, tau, y, sine, cosine))
+    rub = law.friction(w, z, law.rate(w, z))
+    force = body.force_sine * sine + body.force_cosine * cosine
+    return force - restoring_force(body, y, u) - body.normal_load * rub, rub
+
+
+step = stepper(rates)
+stop, lowest = slip_events(step, rates, slip, turned)
+
+
+@inner
+def _slip_rate(leg: Leg, tau: float, a: float) -> float:
+    sine, cosine = turned(leg, tau)
+    return a + reference_acceleration(leg.body, sine, cosine)
+
+
+@inner
+def _slid(leg: Leg, tau: float, y: float) -> float:
+    sine, cosine = turned(leg, tau)
+    return _way(leg, tau, y, sine, cosine)
+
+
+@inner
+def share_of_the_way(law: Any, body: Body, accuracy: float) -> float:
+    """How much of the way since a reversal a step may add to it: less for finer maps, or two would agree by it."""
+    impulse = body.normal_load * law.sliding_friction(0.0)
+    return min(1.0, 2.0 * (accuracy / impulse) ** 0.0625)
+
+
+@inner
+def _longest(leg: Leg, way: float, share: float, w: float, rate: float) -> float:
+    """The longest step that adds no more than this share of the way, or of the bristle's own length."""
+    law = leg.law
+    length = law.largest_deflection()
+    here, next_ = law.deflected(leg.z, leg.side * way), law.deflected(leg.z, leg.side * (way + length))
+    if abs(next_ - here) <= 1e-13 * length:
+        return 1e300
+    ahead = share * max(length, way)
+    return 2.0 * ahead / (abs(w) + math.sqrt(w * w + 2.0 * abs(rate) * ahead) + 1e-300)
+
+
+@inner
+def _until_way(leg: Leg, tau: float, state: State, high: float, way: float) -> Any:
+    """The step at whose end the leg has slid this way (safeguarded Newton)."""
+    low, h = 0.0, high
+    taken = step(leg, tau, state, h)
+    for _ in range(60):
+        beyond = _slid(leg, tau + h, taken.x) - way
+        low, high = (low, h) if beyond > 0.0 else (h, high)
+        speed = leg.side * slip(leg, tau + h, taken.v)
+        trial = h - beyond / speed if speed > 0.0 else low
+        if not low < trial < high:
+            trial = 0.5 * (low + high)
+        done = abs(trial - h) <= 4e-16 * (tau + h)
+        h = trial
+        taken = step(leg, tau, state, h)
+        if done or high - low <= 4e-16 * (tau + h):
+            break
+    return h, taken
+
+
+@inner
+def _note(track: Track, leg: Leg, tau: float, state: State, h: float) -> None:
+    row = track.filled[0]
+    if row == track.stick.size:
+        return
+    for k in range(NODES.size):
+        part = 0.5 * h * (1.0 + NODES[k])
+        taken = step(leg, tau, state, part)
+        sine, cosine = turned(leg, tau + part)
+        _a, rub = rates(leg, tau + part, taken.x, taken.v)
+        track.tau[row, k] = tau + part
+        track.x[row, k] = taken.x + leg.body.reference_sine * sine + leg.body.reference_cosine * cosine
+        track.v[row, k] = taken.v + reference_velocity(leg.body, sine, cosine)
+        track.friction[row, k] = rub
+    track.stick[row] = False
+    track.filled[0] = row + 1
+
+
+@inner
+def _side(law: Any, body: Body, belt_speed: float, tau: float, y: float, u: float, z: float) -> float:
+    """The direction in which slip goes on from here."""
+    leg = _leg(law, body, belt_speed, 1.0, tau, y, z)
+    w = slip(leg, tau, u)
+    if w == 0.0:
+        a, _rub = rates(leg, tau, y, u)
+        w = _slip_rate(leg, tau, a)
+    return 1.0 if w >= 0.0 else -1.0
+
+
+@inner
+def path_map(
+    law: Any, body: Body, belt_speed: float, y: float, u: float, z: float, accuracy: float, track: Track
+) -> Carried:
+    """One span from the deviation (y, u) and deflection z at tau = 0; accuracy is each step's, in the energy norm.
+
+    On a track with room every piece of the way is noted.
+    """
+    end = span(body)
+    reach, share = (
+        longest_step(body, law.sliding_friction(0.0), accuracy),
+        share_of_the_way(law, body, accuracy),
+    )
+    tau, h, steps, rubbed, closest = 0.0, 0.1 * reach, 0, 0.0, 1e300
+    leg = _leg(law, body, belt_speed, _side(law, body, belt_speed, tau, y, u, z), tau, y, z)
+    a, f = rates(leg, tau, y, u)
+    state, leaving, way = State(y, u, a, f), True, 0.0
+    corner = law.saturation_path(z, leg.side)
+    while end - tau > 4e-15 * end:
+        leg = _anchored(leg, tau)
+        w, rate = slip(leg, tau, state.v), _slip_rate(leg, tau, state.a)
+        closest = min(closest, abs(w))
+        ahead = _longest(leg, way, share, w, rate) if corner > way or corner == math.inf else 1e300
+        h = min(h, ahead, reach, end - tau)
+        taken = step(leg, tau, state, h)
+        steps += 1
+        growth = wary_growth_of(body, taken, accuracy) if ahead < 1e300 else growth_of(body, taken, accuracy)
+        if steps > MOST_STEPS:
+            return Carried(state.x, state.v, z, rubbed, closest, -1)
+        if growth < 1.0:
+            h = h * growth
+            continue
+        after, limit, turns = leg.side * slip(leg, tau + h, taken.v), h, False
+        if after <= 0.0 and leaving:
+            if h * body.frequency > 1e-12:
+                h = 0.25 * h
+                continue
+            turns = True  # slip does not get away in this direction
+        else:
+            a, f = rates(leg, tau + h, taken.x, taken.v)
+            if after > 0.0 and not leaving and leg.side * rate < 0.0 < leg.side * _slip_rate(leg, tau + h, a):
+                limit = lowest(leg, tau, state, leg.side * rate, h)
+                after = leg.side * slip(leg, tau + limit, step(leg, tau, state, limit).v)
+            if after <= 0.0:
+                h, taken = stop(leg, tau, state, 0.0, limit)
+                turns = True
+        ended = _slid(leg, tau + h, taken.x)
+        if corner > way and corner < math.inf and ended > corner * (1.0 + 1e-14):
+            h, taken = _until_way(leg, tau, state, h, corner)
+            ended, turns = corner, False
+        if track.stick.size > 0:
+            _note(track, leg, tau, state, h)
+        rubbed = rubbed + taken.rubbed
+        tau = tau + h if end - tau > h else end
+        leaving, way = turns, ended
+        if turns:
+            z = law.deflected(leg.z, leg.side * ended)
+            leg = _leg(law, body, belt_speed, -leg.side, tau, taken.x, z)
+            corner, way = law.saturation_path(z, leg.side), 0.0
+        else:
+            leg = _anchored(leg, tau)
+        a, f = rates(leg, tau, taken.x, taken.v)
+        state = State(taken.x, taken.v, a, f)
+        h = h * growth if not turns else reach
+    z = law.deflected(leg.z, leg.side * _slid(leg, tau, state.x))
+    return Carried(state.x, state.v, z, rubbed, closest, steps)

@@ -1,0 +1,292 @@
+"""The period map of a sliding law: slip by DOP853, coming to rest, stick, release; on the line and in the plane.
+
+What is integrated is the deviation (y, u = y') from the body's harmonic reference. On the line a leg keeps the
+sign of its slip, so that its law is smooth across the end of the leg, and the end is found by secant steps. In
+the plane friction turns with the slip and only rest itself is singular: a step never reaches further than nine
+tenths of the way to rest, and what is left below the accuracy is closed by the balance of momentum.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.dynamics.events import dips, slip_events
+from frictionlab.dynamics.motion import (
+    SlidingMotion,
+    anchored,
+    rates,
+    reference_position,
+    reference_velocity,
+    slip,
+    slip_rate,
+    span,
+    turned,
+)
+from frictionlab.dynamics.step_size import growth_of, longest_step
+from frictionlab.methods.periodic.maps.stick import holding_force, holding_impulse, load_at_rest, stick_phase
+from frictionlab.numerics.steppers.dop853 import State, stepper
+from frictionlab.orbit.panels import NODES
+from frictionlab.orbit.recorder import Track
+from frictionlab.scene.body import Body
+
+
+class Mapped(NamedTuple):
+    """A state after the span of the body, and what was met on the way."""
+
+    y: Any
+    u: Any
+    rubbed: Any  # integral of the friction coefficient
+    stuck: float  # time at rest
+    closest: float  # smallest slip speed at a node
+    released: float  # when rest ended last; -1: never
+    steps: int  # -1: gave up
+
+
+MOST_STEPS = 200_000
+
+
+step = stepper(rates)
+
+
+# --- slip ---------------------------------------------------------------------------------------------------------
+
+
+class Node(NamedTuple):
+    """Where a step starts: time, state, slip and its rate."""
+
+    tau: float
+    state: State
+    w: Any
+    speed: float
+    rate: Any
+
+
+class Landing(NamedTuple):
+    """A verdict on a step (or the wait until rest) and its end.
+
+    Repeat it with h, accept it, rest after h, or accept it with the slip still lost in the rounding of the velocity.
+    """
+
+    verdict: int
+    h: float
+    end: State
+    rubbed: Any
+
+
+REPEAT, ACCEPT, REST, STILL = 0, 1, 2, 3
+
+
+stop, lowest = slip_events(step, rates, slip, turned)
+
+
+@inner
+def _state(problem: SlidingMotion, tau: float, y: Any, u: Any) -> State:
+    a, f = rates(problem, tau, y, u)
+    return State(y, u, a, f)
+
+
+def _before_on_the_line(problem: SlidingMotion, node: Node, accuracy: float, h: float, y: float) -> Landing:
+    return Landing(ACCEPT, h, node.state, y)
+
+
+def _before_in_the_plane(
+    problem: SlidingMotion, node: Node, accuracy: float, h: float, y: complex
+) -> Landing:
+    """How far the step may go towards rest; where rest is nearer than the accuracy, go there."""
+    body, w = problem.body, node.w
+    speed = node.speed
+    closing = -(node.rate * w.conjugate()).real / speed
+    limit = body.normal_load * problem.law.sliding_friction(0.0)
+    if speed < math.sqrt(accuracy * limit) or speed < 1e-2 * accuracy:
+        pull, belt = load_at_rest(body), complex(problem.belt_speed)
+        x = y + reference_position(body, node.tau)
+        held, rate, _bend = holding_force(body, pull, node.tau, x, belt)
+        margin = limit - abs(held)
+        sure = speed * speed < 0.1 * accuracy * margin and 10.0 * speed * abs(rate) < margin * abs(margin)
+        if sure or speed <= 1e-2 * accuracy:
+            wait = speed / (limit - (held * w.conjugate()).real / speed) if sure else 0.0
+            end = node.tau + wait
+            path = 0.5 * wait * w
+            rubbed = (w + holding_impulse(body, pull, node.tau, end, x, belt)) / body.normal_load
+            y = x + wait * belt + path - reference_position(body, end)
+            return Landing(REST, wait, State(y, w, w, w), rubbed)
+    h = min(h, 4.0 * speed / limit)  # slip turns towards the force at the rate limit/speed: stay stable
+    return Landing(ACCEPT, min(h, 0.9 * speed / closing) if closing > 0.0 else h, node.state, y)
+
+
+_before = by_dimension(_before_on_the_line, _before_in_the_plane)
+
+
+def _after_on_the_line(
+    problem: SlidingMotion, node: Node, leaving: bool, taken: Any, h: float, y: float
+) -> Landing:
+    """Whether the slip velocity passed through zero, between the nodes included."""
+    side, state, limit = problem.side, node.state, h
+    after = side * slip(problem, node.tau + h, taken.v)
+    if after <= 0.0 and leaving and after >= -1e-15 * (abs(taken.v) + abs(problem.belt_speed)):
+        return Landing(STILL, h, _state(problem, node.tau + h, taken.x, taken.v), taken.rubbed)
+    if after <= 0.0 and leaving:
+        return Landing(REPEAT if h * problem.body.frequency > 1e-12 else REST, 0.25 * h, state, 0.0)
+    a, f = rates(problem, node.tau + h, taken.x, taken.v)
+    if after > 0.0 and not leaving and side * node.rate < 0.0 < side * slip_rate(problem, node.tau + h, a):
+        limit = lowest(problem, node.tau, state, side * node.rate, h)
+        after = side * slip(problem, node.tau + limit, step(problem, node.tau, state, limit).v)
+    if after <= 0.0:
+        h, taken = stop(problem, node.tau, state, 0.0, limit)
+        return Landing(REST, h, State(taken.x, taken.v, taken.v, taken.v), taken.rubbed)
+    return Landing(ACCEPT, h, State(taken.x, taken.v, a, f), taken.rubbed)
+
+
+def _after_in_the_plane(
+    problem: SlidingMotion, node: Node, leaving: bool, taken: Any, h: float, y: complex
+) -> Landing:
+    """Whether the slip came close to rest between the nodes: then the step was too long."""
+    after = slip(problem, node.tau + h, taken.v)
+    a, f = rates(problem, node.tau + h, taken.x, taken.v)
+    if dips(node.w, node.rate, after, slip_rate(problem, node.tau + h, a), h):
+        return Landing(REPEAT, 0.5 * h, node.state, y)
+    return Landing(ACCEPT, h, State(taken.x, taken.v, a, f), taken.rubbed)
+
+
+_after = by_dimension(_after_on_the_line, _after_in_the_plane)
+
+
+# --- the record of an orbit ---------------------------------------------------------------------------------------
+
+
+@inner
+def _note_slip(track: Track, problem: SlidingMotion, node: Node, h: float) -> None:
+    row = track.filled[0]
+    if row == track.stick.size:
+        return
+    for k in range(NODES.size):
+        part = 0.5 * h * (1.0 + NODES[k])
+        taken = step(problem, node.tau, node.state, part)
+        tau = node.tau + part
+        sine, cosine = turned(problem, tau)
+        _a, f = rates(problem, tau, taken.x, taken.v)
+        track.tau[row, k] = tau
+        track.x[row, k] = (
+            taken.x + problem.body.reference_sine * sine + problem.body.reference_cosine * cosine
+        )
+        track.v[row, k] = taken.v + reference_velocity(problem.body, sine, cosine)
+        track.friction[row, k] = f
+    track.stick[row] = False
+    track.filled[0] = row + 1
+
+
+@inner
+def _note_stick(track: Track, problem: SlidingMotion, tau: float, end: float, x: Any) -> None:
+    row = track.filled[0]
+    if row == track.stick.size:
+        return
+    belt = problem.belt_speed + 0.0 * x
+    pull = load_at_rest(problem.body)
+    for k in range(NODES.size):
+        part = 0.5 * (end - tau) * (1.0 + NODES[k])
+        held, _rate, _bend = holding_force(problem.body, pull, tau + part, x + part * belt, belt)
+        track.tau[row, k] = tau + part
+        track.x[row, k] = x + part * belt
+        track.v[row, k] = belt
+        track.friction[row, k] = held / problem.body.normal_load
+    track.stick[row] = True
+    track.filled[0] = row + 1
+
+
+@inner
+def _note_hop(
+    track: Track, problem: SlidingMotion, tau: float, end: float, x: Any, w: Any, change: Any, rub: Any
+) -> None:
+    """The short while next to rest that is closed by momentum: slip w changes evenly, friction is its mean."""
+    row = track.filled[0]
+    if row == track.stick.size:
+        return
+    for k in range(NODES.size):
+        share = 0.5 * (1.0 + NODES[k])
+        part = (end - tau) * share
+        track.tau[row, k] = tau + part
+        track.x[row, k] = x + part * (problem.belt_speed + w + 0.5 * share * change)
+        track.v[row, k] = problem.belt_speed + w + share * change
+        track.friction[row, k] = rub
+    track.stick[row] = False
+    track.filled[0] = row + 1
+
+
+@inner
+def sliding_map(
+    law: Any, body: Body, belt_speed: float, y: Any, u: Any, accuracy: float, track: Track
+) -> Mapped:
+    """One span from the deviation (y, u) at tau = 0; accuracy is each step's, in the norm of energy.
+
+    On a track with room every piece of the way is noted.
+    """
+    end = span(body)
+    room = track.stick.size
+    reach = longest_step(body, law.sliding_friction(0.0), accuracy)
+    tau, h, steps = 0.0, 0.1 * reach, 0
+    rubbed, stuck, closest, released = 0.0 * y, 0.0, 1e300, -1.0
+    w = slip(anchored(law, body, belt_speed, 1.0, 0.0), 0.0, u)
+    problem = anchored(law, body, belt_speed, 1.0 if w.real > 0.0 else -1.0, 0.0)
+    resting, leaving = abs(w) <= 1e-2 * accuracy, False
+    state = State(y, u, u, u)
+    if not resting:
+        state = _state(problem, tau, y, u)
+    while end - tau > 4e-15 * end:  # slip cannot get away from rest in less
+        if resting:
+            rest = stick_phase(
+                law, body, belt_speed, tau, state.x + reference_position(body, tau), accuracy, end
+            )
+            rubbed = rubbed + rest.rubbed
+            stuck += rest.stuck
+            if room > 0:
+                x, slips = state.x + reference_position(body, tau), tau + rest.stuck
+                if rest.stuck > 0.0:
+                    _note_stick(track, problem, tau, slips, x)
+                if rest.tau > slips:
+                    rub = rest.pulled / (rest.tau - slips)
+                    x = x + rest.stuck * belt_speed
+                    _note_hop(track, problem, slips, rest.tau, x, 0.0 * rest.w, rest.w, rub)
+            if rest.stuck > 0.0 and rest.tau < end:
+                released = tau + rest.stuck
+            tau, resting, leaving, closest = rest.tau, False, True, 0.0
+            problem = anchored(law, body, belt_speed, rest.side, tau)
+            u = rest.w + belt_speed - reference_velocity(body, problem.sine, problem.cosine)
+            state = State(rest.x - reference_position(body, tau), u, u, u)
+            if tau < end:
+                state = _state(problem, tau, state.x, u)
+            h = 0.1 * reach
+            continue
+        problem = anchored(law, body, belt_speed, problem.side, tau)
+        w = slip(problem, tau, state.v)
+        node = Node(tau, state, w, length(w), slip_rate(problem, tau, state.a))
+        closest = min(closest, node.speed)
+        done = _before(problem, node, accuracy, min(h, reach, end - tau), state.x)
+        if done.verdict == REST:
+            if room > 0 and done.h > 0.0:
+                x, rub = state.x + reference_position(body, tau), done.rubbed / done.h
+                _note_hop(track, problem, tau, tau + done.h, x, node.w, -node.w, rub)
+        else:
+            h = done.h
+            taken = step(problem, tau, state, h)
+            steps += 1
+            growth = growth_of(body, taken, accuracy)
+            if steps > MOST_STEPS:
+                return Mapped(state.x, state.v, rubbed, stuck, closest, released, -1)
+            if growth < 1.0:
+                h = h * growth
+                continue
+            done = _after(problem, node, leaving, taken, h, state.x)
+            if done.verdict == REPEAT:
+                h = done.h
+                continue
+            if room > 0:
+                _note_slip(track, problem, node, done.h)
+            h = h * growth
+        resting, leaving = done.verdict == REST, done.verdict == STILL
+        rubbed = rubbed + done.rubbed
+        state = done.end
+        tau = tau + done.h if end - tau > done.h else end
+    return Mapped(state.x, state.v, rubbed, stuck, closest, released, steps)

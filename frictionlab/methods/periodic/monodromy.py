@@ -1,0 +1,108 @@
+"""The derivative of the period map: without friction in closed form, with friction by difference quotients."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_law
+from frictionlab.dynamics.motion import span
+from frictionlab.methods.periodic.maps.bristle import dimension
+from frictionlab.methods.periodic.period_map import period_map
+from frictionlab.numerics.linalg import invert, norm
+from frictionlab.orbit.recorder import track_of
+from frictionlab.scene.body import Body
+
+
+@inner
+def _free_block(damping: float, stiffness: float, period: float, jacobian: Any, at: int) -> None:
+    """Monodromy minus identity of one friction-free direction, in the norm of energy."""
+    s, half = math.sqrt(stiffness), 0.5 * damping
+    square = stiffness - half * half
+    root = math.sqrt(abs(square)) * period
+    if square > 0.0:
+        c, sn = math.cos(root), period * (math.sin(root) / root if root > 0.0 else 1.0)
+    else:
+        c, sn = (
+            math.cosh(min(root, 300.0)),
+            period * (math.sinh(min(root, 300.0)) / root if root > 0.0 else 1.0),
+        )
+    decay = math.exp(-half * period)
+    jacobian[at, at] = decay * (c + sn * half) - 1.0
+    jacobian[at, at + 1] = decay * sn * s
+    jacobian[at + 1, at] = -decay * sn * s
+    jacobian[at + 1, at + 1] = decay * (c - sn * half) - 1.0
+
+
+@inner
+def free_inverse(body: Body, rubbing: float, inverse: Any, like: Any) -> None:
+    """Inverse of (monodromy - identity) of the body with friction as a dashpot of this coefficient."""
+    n, d = inverse.shape[0], dimension(like)
+    period = span(body)
+    jacobian = np.zeros((n, n))
+    damping, stiffness = body.damping_mean + body.damping_split, body.stiffness_mean + body.stiffness_split
+    _free_block(damping + rubbing, stiffness, period, jacobian, 0)
+    if d == 2:
+        damping, stiffness = (
+            body.damping_mean - body.damping_split,
+            body.stiffness_mean - body.stiffness_split,
+        )
+        _free_block(damping + rubbing, stiffness, period, jacobian, 2)
+    for row in range(2 * d, n):
+        jacobian[row, row] = -1.0  # a bristle remembers nothing of a period ago
+    invert(jacobian, inverse)
+
+
+def _shift_without_memory(law: Any, n: int) -> float:
+    return 1e-5
+
+
+def _shift_with_a_bristle(law: Any, n: int) -> float:
+    """Bristles never stick: their maps bend less, and cost more."""
+    return 1e-4
+
+
+shift_of = by_law(_shift_without_memory, _shift_with_a_bristle, None, _shift_with_a_bristle)
+"""Relative shift of a state for a difference quotient, and accuracy of the maps relative to the shift."""
+
+
+@inner
+def monodromy(
+    law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, matrix: Any, like: Any
+) -> int:
+    """The derivative of the period map by central differences [n, n]; returns the maps it took.
+
+    The shift stays below the way the belt moves in a period: that much slip ends a period that was all stick.
+    The maps are at least as accurate as asked, and always much finer than the shift.
+    """
+    n = z.size
+    carried = abs(belt_speed) * span(body)
+    relative = shift_of(law, n)
+    shift = relative * (1.0 + norm(z))
+    shift = min(shift, max(0.01 * carried, 1e-3 * shift)) if carried > 0.0 else shift
+    accuracy = min(accuracy, relative * shift)
+    ahead, behind, trial = np.empty(n), np.empty(n), np.empty(n)
+    for column in range(n):
+        for row in range(n):
+            trial[row] = z[row] + (shift if row == column else 0.0)
+        period_map(law, body, belt_speed, trial, ahead, accuracy, track_of(0), like)
+        trial[column] = z[column] - shift
+        period_map(law, body, belt_speed, trial, behind, accuracy, track_of(0), like)
+        for row in range(n):
+            matrix[row, column] = (ahead[row] - behind[row]) / (2.0 * shift) + (1.0 if row == column else 0.0)
+    return 2 * n
+
+
+@inner
+def newton_inverse(
+    law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, inverse: Any, like: Any
+) -> bool:
+    n = z.size
+    matrix = np.empty((n, n))
+    monodromy(law, body, belt_speed, z, accuracy, matrix, like)
+    for row in range(n):
+        matrix[row, row] = matrix[row, row] - 1.0
+    return invert(matrix, inverse)

@@ -1,0 +1,127 @@
+"""One curve's way to closed orbits: its scenes as kernels see them, and the kernels called on them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.cache import compiled, timed
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.memory import BristleLaw, MemoryLaw
+from frictionlab.methods.periodic.attraction import begin, iterate_until_periodic, settle
+from frictionlab.methods.periodic.continuation import Curve, answer_curve
+from frictionlab.methods.periodic.fixed_point import Goal
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Body, in_the_plane, on_the_line
+from frictionlab.scene.scene import Initial, Scene
+from frictionlab.theory.uniqueness import falls_slowly, is_convergent
+
+
+def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
+    """Whether the motion is on a line: nothing pushes across the belt, and what moves across it dies out.
+
+    A bristle law damps motion across the slip up to some speed: here the largest that the loads could drive.
+    """
+    if scene.degrees_of_freedom < 2 or not isinstance(law, BristleLaw):
+        return scene.load_along_belt_only
+    mass = scene.mass()
+    swing = abs(mass.force) / mass.damping if mass.damping > 0.0 else math.inf  # at resonance
+    return scene.load_along_belt_only and law.damps_across(abs(scene.belt_speed) + swing)
+
+
+def remembered(law: FrictionLaw, directions: int) -> int:
+    """How many numbers a law remembers in so many directions."""
+    if isinstance(law, MemoryLaw):
+        return law.count() * (directions if law.memory_kind == "deflections" else 1)
+    return directions if isinstance(law, BristleLaw) else 0
+
+
+class Transient(NamedTuple):
+    """A motion followed until it repeats: after how many periods (0: never), its one-period means, its end."""
+
+    period: int
+    means: Floats
+    state: Floats
+    seconds: float
+
+
+FINEST = 1e-15
+"""No orbit is asked to be closed to less: rounding moves the mean more, and steps would go on for ever."""
+
+
+class PeriodicProblem:
+    """The kernels of shooting for scenes that differ in belt speed alone; on the line where nothing pushes across.
+
+    tolerance: on the mean friction.
+    """
+
+    def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float) -> None:
+        self.mass, self.law = scene.mass(), law
+        self.falls_slowly = falls_slowly(scene, law)
+        asks = not isinstance(law, SlidingLaw) and self.falls_slowly
+        self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), asks)
+        self.body: Body
+        self.like: complex  # a number of the kind of its positions
+        if along_the_belt(scene, law):
+            self.body, self.like = on_the_line(self.mass), 0.0
+        else:
+            self.body, self.like = in_the_plane(self.mass), 0j
+        directions = 2 if isinstance(self.like, complex) else 1
+        self.size = 2 * directions + remembered(law, directions)  # of a state
+
+    def closed(
+        self, scenes: Sequence[Scene], state: Floats | None = None, periods: float = 1.0
+    ) -> tuple[Curve, float]:
+        """The orbits of these scenes, from a known state at the first where there is one; and kernel time [s]."""
+        belt_speeds = np.array([scene.belt_speed for scene in scenes])
+        guess = np.empty((0, 0)) if state is None else state[None, :]
+        goal = self.goal if state is None else self.goal._replace(asks=False)
+        body = self.body._replace(periods=float(periods))
+        return timed(compiled(answer_curve, self.law), body, self.mass, belt_speeds, guess, goal, self.like)
+
+    def settled(self, start: Initial) -> tuple[Floats, int]:
+        """The state at which the mass stays put on a belt at rest, and in how many periods; -1 for never."""
+        accuracy = 1e-13 * self.mass.normal_load
+        return compiled(settle, self.law)(self.body, *self._at(start), accuracy)
+
+    def wandered(self, belt_speed: float, start: Initial | None, most: int) -> Transient:
+        """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
+        at = self._shaken(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
+        state = np.empty(self.size)
+        compiled(begin, self.law)(self.body, at, state)
+        return self._followed(belt_speed, state, most, self._rough())
+
+    def _rough(self) -> float:
+        """Accuracy of the maps that follow a motion: with memory of lower order, with one bristle smooth."""
+        if isinstance(self.law, SlidingLaw):
+            return 1e-9
+        return 1e-6 if isinstance(self.law, BristleLaw) else 1e-7
+
+    def means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
+        """The one-period means of an orbit of so many periods, from its state."""
+        return self._followed(belt_speed, state, periods, 1e-9).means
+
+    def _followed(self, belt_speed: float, state: Floats, most: int, relative: float) -> Transient:
+        means, states = np.empty(most), np.empty((most + 1, self.size))
+        states[0] = state
+        arguments = self.body, belt_speed, relative * self.mass.normal_load, means, states, self.like
+        (period, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
+        return Transient(period, means[:count], states[count], seconds)
+
+    def _shaken(self, belt_speed: float) -> tuple[complex, complex, complex]:
+        """On the friction-free orbit; with memory, remembering and shifted as in sliding that never reverses."""
+        x, v = self.body.reference_cosine, self.body.frequency * self.body.reference_sine
+        if isinstance(self.law, SlidingLaw):
+            return x, v, 0.0 * self.like
+        forward = math.copysign(1.0, belt_speed)
+        stiffness = self.body.stiffness_mean + self.body.stiffness_split
+        shift = forward * self.mass.normal_load * self.law.sliding_friction(abs(belt_speed)) / stiffness
+        behind = forward * self.law.largest_deflection() if isinstance(self.law, BristleLaw) else belt_speed
+        return x + shift, v, 0.0 * self.like - behind
+
+    def _at(self, start: Initial) -> tuple[complex, complex]:
+        x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)
+        return (x, v) if isinstance(self.like, complex) else (x.real, v.real)

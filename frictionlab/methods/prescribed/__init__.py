@@ -1,0 +1,1 @@
+"""Mean friction of a prescribed slip."""

@@ -1,0 +1,137 @@
+"""Bristle laws under a prescribed slip: the closed loop of the deflection, and what is read from it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from frictionlab.laws.memory import PER_AXIS, ROTATED, BristleLaw, in_the_plane, on_the_line
+from frictionlab.methods.base import Status
+from frictionlab.methods.prescribed.closed_loop_line import ONE_WAY, Along, line_loop
+from frictionlab.methods.prescribed.closed_loop_plane import plane_loop
+from frictionlab.methods.prescribed.loop import Closed, Loop, Open, Vectors
+from frictionlab.methods.prescribed.motion import Reading, prescribed_columns, undecided_columns
+from frictionlab.orbit.panels import NODES
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
+
+BY_SYMMETRY = "closed form: each half period of slip undoes the other"
+ROUNDING = 2.0**-50
+
+
+def refusal_of_prescribed(scene: Scene, law: BristleLaw) -> str | None:
+    """Why a prescribed slip cannot be answered for this law; None where it can."""
+    return law.no_vector_form() or None if _vectorial(scene, law) else None
+
+
+def along_one_line(scene: Scene, law: BristleLaw) -> bool:
+    """Whether the prescribed slip keeps to the belt's line, and the law with it."""
+    return scene.load_along_belt_only and (scene.transverse_slip is None or law.form != ROTATED)
+
+
+def saturates(scene: Scene, law: BristleLaw) -> bool:
+    """Whether the deflection along a slip that only turns ends at its limit: friction is then that of sliding."""
+    return law.form == ROTATED and law.constant_sliding_friction() and not along_one_line(scene, law)
+
+
+def _vectorial(scene: Scene, law: BristleLaw) -> bool:
+    return not along_one_line(scene, law) and law.planar == "vectorial"
+
+
+class BristlePoint:
+    """One scene of prescribed slip, a bristle law, and the answer."""
+
+    def __init__(self, scene: Scene, law: BristleLaw, tolerance: float) -> None:
+        self.motion, self.belt_speed = scene.motion(), scene.belt_speed
+        self.law = law.under_load(self.motion.normal_load)
+        self.planar = scene.transverse_slip is not None
+        self.loops = self._loops(along_one_line(scene, law), tolerance)
+        self.seconds = sum(loop.seconds for loop in self.loops)
+        self.status: Status = "ok"
+        self.reason, self.model, self.error_kind = "", "", "estimated"
+        self.columns = self._answer()
+
+    def _loops(self, one_line: bool, tolerance: float) -> list[Closed | Open]:
+        """The loop in the plane, or along the belt, or those of both axes."""
+        motion = self.motion
+        along = Along(motion.velocity, self.belt_speed, motion.frequency)
+        across = Along(motion.transverse_velocity, 0.0, motion.frequency)
+        if one_line:
+            return [line_loop(self.law, along, tolerance)]
+        if self.law.form == PER_AXIS:
+            return [line_loop(self.law, along, tolerance), line_loop(self.law, across, tolerance)]
+        return [plane_loop(self.law, motion, self.belt_speed, tolerance)]
+
+    def _answer(self) -> dict[str, float]:
+        first = self.loops[0]
+        if isinstance(first, Open):
+            self.status = "failed" if math.isnan(first.low) else "not_unique"
+            self.reason, self.error_kind = first.reason, ""
+            return undecided_columns(self.motion, first.low, first.high)
+        self.model = first.model
+        mean, error = first.loop.mean, first.error
+        if self.belt_speed == 0.0:
+            mean, error, self.model = 0j, ROUNDING * first.loop.largest, BY_SYMMETRY
+            self.error_kind = "guaranteed"
+        elif self._saturated(first):
+            self.error_kind = "guaranteed"
+        found = self._reading(mean, error, first.loop)
+        return prescribed_columns(self.motion, self.planar, found)
+
+    def _saturated(self, closed: Closed) -> bool:
+        return closed.model == ONE_WAY and self.law.constant_sliding_friction()
+
+    def _reading(self, mean: complex, error: float, loop: Loop) -> Reading:
+        """The first loop's columns, with heat and friction across the belt from the second where axes go apart."""
+        heat, turns = loop.heat, 2.0 if abs(self.belt_speed) < abs(self.motion.velocity) else 0.0
+        for other in self.loops[1:]:
+            mean = complex(mean.real, math.nan if isinstance(other, Open) else 0.0)
+            heat = math.nan if isinstance(other, Open) else heat + other.loop.heat
+        heat = heat / self.motion.frequency
+        taken = heat - 2.0 * math.pi / self.motion.frequency * self.belt_speed * mean.real
+        return Reading(mean, error, heat, taken, turns, loop.force_reversals)
+
+    def orbit(self) -> Orbit | None:
+        """One period of the prescribed motion, and the friction of the deflection along it."""
+        loops = [closed.loop for closed in self.loops if isinstance(closed, Closed)]
+        if self.status != "ok" or len(loops) < len(self.loops):
+            return None
+        angle = _angles(loops)
+        turn = np.exp(1j * angle)
+        motion = self.motion
+        v = (motion.velocity * turn).imag + 1j * (motion.transverse_velocity * turn).imag
+        x = (
+            -((motion.velocity * turn).real + 1j * (motion.transverse_velocity * turn).real)
+            / motion.frequency
+        )
+        friction = self._friction(v - self.belt_speed, [loop.deflection_at(angle) for loop in loops])
+        return Orbit(angle / motion.frequency, x, v, friction, np.zeros(len(angle), np.bool_))
+
+    def _friction(self, slip: Vectors, deflections: list[Floats]) -> Vectors:
+        z, law = deflections[0], self.law
+        if len(deflections) == 2:
+            pairs = zip(slip.real.flat, slip.imag.flat, z.flat, deflections[1].flat, strict=True)
+            values = [
+                complex(on_the_line(law, v1, z1)[1], on_the_line(law, v2, z2)[1]) for v1, v2, z1, z2 in pairs
+            ]
+        elif self._on_the_line():
+            values = [
+                complex(on_the_line(law, v, one)[1]) for v, one in zip(slip.real.flat, z.flat, strict=True)
+            ]
+        else:
+            values = [in_the_plane(law, v, complex(one))[1] for v, one in zip(slip.flat, z.flat, strict=True)]
+        return np.array(values).reshape(slip.shape)
+
+    def _on_the_line(self) -> bool:
+        """Whether the one loop is that of a line."""
+        return not self.planar or (self.motion.transverse_velocity == 0 and self.law.form != ROTATED)
+
+
+def _angles(loops: list[Loop]) -> Floats:
+    """Gauss-Lobatto nodes of panels from 0 to once around, none of which reaches over the edge of a loop's panel."""
+    edges = np.concatenate([loop.start for loop in loops]) % (2.0 * math.pi)
+    edges = np.unique(np.concatenate(([0.0, 2.0 * math.pi], edges)))
+    half = 0.5 * np.diff(edges)[:, None]
+    return np.asarray(edges[:-1, None] + half * (1.0 + NODES))

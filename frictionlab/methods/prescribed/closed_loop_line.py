@@ -1,0 +1,133 @@
+"""The closed loop of a bristle law under slip along one line: two exact legs, or the deflection followed.
+
+Both work with the slip velocity amplitude*(kappa + cos(psi)), kappa = |belt speed|/amplitude, which is minus the slip
+on a belt that runs forward.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.cache import compiled, timed
+from frictionlab.dynamics.radau_panel import Slip
+from frictionlab.laws.memory import BristleLaw
+from frictionlab.methods.prescribed.exact_legs import POINTS, SHARES, Legs, follow
+from frictionlab.methods.prescribed.loop import Closed, Loop, Open
+from frictionlab.methods.prescribed.motion import slow_passages
+from frictionlab.methods.prescribed.periodic_deflection import Accuracy, followed, layer, natural_reach
+from frictionlab.quantities import Floats
+
+EPSILON = 2.0**-52
+TWO_LEGS = "prescribed slip along a line: deflection exact along both legs, Gauss-Lobatto quadrature"
+ONE_WAY = "closed form: slip that never reverses saturates the deflection"
+FOLLOWED = (
+    "prescribed slip: deflection followed once around by Radau IIA collocation, closed by Newton's method"
+)
+SMOOTH = 1e-3
+"""Angle [rad] from which on slip that only touches rest is resolved by the steps alone: it has no kink there."""
+NOTHING_MOVES = "nothing moves: friction is that of the deflection at the start, anything up to its limit"
+ELASTIC = (
+    "the belt is at rest and the slip too short to move the contact beyond its elastic range: the deflection stays "
+    "about wherever it started"
+)
+
+
+class Along(NamedTuple):
+    """Slip along a line: phasor of the oscillation, belt speed, frequency."""
+
+    phasor: complex
+    belt_speed: float
+    frequency: float
+
+    @property
+    def size(self) -> float:
+        """The amplitude of the oscillation."""
+        return abs(self.phasor)
+
+    @property
+    def side(self) -> float:
+        """1 where the belt runs forward."""
+        return -1.0 if self.belt_speed < 0.0 else 1.0
+
+    @property
+    def turn(self) -> float:
+        """Half of the angle for which slip runs with the oscillation against the belt; 0 where it never does."""
+        speed, size = abs(self.belt_speed), self.size
+        return 2.0 * math.asin(math.sqrt(0.5 * (size - speed) / size)) if size > speed else 0.0
+
+
+def line_loop(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
+    """The closed loop, or why there is none."""
+    if along.size == 0.0 and along.belt_speed == 0.0:
+        most = abs(law.friction(0.0, natural_reach(law, 1.0), 0.0))
+        return Open(-most, most, NOTHING_MOVES)
+    room = law.elastic_deflection() - along.size / along.frequency
+    if along.belt_speed == 0.0 and room > 0.0:
+        most = abs(law.friction(0.0, room, 0.0))
+        return Open(-most, most, ELASTIC)
+    if not law.exact_path():
+        return _followed(law, along, tolerance)
+    return _legs(law, along) if along.turn > 0.0 else _one_way(law, along)
+
+
+def _legs(law: BristleLaw, along: Along) -> Closed:
+    reach, fastest = law.largest_deflection(), law.largest_rate(1.0)
+    length = min(reach, 1.0 / fastest) if 0.0 < fastest < math.inf else reach
+    kernel, loops, seconds = compiled(follow, law), [], 0.0
+    for cuts in (1.0, 2.0):
+        legs = Legs(along.turn, along.size / along.frequency, along.size, length, reach, cuts)
+        (start, *rest), spent = timed(kernel, legs)
+        seconds += spent
+        loops.append(_turned(along, (start + along.turn - math.pi, *rest), POINTS, SHARES))
+    coarse, fine = loops
+    error = 4.0 * abs(fine.mean - coarse.mean) + 64.0 * EPSILON * fine.largest
+    return Closed(fine, error, TWO_LEGS, seconds)
+
+
+def _one_way(law: BristleLaw, along: Along) -> Closed:
+    edges = np.linspace(-math.pi, math.pi, 33)
+    width = np.diff(edges)
+    angle = edges[:-1, None] + width[:, None] * POINTS
+    slip = along.size * np.cos(angle) + abs(along.belt_speed)
+    z = law.largest_deflection()
+    rub = np.array([[law.friction(v, z, law.rate(v, z)) for v in row] for row in slip.tolist()])
+    loop = _turned(along, (edges[:-1], width, slip, np.full(slip.shape, z), rub), POINTS, SHARES)
+    return Closed(loop, 16.0 * EPSILON * loop.largest, ONE_WAY, 0.0)
+
+
+def _followed(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
+    slip = Slip(1j * along.size, 0j, along.frequency, 0.0)
+    found = followed(
+        law, slip, _stretches(law, along), Accuracy.of(law, slip, along.belt_speed, tolerance), 0.0
+    )
+    if isinstance(found, Open):
+        return found
+    loop = found.loop
+    parts = loop.start, loop.width, loop.slip, loop.deflection, loop.friction
+    return found._replace(loop=_turned(along, parts, loop.points, loop.shares), model=FOLLOWED)
+
+
+def _turned(along: Along, parts: tuple[Any, ...], points: Floats, shares: Floats) -> Loop:
+    """The loop at the angles and with the signs of the slip itself."""
+    start, width, slip, deflection, friction = parts
+    shift = -0.5 * math.pi * along.side - cmath.phase(along.phasor)
+    side = complex(-along.side, 0.0)
+    return Loop(start + shift, width, points, shares, side * slip, side.real * deflection, side * friction)
+
+
+def _stretches(law: BristleLaw, along: Along) -> Floats:
+    speed, turn = abs(along.belt_speed), along.turn
+    if turn == 0.0:
+        passages = slow_passages(1j * along.size, 0j, -speed)
+        depth = max(min((depth for _, depth in passages), default=10.0), SMOOTH)
+        return np.array([[-math.pi, speed - along.size, 0.0, 0.0, 2.0 * math.pi, depth, depth]])
+    near = layer(
+        law, along.frequency, lambda h: 2.0 * along.size * math.sin(turn + 0.5 * h) * math.sin(0.5 * h)
+    )
+    forward = [turn - math.pi, 0.0, 0.0, 0.0, 2.0 * (math.pi - turn), near, 10.0]
+    back = [math.pi - turn, 0.0, 0.0, 0.0, 2.0 * turn, near, 10.0]
+    return np.array([forward, back])

@@ -1,0 +1,86 @@
+"""One period of a closed deflection under a prescribed slip, on panels, and what is read from it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.quantities import Floats
+
+Vectors = NDArray[np.complex128]
+
+
+class Loop(NamedTuple):
+    """Panels of a period in order of angle: start, width [n]; slip, deflection, friction [n, k], x1 + i x2.
+
+    points, shares [k]: places in a panel of width one, and the weights of its quadrature. The deflection is the law's
+    own number along one direction, or a vector; frictions and slips are vectors.
+    """
+
+    start: Floats
+    width: Floats
+    points: Floats
+    shares: Floats
+    slip: Vectors
+    deflection: Any
+    friction: Vectors
+
+    def total(self, values: Any) -> complex:
+        """The integral over the period of the angle."""
+        return complex((self.width[:, None] * self.shares * values).sum())
+
+    @property
+    def mean(self) -> complex:
+        """The mean coefficient along x1 (+ i x2), positive where the belt drags towards it."""
+        return -self.total(self.friction) / (2.0 * math.pi)
+
+    @property
+    def heat(self) -> float:
+        """The work of friction on the slip over a period, times frequency, per unit load."""
+        return self.total((self.friction * self.slip.conjugate()).real).real
+
+    @property
+    def largest(self) -> float:
+        """The largest coefficient met."""
+        return float(np.abs(self.friction).max())
+
+    @property
+    def force_reversals(self) -> float:
+        """Sign changes of friction along x1 in a period."""
+        along = self.friction.real.ravel()
+        signs = np.sign(along[np.abs(along) > 1e-12 * self.largest])
+        return float((signs != np.roll(signs, 1)).sum())
+
+    def deflection_at(self, angle: Floats) -> Any:
+        """The deflection at angles of the period, by each panel's polynomial."""
+        begin = self.start[0]
+        turned = begin + np.mod(angle - begin, 2.0 * math.pi)
+        panel = np.clip(np.searchsorted(self.start, turned, side="right") - 1, 0, len(self.start) - 1)
+        at = np.clip((turned - self.start[panel]) / self.width[panel], 0.0, 1.0)
+        value: Any = 0.0
+        for k, point in enumerate(self.points):
+            others = np.delete(self.points, k)
+            basis = np.prod((at[..., None] - others) / (point - others), axis=-1)
+            value = value + basis * self.deflection[panel, k]
+        return value
+
+
+class Closed(NamedTuple):
+    """A closed loop, the error of its mean, how it was found, and the kernel's seconds."""
+
+    loop: Loop
+    error: float
+    model: str
+    seconds: float
+
+
+class Open(NamedTuple):
+    """No single loop: the mean is anything between two numbers, or where they are NaN, none was found; and why."""
+
+    low: float
+    high: float
+    reason: str
+    seconds: float = 0.0

@@ -1,0 +1,117 @@
+"""Friction under a prescribed slip; without memory by quadrature to rounding, along the belt a closed form."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.methods.prescribed.motion import (
+    slow_passages,
+)
+from frictionlab.orbit.panels import NODES, WEIGHTS
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Motion
+
+EPSILON = 2.0**-52
+CLOSEST = 1e-16
+"""Angle [rad] at which the refinement towards a passage through rest ends: rounding of the angle itself."""
+
+
+class Integrals(NamedTuple):
+    """Over one period: mean resisting coefficient (complex), heat in the contact and work taken, per unit load.
+
+    largest: the largest coefficient met, the scale of rounding. direction: the mean direction of slip.
+    """
+
+    mean: complex
+    contact: float
+    taken: float
+    largest: float
+    direction: complex
+
+
+def belt_friction_at_rest(law: FrictionLaw) -> float:
+    return law.static_friction() if isinstance(law, SlidingLaw) else law.sliding_friction(0.0)
+
+
+def orbit_of_slip(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:
+    """One period of a harmonic motion about a mean position, and the friction along it."""
+    edges = slip_edges(motion, belt_speed)
+    angle, _ = nodes(np.unique(np.concatenate(([0.0, 2.0 * math.pi], edges % (2.0 * math.pi)))))
+    v, turn = velocity(motion, angle), np.exp(1j * angle)
+    x = -((motion.velocity * turn).real + 1j * (motion.transverse_velocity * turn).real) / motion.frequency
+    friction = sliding_vectors(law, v - belt_speed)
+    return Orbit(angle / motion.frequency, position + x, v, friction, np.zeros(len(angle), np.bool_))
+
+
+def slip_edges(motion: Motion, belt_speed: float) -> Floats:
+    """Angles between which the friction is analytic far enough around every panel."""
+    return graded_circle(slow_passages(motion.velocity, motion.transverse_velocity, belt_speed))
+
+
+def graded_circle(passages: list[tuple[float, float]]) -> Floats:
+    """Panel edges once around, from the first passage on, refined geometrically towards each."""
+    places = sorted((angle % (2.0 * math.pi), depth) for angle, depth in passages) or [(0.0, math.inf)]
+    following = [*places[1:], (places[0][0] + 2.0 * math.pi, places[0][1])]
+    pieces = []
+    for (here, depth), (there, next_depth) in zip(places, following, strict=True):
+        half = 0.5 * (there - here)
+        pieces += [here + _graded(half, depth), (there - _graded(half, next_depth))[::-1]]
+    return np.unique(np.concatenate(pieces))
+
+
+def _graded(length: float, depth: float) -> Floats:
+    """Steps from 0 to ``length`` of at most half the distance to a singularity ``depth`` away from 0."""
+    ends = [0.0]
+    while ends[-1] < length:
+        step = min(math.pi / 8.0, 0.5 * length, 0.5 * max(ends[-1], depth, CLOSEST))
+        ends.append(min(ends[-1] + step, length))
+    return np.array(ends)
+
+
+def halved(edges: Floats) -> Floats:
+    """The panels cut in two."""
+    return np.unique(np.concatenate((edges, 0.5 * (edges[1:] + edges[:-1]))))
+
+
+def nodes(edges: Floats) -> tuple[Floats, Floats]:
+    """Gauss-Lobatto nodes and weights of every panel."""
+    half = 0.5 * np.diff(edges)[:, None]
+    return edges[:-1, None] + half * (1.0 + NODES), half * WEIGHTS
+
+
+def velocity(motion: Motion, angle: Floats) -> NDArray[np.complex128]:
+    """x1' + i x2' at these angles of the period."""
+    turn = np.exp(1j * angle)
+    return (motion.velocity * turn).imag + 1j * (motion.transverse_velocity * turn).imag
+
+
+def sliding_vectors(law: FrictionLaw, slip: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """The friction that resists each slip; zero at rest, which is an instant without duration."""
+    if law.constant_sliding_friction():
+        return law.sliding_friction(1.0) * _directions(slip)
+    values = [law.sliding_vector(one) if one else 0j for one in slip.ravel().tolist()]
+    return np.array(values).reshape(slip.shape)
+
+
+def _directions(slip: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    speed = np.maximum(np.abs(slip), 1e-300)  # slower than that is at rest, and its inverse overflows
+    return slip / speed
+
+
+def integrals(motion: Motion, belt_speed: float, law: FrictionLaw, edges: Floats) -> Integrals:
+    """Quadrature over one period with these panels."""
+    angle, weights = nodes(edges)
+    v = velocity(motion, angle)
+    slip = v - belt_speed
+    friction = sliding_vectors(law, slip)
+    mean = complex((weights * friction).sum() / (2.0 * math.pi))
+    contact = float((weights * (friction * slip.conjugate()).real).sum()) / motion.frequency
+    taken = float((weights * (friction * v.conjugate()).real).sum()) / motion.frequency
+    direction = complex((weights * _directions(slip)).sum() / (2.0 * math.pi))
+    return Integrals(mean, contact, taken, float(np.abs(friction).max()), direction)

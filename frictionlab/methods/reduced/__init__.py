@@ -1,0 +1,1 @@
+"""Reduced models: direct separation of motion and one-harmonic balance, with bounds on their error."""

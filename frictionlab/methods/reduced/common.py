@@ -1,0 +1,180 @@
+"""What reduced models of Coulomb friction along a line share: the scenes they take, their model error, their answers.
+
+A reduced model gives the motion as one harmonic. What it leaves out is found by bounding the mean friction of the
+full problem independently of any stepping, from motions that reverse twice (two_reversals.py).
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.prescribed.quadrature import orbit_of_slip
+from frictionlab.methods.reduced.bounds import Line, bounds
+from frictionlab.methods.reduced.frequency_time import WIDEST, mistrusted, settle
+from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Motion
+from frictionlab.scene.scene import Scene
+from frictionlab.theory import friction_free_velocity
+
+REDUCED = (
+    " (one degree of freedom: without a load across the belt x2 dies out for every isotropic sliding law)"
+)
+COARSEST = 0.02
+"""Of means narrowed by feedback, relative to the friction coefficient: short spells of rest are not resolved."""
+ROUNDING = 1e-10
+"""Of bounds and models, relative to the friction coefficient: their formulas keep twelve digits or more."""
+
+
+@dataclass(frozen=True)
+class Harmonic:
+    """A model's motion at n belt speeds >= 0: Im(velocity exp(i Omega tau)), and the mean relative to mu.
+
+    energies: per period, by column name; empty for a model whose motion does not balance them.
+    reasons: why the model has no answer at a belt speed; empty where it has.
+    """
+
+    mean: Floats
+    velocity: NDArray[np.complex128]
+    energies: dict[str, Floats]
+    reasons: list[str]
+
+
+Model = Callable[[Scene, float, Floats], Harmonic]
+"""(scene, friction = mu*normal_load, belt speeds >= 0) -> the model's motion."""
+
+
+def line_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
+    """Why a reduced model of motion along the belt cannot do this scene and law at any belt speed."""
+    if scene.undriven:
+        return f"{name} needs a drive: it starts from the driven motion"
+    if not scene.load_along_belt_only:
+        return suggest_shooting(f"{name} works along one line: this scene has a transverse load", scene, law)
+    if not isinstance(law, SlidingLaw):
+        return f"{name} needs friction without memory (Coulomb)"
+    if not law.constant_sliding_friction():
+        return f"{name} needs friction that does not vary with speed (Coulomb)"
+    if not law.monotone():
+        return f"{name} cannot bound its error where rest holds more than slip (mu_static above mu); use shooting"
+    if not math.isfinite(friction_free_velocity(scene)):
+        return f"{name} starts from the friction-free motion, and at undamped resonance it has no bound; use exact"
+    return None
+
+
+def point_refusal(scene: Scene, friction: float) -> str:
+    """Why there is no one steady state at this belt speed; empty where there is."""
+    mass = scene.mass()
+    if scene.belt_speed == 0.0 and abs(mass.force) <= friction:
+        return "the belt is at rest and friction can hold the load for ever: the mass stays wherever it stops"
+    if mass.damping == 0.0 and abs(scene.belt_speed) >= friction_free_velocity(scene):
+        return "without damping and without slip reversal the free oscillation never dies; use exact"
+    return ""
+
+
+def answer_line(
+    scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, text: str, model: Model
+) -> Answers:
+    """Answers of a model on scenes that differ in belt speed alone, its error taken from the bounds."""
+    start = time.perf_counter()
+    mu, mass = law.sliding_friction(1.0), scenes[0].mass()
+    friction = mu * mass.normal_load
+    speeds = np.array([scene.belt_speed for scene in scenes])
+    found = model(scenes[0], friction, np.abs(speeds))
+    free = friction_free_velocity(scenes[0])
+    low, high = bounds(Line(0.5 * mass.damping, mass.frequency, friction, free), np.abs(speeds))
+    for i in np.flatnonzero(high - low > WIDEST).tolist():
+        low[i], high[i] = _narrowed(scenes[i], law, low[i], high[i])
+    columns = motion_columns(scenes[0], speeds, found)
+    columns["mean_friction"] = mu * np.copysign(found.mean, speeds)
+    columns["error"] = mu * (np.maximum(high - found.mean, found.mean - low) + ROUNDING)
+    columns["seconds"] = np.full(len(scenes), (time.perf_counter() - start) / len(scenes))
+    reasons = [
+        point_refusal(scene, friction) or own or _too_wide(width, mu)
+        for scene, own, width in zip(scenes, found.reasons, high - low, strict=True)
+    ]
+    text += REDUCED if scenes[0].degrees_of_freedom == 2 else ""
+
+    def orbit(i: int) -> Orbit | None:
+        return None if reasons[i] else _orbit(scenes[i], law, found, i)
+
+    return judged(columns, reasons, text, tolerance, orbit)
+
+
+def _narrowed(scene: Scene, law: FrictionLaw, low: float, high: float) -> tuple[float, float]:
+    """Bounds too far apart, narrowed by the mean that friction fed back to the motion leads to, where it does."""
+    mu = law.sliding_friction(1.0)
+    damped = scene.damping_ratio != 0.0
+    change = settle(scene, law) if damped and scene.belt_speed != 0.0 else None
+    if change is None or mistrusted(change, mu):
+        return low, high
+    mean, margin = math.copysign(1.0, scene.belt_speed) * change.after / mu, change.margin() / mu + COARSEST
+    return max(low, min(high, mean - margin)), min(high, max(low, mean + margin))
+
+
+def judged(
+    columns: dict[str, Floats],
+    reasons: Sequence[str],
+    text: str,
+    tolerance: float,
+    orbit: Callable[[int], Orbit | None],
+) -> Answers:
+    """Answers with the points that have a reason refused, and errors above the tolerance said."""
+    status: list[Status] = ["refused" if reason else "ok" for reason in reasons]
+    against = np.array([bool(reason) for reason in reasons])
+    columns = {
+        name: np.where(against & (name != "seconds"), np.nan, values) for name, values in columns.items()
+    }
+    said = [
+        reason or (f"model error above the tolerance {tolerance:.1e}" if not error <= tolerance else "")
+        for reason, error in zip(reasons, columns["error"], strict=True)
+    ]
+    kinds = ["" if reason else "estimated" for reason in reasons]
+    return Answers(status, said, ["" if reason else text for reason in reasons], kinds, columns, orbit)
+
+
+def _too_wide(width: float, mu: float) -> str:
+    if width <= WIDEST:
+        return ""
+    return (
+        f"no useful bound on the model error: stick or further reversals leave the mean anywhere within "
+        f"{width * mu:.2g}; use exact"
+    )
+
+
+def motion_columns(scene: Scene, speeds: Floats, found: Harmonic) -> dict[str, Floats]:
+    """Every column that one harmonic gives."""
+    force, size = scene.mass().force, np.abs(found.velocity)
+    turns = np.where(np.abs(speeds) < friction_free_velocity(scene), 2.0, 0.0)
+    nothing = np.zeros(len(speeds)) if scene.degrees_of_freedom == 2 else np.full(len(speeds), np.nan)
+    lead = np.full(len(speeds), np.nan)
+    if force != 0.0:
+        lead = np.where(size > 0.0, np.degrees(np.angle(found.velocity * np.conj(force))), np.nan)
+    return {
+        "mean_friction_transverse": nothing,
+        "velocity_amplitude": size,
+        "velocity_harmonic": size,
+        "velocity_phase": lead,
+        "transverse_velocity_amplitude": nothing,
+        "transverse_velocity_harmonic": nothing,
+        "reversals": turns,
+        "force_reversals": turns,
+        "period": np.ones(len(speeds)),
+        **found.energies,
+    }
+
+
+def _orbit(scene: Scene, law: FrictionLaw, found: Harmonic, i: int) -> Orbit:
+    """The model's motion about the position where its mean friction loads the spring."""
+    mass = scene.mass()
+    motion = Motion(mass.normal_load, mass.frequency, complex(found.velocity[i]), 0j)
+    pulled = mass.normal_load * law.sliding_friction(1.0) * math.copysign(found.mean[i], scene.belt_speed)
+    return orbit_of_slip(motion, scene.belt_speed, law, complex(pulled, 0.0))

@@ -1,0 +1,356 @@
+"""The friction of a bristle law over a periodic slip along a line, as kernels.
+
+A period is cut into panels with Radau nodes, short where slip turns. Slip at the nodes is given; the deflection
+follows from node to node by the law's own exact path, or else panel by panel as the polynomial that meets the
+law's rate at every node (Radau IIA: ninth order, and stiff bristles do not limit the panels). Its start is the one
+from which it repeats.
+
+Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.5.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner, njit
+from frictionlab.dynamics import radau_panel
+from frictionlab.dynamics.contact import resistance
+from frictionlab.dynamics.radau_panel import STAGES
+from frictionlab.quantities import Floats
+
+NODES: Floats = 2.0 * radau_panel.NODES - 1.0
+"""Of Radau quadrature on [-1, 1], the right end included."""
+INTEGRAL: Floats = 2.0 * radau_panel.MATRIX
+"""From -1 to each node, of the polynomial through the nodes."""
+WEIGHTS: Floats = INTEGRAL[-1].copy()
+
+MOST_PANELS = 600
+MOST_CORRECTIONS = 25
+MOST_CLOSINGS = 60
+CLOSED = 1e-13
+"""What a deflection may miss its start by after a period, relative to the largest."""
+FINEST = 1e-7
+"""Shortest panel [rad]."""
+COARSEST = math.pi / 16.0
+SHARE = 0.1
+"""Path in a panel, of the largest deflection, while bristles of a law without an exact path yield."""
+SETTLING = 8.0
+"""Path after a turn, of the largest deflection, until they have."""
+
+
+class Contact(NamedTuple):
+    """How to follow a law: ``exact`` (1 or 0) along its exact path, its largest deflection [scene length]."""
+
+    exact: float
+    size: float
+
+
+class Harmonics(NamedTuple):
+    """Of a friction coefficient over the slip amplitude*sin(theta) - belt_speed: its mean and its parts along
+    sin(theta), in quadrature to the displacement, and along cos(theta); how often it changes sign; and by what share
+    a disturbance of the deflection shrinks in a period."""
+
+    mean: float
+    sine: float
+    cosine: float
+    sign_changes: float
+    multiplier: float
+
+
+@inner
+def _solved(matrix: Any, right: Any) -> None:
+    """``right`` [n, columns] becomes the solution of a small linear system; ``matrix`` is used up."""
+    n, columns = right.shape
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        _swapped(matrix, k, best, n)
+        _swapped(right, k, best, columns)
+        for i in range(k + 1, n):
+            share = matrix[i, k] / matrix[k, k]
+            if share != 0.0:
+                for j in range(k, n):
+                    matrix[i, j] = matrix[i, j] - share * matrix[k, j]
+                for j in range(columns):
+                    right[i, j] = right[i, j] - share * right[k, j]
+    for column in range(columns):
+        for k in range(n - 1, -1, -1):
+            for j in range(k + 1, n):
+                right[k, column] = right[k, column] - matrix[k, j] * right[j, column]
+            right[k, column] = right[k, column] / matrix[k, k]
+
+
+@inner
+def _swapped(matrix: Any, one: int, other: int, columns: int) -> None:
+    for j in range(columns):
+        kept = matrix[one, j]
+        matrix[one, j] = matrix[other, j]
+        matrix[other, j] = kept
+
+
+@inner
+def _straight(law: Any, last: float, half: float, slip: Any, z: float, deflections: Any) -> float:
+    """The deflection at every node of a panel along the exact path; ``last`` is the slip before it."""
+    before, gone, node = last, 0.0, -1.0
+    for k in range(STAGES):
+        now, path = slip[k], 0.0
+        for j in range(STAGES):
+            path = path + half * INTEGRAL[k, j] * slip[j]
+        step, time = path - gone, half * (NODES[k] - node)
+        if before * now < 0.0:  # out and back; the shorter of both as if slip grew straight from its turn
+            out = 0.5 * time * before * before / (before - now)
+            if abs(now) < abs(before):
+                out = step - 0.5 * time * now * now / (now - before)
+            z, step = law.deflected(z, out), step - out
+        z = law.deflected(z, step)
+        deflections[k] = z
+        before, gone, node = now, path, NODES[k]
+    return z
+
+
+@inner
+def _collocated(
+    law: Any, half: float, slip: Any, z: float, size: float, work: Any, right: Any, found: Any
+) -> float:
+    """The deflection at every node of a panel, its rate met at each of them."""
+    small, at, node = 1e-7 * size, z, -1.0
+    for k in range(STAGES):  # a first guess from node to node, linearly implicit
+        time = half * (NODES[k] - node)
+        rate = law.rate(slip[k], at)
+        slope = min((law.rate(slip[k], at + small) - rate) / small, 0.0)
+        at = at + time * rate / (1.0 - time * slope)
+        found[k], node = at, NODES[k]
+    for _ in range(MOST_CORRECTIONS):
+        for i in range(STAGES):
+            right[i, 0] = z - found[i]
+        for j in range(STAGES):
+            rate = law.rate(slip[j], found[j])
+            slope = (law.rate(slip[j], found[j] + small) - rate) / small
+            for i in range(STAGES):
+                right[i, 0] = right[i, 0] + half * INTEGRAL[i, j] * rate
+                work[i, j] = -half * INTEGRAL[i, j] * slope
+            work[j, j] = work[j, j] + 1.0
+        _solved(work, right)
+        moved = 0.0
+        for i in range(STAGES):
+            found[i] = found[i] + right[i, 0]
+            moved = max(moved, abs(right[i, 0]))
+        if not moved > 1e-12 * size:
+            break
+    return found[STAGES - 1]
+
+
+@inner
+def _period(law: Any, contact: Any, halves: Any, slip: Any, z: float, deflections: Any, count: int) -> float:
+    """The deflection at every node of ``count`` panels, begun at z; what it ends at."""
+    work, right = np.empty((STAGES, STAGES)), np.empty((STAGES, 1))
+    last = slip[count - 1, STAGES - 1]
+    for p in range(count):
+        if contact.exact > 0.0:
+            z = _straight(law, last, halves[p], slip[p], z, deflections[p])
+        else:
+            z = _collocated(law, halves[p], slip[p], z, contact.size, work, right, deflections[p])
+        last = slip[p, STAGES - 1]
+    return z
+
+
+@inner
+def _closed(law: Any, contact: Any, halves: Any, slip: Any, deflections: Any, count: int) -> float:
+    """Deflections that repeat: their start; periods never cross, so that it is bracketed. Last is the multiplier."""
+    size = contact.size
+    low, high, z = -size, size, 0.0
+    last, last_gap, slope = math.nan, math.nan, 0.0
+    for step in range(MOST_CLOSINGS):
+        end = _period(law, contact, halves, slip, z, deflections, count)
+        gap = end - z
+        if z != last and step > 0:
+            slope = (gap - last_gap) / (z - last)
+        if abs(gap) <= CLOSED * size:
+            break
+        if gap > 0.0:
+            low = max(low, z)
+        else:
+            high = min(high, z)
+        following = end
+        if step > 1:
+            following = z - gap / slope if slope < 0.0 else 0.5 * (low + high)
+        if not low <= following <= high or step % 12 == 11:
+            following = 0.5 * (low + high)
+        last, last_gap, z = z, gap, following
+        if high - low <= CLOSED * size:
+            break
+    return 1.0 + slope
+
+
+@njit
+def friction_over(law: Any, contact: Any, halves: Any, slip: Any) -> Any:
+    """The friction coefficient at the nodes [panels, nodes] of a periodic slip; panels by half their duration."""
+    friction = np.empty(slip.shape)
+    _closed(law, contact, halves, slip, friction, len(halves))
+    for p in range(len(halves)):
+        for k in range(STAGES):
+            _, friction[p, k] = resistance(law, slip[p, k], friction[p, k])
+    return friction
+
+
+@njit
+def disturbance_over(law: Any, contact: Any, mass: Any, halves: Any, slip: Any) -> Any:
+    """What a period makes of small disturbances of position, velocity and deflection of a mass with this slip [3, 3].
+
+    mass: its damping, stiffness and normal load.
+    """
+    deflections = np.empty(slip.shape)
+    _closed(law, contact, halves, slip, deflections, len(halves))
+    matrix, right = np.empty((3 * STAGES, 3 * STAGES)), np.empty((3 * STAGES, 3))
+    slopes, state = np.zeros((3, 3)), np.eye(3)
+    for p in range(len(halves)):
+        for row in range(3 * STAGES):
+            for column in range(3 * STAGES):
+                matrix[row, column] = 1.0 if row == column else 0.0
+            for column in range(3):
+                right[row, column] = state[row % 3, column]
+        for k in range(STAGES):
+            _slopes(law, contact, mass, slip[p, k], deflections[p, k], slopes)
+            for i in range(STAGES):
+                for row in range(3):
+                    for column in range(3):
+                        part = halves[p] * INTEGRAL[i, k] * slopes[row, column]
+                        matrix[3 * i + row, 3 * k + column] = matrix[3 * i + row, 3 * k + column] - part
+        _solved(matrix, right)
+        for row in range(3):
+            for column in range(3):
+                state[row, column] = right[3 * (STAGES - 1) + row, column]
+    return state
+
+
+@inner
+def _slopes(law: Any, contact: Any, mass: Any, v: float, z: float, slopes: Any) -> None:
+    """Of (x', v', z') by (x, v, z), friction's by differences."""
+    damping, stiffness, normal_load = mass
+    small_v, small_z = 1e-7 * max(abs(v), 1e-3 * contact.size), 1e-7 * contact.size
+    rate, friction = resistance(law, v, z)
+    rate_v, friction_v = resistance(law, v + small_v, z)
+    rate_z, friction_z = resistance(law, v, z + small_z)
+    slopes[0, 1] = 1.0
+    slopes[1, 0] = -stiffness
+    slopes[1, 1] = -damping - normal_load * (friction_v - friction) / small_v
+    slopes[1, 2] = -normal_load * (friction_z - friction) / small_z
+    slopes[2, 1] = (rate_v - rate) / small_v
+    slopes[2, 2] = (rate_z - rate) / small_z
+
+
+@inner
+def _edges(turn: float, reach: Any, least: float, size: float, corners: Any, edges: Any) -> int:
+    """Panel edges of one period from ``turn`` on, short near it and near pi - turn; their number.
+
+    Until the path behind a turn is some ``size``, no panel is longer than a part of it.
+    """
+    amplitude, belt_speed, frequency = reach
+    reverses = amplitude > belt_speed
+    there, end = math.pi - turn, turn + 2.0 * math.pi
+    at, count = turn, 1
+    edges[0] = turn
+    while at < end and count < MOST_PANELS:
+        near = min(abs(at - turn), abs(at - there), abs(end - at))
+        step = min(COARSEST, max(least, 0.5 * near))
+        behind = turn if at < there else there
+        path = amplitude * (math.cos(behind) - math.cos(at)) - belt_speed * (at - behind)
+        if reverses and abs(path) < SETTLING * size * frequency:
+            pace = abs(amplitude * math.sin(at) - belt_speed)
+            step = min(step, max(0.2 * least, SHARE * size * frequency / max(pace, 1e-300)))
+        following = at + step
+        for stop in (corners[0], corners[1], there if reverses else end, end):
+            if at < stop < following + 0.25 * least:
+                following = stop
+        # towards a reversal the panels shrink as they grew behind the last
+        ahead = there if at < there else end
+        if reverses and following < ahead:
+            following = min(following, max(at + least, at + 0.34 * (ahead - at)))
+            if ahead - following < 0.5 * least:
+                following = ahead
+        edges[count] = following
+        at, count = following, count + 1
+    return count
+
+
+@inner
+def _corner(law: Any, z: float, side: float, start: float, end: float, reach: Any) -> float:
+    """Where on a leg friction stops changing; nowhere (-inf) where it does not."""
+    amplitude, belt_speed, frequency = reach
+    wanted = law.saturation_path(z, side) * frequency
+    if not 0.0 < wanted < math.inf:
+        return -math.inf
+    low, high = start, end
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        path = amplitude * (math.cos(start) - math.cos(middle)) - belt_speed * (middle - start)
+        if side * path < wanted:
+            low = middle
+        else:
+            high = middle
+    return low if high < end else -math.inf
+
+
+@inner
+def _laid(edges: Any, count: int, reach: Any, halves: Any, slip: Any, angles: Any) -> None:
+    """Angles and slip at the nodes of the panels between these edges."""
+    amplitude, belt_speed, frequency = reach
+    for p in range(count - 1):
+        half = 0.5 * (edges[p + 1] - edges[p])
+        halves[p] = half / frequency
+        for k in range(STAGES):
+            angles[p, k] = edges[p] + half * (1.0 + NODES[k])
+            slip[p, k] = amplitude * math.sin(angles[p, k]) - belt_speed
+
+
+@njit
+def harmonic_friction(law: Any, contact: Any, amplitude: float, belt_speed: float, frequency: float) -> Any:
+    """Harmonics of friction over the slip amplitude*sin(theta) - belt_speed, belt_speed >= 0; see Harmonics."""
+    reach = (amplitude, belt_speed, frequency)
+    reverses = amplitude > belt_speed
+    turn, least = 0.5 * math.pi, COARSEST
+    if reverses:
+        turn = math.asin(belt_speed / amplitude)
+        pace = amplitude * math.cos(turn) / frequency
+        least = 0.25 * math.sqrt(2.0 * contact.size / max(pace, 1e-300))
+        least = max(FINEST, min(least, 0.125 * (math.pi - 2.0 * turn), COARSEST))
+    elif amplitude > 0.0:
+        least = max(FINEST, min(COARSEST, math.sqrt(2.0 * (belt_speed / amplitude - 1.0))))
+    yielding = contact.size if contact.exact == 0.0 else 0.0
+    edges, corners = np.empty(MOST_PANELS + 1), np.array([-math.inf, -math.inf])
+    count = _edges(turn, reach, least, yielding, corners, edges)
+    halves, shape = np.empty(MOST_PANELS + 1), (MOST_PANELS + 1, STAGES)
+    slip, angles, deflections = np.empty(shape), np.empty(shape), np.empty(shape)
+    _laid(edges, count, reach, halves, slip, angles)
+    multiplier = _closed(law, contact, halves, slip, deflections, count - 1)
+    if reverses and contact.exact > 0.0:
+        there, end = math.pi - turn, turn + 2.0 * math.pi
+        back = 0.0
+        for p in range(count - 1):
+            if edges[p + 1] == there:
+                back = deflections[p, STAGES - 1]
+        start = deflections[count - 2, STAGES - 1]
+        corners[0] = _corner(law, start, 1.0, turn, there, reach)
+        corners[1] = _corner(law, back, -1.0, there, end, reach)
+        if max(corners[0], corners[1]) > -math.inf:
+            count = _edges(turn, reach, least, yielding, corners, edges)
+            _laid(edges, count, reach, halves, slip, angles)
+            _period(law, contact, halves, slip, start, deflections, count - 1)
+    mean, sine, cosine, changes, last = 0.0, 0.0, 0.0, 0.0, 0.0
+    for p in range(count - 1):
+        for k in range(STAGES):
+            _, friction = resistance(law, slip[p, k], deflections[p, k])
+            share = WEIGHTS[k] * halves[p] * frequency / (2.0 * math.pi)
+            mean = mean + share * friction
+            sine = sine + 2.0 * share * friction * math.sin(angles[p, k])
+            cosine = cosine + 2.0 * share * friction * math.cos(angles[p, k])
+            changes = changes + (1.0 if last * friction < 0.0 else 0.0)
+            last = friction if friction != 0.0 else last
+    _, first = resistance(law, slip[0, 0], deflections[0, 0])
+    changes = changes + (1.0 if last * first < 0.0 else 0.0)
+    return mean, sine, cosine, changes, multiplier

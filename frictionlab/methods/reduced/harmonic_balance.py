@@ -1,0 +1,112 @@
+"""Harmonic balance with one harmonic: the motion a sine, friction by its mean and first harmonic."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import ClassVar
+
+import numpy as np
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.memory import BristleLaw
+from frictionlab.methods.base import Answers, Method
+from frictionlab.methods.reduced.bristle import answer_bristle, bristle_refusal
+from frictionlab.methods.reduced.common import Harmonic, answer_line, line_refusal
+from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.numerics.roots import monotone_root
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
+from frictionlab.theory import friction_free_velocity, one_harmonic_least_ratio, one_harmonic_velocity
+
+TEXT = "one harmonic of x1' and of Coulomb friction balanced (Eqs. 5, 8, 9 in explicit form)"
+AT_REST = (
+    "with the belt at rest one harmonic slides only if the load exceeds 4/pi of mu*normal_load; use exact"
+)
+
+
+class HarmonicBalance(Method):
+    """One harmonic of motion and friction balanced along the belt; for Coulomb friction its curve is explicit.
+
+    Amplitude and belt speed follow from their ratio without a search (theory.one_harmonic_velocity); only a given
+    belt speed asks for that ratio, the one root of a rising function. The error is what the left-out harmonics,
+    stick included, do to the mean: bounds on it come from motions that reverse twice with all their harmonics.
+
+    Bristle friction has a part in phase with the displacement as well, and both parts ask for a loop of the law at
+    every amplitude looked at (methods/harmonic_bristle.py); its error comes from the motion of all harmonics.
+
+    Source: Sulollari, van Dalen & Cabboi, Eqs. 5, 8 and 9 and appendix A.
+    """
+
+    name: ClassVar[str] = "harmonic_balance"
+
+    def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
+        """Anything but Coulomb or bristle friction on one line under a drive that bounds the friction-free motion."""
+        if scene.degrees_of_freedom == 0:
+            reason = "harmonic_balance seeks the motion of the mass, and a prescribed slip leaves it none"
+            return suggest_shooting(reason, scene, law)
+        if isinstance(law, BristleLaw):
+            return bristle_refusal(self.name, scene, law)
+        return line_refusal(self.name, scene, law)
+
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        """Answer scenes that differ in belt speed alone."""
+        if isinstance(law, BristleLaw):
+            return answer_bristle(scenes, law, tolerance)
+        return answer_line(scenes, law, tolerance, TEXT, one_harmonic)
+
+    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
+        """Two root searches on whole arrays; slow drives need more samples to be sure of the reversals.
+
+        With bristles a search for every amplitude that balances, and their motion of all harmonics.
+        """
+        if isinstance(law, BristleLaw):
+            return 4e-2
+        return 5e-5 * max(1.0, 1.0 / scene.frequency)
+
+
+def one_harmonic(scene: Scene, friction: float, belt_speeds: Floats) -> Harmonic:
+    """The one-harmonic motion at belt speeds >= 0; from V_lin on, the friction-free one."""
+    angle = _reversal(scene, friction, belt_speeds)
+    ratio = np.cos(angle)
+    free, mass = friction_free_velocity(scene), scene.mass()
+    reverses = belt_speeds < free
+    size = np.where(reverses, one_harmonic_velocity(scene, friction, ratio), free)
+    held = np.where(reverses, 4.0 / np.pi * friction * np.sin(angle), 0.0)
+    real = mass.damping + held / np.where(size > 0.0, size, 1.0)
+    impedance = real + 1j * (mass.frequency - mass.stiffness / mass.frequency)
+    velocity = size * np.exp(1j * (np.angle(mass.force) - np.angle(impedance)))
+    mean = np.where(
+        reverses, 1.0 - 2.0 / np.pi * angle, 1.0
+    )  # Eq. 5, without the arcsine's cancellation near 1
+    held_still = (belt_speeds == 0.0) & (one_harmonic_least_ratio(scene, friction) > 0.0)
+    reasons = [AT_REST if still else "" for still in held_still]
+    return Harmonic(mean, velocity, _energies(scene, friction, belt_speeds, size, held, mean), reasons)
+
+
+def _reversal(scene: Scene, friction: float, belt_speeds: Floats) -> Floats:
+    """Phase from the peak of x1' to reversal, arccos of belt speed over amplitude: resolved where that tends to 1."""
+    widest = math.acos(one_harmonic_least_ratio(scene, friction))
+
+    def excess(angle: Floats) -> Floats:
+        ratio = np.cos(angle)
+        return np.asarray(ratio * one_harmonic_velocity(scene, friction, ratio) - belt_speeds)
+
+    size = np.ones(len(belt_speeds))
+    angle = monotone_root(excess, 0.0 * size, widest * size)
+    return np.where(belt_speeds == 0.0, 0.5 * math.pi, angle)
+
+
+def _energies(
+    scene: Scene, friction: float, belt_speeds: Floats, size: Floats, held: Floats, mean: Floats
+) -> dict[str, Floats]:
+    """Per period; the balanced harmonic closes them."""
+    mass = scene.mass()
+    period = 2.0 * math.pi / mass.frequency
+    viscous, rubbed = 0.5 * mass.damping * size**2 * period, 0.5 * held * size * period
+    return {
+        "energy_input": viscous + rubbed,
+        "energy_viscous": viscous,
+        "energy_friction": rubbed,
+        "energy_contact": rubbed + belt_speeds * friction * mean * period,
+    }

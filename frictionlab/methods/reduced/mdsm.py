@@ -1,0 +1,221 @@
+"""Direct separation of motion: the mean friction of the friction-free motion."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import ClassVar
+
+import numpy as np
+
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.methods.base import Answers, Method
+from frictionlab.methods.prescribed.method import solve_prescribed
+from frictionlab.methods.prescribed.quadrature import EPSILON, integrals, orbit_of_slip, slip_edges
+from frictionlab.methods.reduced.common import ROUNDING, Harmonic, answer_line, judged, line_refusal
+from frictionlab.methods.reduced.frequency_time import mistrusted, settle
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Motion
+from frictionlab.scene.scene import Scene
+from frictionlab.theory import (
+    friction_free_velocity,
+    mean_prescribed_circular,
+    mean_prescribed_longitudinal,
+    mean_prescribed_transverse,
+)
+
+ALONG = "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)"
+PLANE = "direct separation of motion: quadrature over the friction-free motion"
+
+
+class Mdsm(Method):
+    """Direct separation of motion: the fast motion as if there were no friction, friction averaged over it.
+
+    Along the belt a closed form, in the plane a quadrature over the friction-free ellipse. A prescribed slip has no
+    motion to separate: its mean is exact, in closed form along the belt, across it and for a circle, by quadrature
+    for other ellipses. The error is what friction does to the motion: along the belt bounded by motions that
+    reverse twice, in the plane by feeding friction back to the motion until it settles.
+
+    Source: Sulollari, van Dalen & Cabboi, Eqs. 5 and 6; in the plane the same mean over both components.
+    """
+
+    name: ClassVar[str] = "mdsm"
+
+    def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
+        """Friction with memory, no drive, no one steady state; what cannot be bounded is refused by ``solve``."""
+        if not isinstance(law, SlidingLaw):
+            return "mdsm averages friction without memory (a sliding law)"
+        if scene.degrees_of_freedom == 0:
+            return None
+        if scene.undriven:
+            return "mdsm needs a drive: it averages over the driven motion"
+        if _in_closed_form(scene, law):
+            return line_refusal(self.name, scene, law)
+        return _plane_refusal(scene, law)
+
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        """Answer scenes that differ in belt speed alone."""
+        if scenes[0].degrees_of_freedom == 0:
+            return _answer_prescribed(scenes, law, tolerance)
+        if _in_closed_form(scenes[0], law):
+            return answer_line(scenes, law, tolerance, ALONG, friction_free)
+        return _answer_plane(scenes, law, tolerance)
+
+    def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
+        """Nearly all of it for the error: a root search on whole arrays, or friction fed back point by point."""
+        if scene.degrees_of_freedom == 0 or not _in_closed_form(scene, law):
+            return 3e-3
+        return 5e-5 * max(1.0, 1.0 / scene.frequency)
+
+
+def _in_closed_form(scene: Scene, law: FrictionLaw) -> bool:
+    return scene.load_along_belt_only and law.constant_sliding_friction()
+
+
+def _plane_refusal(scene: Scene, law: SlidingLaw) -> str | None:
+    mass = scene.mass()
+    damping = [mass.damping] if scene.load_along_belt_only else [mass.damping, mass.transverse_damping]
+    if min(damping) == 0.0:
+        return "mdsm needs damping in every driven direction: without it the motion depends on the start"
+    if law.steepest_fall() * mass.normal_load >= min(damping):
+        return "mdsm needs friction that falls with speed by less than damping makes up for: else states may be many"
+    return None
+
+
+def friction_free(scene: Scene, friction: float, belt_speeds: Floats) -> Harmonic:
+    """The linear response, whatever the friction; friction has no share in its energies, which are left out."""
+    free, motion = friction_free_velocity(scene), friction_free_motion(scene)
+    ratio = belt_speeds / free if free else np.where(belt_speeds > 0.0, math.inf, 0.0)
+    mean = mean_prescribed_longitudinal(np.minimum(ratio, 1.0))
+    velocity = np.full(len(belt_speeds), motion.velocity)
+    return Harmonic(mean, velocity, {}, [""] * len(belt_speeds))
+
+
+def friction_free_motion(scene: Scene) -> Motion:
+    """The linear response along and across the belt."""
+    mass = scene.mass()
+    along = mass.damping + 1j * (mass.frequency - mass.stiffness / mass.frequency)
+    across = mass.transverse_damping + 1j * (mass.frequency - mass.transverse_stiffness / mass.frequency)
+    sideways = mass.transverse_force / across if mass.transverse_force else 0j
+    return Motion(mass.normal_load, mass.frequency, mass.force / along, sideways)
+
+
+def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+    start = time.perf_counter()
+    motion = friction_free_motion(scenes[0])
+    points = [_point(scene, law, motion) for scene in scenes]
+    reasons = [reason for _, reason in points]
+    columns = {name: np.array([row[name] for row, _ in points]) for name in points[0][0]}
+    columns |= _harmonic_columns(scenes, motion)
+    columns["seconds"] = np.full(len(scenes), (time.perf_counter() - start) / len(scenes))
+
+    def orbit(i: int) -> Orbit | None:
+        if reasons[i]:
+            return None
+        return orbit_of_slip(motion, scenes[i].belt_speed, law, _position(scenes[i], points[i][0]))
+
+    return judged(columns, reasons, PLANE, tolerance, orbit)
+
+
+def _point(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[dict[str, float], str]:
+    """Mean friction and its error, and why they do not stand."""
+    edges = slip_edges(motion, scene.belt_speed)
+    found = integrals(motion, scene.belt_speed, law, edges)
+    mean = 0j if scene.belt_speed == 0.0 else -found.mean
+    row = {
+        "mean_friction": mean.real,
+        "error": ROUNDING * found.largest,
+        "mean_friction_transverse": mean.imag if scene.degrees_of_freedom == 2 else math.nan,
+    }
+    if scene.belt_speed == 0.0:
+        return row, _at_rest(scene, law)
+    error, reason = _error(scene, law, mean.real, found.largest)
+    return row | {"error": row["error"] + error}, reason
+
+
+def _error(scene: Scene, law: FrictionLaw, mean: float, largest: float) -> tuple[float, str]:
+    """What friction does to the mean through the motion, and why that is not known."""
+    change = settle(scene, law)
+    reason = mistrusted(change, largest)
+    if change is None or reason:
+        return math.nan, reason
+    error = abs(change.after - change.before) + change.margin()
+    if law.constant_sliding_friction():  # proved: the mean lies between 0 and mu
+        size = math.copysign(1.0, scene.belt_speed) * mean
+        error = min(error, max(size, largest - size))
+    return error, ""
+
+
+def _at_rest(scene: Scene, law: FrictionLaw) -> str:
+    """Why the mean over a belt at rest, zero by symmetry, is not the only one; empty where it is."""
+    mass = scene.mass()
+    forward = abs(mass.force + 1j * mass.transverse_force)
+    backward = abs(mass.force.conjugate() + 1j * mass.transverse_force.conjugate())
+    assert isinstance(law, SlidingLaw)
+    if 0.5 * (forward + backward) > law.static_friction() * mass.normal_load:
+        return ""
+    return "the belt is at rest and friction can hold the loads for ever: the mass stays wherever it stops"
+
+
+def _harmonic_columns(scenes: Sequence[Scene], motion: Motion) -> dict[str, Floats]:
+    """What the friction-free motion gives at every belt speed."""
+    along, across, force = motion.velocity, motion.transverse_velocity, scenes[0].mass().force
+    planar = scenes[0].degrees_of_freedom == 2
+    turns = [2.0 if abs(scene.belt_speed) < abs(along) else 0.0 for scene in scenes]
+    same = {
+        "velocity_amplitude": abs(along),
+        "velocity_harmonic": abs(along),
+        "velocity_phase": _lead(along, force),
+        "transverse_velocity_amplitude": abs(across) if planar else math.nan,
+        "transverse_velocity_harmonic": abs(across) if planar else math.nan,
+        "transverse_velocity_phase": _lead(across, force) if planar else math.nan,
+        "period": 1.0,
+    }
+    columns = {name: np.full(len(scenes), value) for name, value in same.items()}
+    return columns | {"reversals": np.array(turns), "force_reversals": np.array(turns)}
+
+
+def _lead(velocity: complex, force: complex) -> float:
+    """Phase [degrees] by which a velocity leads the load along x1."""
+    return math.degrees(float(np.angle(velocity * force.conjugate()))) if velocity and force else math.nan
+
+
+def _position(scene: Scene, row: dict[str, float]) -> complex:
+    """Where mean friction holds the springs."""
+    mass, across = scene.mass(), row["mean_friction_transverse"]
+    sideways = 0.0 if math.isnan(across) else mass.normal_load * across / mass.transverse_stiffness
+    return complex(mass.normal_load * row["mean_friction"], sideways)
+
+
+def _answer_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+    """The exact mean; where there is a closed form beyond the one along the belt, by that."""
+    answers = solve_prescribed(scenes, law, tolerance)
+    if not law.constant_sliding_friction():
+        return answers
+    mu, model = law.sliding_friction(1.0), list(answers.model)
+    reason, kind = list(answers.reason), list(answers.error_kind)
+    columns = {name: values.copy() for name, values in answers.columns.items()}
+    for i, scene in enumerate(scenes):
+        closed = _closed_form(scene.motion(), scene.belt_speed) if answers.status[i] == "ok" else None
+        if closed is not None:
+            columns["mean_friction"][i], model[i] = mu * closed[0], closed[1]
+            columns["error"][i], kind[i], reason[i] = 32.0 * EPSILON * mu, "guaranteed", ""
+    return replace(answers, columns=columns, model=model, error_kind=kind, reason=reason)
+
+
+def _closed_form(motion: Motion, belt_speed: float) -> tuple[float, str] | None:
+    """The mean relative to mu, and what slip it is of."""
+    along, across = motion.velocity, motion.transverse_velocity
+    if along == 0.0 and across != 0.0:
+        return float(
+            mean_prescribed_transverse(belt_speed / abs(across))
+        ), "closed form: slip prescribed across the belt"
+    turning = sorted((abs(along + 1j * across), abs(along - 1j * across)))
+    if along != 0.0 and turning[0] <= 4.0 * EPSILON * turning[1]:
+        return float(
+            mean_prescribed_circular(belt_speed / abs(along))
+        ), "closed form: slip prescribed on a circle"
+    return None

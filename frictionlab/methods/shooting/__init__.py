@@ -1,0 +1,1 @@
+"""Shooting: fixed points of the period map for any law."""

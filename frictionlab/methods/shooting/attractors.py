@@ -1,0 +1,160 @@
+"""Whether every start reaches the same steady state, where no theorem says so."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from frictionlab.methods.periodic.continuation import Curve
+from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Initial, Scene
+from frictionlab.theory import friction_free_velocity
+from frictionlab.theory.rest import friction_at_rest
+
+STABLE = 1.0 - 1e-7
+"""Largest Floquet multiplier of an orbit that is said to attract."""
+FEWEST, MOST = 200, 20_000
+"""Periods a start is followed for."""
+
+
+@dataclass(frozen=True)
+class Attractor:
+    """Where a start led: an orbit closed after some drive periods, or (0) a motion that never repeats.
+
+    low, high: the smallest and the largest mean over one drive period. followed: for how many periods.
+    """
+
+    followed: int
+    period: int
+    low: float
+    high: float
+    curve: Curve | None
+
+    def agrees(self, other: Attractor) -> bool:
+        """Whether both have the same mean friction, for the same reason."""
+        if self.curve is None or other.curve is None or self.period != other.period:
+            return False
+        doubt = float(self.curve.results[0, 2] + other.curve.results[0, 2])
+        return abs(self.mean - other.mean) <= doubt + 1e-12
+
+    @property
+    def mean(self) -> float:
+        """The mean friction over all periods of a closed orbit; NaN for a motion that never repeats."""
+        return math.nan if self.curve is None else float(self.curve.results[0, 0])
+
+
+def multiplier(curve: Curve, row: int = 0) -> float:
+    """The largest modulus of an orbit's Floquet multipliers."""
+    return float(np.abs(np.linalg.eigvals(curve.matrices[row])).max())
+
+
+def closed_orbit(curve: Curve, means: Floats) -> Attractor | None:
+    """A closed orbit, with its means over each drive period; None where it did not close, or repels."""
+    if curve.results[0, 3] < 0.0 or not multiplier(curve) < STABLE:
+        return None
+    return Attractor(0, len(means), float(means.min()), float(means.max()), curve)
+
+
+def starts(scene: Scene, limit: float) -> list[Initial | None]:
+    """Starts far from each other: shaken freely, resting on the belt, flung against it, and let go ahead of it.
+
+    limit: force of friction at rest. ``scene.initial``, where it is given, comes first.
+    """
+    given: list[Initial | None] = [] if scene.initial is None else [scene.initial]
+    against = -math.copysign(1.0, scene.belt_speed)
+    flung = Initial(x=against * 2.0 * limit, velocity=against * (abs(scene.belt_speed) + limit))
+    ahead = Initial(x=-against * (limit + force_swing(scene)))
+    return [*given, None, Initial(velocity=scene.belt_speed), flung, ahead]
+
+
+def force_swing(scene: Scene) -> float:
+    """The deflection that the load along the belt would hold, or shakes a free mass through, if that is larger."""
+    mass = scene.mass()
+    return max(abs(mass.force), friction_free_velocity(scene) / mass.frequency)
+
+
+def attractors(
+    closer: PeriodicProblem, scene: Scene, candidate: Attractor | None
+) -> tuple[list[Attractor], float]:
+    """Where each of the starts leads; and kernel time [s]. The candidate is an orbit already known."""
+    known = [candidate] if candidate is not None else []
+    reached, seconds = [], 0.0
+    for start in starts(scene, closer.mass.normal_load * friction_at_rest(closer.law)):
+        way = closer.wandered(scene.belt_speed, start, _patience(candidate))
+        seconds += way.seconds
+        found = next((orbit for orbit in known if _arrived(way, orbit)), None)
+        if found is None:
+            found, more = _closed(closer, scene, way)
+            known, seconds = [*known, found], seconds + more
+        reached.append(found)
+    return reached, seconds
+
+
+def _patience(candidate: Attractor | None) -> int:
+    """How many periods bring every start to the candidate, were it to attract them all."""
+    if candidate is None or candidate.curve is None:
+        return 5 * FEWEST
+    rate = -math.log(max(multiplier(candidate.curve), 1e-3))
+    return int(min(max(FEWEST, 20.0 / rate), MOST))
+
+
+def _arrived(way: Transient, orbit: Attractor) -> bool:
+    """Whether a motion ended next to an orbit of one period that attracts it."""
+    if orbit.curve is None or not way.period == orbit.period == 1:
+        return False
+    state: Floats = orbit.curve.states[0]
+    return bool(np.abs(way.state - state).max() <= 1e-5 * max(1.0, float(np.abs(state).max())))
+
+
+def _closed(closer: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:
+    """The orbit at the end of a way, or the spread of what never repeats."""
+    seconds = 0.0
+    if way.period > 0:
+        curve, period, seconds = _shortest(closer, scene, way)
+        means = way.means[-period:]
+        if period > 1 and curve.results[0, 3] > 0.0:
+            means = closer.means(scene.belt_speed, curve.states[0], period)
+        orbit = closed_orbit(curve, means)
+        if orbit is not None:
+            return orbit, seconds
+    last = way.means[len(way.means) // 2 :]
+    return Attractor(len(way.means), 0, float(last.min()), float(last.max()), None), seconds
+
+
+def _shortest(closer: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Curve, int, float]:
+    """The orbit at the end of a way, and its periods: fewer than seen where the motion was still alternating."""
+    curve, seconds = closer.closed([scene], way.state, way.period)
+    for period in [each for each in range(1, way.period) if way.period % each == 0]:
+        shorter, more = closer.closed([scene], curve.states[0], period)
+        seconds += more
+        if curve.results[0, 3] > 0.0 and shorter.results[0, 3] > 0.0 and _same(shorter, curve):
+            return shorter, period, seconds
+    return curve, way.period, seconds
+
+
+def _same(one: Curve, other: Curve) -> bool:
+    a, b = one.states[0], other.states[0]
+    return bool(np.abs(a - b).max() <= 1e-5 * max(1.0, float(np.abs(b).max())))
+
+
+def told(reached: list[Attractor]) -> str:
+    """What several starts reached, in words."""
+    orbits = [one for one in reached if one.curve is not None]
+    wild = [one for one in reached if one.curve is None]
+    parts = [_orbit_told(one) for one in {(one.period, f"{one.mean:.6g}"): one for one in orbits}.values()]
+    if wild:
+        longest = max(one.followed for one in wild)
+        parts.append(f"{len(wild)} of {len(reached)} starts do not repeat within {longest} drive periods")
+    return "; ".join(parts)
+
+
+def _orbit_told(orbit: Attractor) -> str:
+    if orbit.period == 1:
+        return f"an orbit of one drive period has a mean of {orbit.mean:.9g}"
+    return (
+        f"an orbit of {orbit.period} drive periods has means over one from {orbit.low:.6g} to {orbit.high:.6g}, "
+        f"{orbit.mean:.9g} over all"
+    )

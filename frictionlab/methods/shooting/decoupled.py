@@ -1,0 +1,184 @@
+"""Bristles that know each axis by itself: along the belt and across it the mass moves as two bodies of one direction.
+
+Springs, dashpots and loads keep to the axes, so that friction alone could couple the two, and ``per-axis`` friction
+does not. Across the belt the belt is at rest at every belt speed: one motion there serves a whole curve.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.laws.memory import PER_AXIS, BristleLaw
+from frictionlab.methods.base import Answers
+from frictionlab.methods.periodic.problem import PeriodicProblem, along_the_belt
+from frictionlab.methods.shooting.attractors import multiplier
+from frictionlab.orbit.panels import NODES, interpolation_weights
+from frictionlab.orbit.read import READ
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Mass
+from frictionlab.scene.scene import Drive, Initial, Scene, Transverse
+
+Solver = Callable[[Sequence[Scene], BristleLaw, float], Answers]
+
+APART = "shooting, two degrees of freedom, each by itself: friction by axis does not couple them"
+HELD = "across the belt the bristle holds the load elastically: its mean there depends on the start"
+ENERGIES = "energy_input", "energy_viscous", "energy_friction", "energy_contact"
+OF_THE_AXIS = "velocity_amplitude", "velocity_harmonic"
+
+
+class OneAxis(Scene):
+    """A scene of one degree of freedom whose mass is given as kernels see it."""
+
+    own: Mass
+
+    def mass(self) -> Mass:
+        """As given."""
+        return self.own
+
+
+@dataclass(frozen=True)
+class Across:
+    """The motion across the belt, by the columns of a scene of one degree of freedom; empty where it is not known."""
+
+    columns: dict[str, float]
+    orbit: Callable[[], Orbit | None]
+    reason: str
+    seconds: float
+
+    def column(self, name: str) -> float:
+        """A column of it, NaN where it is not known."""
+        return self.columns.get(name, math.nan)
+
+
+def axes_apart(scene: Scene, law: BristleLaw) -> bool:
+    """Whether both axes move, and neither feels the other."""
+    return law.form == PER_AXIS and scene.degrees_of_freedom == 2 and not along_the_belt(scene, law)
+
+
+def solve_apart(solve: Solver, scenes: Sequence[Scene], law: BristleLaw, tolerance: float) -> Answers:
+    """Every answer along the belt, with what there is to tell across it.
+
+    A mean along the belt is known whatever happens across: there columns are left empty, with the reason.
+    """
+    across = _across(solve, scenes[0], law, tolerance)
+    along = solve([_along(scene) for scene in scenes], law, tolerance)
+    ok = np.array([status == "ok" for status in along.status])
+    reasons = [
+        "; ".join(part for part in (reason, across.reason if status == "ok" else "") if part)
+        for status, reason in zip(along.status, along.reason, strict=True)
+    ]
+    columns = along.columns | {
+        name: np.where(ok, values, along.columns[name])
+        for name, values in _columns(scenes[0], along, across).items()
+    }
+    columns["seconds"] = along.columns["seconds"] + across.seconds / len(scenes)
+    models = [f"{APART}; {model.partition('; ')[2]}" for model in along.model]
+
+    def orbit(i: int) -> Orbit | None:
+        both = along.orbit(i), across.orbit()
+        return None if both[0] is None or both[1] is None else joined(both[0], both[1])
+
+    return replace(along, reason=reasons, model=models, columns=columns, orbit=orbit)
+
+
+def _along(scene: Scene) -> Scene:
+    start = scene.initial and Initial(x=scene.initial.x, velocity=scene.initial.velocity)
+    return scene.model_copy(update={"transverse": None, "initial": start, "dimensional": None})
+
+
+def _turned(scene: Scene) -> OneAxis:
+    """The motion across the belt as one along a belt at rest."""
+    mass, across = scene.mass(), scene.transverse
+    assert scene.drive is not None
+    assert isinstance(across, Transverse)
+    size, phase = cmath.polar(mass.transverse_force)
+    start = scene.initial and Initial(x=scene.initial.x2, velocity=scene.initial.velocity2)
+    return OneAxis(
+        damping_ratio=across.damping_ratio,
+        normal_load=mass.normal_load,
+        belt_speed=0.0,
+        drive=Drive(amplitude=size, phase=math.degrees(phase), frequency=mass.frequency),
+        initial=start,
+        own=mass._replace(
+            damping=mass.transverse_damping, stiffness=mass.transverse_stiffness, force=mass.transverse_force
+        ),
+    )
+
+
+def _across(solve: Solver, scene: Scene, law: BristleLaw, tolerance: float) -> Across:
+    turned = _turned(scene)
+    found = solve([turned], law, tolerance)
+    seconds = float(found.columns["seconds"][0])
+    if found.status[0] == "ok" and found.columns["error"][0] <= tolerance:
+        columns = {name: float(values[0]) for name, values in found.columns.items()}
+        return Across(columns, lambda: found.orbit(0), "", seconds)
+    return _held(turned, law, tolerance) or Across(
+        {}, lambda: None, f"across the belt: {found.reason[0]}", seconds
+    )
+
+
+def _held(turned: OneAxis, law: BristleLaw, tolerance: float) -> Across | None:
+    """The motion of a mass whose bristle only follows it, but for the mean that it is held at; None for any other."""
+    if law.elastic_deflection() == 0.0 or turned.own.damping == 0.0:
+        return None
+    curve, seconds = PeriodicProblem(turned, law, tolerance).closed([turned])
+    if curve.results[0, 3] < 0.0 or not multiplier(curve) > 1.0 - 1e-6:
+        return None
+    columns = dict(zip(READ, curve.columns[0].tolist(), strict=True))
+    track = curve.last
+    orbit = Orbit(track.tau, track.x, track.v, track.friction, track.stick)
+    return Across(
+        columns | {"mean_friction": math.nan, "floquet": multiplier(curve)}, lambda: orbit, HELD, seconds
+    )
+
+
+def _columns(scene: Scene, along: Answers, across: Across) -> dict[str, Floats]:
+    """The columns that both motions have a part in, and those of the motion across."""
+    one = np.ones(len(along.status))
+    found = {f"transverse_{name}": across.column(name) * one for name in OF_THE_AXIS}
+    found |= {name: along.columns[name] + across.column(name) for name in ENERGIES}
+    found["mean_friction_transverse"] = across.column("mean_friction") * one
+    found["transverse_velocity_phase"] = _lead(scene, across.column("velocity_phase")) * one
+    found["floquet"] = np.maximum(along.columns["floquet"], across.column("floquet"))
+    found["error"] = np.fmax(along.columns["error"], across.column("error"))
+    return found
+
+
+def _lead(scene: Scene, lead: float) -> float:
+    """Of the motion across, told against the load across, against the load along the belt [degrees]."""
+    mass = scene.mass()
+    if mass.force == 0 or math.isnan(lead):
+        return math.nan
+    turn = cmath.rect(1.0, math.radians(lead)) * mass.transverse_force * mass.force.conjugate()
+    return math.degrees(cmath.phase(turn))
+
+
+Complexes = NDArray[np.complex128]
+
+
+def joined(along: Orbit, across: Orbit) -> Orbit:
+    """Both motions on panels that reach over no edge of either's."""
+    end = along.tau[-1, -1]
+    edges = np.unique(np.concatenate([along.tau[:, 0], across.tau[:, 0]]))
+    edges = edges[(np.diff(edges, append=end) > 1e-12 * end)]
+    half = 0.5 * np.diff(edges, append=end)[:, None]
+    tau: Floats = edges[:, None] + half * (1.0 + NODES)
+    first, second = _on(along, tau), _on(across, tau)
+    x, v, friction = (one.real + 1j * other.real for one, other in zip(first, second, strict=True))
+    return Orbit(tau, x, v, friction, np.zeros(len(tau), np.bool_))
+
+
+def _on(orbit: Orbit, tau: Floats) -> list[Complexes]:
+    """Position, velocity and friction on panels, each inside one of the orbit's."""
+    inside = np.searchsorted(orbit.tau[:, 0], 0.5 * (tau[:, 0] + tau[:, -1]), side="right") - 1
+    start, end = orbit.tau[inside, :1], orbit.tau[inside, -1:]
+    weights = interpolation_weights(((2.0 * tau - start - end) / (end - start)).ravel())
+    weights = weights.reshape(*tau.shape, len(NODES))
+    return [(weights * part[inside, None, :]).sum(axis=2) for part in (orbit.x, orbit.v, orbit.friction)]

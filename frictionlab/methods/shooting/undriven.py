@@ -1,0 +1,340 @@
+"""What an undriven mass on a moving belt does in the long run: steady sliding, stick-slip, or a cycle of slip.
+
+The motion is followed from scene.initial. Once rest on the belt has ended, the orbit is known: slip always begins
+at the one deflection at which the spring overcomes static friction. A cycle without rest is a fixed point of the
+map from one largest deflection to the next. The period is an unknown of both.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.cache import compiled
+from frictionlab.compile.decorators import inner
+from frictionlab.laws.base import SlidingLaw
+from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.periodic.continuation import record_orbit
+from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
+from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
+from frictionlab.methods.periodic.period_map import pack, size_of
+from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.orbit.read import READ, read
+from frictionlab.orbit.record import Orbit
+from frictionlab.orbit.recorder import track_of
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Body, Mass, on_the_line
+from frictionlab.scene.scene import Scene
+
+PIECE = 1.0 / 32.0
+"""Of 2 pi, the period of the free mass: how far the motion is followed between looks at it."""
+MOST_PIECES = 200_000
+TURN = 2.0 * math.pi
+
+
+@inner
+def followed(law: Any, body: Body, belt_speed: float, x: float, v: float, accuracy: float) -> Mapped:
+    """The motion from x, v over the span of the body."""
+    return sliding_map(law, body, belt_speed, x, v, accuracy, track_of(0))
+
+
+@inner
+def recorded(law: Any, body: Body, mass: Mass, belt_speed: float, x: float, v: float, accuracy: float) -> Any:
+    """What is read from the motion from x, v over the span of the body, and its record."""
+    z = np.empty(size_of(law, x))
+    pack(body, z, x, v)
+    track = record_orbit(law, body, belt_speed, z, accuracy, x)
+    return read(track.tau, track.x, track.v, track.friction, track.stick, mass, belt_speed), track
+
+
+class Motion(NamedTuple):
+    """A periodic motion from x, v: its period, mean friction, error and largest multiplier, and what it is."""
+
+    x: float
+    v: float
+    period: float
+    mean: float
+    error: float
+    multiplier: float
+    kind: str
+
+
+class NotFound(Exception):
+    """No periodic motion; the message says why."""
+
+
+def solve_undriven(scenes: Sequence[Scene], law: SlidingLaw, tolerance: float) -> Answers:
+    """Answer undriven scenes, each by the state it reaches from its start."""
+    names = [name for name in READ if not name.startswith("mean_position") and "transverse" not in name]
+    names += ["error", "period", "floquet", "seconds"]
+    columns = {name: np.full(len(scenes), np.nan) for name in names}
+    status: list[Status] = ["failed"] * len(scenes)
+    reason, model, kind = [""] * len(scenes), [""] * len(scenes), [""] * len(scenes)
+    found: dict[int, tuple[_Follower, Motion]] = {}
+    for i, scene in enumerate(scenes):
+        follower = _Follower(scene, law, tolerance)
+        begin = time.perf_counter()
+        try:
+            motion = follower.motion()
+        except NotFound as problem:
+            reason[i] = str(problem)
+            continue
+        finally:
+            columns["seconds"][i] = time.perf_counter() - begin
+        found[i] = follower, motion
+        status[i], model[i], kind[i] = "ok", f"undriven: {motion.kind}", "estimated"
+        for name, value in follower.row(motion).items():
+            columns[name][i] = value
+        if not motion.error <= tolerance:
+            reason[i] = f"the error is above the tolerance {tolerance:.1e}"
+    return Answers(
+        status, reason, model, kind, columns, lambda i: found[i][0].orbit(found[i][1]) if i in found else None
+    )
+
+
+@dataclass(frozen=True)
+class _Follower:
+    """An undriven scene and a law, followed through time."""
+
+    scene: Scene
+    law: SlidingLaw
+    tolerance: float
+
+    @cached_property
+    def _mass(self) -> Mass:
+        return self.scene.mass()
+
+    @cached_property
+    def _body(self) -> Body:
+        return on_the_line(self._mass)
+
+    @cached_property
+    def _kernel(self) -> Callable[..., Mapped]:
+        return compiled(followed, self.law)
+
+    @property
+    def _accuracy(self) -> float:
+        return max(0.1 * self.tolerance * self._mass.normal_load, 1e-13)
+
+    @property
+    def _of_a_step(self) -> float:
+        """What one step of the finer motion may cost the mean: two step sizes may agree by chance."""
+        return self._accuracy / FINER / self._mass.normal_load + 1e-12
+
+    def motion(self) -> Motion:
+        """The motion reached from the start. Raises NotFound."""
+        if self.scene.belt_speed == 0.0:
+            return self._at_rest()
+        x, v, peaks = self.scene.start.x, self.scene.start.velocity, 0
+        for count in range(MOST_PIECES):
+            image = self._follow(x, v, PIECE, self._accuracy)
+            look = v > 0.0 >= image.u or count % 32 == 31
+            ended = self._ended(x, v, peaks) if look else None
+            rests = image.stuck > 0.0 and ended is None
+            if rests:
+                ended = self._stick_slip()
+            if ended is not None:
+                return ended
+            peaks += 1 if v > 0.0 >= image.u else 0
+            # the belt carries what rests to where slip begins
+            x, v = (self._release, self.scene.belt_speed) if rests else (image.y, image.u)
+        raise NotFound(f"no steady state within {MOST_PIECES * PIECE:.0f} periods of the free mass")
+
+    def _follow(self, x: float, v: float, turns: float, accuracy: float) -> Mapped:
+        body = self._body._replace(periods=turns)
+        image: Mapped = self._kernel(body, self.scene.belt_speed, x, v, accuracy)
+        if image.steps < 0:
+            raise NotFound("the motion takes more steps than are allowed")
+        return image
+
+    def _force(self, x: float, v: float) -> float:
+        """Acceleration of a mass that slips."""
+        w = v - self.scene.belt_speed
+        mass = self._mass
+        friction = math.copysign(self.law.sliding_friction(abs(w)), w)
+        return -mass.damping * v - mass.stiffness * x - mass.normal_load * friction
+
+    # --- the ends ---
+
+    def _ended(self, x: float, v: float, peaks: int) -> Motion | None:
+        """The steady motion that this one is sure to become; now and then, near a peak, the cycle next to it."""
+        reach = math.hypot(x - self._deflection(), v)
+        if self._conserves() and reach <= abs(self.scene.belt_speed):
+            return self._free(x, v)
+        if self._settles(x, v):
+            return self._sliding()
+        if peaks % 20 == 19 and v > 0.0:
+            return self._slip_cycle(self._peak(x, v, PIECE, self._accuracy)[0])
+        return None
+
+    def _conserves(self) -> bool:
+        """Whether a slip that never reverses keeps the energy of the oscillation."""
+        return self._mass.damping == 0.0 and self.law.constant_sliding_friction()
+
+    def _free(self, x: float, v: float) -> Motion:
+        mean = math.copysign(self.law.sliding_friction(1.0), self.scene.belt_speed)
+        kind = "a free oscillation in slip, which without damping never dies"
+        return Motion(x, v, TURN, mean, ROUNDING, 1.0, kind)
+
+    def _at_rest(self) -> Motion:
+        state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settled(self.scene.start)
+        if periods < 0:
+            raise NotFound("the mass still creeps towards rest when patience ends")
+        mean = state[0] / self._mass.normal_load
+        error = 1e-11 * periods + ROUNDING
+        return Motion(
+            state[0], 0.0, math.nan, mean, error, math.nan, "at rest, where it stops from scene.initial"
+        )
+
+    def _deflection(self) -> float:
+        """Of the spring in steady sliding."""
+        speed = self.scene.belt_speed
+        return math.copysign(
+            self._mass.normal_load * self.law.sliding_friction(abs(speed)) / self._mass.stiffness, speed
+        )
+
+    def _settles(self, x: float, v: float) -> bool:
+        """Whether every motion with no more energy than this one loses it, down to steady sliding.
+
+        It does where friction falls by less than damping makes up for at every slip velocity within its reach.
+        """
+        reach = math.hypot(x - self._deflection(), v)
+        speed = abs(self.scene.belt_speed)
+        if reach > speed:
+            return False
+        speeds = np.linspace(speed - reach, speed + reach, 129) if reach > 1e-6 * speed else speed * _NEAR
+        friction = np.array([self.law.sliding_friction(float(each)) for each in speeds])
+        slopes = np.diff(friction) / np.diff(speeds)
+        return bool((self._mass.normal_load * slopes).min() > -self._mass.damping + 1e-9)
+
+    def _sliding(self) -> Motion:
+        speed = self.scene.belt_speed
+        mean = math.copysign(self.law.sliding_friction(abs(speed)), speed)
+        return Motion(
+            self._deflection(), 0.0, math.nan, mean, ROUNDING, math.nan, "steady sliding, which attracts"
+        )
+
+    @property
+    def _release(self) -> float:
+        """The deflection at which rest ends."""
+        mass, speed = self._mass, self.scene.belt_speed
+        limit = mass.normal_load * self.law.static_friction()
+        return (math.copysign(limit, speed) - mass.damping * speed) / mass.stiffness
+
+    def _stick_slip(self) -> Motion | None:
+        """From the end of rest to the next; None where the mass does not come to rest again."""
+        x, speed = self._release, self.scene.belt_speed
+        if self._conserves() and self.law.monotone():
+            return self._free(x, speed)
+        if self._settles(x, speed):
+            return self._sliding()
+        rough, fine = (self._cycle_from(x, part * self._accuracy) for part in (1.0, 1.0 / FINER))
+        if rough is None or fine is None:
+            return None
+        error = 2.0 * abs(fine[1] - rough[1]) + self._of_a_step
+        return Motion(x, speed, fine[0], fine[1], error, 0.0, "stick-slip, followed from release to release")
+
+    def _cycle_from(self, x: float, accuracy: float) -> tuple[float, float] | None:
+        """Period and mean friction from release at x to the next; None where the mass does not come to rest.
+
+        A way that has gone around once without rest is caught within itself, and will not meet rest any more.
+        """
+        speed, y, v, turns, peaks = self.scene.belt_speed, x, self.scene.belt_speed, 0.0, 0
+        patience = 10.0 * (1.0 + self._mass.damping)  # for one damped too heavily to have peaks
+        while peaks < 3 and turns < patience:
+            image = self._follow(y, v, PIECE, accuracy)
+            turns += PIECE
+            if turns > PIECE and image.stuck > 0.0:
+                period = turns * TURN + (x - image.y) / speed
+                whole = self._follow(x, speed, period / TURN, accuracy)
+                return period, -whole.rubbed / period
+            peaks += 1 if v > 0.0 >= image.u else 0
+            y, v = image.y, image.u
+        return None
+
+    def _slip_cycle(self, x: float) -> Motion | None:
+        """A cycle that never rests, by Newton's method on the map from peak to peak; None where there is none."""
+        for _ in range(12):
+            step = 1e-5 * (1.0 + abs(x))
+            (here, _), (ahead, _), (behind, _) = (
+                self._next_peak(x + shift, 1e-13) for shift in (0.0, step, -step)
+            )
+            slope = (ahead - behind) / (2.0 * step)
+            change = (here - x) / max(1.0 - slope, 1e-6)
+            x += change
+            if abs(change) < 1e-11 * (1.0 + abs(x)):
+                break
+        else:
+            return None
+        if abs(x - self._deflection()) < 1e-7 or abs(slope) >= 1.0:
+            return None
+        return self._slip_motion(x, slope)
+
+    def _slip_motion(self, x: float, slope: float) -> Motion:
+        (fine, period), (rough, _) = self._next_peak(x, 1e-13), self._next_peak(x, self._accuracy)
+        means = [
+            -self._follow(x, 0.0, period / TURN, accuracy).rubbed / period
+            for accuracy in (1e-13, self._accuracy)
+        ]
+        error = (
+            2.0 * abs(means[1] - means[0]) + 2.0 * abs(fine - rough) / (1.0 - abs(slope)) + self._of_a_step
+        )
+        return Motion(x, 0.0, period, means[0], error, abs(slope), "a cycle of slip without rest")
+
+    def _next_peak(self, x: float, accuracy: float) -> tuple[float, float]:
+        """The next largest deflection after one at x, and the time it takes. Raises NotFound."""
+        y, v, turns = x, 0.0, 0.0
+        for count in range(round(1e3 / PIECE)):
+            image = self._follow(y, v, PIECE, accuracy)
+            if count > 0 and v > 0.0 >= image.u:
+                place, time_left = self._peak(y, v, PIECE, accuracy)
+                return place, turns * TURN + time_left
+            y, v, turns = image.y, image.u, turns + PIECE
+        raise NotFound("the motion has no period")
+
+    def _peak(self, x: float, v: float, turns: float, accuracy: float) -> tuple[float, float]:
+        """Where and when, within these turns, the velocity falls through zero."""
+        low, high, at = 0.0, turns * TURN, min(turns * TURN, -v / self._force(x, v) if v > 0.0 else 0.0)
+        for _ in range(60):
+            image = self._follow(x, v, at / TURN, accuracy)
+            low, high = (at, high) if image.u > 0.0 else (low, at)
+            force = self._force(image.y, image.u)
+            new = at - image.u / force if force != 0.0 else 0.5 * (low + high)
+            new = new if low <= new <= high else 0.5 * (low + high)
+            if abs(new - at) <= 1e-15 * TURN or low == high:
+                break
+            at = new
+        return image.y, at
+
+    # --- what is read ---
+
+    def row(self, motion: Motion) -> dict[str, float]:
+        """The columns of the motion; of one that stands still, over 2 pi."""
+        values, _ = self._recorded(motion)
+        row = {
+            name: float(value)
+            for name, value in zip(READ, values, strict=True)
+            if not name.startswith("mean_position") and "transverse" not in name
+        }
+        own = {"mean_friction": motion.mean, "error": motion.error}
+        return row | own | {"period": motion.period / TURN, "floquet": motion.multiplier}
+
+    def orbit(self, motion: Motion) -> Orbit:
+        """The orbit of the motion; of one that stands still, over 2 pi."""
+        _, track = self._recorded(motion)
+        return Orbit(track.tau, track.x, track.v, track.friction, track.stick)
+
+    def _recorded(self, motion: Motion) -> tuple[Floats, Any]:
+        turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
+        body = self._body._replace(periods=turns)
+        speed, accuracy = self.scene.belt_speed, self._accuracy / FINER
+        return compiled(recorded, self.law)(body, self._mass, speed, motion.x, motion.v, accuracy)
+
+
+_NEAR = np.array([1.0 - 1e-6, 1.0, 1.0 + 1e-6])

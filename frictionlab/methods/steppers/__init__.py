@@ -1,1 +1,0 @@
-"""Time steppers, one per file."""

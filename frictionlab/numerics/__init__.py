@@ -1,0 +1,1 @@
+"""Numerical methods that know nothing of friction: steppers, roots, small matrices, extrapolation."""

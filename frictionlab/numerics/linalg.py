@@ -1,0 +1,68 @@
+"""Vectors and matrices of a few numbers, inside kernels."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.compile.decorators import inner
+
+
+@inner
+def norm(z: Any) -> float:
+    total = 0.0
+    for value in z:
+        total += value * value
+    return math.sqrt(total)
+
+
+@inner
+def multiply(matrix: Any, z: Any, out: Any) -> None:
+    for row in range(z.size):
+        total = 0.0
+        for column in range(z.size):
+            total += matrix[row, column] * z[column]
+        out[row] = total
+
+
+@inner
+def invert(matrix: Any, inverse: Any) -> bool:
+    """Gauss-Jordan elimination with row pivots; False where the matrix is singular to rounding."""
+    n = matrix.shape[0]
+    work = matrix.copy()
+    for row in range(n):
+        for column in range(n):
+            inverse[row, column] = 1.0 if row == column else 0.0
+    for pivot in range(n):
+        best = pivot
+        for row in range(pivot + 1, n):
+            if abs(work[row, pivot]) > abs(work[best, pivot]):
+                best = row
+        if not abs(work[best, pivot]) > 1e-9:
+            return False
+        for column in range(n):
+            work[pivot, column], work[best, column] = work[best, column], work[pivot, column]
+            inverse[pivot, column], inverse[best, column] = inverse[best, column], inverse[pivot, column]
+        scale = 1.0 / work[pivot, pivot]
+        for column in range(n):
+            work[pivot, column] = work[pivot, column] * scale
+            inverse[pivot, column] = inverse[pivot, column] * scale
+        for row in range(n):
+            if row != pivot:
+                factor = work[row, pivot]
+                for column in range(n):
+                    work[row, column] = work[row, column] - factor * work[pivot, column]
+                    inverse[row, column] = inverse[row, column] - factor * inverse[pivot, column]
+    return True
+
+
+@inner
+def subtract(z: Any, step: Any, out: Any) -> None:
+    for i in range(z.size):
+        out[i] = z[i] - step[i]
+
+
+@inner
+def copy(source: Any, out: Any) -> None:
+    for i in range(source.size):
+        out[i] = source[i]

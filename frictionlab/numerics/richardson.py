@@ -1,0 +1,71 @@
+"""What a sequence of values from halved steps, or halved smoothing widths, tells about its limit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+SURE = 0.25
+"""How far the observed ratio of two changes may be from the declared one for the order to count as seen."""
+FEWEST = 4
+"""Values needed to see an order twice."""
+
+
+class Limit(NamedTuple):
+    """Where a sequence goes, a bound on how far that is from the truth, and the order that was relied on."""
+
+    value: float
+    error: float
+    order: int  # 0: none was seen
+
+
+SMOOTH, STICKING, REVERSING = 0.2, 1.0, math.inf
+"""How much of Richardson's correction is doubtful at least: where all is smooth; where the mass sticks, which keeps
+the order but not the regularity of the error; where slip reverses inside a step, and errors are erratic."""
+
+
+def richardson(values: Sequence[float], order: int, least: float) -> Limit:
+    """The limit of values from steps halved each time, of a method of this order on smooth motion.
+
+    Where two ratios of changes in a row agree with the order, Richardson's extrapolation (1911), of which at least
+    the share ``least`` is in doubt. Otherwise the last value, which is as far off as order one allows: the largest
+    of the last three changes, each scaled to the last step as order one says - by a little more where no reversal
+    makes the changes erratic.
+    """
+    changes = np.diff(values)
+    if len(values) >= FEWEST and least < math.inf and _seen(changes, order):
+        rest = changes[-1] / (2.0**order - 1.0)
+        doubt = 2.0 * abs(changes[-2] / changes[-1] / 2.0**order - 1.0)
+        return Limit(float(values[-1] + rest), float(abs(rest) * max(least, doubt)), order)
+    rate = 2.0 if least == REVERSING else 3.0
+    recent = [abs(change) / rate**age for age, change in enumerate(changes[::-1][:3])]
+    return Limit(float(values[-1]), 1.5 * float(max(recent)), 0)
+
+
+def _seen(changes: np.ndarray, order: int) -> bool:
+    """Whether the last three changes shrink as the order says."""
+    if (changes[-3:] == 0.0).any():
+        return False
+    ratios = changes[-3:-1] / changes[-2:]
+    return bool((np.abs(ratios / 2.0**order - 1.0) < SURE).all())
+
+
+def first_error(values: Sequence[float]) -> float:
+    """How far the first value is from the limit, by the ones of finer steps: order one leaves the rest below."""
+    return 1.5 * max(abs(value - values[0]) for value in values[1:])
+
+
+def bias(wide: float, asked: float, narrow: float, narrowest: float) -> float:
+    """Bound on the bias of smoothing at a width, from the values at twice, once, half and a quarter of that width.
+
+    A bias of order q in the width is 1/(1 - 2^-q) times its change from the width to half of it, and 1/(1 - 4^-q)
+    times that to a quarter: 3.4 and 2 for the square root, the slowest; the latter is taken as 3, for at the onset of
+    stick the bias is slower to begin with, and as 6 where the changes still grow as the width shrinks. Where the bias
+    changes sign with the width one of the changes may be small, so the largest counts.
+    """
+    still_growing = abs(narrow - narrowest) > abs(asked - narrow)
+    far = 6.0 if still_growing else 3.0
+    return max(3.5 * abs(asked - narrow), far * abs(asked - narrowest), 1.75 * abs(wide - asked))

@@ -1,0 +1,3 @@
+"""Time steppers, one per file."""
+
+from __future__ import annotations

@@ -1,0 +1,241 @@
+"""DOP853: one step of the explicit Runge-Kutta method of order 8, for a second-order equation x'' = f(tau, x, x').
+
+Coefficients: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), section II.10,
+program DOP853. The stages are written out over named scalars, which compiles to faster code than loops over
+tables; positions and velocities are ``float`` on the line and ``complex`` in the plane.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from frictionlab.compile.decorators import fast
+
+
+# fmt: off
+@fast
+def _sum1(k0: Any) -> Any:
+    return (
+        + 0.05260015195876773 * k0
+    )
+
+
+@fast
+def _sum2(k0: Any, k1: Any) -> Any:
+    return (
+        + 0.0197250569845379 * k0
+        + 0.0591751709536137 * k1
+    )
+
+
+@fast
+def _sum3(k0: Any, k2: Any) -> Any:
+    return (
+        + 0.02958758547680685 * k0
+        + 0.08876275643042054 * k2
+    )
+
+
+@fast
+def _sum4(k0: Any, k2: Any, k3: Any) -> Any:
+    return (
+        + 0.2413651341592667 * k0
+        - 0.8845494793282861 * k2
+        + 0.924834003261792 * k3
+    )
+
+
+@fast
+def _sum5(k0: Any, k3: Any, k4: Any) -> Any:
+    return (
+        + 0.037037037037037035 * k0
+        + 0.17082860872947386 * k3
+        + 0.12546768756682242 * k4
+    )
+
+
+@fast
+def _sum6(k0: Any, k3: Any, k4: Any, k5: Any) -> Any:
+    return (
+        + 0.037109375 * k0
+        + 0.17025221101954405 * k3
+        + 0.06021653898045596 * k4
+        - 0.017578125 * k5
+    )
+
+
+@fast
+def _sum7(k0: Any, k3: Any, k4: Any, k5: Any, k6: Any) -> Any:
+    return (
+        + 0.03709200011850479 * k0
+        + 0.17038392571223998 * k3
+        + 0.10726203044637328 * k4
+        - 0.015319437748624402 * k5
+        + 0.008273789163814023 * k6
+    )
+
+
+@fast
+def _sum8(k0: Any, k3: Any, k4: Any, k5: Any, k6: Any, k7: Any) -> Any:
+    return (
+        + 0.6241109587160757 * k0
+        - 3.3608926294469414 * k3
+        - 0.868219346841726 * k4
+        + 27.59209969944671 * k5
+        + 20.154067550477894 * k6
+        - 43.48988418106996 * k7
+    )
+
+
+@fast
+def _sum9(k0: Any, k3: Any, k4: Any, k5: Any, k6: Any, k7: Any, k8: Any) -> Any:
+    return (
+        + 0.47766253643826434 * k0
+        - 2.4881146199716677 * k3
+        - 0.590290826836843 * k4
+        + 21.230051448181193 * k5
+        + 15.279233632882423 * k6
+        - 33.28821096898486 * k7
+        - 0.020331201708508627 * k8
+    )
+
+
+@fast
+def _sum10(k0: Any, k3: Any, k4: Any, k5: Any, k6: Any, k7: Any, k8: Any, k9: Any) -> Any:
+    return (
+        - 0.9371424300859873 * k0
+        + 5.186372428844064 * k3
+        + 1.0914373489967295 * k4
+        - 8.149787010746927 * k5
+        - 18.52006565999696 * k6
+        + 22.739487099350505 * k7
+        + 2.4936055526796523 * k8
+        - 3.0467644718982196 * k9
+    )
+
+
+@fast
+def _sum11(k0: Any, k3: Any, k4: Any, k5: Any, k6: Any, k7: Any, k8: Any, k9: Any, k10: Any) -> Any:
+    return (
+        + 2.273310147516538 * k0
+        - 10.53449546673725 * k3
+        - 2.0008720582248625 * k4
+        - 17.9589318631188 * k5
+        + 27.94888452941996 * k6
+        - 2.8589982771350235 * k7
+        - 8.87285693353063 * k8
+        + 12.360567175794303 * k9
+        + 0.6433927460157636 * k10
+    )
+
+
+@fast
+def _sum12(k0: Any, k5: Any, k6: Any, k7: Any, k8: Any, k9: Any, k10: Any, k11: Any) -> Any:
+    return (
+        + 0.054293734116568765 * k0
+        + 4.450312892752409 * k5
+        + 1.8915178993145003 * k6
+        - 5.801203960010585 * k7
+        + 0.3111643669578199 * k8
+        - 0.1521609496625161 * k9
+        + 0.20136540080403034 * k10
+        + 0.04471061572777259 * k11
+    )
+
+
+@fast
+def _error3(k0: Any, k5: Any, k6: Any, k7: Any, k8: Any, k9: Any, k10: Any, k11: Any) -> Any:
+    return (
+        - 0.18980075407240762 * k0
+        + 4.450312892752409 * k5
+        + 1.8915178993145003 * k6
+        - 5.801203960010585 * k7
+        - 0.4226823213237919 * k8
+        - 0.1521609496625161 * k9
+        + 0.20136540080403034 * k10
+        + 0.02265179219836082 * k11
+    )
+
+
+@fast
+def _error5(k0: Any, k5: Any, k6: Any, k7: Any, k8: Any, k9: Any, k10: Any, k11: Any) -> Any:
+    return (
+        + 0.01312004499419488 * k0
+        - 1.2251564463762044 * k5
+        - 0.4957589496572502 * k6
+        + 1.6643771824549864 * k7
+        - 0.35032884874997366 * k8
+        + 0.3341791187130175 * k9
+        + 0.08192320648511571 * k10
+        - 0.022355307863886294 * k11
+    )
+
+
+# fmt: on
+
+
+class State(NamedTuple):
+    """Position, velocity, acceleration and friction coefficient at one time."""
+
+    x: Any
+    v: Any
+    a: Any
+    f: Any
+
+
+class Step(NamedTuple):
+    """The state after a step, its two error estimates (order 5 and 3) and the integral of friction over it."""
+
+    x: Any
+    v: Any
+    x_error5: Any
+    x_error3: Any
+    v_error5: Any
+    v_error3: Any
+    rubbed: Any
+
+
+def stepper(rates: Any) -> Any:
+    """``step(problem, tau, state, h)`` for a kernel function ``rates(problem, tau, x, v)`` = (x'', friction).
+
+    The rates are bound here: numba caches no kernel that is handed a function.
+    """
+
+    @fast
+    def step(problem: Any, tau: float, state: State, h: float) -> Step:
+        x, v0, a0, f0 = state
+        v1 = v0 + h * _sum1(a0)
+        a1, _f1 = rates(problem, tau + 0.05260015195876773 * h, x + h * _sum1(v0), v1)
+        v2 = v0 + h * _sum2(a0, a1)
+        a2, _f2 = rates(problem, tau + 0.0789002279381516 * h, x + h * _sum2(v0, v1), v2)
+        v3 = v0 + h * _sum3(a0, a2)
+        a3, _f3 = rates(problem, tau + 0.1183503419072274 * h, x + h * _sum3(v0, v2), v3)
+        v4 = v0 + h * _sum4(a0, a2, a3)
+        a4, _f4 = rates(problem, tau + 0.2816496580927726 * h, x + h * _sum4(v0, v2, v3), v4)
+        v5 = v0 + h * _sum5(a0, a3, a4)
+        a5, f5 = rates(problem, tau + 0.3333333333333333 * h, x + h * _sum5(v0, v3, v4), v5)
+        v6 = v0 + h * _sum6(a0, a3, a4, a5)
+        a6, f6 = rates(problem, tau + 0.25 * h, x + h * _sum6(v0, v3, v4, v5), v6)
+        v7 = v0 + h * _sum7(a0, a3, a4, a5, a6)
+        a7, f7 = rates(problem, tau + 0.3076923076923077 * h, x + h * _sum7(v0, v3, v4, v5, v6), v7)
+        v8 = v0 + h * _sum8(a0, a3, a4, a5, a6, a7)
+        a8, f8 = rates(problem, tau + 0.6512820512820513 * h, x + h * _sum8(v0, v3, v4, v5, v6, v7), v8)
+        v9 = v0 + h * _sum9(a0, a3, a4, a5, a6, a7, a8)
+        a9, f9 = rates(problem, tau + 0.6 * h, x + h * _sum9(v0, v3, v4, v5, v6, v7, v8), v9)
+        v10 = v0 + h * _sum10(a0, a3, a4, a5, a6, a7, a8, a9)
+        a10, f10 = rates(
+            problem, tau + 0.8571428571428571 * h, x + h * _sum10(v0, v3, v4, v5, v6, v7, v8, v9), v10
+        )
+        v11 = v0 + h * _sum11(a0, a3, a4, a5, a6, a7, a8, a9, a10)
+        a11, f11 = rates(problem, tau + h, x + h * _sum11(v0, v3, v4, v5, v6, v7, v8, v9, v10), v11)
+        return Step(
+            x + h * _sum12(v0, v5, v6, v7, v8, v9, v10, v11),
+            v0 + h * _sum12(a0, a5, a6, a7, a8, a9, a10, a11),
+            h * _error5(v0, v5, v6, v7, v8, v9, v10, v11),
+            h * _error3(v0, v5, v6, v7, v8, v9, v10, v11),
+            h * _error5(a0, a5, a6, a7, a8, a9, a10, a11),
+            h * _error3(a0, a5, a6, a7, a8, a9, a10, a11),
+            h * _sum12(f0, f5, f6, f7, f8, f9, f10, f11),
+        )
+
+    return step

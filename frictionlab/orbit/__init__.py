@@ -1,0 +1,1 @@
+"""One period of a steady state: its record, calculus on its panels, the columns read from it."""

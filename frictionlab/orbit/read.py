@@ -1,0 +1,152 @@
+"""Columns of the result table read from one orbit: amplitudes, phases, energies, stick and reversals."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner
+from frictionlab.orbit.panels import NODES, WEIGHTS, differentiate_panel, interpolate, zero_between
+from frictionlab.scene.body import Mass
+
+READ = (
+    "mean_friction",
+    "mean_position",
+    "mean_friction_transverse",
+    "mean_position_transverse",
+    "velocity_amplitude",
+    "velocity_harmonic",
+    "velocity_phase",
+    "transverse_velocity_amplitude",
+    "transverse_velocity_harmonic",
+    "transverse_velocity_phase",
+    "stick_fraction",
+    "reversals",
+    "force_reversals",
+    "energy_input",
+    "energy_viscous",
+    "energy_friction",
+    "energy_contact",
+)
+"""What ``read`` returns, in this order. The mean positions are there for the mean balance: <x1> = N mean_friction,
+omega_r^2 <x2> = N mean_friction_transverse."""
+
+
+class Sums(NamedTuple):
+    """Integrals over one period."""
+
+    duration: float
+    position: complex
+    friction: complex
+    harmonic_1: complex
+    harmonic_2: complex
+    input: float
+    viscous: float
+    by_friction: float
+    stick: float
+
+
+@inner
+def read(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_speed: float) -> Any:
+    """Everything of ``READ`` from one period: arrays [panels, nodes], stick [panels]."""
+    sums = _integrals(tau, x, v, friction, stick, mass)
+    period = sums.duration
+    part = np.empty(tau.shape)
+    out = np.empty(17)
+    out[0] = -sums.friction.real / period
+    out[1] = sums.position.real / period
+    out[2] = -sums.friction.imag / period
+    out[3] = sums.position.imag / period
+    out[5] = abs(sums.harmonic_1) * 2.0 / period
+    out[6] = _lead(sums.harmonic_1, mass.force)
+    out[8] = abs(sums.harmonic_2) * 2.0 / period
+    out[9] = _lead(sums.harmonic_2, mass.force)
+    out[10] = sums.stick / period
+    out[13] = sums.input
+    out[14] = sums.viscous
+    out[15] = sums.by_friction * mass.normal_load
+    out[16] = out[15] - belt_speed * sums.friction.real * mass.normal_load
+    _component(friction, 1.0, part)
+    out[12] = _sign_changes(part, 0.0, stick, False)
+    _component(v, 1.0, part)
+    out[11] = _sign_changes(part, belt_speed, stick, True)
+    out[4] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
+    _component(v, -1j, part)
+    out[7] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
+    return out
+
+
+@inner
+def _component(values: Any, direction: complex, out: Any) -> None:
+    """The real part of direction*values: direction 1 for x1, -1j for x2."""
+    for panel in range(values.shape[0]):
+        for node in range(values.shape[1]):
+            out[panel, node] = (direction * values[panel, node]).real
+
+
+@inner
+def _integrals(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass) -> Sums:
+    duration, stuck = 0.0, 0.0
+    position, rubbed, harmonic_1, harmonic_2 = 0j, 0j, 0j, 0j
+    put_in, viscous, taken = 0.0, 0.0, 0.0
+    for panel in range(tau.shape[0]):
+        half = 0.5 * (tau[panel, -1] - tau[panel, 0])
+        duration += 2.0 * half
+        stuck += 2.0 * half if stick[panel] else 0.0
+        for node in range(tau.shape[1]):
+            weight = half * WEIGHTS[node]
+            angle = mass.frequency * tau[panel, node]
+            turn = complex(math.cos(angle), math.sin(angle))
+            velocity, rub = v[panel, node], friction[panel, node]
+            position += weight * x[panel, node]
+            rubbed += weight * rub
+            harmonic_1 += weight * velocity.real * turn.conjugate()
+            harmonic_2 += weight * velocity.imag * turn.conjugate()
+            load_1, load_2 = (mass.force * turn).imag, (mass.transverse_force * turn).imag
+            put_in += weight * (load_1 * velocity.real + load_2 * velocity.imag)
+            viscous += weight * (mass.damping * velocity.real**2 + mass.transverse_damping * velocity.imag**2)
+            taken += weight * (rub.real * velocity.real + rub.imag * velocity.imag)
+    return Sums(duration, position, rubbed, harmonic_1, harmonic_2, put_in, viscous, taken, stuck)
+
+
+@inner
+def _lead(harmonic: complex, force: complex) -> float:
+    """Phase [degrees] by which A sin(Omega tau + phase), given as its integral, leads the force; NaN without one."""
+    if force == 0 or harmonic == 0:
+        return np.nan
+    ratio = 1j * harmonic * force.conjugate()
+    return math.degrees(math.atan2(ratio.imag, ratio.real))
+
+
+@inner
+def _highest(values: Any, sign: float, stick: Any) -> float:
+    """The maximum of sign * the panel polynomials, interior maxima included."""
+    highest = -1e300
+    row, slope = np.empty(values.shape[1]), np.empty(values.shape[1])
+    for panel in range(values.shape[0]):
+        for node in range(values.shape[1]):
+            row[node] = sign * values[panel, node]
+            highest = max(highest, row[node])
+        differentiate_panel(row, slope)
+        for node in range(1, values.shape[1]):
+            if not stick[panel] and slope[node - 1] > 0.0 >= slope[node]:
+                at = zero_between(slope, NODES[node - 1], NODES[node])
+                highest = max(highest, interpolate(row, at))
+    return highest
+
+
+@inner
+def _sign_changes(values: Any, level: float, stick: Any, skip_stick: bool) -> int:
+    """Crossings of the level once around the period, seen at interior nodes: on events it is met, not crossed."""
+    changes, first, last = 0, 0.0, 0.0
+    for panel in range(values.shape[0]):
+        for node in range(1, values.shape[1] - 1):
+            value = values[panel, node] - level
+            if (skip_stick and stick[panel]) or value == 0.0:
+                continue
+            first = value if first == 0.0 else first
+            changes += 1 if last * value < 0.0 else 0
+            last = value
+    return changes + (1 if first * last < 0.0 else 0)

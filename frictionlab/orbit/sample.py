@@ -1,0 +1,44 @@
+"""One period of a steady state at equally spaced times."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from frictionlab.orbit.panels import interpolation_weights
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
+
+
+class Samples(NamedTuple):
+    """One period of a steady state at n equally spaced times [nondimensional, scales of ``scene``].
+
+    friction and load are forces' coefficients: friction [-] resists the slip; load [K_1 L] drives the mass.
+    """
+
+    tau: Floats
+    x1: Floats
+    v1: Floats
+    x2: Floats
+    v2: Floats
+    friction: Floats
+    friction_transverse: Floats
+    load: Floats
+    load_transverse: Floats
+
+
+def sample(orbit: Orbit, scene: Scene, n: int) -> Samples:
+    """The orbit at n equally spaced times tau = 0 ... its period (end not included)."""
+    times: Floats = orbit.tau[0, 0] + np.arange(n, dtype=np.float64) * (np.ptp(orbit.tau) / n)
+    panels = np.clip(np.searchsorted(orbit.tau[:, 0], times, side="right") - 1, 0, len(orbit.tau) - 1)
+    start, end = orbit.tau[panels, 0], orbit.tau[panels, -1]
+    weights = interpolation_weights((2.0 * times - start - end) / (end - start))
+    x, v, rub = ((weights * part[panels]).sum(axis=1) for part in (orbit.x, orbit.v, orbit.friction))
+    turn = np.exp(1j * scene.frequency * times)
+    force, force_2 = (
+        (scene.mass().force, scene.mass().transverse_force) if scene.degrees_of_freedom else (0j, 0j)
+    )
+    loads = (force * turn).imag, (force_2 * turn).imag
+    return Samples(times, x.real, v.real, x.imag, v.imag, rub.real, rub.imag, *loads)

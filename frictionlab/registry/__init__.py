@@ -1,0 +1,143 @@
+"""Names to laws and methods, through entry points: built-ins come in by the same door as plugins."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib import metadata
+from importlib.metadata import EntryPoint
+from types import MappingProxyType
+from typing import Any
+
+from frictionlab.faults import BrokenPlugin, from_outside
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
+from frictionlab.registry.entry_points import OWN, Home, checked, clash, home_of, opened
+from frictionlab.registry.smoke_test import wrong_as_given
+
+__all__ = [
+    "LAWS",
+    "METHODS",
+    "BrokenPlugin",
+    "Laws",
+    "law_class",
+    "law_names",
+    "method_class",
+    "method_names",
+]
+
+LAWS = "frictionlab.laws"
+METHODS = "frictionlab.methods"
+
+
+def law_names() -> list[str]:
+    """The names of every installed law, sorted."""
+    return sorted(_doors(LAWS))
+
+
+def method_names() -> list[str]:
+    """The names of every installed method, sorted."""
+    return sorted(_doors(METHODS))
+
+
+def law_class(name: str) -> type[FrictionLaw]:
+    """The law of this name. Raises KeyError for an unknown name, BrokenPlugin for one that cannot be used."""
+    return _sound(_load(LAWS, name))
+
+
+def method_class(name: str) -> type[Method]:
+    """The method of this name. Raises KeyError for an unknown name, BrokenPlugin for one that is broken."""
+    return _sound(_load(METHODS, name))
+
+
+class Laws:
+    """The laws a study may name: those of its own files, and those installed.
+
+    homes: where those of the files come from; a law without one has been checked before.
+    """
+
+    def __init__(
+        self,
+        own: Mapping[str, type[FrictionLaw]] = MappingProxyType({}),
+        homes: Mapping[str, Home] = MappingProxyType({}),
+    ) -> None:
+        self._own, self._homes = own, homes
+
+    def names(self) -> list[str]:
+        """The names of all of them, sorted."""
+        return sorted({*law_names(), *self._own})
+
+    def usable(self) -> list[str]:
+        """The names of those that are not broken."""
+        return [name for name in self.names() if not self._wrong(name)]
+
+    def broken(self) -> list[str]:
+        """What is wrong with each of those that are, and with those whose name one of ours has."""
+        wrong = [self._wrong(name) for name in self.names()]
+        return [
+            *filter(None, wrong),
+            *(_pushed_out(doors) for doors in _doors(LAWS).values() if _clashes(doors)),
+        ]
+
+    def _wrong(self, name: str) -> str:
+        try:
+            self.named(name)
+        except BrokenPlugin as problem:
+            return str(problem)
+        return ""
+
+    def named(self, name: str) -> type[FrictionLaw]:
+        """The law of this name. Raises KeyError for an unknown name, BrokenPlugin for one that cannot be used."""
+        if name not in self._own:
+            return law_class(name)
+        return (
+            _sound(_checked(self._own[name], self._homes[name])) if name in self._homes else self._own[name]
+        )
+
+    def check(self, name: str, law: FrictionLaw) -> None:
+        """Raises BrokenPlugin where a law fails with the parameters it was given."""
+        if from_outside(type(law)) and (wrong := wrong_as_given(law)):
+            home = self._homes.get(name) or home_of(_doors(LAWS)[name][0])
+            raise home.broken(wrong)
+
+
+@cache
+def _doors(group: str) -> dict[str, tuple[EntryPoint, ...]]:
+    """The entry points of each name; the same one twice, as from two copies of a package, is one."""
+    found: dict[str, dict[str, EntryPoint]] = {}
+    for door in metadata.entry_points(group=group):
+        found.setdefault(door.name, {}).setdefault(door.value, door)
+    return {name: tuple(doors.values()) for name, doors in found.items()}
+
+
+def _clashes(doors: Sequence[EntryPoint]) -> bool:
+    """Whether one of ours has a name that others took too."""
+    return len(doors) > 1 and any(door.dist is not None and door.dist.name == OWN for door in doors)
+
+
+def _pushed_out(doors: Sequence[EntryPoint]) -> str:
+    return f"{clash(doors)}\nfrictionlab's own is used; the others need another name"
+
+
+@cache
+def _load(group: str, name: str) -> Any:
+    """The class of this name, or the BrokenPlugin that it is: a law that hangs is tried once."""
+    try:
+        return opened(_doors(group)[name], FrictionLaw if group == LAWS else Method)
+    except BrokenPlugin as problem:
+        return problem
+
+
+@cache
+def _checked(law: type[FrictionLaw], home: Home) -> Any:
+    try:
+        return checked(law, home)
+    except BrokenPlugin as problem:
+        return problem
+
+
+def _sound(found: Any) -> Any:
+    """What was found, if it can be used. Raises BrokenPlugin, a new one every time."""
+    if isinstance(found, BrokenPlugin):
+        raise BrokenPlugin(*found.args) from found.__cause__
+    return found

@@ -1,0 +1,148 @@
+"""The publications that laws, methods and studies name: entries of BibTeX, and which of them a text names.
+
+A text names a publication by its authors and year, as in "Dahl (1968)", "Bo & Pavelescu (1982)" or, of three and more
+authors, "Dupont et al. (2002)".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+
+_BEGIN = re.compile(r"@(\w+)\s*\{\s*([^\s,{}\"#%]+)\s*(?=[,}])")
+_NAME = re.compile(r"\s*,\s*(?:(\w+)\s*=\s*)?")
+_BARE = re.compile(r"\w+")
+_HOMES = ("journal", "booktitle", "publisher", "institution", "howpublished", "note")
+
+
+@dataclass(frozen=True)
+class Reference:
+    """An entry: its kind, such as article, its key and fields, and its BibTeX as written."""
+
+    kind: str
+    key: str
+    fields: Mapping[str, str] = field(compare=False)
+    bibtex: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """How a text may name it; nothing for one without authors."""
+        given = self.fields.get("author", "")
+        if not given:
+            return ()
+        families = [_family(author) for author in re.split(r"\s+and\s+", given)]
+        whole = " & ".join([", ".join(families[:-1]), families[-1]] if families[1:] else families)
+        year = f" ({self.fields['year']})" if "year" in self.fields else ""
+        return (whole + year, f"{families[0]} et al.{year}") if families[2:] else (whole + year,)
+
+    @property
+    def text(self) -> str:
+        """For reading: authors (year), title, where."""
+        said = [*self.names[:1], self.fields.get("title", ""), self._home]
+        doi = [f"doi:{self.fields['doi']}"] if "doi" in self.fields else []
+        return ". ".join([*(_plain(each) for each in said if each), *doi])
+
+    @property
+    def _home(self) -> str:
+        """Journal volume, pages; or whatever is known of that."""
+        home = next((self.fields[name] for name in _HOMES if name in self.fields), "")
+        number = self.fields.get("volume", self.fields.get("number", ""))
+        volume = f"{home} {number}".strip()
+        return ", ".join(part for part in (volume, self.fields.get("pages", "")) if part)
+
+
+def _family(author: str) -> str:
+    """The family name, of ``Family, Given``, of ``Given Family`` or of a name in braces."""
+    if "," in author or author.startswith("{"):
+        return _plain(author).partition(",")[0]
+    return author.split()[-1]
+
+
+def _plain(text: str) -> str:
+    return re.sub(r"[{}]", "", text).replace("--", "-")
+
+
+@cache
+def bibliography() -> tuple[Reference, ...]:
+    """The publications that frictionlab's own laws and methods draw on."""
+    return references(files("frictionlab.registry").joinpath("bibliography.bib").read_text(encoding="utf-8"))
+
+
+def publications(text: str, bibtex: str) -> list[Reference]:
+    """Those that a text names, and the entries that come with it, which go before our own of the same name."""
+    brought = references(bibtex)
+    taken = {name for each in brought for name in each.names}
+    known = [*brought, *(each for each in bibliography() if taken.isdisjoint(each.names))]
+    named = named_in(text, known)
+    return [*named, *(each for each in brought if each not in named)]
+
+
+def remark(key: str, words: str) -> Reference:
+    """An entry for a source that is told in words alone."""
+    said = " ".join(re.sub(r"[\\{}]", "", words.replace("@", " at ")).split())
+    note = re.sub(r"([&%$#_])", r"\\\1", said).replace("~", r"\~{}").replace("^", r"\^{}")
+    name = "-".join(re.findall(r"\w+", key))
+    fields = {"title": key, "note": note}
+    lines = "".join(f"  {field} = {{{value}}},\n" for field, value in fields.items())
+    return Reference("misc", name, fields, f"@misc{{{name},\n{lines}}}")
+
+
+def named_in(text: str, known: Iterable[Reference]) -> list[Reference]:
+    """Those of the known publications that a text names, in the order of the text."""
+    words = " ".join(text.split())
+    places = {each: _place(each, words) for each in known}
+    return sorted((each for each, place in places.items() if place >= 0), key=lambda each: places[each])
+
+
+def _place(reference: Reference, words: str) -> int:
+    found = [re.search(rf"(?<!\w){re.escape(name)}(?!\w)", words) for name in reference.names]
+    return min((match.start() for match in found if match), default=-1)
+
+
+def references(bibtex: str) -> tuple[Reference, ...]:
+    """The entries of a text of BibTeX; what stands between them is comment. Raises ValueError for a broken one."""
+    if not isinstance(bibtex, str):
+        raise ValueError(f"must be one text of BibTeX entries, not a {type(bibtex).__name__}")
+    found, at = [], 0
+    while (at := bibtex.find("@", at)) >= 0:
+        begin = _BEGIN.match(bibtex, at)
+        if begin is None:
+            raise ValueError(f"no BibTeX entry such as @article{{key, ...}}: {_start(bibtex, at)}")
+        fields, end = _fields(bibtex, begin)
+        found.append(Reference(begin[1].lower(), begin[2], fields, bibtex[at:end]))
+        at = end
+    return tuple(found)
+
+
+def _fields(bibtex: str, begin: re.Match[str]) -> tuple[dict[str, str], int]:
+    """The fields of an entry, and where it ends."""
+    fields, at = {}, begin.end()
+    while name := _NAME.match(bibtex, at):
+        at = name.end()
+        if name[1] is None:
+            break
+        fields[name[1].lower()], at = _value(bibtex, at)
+    end = re.compile(r"\s*\}").match(bibtex, at)
+    if end is None:
+        raise ValueError(f"BibTeX entry '{begin[2]}' cannot be read at: {_start(bibtex, at)}")
+    return fields, end.end()
+
+
+def _value(bibtex: str, at: int) -> tuple[str, int]:
+    """The words of a field, and where they end: in braces, in quotes or bare."""
+    bare = _BARE.match(bibtex, at)
+    if bare:
+        return bare[0], bare.end()
+    close, depth = {"{": "}", '"': '"'}.get(bibtex[at : at + 1], ""), 0
+    for end in range(at + 1, len(bibtex)):
+        if bibtex[end] == close and depth == 0:
+            return " ".join(bibtex[at + 1 : end].split()), end + 1
+        depth += {"{": 1, "}": -1}.get(bibtex[end], 0)
+    raise ValueError(f"a BibTeX field has no end: {_start(bibtex, at)}")
+
+
+def _start(text: str, at: int) -> str:
+    return " ".join(text[at : at + 40].split()) or "its end"

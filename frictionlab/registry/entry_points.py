@@ -1,0 +1,163 @@
+"""The door by which laws and methods come in, and every way in which what stands before it can be broken."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator, Sequence
+from importlib.metadata import EntryPoint
+from typing import Any, NamedTuple
+
+from frictionlab.faults import BrokenPlugin, first_line, from_outside, in_words, outside_files, place_in
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
+from frictionlab.registry.bibliography import references
+from frictionlab.registry.smoke_test import written, wrong_with_any
+
+OWN = "frictionlab"
+
+
+class Home(NamedTuple):
+    """Where a law or method comes from, and what to do where it is broken, in words."""
+
+    name: str
+    remedy: str
+
+    def broken(self, what: str, why: BaseException | None = None) -> BrokenPlugin:
+        """That it is broken, and how."""
+        problem = BrokenPlugin(f"{self.name}: {what}\n{self.remedy}")
+        problem.__cause__ = why
+        return problem
+
+
+def package(door: EntryPoint) -> str:
+    """The package that brings an entry point, with its version; nothing where that is not known."""
+    return f"{door.dist.name} {door.dist.version}" if door.dist is not None else ""
+
+
+def home_of(door: EntryPoint) -> Home:
+    """The home of what is installed."""
+    what = door.group.rpartition(".")[2].removesuffix("s")
+    whose = f" of package {package(door)}" if package(door) else ""
+    name = door.dist.name if door.dist is not None else "the package that brings it"
+    return Home(f"{what} '{door.name}'{whose} ({door.value})", f"mend it, or: pip uninstall {name}")
+
+
+def opened(doors: Sequence[EntryPoint], kind: type[FrictionLaw] | type[Method]) -> Any:
+    """The law or method behind the entry points of one name. Raises BrokenPlugin."""
+    own = [door for door in doors if door.dist is not None and door.dist.name == OWN]
+    door, *others = own or doors  # a stranger never takes the place of one of ours
+    if others:
+        raise BrokenPlugin(f"{clash(doors)}\nmend one of them, or uninstall it")
+    home = home_of(door)
+    loaded = _loaded(door, home)
+    if not isinstance(loaded, type):
+        raise home.broken(f"is not a class but {loaded!r}; its entry point must name the class itself")
+    if not issubclass(loaded, kind):
+        raise home.broken(f"class {loaded.__name__} is not derived from frictionlab.{_bases(kind)}")
+    return checked(loaded, home)
+
+
+def _bases(kind: type) -> str:
+    return "SlidingLaw, BristleLaw or MemoryLaw" if kind is FrictionLaw else kind.__name__
+
+
+def clash(doors: Sequence[EntryPoint]) -> str:
+    """That several packages bring something of one name."""
+    brought = " and ".join(f"{package(door) or 'a package'} ({door.value})" for door in doors)
+    what = doors[0].group.rpartition(".")[2].removesuffix("s")
+    return f"{what} '{doors[0].name}' is brought by {brought}"
+
+
+def _loaded(door: EntryPoint, home: Home) -> Any:
+    try:
+        return door.load()
+    except ModuleNotFoundError as problem:
+        if problem.name and f"{door.module}.".startswith(f"{problem.name}."):
+            raise home.broken(f"leads to nothing: there is no module '{problem.name}'", problem) from problem
+        raise unloadable(home, problem) from problem
+    except (Exception, SystemExit) as problem:
+        if isinstance(problem, AttributeError) and _is_of_load(problem):
+            raise home.broken(f"leads to nothing: {problem}", problem) from problem
+        raise unloadable(home, problem) from problem
+
+
+def _is_of_load(problem: AttributeError) -> bool:
+    """Whether the module is whole and only lacks what the entry point names."""
+    frames = inspect.getinnerframes(problem.__traceback__) if problem.__traceback__ else []
+    return bool(frames) and frames[-1].filename.endswith(
+        ("importlib/metadata/__init__.py", "metadata\\__init__.py")
+    )
+
+
+def unloadable(home: Home, problem: BaseException) -> BrokenPlugin:
+    """That a module cannot be run to its end."""
+    files = outside_files(problem)
+    if isinstance(problem, ModuleNotFoundError):
+        what = f"needs '{problem.name}', which is not installed{place_in(problem, files) or ''}"
+        remedy = f"install that, or leave it out: pip install {str(problem.name).partition('.')[0]}"
+        return home._replace(remedy=remedy).broken(what, problem)
+    return home.broken(f"cannot be loaded: {in_words(problem, files)}", problem)
+
+
+def checked(loaded: Any, home: Home) -> Any:
+    """The class, which is sound as far as a few questions show. Raises BrokenPlugin."""
+    for wrong in _wrongs(loaded):
+        raise home.broken(wrong)
+    return loaded
+
+
+def _wrongs(loaded: Any) -> Iterator[str]:
+    yield from _missing(loaded)
+    try:
+        references(loaded.bibtex)
+    except ValueError as problem:
+        yield f"its bibtex: {problem}"
+    if issubclass(loaded, FrictionLaw) and from_outside(loaded):
+        yield from _mutable(loaded)
+        yield from _signatures(loaded)
+        if wrong := wrong_with_any(loaded):
+            yield wrong
+
+
+def _missing(loaded: Any) -> Iterator[str]:
+    if missing := sorted(getattr(loaded, "__abstractmethods__", ())):
+        told = ", ".join(f"{name}({', '.join(_names(getattr(loaded, name)))})" for name in missing)
+        yield f"class {loaded.__name__} does not define {told}"
+
+
+def _names(method: Any) -> list[str]:
+    return list(inspect.signature(method).parameters)
+
+
+def _signatures(law: type[FrictionLaw]) -> Iterator[str]:
+    """Methods that cannot be called as their interface says."""
+    for name, interface in written(law):
+        given, wanted = inspect.getattr_static(law, name), _names(interface)
+        if not inspect.isfunction(given):
+            yield f"{name} must be an ordinary method, {name}({', '.join(wanted)}), not a {type(given).__name__}"
+            continue
+        try:
+            inspect.signature(given).bind(*wanted)
+        except TypeError:
+            yield f"{name}({', '.join(_names(given))}) must take ({', '.join(wanted)}){first_line(given.__code__)}"
+
+
+def _mutable(law: type[FrictionLaw]) -> Iterator[str]:
+    """What may change between calls, and would then change answers."""
+    for name, field in law.model_fields.items():
+        if field.default_factory is not None or isinstance(field.default, list | dict | set):
+            yield f"parameter '{name}' has a default that can change, a {_kind_of_default(field)}; {_FIXED}"
+    own = [kind for kind in law.__mro__ if issubclass(kind, FrictionLaw) and from_outside(kind)]
+    for kind in own:
+        held = [name for name, value in vars(kind).items() if isinstance(value, list | dict | set)]
+        for name in [name for name in held if not name.startswith(("_", "model_", "expected_failures"))]:
+            yield f"it keeps {name} = {vars(kind)[name]!r}, which can change; {_FIXED}"
+        for name in kind.__private_attributes__:
+            yield f"it keeps a state of its own, {name}; {_FIXED}"
+
+
+def _kind_of_default(field: Any) -> str:
+    return type(field.default).__name__ if field.default_factory is None else "factory"
+
+
+_FIXED = "a law is its parameters and nothing else: use numbers, or a tuple of them"

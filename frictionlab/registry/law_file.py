@@ -1,0 +1,128 @@
+"""A law from one Python file: read, run as a module of its own, and its law classes by name."""
+
+from __future__ import annotations
+
+import hashlib
+import linecache
+import re
+import sys
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+from frictionlab.faults import LAW_FILE
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.registry.entry_points import Home, unloadable
+
+LARGEST_FILE = 1_000_000
+
+
+class Unreadable(Exception):
+    """There is no file of Python text to read; the message says why."""
+
+
+def home_of_file(path: Path) -> Home:
+    """The home of what is wrong with a file as a whole."""
+    return Home(f"file {path}", "mend the file")
+
+
+@dataclass(frozen=True)
+class LawFile:
+    """A file of laws. text: what it holds; laws: its concrete law classes by the names studies give them."""
+
+    path: Path = field(compare=False)
+    text: str = field(repr=False)
+    laws: dict[str, type[FrictionLaw]] = field(compare=False)
+
+    def home(self, name: str) -> Home:
+        """The home of one of its laws."""
+        return Home(f"law '{name}' (class {self.laws[name].__name__}) of file {self.path}", "mend the file")
+
+    @property
+    def code(self) -> str:
+        """SHA-256 of the text: another text is another law."""
+        return _sha256(self.text)
+
+
+def read_law_file(path: Path) -> LawFile:
+    """The laws of this file. Raises Unreadable, BrokenPlugin."""
+    text = text_of(path)
+    name = re.sub(r"\W", "_", path.stem)
+    module = _module(f"{LAW_FILE}{name}_{_sha256(text)[:12]}", path, text)
+    return LawFile(path, text, _laws(module, path))
+
+
+def law_name(name: str) -> str:
+    """The law of a class of this name as studies write it: ``MyLaw`` is ``my-law``."""
+    parts = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "-", name)
+    return parts.replace("_", "-").strip("-").lower()
+
+
+@cache
+def code_of(law: type[FrictionLaw]) -> str:
+    """SHA-256 of the Python files of the package that brings a law; nothing for a law of frictionlab itself."""
+    head, _, rest = law.__module__.partition(".")
+    file = getattr(sys.modules.get(head), "__file__", None)
+    if head == "frictionlab" or file is None:
+        return ""
+    files = sorted(Path(file).parent.rglob("*.py")) if rest or Path(file).stem == "__init__" else [Path(file)]
+    return _sha256("\0".join(each.read_text(encoding="utf-8", errors="replace") for each in files))
+
+
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def text_of(path: Path) -> str:
+    """What a file of laws holds. Raises Unreadable."""
+    if path.suffix != ".py":
+        raise Unreadable("must be a Python file, *.py")
+    if path.exists() and not path.is_file():
+        raise Unreadable("is not a file")
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise Unreadable(f"is larger than {LARGEST_FILE // 10**6} MB; a law is a page of text")
+        return path.read_bytes().decode("utf-8")
+    except FileNotFoundError:
+        raise Unreadable("no such file") from None
+    except UnicodeDecodeError as problem:
+        raise Unreadable(f"is not UTF-8 text (byte {problem.start + 1})") from None
+    except (OSError, ValueError) as problem:
+        reason = problem.strerror if isinstance(problem, OSError) else str(problem)
+        raise Unreadable(f"cannot be read: {reason}") from None
+
+
+@cache
+def _module(name: str, path: Path, text: str) -> ModuleType:
+    """The module of this text, run once. Compiled here: Python's own cache misses an edit within a second."""
+    linecache.checkcache(str(path))
+    if name in sys.modules:  # the same text from another folder
+        return sys.modules[name]
+    module = ModuleType(name)
+    module.__file__ = str(path)
+    sys.modules[name] = module
+    try:
+        exec(compile(text, str(path), "exec"), module.__dict__)
+    except BaseException as problem:
+        del sys.modules[name]
+        if isinstance(problem, KeyboardInterrupt):
+            raise
+        raise unloadable(home_of_file(path), problem) from problem
+    return module
+
+
+def _laws(module: ModuleType, path: Path) -> dict[str, type[FrictionLaw]]:
+    """The laws defined in the module itself; those another one is derived from are for that alone."""
+    own = [kind for kind in vars(module).values() if _is_law(kind) and kind.__module__ == module.__name__]
+    bases = {base for kind in own for base in kind.__mro__[1:]}
+    laws = {law_name(kind.__name__): kind for kind in own if kind not in bases}
+    if not laws:
+        raise home_of_file(path).broken(
+            "defines no law: give it a class derived from frictionlab.SlidingLaw, BristleLaw or MemoryLaw"
+        )
+    return laws
+
+
+def _is_law(kind: object) -> bool:
+    return isinstance(kind, type) and issubclass(kind, FrictionLaw)

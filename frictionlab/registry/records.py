@@ -1,0 +1,163 @@
+"""What is installed, laws and methods, as plain records for people and programs."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, get_args, get_origin
+
+from frictionlab import registry
+from frictionlab.faults import home_of_law
+from frictionlab.laws.base import Dimension, FrictionLaw, Record
+from frictionlab.methods.base import Method
+from frictionlab.registry.bibliography import publications
+
+_LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
+
+
+def law_record(name: str, law: type[FrictionLaw]) -> dict[str, Any]:
+    """A law under this name: what it is, its parameters, what it declares."""
+    return {
+        "name": name,
+        "description": _text(law),
+        "parameters": _parameters(law),
+        "declares": _declared(law),
+        "sources": _sources(law),
+        "class": _class(law),
+    }
+
+
+def method_record(name: str) -> dict[str, Any]:
+    """A method: its name, what it is, what it accepts, its parameters. Raises KeyError, BrokenPlugin."""
+    method = registry.method_class(name)
+    return {
+        "name": name,
+        "description": _text(method),
+        "refuses": inspect.getdoc(method.refusal) or "",
+        "parameters": _parameters(method),
+        "sources": _sources(method),
+        "class": f"{method.__module__}.{method.__qualname__}",
+    }
+
+
+def _class(law: type[FrictionLaw]) -> str:
+    """Where a law is written: ``module.Class``, or ``file.py:Class`` where a study brings it along."""
+    home = home_of_law(law)
+    return f"{home}:{law.__qualname__}" if home.endswith(".py") else f"{home}.{law.__qualname__}"
+
+
+def _text(kind: type) -> str:
+    return inspect.getdoc(kind) or ""
+
+
+def _sources(kind: type[FrictionLaw] | type[Method]) -> list[str]:
+    return [each.text for each in publications(_text(kind), kind.bibtex)]
+
+
+def _declared(law: type[FrictionLaw]) -> dict[str, str]:
+    """The predicates a law declares for itself, each with the words of its docstring."""
+    first: dict[str, Any] = {}
+    for kind in reversed(law.__mro__):
+        if issubclass(kind, FrictionLaw):
+            first = {
+                name: method for name, method in vars(kind).items() if _returns_a_truth_value(method)
+            } | first
+    own = [name for name, method in first.items() if getattr(law, name) is not method]
+    return {name: inspect.getdoc(getattr(law, name)) or "" for name in own}
+
+
+def _returns_a_truth_value(method: Any) -> bool:
+    return inspect.isfunction(method) and method.__annotations__.get("return") in (bool, "bool")
+
+
+def _parameters(record: type[Record]) -> list[dict[str, Any]]:
+    return [
+        _parameter(name, field, _text(_owner(record, name))) for name, field in record.model_fields.items()
+    ]
+
+
+def _owner(record: type[Record], name: str) -> type[Record]:
+    """The class that brings a parameter in, and whose docstring tells of it."""
+    return next(kind for kind in record.__mro__ if name in inspect.get_annotations(kind))
+
+
+def _unit(field: Any) -> str:
+    """In SI, such as N s/m; empty for what has no dimension."""
+    dimension = next((rule for rule in _rules(field) if isinstance(rule, Dimension)), None)
+    if dimension is None:
+        return ""
+    powers = [("N", dimension.force), ("s", dimension.time), ("m", dimension.length)]
+    above = " ".join(_power(unit, power) for unit, power in powers if power > 0) or "1"
+    below = [_power(unit, -power) for unit, power in powers if power < 0]
+    return "/".join([above, *below])
+
+
+def _power(unit: str, power: int) -> str:
+    return unit if power == 1 else f"{unit}^{power}"
+
+
+def _parameter(name: str, field: Any, text: str) -> dict[str, Any]:
+    limits = [
+        f"{sign} {bound:g}"
+        for rule in _rules(field)
+        for key, sign in _LIMITS.items()
+        if (bound := getattr(rule, key, None)) is not None
+    ]
+    return {
+        "name": name,
+        "required": field.is_required(),
+        "default": None if field.is_required() else field.default,
+        "limits": _each(field) + " and ".join(limits) or " | ".join(_choices(field)),
+        "unit": _unit(field),
+        "meaning": _meaning(name, text),
+    }
+
+
+def _rules(field: Any) -> list[Any]:
+    """What limits the values of a field; of one that may be left empty, what limits those that are given."""
+    inside = [kind.__metadata__ for kind in get_args(field.annotation) if get_origin(kind) is Annotated]
+    rules = [rule for metadata in [field.metadata, *inside] for rule in metadata]
+    return [each for rule in rules for each in (rule, *getattr(rule, "metadata", ()))]
+
+
+def _each(field: Any) -> str:
+    """Of a field that holds several numbers, whose limits its limits are."""
+    return "a list, each " if get_origin(field.annotation) is tuple else ""
+
+
+def _choices(field: Any) -> list[str]:
+    """The words a field that takes no number may hold."""
+    return (
+        [str(word) for word in get_args(field.annotation)] if get_origin(field.annotation) is Literal else []
+    )
+
+
+def _meaning(name: str, text: str) -> str:
+    """The docstring's own words on a parameter: from its name at the start of a line to a blank line."""
+    found = re.search(rf"^{re.escape(name)}\b(.*(?:\n(?!\s*$|\w+ \[).*)*)", text, re.MULTILINE)
+    return " ".join(found[1].split()).lstrip(":, ") if found else ""
+
+
+def one_line_each(records: Sequence[dict[str, Any]]) -> str:
+    """Laws or methods by name and the first line of their docstring."""
+    width = max(len(record["name"]) for record in records)
+    return "\n".join(
+        f"{record['name']:{width}}  {record['description'].partition(chr(10))[0]}" for record in records
+    )
+
+
+def details(record: dict[str, Any]) -> str:
+    """A law or method on a page: its docstring, then its parameters."""
+    lines = [f"{record['name']}  ({record['class']})", "", str(record["description"])]
+    for name, words in record.get("declares", {}).items():
+        lines.append(f"\n{name}: {words}")
+    lines += ["", *(_parameter_line(given) for given in record["parameters"])]
+    return "\n".join([*lines, "", *record.get("sources", [])]).rstrip()
+
+
+def _parameter_line(given: dict[str, Any]) -> str:
+    default = "may be left out" if given["default"] is None else f"default {given['default']}"
+    unit = f"{given['unit']} in SI" if given["unit"] else ""
+    told = given["limits"], "required" if given["required"] else default, unit
+    return f"{given['name']}: {', '.join(part for part in told if part)}"

@@ -1,0 +1,185 @@
+"""A law from outside tried before it is used: a few calls, interpreted, under a time limit."""
+
+from __future__ import annotations
+
+import inspect
+import threading
+from collections.abc import Callable, Iterator
+from numbers import Complex, Real
+from typing import Any, NamedTuple
+
+from pydantic import ValidationError
+
+from frictionlab.faults import files_of, first_line, from_outside, in_words
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.memory import BristleLaw, MemoryLaw
+
+LIMIT = 2.0
+"""Seconds that all calls of a trial may take; they need a millisecond."""
+SAMPLES = (1.0, 0.5, 2.0, 10.0)
+"""Numbers for the parameters of a law that nobody has given any yet."""
+
+Wrong = str
+"""What is wrong with a law, in words."""
+
+
+class _Slow(NamedTuple):
+    """What was being done when time was up."""
+
+    what: list[str]
+
+
+def wrong_as_given(law: FrictionLaw) -> Wrong | None:
+    """What the methods of a law with these parameters do wrong; None for nothing."""
+    return _within(lambda now: _first(_tried(law, now)))
+
+
+def wrong_with_any(law: type[FrictionLaw]) -> Wrong | None:
+    """What a law does wrong when it is built, and then asked, with parameters it accepts; None for nothing."""
+    return _within(lambda now: _first(_built_and_tried(law, now)))
+
+
+def _within(work: Callable[[_Slow], Wrong | None]) -> Wrong | None:
+    """The answer of this work, or that it takes too long: the thread is left behind."""
+    now, found = _Slow([""]), []
+    thread = threading.Thread(target=lambda: found.append(work(now)), daemon=True)
+    thread.start()
+    thread.join(LIMIT)
+    return found[0] if found else f"{now.what[0]} does not return: stopped after {LIMIT:g} s"
+
+
+def _first(wrongs: Iterator[Wrong]) -> Wrong | None:
+    return next(wrongs, None)
+
+
+def _built_and_tried(law: type[FrictionLaw], now: _Slow) -> Iterator[Wrong]:
+    now.what[0] = "building it"
+    for parameters in _samples(law):
+        try:
+            made = law(**parameters)
+        except ValidationError as problem:
+            if not law.model_fields or (not parameters and not _optional(law)):
+                yield f"its own defaults are refused: {problem.errors(include_url=False)[0]['msg']}"
+            continue
+        except Exception as problem:
+            given = ", ".join(f"{name}={value:g}" for name, value in parameters.items())
+            yield f"{law.__name__}({given}) raises {in_words(problem, files_of(law))}"
+            return
+        yield from _tried(made, now)
+        return
+
+
+def _samples(law: type[FrictionLaw]) -> Iterator[dict[str, float]]:
+    """Parameters to build a law with: those it requires, then one that may be left out beside them."""
+    required = [name for name, field in law.model_fields.items() if field.is_required()]
+    for number in SAMPLES:
+        given = dict.fromkeys(required, number)
+        yield given
+        yield from (given | {name: number} for name in _optional(law))
+
+
+def _optional(law: type[FrictionLaw]) -> list[str]:
+    return [name for name, field in law.model_fields.items() if field.default is None]
+
+
+def _tried(given: FrictionLaw, now: _Slow) -> Iterator[Wrong]:
+    """Every method of the interfaces that the law's author wrote, called on the line and in the plane."""
+    now.what[0] = "under_load(1)"
+    law = given.under_load(1.0)
+    now.what[0] = "a property of it"
+    if wrong := _raised(law, "its properties", law.numbers):
+        yield wrong
+        return
+    for v in (1.0, complex(0.6, 0.8)) if _has_a_plane(law) else (1.0,):
+        arguments = _arguments(law, v)
+        for name, interface in written(type(law)):
+            now.what[0] = f"{name}({_listed(interface, arguments)})"
+            if wrong := _asked(law, name, interface, arguments):
+                yield wrong
+
+
+def written(law: type[FrictionLaw]) -> list[tuple[str, Any]]:
+    """The public methods of the interfaces that are written outside, with what the interface says of each."""
+    interfaces = [kind for kind in law.__mro__ if issubclass(kind, FrictionLaw) and not from_outside(kind)]
+    said: dict[str, Any] = {}
+    for kind in reversed(interfaces):
+        said |= {name: method for name, method in vars(kind).items() if inspect.isfunction(method)}
+    return [
+        (name, method)
+        for name, method in said.items()
+        if name[0] != "_" and inspect.getattr_static(law, name) is not method
+    ]
+
+
+def _has_a_plane(law: FrictionLaw) -> bool:
+    return not isinstance(law, BristleLaw) or (law.planar == "vectorial" and not law.no_vector_form())
+
+
+def _arguments(law: FrictionLaw, v: Any) -> dict[str, Any]:
+    """What methods are called with, by the names their interfaces give it."""
+    told: dict[str, Any] = {
+        "speed": 1.0,
+        "normal_load": 1.0,
+        "side": 1.0,
+        "v": v,
+        "path": v,
+        "z": 0.0 * v,
+        "k": 0,
+    }
+    if isinstance(law, BristleLaw):
+        told["dz"] = 0.0 * v
+    if isinstance(law, MemoryLaw):
+        still = 0.0 * v if law.memory_kind == "deflections" else 0.0
+        told |= {"memory": [still] * law.count(), "rates": [still] * law.count()}
+    return told
+
+
+def _listed(method: Any, arguments: dict[str, Any]) -> str:
+    names = list(inspect.signature(method).parameters)[1:]
+    return ", ".join(f"{name}={arguments.get(name)}" for name in names)
+
+
+def _asked(law: FrictionLaw, name: str, interface: Any, arguments: dict[str, Any]) -> Wrong | None:
+    names = list(inspect.signature(interface).parameters)[1:]
+    if not set(names) <= set(arguments):
+        return None
+    answer: list[Any] = []
+    call = f"{name}({_listed(interface, arguments)})"
+    values = [arguments[each] for each in names]
+    if wrong := _raised(law, call, lambda: answer.append(getattr(law, name)(*values))):
+        return wrong
+    kind = str(inspect.signature(interface).return_annotation)
+    if not answer or _is_a(answer[0], kind, any(isinstance(value, complex) for value in values)):
+        return None
+    hint = ": is its return missing?" if answer[0] is None else ""
+    code = inspect.unwrap(getattr(type(law), name)).__code__
+    return f"{call} returns {answer[0]!r}, which is no {_KINDS[kind]}{hint}{first_line(code)}"
+
+
+def _raised(law: FrictionLaw, what: str, call: Callable[[], object]) -> Wrong | None:
+    """What a call raises that no numbers excuse: arithmetic may fail at some, and its points then say so."""
+    try:
+        call()
+    except (ArithmeticError, ValueError):
+        return None
+    except Exception as problem:
+        return f"{what} raises {in_words(problem, files_of(type(law)))}"
+    return None
+
+
+_KINDS = {"float": "number", "int": "whole number", "bool": "True or False", "str": "text", "Any": "number"}
+_KINDS |= {"complex": "number", "Self": "law", "tuple[str, ...]": "tuple of words"}
+
+
+def _is_a(answer: Any, kind: str, planar: bool) -> bool:
+    if kind not in _KINDS:
+        return True
+    if kind == "bool":
+        return isinstance(answer, bool) or type(answer).__name__ == "bool_"
+    if kind == "Self":
+        return isinstance(answer, FrictionLaw)
+    if kind in ("str", "tuple[str, ...]"):
+        return isinstance(answer, str if kind == "str" else tuple)
+    if isinstance(answer, bool):
+        return False
+    return isinstance(answer, Complex if planar and kind in ("Any", "complex") else Real)

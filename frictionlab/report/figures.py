@@ -1,0 +1,123 @@
+"""The figures of a run, inside the page, each with a caption made from the study."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from markupsafe import Markup
+
+from frictionlab.charts.curves import Family, family_of
+from frictionlab.charts.figures import figure_columns
+from frictionlab.report.markup import symbol_html, unit_html, word_html
+from frictionlab.report.question import values_listed
+from frictionlab.report.tables import listed, points, setting
+from frictionlab.run.saved import Saved
+
+LARGEST_SVG = 400_000
+"""Bytes of a drawing above which the pixels of the same figure are put into the page, where they are fewer."""
+_KINDS = {".svg": "image/svg+xml", ".png": "image/png"}
+
+
+class Picture(NamedTuple):
+    """A figure in the page: its data as an address, its caption, its description in words.
+
+    narrow: whether it is one picture alone, drawn for the column of a journal.
+    """
+
+    name: str
+    address: str
+    caption: Markup
+    description: str
+    narrow: bool
+
+
+def pictures(saved: Saved) -> list[Picture]:
+    """The figures of a run; one that is not in its folder has no address."""
+    family = family_of(saved.table)
+    if family is None:
+        return []
+    found = figure_columns(saved.table).items()
+    return [_picture(saved, family, name, columns) for name, columns in found]
+
+
+def _picture(saved: Saved, family: Family, name: str, columns: Sequence[str]) -> Picture:
+    caption = _caption(saved, family, columns)
+    spans = [_span(saved, column) for column in columns]
+    description = f"{caption.striptags()} {' '.join(spans)}"
+    alone = len(family.panels) * len(columns) == 1
+    return Picture(name, address(saved.folder / "figures" / name), caption, description, alone)
+
+
+def address(path: Path) -> str:
+    """A figure's data as an address of its own; empty where there is no such file."""
+    files = [file for suffix in _KINDS if (file := path.with_suffix(suffix)).is_file()]
+    if not files:
+        return ""
+    first = files[0]
+    if first.stat().st_size > LARGEST_SVG:
+        first = min(files, key=lambda file: file.stat().st_size)
+    return f"data:{_KINDS[first.suffix]};base64,{base64.b64encode(first.read_bytes()).decode('ascii')}"
+
+
+def _caption(saved: Saved, family: Family, columns: Sequence[str]) -> Markup:
+    """What is drawn against what, what tells curves apart, what is held fixed, what has no number."""
+    shown = Markup(", ").join(word_html(column) for column in columns)
+    parts = [
+        Markup("{} against {}").format(_capital(shown), word_html(family.abscissa)),
+        *_lines(family),
+        *_panels(family),
+        *_fixed(saved, family),
+        *_missing(saved),
+    ]
+    return Markup(". ").join(parts) + "."
+
+
+def _capital(text: Markup) -> Markup:
+    return Markup(text[:1].upper() + text[1:])
+
+
+def _lines(family: Family) -> list[Markup]:
+    """Laws, methods and members, each named where there are several."""
+    laws = list(dict.fromkeys(curve.law for curve in family.curves))
+    methods = list(dict.fromkeys(curve.method for curve in family.curves))
+    told = [Markup("{} {}").format("Law" if len(laws) == 1 else "A colour per law:", listed(laws))]
+    told += [
+        Markup("{} {}").format("method" if len(methods) == 1 else "a line style per method:", listed(methods))
+    ]
+    sentence = Markup("; ").join(told)
+    if family.member is None:
+        return [sentence]
+    members = sorted(
+        {curve.member[1] for curve in family.curves if curve.member and curve.member[1] is not None}
+    )
+    name, unit = symbol_html(family.member), unit_html(family.member)
+    return [sentence, Markup("A curve for each {} = {}{}").format(name, values_listed(members), unit)]
+
+
+def _panels(family: Family) -> list[Markup]:
+    names = list(dict.fromkeys(name for panel in family.panels for name, _ in panel))
+    if not names:
+        return []
+    return [Markup("A picture for each {}").format(Markup(", ").join(symbol_html(name) for name in names))]
+
+
+def _fixed(saved: Saved, family: Family) -> list[Markup]:
+    """The values of the scene that are the same in every point."""
+    values = {f"scene.{path}": value for path, value in saved.study.scene.given_values().items()}
+    fixed = [setting(name, value) for name, value in values.items() if name not in saved.study.sweep]
+    return [Markup("Held fixed: {}").format(Markup(", ").join(fixed))] if fixed else []
+
+
+def _missing(saved: Saved) -> list[Markup]:
+    """How many points have no number, which the figures show as marks."""
+    without = {status: count for status, count in saved.counts.items() if status != "ok"}
+    told = [f"{points(count)} {status.replace('_', ' ')}" for status, count in without.items()]
+    return [Markup("Without a number, and marked as such: {}").format(", ".join(told))] if told else []
+
+
+def _span(saved: Saved, column: str) -> str:
+    found = saved.table[column].dropna()
+    return f"{word_html(column).striptags()}: from {found.min():.4g} to {found.max():.4g}."

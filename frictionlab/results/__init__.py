@@ -1,0 +1,1 @@
+"""What a run returns: rows, curves, verdicts and their summary."""

@@ -1,0 +1,151 @@
+"""The table of curves: everything but belt speed equal, one row each, with the shape of its mean friction."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from frictionlab import registry
+from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS, SCALED
+from frictionlab.laws.memory import BristleLaw, MemoryLaw
+from frictionlab.quantities import Floats
+from frictionlab.results.table import value_in
+from frictionlab.shape.ends import Loads, Rows, end_of_reversal, friction_at_rest
+from frictionlab.shape.shakedown import Hold, Value, hold_of_a_body, hold_of_a_slip
+from frictionlab.shape.verdict import Curve, Measured, Shape, Unreadable, reduction, shape_of
+
+TEXT = frozenset({"shape", "shape_by_initial", "reason"})
+INSTALLED = registry.Laws()
+_NEEDED = [name if name != "belt_speed" else "scene.belt_speed" for name in Rows._fields]
+
+
+def curve_table(table: pd.DataFrame, laws: registry.Laws = INSTALLED) -> pd.DataFrame:
+    """One row per curve of a result table, in its order; none where no curve has two belt speeds.
+
+    Rows without a number are left out of their curve. A measure that cannot be read is empty, with the reason.
+    """
+    keys = curve_inputs(table.columns)
+    groups = table.groupby(keys, sort=False, dropna=False).indices if len(table) else {}
+    if all(len(places) < 2 for places in groups.values()):
+        return pd.DataFrame(columns=[*keys, *CURVES])
+    places = sorted((np.sort(found) for found in groups.values()), key=lambda found: int(found[0]))
+    heads = table.loc[:, keys].iloc[[found[0] for found in places]].reset_index(drop=True)
+    numbers = table.reindex(columns=_NEEDED).to_numpy(dtype=float)
+    usable = (table["status"] == "ok").to_numpy() & (numbers[:, 0] > 0.0)
+    inputs = [dict(zip(keys, row, strict=True)) for row in heads.itertuples(index=False, name=None)]
+    read = [
+        _measures(_rows(numbers[found[usable[found]]]), _loads(given, laws))
+        for found, given in zip(places, inputs, strict=True)
+    ]
+    return pd.concat([heads, _frame(read)], axis=1)
+
+
+def curve_inputs(columns: Iterable[str]) -> list[str]:
+    """The inputs that are the same all along a curve."""
+    return [
+        name
+        for name in columns
+        if (name in INPUTS or name.startswith(("scene.", "law."))) and name not in BELT_SPEEDS
+    ]
+
+
+def _frame(read: list[dict[str, Any]]) -> pd.DataFrame:
+    columns = {name: [found.get(name) for found in read] for name in CURVES}
+    types = {name: "str" if name in TEXT else "float" for name in CURVES}
+    return pd.DataFrame(columns, dtype=object).astype(types)
+
+
+def _rows(numbers: Floats) -> Rows:
+    rising = numbers[np.argsort(numbers[:, 0], kind="stable")]
+    return Rows(*(np.ascontiguousarray(column) for column in rising.T))
+
+
+def _loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
+    """What the inputs of a curve say about its loads."""
+
+    def value(name: str) -> float:
+        found = given.get(name)
+        return 0.0 if found is None or found != found else float(found)
+
+    frequency = value("scene.drive.frequency")
+
+    def force(path: str) -> complex:
+        size = value(f"{path}.unbalance") * frequency**2 + value(f"{path}.amplitude")
+        return cmath.rect(size, math.radians(value(f"{path}.phase")))
+
+    static = value("law.mu_static") * value("scene.normal_load")
+    slips = [value(f"scene.{slip}.velocity_amplitude") for slip in ("slip", "transverse_slip")]
+    forces = force("scene.drive"), force("scene.transverse.load")
+    bristles = _bristle_law(given, laws)
+    hold = None if bristles is None else _hold(bristles, value, forces, any(slips))
+    return Loads(*forces, slips[1], static or math.nan, any(slips), hold, _unread(given, laws))
+
+
+def _unread(given: Mapping[str, Any], laws: registry.Laws) -> str:
+    """Why nothing is known of the friction on a belt that creeps; '' where it is."""
+    law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
+    if law is None or not issubclass(law, MemoryLaw) or law.memory_kind != "deflections":
+        return ""
+    return "deflections may hold the body on a slow belt: where the curve starts is known for a single one"
+
+
+def _hold(law: BristleLaw, value: Value, forces: tuple[complex, complex], prescribed: bool) -> Hold | None:
+    """Of the bristles of a curve's law; None where one direction at a time leaves no memory."""
+    in_a_plane = value("scene.transverse.natural_frequency") or value(
+        "scene.transverse_slip.velocity_amplitude"
+    )
+    if in_a_plane and law.planar == "rotated":
+        return None
+    return hold_of_a_slip(law, value) if prescribed else hold_of_a_body(law, value, *forces)
+
+
+def _bristle_law(given: Mapping[str, Any], laws: registry.Laws) -> BristleLaw | None:
+    """The law as methods took it, made again from the inputs; None without bristles or without a known name."""
+    law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
+    if law is None or not issubclass(law, BristleLaw):
+        return None
+    told = {name: value_in(given, f"law.{name}") for name in law.model_fields}
+    scaled = {name: value_in(given, f"{SCALED}{name}") for name in told}
+    values = {name: value for name, value in told.items() if value is not None}
+    values |= {name: value for name, value in scaled.items() if value is not None}
+    return law.model_validate(values).under_load(float(given["scene.normal_load"]))
+
+
+def _measures(rows: Rows, loads: Loads) -> dict[str, Any]:
+    """Every measure that can be read from a curve; the reason where one cannot."""
+    found: dict[str, Any] = _reduction(rows)
+    try:
+        if not rows.belt_speed.size:
+            raise Unreadable("no point at a belt speed > 0 has a number")
+        end, kinked = end_of_reversal(rows, loads)
+        found |= _entry("reversal_end", end)
+        start = friction_at_rest(rows, loads)
+        shape = shape_of(Curve(rows.belt_speed, rows.mean_friction, rows.error, start, end, kinked))
+    except Unreadable as problem:
+        return found | {"reason": str(problem)}
+    return found | _shape(shape)
+
+
+def _reduction(rows: Rows) -> dict[str, float]:
+    known = np.isfinite(rows.normalized_friction)
+    if not known.any():
+        return {}
+    size = rows.normalized_friction[known]
+    return _entry("reduction", reduction(size, rows.error[known] / np.abs(rows.steady[known])))
+
+
+def _shape(shape: Shape) -> dict[str, Any]:
+    found: dict[str, Any] = _entry("shape_area", shape.area) | _entry("shape_half", shape.half)
+    found["shape"] = shape.by_area
+    if shape.initial is None:
+        return found | {"reason": "the curvature at rest needs two points below a tenth of the range"}
+    return found | _entry("shape_initial", shape.initial) | {"shape_by_initial": shape.by_initial}
+
+
+def _entry(name: str, measured: Measured) -> dict[str, float]:
+    return {name: measured.value, f"{name}_error": measured.error}

@@ -1,0 +1,71 @@
+"""Columns that follow from a point's inputs and its mean friction, whatever the method."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from frictionlab.columns import SI
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.memory import BristleLaw
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
+from frictionlab.theory import friction_free_velocity
+
+
+def derived_columns(scenes: Sequence[Scene], law: FrictionLaw, mean_friction: Floats) -> dict[str, Floats]:
+    """Mean friction, belt speed, friction force against their natural scales; NaN where a scale is zero.
+
+    ``presliding_ratio`` stays empty for laws without a presliding length.
+    """
+    free = np.array([friction_free_velocity(scene) for scene in scenes])
+    speed = np.array([scene.belt_speed for scene in scenes])
+    sliding = np.array([law.sliding_friction(abs(scene.belt_speed)) for scene in scenes])
+    limit = np.array(
+        [(scene.normal_load or 0.0) * value for scene, value in zip(scenes, sliding, strict=True)]
+    )
+    return {
+        "normalized_friction": _ratio(mean_friction, sliding * np.sign(speed)),
+        "velocity_ratio": _ratio(speed, free),
+        "friction_to_drive": _ratio(limit, np.array([force_amplitude(scene) for scene in scenes])),
+        "presliding_ratio": _ratio(_presliding(law) * np.array([scene.frequency for scene in scenes]), free),
+    }
+
+
+def _presliding(law: FrictionLaw) -> float:
+    """The presliding length [scene length]; NaN for a law without a finite one."""
+    length = law.presliding() if isinstance(law, BristleLaw) else math.nan
+    return length if math.isfinite(length) else math.nan
+
+
+def si_scales(scene: Scene) -> dict[str, float]:
+    """The units in which the results of a scene given in SI units are to be counted: N, m/s, J, s."""
+    assert scene.dimensional is not None
+    scales = scene.dimensional.scales
+    return {
+        "load": scene.dimensional.load,
+        "velocity": scales.velocity,
+        "energy": scales.energy,
+        "drive period": 2.0 * math.pi / scene.frequency * scales.time,
+    }
+
+
+def si_columns(found: Mapping[str, Floats], scales: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Results in SI units."""
+    return {name: found[made.column] * scales[made.scale] for name, made in SI.items()}
+
+
+def force_amplitude(scene: Scene) -> float:
+    """Of the drive along x1, else of the load along x2 [K_1 L]; 0 where nothing pushes."""
+    load = scene.transverse.load if scene.transverse is not None else None
+    forces = [abs(force.phasor(scene.frequency)) for force in (scene.drive, load) if force is not None]
+    return next((force for force in forces if force > 0.0), 0.0)
+
+
+def _ratio(above: Floats, below: Floats) -> Floats:
+    """Their quotient; NaN where the scale below is zero or infinite."""
+    usable = np.isfinite(below) & (below != 0.0)
+    quotient: Floats = np.divide(above, below, out=np.full(len(below), np.nan), where=usable)
+    return quotient

@@ -1,0 +1,129 @@
+"""A run in a few lines of text: one per curve, then what was expected, then where the table is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import pandas as pd
+
+from frictionlab.columns import belt_speed, given
+from frictionlab.results.expectations import Verdict
+from frictionlab.results.run import Run
+
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
+
+
+def pattern(sentence: Any) -> str:
+    """A sentence without its numbers; nothing for what is no sentence."""
+    return _NUMBER.sub("#", sentence) if isinstance(sentence, str) else ""
+
+
+def alike(sentences: Iterable[str]) -> str:
+    """The first of sentences that differ in their numbers at most, and how many others there are."""
+    first, *others = dict.fromkeys(sentences)
+    return f"{first} (and {len(others)} more that differ in the numbers)" if others else first
+
+
+MOST_REASONS = 10
+
+
+def summary(run: Run) -> str:
+    """What a run found, for reading: curves, reasons, verdicts."""
+    parts = [
+        [run.study.title] if run.study.title else [],
+        [f"{_points(len(run.table))}: {statuses(run.table)}"],
+        ["", *columns([_HEAD, *_curve_lines(run.table)])],
+        _model_lines(run.table),
+        _reasons(run.table),
+        verdict_lines(run.verdicts),
+        [f"table in {run.table_file}"] if run.table_file else [],
+    ]
+    return "\n".join(line for part in parts for line in part)
+
+
+_HEAD = ("law", "method", "curve", "points", "mean_friction", "largest error", "model")
+
+
+def _curve_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
+    """One line per curve: everything equal but belt speed."""
+    told = [name for name in given(table.columns) if name != belt_speed(table.columns)]
+    within = table.groupby("law")[told].nunique(dropna=False).max()  # the label tells laws apart
+    told = [name for name in told if within[name] > 1]
+    keys = ["law", "method", *told]
+    groups = table.groupby(keys, sort=False, dropna=False)
+    models = _models(table)
+    return [_curve_line(dict(zip(keys, key, strict=True)), rows, models) for key, rows in groups]
+
+
+def _models(table: pd.DataFrame) -> dict[str, int]:
+    """Numbers for the models, whose sentences are too long for a line per curve; the same for those alike."""
+    found = table["model"].dropna().unique()
+    numbers = {form: number for number, form in enumerate(dict.fromkeys(map(pattern, found)), 1)}
+    return {model: numbers[pattern(model)] for model in found}
+
+
+def _model_lines(table: pd.DataFrame) -> list[str]:
+    models = _models(table)
+    groups = {number: [model for model in models if models[model] == number] for number in models.values()}
+    return [f"model {number}: {alike(group)}" for number, group in groups.items()]
+
+
+def _curve_line(inputs: dict[str, Any], rows: pd.DataFrame, models: dict[str, int]) -> tuple[str, ...]:
+    law, method = str(inputs.pop("law")), str(inputs.pop("method"))
+    where = ", ".join(f"{_brief(name)} {_short(x)}" for name, x in inputs.items() if x == x)
+    found = rows["mean_friction"].dropna()
+    span = dict.fromkeys(f"{value:.6g}" for value in (found.min(), found.max())) if len(found) else {}
+    error = f"{rows['error'].max():.1e}" if rows["error"].notna().any() else ""
+    used = ", ".join(dict.fromkeys(str(models[model]) for model in rows["model"].dropna().unique()))
+    return law, method, where, statuses(rows), " ... ".join(span), error, used
+
+
+def _brief(name: str) -> str:
+    """An input without what all inputs of a scene begin with."""
+    return name.removeprefix("scene.").removeprefix("dimensional.")
+
+
+def _points(count: int) -> str:
+    return "1 point" if count == 1 else f"{count} points"
+
+
+def statuses(rows: pd.DataFrame) -> str:
+    """How many rows have each status, in words."""
+    return ", ".join(f"{count} {status}" for status, count in rows["status"].value_counts().items())
+
+
+def _short(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def columns(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows of words as lines with aligned columns; columns without a word below their head are left out."""
+    kept = [column for column in zip(*rows, strict=True) if any(column[1:]) or len(rows) == 1]
+    padded = [[cell.ljust(max(map(len, column))) for cell in column] for column in kept]
+    return ["  ".join(line).rstrip() for line in zip(*padded, strict=True)]
+
+
+def _reasons(table: pd.DataFrame) -> list[str]:
+    """Why points that are not ok are not, the commonest reasons first."""
+    rest = table[table["status"] != "ok"]
+    counts = (
+        rest.groupby(["status", "reason"], dropna=False).size().sort_values(ascending=False, kind="stable")
+    )
+    lines = [f"{status} ({count}): {reason}" for (status, reason), count in counts.items()]
+    more = [f"... and {len(lines) - MOST_REASONS} more reasons"] if len(lines) > MOST_REASONS else []
+    return ["", *lines[:MOST_REASONS], *more] if lines else []
+
+
+def verdict_lines(verdicts: Sequence[Verdict]) -> list[str]:
+    """How many expectations held, and each that did not in full."""
+    failed = [verdict for verdict in verdicts if not verdict.passed]
+    counts = {"passed": len(verdicts) - len(failed), "FAILED": len(failed)}
+    told = ", ".join(f"{count} {word}" for word, count in counts.items() if count)
+    return [f"expect: {told}", *failed_lines(failed)] if verdicts else []
+
+
+def failed_lines(verdicts: Sequence[Verdict]) -> list[str]:
+    """A line for each expectation that did not hold."""
+    return [f"expect FAILED: {verdict.sentence}" for verdict in verdicts if not verdict.passed]

@@ -1,0 +1,200 @@
+"""The one tidy table of a run: inputs first, then what was found, one row per scene, law and method."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from frictionlab.columns import RESULTS, SCALED, TEXT
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.quantities import Floats
+from frictionlab.results.derived import si_columns, si_scales
+from frictionlab.results.part import Part
+from frictionlab.scene.dimensional import scaled_parameters
+from frictionlab.scene.scene import Scene
+from frictionlab.study import Case, Study
+
+if TYPE_CHECKING:
+    from frictionlab.orbit.sample import Samples
+
+
+FINISHED = ("ok", "refused", "failed", "not_unique")
+
+
+class Heading(NamedTuple):
+    """What one row is about: a case, but for the method itself, whose import may take longer than a table."""
+
+    law_label: str
+    kind: str
+    given_law: FrictionLaw
+    method_label: str
+    scene: Scene
+
+
+def headings(study: Study) -> list[Heading]:
+    """One heading for each of ``study.cases()``, in the same order."""
+    return [
+        Heading(choice.label, choice.kind, law, method.label, scene)
+        for choice in study.laws
+        for law in study.laws_of(choice)
+        for method in study.methods
+        for scene in study.scenes
+    ]
+
+
+class Inputs(NamedTuple):
+    """The columns that say what each row is about; scales: the units of its results, for scenes in SI units."""
+
+    columns: dict[str, list[Any]]
+    size: int
+    scales: dict[str, Floats] | None = None
+
+
+def inputs(rows: Sequence[Heading | Case]) -> Inputs:
+    """law, kind, method, then every value of the scenes and of the laws; None where a row has none."""
+    named = {
+        "law": [row.law_label for row in rows],
+        "kind": [row.kind for row in rows],
+        "method": [row.method_label for row in rows],
+    }
+    # Rows share their scenes and laws: each is taken apart once.
+    scenes = {id(row.scene): row.scene.values() for row in {id(row.scene): row for row in rows}.values()}
+    laws = {id(row.given_law): row.given_law for row in rows}
+    parameters = {key: _values(law) for key, law in laws.items()}
+    columns = _spread("scene.", [scenes[id(row.scene)] for row in rows])
+    columns |= _spread("law.", [parameters[id(row.given_law)] for row in rows])
+    columns |= _spread(SCALED, [_scaled(row) for row in rows])
+    return Inputs(named | columns, len(rows), _scales([row.scene for row in rows]))
+
+
+def _scaled(row: Heading | Case) -> dict[str, Any]:
+    """The parameters of its law that were given in SI units in the scales of the scene."""
+    si = row.scene.dimensional
+    return {} if si is None else _cells(scaled_parameters(row.given_law, si.scales))
+
+
+def _scales(scenes: Sequence[Scene]) -> dict[str, Floats] | None:
+    different = {id(scene): scene for scene in scenes if scene.dimensional is not None}
+    found = {key: si_scales(scene) for key, scene in different.items()}
+    if not found:
+        return None
+    rows = [found[id(scene)] for scene in scenes]
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def _values(law: FrictionLaw) -> dict[str, Any]:
+    return _cells(law.model_dump(exclude_none=True, mode="json"))
+
+
+def _cells(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Values as a table holds them: several numbers in cells of their own, ``mu[0]``, ``mu[1]``."""
+    cells: dict[str, Any] = {}
+    for name, value in values.items():
+        several = (
+            {f"{name}[{k}]": each for k, each in enumerate(value)} if isinstance(value, list | tuple) else {}
+        )
+        cells |= several or {name: value}
+    return cells
+
+
+def _spread(prefix: str, records: list[dict[str, Any]]) -> dict[str, list[Any]]:
+    names = dict.fromkeys(
+        name for record in {id(record): record for record in records}.values() for name in record
+    )
+    return {f"{prefix}{name}": [record.get(name) for record in records] for name in names}
+
+
+def value_in(cells: Mapping[str, Any], name: str) -> Any:
+    """The value of this name, one or several, of a row's cells; None where they are empty."""
+    given = {key: cells[key] for key in cells if key == name or key.startswith(f"{name}[")}
+    filled = {key: value for key, value in given.items() if value is not None and value == value}
+    return filled[name] if name in filled else [*filled.values()] or None
+
+
+class Results:
+    """The result columns of a run, filled as its parts come in; what has not come in is ``killed``."""
+
+    def __init__(self, size: int) -> None:
+        self._words = {name: np.full(size, "", dtype=object) for name in TEXT}
+        self._words["status"][:] = "killed"
+        self._words["reason"][:] = "not finished"
+        names = [name for name in RESULTS if name not in TEXT]
+        self._numbers: dict[str, Floats] = {name: np.full(size, np.nan) for name in names}
+
+    def put(self, part: Part) -> None:
+        """Fill the rows of a part. Raises KeyError for a column that is not in the contract."""
+        for name, words in part.text.items():
+            self._words[name][part.rows] = words
+        for name, numbers in part.numbers.items():
+            self._numbers[name][part.rows] = numbers
+
+    def put_earlier(self, rows: list[int], earlier: pd.DataFrame) -> None:
+        """Fill rows from as many rows of an earlier table of the same study."""
+        for name in TEXT:
+            self._words[name][rows] = earlier[name].fillna("").to_numpy(dtype=object)
+        for name, column in self._numbers.items():
+            column[rows] = earlier[name].to_numpy(dtype=float)
+
+    def unfinished(self, reason: str) -> None:
+        """Say why what has not come in has not."""
+        self._words["reason"][self._words["status"] == "killed"] = reason
+
+    def counts(self) -> dict[str, int]:
+        """How many rows have each status."""
+        names, counts = np.unique(self._words["status"].astype(str), return_counts=True)
+        return dict(zip(names.tolist(), counts.tolist(), strict=True))
+
+    def frame(self, given: Inputs) -> pd.DataFrame:
+        """The table: contract order, empty cells where a column does not apply."""
+        found = {name: self._words.get(name, self._numbers.get(name)) for name in RESULTS}
+        in_si = si_columns(self._numbers, given.scales) if given.scales is not None else {}
+        frame = pd.DataFrame(given.columns | found | in_si)
+        for name in frame.columns[[kind.kind == "O" for kind in frame.dtypes]]:
+            frame[name] = _column_of_words_or_numbers(frame[name])
+        return frame
+
+
+def _column_of_words_or_numbers(column: pd.Series) -> pd.Series:
+    """Numbers with gaps as floats; words as strings, the empty word as a gap."""
+    if all(value is None or isinstance(value, float | int) for value in column):
+        return column.astype(float)
+    return column.where(column != "", None).astype("str")
+
+
+def finished_rows(given: Inputs, earlier: pd.DataFrame) -> tuple[list[int], pd.DataFrame]:
+    """Rows of this run that an earlier table has finished, and its rows for them, in the same order."""
+    if not set(given.columns) <= set(earlier.columns):
+        return [], earlier.iloc[:0]
+    done = earlier[earlier["status"].isin(FINISHED)]
+    places = {key: place for place, key in enumerate(_keys([done[name].tolist() for name in given.columns]))}
+    matches = [(row, places.get(key)) for row, key in enumerate(_keys(given.columns.values()))]
+    found = [(row, place) for row, place in matches if place is not None]
+    return [row for row, _ in found], done.iloc[[place for _, place in found]]
+
+
+def _keys(columns: Iterable[list[Any]]) -> Iterable[Hashable]:
+    return zip(*([None if value != value else value for value in column] for column in columns), strict=True)
+
+
+def records(frame: pd.DataFrame) -> list[dict[str, Any]]:
+    """One plain record per row for JSON, None for an empty cell."""
+    columns = {name: [_plain(value) for value in frame[name].tolist()] for name in frame.columns}
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+def _plain(value: Any) -> Any:
+    """JSON knows neither NaN nor infinity."""
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def orbit_rows(
+    orbits: Mapping[int, Samples], earlier: pd.DataFrame | None, finished: Collection[int]
+) -> pd.DataFrame | None:
+    """The kept orbits, one row per sample; ``row`` is the point's place in the table. None without any."""
+    frames = [pd.DataFrame({"row": row, **samples._asdict()}) for row, samples in sorted(orbits.items())]
+    if earlier is not None:
+        frames.append(earlier[earlier["row"].isin(finished)])
+    return pd.concat(frames).sort_values("row", kind="stable", ignore_index=True) if frames else None

@@ -1,0 +1,1 @@
+"""Runs a study: chunks of scenes, workers, progress, and the folder of results."""

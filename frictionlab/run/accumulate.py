@@ -1,0 +1,145 @@
+"""The table of a run as it grows: what an earlier run left, what comes in, what is saved meanwhile."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import asdict
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from frictionlab.results.expectations import Verdict
+from frictionlab.results.part import Part
+from frictionlab.results.table import Inputs, Results, finished_rows, orbit_rows
+from frictionlab.run.errors import SaveError
+from frictionlab.run.folder import Existing, RunFolder
+from frictionlab.run.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from frictionlab.orbit.sample import Samples
+
+
+SAVE_EVERY = 10.0
+"""Seconds of work that a crash may cost at most, give or take a chunk."""
+
+
+class Gathering:
+    """The rows of a run, those found so far, and the folder that keeps them, if any."""
+
+    def __init__(
+        self,
+        given: Inputs,
+        folder: RunFolder | None = None,
+        progress: Progress = silent,
+        overrides: Sequence[str] = (),
+    ) -> None:
+        self._given = given
+        self._results = Results(given.size)
+        self._orbits: dict[int, Samples] = {}
+        self._earlier_orbits: pd.DataFrame | None = None
+        self._folder = folder
+        self._progress = progress
+        self._started = time.monotonic()
+        self._next_save = self._started + SAVE_EVERY
+        self._runs: list[dict[str, Any]] = []
+        self._run: dict[str, Any] = {
+            "started": datetime.now(UTC).isoformat(timespec="seconds"),
+            "overrides": list(overrides),
+            "computed": 0,
+        }
+        self._saved = 0
+        self._verdicts: list[dict[str, Any]] = []
+        self.finished: frozenset[int] = frozenset()
+
+    def resume(self, existing: Existing, samples: int) -> None:
+        """Take over the rows an earlier run of the same study finished. Raises FolderError."""
+        earlier = self._folder.earlier(existing) if self._folder is not None else None
+        if self._folder is None or earlier is None:
+            return
+        self._runs = self._folder.previous_runs()
+        if samples:
+            self._earlier_orbits = self._folder.earlier_orbits(existing)
+            if not _has_samples(self._earlier_orbits, samples):
+                self._earlier_orbits = None
+                return
+        rows, kept = finished_rows(self._given, earlier)
+        self._results.put_earlier(rows, kept)
+        self.finished = frozenset(rows)
+
+    def take(self, parts: list[Part]) -> None:
+        """Enter answered rows."""
+        for part in parts:
+            self._results.put(part)
+            self._orbits |= part.orbits
+            self._run["computed"] += len(part.rows)
+
+    def tick(self) -> None:
+        """Tell how far the run is, and save it when that is due."""
+        self._progress(len(self.finished) + self._run["computed"], self._given.size)
+        if time.monotonic() < self._next_save or self.computed == self._saved:
+            return
+        before = time.monotonic()
+        with suppress(SaveError):  # the end of the run tries again, and then says so
+            self.save(self.table, self.orbits)
+            self._saved = self.computed
+        after = time.monotonic()
+        self._next_save = after + max(SAVE_EVERY, 20.0 * (after - before))
+
+    def unfinished(self, reason: str) -> None:
+        """Say why the rows that are missing are missing."""
+        self._results.unfinished(reason)
+
+    def judged(self, verdicts: Sequence[Verdict]) -> None:
+        """Enter what was expected and whether it is so, for the account."""
+        self._verdicts = [asdict(verdict) for verdict in verdicts]
+
+    @property
+    def complete(self) -> bool:
+        """Whether an earlier run left nothing to do."""
+        return len(self.finished) == self._given.size
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """The table as it stands."""
+        return self._results.frame(self._given)
+
+    @property
+    def orbits(self) -> pd.DataFrame | None:
+        """The kept orbits as they stand; None where none are kept."""
+        return orbit_rows(self._orbits, self._earlier_orbits, self.finished)
+
+    @property
+    def computed(self) -> int:
+        """How many rows this run has answered itself."""
+        return int(self._run["computed"])
+
+    def save(self, table: pd.DataFrame, orbits: pd.DataFrame | None) -> None:
+        """Write what a later run continues from, and its account. Raises SaveError."""
+        if self._folder is not None:
+            if not self.complete:
+                self._folder.save(table, orbits)
+            self.describe()
+
+    def save_all(self, table: pd.DataFrame, orbits: pd.DataFrame | None, curves: pd.DataFrame) -> None:
+        """Write everything; what is missing where an earlier run left nothing to do. Raises SaveError."""
+        self.save(table, orbits)
+        if self._folder is not None:
+            self._folder.save_curves(curves)
+        if self._folder is not None and not (self.complete and self._folder.has_csv):
+            self._folder.save_csv(table)
+
+    def describe(self) -> None:
+        """Write what the folder answers and how far it is. Raises SaveError."""
+        if self._folder is not None:
+            this = self._run | {"seconds": round(time.monotonic() - self._started, 3)}
+            runs = self._runs if self.complete else [*self._runs, this]
+            found = {"counts": self._results.counts(), "expect": self._verdicts}
+            self._folder.describe(found | {"runs": runs})
+
+
+def _has_samples(orbits: pd.DataFrame | None, samples: int) -> bool:
+    """Whether an earlier run kept orbits, with this many samples each."""
+    return orbits is not None and bool((orbits.groupby("row").size() == samples).all())

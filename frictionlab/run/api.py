@@ -1,0 +1,256 @@
+"""Studies, curves and single steady states from Python: solved in chunks, gathered in one table."""
+
+from __future__ import annotations
+
+import os
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from math import isfinite
+from numbers import Real
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from frictionlab import __version__, registry
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
+from frictionlab.results.curve_table import curve_table
+from frictionlab.results.derived import si_columns, si_scales
+from frictionlab.results.expectations import judge
+from frictionlab.results.part import Part
+from frictionlab.results.state import SteadyState
+from frictionlab.results.table import headings, inputs
+from frictionlab.run.accumulate import Gathering
+from frictionlab.run.chunks import Chunk, Task, chunks
+from frictionlab.run.errors import SaveError
+from frictionlab.run.execute import collect
+from frictionlab.run.folder import Existing, Identity, RunFolder
+from frictionlab.run.progress import Progress, silent
+from frictionlab.run.solve import answer, parts
+from frictionlab.scene.scene import Scene
+from frictionlab.study import Case, Study, load_study, parse_study
+
+if TYPE_CHECKING:
+    from frictionlab.orbit.sample import Samples
+
+from frictionlab.results.run import Run
+
+
+class Interrupted(KeyboardInterrupt):
+    """A run was stopped; ``run`` is what it had found, already saved where it has a folder."""
+
+    def __init__(self, run: Run) -> None:
+        super().__init__("interrupted")
+        self.run = run
+
+
+class UnsavedError(SaveError):
+    """A run whose results could not be written; ``run`` holds them."""
+
+    def __init__(self, problem: SaveError, run: Run) -> None:
+        super().__init__(str(problem))
+        self.run = run
+
+
+def run(
+    study: str | PathLike[str] | Mapping[str, Any] | Study,
+    out: str | PathLike[str] | None = None,
+    overrides: Sequence[str] = (),
+    existing: Existing = "reuse",
+    executor: Executor | None = None,
+    progress: Progress = silent,
+) -> Run:
+    """Solve every case of a study. Writes only with ``out``, the folder for results.
+
+    overrides: ``path=value`` as for ``--set``; a ``Study`` holds its own already, they are for the record.
+    existing: take over finished points of the same study in ``out``, or replace whatever results it holds.
+    executor: any; threads of this process by default.
+    Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin.
+    """
+    ready = _loaded(study, overrides)
+    folder = run_folder(ready, Path(out)) if out is not None else None
+    if folder is not None:
+        folder.check(existing)
+    gathering = Gathering(inputs(headings(ready)), folder, progress, overrides)
+    task = Task(ready.tolerance, ready.keep_orbit or 0)
+    gathering.resume(existing, task.samples)
+    left = [] if gathering.complete else chunks(ready.cases(), task, gathering.finished)
+    if folder is not None:
+        folder.open(existing)
+    stopped = _solve(gathering, left, executor)
+    return _finished(ready, gathering, folder, stopped)
+
+
+def _loaded(study: str | PathLike[str] | Mapping[str, Any] | Study, overrides: Sequence[str]) -> Study:
+    if isinstance(study, Study):
+        return study
+    return parse_study(study, overrides) if isinstance(study, Mapping) else load_study(study, overrides)
+
+
+def run_folder(study: Study, out: Path) -> RunFolder:
+    """The output folder of a study."""
+    file = study.path.name if study.path is not None else None
+    told = study.resolved(), study.digest(), __version__, file, study.code, study.law_texts()
+    return RunFolder(out, Identity(*told))
+
+
+def _solve(gathering: Gathering, left: list[Chunk], executor: Executor | None) -> bool:
+    """Solve what is left and put it in the table; True when that was interrupted."""
+    if not left:
+        return False
+    gathering.describe()
+    try:
+        with _workers(executor) as pool:
+            collect(left, pool, gathering.take, gathering.tick)
+    except KeyboardInterrupt:
+        gathering.unfinished("interrupted")
+        return True
+    except BrokenExecutor as problem:
+        gathering.unfinished(f"a worker died: {problem}")
+    return False
+
+
+@contextmanager
+def _workers(executor: Executor | None) -> Iterator[Executor]:
+    """The caller's executor, or threads of our own that nobody waits for after an interrupt."""
+    if executor is not None:
+        yield executor
+        return
+    pool = ThreadPoolExecutor(os.cpu_count())
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _finished(study: Study, gathering: Gathering, folder: RunFolder | None, stopped: bool) -> Run:
+    """The run, saved and judged. Raises Interrupted or UnsavedError, both with the run."""
+    table, orbits = gathering.table, gathering.orbits
+    laws = registry.Laws({law.kind: law.law_class for law in study.laws})
+    curves = curve_table(table.iloc[:0] if stopped else table, laws)
+    verdicts = () if stopped else tuple(judge(expectation, table, curves) for expectation in study.expect)
+    gathering.judged(verdicts)
+    unsaved = _saved(gathering, table, orbits, curves)
+    path = folder.path if folder is not None and unsaved is None else None
+    done = Run(study, table, orbits, verdicts, path, gathering.computed, curves)
+    if unsaved is not None:
+        raise UnsavedError(unsaved, done) from unsaved
+    if stopped:
+        raise Interrupted(done)
+    return done
+
+
+def _saved(
+    gathering: Gathering, table: pd.DataFrame, orbits: pd.DataFrame | None, curves: pd.DataFrame
+) -> SaveError | None:
+    """Save the run; what kept it from being saved, to be raised once the run is whole."""
+    try:
+        gathering.save_all(table, orbits, curves)
+    except SaveError as problem:
+        return problem
+    return None
+
+
+def curve(
+    scene: Scene,
+    law: FrictionLaw,
+    belt_speed: ArrayLike,
+    method: str | Method = "auto",
+    tolerance: float = 1e-8,
+) -> pd.DataFrame:
+    """The result table of one law over belt speeds, in the order given.
+
+    belt_speed [scene velocity; m/s for a scene given in SI units]: one-dimensional.
+    tolerance [-]: absolute, on mean_friction.
+    Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
+    """
+    speeds = np.atleast_1d(np.asarray(belt_speed, dtype=float))
+    if speeds.ndim != 1 or not speeds.size or not np.isfinite(speeds).all():
+        raise ValueError("belt_speed must be a list of finite numbers")
+    ready, kind, task = _method(method), _kind(_law(law)), Task(_checked(tolerance))
+    different, places = np.unique(speeds, return_inverse=True)  # a method is never given a belt speed twice
+    scenes = [_scene(scene).at(float(speed)) for speed in different]
+    cases = [Case(kind, kind, law, ready.name, ready, each) for each in scenes]
+    gathering = Gathering(inputs(cases))
+    with _workers(None) as pool:
+        collect(chunks(cases, task), pool, gathering.take, gathering.tick)
+    return gathering.table.iloc[places].reset_index(drop=True)
+
+
+def steady_state(
+    scene: Scene, law: FrictionLaw, method: str | Method = "auto", tolerance: float = 1e-8
+) -> SteadyState:
+    """The steady state of one scene, refused and failed ones included: see ``status`` and ``reason``.
+
+    tolerance [-]: absolute, on mean_friction. Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
+    """
+    ready, kind, task = _method(method), _kind(_law(law)), Task(_checked(tolerance))
+    case = Case(kind, kind, law, ready.name, ready, _scene(scene))
+    (chunk,) = chunks([case], task)
+    (piece,) = answer(chunk)
+    (part,) = parts(chunk, [piece])
+    numbers = {name: float(column[0]) for name, column in part.numbers.items()}
+    words = {name: column[0] for name, column in part.text.items()}
+
+    def sampled(n: int) -> Samples | None:
+        orbit = piece.answers.orbit(0)
+        if orbit is None:
+            return None
+        from frictionlab.orbit.sample import sample  # brings numba: only where it is needed
+
+        return sample(orbit, scene, n)
+
+    return SteadyState(**words, **numbers, si=_in_si(part, scene), sampled=sampled)  # type: ignore[arg-type]
+
+
+def _in_si(part: Part, scene: Scene) -> dict[str, float]:
+    """The columns in SI units; none where the scene is not given in them."""
+    if scene.dimensional is None:
+        return {}
+    found = defaultdict(lambda: np.full(1, np.nan), part.numbers)
+    scales = {name: np.array([scale]) for name, scale in si_scales(scene).items()}
+    return {name: float(column[0]) for name, column in si_columns(found, scales).items()}
+
+
+def _method(method: str | Method) -> Method:
+    if isinstance(method, Method):
+        return method
+    if method not in registry.method_names():
+        raise ValueError(f"no method '{method}'; there are {', '.join(registry.method_names())}")
+    return registry.method_class(method)()
+
+
+def _kind(law: FrictionLaw) -> str:
+    """The registered name of a law, of several that of its file; its class's where it is not registered."""
+    names = []
+    for name in registry.law_names():
+        with suppress(registry.BrokenPlugin):  # another law's trouble
+            if registry.law_class(name) is type(law):
+                names.append(name)
+    file = type(law).__module__.rpartition(".")[2].replace("_", "-")
+    return file if file in names else next(iter(names), type(law).__name__)
+
+
+def _law(law: FrictionLaw) -> FrictionLaw:
+    if not isinstance(law, FrictionLaw):
+        raise TypeError(f"law must be a friction law such as fl.Coulomb(mu=0.4), not {law!r}")
+    return law
+
+
+def _scene(scene: Scene) -> Scene:
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be an fl.Scene, not {scene!r}")
+    return scene
+
+
+def _checked(tolerance: float) -> float:
+    number = isinstance(tolerance, Real) and not isinstance(tolerance, bool)
+    if not (number and isfinite(tolerance) and tolerance > 0.0):
+        raise ValueError(f"tolerance must be a positive number, not {tolerance!r}")
+    return float(tolerance)

@@ -1,0 +1,304 @@
+"""The folder of a run: its table, the study it answers, where it came from; written whole or not at all."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import platform
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Literal
+
+import pandas as pd
+
+from frictionlab.run.errors import FolderError, SaveError
+from frictionlab.run.yaml_text import yaml_text
+from frictionlab.study.study import LAW_COPIES
+
+PACKAGES = ("numpy", "numba", "llvmlite", "pandas", "pyarrow", "pydantic", "scipy")
+Existing = Literal["reuse", "replace"]
+PAGE_MARK = '<meta name="generator" content="frictionlab'
+MOST_DIFFERENCES = 2
+"""Lines shown of each of two studies that differ."""
+SHOWN = 72
+"""Letters shown of such a line."""
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What a folder's results answer: the study, whole and as a digest of what determines its numbers.
+
+    file: the name of the file it came from, for the record. code: SHA-256 by law, of those from outside.
+    law_texts: the files of laws it brings along, by their names in the folder.
+    """
+
+    study: dict[str, Any]
+    digest: str
+    version: str
+    file: str | None = None
+    code: Mapping[str, str] = field(default_factory=dict)
+    law_texts: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def text(self) -> str:
+        """The study as a study file."""
+        return yaml_text(self.study)
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """The output folder of one study."""
+
+    path: Path
+    identity: Identity
+
+    @property
+    def table(self) -> Path:
+        """Where the table is."""
+        return self.path / "results.parquet"
+
+    @property
+    def _study(self) -> Path:
+        return self.path / "study.yaml"
+
+    @property
+    def _account(self) -> Path:
+        return self.path / "provenance.json"
+
+    @property
+    def _orbits(self) -> Path:
+        return self.path / "orbits.parquet"
+
+    def check(self, existing: Existing) -> None:
+        """Raises FolderError where this run cannot be written, or would mix with another study."""
+        nearest = next(place for place in [self.path, *self.path.absolute().parents] if place.exists())
+        if not nearest.is_dir():
+            raise FolderError(f"{self.path}: {nearest} is a file, not a folder; give another one with -o")
+        if not os.access(nearest, os.W_OK | os.X_OK):
+            raise FolderError(
+                f"{self.path}: no permission to write in {nearest}; give another folder with -o"
+            )
+        if self._study.exists() and not self._account.exists():
+            raise FolderError(
+                f"{self.path} holds a study.yaml that no run wrote; choose another folder with -o"
+            )
+        if existing == "reuse" and any(path.exists() for path in self._results()):
+            self._check_same_study()
+        self._check_law_files()
+
+    def _check_law_files(self) -> None:
+        """A copy of a law must not replace what a person wrote."""
+        ours = self._copies()
+        for name, text in self.identity.law_texts.items():
+            place = self.path / name
+            if place not in ours and place.exists() and place.read_bytes() != text.encode():
+                raise FolderError(
+                    f"{place} is in the way of the copy of a law that a run keeps; choose another folder with -o"
+                )
+
+    def _copies(self) -> list[Path]:
+        """The copies of laws that the run in this folder kept."""
+        try:
+            names = self._provenance().get("plugins", [])
+        except FolderError:  # without an account nothing here is known to be ours
+            names = []
+        return [self.path / LAW_COPIES / Path(str(name)).name for name in names]
+
+    def _check_same_study(self) -> None:
+        there = self._provenance()
+        if there.get("frictionlab") != self.identity.version:
+            raise FolderError(
+                f"{self.path} holds results of frictionlab {there.get('frictionlab')}, this is "
+                f"{self.identity.version}; {REMEDY}"
+            )
+        if there.get("digest") != self.identity.digest:
+            difference = self._difference()
+            told = f":\n{difference}\n{REMEDY}" if difference else f"; {REMEDY}"
+            raise FolderError(f"{self.path} holds results of another study{told}")
+
+    def _provenance(self) -> dict[str, Any]:
+        try:
+            found = json.loads(self._account.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            found = None
+        if not isinstance(found, dict):
+            raise FolderError(f"{self.path} holds results, but no readable provenance.json; {REMEDY}")
+        return found
+
+    def _difference(self) -> str:
+        """The first lines in which the studies differ, for the message."""
+        try:
+            there = self._study.read_text(encoding="utf-8").splitlines()
+        except (OSError, ValueError):
+            return ""
+        here = self.identity.text.splitlines()
+        old, new = [line for line in there if line not in here], [line for line in here if line not in there]
+        lines = [f"  there: {_brief(line, new)}" for line in old[:MOST_DIFFERENCES]]
+        lines += [f"  here:  {_brief(line, old)}" for line in new[:MOST_DIFFERENCES]]
+        return "\n".join(lines + self._edited())
+
+    def _edited(self) -> list[str]:
+        """The laws from outside whose code is no longer what it was."""
+        there = self._provenance().get("code", {})
+        laws = [law for law, code in self.identity.code.items() if there.get(law, code) != code]
+        return [f"  the code of law '{law}' was edited since" for law in laws]
+
+    def earlier(self, existing: Existing) -> pd.DataFrame | None:
+        """The table of an earlier run of this study; None without one. Raises FolderError."""
+        return self._earlier(self.table, existing)
+
+    def earlier_orbits(self, existing: Existing) -> pd.DataFrame | None:
+        """The orbits kept by an earlier run of this study; None without them."""
+        return self._earlier(self._orbits, existing)
+
+    def _earlier(self, path: Path, existing: Existing) -> pd.DataFrame | None:
+        if existing == "replace" or not path.exists():
+            return None
+        try:
+            return pd.read_parquet(path)
+        except (OSError, ValueError) as problem:  # pyarrow's errors are both
+            raise FolderError(f"{path} cannot be read ({problem}); {REMEDY}") from problem
+
+    def open(self, existing: Existing) -> None:
+        """Make the folder; ``replace`` takes away the results it holds. Raises FolderError, SaveError."""
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            kept = self.identity.law_texts
+            copies = [path for path in self._copies() if path.relative_to(self.path).as_posix() not in kept]
+            for path in [*self._results(), *copies] if existing == "replace" else ():
+                path.unlink(missing_ok=True)
+        except OSError as problem:
+            _raise_at_the_door(self.path, problem)
+
+    def _results(self) -> Iterator[Path]:
+        yield from (self.table, self.path / "results.csv", self.path / "curves.csv", self._orbits)
+        yield self.path / "report.html"
+        for pattern in ("*.svg", "*.png"):
+            yield from (self.path / "figures").glob(pattern)
+
+    def describe(self, runs: dict[str, Any]) -> None:
+        """Write study.yaml and provenance.json. Raises SaveError."""
+        provenance = {
+            "frictionlab": self.identity.version,
+            "study": self.identity.file,
+            "digest": self.identity.digest,
+            "code": dict(self.identity.code),
+            "plugins": list(self.identity.law_texts),
+            **runs,
+            **_platform(),
+        }
+        text = json.dumps(provenance, indent=2) + "\n"
+        for name, law in self.identity.law_texts.items():
+            _write_copy(self.path / name, law)
+        # The account first: a study.yaml without one is taken for a person's own.
+        _write(self._account, lambda path: path.write_text(text, encoding="utf-8"))
+        _write(self._study, lambda path: path.write_text(self.identity.text, encoding="utf-8"))
+
+    def previous_runs(self) -> list[dict[str, Any]]:
+        """When and how long earlier runs of this study worked in this folder."""
+        return list(self._provenance().get("runs", [])) if self.table.exists() else []
+
+    def save(self, table: pd.DataFrame, orbits: pd.DataFrame | None) -> None:
+        """Write what a run continues from: results.parquet, and orbits.parquet if any. Raises SaveError."""
+        if orbits is not None:
+            _write(self._orbits, lambda path: orbits.to_parquet(path, index=False))
+        _write(self.table, lambda path: table.to_parquet(path, index=False))
+
+    def save_csv(self, table: pd.DataFrame) -> None:
+        """Write results.csv; floats in shortest round-trip form. Raises SaveError."""
+        _write(self.path / "results.csv", lambda path: table.to_csv(path, index=False, lineterminator="\n"))
+
+    def save_curves(self, curves: pd.DataFrame) -> None:
+        """Write curves.csv, where there are curves. Raises SaveError."""
+        if not curves.empty:
+            _write(
+                self.path / "curves.csv", lambda path: curves.to_csv(path, index=False, lineterminator="\n")
+            )
+
+    @property
+    def has_csv(self) -> bool:
+        """Whether the table is there as text too."""
+        return (self.path / "results.csv").exists()
+
+
+REMEDY = "choose another folder with -o, or replace what is there with --force"
+
+
+def _brief(line: str, others: Sequence[str]) -> str:
+    """Of a long line the part, from a word on, in which it leaves the line most like it."""
+    if len(line.strip()) <= SHOWN:
+        return line.strip()
+    start = line.rfind(" ", 0, max(0, _alike(line, others) - SHOWN // 2)) + 1
+    if line[:start].endswith(": "):  # a value alone says little
+        start = line.rfind(" ", 0, start - 1) + 1
+    begins = f"{line.split(':')[0].strip()}: ... " if start else ""
+    return f"{begins}{line[start : start + SHOWN].strip()}{' ...' if len(line) > start + SHOWN else ''}"
+
+
+def _alike(line: str, others: Sequence[str]) -> int:
+    """With how many letters one of the others begins like this line, at most."""
+    shared = [[one == other for one, other in zip(line, text, strict=False)] for text in others]
+    return max(([*same, False].index(False) for same in shared), default=0)
+
+
+def _platform() -> dict[str, Any]:
+    return {
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        "packages": {name: found for name in PACKAGES if (found := _version(name))},
+    }
+
+
+def _version(name: str) -> str | None:
+    try:
+        return version(name)
+    except ModuleNotFoundError:  # PackageNotFoundError is one
+        return None
+
+
+def check_page(path: Path) -> None:
+    """Raises FolderError where a page is in the way that a person wrote."""
+    try:
+        ours = not path.exists() or PAGE_MARK in path.read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        ours = False
+    if not ours:
+        raise FolderError(
+            f"{path} is there already and was not written by frictionlab; choose another folder with -o"
+        )
+
+
+def write_page(path: Path, text: str) -> None:
+    """Write a page. Raises SaveError."""
+    _write(path, lambda file: file.write_text(text, encoding="utf-8"))
+
+
+def _write(path: Path, write: Callable[[Path], object]) -> None:
+    """Beside the place, then renamed into it: a reader or a crash sees the old file or the new one."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        write(temporary)
+        os.replace(temporary, path)
+    except OSError as problem:
+        raise SaveError(f"cannot write {path}: {problem.strerror or problem}") from problem
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _write_copy(path: Path, text: str) -> None:
+    """A file of laws as it was read, line ends and all."""
+    try:
+        path.parent.mkdir(exist_ok=True)
+    except OSError as problem:
+        raise SaveError(f"cannot make the folder {path.parent}: {problem.strerror}") from problem
+    _write(path, lambda file: file.write_bytes(text.encode()))
+
+
+def _raise_at_the_door(path: Path, problem: OSError) -> None:
+    sentence = f"cannot make the folder {path}: {problem.strerror}"
+    if problem.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
+        raise SaveError(sentence) from problem
+    raise FolderError(f"{sentence}; give another one with -o") from problem

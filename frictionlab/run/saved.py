@@ -1,0 +1,161 @@
+"""A run as its folder tells it: the study, the table, the account of what ran. Nothing is computed."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from frictionlab import __version__
+from frictionlab.columns import INPUTS, RESULTS, TEXT
+from frictionlab.results.expectations import Verdict
+from frictionlab.results.run import Run
+from frictionlab.run.errors import FolderError
+from frictionlab.study import Study, read_back
+from frictionlab.study.grid import grid_size
+
+WANTED = "RUN is a folder that 'frictionlab run STUDY -o RUN' wrote"
+MOST_NAMED = 3
+"""Runs named to somebody who gave the folder around them."""
+
+
+@dataclass(frozen=True)
+class Saved:
+    """A run in its folder. account: provenance.json; curves: curves.csv, None where there is none."""
+
+    folder: Path
+    study: Study
+    table: pd.DataFrame
+    curves: pd.DataFrame | None
+    account: dict[str, Any]
+
+    @property
+    def title(self) -> str:
+        """The study's title, else the name of its file, else of the folder."""
+        file = Path(str(self.account.get("study") or "")).stem
+        return self.study.title or file or self.folder.absolute().name
+
+    @property
+    def verdicts(self) -> list[Verdict]:
+        """What was expected and whether it is so; empty for an interrupted run, which is not judged."""
+        return [Verdict(bool(each["passed"]), str(each["sentence"])) for each in self.account["expect"]]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many rows have each status, the commonest first."""
+        return {str(name): int(count) for name, count in self.table["status"].value_counts().items()}
+
+    @property
+    def seconds(self) -> float:
+        """Wall time of all runs that worked in the folder [s]."""
+        return float(sum(run["seconds"] for run in self.account["runs"]))
+
+
+def read_saved(folder: Path) -> Saved:
+    """The run of this folder. Raises FolderError where it is no run or a damaged one, StudyError."""
+    _check_is_a_run(folder)
+    account = _account(folder)
+    study = read_back(folder / "study.yaml", account["code"])
+    table = _table(folder)
+    saved = Saved(folder, study, table, _curves(folder), account)
+    _check_belongs_together(saved)
+    return saved
+
+
+def saved_as(run: Run) -> Saved:
+    """A run that was just written. Raises FolderError where somebody took its account away meanwhile."""
+    assert run.folder is not None
+    return Saved(run.folder, run.study, run.table, _curves(run.folder), _account(run.folder))
+
+
+def _check_is_a_run(folder: Path) -> None:
+    if not folder.exists():
+        raise FolderError(f"{folder}: no such folder; {WANTED}")
+    if not folder.is_dir():
+        raise FolderError(f"{folder} is a file, not a folder; {WANTED}")
+    names = ("results.parquet", "study.yaml", "provenance.json")
+    missing = [name for name in names if not (folder / name).is_file()]
+    if missing:
+        raise FolderError(
+            f"{folder} is not the folder of a run: no {', '.join(missing)} in it; {_hint(folder)}"
+        )
+
+
+def _hint(folder: Path) -> str:
+    runs = sorted(path.parent for path in folder.glob("*/results.parquet"))
+    if not runs:
+        return WANTED
+    named = ", ".join(str(run) for run in runs[:MOST_NAMED]) + (", ..." if len(runs) > MOST_NAMED else "")
+    return f"it holds runs, give one of them: {named}"
+
+
+def _table(folder: Path) -> pd.DataFrame:
+    file = folder / "results.parquet"
+    try:
+        table = pd.read_parquet(file)
+    except Exception as problem:  # a damaged file makes pyarrow raise whatever it stumbles over
+        reason = str(problem).partition("\n")[0]
+        raise FolderError(f"{file} cannot be read ({reason}); {_remedy(folder)}") from problem
+    if wrong := _wrong(table):
+        raise FolderError(f"{file} is not a result table: {wrong}; {_remedy(folder)}")
+    return table
+
+
+def _wrong(table: pd.DataFrame) -> str:
+    """What keeps a table from being a result table; nothing for one that is."""
+    missing = [name for name in [*INPUTS, *RESULTS] if name not in table]
+    if missing:
+        return f"it has no column {missing[0]}"
+    words = [name for name in RESULTS if name not in TEXT and table[name].dtype.kind != "f"]
+    if words:
+        return f"its column {words[0]} does not hold numbers"
+    return "it is empty" if table.empty else ""
+
+
+def _curves(folder: Path) -> pd.DataFrame | None:
+    file = folder / "curves.csv"
+    if not file.exists():
+        return None
+    try:
+        return pd.read_csv(file)
+    except pd.errors.EmptyDataError:
+        return None
+    except (OSError, ValueError) as problem:
+        reason = str(problem).partition("\n")[0]
+        raise FolderError(f"{file} cannot be read ({reason}); {_remedy(folder)}") from problem
+
+
+def _account(folder: Path) -> dict[str, Any]:
+    file = folder / "provenance.json"
+    try:
+        account = json.loads(file.read_text(encoding="utf-8"))
+        whole = {"expect": [], "runs": [], "packages": {}, "code": {}} | account
+        sound = (
+            all(isinstance(each["sentence"], str) and "passed" in each for each in whole["expect"])
+            and all(isinstance(run["seconds"], float | int) for run in whole["runs"])
+            and isinstance(whole["packages"], dict)
+            and isinstance(whole["code"], dict)
+        )
+    except (OSError, ValueError, TypeError, KeyError):
+        sound = False
+    if not sound:
+        raise FolderError(f"{file} is not the account of a run; {_remedy(folder)}")
+    return whole
+
+
+def _check_belongs_together(saved: Saved) -> None:
+    """A table beside another study would make a page of lies."""
+    rows, wanted = len(saved.table), grid_size(saved.study)
+    edited = saved.account.get("digest") != saved.study.digest()
+    if rows != wanted or (edited and saved.account.get("frictionlab") == __version__):
+        raise FolderError(
+            f"{saved.folder}: study.yaml is not the study of results.parquet (it has {wanted} points, the table "
+            f"{rows}; only title, source and expect may be edited); {_remedy(saved.folder)}"
+        )
+
+
+def _remedy(folder: Path) -> str:
+    return f"run the study again: frictionlab run STUDY -o {folder} --force"

@@ -1,0 +1,1 @@
+"""New studies and laws, written from templates."""

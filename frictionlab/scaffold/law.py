@@ -1,0 +1,83 @@
+"""A first law to begin from: a package of its own, with a test and a study, that works as it is."""
+
+from __future__ import annotations
+
+import keyword
+import re
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Literal
+
+from frictionlab import registry
+from frictionlab.registry.law_file import law_name
+from frictionlab.run.errors import not_written
+
+Memory = Literal["none", "bristle"]
+TEMPLATES = Path(__file__).parent
+_NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*")
+
+
+class BadName(ValueError):
+    """A name no law, module and package could have at once; the message says why."""
+
+
+def new_law(path: Path, memory: Memory) -> Path:
+    """Write the folder of a law of the name that the path ends in; where it is.
+
+    memory: ``none`` for friction that slip alone sets, ``bristle`` for a contact that deflects.
+    Never replaces anything and makes no folder around it. Raises BadName, FolderError, SaveError.
+    """
+    name = path.name
+    check_name(name)
+    try:
+        path.mkdir()
+        (path / "tests").mkdir()
+        for file, text in _files(name, memory).items():
+            (path / file).write_text(text, encoding="utf-8")
+    except OSError as problem:
+        raise not_written(path, problem) from problem
+    return path
+
+
+def check_name(name: str) -> None:
+    """Raises BadName for what cannot be a law, a module and a class as well."""
+    if not _NAME.fullmatch(name):
+        told = law_name(name)
+        hint = f"; how about '{told}'?" if told != name and _NAME.fullmatch(told) else ""
+        raise BadName(
+            f"'{name}' cannot name a law: use small letters, digits and hyphens, such as my-law{hint}"
+        )
+    if law_name(_class(name)) != name:
+        raise BadName(f"'{name}' cannot name a law: give every part of it two letters or more")
+    if name in registry.law_names():
+        raise BadName(f"a law '{name}' is installed already; choose another name")
+    module = _module(name)
+    if keyword.iskeyword(module) or module in sys.stdlib_module_names or find_spec(module) is not None:
+        raise BadName(f"Python has a module or word '{module}' already; choose another name")
+
+
+def _files(name: str, memory: Memory) -> dict[str, str]:
+    """Every file of the folder, by name."""
+    kind = "sliding" if memory == "none" else "bristle"
+    sources = {
+        "pyproject.toml": "pyproject.toml.txt",
+        f"{_module(name)}.py": f"{kind}.py.txt",
+        f"tests/test_{_module(name)}.py": "test.py.txt",
+        "study.yaml": f"{kind}_study.yaml",
+        "README.md": "README.md.txt",
+    }
+    return {file: _renamed(TEMPLATES / source, name) for file, source in sources.items()}
+
+
+def _renamed(template: Path, name: str) -> str:
+    text = template.read_text(encoding="utf-8")
+    return text.replace("my-law", name).replace("my_law", _module(name)).replace("MyLaw", _class(name))
+
+
+def _module(name: str) -> str:
+    return name.replace("-", "_")
+
+
+def _class(name: str) -> str:
+    return "".join(part.capitalize() for part in name.split("-"))

@@ -1,0 +1,112 @@
+"""The numbers of a scene as kernels see them: mass, springs, dashpots, loads, and the friction-free response."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+
+class Mass(NamedTuple):
+    """A scene's numbers as kernels see them; every force is Im(phasor exp(i frequency tau))."""
+
+    damping: float
+    stiffness: float
+    transverse_damping: float
+    transverse_stiffness: float
+    normal_load: float
+    frequency: float
+    force: complex
+    transverse_force: complex
+
+
+class Body(NamedTuple):
+    """A free scene's numbers for one source on the line (``float``) and in the plane (``complex``: x1 + i x2).
+
+    A direction-dependent constant acts as mean*x + split*conj(x). The motion is split into a harmonic reference,
+    the friction-free response where it is bounded, and the deviation from it: ``force`` is what drives the
+    deviation besides friction. A sine/cosine pair stands for sine*sin(Omega tau) + cosine*cos(Omega tau).
+    The motion is followed over ``periods`` of the drive at a time. Where it is ``prescribed`` it is the reference,
+    whatever friction does.
+    """
+
+    damping_mean: float
+    damping_split: float
+    stiffness_mean: float
+    stiffness_split: float
+    normal_load: float
+    frequency: float
+    force_sine: Any
+    force_cosine: Any
+    reference_sine: Any
+    reference_cosine: Any
+    periods: float
+    prescribed: bool = False
+
+
+def on_the_line(mass: Mass, periods: float = 1.0) -> Body:
+    """The body with motion along the belt alone."""
+    reference = _friction_free(mass.damping, mass.stiffness, mass.frequency, mass.force)
+    rest = (
+        mass.force if reference == 0 else 0j
+    )  # the reference balances all of it, but for undamped resonance
+    return Body(
+        damping_mean=mass.damping,
+        damping_split=0.0,
+        stiffness_mean=mass.stiffness,
+        stiffness_split=0.0,
+        normal_load=mass.normal_load,
+        frequency=mass.frequency,
+        force_sine=rest.real,
+        force_cosine=rest.imag,
+        reference_sine=reference.real,
+        reference_cosine=reference.imag,
+        periods=periods,
+    )
+
+
+def in_the_plane(mass: Mass, periods: float = 1.0) -> Body:
+    """The body with both motions."""
+    along = mass.damping, mass.stiffness, mass.frequency, mass.force
+    across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
+    reference, reference_2 = _friction_free(*along), _friction_free(*across)
+    rest = mass.force if reference == 0 else 0j
+    rest_2 = mass.transverse_force if reference_2 == 0 else 0j
+    return Body(
+        damping_mean=0.5 * (mass.damping + mass.transverse_damping),
+        damping_split=0.5 * (mass.damping - mass.transverse_damping),
+        stiffness_mean=0.5 * (mass.stiffness + mass.transverse_stiffness),
+        stiffness_split=0.5 * (mass.stiffness - mass.transverse_stiffness),
+        normal_load=mass.normal_load,
+        frequency=mass.frequency,
+        force_sine=complex(rest.real, rest_2.real),
+        force_cosine=complex(rest.imag, rest_2.imag),
+        reference_sine=complex(reference.real, reference_2.real),
+        reference_cosine=complex(reference.imag, reference_2.imag),
+        periods=periods,
+    )
+
+
+def _friction_free(damping: float, stiffness: float, frequency: float, force: complex) -> complex:
+    """Phasor of the friction-free response; 0 at undamped resonance, where it has no bound."""
+    dynamic = complex(stiffness - frequency**2, damping * frequency)
+    return force / dynamic if dynamic != 0 else 0j
+
+
+def restoring_force(body: Body, x: Any, v: Any) -> Any:
+    """Springs and dashpots: what they take from the acceleration."""
+    damping = body.damping_mean * v + body.damping_split * v.conjugate()
+    return damping + body.stiffness_mean * x + body.stiffness_split * x.conjugate()
+
+
+def span(body: Body) -> float:
+    """The time its motion is followed at once."""
+    return 2.0 * math.pi * body.periods / body.frequency
+
+
+class Motion(NamedTuple):
+    """Prescribed slip as kernels see it: velocities Im(phasor exp(i frequency tau))."""
+
+    normal_load: float
+    frequency: float
+    velocity: complex
+    transverse_velocity: complex

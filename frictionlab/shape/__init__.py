@@ -1,0 +1,1 @@
+"""The shape of a curve of mean friction: where it ends, how it bends."""

@@ -1,0 +1,175 @@
+"""The files of laws a study brings along: its ``plugins`` and those of ``--law``."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path as FilePath
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from pydantic import create_model
+
+from frictionlab import registry
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.registry.law_file import LawFile, Unreadable, code_of, law_name, read_law_file, text_of
+from frictionlab.study.mistakes import Mistake, Notes, Path, StudyError, described, did_you_mean
+from frictionlab.study.yaml_source import Source
+
+KEY = "plugins"
+
+
+class Brought(NamedTuple):
+    """The files of laws that come with a study, and every law it may name. codes: SHA-256 of those known before."""
+
+    files: tuple[LawFile, ...]
+    laws: registry.Laws
+    codes: Mapping[str, str] = MappingProxyType({})
+
+    def code(self, kinds: Iterable[str]) -> dict[str, str]:
+        """SHA-256 of the code of every law of these that is no part of frictionlab."""
+        return {kind: code for kind in kinds if (code := self._code(kind))}
+
+    def _code(self, kind: str) -> str:
+        own = (file.code for file in self.files if kind in file.laws)
+        return self.codes.get(kind) or next(own, "") or code_of(self.laws.named(kind))
+
+
+Bring = Callable[[dict[str, Any], FilePath, Notes], Brought]
+
+
+def add_law_files(source: Source, files: Iterable[FilePath]) -> None:
+    """Put the files of ``--law`` behind the study's own; their paths are relative to where the command runs."""
+    for file in files:
+        listed = source.tree.setdefault(KEY, [])
+        if isinstance(listed, list):
+            source.origins[(KEY, len(listed))] = f"--law {file}"
+            listed.append(str(file.absolute()))
+
+
+def bring(tree: dict[str, Any], folder: FilePath, notes: Notes) -> Brought:
+    """The laws of the files a study lists, each file once. Raises BrokenPlugin for a file without usable laws."""
+    read = [_read(name, path, folder, notes) for name, path in listed_files(tree, notes)]
+    files = tuple(dict.fromkeys(file for file in read if file is not None))
+    return Brought(files, laws_of(files))
+
+
+def listed_files(tree: dict[str, Any], notes: Notes) -> list[tuple[str, Path]]:
+    """The files a study lists, each with its path in the study."""
+    given = tree.get(KEY, [])
+    if not isinstance(given, list):
+        notes.add((KEY,), f"must be a list of Python files such as [my_law.py], got {described(given)}")
+        return []
+    named = [(notes.text(item, (KEY, index)), (KEY, index)) for index, item in enumerate(given)]
+    return [(name, path) for name, path in named if name]
+
+
+def _read(name: str, path: Path, folder: FilePath, notes: Notes) -> LawFile | None:
+    try:
+        return read_law_file(folder / name)
+    except Unreadable as problem:
+        there = [str(file.relative_to(folder)) for file in sorted((folder / name).parent.glob("*.py"))]
+        notes.add(path, f"{folder / name}: {problem}", did_you_mean(name, there))
+        return None
+
+
+def laws_of(files: Sequence[LawFile]) -> registry.Laws:
+    """The laws that files bring, beside those installed. Raises BrokenPlugin where two have one name."""
+    own: dict[str, type[FrictionLaw]] = {}
+    homes = {name: file.home(name) for file in files for name in file.laws}
+    for file in files:
+        for name, law in file.laws.items():
+            if name in registry.law_names():
+                raise file.home(name).broken("an installed law has that name; rename the class")
+            if name in own:
+                other = next(each.path for each in files if name in each.laws)
+                raise file.home(name).broken(f"{other} has one of that name; rename one of the classes")
+            own[name] = law
+    return registry.Laws(own, homes)
+
+
+def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:
+    """The laws installed and those of these files. Raises StudyError for what is no file of text, BrokenPlugin."""
+    files = []
+    for path in paths:
+        try:
+            files.append(read_law_file(path))
+        except Unreadable as problem:
+            raise StudyError([Mistake(f"--law {path}", None, "", str(problem))]) from None
+    return laws_of(list(dict.fromkeys(files)))
+
+
+class Told(NamedTuple):
+    """What a law says of itself."""
+
+    docstring: str
+    bibtex: str
+
+
+class SavedLaw(FrictionLaw):
+    """A law by its name and parameters alone: enough to tell of a run, not to repeat it."""
+
+    def sliding_friction(self, speed: float) -> float:
+        raise NotImplementedError(f"the law of a saved run cannot be asked for friction (at {speed})")
+
+
+def as_saved(codes: Mapping[str, str]) -> Bring:
+    """A reader of a saved study. codes: SHA-256 of its laws from outside, by kind, as its account has them."""
+
+    def bring(tree: dict[str, Any], folder: FilePath, notes: Notes) -> Brought:
+        files = tuple(_kept(folder / name) for name, _ in listed_files(tree, notes))
+        laws = tree.get("laws")
+        given = [law for law in laws if isinstance(law, dict)] if isinstance(laws, list) else []
+        kinds = {str(law.get("kind")): law for law in given if law.get("kind") in codes}
+        own = {kind: _stand_in(kind, given, _told(kind, files)) for kind in kinds}
+        return Brought(files, registry.Laws(own), codes)
+
+    return bring
+
+
+def _kept(path: FilePath) -> LawFile:
+    try:
+        return LawFile(path, text_of(path), {})
+    except Unreadable:  # a report of the run needs no law
+        return LawFile(path, "", {})
+
+
+def _stand_in(kind: str, given: list[dict[str, Any]], told: Told) -> type[FrictionLaw]:
+    """A record of all the parameters that any law of this kind has in the study."""
+    values = {key: value for law in given if law["kind"] == kind for key, value in law.items()}
+    fields: dict[str, Any] = {
+        key: ((float | None) if isinstance(value, int | float) else Any, None)
+        for key, value in values.items()
+        if key not in ("kind", "label")
+    }
+    made = create_model(kind, __base__=SavedLaw, __doc__=told.docstring, **fields)
+    made.bibtex = told.bibtex
+    return made
+
+
+def _told(kind: str, files: tuple[LawFile, ...]) -> Told:
+    """What the law says of itself in the copy of its file; else what one of its name says that is installed."""
+    own = [node for file in files for node in _classes(file) if law_name(node.name) == kind]
+    if own:
+        return Told(ast.get_docstring(own[0]) or "", _bibtex(own[0]))
+    with suppress(KeyError, registry.BrokenPlugin):
+        law = registry.law_class(kind)
+        return Told(inspect.getdoc(law) or "", law.bibtex)
+    return Told("", "")
+
+
+def _bibtex(law: ast.ClassDef) -> str:
+    """What the class assigns to ``bibtex``, where that is plain text."""
+    for node in law.body:
+        if isinstance(node, ast.Assign | ast.AnnAssign) and isinstance(node.value, ast.Constant):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            if [each.id for each in targets if isinstance(each, ast.Name)] == ["bibtex"]:
+                return str(node.value.value)
+    return ""
+
+
+def _classes(file: LawFile) -> Iterator[ast.ClassDef]:
+    with suppress(SyntaxError, ValueError):
+        yield from (node for node in ast.parse(file.text).body if isinstance(node, ast.ClassDef))

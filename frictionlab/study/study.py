@@ -1,0 +1,259 @@
+"""A study as it will be run: frozen, complete, with every default filled in."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from frictionlab import registry
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
+from frictionlab.registry.law_file import LawFile
+from frictionlab.scene.dimensional import Scales, scaled_law
+from frictionlab.scene.scene import Scene
+from frictionlab.study.mistakes import number_text
+
+SCHEMA = 1
+LAW_COPIES = "laws"
+"""The folder in which a run keeps the files of laws it used."""
+
+
+@dataclass(frozen=True)
+class LawChoice:
+    """A law of the study under its label; parameters as given, with the law's defaults."""
+
+    label: str
+    kind: str
+    parameters: dict[str, Any]
+    law_class: type[FrictionLaw] = field(compare=False, repr=False)
+
+    def law(self, values: Mapping[str, float] | None = None) -> FrictionLaw:
+        """The law, with these values in place of its own."""
+        return self.law_class.model_validate(self.parameters | dict(values or {}))
+
+    def resolved(self) -> dict[str, Any]:
+        """As a study file would say it."""
+        label = {} if self.label == self.kind else {"label": self.label}
+        return {"kind": self.kind, **_natural(self.parameters), **label}
+
+
+@dataclass(frozen=True)
+class MethodChoice:
+    """A method of the study under its label; its class is imported only when ``method`` is asked for."""
+
+    label: str
+    name: str
+    parameters: dict[str, Any]
+
+    @cached_property
+    def method(self) -> Method:
+        """The method with its parameters."""
+        return registry.method_class(self.name).model_validate(self.parameters)
+
+    def resolved(self) -> str | dict[str, Any]:
+        """As a study file would say it: its name alone where that is all."""
+        if self.label == self.name and not self.parameters:
+            return self.name
+        label = {} if self.label == self.name else {"label": self.label}
+        return {"kind": self.name, **_natural(self.parameters), **label}
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """What a study claims of its own table; exactly one of the six comparisons is set.
+
+    where: input column -> value, rows it speaks of. equals (needs within), below, above: of ``column``.
+    status: of those rows. max_difference: two method labels whose mean_friction differs by under ``below``.
+    shape: of the curves those rows make, by ``measure``.
+    """
+
+    where: dict[str, str | float]
+    column: str | None = None
+    equals: float | None = None
+    below: float | None = None
+    above: float | None = None
+    within: float | None = None
+    status: str | None = None
+    max_difference: tuple[str, str] | None = None
+    shape: str | None = None
+    measure: str | None = None
+    because: str = ""
+
+    def resolved(self) -> dict[str, Any]:
+        """As a study file would say it."""
+        said = {
+            name: _natural(value) for name, value in vars(self).items() if value is not None and value != ""
+        }
+        if self.max_difference:
+            said["max_difference"] = list(self.max_difference)
+        return said
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row to be: a scene, a law and a method, complete in itself and free of any order.
+
+    given_law: in SI units where the scene is.
+    """
+
+    law_label: str
+    kind: str
+    given_law: FrictionLaw
+    method_label: str
+    method: Method
+    scene: Scene
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as methods take it, in the scene's lengths and times and per unit of its normal load."""
+        si = self.scene.dimensional
+        return _in_scene(self.given_law, None if si is None else si.scales, self.scene.normal_load)
+
+
+@dataclass(frozen=True)
+class Study:
+    """Scenes, laws and methods, their full grid, and what is expected of the table.
+
+    scene: the one where nothing is swept. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values.
+    tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
+    plugins: the files of laws it brings along. code: SHA-256 of every law that is no part of frictionlab, by kind.
+    """
+
+    scene: Scene
+    laws: tuple[LawChoice, ...]
+    methods: tuple[MethodChoice, ...]
+    tolerance: float
+    sweep: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    expect: tuple[Expectation, ...] = ()
+    keep_orbit: int | None = None
+    title: str = ""
+    source: str = ""
+    plugins: tuple[LawFile, ...] = ()
+    code: dict[str, str] = field(default_factory=dict)
+    path: Path | None = field(default=None, compare=False)
+
+    def cases(self) -> list[Case]:
+        """The full grid: every law at every value of its sweeps, by every method, in every scene."""
+        return [
+            Case(choice.label, choice.kind, law, method.label, method.method, scene)
+            for choice in self.laws
+            for law in self.laws_of(choice)
+            for method in self.methods
+            for scene in self.scenes
+        ]
+
+    @cached_property
+    def scenes(self) -> tuple[Scene, ...]:
+        """Every scene of the grid, the last sweep running fastest."""
+        tree = self.scene.given()
+        return tuple(Scene.model_validate(with_values(tree, point)) for point in self.scene_points())
+
+    def scene_points(self) -> Iterator[dict[str, float]]:
+        """The swept scene values of each scene, by dotted path without the leading ``scene.``."""
+        return _grid(self.sweep, "scene.")
+
+    def laws_of(self, choice: LawChoice) -> tuple[FrictionLaw, ...]:
+        """The law at every value of its own sweeps."""
+        return tuple(choice.law(point) for point in self.law_points(choice))
+
+    def laws_in_scenes(self, choice: LawChoice) -> set[FrictionLaw]:
+        """All that becomes of the law in the scales and under the normal loads of the scenes."""
+        laws = self.laws_of(choice)
+        units = {
+            (None if scene.dimensional is None else scene.dimensional.scales, scene.normal_load)
+            for scene in self.scenes
+        }
+        return {_in_scene(law, scales, load) for law in laws for scales, load in units}
+
+    def law_points(self, choice: LawChoice) -> Iterator[dict[str, float]]:
+        """The swept parameters of each of this law's records."""
+        return _grid(self.sweep, f"laws.{choice.label}.")
+
+    def resolved(self) -> dict[str, Any]:
+        """The whole study as plain values that load back to an equal study, from beside its ``law_texts``."""
+        words = {"title": self.title, "source": self.source}
+        told: dict[str, Any] = {"schema": SCHEMA, **{key: text for key, text in words.items() if text}}
+        told["scene"] = _natural(self.scene.given())
+        if self.plugins:
+            told["plugins"] = list(self.law_texts())
+        told["laws"] = [law.resolved() for law in self.laws]
+        told["methods"] = [method.resolved() for method in self.methods]
+        told["tolerance"] = self.tolerance
+        if self.sweep:
+            told["sweep"] = {path: _natural(list(values)) for path, values in self.sweep.items()}
+        if self.keep_orbit is not None:
+            told["keep"] = {"orbit": self.keep_orbit}
+        if self.expect:
+            told["expect"] = [expectation.resolved() for expectation in self.expect]
+        return told
+
+    def law_texts(self) -> dict[str, str]:
+        """The files of laws, by the names under which a run keeps copies of them."""
+        found: dict[str, str] = {}
+        for file in self.plugins:
+            stem = f"{LAW_COPIES}/{file.path.stem}"
+            others = (f"{stem}_{number}.py" for number in itertools.count(2))
+            names = itertools.chain([f"{stem}.py"], others)
+            found[next(name for name in names if name not in found)] = file.text
+        return found
+
+    def digest(self) -> str:
+        """SHA-256 of what determines the numbers: scene, laws, methods, tolerance and sweep, nothing else."""
+        swept = {path.removeprefix("scene.") for path in self.sweep}
+        numbers = {
+            "scene": {path: value for path, value in self.scene.given_values().items() if path not in swept},
+            "laws": [[law.label, law.kind, self._fixed(law)] for law in self.laws],
+            "methods": [[method.label, method.name, method.parameters] for method in self.methods],
+            "tolerance": self.tolerance,
+            "sweep": {path: list(values) for path, values in self.sweep.items()},
+            **({"code": self.code} if self.code else {}),
+        }
+        return hashlib.sha256(json.dumps(_natural(numbers), sort_keys=True).encode()).hexdigest()
+
+    def _fixed(self, law: LawChoice) -> dict[str, Any]:
+        swept = {path for path in self.sweep if path.startswith(f"laws.{law.label}.")}
+        return {name: v for name, v in law.parameters.items() if f"laws.{law.label}.{name}" not in swept}
+
+
+def _in_scene(law: FrictionLaw, scales: Scales | None, normal_load: float | None) -> FrictionLaw:
+    """A law as given, in these scales and per unit of this normal load."""
+    assert normal_load is not None  # no valid scene is without
+    scaled = law if scales is None else scaled_law(law, scales)
+    return scaled.under_load(normal_load)
+
+
+def with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
+    """A copy of nested values with these, by dotted path, put in."""
+    new = dict(tree)
+    for path, value in values.items():
+        head, _, rest = path.partition(".")
+        new[head] = with_values(new.get(head, {}), {rest: value}) if rest else value
+    return new
+
+
+def _grid(sweep: Mapping[str, tuple[float, ...]], prefix: str) -> Iterator[dict[str, float]]:
+    """Every combination of the sweeps directly under a prefix."""
+    own = {path.removeprefix(prefix): values for path, values in sweep.items() if _owner(path) == prefix}
+    return (dict(zip(own, point, strict=True)) for point in itertools.product(*own.values()))
+
+
+def _owner(path: str) -> str:
+    """``scene.`` or ``laws.<label>.``: whose value a sweep varies (a label may itself hold points)."""
+    return "scene." if path.startswith("scene.") else f"{path.rpartition('.')[0]}."
+
+
+def _natural(value: Any) -> Any:
+    """The value with whole floats as integers, as a person would write them (and -0.0 as 0)."""
+    if isinstance(value, dict):
+        return {key: _natural(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_natural(item) for item in value]
+    if isinstance(value, float) and "." not in (text := number_text(value)) and "e" not in text:
+        return int(text)
+    return value

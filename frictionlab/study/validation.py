@@ -1,0 +1,250 @@
+"""A mapping of a study checked against a record (scene, law, method), every mistake in our own words."""
+
+from __future__ import annotations
+
+import copy
+import math
+import re
+import types
+from functools import cache
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
+
+from pydantic import BaseModel, TypeAdapter, ValidationError
+
+from frictionlab.study.mistakes import Notes, Path, closest, described, did_you_mean, number_text
+
+R = TypeVar("R", bound=BaseModel)
+
+# Each round mends what it found so that the next can see what was hidden behind it; a deep study needs four.
+_ROUNDS = 10
+
+
+def nested(record: type[BaseModel], key: str) -> type[BaseModel] | None:
+    """The record a field holds, or None for a field that holds a plain value."""
+    for kind in _alternatives(record.model_fields[key].annotation):
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            return kind
+    return None
+
+
+def number_paths(record: type[BaseModel], prefix: str = "") -> list[str]:
+    """The dotted paths of every number a record and those inside it can hold."""
+    paths: list[str] = []
+    for key, field in record.model_fields.items():
+        if part := nested(record, key):
+            paths += number_paths(part, f"{prefix}{key}.")
+        elif float in _alternatives(field.annotation):
+            paths.append(prefix + key)
+    return paths
+
+
+def _alternatives(annotation: Any) -> list[Any]:
+    if get_origin(annotation) in (Union, types.UnionType):
+        return [kind for part in get_args(annotation) for kind in _alternatives(part)]
+    return [get_args(annotation)[0] if get_origin(annotation) is Annotated else annotation]
+
+
+def wrong_value(record: type[BaseModel], key: str, value: Any) -> str | None:
+    """What is wrong with a value for one field, taken alone; None where it is right."""
+    try:
+        _field(record, key).validate_python(value)
+    except ValidationError as problem:
+        return _in_words(problem.errors(include_url=False)[0])
+    return None
+
+
+@cache
+def _field(record: type[BaseModel], key: str) -> TypeAdapter[Any]:
+    field = record.model_fields[key]
+    kind: Any = field.annotation
+    return TypeAdapter(Annotated[(kind, *field.metadata)] if field.metadata else kind)
+
+
+def harmless(record: type[BaseModel], key: str) -> float:
+    """A number that this number field takes: 1, or 0.5 for shares."""
+    return 1.0 if wrong_value(record, key, 1.0) is None else 0.5
+
+
+def record_at(record: type[BaseModel], path: Path) -> type[BaseModel] | None:
+    """The record that a path through nested records leads to, or None where it leads nowhere."""
+    found: type[BaseModel] | None = record
+    for key in path:
+        found = nested(found, str(key)) if found and key in found.model_fields else None
+    return found
+
+
+def built(record: type[R], tree: Any, path: Path, notes: Notes) -> R | None:
+    """The record of this mapping; None, with every mistake noted, where it cannot be made."""
+    if notes.mapping(tree, path) is None:
+        return None
+    made = _Check(record, copy.deepcopy(tree), path, notes).built()
+    assert made is None or isinstance(made, record)
+    return made
+
+
+class _Check:
+    """One mapping on its way to a record: found mistakes are noted, then mended to look behind them."""
+
+    def __init__(self, record: type[BaseModel], tree: dict[str, Any], path: Path, notes: Notes) -> None:
+        self._record, self._tree, self._path, self._notes = record, tree, path, notes
+        self._spelt: dict[Path, Path] = {}
+        self._clean = True
+
+    def built(self) -> BaseModel | None:
+        self._drop_nulls(self._tree, self._record, ())
+        for _ in range(_ROUNDS):
+            try:
+                record = self._record.model_validate(self._tree)
+                return record if self._clean else None
+            except ValidationError as problem:
+                self._clean = False
+                if not any([self._mended(error) for error in problem.errors(include_url=False)]):
+                    return None
+        return None
+
+    def _note(self, inside: Path, what: str, hint: str = "") -> None:
+        self._clean = False
+        add = self._notes.on_key if what == "not available yet" else self._notes.add
+        add(self._path + self._spelt.get(inside, inside), what, hint)
+
+    def _drop_nulls(self, tree: dict[str, Any], record: type[BaseModel], inside: Path) -> None:
+        """A key without a value is a mistake, even where the record itself can do without the key."""
+        for key in [key for key in tree if key in record.model_fields]:
+            part = nested(record, key)
+            if tree[key] is None:
+                self._note((*inside, key), f"must be {'a mapping' if part else 'a number'}, got null")
+                if part is None:
+                    del tree[key]
+                else:
+                    tree[key] = _ones(part)
+            elif part and isinstance(tree[key], dict):
+                self._drop_nulls(tree[key], part, (*inside, key))
+
+    def _mended(self, error: Any) -> bool:
+        """Note one error; say whether the tree was changed so that another round can tell more."""
+        inside: Path = error["loc"]
+        if error["type"] == "extra_forbidden":
+            return self._unknown(inside)
+        if error["type"] == "missing":
+            self._note(inside, "required key is missing")
+            return self._filled(inside)
+        if error["type"] in ("model_type", "model_attributes_type", "dict_type"):
+            self._note(inside, f"must be a mapping (key: value), got {described(error['input'])}")
+            return self._replaced(inside)
+        if error["type"] == "value_error" and isinstance(error["input"], dict):
+            return any([self._rule(inside, part, what) for part, what in self._said(inside, _message(error))])
+        if error["type"] == "literal_error":
+            names = re.findall("'([^']*)'", error["ctx"]["expected"])
+            hint = did_you_mean(error["input"], names) if isinstance(error["input"], str) else ""
+            self._note(inside, _in_words(error), hint)
+            return self._dropped(inside)
+        self._note(inside, _in_words(error))
+        return self._filled(inside)
+
+    def _rule(self, whole: Path, inside: Path, what: str) -> bool:
+        """A rule of a record about itself as a whole or one of its keys, such as one whose time has not come."""
+        required = what.startswith("required")
+        self._note(inside, what.replace("required", "required key is missing", 1) if required else what)
+        if required:
+            return self._filled(inside)
+        return self._replaced(inside) if inside == whole else self._dropped(inside)
+
+    def _said(self, inside: Path, message: str) -> list[tuple[Path, str]]:
+        """The paths a record's own message speaks of, written ``path: what; path: what``."""
+        said = []
+        for piece in message.split("; "):
+            found = re.fullmatch(r"([\w.]+): (.*)", piece, re.DOTALL)
+            if not found or not self._known((*inside, *found[1].split("."))):
+                return [(inside, message)]
+            said.append(((*inside, *found[1].split(".")), found[2]))
+        return said
+
+    def _known(self, inside: Path) -> bool:
+        """Whether the last step of a path is a field of the record there, or a key of the mapping there."""
+        record = record_at(self._record, inside[:-1])
+        tree = self._at(inside[:-1])
+        fields = record.model_fields if record else ()
+        return inside[-1] in fields or (isinstance(tree, dict) and inside[-1] in tree)
+
+    def _unknown(self, inside: Path) -> bool:
+        """A key no record knows; read on as if its nearest likeness had been meant."""
+        record, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
+        allowed = list(record.model_fields) if record else []
+        self._notes.unknown_key(self._path + inside, allowed)
+        value = tree.pop(inside[-1])
+        meant = closest(str(inside[-1]), [name for name in allowed if name not in tree])
+        if meant is not None and meant == closest(str(inside[-1]), allowed):
+            tree[meant] = value
+            self._spelt[(*inside[:-1], meant)] = inside
+        return True
+
+    def _at(self, inside: Path) -> Any:
+        tree: Any = self._tree
+        for step in inside:
+            tree = tree.get(step) if isinstance(tree, dict) else None
+        return tree
+
+    def _filled(self, inside: Path) -> bool:
+        """Put in a number that the field takes, where it is a number field."""
+        record, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
+        if not inside or record is None or not isinstance(tree, dict):
+            return False
+        if str(inside[-1]) not in number_paths(record):
+            return False
+        filler = harmless(record, str(inside[-1]))
+        if tree.get(inside[-1]) == filler:
+            return False
+        tree[inside[-1]] = filler
+        return True
+
+    def _replaced(self, inside: Path) -> bool:
+        """Put in a record of ones for one that cannot be used: other parts may ask only whether it is there."""
+        parent, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
+        part = nested(parent, str(inside[-1])) if inside and parent else None
+        if part is None or not isinstance(tree, dict):
+            return False
+        if tree.get(inside[-1]) == _ones(part):
+            return False
+        tree[inside[-1]] = _ones(part)
+        return True
+
+    def _dropped(self, inside: Path) -> bool:
+        tree = self._at(inside[:-1])
+        if not inside or not isinstance(tree, dict) or inside[-1] not in tree:
+            return False
+        del tree[inside[-1]]
+        return True
+
+
+def _ones(record: type[BaseModel]) -> dict[str, float]:
+    """A one for every number that a record requires."""
+    numbers = [key for key in number_paths(record) if key in record.model_fields]
+    return {key: harmless(record, key) for key in numbers if record.model_fields[key].is_required()}
+
+
+def _message(error: Any) -> str:
+    return str(error["ctx"]["error"]) if "error" in error.get("ctx", {}) else str(error["msg"])
+
+
+_BOUNDS = {"greater_than": (">", "gt"), "greater_than_equal": (">=", "ge")}
+_BOUNDS |= {"less_than": ("<", "lt"), "less_than_equal": ("<=", "le")}
+
+
+def _in_words(error: Any) -> str:
+    """An error of a single value as a plain sentence."""
+    given = described(error["input"])
+    if isinstance(error["input"], float) and not math.isfinite(error["input"]):
+        return f"must be a finite number, got {given}"
+    if error["type"] in _BOUNDS:
+        sign, name = _BOUNDS[error["type"]]
+        return f"must be {sign} {number_text(error['ctx'][name])}, got {given}"
+    if error["type"] == "literal_error":
+        return f"must be {error['ctx']['expected']}; got {given}"
+    if error["type"] == "tuple_type":
+        return f"must be a list such as [1, 2], got {given}"
+    if error["type"] == "too_short":
+        return f"must be a list of at least {error['ctx']['min_length']}, got {error['ctx']['actual_length']}"
+    message = _message(error)
+    if message.startswith("must be a number") or error["type"].startswith(("float", "int")):
+        return f"must be a number, got {given}"
+    return message[:1].lower() + message[1:]

@@ -1,0 +1,1 @@
+"""The checks every law must pass, by subject."""

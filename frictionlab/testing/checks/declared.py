@@ -1,0 +1,302 @@
+"""Checks of what a law declares: each predicate is used by some method, so each must be true."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise, product
+
+from hypothesis import assume
+from hypothesis import strategies as st
+
+from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.memory import BristleLaw, MemoryLaw
+from frictionlab.testing.check import check, for_laws_of
+from frictionlab.testing.contact import (
+    Memory,
+    dot,
+    no_plane,
+    noise,
+    response,
+    size_of,
+    slid,
+    stored,
+    turns_with_slip,
+)
+from frictionlab.testing.example import Given
+from frictionlab.testing.strategies import sizes, speeds, turns
+
+WITH_MEMORY = for_laws_of(BristleLaw, MemoryLaw, without="without memory")
+BRISTLES = for_laws_of(BristleLaw, without="of laws with one bristle deflection")
+SLIDING = for_laws_of(SlidingLaw, without="of laws without memory")
+SLOW_TO_QUICK = tuple(10.0**exponent for exponent in range(-6, 16))
+"""Speeds at which work may be drawn out of a law that is not passive, far above those drawn."""
+
+
+@check(
+    "constant_sliding_friction",
+    declares="constant_sliding_friction",
+    seldom="constant_sliding_friction() is false for all parameters drawn",
+)
+def constant_sliding_friction(one: Given) -> None:
+    """Where sliding friction is declared constant it is the same at every speed."""
+    law = one.law(lambda law: law.constant_sliding_friction())
+    one.slip()
+    slow, quick = (law.sliding_friction(one.draw(name, speeds)) for name in ("speed", "other speed"))
+    one.require(abs(quick - slow) <= 1e-12 * abs(slow), "sliding friction differs", got=quick, expected=slow)
+
+
+@check("steepest_fall")
+def steepest_fall(one: Given) -> None:
+    """Sliding friction falls nowhere steeper with speed than declared, from rest to the quickest slip drawn."""
+    law = one.law(lambda law: law.steepest_fall() < math.inf)
+    step = one.draw("from one speed to the next, times", sizes(1.02, 1.2))
+    ladder = [0.0, *(1e-6 * step**n for n in range(1 + round(12.0 / math.log10(step))))]
+    for slow, quick in pairwise(ladder):
+        before, after = law.sliding_friction(slow), law.sliding_friction(quick)
+        most = law.steepest_fall() * (quick - slow) * (1.0 + 1e-9) + 1e-12 * (abs(before) + abs(after))
+        one.require(
+            before - after <= most, f"from speed {slow:g} on it falls by", got=before - after, declared=most
+        )
+
+
+@check("monotone", declares="monotone", skips=SLIDING, seldom="monotone() is false for all parameters drawn")
+def monotone(one: Given) -> None:
+    """Where friction is declared monotone, more slip never meets less friction, rest included."""
+    law = one.law_near_the_edge(lambda law: law.monotone())
+    v, w = one.planar_slip(), one.draw("other slip velocity", st.builds(lambda s, t: s * t, speeds, turns))
+    a, b = law.sliding_vector(v), law.sliding_vector(w)
+    scale = (abs(a) + abs(b)) * (abs(v) + abs(w))
+    one.require(
+        dot(a - b, v - w) >= -1e-12 * scale, "(T(v) - T(w)).(v - w) is negative", got=dot(a - b, v - w)
+    )
+    held = law.static_friction()
+    one.require(held <= abs(a) * (1.0 + 1e-12), "rest holds more than slip", rest=held, slip=abs(a))
+    fall = law.steepest_fall()
+    one.require(fall == 0.0, "monotone friction falls nowhere, yet its steepest fall is declared", got=fall)
+
+
+@check("static_friction", skips=SLIDING)
+def static_friction(one: Given) -> None:
+    """Rest holds at least what slip that has only just begun meets."""
+    law = one.law()
+    held, first = law.static_friction(), law.sliding_friction(0.0)
+    one.require(held >= first * (1.0 - 1e-12), "rest holds less than slip", rest=held, slip=first)
+
+
+@check("invariant_set", skips=WITH_MEMORY, seldom="no parameters drawn have a bounded set")
+def invariant_set(one: Given) -> None:
+    """No slip leads a memory out of its set, and from just outside every slip leads back or leaves it."""
+    law = one.law(_bounded)
+    v = one.slip()
+    if isinstance(law, MemoryLaw):
+        _stays_within(one, law, v)
+        return
+    radius = law.largest_deflection() * (1.0 + one.draw("share outside", st.just(1e-13) | sizes(1e-6, 1e-1)))
+    for side in (1.0, -1.0):
+        out = side * law.rate(v, side * radius)
+        one.require(
+            out <= 1e-11 * abs(v), "the deflection grows beyond its largest", z=side * radius, rate=out
+        )
+    if not law.no_vector_form():
+        turn, slip = one.draw("turn", turns), one.planar_slip()
+        out = dot(law.rate(slip, radius * turn), turn)
+        one.require(out <= 1e-11 * abs(slip), "the deflection grows beyond its largest", rate=out)
+
+
+def _bounded(law: BristleLaw | MemoryLaw) -> bool:
+    return isinstance(law, MemoryLaw) or law.largest_deflection() < math.inf
+
+
+def _stays_within(one: Given, law: MemoryLaw, v: float) -> None:
+    memory = one.memory(law)
+    one.require(law.within(memory), "the memory of slow slip is outside the set", memory=memory)
+    rate = law.largest_rate(abs(v))
+    assume(0.0 < rate < math.inf)
+    for _ in range(20):
+        rates = response(law, v, memory).rates
+        # from step to step half as long: one that is long passes the corner where a slider begins to move
+        tried = (_moved(memory, rates, 0.05 / rate * 0.5**halving) for halving in range(30))
+        inside = next((ends for ends in tried if law.within(ends)), None)
+        one.require(inside is not None, "slip leads the memory out of its set", memory=memory)
+        memory = inside or memory
+
+
+def _moved(memory: Memory, rates: Memory, step: float) -> Memory:
+    return tuple(each + step * slope for each, slope in zip(memory, rates, strict=True))
+
+
+@check("held_at_rest", skips=BRISTLES)
+def held_at_rest(one: Given) -> None:
+    """A contact at rest keeps its deflection: one that creeps there has a smoothing width in it."""
+    law = one.law()
+    one.slip()
+    memory = one.memory(law)
+    rate = response(law, 0.0, memory).rates[0]
+    one.require(rate == 0.0, "the deflection moves at rest", rate=rate)
+
+
+@check("not_smoothed", skips=SLIDING)
+def not_smoothed(one: Given) -> None:
+    """Friction does not vanish with slip: a law of dry friction has no width about rest, a method may have one."""
+    law = one.law()
+    slow, quicker = law.sliding_friction(1e-12), law.sliding_friction(1e-9)
+    one.require(slow >= 0.5 * quicker, "friction vanishes with slip", at_1e_12=slow, at_1e_9=quicker)
+
+
+@check(
+    "passivity", declares="passive", skips=WITH_MEMORY, seldom="passive() is false for all parameters drawn"
+)
+def passivity(one: Given) -> None:
+    """Where a law is declared passive, friction takes as much work as its memory stores, however quick the slip."""
+    law = one.law_near_the_edge(lambda law: law.passive())
+    planar = not no_plane(law) and one.draw("in the plane", st.booleans())
+    v = one.planar_slip() if planar else one.slip()
+    memories = [one.memory(law, planar)]
+    if not planar or turns_with_slip(law):
+        memories += [slid(law, v, share) for share in (1.0, 0.7, 0.3, -0.5)]
+    for slip, memory in product((v, *(speed * v / abs(v) for speed in SLOW_TO_QUICK)), memories):
+        lost, room = _lost(law, slip, memory)
+        what = f"at slip speed {abs(slip):g} friction gives work that was never stored"
+        one.require(lost >= -room, what, lost_per_time=lost, memory=memory)
+
+
+def _lost(law: BristleLaw | MemoryLaw, v: complex, memory: tuple[complex, ...]) -> tuple[float, float]:
+    """The work lost per time and unit load, and how much of it is rounding."""
+    rates, friction = response(law, v, memory)
+    work, own = dot(friction, v), noise(law, v, memory)
+    kept, room = 0.0, 1e-9 * abs(work) + 20.0 * own.friction * abs(v)
+    for k, rate in enumerate(rates):
+        slope, doubt = _slope_of_stored(law, memory, k)
+        kept += dot(slope, rate)
+        room += (1e-9 * abs(slope) + doubt) * abs(rate) + 20.0 * abs(slope) * own.rates[k] * 1e3
+    return work - kept, room
+
+
+def _slope_of_stored(
+    law: BristleLaw | MemoryLaw, memory: tuple[complex, ...], k: int
+) -> tuple[complex, float]:
+    """The gradient of the stored work with respect to one memory, and what rounding of the whole leaves of it."""
+    step = 1e-4 * (abs(memory[k]) or (size_of(law) if isinstance(law, BristleLaw) else 1.0))
+    ways = (1.0, 1j) if isinstance(memory[k], complex) else (1.0,)
+    slope = 0.0 * memory[k]
+    for way in ways:
+        ahead, behind = ((*memory[:k], memory[k] + s * step * way, *memory[k + 1 :]) for s in (1, -1))
+        slope += way * (stored(law, ahead) - stored(law, behind)) / (2.0 * step)
+    return slope, 1e-15 * stored(law, memory) / step
+
+
+@check("not_passive", skips=WITH_MEMORY, share=0.2, seldom="passive() is true for all parameters drawn")
+def not_passive(one: Given) -> None:
+    """Where a law is declared not passive, some slip gives work that was never stored."""
+    law = one.law(lambda law: not law.passive())
+    found = any(
+        lost < -room
+        for speed in SLOW_TO_QUICK
+        for memory in _charged(law)
+        for lost, room in [_lost(law, speed, memory)]
+    )
+    assume(
+        found or law.steepest_fall() < math.inf
+    )  # a fall without a steepest place may go on beyond any speed
+    one.require(found, "no slip was found that gives work which was not stored: is the law passive?")
+
+
+def _charged(law: BristleLaw | MemoryLaw) -> list[tuple[float, ...]]:
+    """Memories that slow slip brings, whole and in part."""
+    if isinstance(law, BristleLaw):
+        return [(share * size_of(law),) for share in (1.0, 0.7, 0.3, -0.5, -1.0)]
+    slow = [[law.steady(10.0**exponent, k) for k in range(law.count())] for exponent in (-6, -3, 0)]
+    return [tuple(memory) for memory in slow]
+
+
+@check(
+    "rate_independence",
+    declares="rate_independent",
+    skips=WITH_MEMORY,
+    seldom="rate_independent() is false for all parameters drawn",
+)
+def rate_independence(one: Given) -> None:
+    """Where friction is declared to know only the path, slip so many times faster moves memory as much faster."""
+    law = one.law(lambda law: law.rate_independent())
+    planar = not no_plane(law) and one.draw("in the plane", st.booleans())
+    v = one.planar_slip() if planar else one.slip()
+    memory = one.memory(law, planar)
+    faster = one.draw("times faster", sizes(1e-3, 1e3))
+    quick = response(law, faster * v, memory)
+    got = quick._replace(rates=tuple(rate / faster for rate in quick.rates))
+    one.require_same(law, (v, memory), got, response(law, v, memory), "slip so many times faster")
+
+
+@check(
+    "largest_rate",
+    declares="largest_rate",
+    skips=WITH_MEMORY,
+    seldom="largest_rate() is infinite for all parameters drawn",
+)
+def largest_rate(one: Given) -> None:
+    """The rate of the memory changes no faster with the memory than declared."""
+    law = one.law(lambda law: 0.0 < law.largest_rate(1.0) < math.inf)
+    v = one.slip()
+    declared, smooth = law.largest_rate(abs(v)), False
+    for memory in (one.memory(law), *(slid(law, v, share) for share in (0.95, 0.8, 0.5))):
+        for k, each in enumerate(memory):
+            size = size_of(law) if isinstance(law, BristleLaw) else abs(each) or 1.0
+            change, ends, corner = _change_of_rate(law, v, memory, k, 1e-6 * size)
+            if corner:
+                continue
+            smooth = True
+            room = 1e-6 * declared + (1e-8 * abs(v) + 1e-9 * ends) / size
+            one.require(
+                change <= declared + room,
+                "the rate changes faster",
+                got=change,
+                declared=declared,
+                memory=memory,
+            )
+    assume(smooth)
+
+
+def _change_of_rate(
+    law: FrictionLaw, v: float, memory: Memory, k: int, step: float
+) -> tuple[float, float, bool]:
+    """How fast the rate of a memory changes with it, the size of the rates, whether there is a corner."""
+    behind, here, ahead = (
+        response(law, v, (*memory[:k], memory[k] + s * step, *memory[k + 1 :])).rates[k] for s in (-1, 0, 1)
+    )
+    corner = abs(ahead + behind - 2.0 * here) > 1e-3 * abs(ahead - behind)
+    return abs(ahead - behind) / (2.0 * step), abs(ahead), corner
+
+
+@check("damps_across", skips=BRISTLES, seldom="damps_across() is false for all parameters drawn")
+def damps_across(one: Given) -> None:
+    """Where declared, a small motion across the slip only loses energy to friction."""
+    law = one.planar_law()
+    v, memory = one.slip(), one.memory(law)
+    assume(law.damps_across(abs(v)))
+    for speed in (abs(v), *(10.0**exponent for exponent in range(-6, 7))):
+        if law.damps_across(speed):
+            slip = math.copysign(speed, v)
+            way = _worst_across(law, slip, memory[0])
+            lost, terms = _lost_across(law, slip, memory[0], way)
+            what = f"at slip speed {speed:g} friction feeds a motion across the slip"
+            one.require(lost >= -1e-4 * terms, what, lost_per_time=lost, terms=terms)
+
+
+def _lost_across(law: BristleLaw, v: float, z: float, way: tuple[float, float]) -> tuple[float, float]:
+    """Work lost per time by a small slip and deflection across (shares of v and of the law's size), and its terms."""
+    slip = complex(v, 1e-5 * way[0] * v)
+    across = 1e-5 * way[1] * size_of(law)
+    rates, friction = response(law, slip, (complex(z, across),))
+    spring = law.friction(0j, complex(0.0, across), 0j).imag
+    taken, stored = friction.imag * slip.imag, spring * rates[0].imag
+    return taken - stored, abs(taken) + abs(stored)
+
+
+def _worst_across(law: BristleLaw, v: float, z: float) -> tuple[float, float]:
+    """The slip and deflection across that lose least: where the quadratic form of the loss has its minimum."""
+    of_slip, of_deflection, of_both = (_lost_across(law, v, z, way)[0] for way in ((1, 0), (0, 1), (1, 1)))
+    mixed = of_both - of_slip - of_deflection
+    if of_slip <= 0.0 or of_deflection <= 0.0:
+        return (1.0, 0.0) if of_slip < of_deflection else (0.0, 1.0)
+    share = -0.5 * mixed / of_deflection
+    return (1.0, share) if abs(share) < 1.0 else (1.0 / share, 1.0)

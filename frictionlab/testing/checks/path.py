@@ -1,0 +1,200 @@
+"""Checks of bristles along a path: exact updates, elastic ranges, and where steady sliding leads."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from hypothesis import assume
+from hypothesis import strategies as st
+
+from frictionlab.laws.memory import BristleLaw, MemoryLaw
+from frictionlab.testing.check import check
+from frictionlab.testing.checks.declared import BRISTLES, WITH_MEMORY
+from frictionlab.testing.contact import dot, response, size_of
+from frictionlab.testing.example import Given
+from frictionlab.testing.strategies import evenly, seldom, signs, sizes, speeds, turns
+
+NO_EXACT_PATH = "exact_path() is false for all parameters drawn"
+STEPS = 400
+"""Of the Runge-Kutta method, along a path of a few largest deflections."""
+
+
+@check("steady_sliding", skips=WITH_MEMORY)
+def steady_sliding(one: Given) -> None:
+    """Memory that has become steady gives the friction of ``sliding_friction``."""
+    law, speed = one.law(), one.draw("speed", speeds)
+    should = law.sliding_friction(speed)
+    if isinstance(law, MemoryLaw):
+        memory = tuple(law.steady(speed, k) for k in range(law.count()))
+        got = response(law, speed, memory)
+        for k, rate in enumerate(got.rates):
+            step = 1e-6 * (abs(memory[k]) or 1.0)
+            moved = response(law, speed, (*memory[:k], memory[k] + step, *memory[k + 1 :])).rates[k]
+            still = abs(rate) <= 1e-4 * abs(moved - rate) + 1e-12 * speed
+            one.require(still, f"memory {k} moves in steady sliding", rate=rate)
+        friction, doubt = got.friction, 0.0
+    else:
+        friction, doubt = _steady_friction(one, law, speed)
+    near = abs(friction - should) <= 1e-9 * (abs(should) + abs(friction)) + doubt
+    one.require(near, "steady friction differs from sliding_friction", got=friction, expected=should)
+
+
+def _steady_friction(one: Given, law: BristleLaw, speed: float) -> tuple[float, float]:
+    """Friction where slip from no deflection leads, and how far off it may be where that is neared as a power."""
+    one.require(law.rate(speed, 0.0) > 0.0, "slip does not deflect an undeflected bristle")
+    ends = [_slowed_to(one, law, speed, share) for share in (1e-9, 1e-12, 1e-15)]
+    first, second, third = (float(law.friction(speed, z, 0.0 * speed)) for z in ends)
+    left = (
+        (third - second) ** 2 / (second - first - third + second)
+        if abs(third - second) > 1e-9 * third
+        else 0.0
+    )
+    return third + left, 0.05 * abs(left)  # Aitken (1926): exact for powers
+
+
+def _slowed_to(one: Given, law: BristleLaw, speed: float, share: float) -> float:
+    """The least deflection at which its rate is no more than a share of the slip."""
+    low, high = 0.0, 1.5 * size_of(law)
+    one.require(law.rate(speed, high) <= 1e-12 * speed, "the deflection grows without bound", z=high)
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
+        low, high = (middle, high) if law.rate(speed, middle) > share * speed else (low, middle)
+    return high
+
+
+@check("exact_path", declares="exact_path", skips=BRISTLES, share=0.2, seldom=NO_EXACT_PATH)
+def exact_path(one: Given) -> None:
+    """``deflected`` is what integrating the rate along a straight path gives."""
+    law = one.law(lambda law: law.exact_path() and law.largest_rate(1.0) < math.inf)
+    planar = (
+        not law.no_vector_form() and law.planar == "vectorial" and one.draw("in the plane", st.booleans())
+    )
+    start, path = _start_and_path(one, law, planar)
+    assume(law.largest_rate(1.0) * abs(path) < STEPS)  # steps longer than that find nothing
+    got, should = law.deflected(start, path), _integrated(law, start, path)
+    one.require(
+        abs(got - should) <= _room(law, path),
+        "deflected differs from the integrated rate",
+        got=got,
+        expected=should,
+    )
+
+
+def _start_and_path(one: Given, law: BristleLaw, planar: bool) -> tuple[Any, Any]:
+    size = size_of(law)
+    way = one.draw("direction of the path", turns if planar else signs)
+    path = size * one.draw("path over deflection", sizes(1e-2, 5.0)) * way
+    return one.memory(law, planar)[0], path
+
+
+def _integrated(law: BristleLaw, z: Any, path: Any) -> Any:
+    """The deflection after the path at unit speed, by the classical Runge-Kutta method."""
+    v, h = path / abs(path), abs(path) / STEPS
+    for _ in range(STEPS):
+        a = law.rate(v, z)
+        b = law.rate(v, z + 0.5 * h * a)
+        c = law.rate(v, z + 0.5 * h * b)
+        z = z + h / 6.0 * (a + 2.0 * b + 2.0 * c + law.rate(v, z + h * c))
+    return z
+
+
+def _room(law: BristleLaw, path: Any) -> float:
+    """What steps may be wrong by: fourth order where rates are smooth, a step's length where they jump."""
+    if law.yield_deflection() < math.inf:
+        return 2.0 * abs(path) / STEPS
+    step = min(1.0, law.largest_rate(1.0) * abs(path) / STEPS)
+    return (1e-9 + 10.0 * step**4) * size_of(law)
+
+
+@check("path_splitting", declares="exact_path", skips=BRISTLES, seldom=NO_EXACT_PATH)
+def path_splitting(one: Given) -> None:
+    """One straight path and its two parts, one after the other, end at the same deflection."""
+    law = one.law(lambda law: law.exact_path())
+    planar = (
+        not law.no_vector_form() and law.planar == "vectorial" and one.draw("in the plane", st.booleans())
+    )
+    start, path = _start_and_path(one, law, planar)
+    share = one.draw("share of the first part", evenly(0.01, 0.99))
+    whole = law.deflected(start, path)
+    parts = law.deflected(law.deflected(start, share * path), (1.0 - share) * path)
+    sharp = 1e-6 if law.largest_rate(1.0) == math.inf else 1e-10  # a root at the limit magnifies rounding
+    one.require(
+        abs(whole - parts) <= sharp * size_of(law),
+        "two parts of a path differ from it",
+        got=parts,
+        expected=whole,
+    )
+
+
+@check(
+    "saturation_path",
+    declares="saturation_path",
+    skips=BRISTLES,
+    seldom="saturation_path() is infinite for all parameters drawn",
+)
+def saturation_path(one: Given) -> None:
+    """After the path declared, further slip the same way changes the deflection no more."""
+    law = one.law(lambda law: law.exact_path() and law.saturation_path(0.0, 1.0) < math.inf)
+    (z,), side = one.memory(law), one.draw("side", signs)
+    path = max(law.saturation_path(z, side), 0.0) * (1.0 + 1e-9)
+    assume(path > 0.0)
+    end = law.deflected(z, side * path)
+    further = law.deflected(end, side * size_of(law) * one.draw("further", sizes(1e-3, 1e2)))
+    one.require(abs(further - end) <= 1e-6 * size_of(law), "the deflection still moves", at=end, then=further)
+
+
+def _follows(one: Given, law: BristleLaw, v: Any, z: Any, back: str = "") -> None:
+    """Require that a deflection moves with the slip."""
+    rate = law.rate(v, z)
+    one.require(
+        abs(rate - v) <= 1e-12 * abs(v), f"the bristle does not follow the slip{back}", z=z, rate=rate
+    )
+
+
+@check(
+    "elastic_deflection",
+    declares="elastic_deflection",
+    skips=BRISTLES,
+    seldom="elastic_deflection() is zero for all parameters drawn",
+)
+def elastic_deflection(one: Given) -> None:
+    """Below the deflection declared elastic the bristle moves with the slip, whatever its direction."""
+    law = one.law(lambda law: law.elastic_deflection() > 0.0)
+    v = one.slip()
+    for share in (one.draw("share", evenly(-0.999, 0.999)), 0.999, -0.999):
+        _follows(one, law, v, share * min(law.elastic_deflection(), 1e300))
+
+
+@check(
+    "elastic_unloading",
+    declares="elastic_unloading",
+    skips=BRISTLES,
+    seldom="elastic_unloading() is false for all parameters drawn",
+)
+def elastic_unloading(one: Given) -> None:
+    """Where unloading is declared elastic, a deflection that slip makes smaller moves with it."""
+    law = one.law(lambda law: law.elastic_unloading())
+    v = one.slip()
+    for share in (one.draw("share", sizes(1e-6, 1.0)), 0.9, 1.0):
+        _follows(one, law, v, -math.copysign(share * size_of(law), v), back=" back")
+
+
+@check(
+    "yield_deflection",
+    declares="yield_deflection",
+    skips=BRISTLES,
+    seldom="yield_deflection() is infinite for all parameters drawn",
+)
+def yield_deflection(one: Given) -> None:
+    """Below the deflection of yield the bristle follows the slip; at it, it moves along a circle."""
+    law = one.law(lambda law: law.yield_deflection() < math.inf and not law.no_vector_form())
+    v, turn = one.planar_slip(), one.draw("turn", turns)
+    share = one.draw("share", seldom(st.just(0.999), evenly(0.0, 0.999)))
+    _follows(one, law, v, share * law.yield_deflection() * turn)
+    at = (1.0 + 1e-14) * law.yield_deflection() * turn
+    assume(dot(v, turn) > 1e-6 * abs(v))
+    out = dot(law.rate(v, at), turn)
+    one.require(abs(out) <= 1e-11 * abs(v), "the bristle leaves the circle of yield", outward_rate=out)

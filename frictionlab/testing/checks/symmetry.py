@@ -1,0 +1,121 @@
+"""Checks of symmetry: which way a law looks must not matter, nor the units it is told in."""
+
+from __future__ import annotations
+
+from frictionlab.laws.memory import MemoryLaw
+from frictionlab.scene.dimensional import Scales, scaled_law
+from frictionlab.testing.check import check
+from frictionlab.testing.contact import Response, mirrored, response, slid, turned, turns_with_slip
+from frictionlab.testing.example import Given
+from frictionlab.testing.strategies import sizes, turns
+
+BEYOND = 1.5
+"""Times what a memory can hold: it yields wholly, not only just."""
+
+
+@check("oddness")
+def oddness(one: Given) -> None:
+    """Slip and deflections turned round turn friction round, and change it in nothing else."""
+    law = one.law(lambda law: getattr(law, "planar", "") != "rotated")
+    v = one.slip()
+    back = -1.0 if turns_with_slip(law) else 1.0
+    for memory in (one.memory(law), slid(law, v, BEYOND)):
+        got = response(law, -v, tuple(back * each for each in memory))
+        there = response(law, v, memory)
+        should = Response(tuple(back * rate for rate in there.rates), -there.friction)
+        one.require_same(law, (v, memory), got, should, "slip turned round")
+
+
+@check("rotation", seldom="no parameters drawn have a form in the plane that turns with the slip")
+def rotation(one: Given) -> None:
+    """In the plane everything turned by an angle gives friction turned by that angle (but for per-axis forms)."""
+    law = one.planar_law(_isotropic)
+    v = one.planar_slip()
+    turn = one.draw("turn", turns)
+    memories = [one.memory(law, planar=True)]
+    if turns_with_slip(law):
+        memories += [tuple(BEYOND * each for each in memories[0]), slid(law, v, BEYOND)]
+    for memory in memories:
+        there = response(law, v, memory)
+        got = response(law, turn * v, turned(law, memory, turn))
+        should = Response(turned(law, there.rates, turn), turn * there.friction)
+        one.require_same(law, (v, memory), got, should, "everything turned")
+
+
+@check("reflection", seldom="no parameters drawn have a form in the plane")
+def reflection(one: Given) -> None:
+    """In the plane everything mirrored in the belt's line gives friction mirrored in it."""
+    law = one.planar_law()
+    v = one.planar_slip()
+    memory = one.memory(law, planar=True)
+    there = response(law, v, memory)
+    got = response(law, v.conjugate(), mirrored(law, memory))
+    should = Response(mirrored(law, there.rates), there.friction.conjugate())
+    one.require_same(law, (v, memory), got, should, "everything mirrored")
+
+
+@check("straight_planar_slide", seldom="no parameters drawn have a form in the plane")
+def straight_planar_slide(one: Given) -> None:
+    """Slip along a straight line in the plane is slip on the line, with nothing across."""
+    law = one.planar_law()
+    v = one.slip()
+    v = abs(v) if getattr(law, "planar", "") == "rotated" else v
+    memory = one.memory(law)
+    scalars = isinstance(law, MemoryLaw) and not turns_with_slip(law)
+    across = memory if scalars else tuple(map(complex, memory))
+    got = response(law, complex(v, 0.0), across)
+    one.require(isinstance(got.friction, complex), "friction in the plane must be complex", got=got.friction)
+    one.require_same(law, (v, memory), got, response(law, v, memory), "slip along the line in the plane")
+
+
+@check("unit_scaling")
+def unit_scaling(one: Given) -> None:
+    """In other units of length and time friction is the same, and memory moves at the same pace.
+
+    Every parameter is converted by the dimension in its annotation.
+    """
+    law = one.law()
+    v = one.slip()
+    memory = one.memory(law)
+    scales = Scales(
+        one.draw("unit of length", sizes(1e-3, 1e3)), one.draw("unit of time", sizes(1e-3, 1e3)), 1.0
+    )
+    there, here = scaled_law(law, scales), response(law, v, memory)
+    if not isinstance(law, MemoryLaw) or turns_with_slip(law):
+        other = response(there, v / scales.velocity, tuple(each / scales.length for each in memory))
+        other = Response(tuple(rate * scales.velocity for rate in other.rates), other.friction)
+    else:
+        assert isinstance(there, MemoryLaw)
+        before = one.drawn["speed slid at before"]
+        same = tuple(there.steady(before / scales.velocity, k) for k in range(law.count()))
+        other = Response(here.rates, response(there, v / scales.velocity, same).friction)
+        _same_pace(one, (law, v, before), (there, v / scales.velocity, before / scales.velocity), scales.time)
+    one.require_same(law, (v, memory), other, here, "the same contact in other units")
+
+
+def _same_pace(
+    one: Given, here: tuple[MemoryLaw, float, float], there: tuple[MemoryLaw, float, float], time: float
+) -> None:
+    """Scalars have units of their own: told by the speed of steady sliding that brings them, they need none."""
+    law, v, before = here
+    paces, others, quicker = _paces(law, v, before), _paces(*there), _paces(law, 2.0 * v, before)
+    for k, (pace, other, size) in enumerate(zip(paces, others, quicker, strict=True)):
+        gap = abs(other / time - pace)
+        room = 1e-4 * (abs(pace) + abs(other) / time) + 1e-9 * abs(size) + 1e-300
+        one.require(gap <= room, f"rate of memory {k} in other units", got=other / time, expected=pace)
+
+
+def _paces(law: MemoryLaw, v: float, before: float) -> list[float]:
+    """How quickly the speed that the memory is steady at changes, relative to itself [1/scene time]."""
+    step = 1e-5
+    steady = [law.steady(before, k) for k in range(law.count())]
+    slopes = [
+        (law.steady(before * (1.0 + step), k) - law.steady(before * (1.0 - step), k)) / (2.0 * step)
+        for k in range(law.count())
+    ]
+    rates = response(law, v, tuple(steady)).rates
+    return [rate / slope if slope else 0.0 for rate, slope in zip(rates, slopes, strict=True)]
+
+
+def _isotropic(law: object) -> bool:
+    return getattr(law, "planar", "vectorial") != "per-axis"

@@ -1,0 +1,165 @@
+"""One example of a check: what was drawn for it, by name, and what is required of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from hypothesis import assume
+from hypothesis import strategies as st
+from pydantic import ValidationError
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.memory import BristleLaw, MemoryLaw
+from frictionlab.testing import strategies
+from frictionlab.testing.contact import Memory, Response, no_plane, noise, response, size_of
+
+
+class Violation(AssertionError):
+    """What a law must not do; the message says what it did."""
+
+
+class Given:
+    """An example: its law, drawn from the law's own limits, and whatever else a check draws."""
+
+    def __init__(self, law: type[FrictionLaw], draw: Callable[..., Any], notes: set[str]) -> None:
+        self.kind = law
+        self.notes = notes  # what the examples of one check found so far
+        self._draw = draw
+        self.drawn: dict[str, Any] = {}
+
+    def draw(self, name: str, strategy: st.SearchStrategy[Any]) -> Any:
+        """A value, kept under its name for the counterexample."""
+        self.drawn[name] = value = self._draw(strategy)
+        return value
+
+    def law(self, when: Callable[[Any], bool] = lambda law: True) -> Any:
+        """A law of any parameters for which this holds."""
+        law = self.draw("law", strategies.laws(self.kind))
+        assume(when(law))
+        return law
+
+    def law_near_the_edge(self, when: Callable[[Any], bool]) -> Any:
+        """The same, one number of it often driven to where this only just holds: bounds are wrong there first."""
+        law = self.law(when)
+        edges = {name: edge for name in _numbers(law) if (edge := _at_the_edge(law, name, when)) is not None}
+        name = self.draw("parameter driven to the edge", st.sampled_from(["", *edges]))
+        self.drawn["law"] = law = edges.get(name, law)
+        return law
+
+    def planar_law(self, when: Callable[[Any], bool] = lambda law: True) -> Any:
+        """The same with a meaning in the plane."""
+        return self.law(lambda law: not no_plane(law) and when(law))
+
+    def slip(self) -> float:
+        """A slip velocity on the line, twelve decades of it."""
+        return float(
+            self.draw("slip velocity", st.builds(lambda s, v: s * v, strategies.signs, strategies.speeds))
+        )
+
+    def planar_slip(self) -> complex:
+        """A slip velocity in the plane."""
+        return complex(
+            self.draw("slip velocity", st.builds(lambda v, t: v * t, strategies.speeds, strategies.turns))
+        )
+
+    def memory(self, law: FrictionLaw, planar: bool = False) -> Memory:
+        """A memory that the law can have."""
+        directions = strategies.turns if planar else st.just(1.0)
+        vectors = st.builds(lambda share, turn: share * turn, strategies.shares, directions)
+        if isinstance(law, BristleLaw):
+            if planar and law.planar == "rotated":
+                vectors = strategies.shares.map(complex)
+            return (self.draw("deflection", vectors.map(lambda share: share * size_of(law))),)
+        if isinstance(law, MemoryLaw):
+            return self._memories(law, vectors if law.memory_kind == "deflections" else None)
+        return ()
+
+    def _memories(self, law: MemoryLaw, vectors: st.SearchStrategy[Any] | None) -> Memory:
+        """Each that of steady sliding at some speed, deflections by any share of it and in any direction."""
+        speed = self.draw("speed slid at before", strategies.speeds)
+        steady = [law.steady(speed, k) for k in range(law.count())]
+        if vectors is None:
+            return tuple(steady)
+        shares = self.draw("shares of steady deflections", st.tuples(*[vectors for _ in steady]))
+        return tuple(share * each for share, each in zip(shares, steady, strict=True))
+
+    def require(self, holds: bool, what: str, **seen: Any) -> None:
+        """Raise Violation, with the numbers seen, unless this holds."""
+        if not holds:
+            numbers = ", ".join(f"{name} {_short(value)}" for name, value in seen.items())
+            raise Violation(f"{what}: {numbers}" if numbers else what)
+
+    def require_same(
+        self, law: FrictionLaw, at: tuple[Any, Memory], got: Response, should: Response, what: str
+    ) -> None:
+        """Two responses differ by rounding alone, against their terms and what rounding of the arguments does."""
+        v, memory = at
+        base, own = response(law, v, memory), noise(law, v, memory)
+        pairs = zip(got.rates, should.rates, base.rates, own.rates, strict=True)
+        for k, (a, b, rate, rounding) in enumerate(pairs):
+            room = 1e-12 * (abs(rate) + _scale(law, v)) + 20.0 * rounding
+            self.require(abs(a - b) <= room, f"{what}: rate of memory {k}", got=a, expected=b)
+        room = 1e-12 * (abs(base.friction) + law.sliding_friction(abs(v))) + 20.0 * own.friction
+        gap = abs(got.friction - should.friction)
+        self.require(gap <= room, f"{what}: friction", got=got.friction, expected=should.friction)
+
+    def told(self) -> str:
+        """The numbers drawn, in one line."""
+        return ", ".join(f"{name} {_short(value)}" for name, value in self.drawn.items())
+
+
+def _numbers(law: FrictionLaw) -> list[str]:
+    return [name for name, value in law if isinstance(value, float)]
+
+
+def _at_the_edge(law: FrictionLaw, name: str, when: Callable[[Any], bool]) -> FrictionLaw | None:
+    """The law with one number so large or small that the condition only just holds; None if there is no such one."""
+    value = getattr(law, name)
+    for end in (1e6 * value, 1e-6 * value):
+        beyond = _changed(law, name, end)
+        if beyond is not None and not when(beyond):
+            return _between(law, name, (value, end), when)
+    return None
+
+
+def _between(
+    law: FrictionLaw, name: str, ends: tuple[float, float], when: Callable[[Any], bool]
+) -> FrictionLaw:
+    """Where the condition only just holds, by bisection from where it does to where it does not."""
+    inside, outside = ends
+    best = law
+    for _ in range(40):
+        middle = math.sqrt(inside * outside)
+        tried = _changed(law, name, middle)
+        if tried is not None and when(tried):
+            inside, best = middle, tried
+        else:
+            outside = middle
+    return best
+
+
+def _changed(law: FrictionLaw, name: str, value: float) -> FrictionLaw | None:
+    try:
+        return type(law)(**law.model_dump(exclude_none=True) | {name: value})
+    except ValidationError:
+        return None
+
+
+def _scale(law: FrictionLaw, v: Any) -> float:
+    """Deflections move with the slip: their rates are differences of terms of its size."""
+    return abs(v) if isinstance(law, BristleLaw) or getattr(law, "memory_kind", "") == "deflections" else 0.0
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, complex):
+        return f"{value.real:.6g}{value.imag:+.6g}i"
+    if isinstance(value, FrictionLaw):
+        parameters = ", ".join(f"{name}={_short(given)}" for name, given in value if given is not None)
+        return f"{type(value).__name__}({parameters})"
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_short, value))})"
+    return str(value)

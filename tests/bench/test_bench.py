@@ -1,0 +1,497 @@
+"""Work against precision: who is measured against whom, what keeps its place, and what a wrong list is told."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+from fake_methods import Another, Fake, breaks_down
+
+from frictionlab import bench, cli, registry
+from frictionlab.bench import chart, timing
+from frictionlab.bench.measure import Measured, Row, chosen
+from frictionlab.bench.peers import base
+from frictionlab.bench.peers.listing import PEERS
+from frictionlab.bench.peers.scipy_bristle import ScipyBristle
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.elasto_plastic import ElastoPlastic
+from frictionlab.laws.lugre import LuGre
+from frictionlab.methods.base import Answers
+from frictionlab.methods.exact.method import Exact
+from frictionlab.quantities import Finite
+from frictionlab.scene.scene import Drive, Load, Scene, Transverse
+from frictionlab.study import StudyError
+
+PROJECT = Path(__file__).parents[2]
+STANDARD = PROJECT / "tests" / "benchmarks" / "standard.yaml"
+SPEEDS = [1.0, 2.0, 4.0, 8.0]
+
+LIST = """\
+schema: 1
+title: Fakes
+repeats: 2
+scenes:
+  - name: A
+    scene: {damping_ratio: 0.1, normal_load: 10, drive: {unbalance: 10, frequency: 1}}
+    laws: [{kind: coulomb, mu: 0.4}]
+    sweep: {scene.belt_speed: [1, 2, 4, 8]}
+    references: [{values: known.csv, error: 1.0e-15}]
+    methods:
+      - {kind: off, by: [1.0e-3, 1.0e-6]}
+"""
+
+
+class Off(Fake):
+    """The fake, off by so much and saying half of it."""
+
+    name: ClassVar[str] = "off"
+
+    by: Finite = 0.0
+
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        answers = super().solve(scenes, law, tolerance)
+        answers.columns["mean_friction"] = answers.columns["mean_friction"] + self.by
+        answers.columns["error"] = np.full(len(scenes), 0.5 * self.by)
+        return answers
+
+
+@pytest.fixture(autouse=True)
+def _fakes_and_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fakes: dict[str, Any] = {"fake": Fake, "another": Another, "off": Off}
+    known, names = registry.method_class, registry.method_names()
+    monkeypatch.setattr(registry, "method_class", lambda name: fakes.get(name) or known(name))
+    monkeypatch.setattr(registry, "method_names", lambda: sorted([*names, *fakes]))
+    monkeypatch.chdir(tmp_path)
+    means = [f"{speed},{0.4 * math.tanh(speed) / 3.0!r}" for speed in SPEEDS]
+    Path("known.csv").write_text("\n".join(["belt_speed,mean_friction", *means]))
+
+
+def measured(text: str = LIST) -> Measured:
+    """The first curve of a list."""
+    Path("list.yaml").write_text(text)
+    (first, *_) = bench.measure(bench.load_bench(Path("list.yaml")), lambda line: None)
+    return first
+
+
+def rows_of(found: Measured, label: str) -> list[Row]:
+    return [row for row in found.rows if row.contender.label == label]
+
+
+# --- errors -------------------------------------------------------------------------------------------------------
+
+
+def test_an_error_is_the_distance_from_the_reference() -> None:
+    coarse, fine = measured().rows
+
+    assert (coarse.setting.value, fine.setting.value) == (1e-3, 1e-6)
+    assert coarse.largest == pytest.approx(1e-3)
+    assert coarse.median == pytest.approx(1e-3)
+    assert fine.largest == pytest.approx(1e-6)
+
+
+def test_a_stated_error_that_does_not_cover_is_counted() -> None:
+    short = measured().rows[0]
+    covering = measured(LIST.replace("error: 1.0e-15", "error: 1.0e-3")).rows[0]
+
+    assert short.stated == pytest.approx(0.5e-3)
+    assert (short.covered, covering.covered) == (0, 4)
+
+
+def test_a_method_is_never_measured_against_its_own_kind() -> None:
+    own = "[{kind: 'off', by: 0.1, tolerance: 1.0e-9}, {kind: another, tolerance: 1.0e-9}]"
+
+    with_another = measured(LIST.replace("[{values: known.csv, error: 1.0e-15}]", own))
+    alone = measured(
+        LIST.replace("[{values: known.csv, error: 1.0e-15}]", own.partition(", {kind: an")[0] + "]")
+    )
+
+    assert {row.reference.kind for row in with_another.rows if row.reference} == {"another"}
+    assert with_another.rows[0].largest == pytest.approx(1e-3)
+    assert [(row.reference, row.reason) for row in alone.rows] == [(None, "no independent reference")] * 2
+    assert all(math.isnan(row.largest) for row in alone.rows)
+
+
+def test_the_reference_and_its_own_error_are_in_the_tables() -> None:
+    found = measured()
+
+    bench.write([found], Path("out"))
+
+    (record, _) = csv.DictReader(Path("out/A.csv").read_text().splitlines())
+    assert (record["reference"], record["reference_error"]) == ("known.csv", "1e-15")
+    assert "Reference of off: known.csv, known to 1.0e-15." in Path("out/A.md").read_text()
+
+
+def test_exact_is_measured_against_shooting_and_shooting_against_exact() -> None:
+    both = LIST.replace("{values: known.csv, error: 1.0e-15}", "{kind: exact, tolerance: 1.0e-11}, SHOOTING")
+    both = both.replace("SHOOTING", "{kind: shooting, tolerance: 1.0e-11}")
+    found = measured(both.replace("{kind: off, by: [1.0e-3, 1.0e-6]}", "exact\n      - shooting"))
+
+    exact, shooting = found.rows
+    assert exact.reference is not None
+    assert shooting.reference is not None
+    assert (exact.reference.kind, shooting.reference.kind) == ("shooting", "exact")
+    assert exact.largest < 1e-10
+    assert (exact.covered, shooting.covered) == (4, 4)
+    assert exact.mean.least < exact.whole.least  # the kernel of the mean alone does less
+
+
+# --- places kept --------------------------------------------------------------------------------------------------
+
+WITH_TROUBLE = LIST.replace("[1, 2, 4, 8]", "[1, 13, 2, 4, 8]") + "      - {kind: another, label: good}\n"
+
+
+def test_a_method_that_refuses_points_keeps_its_place_with_the_reason() -> None:
+    found = measured(WITH_TROUBLE)
+    row = found.rows[0]
+
+    bench.write([found], Path("out"))
+
+    assert (row.points, row.counts["ok"], row.counts["refused"]) == (5, 4, 1)
+    assert row.largest == pytest.approx(1e-3)
+    assert "1 refused: thirteen, of all numbers" in Path("out/A.md").read_text()
+    assert "1 refused: thirteen, of all numbers" in bench.summary([found])
+
+
+def test_a_method_that_fails_keeps_its_place_in_tables_and_chart(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Off, "troubles", dict.fromkeys(SPEEDS, breaks_down))
+    found = measured(LIST + "      - another\n")
+
+    bench.write([found], Path("out"))
+    drawn = chart.chart(found)
+
+    failed, good = rows_of(found, "off"), rows_of(found, "another")
+    assert [row.counts["failed"] for row in failed] == [4, 4]
+    assert good[0].counts["ok"] == 4
+    assert Path("out/A.md").read_text().count("float division by zero") == 2
+    (legend,) = drawn.legends
+    said = [text.get_text().replace("\n", " ") for text in legend.get_texts()]
+    assert said == ["off; 4 failed: ZeroDivisionError: float division by zero", "another"]
+
+
+def test_a_peer_that_is_not_installed_keeps_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(base, "find_spec", lambda name: None)
+    peers = "".join(f"      - {{kind: {name}, tolerance: [1.0e-3, 1.0e-6]}}\n" for name in PEERS)
+
+    found = measured(f"{LIST}    peers:\n{peers}")
+
+    for name in PEERS:
+        assert [row.counts["refused"] for row in rows_of(found, name)] == [4, 4]
+    told = bench.summary([found])
+    assert all(told.count(f"not installed: {peer.remedy}") >= 1 for peer in PEERS.values())
+    assert told.count("not installed: pip install") == len(PEERS)
+    assert {text.get_text().partition(" ")[0] for text in chart.chart(found).legends[0].get_texts()} == {
+        "off",
+        *PEERS,
+    }
+
+
+def test_few_points_of_a_curve_are_spread_over_it() -> None:
+    assert chosen(64, None) == list(range(64))
+    assert chosen(64, 4) == [0, 21, 42, 63]
+    assert chosen(3, 8) == [0, 1, 2]
+    assert measured(LIST.replace("1.0e-6]", "1.0e-6], points: 2")).rows[0].points == 2
+
+
+# --- time ---------------------------------------------------------------------------------------------------------
+
+
+def clock(monkeypatch: pytest.MonkeyPatch, spent: Sequence[float]) -> None:
+    """A clock on which a task takes these times, one after the other."""
+    ticks = iter([tick for each in spent for tick in (0.0, each)])
+    monkeypatch.setattr(timing.time, "perf_counter", lambda: next(ticks))
+
+
+def test_the_time_of_a_task_is_the_least_of_its_repeats(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock(monkeypatch, [4.0, 2.0, 3.0, 9.0])
+
+    times = timing.timed(lambda: None, repeats=4, seconds=100.0)
+
+    assert times == timing.Times(2.0, (2.75, 3.5, 5.25), 4)
+    assert times.each_of(2).least == 1.0
+
+
+def test_a_slow_task_is_not_repeated_beyond_its_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock(monkeypatch, [4.0, 5.0, 3.0])
+
+    assert timing.timed(lambda: None, repeats=30, seconds=8.0).repeats == 2
+
+
+def test_the_summary_takes_the_cheapest_setting_that_is_good_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = measured(LIST + "      - {kind: another, label: good}\n")
+    told = bench.summary([found]).splitlines()
+
+    off, good = (line.split() for line in told[2:])
+    assert off[-1] == off[-2] == "-"  # 1e-9 and 1e-12: off by 1e-6 at best
+    assert "-" not in good
+    assert any("(1)" in word for word in good)
+
+
+# --- the command and the list -------------------------------------------------------------------------------------
+
+
+def test_the_command_writes_a_chart_and_tables_per_curve(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("list.yaml").write_text(LIST)
+
+    assert cli.main(["bench", "list.yaml"]) == 0
+
+    out, err = capsys.readouterr()
+    assert out.startswith("A: us per point")
+    assert "A: off, by 0.001" in err
+    assert sorted(path.name for path in Path("runs/bench-list").iterdir()) == [
+        "A.csv",
+        "A.md",
+        "A.png",
+        "A.svg",
+    ]
+
+
+def test_an_interrupted_bench_keeps_the_curves_that_are_done(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    second = LIST.partition("  - name: A\n")[2].replace("[1, 2, 4, 8]", "[1, 3]")
+    Path("list.yaml").write_text(f"{LIST}  - name: B\n{second}")
+    monkeypatch.setattr(Off, "troubles", {3.0: interrupt})
+
+    assert cli.main(["bench", "list.yaml", "-o", "out"]) == 130
+
+    assert "interrupted: 1 of 2 curves done" in capsys.readouterr().err
+    assert Path("out/A.csv").exists()
+    assert not Path("out/B.csv").exists()
+
+
+MISTAKES = [
+    ("mu: 0.4", "mu: -1", "list.yaml:7:", "scenes[0].laws[0].mu: must be > 0, got -1"),
+    ("mu: 0.4", "my: 0.4", "list.yaml:7:28: scenes[0].laws[0].my", "unknown key; allowed: mu"),
+    ("name: A", "name: a/b", "list.yaml:5:", "scenes[0].name: names a file"),
+    (
+        "scene.belt_speed: [1",
+        "scene.normal_load: [1",
+        "list.yaml:",
+        "a bench curve sweeps the belt speed alone",
+    ),
+    ("kind: off", "kind: of", "list.yaml:11:", "unknown method 'of'"),
+    ("kind: off", "kind: auto", "list.yaml:11:", "auto only chooses"),
+    ("by: [", "points: [4], by: [", "list.yaml:11:", "only one value may be a list"),
+    ("by: [1.0e-3, 1.0e-6]", "by: []", "list.yaml:11:", "the list is empty"),
+    ("by: [1.0e-3, 1.0e-6]", "by: [1.0e-3, x]", "list.yaml:11:", "scenes[0].methods[0].by: must be a number"),
+    ("by: [1.0e-3, 1.0e-6]", "tolerance: [0]", "list.yaml:11:", "tolerance: must be > 0, got 0"),
+    ("by: [1.0e-3, 1.0e-6]", "points: 0", "list.yaml:11:", "points: must be >= 1, got 0"),
+    ("known.csv", "unknown.csv", "list.yaml:9:", "scenes[0].references[0].values: cannot be read"),
+    ("known.csv", "list.yaml", "list.yaml:9:", "must be a CSV file of numbers with the columns belt_speed"),
+    (", error: 1.0e-15", "", "list.yaml:9:", "error: required key is missing: how well the values are known"),
+    ("    references: [{values: known.csv, error: 1.0e-15}]\n", "", "list.yaml:5:", "no references"),
+    ("repeats: 2", "repeats: 0", "list.yaml:3:", "repeats: must be >= 1, got 0"),
+    ("repeats: 2", "seconds: -1", "list.yaml:3:", "seconds: must be > 0, got -1"),
+    ("repeats: 2", "repeat: 2", "list.yaml:3:", "repeat: unknown key"),
+    (
+        "methods:",
+        "peers:",
+        "list.yaml:11:",
+        "must be one of scipy, scipy_events, scipy_bristle, heyoka, numbalsoda",
+    ),
+    ("    laws:", "    law:", "list.yaml:7:", "scenes[0].law: unknown key"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "where", "what"), MISTAKES, ids=[what for *_, what in MISTAKES])
+def test_a_wrong_list_is_told_where_and_what(
+    old: str, new: str, where: str, what: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert LIST.count(old) >= 1
+    Path("list.yaml").write_text(LIST.replace(old, new))
+
+    assert cli.main(["bench", "list.yaml"]) == 2
+
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert where in err
+    assert what in err
+    assert "Traceback" not in err
+    assert not Path("runs").exists()
+
+
+def test_a_mistake_that_two_scenes_share_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
+    shared = LIST.replace("    methods:\n", "    methods: &them\n").replace("kind: off", "kind: of")
+    again = shared.partition("  - name: A\n")[2].partition("    methods")[0]
+    Path("list.yaml").write_text(f"{shared}  - name: B\n{again}    methods: *them\n")
+
+    assert cli.main(["bench", "list.yaml"]) == 2
+    assert capsys.readouterr().err.count("unknown method") == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "mistakes"),
+    [
+        ("error: 1.0e-15", "error: x", ["scenes[0].references[0].error: must be a number"]),
+        ("kind: off", "kind: of", ["scenes[0].methods[0].kind: unknown method"]),
+        (
+            "mu: 0.4}]\n    sweep: {scene.belt_speed:",
+            "mu: -1}]\n    sweep: {scene.normal_load:",
+            [
+                "scenes[0].scene.belt_speed: required key is missing",
+                "scenes[0].laws[0].mu: must be > 0, got -1",
+                "scenes[0].sweep.scene.normal_load: a bench curve sweeps the belt speed alone",
+            ],
+        ),
+    ],
+)
+def test_every_mistake_of_a_list_is_told_and_none_that_follows_from_another(
+    old: str, new: str, mistakes: list[str]
+) -> None:
+    Path("list.yaml").write_text(LIST.replace(old, new))
+
+    with pytest.raises(StudyError) as caught:
+        bench.load_bench(Path("list.yaml"))
+
+    told = [f"{mistake.path}: {mistake.what}" for mistake in caught.value.mistakes]
+    assert len(told) == len(mistakes)
+    assert all(text.startswith(start) for text, start in zip(told, mistakes, strict=True))
+
+
+def test_what_is_no_list_is_told_as_a_list(tmp_path: Path) -> None:
+    (tmp_path / "empty.yaml").write_text("")
+
+    with pytest.raises(StudyError, match="the bench list is empty"):
+        bench.load_bench(tmp_path / "empty.yaml")
+    with pytest.raises(StudyError, match="is a folder; a bench list is a file"):
+        bench.load_bench(tmp_path)
+
+
+def test_a_curve_that_is_not_in_the_list_is_refused_by_name(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("list.yaml").write_text(LIST)
+
+    assert cli.main(["bench", "list.yaml", "--only", "C"]) == 2
+    assert "no curve 'C' in the list; there are A" in capsys.readouterr().err
+
+
+def test_the_standard_set_is_a_list_without_mistakes_and_its_values_are_at_its_belt_speeds() -> None:
+    standard = bench.load_bench(STANDARD)
+
+    assert [work.name for work in standard.workloads] == ["W1", "W1g", "W2", "W5", "W3_0.5", "W3_4", "W3_10"]
+    for work in standard.workloads:
+        for trusted in work.references:
+            assert not trusted.values or np.allclose(
+                list(trusted.values), work.speeds(), rtol=1e-13, atol=0.0
+            )
+
+
+# --- peers --------------------------------------------------------------------------------------------------------
+
+LAW = Coulomb(mu=0.4)
+SLIDING = Scene(
+    damping_ratio=0.1, normal_load=10.0, belt_speed=20.0, drive=Drive(unbalance=10.0, frequency=1.0)
+)
+STICKING = Scene(
+    damping_ratio=0.1, normal_load=10.0, belt_speed=0.5, drive=Drive(amplitude=2.5, frequency=0.5)
+)
+PLANAR = Scene(
+    damping_ratio=0.1,
+    normal_load=1.0,
+    belt_speed=0.5,
+    drive=Drive(unbalance=10.0, frequency=4.0),
+    transverse=Transverse(natural_frequency=4.0, damping_ratio=0.1, load=Load(unbalance=10.0)),
+)
+PLANAR_MEAN = 0.001269402004447  # by collocation
+
+
+@pytest.mark.parametrize("name", ["scipy_events", "heyoka"])
+@pytest.mark.parametrize("scene", [SLIDING, STICKING], ids=["sliding", "sticking"])
+def test_a_peer_with_events_finds_the_mean_friction(name: str, scene: Scene) -> None:
+    peer = PEERS[name]()
+    pytest.importorskip(peer.package)
+    expected = Exact().solve([scene], LAW, 1e-11).columns["mean_friction"]
+
+    assert peer.solve([scene], LAW, 1e-9) == pytest.approx(expected, abs=1e-7)
+
+
+@pytest.mark.parametrize("name", ["scipy", "heyoka"])
+def test_a_peer_in_the_plane_finds_the_mean_friction(name: str) -> None:
+    peer = PEERS[name]()
+    pytest.importorskip(peer.package)
+
+    assert peer.solve([PLANAR], LAW, 1e-6) == pytest.approx([PLANAR_MEAN], abs=1e-4)
+
+
+def test_a_peer_that_gives_up_keeps_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("scipy")
+    monkeypatch.setattr("frictionlab.bench.peers.scipy_steps.MOST_CALLS", 100)
+
+    found = measured(LIST + "    peers: [{kind: scipy, tolerance: 1.0e-6}]\n")
+
+    (row,) = rows_of(found, "scipy")
+    assert (row.counts["failed"], row.reason) == (4, "gave up after 100 calls of the equations of motion")
+
+
+@pytest.mark.parametrize("name", ["scipy", "scipy_events", "heyoka"])
+def test_a_peer_refuses_what_it_is_not_set_up_for(name: str) -> None:
+    peer = PEERS[name]()
+    pytest.importorskip(peer.package)
+
+    assert "Coulomb" in (peer.refusal(SLIDING, Coulomb(mu=0.4, mu_static=0.5)) or "")
+    assert "Coulomb" in (peer.refusal(SLIDING, BRISTLES) or "")
+    assert (peer.refusal(PLANAR, LAW) is None) == (name != "scipy_events")
+
+
+# --- peers of bristle laws ----------------------------------------------------------------------------------------
+
+BRISTLES = LuGre(mu_kinetic=0.4, presliding_length=5e-2, damping=4e-4)
+BRISTLES_MEAN = 0.23164774756257994  # W4a of bristle_w4.csv
+IN_THE_PLANE = ElastoPlastic(mu_kinetic=0.4, presliding_length=1.0)
+MEAN_IN_THE_PLANE = 0.012659382313928562  # bristle_more.csv
+
+
+@pytest.mark.parametrize("name", ["scipy_bristle", "numbalsoda"])
+def test_a_peer_of_bristle_laws_finds_the_mean_friction(name: str) -> None:
+    peer = PEERS[name]()
+    pytest.importorskip(peer.package)
+    planar = PLANAR.model_copy(update={"belt_speed": 5.0})
+
+    assert peer.solve([SLIDING.at(27.0)], BRISTLES, 1e-6) == pytest.approx([BRISTLES_MEAN], abs=1e-5)
+    assert peer.solve([planar], IN_THE_PLANE, 1e-5) == pytest.approx([MEAN_IN_THE_PLANE], abs=1e-4)
+
+
+@pytest.mark.parametrize("solver", ["Radau", "BDF"])
+def test_other_stiff_solvers_find_the_mean_friction(solver: Any) -> None:
+    pytest.importorskip("scipy")
+
+    means = ScipyBristle(solver=solver).solve([SLIDING.at(27.0)], BRISTLES, 1e-4)
+
+    assert means == pytest.approx([BRISTLES_MEAN], abs=1e-3)
+
+
+@pytest.mark.parametrize("name", ["scipy_bristle", "numbalsoda"])
+def test_a_peer_of_bristle_laws_refuses_what_it_is_not_set_up_for(name: str) -> None:
+    peer = PEERS[name]()
+    pytest.importorskip(peer.package)
+
+    assert peer.refusal(SLIDING, LAW) == f"{name} is set up for bristle laws"
+    assert "driven scenes" in (peer.refusal(SLIDING.model_copy(update={"drive": None}), BRISTLES) or "")
+    assert peer.refusal(SLIDING, BRISTLES) is None
+
+
+def test_a_peer_of_bristle_laws_that_gives_up_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("scipy")
+    monkeypatch.setattr("frictionlab.bench.peers.scipy_bristle.MOST_STEPS", 3)
+
+    with pytest.raises(ArithmeticError, match="odeint: Excess work"):
+        ScipyBristle().solve([SLIDING], BRISTLES, 1e-6)
+
+
+def test_the_bristle_set_is_a_list_without_mistakes_and_its_values_are_at_its_belt_speeds() -> None:
+    bristles = bench.load_bench(STANDARD.parent / "bristle.yaml")
+
+    assert [work.name for work in bristles.workloads][:4] == ["W4a", "W4b", "W4c", "W4d"]
+    for work in bristles.workloads:
+        speeds = np.array(work.speeds())
+        for trusted in work.references:
+            assert all(np.isclose(speeds, speed, rtol=1e-13, atol=0.0).any() for speed in trusted.values)
+            assert len(trusted.values) >= 0.5 * len(speeds)

@@ -1,0 +1,433 @@
+"""Figures of a result table: what is drawn, what tells curves apart, and that nothing is dropped."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+from xml.etree import ElementTree
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+from oracle import table_in_the_plane, table_of_one_degree_of_freedom
+
+from frictionlab.charts import figures
+from frictionlab.charts.curves import family_of, is_logarithmic, kinks
+from frictionlab.charts.figures import FIGURES, draw
+from frictionlab.columns import RESULTS, symbol, word
+
+
+@pytest.fixture(scope="module")
+def line() -> pd.DataFrame:
+    return table_of_one_degree_of_freedom()
+
+
+@pytest.fixture(scope="module")
+def plane() -> pd.DataFrame:
+    return table_in_the_plane()
+
+
+@pytest.fixture
+def resonance(line: pd.DataFrame) -> pd.DataFrame:
+    """One curve alone: Omega = 1."""
+    return line[line["scene.drive.frequency"] == 1.0].reset_index(drop=True)
+
+
+def _figure(table: pd.DataFrame, *columns: str) -> Figure:
+    family = family_of(table)
+    assert family is not None
+    with mpl.rc_context(figures.STYLE):
+        return figures._figure(family, columns or ("mean_friction",), "A title")
+
+
+def _legend(figure: Figure) -> list[str]:
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
+def _curves(figure: Figure, panel: int = 0) -> list[tuple[np.ndarray, np.ndarray]]:
+    lines = [line for line in figure.axes[panel].lines if len(line.get_xdata()) > 2]
+    return [(np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in lines]
+
+
+def test_every_figure_is_written_as_svg_and_png(plane: pd.DataFrame, tmp_path: Path) -> None:
+    files = draw(plane, "Fig. 8a", tmp_path / "figures")
+
+    assert files == [tmp_path / "figures" / f"{name}.{kind}" for name in FIGURES for kind in ("svg", "png")]
+    assert all(ElementTree.parse(file).getroot().tag.endswith("svg") for file in files[::2])
+    assert all(file.read_bytes().startswith(b"\x89PNG") for file in files[1::2])
+
+
+def test_the_same_table_gives_the_same_bytes(resonance: pd.DataFrame, tmp_path: Path) -> None:
+    first, second = (draw(resonance, "Twice", tmp_path / name) for name in ("first", "second"))
+
+    assert [file.read_bytes() for file in first] == [file.read_bytes() for file in second]
+
+
+def test_drawing_does_not_load_pyplot() -> None:
+    code = "import sys, frictionlab.charts; sys.exit('matplotlib.pyplot' in sys.modules)"
+
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_single_point_gives_no_figure_and_no_folder(line: pd.DataFrame, tmp_path: Path) -> None:
+    assert draw(line.iloc[:1], "One point", tmp_path / "figures") == []
+    assert not (tmp_path / "figures").exists()
+
+
+def test_a_quantity_that_applies_nowhere_gives_no_figure(resonance: pd.DataFrame, tmp_path: Path) -> None:
+    resonance[FIGURES["energies"]] = np.nan
+
+    assert [file.name for file in draw(resonance, "No energies", tmp_path)] == [
+        "mean_friction.svg",
+        "mean_friction.png",
+        "velocity.svg",
+        "velocity.png",
+    ]
+
+
+def test_every_curve_is_drawn_whole_against_belt_speed(plane: pd.DataFrame) -> None:
+    drawn = _curves(_figure(plane))
+
+    expected = [rows for _, rows in plane.groupby("scene.transverse.natural_frequency")]
+    assert len(drawn) == len(expected) == 6
+    for (x, y), rows in zip(drawn, expected, strict=True):
+        np.testing.assert_array_equal(x, rows["scene.belt_speed"])
+        np.testing.assert_array_equal(y, rows["mean_friction"])
+
+
+def test_rows_out_of_order_are_drawn_in_order(resonance: pd.DataFrame) -> None:
+    shuffled = resonance.sample(frac=1, random_state=1)
+
+    np.testing.assert_array_equal(_curves(_figure(shuffled))[0], _curves(_figure(resonance))[0])
+
+
+def test_axes_carry_words_and_symbols(plane: pd.DataFrame) -> None:
+    axes = _figure(plane).axes[0]
+
+    assert axes.get_xlabel() == "belt speed $v_b$"
+    assert axes.get_ylabel() == r"mean friction coefficient $\bar\mu$"
+
+
+def test_the_legend_names_the_swept_quantity_and_its_values(plane: pd.DataFrame) -> None:
+    figure = _figure(plane)
+
+    assert figure.legends[0].get_title().get_text() == r"transverse natural frequency $\omega_r$"
+    assert _legend(figure) == ["0.5", "1", "2", "3", "4", "10"]
+
+
+def test_one_curve_needs_no_legend(resonance: pd.DataFrame) -> None:
+    assert _figure(resonance).legends == []
+
+
+def test_curves_differ_in_black_and_white(plane: pd.DataFrame, resonance: pd.DataFrame) -> None:
+    other = resonance.assign(law="other", method="exact")
+    laws = pd.concat([resonance, resonance.assign(method="exact"), other], ignore_index=True)
+
+    for table in (plane, laws):
+        looks = [(line.get_marker(), line.get_linestyle()) for line in _figure(table).axes[0].lines[:3]]
+        assert len(set(looks)) == 3
+
+
+def test_one_colour_per_law_and_one_line_style_per_method(resonance: pd.DataFrame) -> None:
+    both = pd.concat([resonance, resonance.assign(method="shooting")])
+    table = pd.concat([both, both.assign(law="other")], ignore_index=True)
+
+    figure = _figure(table)
+    first, second, third, fourth = figure.axes[0].lines[:4]
+
+    assert _legend(figure) == [
+        f"{law}, {method}" for law in ("coulomb", "other") for method in ("auto", "shooting")
+    ]
+    assert first.get_color() == second.get_color() != third.get_color() == fourth.get_color()
+    assert first.get_linestyle() == third.get_linestyle() != second.get_linestyle() == fourth.get_linestyle()
+
+
+def _of_ten_methods(table: pd.DataFrame) -> pd.DataFrame:
+    return pd.concat([table.assign(method=f"method{i}") for i in range(10)], ignore_index=True)
+
+
+def test_ten_methods_are_told_apart_in_colour_and_in_black_and_white(resonance: pd.DataFrame) -> None:
+    figure = _figure(_of_ten_methods(resonance))
+    lines, handles = figure.axes[0].lines[:10], figure.legends[0].get_lines()
+
+    for shown in (lines, handles):
+        assert len({str(line.get_color()) for line in shown}) == 10
+        assert len({line.get_marker() for line in shown}) == 10
+        assert len({str(line._unscaled_dash_pattern) for line in shown}) == 10
+    assert max(line.get_linewidth() for line in lines) <= 2.0
+
+
+def test_markers_of_methods_that_coincide_lie_side_by_side(resonance: pd.DataFrame) -> None:
+    lines = _figure(_of_ten_methods(resonance)).axes[0].lines[:10]
+
+    marked = [point for line in lines for point in line.get_markevery()]
+    assert len(marked) == len(set(marked)) == 10 * 10
+
+
+def test_of_two_methods_the_first_lies_broad_below_the_second(resonance: pd.DataFrame) -> None:
+    both = pd.concat([resonance, resonance.assign(method="shooting")], ignore_index=True)
+
+    below, above = _figure(both).axes[0].lines[:2]
+
+    assert (below.get_linewidth(), above.get_linewidth()) == (2.0, 1.1)
+    assert below.get_color() == above.get_color()
+    assert below.get_markevery() == above.get_markevery() == []
+
+
+@pytest.mark.parametrize("letters", [3, 19, 60])
+def test_the_legend_keeps_within_the_figure(resonance: pd.DataFrame, letters: int) -> None:
+    short = [resonance.assign(method=name) for name in ("a", "b", "c", "d")]
+    long = resonance.assign(method="n" * letters)
+    refused = long.assign(law="rough", status="refused", mean_friction=np.nan)
+    figure = _figure(pd.concat([*short, long, resonance.assign(law="rough"), refused], ignore_index=True))
+
+    figure.canvas.draw()
+
+    legend = figure.legends[0].get_window_extent()
+    assert figure.bbox.x0 <= legend.x0 < legend.x1 <= figure.bbox.x1
+    assert legend.y1 <= figure.axes[0].get_window_extent().y0
+
+
+def test_labels_of_a_logarithmic_axis_do_not_overlap(resonance: pd.DataFrame) -> None:
+    speeds = np.geomspace(5.0, 100.0, len(resonance))
+    figure = _figure(resonance.assign(**{"scene.belt_speed": speeds}))
+    figure.canvas.draw()
+    below = figure.axes[0].xaxis
+    (above,) = (axes.xaxis for axes in figure.axes[0].child_axes)
+
+    low, high = figure.axes[0].get_xlim()
+    labels = [
+        tick.label1
+        for tick in below.get_major_ticks() + below.get_minor_ticks()
+        if low <= tick.get_loc() <= high
+    ]
+    shown = [label.get_window_extent() for label in labels if label.get_text()]
+    assert [label.get_text() for label in labels if label.get_text()] == ["5", "10", "20", "50", "100"]
+    assert not any(one.overlaps(other) for one, other in pairwise(shown))
+    assert [label.get_text() for label in above.get_ticklabels(which="both")] == [r"$V_\mathrm{lin}$"]
+
+
+def test_a_long_family_is_drawn_whole_and_named_from_end_to_end(resonance: pd.DataFrame) -> None:
+    loads = np.linspace(1, 30, 30)
+    table = pd.concat([resonance.assign(**{"scene.normal_load": load}) for load in loads], ignore_index=True)
+
+    figure = _figure(table)
+
+    assert len(_curves(figure)) == 30
+    assert len(_legend(figure)) == figures.MOST_VALUES_IN_LEGEND
+    assert _legend(figure)[0] == "1"
+    assert _legend(figure)[-1] == "30"
+
+
+def test_two_further_swept_quantities_give_small_multiples(plane: pd.DataFrame) -> None:
+    table = pd.concat(
+        [plane.assign(**{"scene.damping_ratio": beta}) for beta in (0.1, 0.2)], ignore_index=True
+    )
+
+    figure = _figure(table)
+
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert titles == [rf"damping ratio $\beta_1$ = {beta}" for beta in (0.1, 0.2)]
+    assert [len(_curves(figure, panel)) for panel in (0, 1)] == [6, 6]
+
+
+def test_without_a_sweep_of_belt_speed_the_longest_sweep_is_the_axis(resonance: pd.DataFrame) -> None:
+    loads = np.logspace(-1, 2, len(resonance))
+    table = resonance.assign(**{"scene.belt_speed": 5.0, "scene.normal_load": loads})
+
+    axes = _figure(table).axes[0]
+
+    assert axes.get_xlabel() == r"normal load $\gamma^2$"
+    assert axes.get_xscale() == "log"
+
+
+def test_a_sweep_of_more_values_than_a_few_belt_speeds_is_the_axis(resonance: pd.DataFrame) -> None:
+    few = [resonance.assign(**{"scene.belt_speed": speed}) for speed in (1.0, 2.0)]
+    loads = {"scene.normal_load": np.logspace(-1, 2, len(resonance))}
+
+    axes = _figure(pd.concat([table.assign(**loads) for table in few], ignore_index=True)).axes[0]
+
+    assert axes.get_xlabel() == r"normal load $\gamma^2$"
+
+
+def test_a_law_without_the_parameter_along_the_axis_is_a_level_line(resonance: pd.DataFrame) -> None:
+    fixed = resonance.head(10).assign(**{"scene.belt_speed": 5.0})
+    soft = fixed.assign(law="dahl", **{"law.stiffness": np.logspace(0, 3, 10)})
+    rigid = fixed.head(1).assign(**{"law.stiffness": np.nan})
+
+    (level, _) = _curves(_figure(pd.concat([rigid, soft], ignore_index=True)))
+
+    assert level[1] == pytest.approx(rigid["mean_friction"].to_numpy().repeat(3))
+
+
+def test_curves_of_several_laws_too_many_for_one_picture_are_drawn_in_several(line: pd.DataFrame) -> None:
+    table = pd.concat(
+        [line.assign(law=law) for law in ("a", "b", "c", "d", "e", "f", "g")], ignore_index=True
+    )
+
+    titles = [axes.get_title(loc="left") for axes in _figure(table).axes]
+
+    assert titles == [rf"drive frequency $\Omega$ = {f:g}" for f in line["scene.drive.frequency"].unique()]
+
+
+def test_a_parameter_that_differs_between_laws_is_no_sweep(resonance: pd.DataFrame) -> None:
+    other = resonance.assign(law="slippery", **{"law.mu": 0.2})
+
+    family = family_of(pd.concat([resonance, other], ignore_index=True))
+
+    assert family is not None
+    assert family.member is None
+    assert [curve.law for curve in family.curves] == ["coulomb", "slippery"]
+
+
+def test_a_sweep_of_one_law_leaves_the_other_law_one_curve(resonance: pd.DataFrame) -> None:
+    soft = [resonance.assign(law="dahl", **{"law.mu": np.nan, "law.stiffness": s}) for s in (4.0, 40.0)]
+    table = pd.concat([resonance.assign(**{"law.stiffness": np.nan}), *soft], ignore_index=True)
+
+    assert _legend(_figure(table)) == ["coulomb", "dahl, 4", "dahl, 40"]
+
+
+def test_points_without_a_number_are_marked_on_the_axis_and_counted(resonance: pd.DataFrame) -> None:
+    resonance.loc[[10, 11, 12], ["status", "mean_friction"]] = ["failed", np.nan]
+    resonance.loc[[20], ["status", "mean_friction"]] = ["refused", np.nan]
+
+    figure = _figure(resonance)
+
+    marks = {line.get_marker(): np.asarray(line.get_xdata()) for line in figure.axes[0].lines}
+    np.testing.assert_array_equal(marks["x"], resonance["scene.belt_speed"][[10, 11, 12]])
+    np.testing.assert_array_equal(marks["|"], resonance["scene.belt_speed"][[20]])
+    assert _legend(figure) == ["3 points failed", "1 point refused"]
+
+
+def test_a_method_that_refuses_a_whole_curve_is_counted_by_name(resonance: pd.DataFrame) -> None:
+    refused = resonance.assign(method="shooting", status="refused", mean_friction=np.nan)
+
+    figure = _figure(pd.concat([resonance, refused], ignore_index=True))
+
+    assert _legend(figure) == ["auto", "120 points refused (shooting)"]
+
+
+def test_a_steady_state_that_is_not_unique_is_drawn_as_its_range(resonance: pd.DataFrame) -> None:
+    values = ["not_unique", np.nan, -0.1, 0.3]
+    resonance.loc[[5], ["status", "mean_friction", "mean_low", "mean_high"]] = values
+
+    figure = _figure(resonance)
+
+    (bars,) = figure.axes[0].containers
+    np.testing.assert_allclose(bars.lines[2][0].get_segments()[0], [[3.0, -0.1], [3.0, 0.3]])
+    assert _legend(figure) == ["1 point not unique"]
+
+
+@pytest.mark.parametrize(("error", "bands"), [(1e-9, 0), (0.02, 1)])
+def test_the_error_is_a_band_where_it_can_be_seen(resonance: pd.DataFrame, error: float, bands: int) -> None:
+    axes = _figure(resonance.assign(error=error)).axes[0]
+
+    assert len([band for band in axes.collections if len(band.get_paths()) and band.get_alpha()]) == bands
+
+
+def test_v_lin_is_marked_where_friction_has_its_kink(line: pd.DataFrame) -> None:
+    family = family_of(line)
+
+    assert family is not None
+    assert [kinks(curve) for curve in family.curves] == [[pytest.approx(50)], [pytest.approx(26.254457)]]
+    (above,) = [axes for axes in _figure(line).axes[0].child_axes]
+    assert [label.get_text() for label in above.get_xticklabels()] == [r"$V_\mathrm{lin}$"] * 2
+
+
+def test_a_belt_that_also_runs_backward_has_a_kink_on_either_side(resonance: pd.DataFrame) -> None:
+    odd = ["scene.belt_speed", "mean_friction", "velocity_ratio"]
+    both = pd.concat([resonance.assign(**-resonance[odd]), resonance], ignore_index=True)
+
+    axes = _figure(both).axes[0]
+
+    names = [label.get_text() for label in axes.child_axes[0].get_xticklabels()]
+    assert names == [r"$-V_\mathrm{lin}$", r"$V_\mathrm{lin}$"]
+    assert [tick for tick in axes.child_axes[0].get_xticks()] == pytest.approx([-50, 50])
+
+
+def test_v_lin_is_not_marked_where_there_is_no_kink(plane: pd.DataFrame, resonance: pd.DataFrame) -> None:
+    below = resonance[resonance["scene.belt_speed"] < 40]
+    falling = resonance.assign(
+        normalized_friction=resonance["mean_friction"] * (2 + resonance["scene.belt_speed"])
+    )
+
+    for table in (plane, below, falling):
+        family = family_of(table)
+        assert family is not None
+        assert [kinks(curve) for curve in family.curves if kinks(curve)] == []
+
+
+def test_a_point_alone_between_gaps_is_still_seen(resonance: pd.DataFrame) -> None:
+    resonance.loc[[10, 12], ["status", "mean_friction"]] = ["failed", np.nan]
+
+    curve = _figure(resonance).axes[0].lines[0]
+
+    assert curve.get_markevery() == [11]
+
+
+def test_positive_quantities_stand_on_zero(resonance: pd.DataFrame) -> None:
+    figure = _figure(resonance, "velocity_amplitude")
+
+    low, high = figure.axes[0].get_ylim()
+    assert low == 0
+    assert high > 50
+
+
+def test_curves_that_lie_decades_apart_are_drawn_on_a_logarithmic_scale(plane: pd.DataFrame) -> None:
+    columns = ["energy_viscous", "energy_friction", "mean_friction"]
+
+    assert [axes.get_yscale() for axes in _figure(plane, *columns).axes] == ["log", "linear", "linear"]
+
+
+def test_an_energy_that_is_zero_but_for_rounding_is_drawn_as_zero(line: pd.DataFrame) -> None:
+    sliding = line["scene.belt_speed"] > 10
+    table = line.assign(energy_friction=line["energy_friction"].mask(sliding, 1e-14))
+    (axes, *_) = _figure(table, "energy_friction").axes
+
+    assert axes.get_yscale() == "linear"
+    assert axes.get_ylim()[0] == 0.0
+
+
+@pytest.mark.parametrize("values", [np.logspace(-2, 1, 7), [0.1, 1, 10]])
+def test_logarithmic_spacing_is_recognised(values: list[float]) -> None:
+    assert is_logarithmic(np.asarray(values))
+
+
+@pytest.mark.parametrize("values", [np.linspace(0.5, 60, 120), [1.0, 1.5], [0, 1, 10, 100], [1, 2, 3]])
+def test_linear_spacing_is_recognised(values: list[float]) -> None:
+    assert not is_logarithmic(np.asarray(values, dtype=float))
+
+
+def test_every_drawn_column_is_a_column_of_the_table_with_a_symbol() -> None:
+    for column in (column for columns in FIGURES.values() for column in columns):
+        assert column in RESULTS
+        assert re.fullmatch(r"\$.+\$", symbol(column))
+
+
+def test_an_input_without_a_symbol_is_named_by_its_path() -> None:
+    assert word("law.breakaway_ratio") == "breakaway ratio"
+
+
+def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
+    resonance: pd.DataFrame, tmp_path: Path
+) -> None:
+    laws = [resonance.assign(law=label) for label in (r"$\nope{$", "costs $5", "L" * 200)]
+    table = pd.concat(laws, ignore_index=True)
+
+    assert len(draw(table, r"$\bad{ 摩擦 and $3", tmp_path)) == 2 * len(figures.figure_columns(table))
+    assert _legend(_figure(table)) == [r"\$\nope{\$", r"costs \$5", "L" * 35 + "…"]
+
+
+def test_the_legend_names_what_a_picture_shows_and_nothing_else(resonance: pd.DataFrame) -> None:
+    falls = resonance.assign(law="falls", status="not_unique", mean_low=0.1, mean_high=0.3)
+    falls = falls.assign(mean_friction=np.nan, energy_viscous=np.nan)
+    table = pd.concat([resonance.assign(law="flat"), falls], ignore_index=True)
+
+    assert _legend(_figure(table))[:2] == ["flat", "falls"]
+    assert _legend(_figure(table, "energy_viscous"))[0] == "flat"
+    assert "falls" not in _legend(_figure(table, "energy_viscous"))

@@ -1,0 +1,493 @@
+"""The exact method against closed forms, high-precision references, brute force and its own error."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from brute_force import Numbers, follow, steps_per_period
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from random_scenes import draw
+
+from frictionlab.compile.cache import compiled
+from frictionlab.compile.decorators import njit
+from frictionlab.laws.base import SlidingLaw
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.methods.exact import continuation as curve
+from frictionlab.methods.exact.continuation import body_at
+from frictionlab.methods.exact.legs import first_zero
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.exact.return_map import Fixed, mean_error, passage
+from frictionlab.orbit.panels import WEIGHTS, interpolation_weights
+from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
+from frictionlab.theory import (
+    friction_free_velocity,
+    mean_prescribed_circular,
+    mean_prescribed_longitudinal,
+    mean_prescribed_transverse,
+)
+
+REFERENCE = Path(__file__).parents[2] / "reference"
+FILES = sorted(REFERENCE.glob("sdof_fig*.csv"))
+LAW = Coulomb(mu=0.4)
+
+
+def scene(belt_speed, **changes):
+    """Paper, Fig. 4b, but for the changes."""
+    values = {
+        "damping_ratio": 0.1,
+        "normal_load": 10.0,
+        "drive": Drive(unbalance=10.0, frequency=1.0),
+        **changes,
+    }
+    return Scene(belt_speed=belt_speed, **values)
+
+
+def solve(scenes, tolerance=1e-11, law=LAW):
+    """Answers, each scene accepted."""
+    scenes = [scenes] if isinstance(scenes, Scene) else scenes
+    assert all(Exact().refusal(one, law) is None for one in scenes)
+    return Exact().solve(scenes, law, tolerance)
+
+
+def driven(load, frequency, damping, friction, belt_speed=0.0, **more):
+    """P, Omega, b, f of the textbook; mu = 0.4."""
+    drive = Drive(amplitude=load, frequency=frequency)
+    return Scene(
+        damping_ratio=damping, normal_load=friction / 0.4, belt_speed=belt_speed, drive=drive, **more
+    )
+
+
+def reference(path):
+    """A reference curve at belt speeds above zero, and our answers to it at a tolerance of 1e-11."""
+    table = np.genfromtxt(path, delimiter=",", names=True)[1:]
+    frequency, load = float(path.stem.split("_Om")[1].split("_")[0]), float(path.stem.split("_g")[1])
+    drive = Drive(unbalance=10.0, frequency=frequency)
+    return table, solve([scene(v, normal_load=load, drive=drive) for v in table["v_b"]])
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_every_reference_curve_is_met_to_1e_11_and_the_error_says_so(path):
+    table, answers = reference(path)
+    error = answers.columns["error"]
+    assert answers.status == ["ok"] * len(table)
+    assert np.all(error <= 1e-11)
+    assert np.all(np.abs(answers.columns["mean_friction"] - table["mu_bar_exact"]) <= error + 1e-11)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_motion_and_energies_of_every_reference_curve_are_met(path):
+    table, answers = reference(path)
+    columns, speed = answers.columns, np.abs(table["xdot_max"]).max()
+    energy = 1e-11 * table["E_input"].max()
+    for name, expected, within in (
+        ("velocity_amplitude", 0.5 * (table["xdot_max"] - table["xdot_min"]), 1e-11 * speed),
+        ("velocity_harmonic", table["V_first_harmonic"], 1e-11 * speed),
+        ("velocity_phase", table["phase_first_harmonic_vs_load_deg"], 1e-9),
+        ("energy_input", table["E_input"], energy),
+        ("energy_viscous", table["E_visc"], energy),
+        ("energy_friction", table["E_fric_corrected_eq7"], energy),
+        ("energy_contact", table["heat_in_contact"], energy),
+        ("stick_fraction", table["stick_fraction"], 1e-8),
+    ):
+        np.testing.assert_allclose(columns[name], expected, rtol=1e-11, atol=within, err_msg=name)
+
+
+def test_points_without_stick_agree_with_forty_digits():
+    table = np.genfromtxt(
+        REFERENCE / "sdof_bvp_highprecision.csv", delimiter=",", names=True, dtype=None, encoding=None
+    )
+    for row in table:
+        drive = Drive(unbalance=10.0, frequency=float(row["Omega"]))
+        answers = solve(scene(float(row["v_b"]), normal_load=float(row["gamma2"]), drive=drive), 1e-13)
+        error = answers.columns["error"][0]
+        assert error <= 1e-12
+        assert abs(answers.columns["mean_friction"][0] - row["mu_bar_bvp_40digits"]) <= min(error, 1e-13)
+
+
+def test_the_error_stays_below_every_tolerance_that_is_asked_for():
+    for path in FILES:
+        _, answers = reference(path)
+        assert np.all(answers.columns["error"] <= 1e-11)
+        assert np.all(answers.columns["error"] > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("load", "frequency", "damping", "friction", "peak"),
+    [
+        (1.0, 0.8, 0.0, 0.2, 2.71141526),
+        (1.0, 0.8, 0.05, 0.3, 2.34687197),
+        (10.0, 1.0, 0.1, 4.0, 24.50073798),
+        (22.5, 1.5, 0.1, 0.4, 17.40450657),
+        (1.0, 2.0, 0.02, 0.25, 0.30605922),
+        (1.0, 0.8, 0.001, 0.9, 0.06806752),  # with two stops (Shaw, 1986)
+        (1.0, 1.5, 0.05, 0.8, 0.05223260),
+    ],
+)
+def test_a_belt_at_rest_gives_den_hartogs_amplitude(load, frequency, damping, friction, peak):
+    answers = solve(driven(load, frequency, damping, friction))
+    orbit = answers.orbit(0)
+    assert answers.status == ["ok"]
+    assert abs(answers.columns["mean_friction"][0]) <= answers.columns["error"][0] + 1e-15
+    peaks = orbit.x.real[np.isclose(orbit.v.real, 0.0, atol=1e-6)]
+    assert np.abs(peaks).max() == pytest.approx(peak, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "limit"), [(0.8, 0.81741), (0.9, 0.81965), (1.5, 0.64658), (2.0, 0.59629)]
+)
+def test_stops_begin_at_den_hartogs_limit(frequency, limit):
+    below, above = (solve(driven(1.0, frequency, 0.0, limit * part)) for part in (0.999, 1.001))
+    assert below.columns["stick_fraction"][0] == 0.0
+    assert above.columns["stick_fraction"][0] > 0.0
+
+
+def test_a_slow_belt_under_friction_above_the_load_sees_one_minus_the_ratio():
+    speeds = [1e-5, 1e-4, 1e-3]
+    answers = solve([driven(2.5, 0.5, 0.1, 4.0, v) for v in speeds])
+    mean = answers.columns["mean_friction"] / 0.4
+    gap = mean - (1.0 - 2.5 / 4.0)
+    assert np.all(gap > 0.0)
+    assert gap[0] < 2e-3
+    assert np.all(np.diff(gap) > 0.0)
+
+
+def test_a_belt_that_turns_round_turns_the_mean_round_exactly():
+    ahead = np.linspace(0.0, 60.0, 21)
+    speeds = np.concatenate((-ahead[:0:-1], ahead))
+    mean = solve([scene(v) for v in speeds]).columns["mean_friction"]
+    assert np.all(mean == -mean[::-1])
+
+
+def test_the_phase_of_the_drive_changes_nothing():
+    speeds = np.linspace(1.0, 60.0, 20)
+    plain = solve([scene(v) for v in speeds]).columns
+    drive = Drive(unbalance=10.0, frequency=1.0, phase=77.0)
+    turned = solve([scene(v, drive=drive) for v in speeds]).columns
+    for name in ("mean_friction", "velocity_amplitude", "velocity_phase", "energy_input"):
+        np.testing.assert_allclose(turned[name], plain[name], rtol=1e-10, atol=1e-10)
+
+
+@given(
+    frequency=st.floats(0.2, 5.0),
+    damping=st.floats(0.01, 3.0),
+    ratio=st.floats(0.01, 3.0),
+    speed=st.floats(-1.2, 1.2).filter(lambda value: abs(value) > 1e-3),
+)
+@settings(deadline=None, max_examples=60)
+def test_mean_position_balances_mean_friction_and_energies_close(frequency, damping, ratio, speed):
+    one = driven(1.0, frequency, damping, ratio, 1.0)
+    one = driven(1.0, frequency, damping, ratio, speed * friction_free_velocity(one))
+    answers = solve(one)
+    columns, orbit = {name: values[0] for name, values in answers.columns.items()}, answers.orbit(0)
+    assert answers.status == ["ok"]
+    assert abs(columns["mean_friction"]) <= 0.4 * (1.0 + 1e-12)
+    period = orbit.tau[-1, -1] - orbit.tau[0, 0]
+    half = 0.5 * (orbit.tau[:, -1:] - orbit.tau[:, :1])
+    mean_x = (half * WEIGHTS * orbit.x.real).sum() / period
+    assert mean_x == pytest.approx(one.normal_load * columns["mean_friction"], abs=1e-11 * (1.0 + ratio))
+    work = abs(columns["energy_input"]) + abs(columns["energy_viscous"]) + abs(columns["energy_friction"])
+    closure = columns["energy_input"] - columns["energy_viscous"] - columns["energy_friction"]
+    assert abs(closure) <= 1e-11 * (work + ratio * abs(one.belt_speed))
+    assert columns["energy_contact"] >= -1e-12
+
+
+def test_the_orbit_is_one_closed_period_of_consecutive_pieces():
+    for speed in (0.0, 5.0, -45.0, 55.0):
+        orbit = solve(scene(speed, drive=Drive(unbalance=10.0, frequency=1.0, phase=30.0))).orbit(0)
+        assert orbit.tau[0, 0] == 0.0
+        assert orbit.tau[-1, -1] == pytest.approx(2.0 * math.pi)
+        np.testing.assert_array_equal(orbit.tau[1:, 0], orbit.tau[:-1, -1])
+        np.testing.assert_allclose(orbit.x[1:, 0], orbit.x[:-1, -1], atol=1e-12)
+        np.testing.assert_allclose(orbit.v[1:, 0], orbit.v[:-1, -1], atol=1e-12)
+        assert orbit.x[0, 0] == pytest.approx(orbit.x[-1, -1], abs=1e-11)
+        assert orbit.v[0, 0] == pytest.approx(orbit.v[-1, -1], abs=1e-11)
+
+
+def test_grazing_just_below_the_kink_is_not_missed():
+    speeds = 50.0 * (1.0 - np.logspace(-2, -9, 36))
+    answers = solve([scene(v) for v in speeds])
+    lost = 0.4 - answers.columns["mean_friction"]
+    assert np.all(answers.columns["error"] <= 1e-11)
+    assert np.all(lost > 0.0)
+    rate = np.diff(np.log(lost)) / np.diff(np.log(50.0 - speeds))
+    assert rate[-1] == pytest.approx(1.0, abs=0.05)
+
+
+def test_stick_rich_curves_are_solved_everywhere():
+    answers = solve([driven(2.5, 0.5, 0.1, 4.0, v) for v in np.linspace(0.05, 2.5, 64)])
+    assert answers.status == ["ok"] * 64
+    assert np.all(answers.columns["error"] <= 1e-11)
+    assert answers.columns["stick_fraction"].max() > 0.5
+    assert np.all(np.diff(answers.columns["mean_friction"]) >= 0.0)
+
+
+@njit
+def first_zero_of(g, g1, g2, bound):
+    return first_zero(g, g1, g2, bound)
+
+
+coarse = st.integers(-1000, 1000).map(lambda hundredths: hundredths / 100.0)
+
+
+@given(g=coarse.map(abs), g1=coarse, g2=coarse, bound=st.floats(0.01, 100.0))
+@settings(deadline=None, max_examples=300)
+def test_a_step_never_passes_the_first_zero_and_stays_close_to_it(g, g1, g2, bound):
+    if g == 0.0:
+        g1 = abs(g1)
+    step = first_zero_of(g, g1, g2, bound)
+    roots = np.roots([-bound / 6.0, 0.5 * g2, g1, g])
+    zeros = roots[(np.abs(roots.imag) < 1e-7) & (roots.real > 1e-9)].real
+    if len(zeros) == 0 or len(zeros) == 2:  # a zero at the origin, or a double one
+        return
+    inside = np.linspace(0.0, step, 200)[1:-1]
+    below = g + inside * (g1 + inside * (0.5 * g2 - inside * bound / 6.0))
+    size = g + abs(g1) * step + abs(g2) * step**2 + bound * step**3
+    assert np.all(below >= -1e-12 * size)
+    assert step >= 0.2 * min(zeros)
+
+
+@njit
+def one_period_from(mass, coefficient, belt_speed, x, w):
+    """Mean friction over one period that starts anywhere, and the error that its failure to close gives it."""
+    body = body_at(mass, coefficient, belt_speed)
+    here = passage(body, x, w, 0.0, body.period)
+    unit = mass.normal_load * body.period
+    return -here.friction / unit, mean_error(body, Fixed(x, w, here, 0.0, 1)) / unit
+
+
+@pytest.mark.parametrize(
+    "one", [scene(20.0), scene(46.0), driven(2.5, 0.5, 0.1, 4.0, 0.3), driven(2.5, 0.5, 0.1, 4.0, 1.0)]
+)
+def test_the_error_of_a_period_that_does_not_close_covers_its_mean_and_is_not_absurdly_wide(one):
+    rows = np.zeros((1, 9))
+    compiled(curve.solve_curve)(one.mass(), 0.4, np.array([one.belt_speed]), rows)
+    mean, x, w = rows[0, [curve.MEAN, curve.STATE_X, curve.STATE_W]]
+    ratios = []
+    for angle in np.arange(0.1, 6.0, 0.5):
+        start = x + 1e-6 * math.cos(angle), w + 1e-6 * math.sin(angle)
+        off, error = one_period_from(one.mass(), 0.4, one.belt_speed, *start)
+        ratios.append(abs(off - mean) / error)
+    assert max(ratios) <= 1.0
+    assert max(ratios) >= 0.03
+
+
+@pytest.mark.parametrize(
+    ("frequency", "ratio", "speed"), [(1.0, 0.4, 0.9), (30.0, 3.0, 0.1), (200.0, 1.5, 0.01), (0.05, 0.3, 0.5)]
+)
+def test_rounding_scatters_the_mean_by_less_than_the_error(frequency, ratio, speed):
+    v_lin = friction_free_velocity(driven(1.0, frequency, 0.05, ratio, 1.0))
+    means, errors = [], []
+    for scale in np.linspace(1.0, 2.0, 41):  # the same scene in another unit of force and length
+        answers = solve(driven(scale, frequency, 0.05, scale * ratio, scale * speed * v_lin))
+        means.append(answers.columns["mean_friction"][0])
+        errors.append(answers.columns["error"][0])
+    assert 0.0 < np.ptp(means) <= min(errors) <= 1e4 * np.ptp(means)
+
+
+def against_brute_force(rng, wanted):
+    """Draw scenes and compare; the number compared and the uncovered ones."""
+    compared, uncovered = 0, []
+    while compared < wanted:
+        one, law = draw(rng)
+        if one.frequency < 0.02:
+            continue  # thousands of free oscillations in a period: too long for brute force
+        answers = solve(one, 1e-8, law)
+        if answers.status[0] != "ok":
+            assert answers.status[0] == "not_unique" or "without bound" in answers.reason[0], (
+                one,
+                answers.reason,
+            )
+            continue
+        difference, doubt = brute_difference(one, law, answers)
+        if difference > answers.columns["error"][0] + doubt:
+            uncovered.append((one, law, difference, answers.columns["error"][0], doubt))
+        compared += 1
+    return uncovered
+
+
+def brute_difference(one, law, answers):
+    """Brute force from a start off the orbit where it settles soon, else for two periods from our own state."""
+    mass, rho = one.mass(), answers.columns["floquet"][0]
+    side = -1.0 if one.belt_speed < 0.0 else 1.0
+    numbers = Numbers(
+        one.damping_ratio, mass.frequency, abs(mass.force), law.mu * mass.normal_load, abs(one.belt_speed)
+    )
+    orbit = answers.orbit(0)
+    period = 2.0 * math.pi / mass.frequency
+    phase = math.atan2((side * mass.force).imag, (side * mass.force).real) % (2.0 * math.pi)
+    place = (-phase / mass.frequency) % period
+    x, v = (side * _at(orbit, part, place) for part in (orbit.x, orbit.v))
+    steps = steps_per_period(numbers, 400)
+    periods = int(math.log(1e-13) / math.log(rho)) + 3 if 0.0 < rho < 1.0 else 3
+    size = abs(x) + numbers.load + numbers.friction
+    if periods * steps < 3e5:
+        runs = [follow(numbers, (x + 0.01 * size, v), periods, steps * k) for k in (1, 2)]
+        left = runs[-1].closing / (1.0 - rho)
+        if left < 1e-11 * size:
+            return _compare(runs, side, one, law, answers, left)
+    runs = [follow(numbers, (x, v), 2, steps * k) for k in (1, 2)]
+    assert runs[-1].closing <= 1e-8 * size
+    return _compare(runs, side, one, law, answers, 0.0)
+
+
+def _at(orbit, values, place):
+    panel = min(np.searchsorted(orbit.tau[:, -1], place), len(orbit.tau) - 1)
+    start, end = orbit.tau[panel, 0], orbit.tau[panel, -1]
+    weights = interpolation_weights(np.array([(2.0 * place - start - end) / (end - start)]))
+    return float((weights[0] * values[panel].real).sum())
+
+
+def _compare(runs, side, one, law, answers, left):
+    """Our distance from the finer run; the doubt in it: of its step, of what is left of its start, of rounding."""
+    means = [-side * run.impulse * one.frequency / (2.0 * math.pi * one.normal_load) for run in runs]
+    doubt = 2.0 * abs(means[1] - means[0]) + 4.0 * left / one.normal_load + 1e-10 * law.mu
+    return abs(means[1] - answers.columns["mean_friction"][0]), doubt
+
+
+def test_random_scenes_agree_with_brute_force():
+    assert against_brute_force(np.random.default_rng(20261121), 40) == []
+
+
+def test_critical_and_overdamped_motion_is_continuous_in_the_damping():
+    around = [
+        solve(driven(5.0, 0.7, b, 1.0, 1.0)).columns["mean_friction"][0] for b in (1 - 1e-9, 1.0, 1 + 1e-9)
+    ]
+    assert around[1] == pytest.approx(around[0], abs=1e-9)
+    assert around[1] == pytest.approx(around[2], abs=1e-9)
+    assert solve(driven(500.0, 0.7, 50.0, 1.0, 1.0)).columns["error"][0] <= 1e-11
+
+
+def test_a_fast_belt_is_answered_by_the_closed_form():
+    answers = solve([scene(50.0), scene(60.0)])
+    assert answers.error_kind == ["guaranteed"] * 2
+    assert answers.model[1] == "closed form: slip never reverses (belt speed >= V_lin = 50)"
+    assert list(answers.columns["mean_friction"]) == [0.4, 0.4]
+    assert answers.columns["velocity_amplitude"][1] == pytest.approx(50.0, rel=1e-12)
+    assert answers.columns["floquet"][1] == pytest.approx(math.exp(-0.2 * math.pi))
+
+
+def test_permanent_stick_is_not_unique_and_the_start_decides():
+    still = {"drive": Drive(unbalance=10.0, frequency=0.5)}
+    answers = solve(scene(0.0, **still))
+    assert answers.status == ["not_unique"]
+    assert "belt does not move" in answers.reason[0]
+    assert answers.columns["mean_low"][0] == pytest.approx(-0.15)
+    assert answers.columns["mean_high"][0] == pytest.approx(0.15)
+    assert answers.columns["window"][0] == 1.0
+    for x, mean in ((-1.4, -0.14), (0.0, 0.0), (1.4, 0.14)):
+        told = solve(scene(0.0, initial=Initial(x=x), **still))
+        assert told.status == ["ok"]
+        assert "reached from scene.initial" in told.reason[0]
+        assert abs(told.columns["mean_friction"][0] - mean) <= told.columns["error"][0] <= 1e-11
+
+
+def test_a_free_start_comes_to_rest_where_coulomb_friction_leaves_it():
+    # (-1)^n (x0 - 2 n f), n = ceil((x0/f - 1)/2), undamped and without load
+    still = Drive(amplitude=0.0, frequency=1.0)
+    one = Scene(damping_ratio=0.0, normal_load=2.5, belt_speed=0.0, drive=still, initial=Initial(x=7.3))
+    assert solve(one).columns["mean_friction"][0] * 2.5 == pytest.approx(-0.7, abs=1e-11)
+
+
+def test_undamped_motion_without_reversal_keeps_its_start_but_not_its_mean():
+    answers = solve(driven(1.0, 2.0, 0.0, 0.3, 5.0))
+    assert answers.status == ["not_unique"]
+    assert answers.columns["mean_low"][0] == answers.columns["mean_high"][0] == 0.4
+    assert np.isnan(answers.columns["mean_friction"][0])
+
+
+@pytest.mark.parametrize("belt_speed", [0.0, 1.0, 30.0])
+def test_undamped_resonance_is_bounded_exactly_where_friction_reaches_pi_over_4_of_the_load(belt_speed):
+    below = solve(driven(1.0, 1.0, 0.0, 0.25 * math.pi * 0.99, belt_speed))
+    above = solve(driven(1.0, 1.0, 0.0, 0.25 * math.pi * 1.01, belt_speed))
+    assert below.status == ["failed"]
+    assert "without bound" in below.reason[0]
+    assert above.status == ["ok"]
+    assert above.columns["error"][0] <= 1e-10
+
+
+def test_near_undamped_resonance_no_digits_are_lost():
+    at, near = (solve(driven(1.0, w, 0.0, 1.2, 0.3)).columns for w in (1.0, 1.0 + 1e-12))
+    assert at["mean_friction"][0] == pytest.approx(near["mean_friction"][0], abs=1e-10)
+    assert near["error"][0] <= 1e-11
+
+
+def test_the_plane_without_a_load_across_is_the_line():
+    across = Transverse(natural_frequency=0.5, damping_ratio=0.1)
+    speeds = [-5.0, 5.0, 45.0, 55.0]
+    line, plane = solve([scene(v) for v in speeds]), solve([scene(v, transverse=across) for v in speeds])
+    np.testing.assert_array_equal(plane.columns["mean_friction"], line.columns["mean_friction"])
+    assert list(plane.columns["mean_friction_transverse"]) == [0.0] * 4
+    assert list(plane.columns["transverse_velocity_amplitude"]) == [0.0] * 4
+    assert all("one degree of freedom" in model for model in plane.model)
+    assert np.isnan(line.columns["transverse_velocity_amplitude"]).all()
+
+
+def test_what_it_cannot_do_is_refused_with_the_way_out():
+    class Falling(SlidingLaw):
+        def sliding_friction(self, speed):
+            return 0.4 / (1.0 + speed)
+
+    pushed = scene(
+        5.0, transverse=Transverse(natural_frequency=2.0, damping_ratio=0.1, load=Load(unbalance=1.0))
+    )
+    assert "use shooting" in Exact().refusal(pushed, LAW)
+    assert "vary with speed" in Exact().refusal(scene(5.0), Falling())
+
+
+def slip(belt_speed, along, across=None, turn=0.0):
+    """Prescribed slip of amplitudes along and across, the second one leading by ``turn`` degrees."""
+    part = Slip(velocity_amplitude=along, frequency=2.0) if along is not None else None
+    own = 2.0 if part is None else None
+    other = (
+        TransverseSlip(velocity_amplitude=across, phase=turn, frequency=own) if across is not None else None
+    )
+    return Scene(belt_speed=belt_speed, slip=part, transverse_slip=other)
+
+
+RATIOS = np.array([-3.0, -1.0, -0.4, 0.05, 0.3, 0.9, 0.999999, 1.0, 1.5])
+
+
+@pytest.mark.parametrize(
+    ("scenes", "closed_form"),
+    [
+        ([slip(2.0 * k, 2.0) for k in RATIOS], mean_prescribed_longitudinal),
+        ([slip(2.0 * k, None, 2.0) for k in RATIOS], mean_prescribed_transverse),
+        ([slip(2.0 * k, 2.0, 2.0, 90.0) for k in RATIOS], mean_prescribed_circular),
+    ],
+    ids=["longitudinal", "transverse", "circular"],
+)
+def test_prescribed_slip_meets_its_closed_forms(scenes, closed_form):
+    answers = solve(scenes)
+    error = answers.columns["error"]
+    assert answers.status == ["ok"] * len(scenes)
+    assert np.all(error <= 1e-13)
+    assert np.all(np.abs(answers.columns["mean_friction"] - 0.4 * closed_form(RATIOS)) <= error + 1e-14)
+
+
+def test_slip_through_rest_jumps_in_direction_and_no_slip_at_all_is_not_unique():
+    through = solve([slip(0.0, 1.0, 1.0)])
+    assert through.status == ["ok"]
+    assert through.columns["mean_friction"][0] == through.columns["mean_friction_transverse"][0] == 0.0
+    nothing = solve([slip(0.0, 0.0)])
+    assert nothing.status == ["not_unique"]
+    assert (nothing.columns["mean_low"][0], nothing.columns["mean_high"][0]) == (-0.4, 0.4)
+
+
+@given(across=st.floats(1e-6, 10.0), turn=st.floats(0.0, 360.0), ratio=st.floats(-3.0, 3.0))
+@example(across=1.0, turn=0.0, ratio=2.225073858507203e-309)
+@settings(deadline=None, max_examples=40)
+def test_an_elliptic_slip_agrees_with_a_fine_sum_and_keeps_its_energies(across, turn, ratio):
+    answers = solve(slip(ratio, 1.0, across, turn))
+    columns = {name: values[0] for name, values in answers.columns.items()}
+    theta = (np.arange(400_000) + 0.5) * (2.0 * np.pi / 400_000)
+    v = np.sin(theta) + 1j * across * np.sin(theta + np.radians(turn)) - ratio
+    direction = v / np.maximum(np.abs(v), 1e-300)
+    assert columns["error"] <= 1e-11
+    assert columns["mean_friction"] == pytest.approx(-0.4 * direction.real.mean(), abs=2e-5)
+    assert columns["mean_friction_transverse"] == pytest.approx(-0.4 * direction.imag.mean(), abs=2e-5)
+    carried = ratio * columns["mean_friction"] * np.pi
+    assert columns["energy_contact"] == pytest.approx(columns["energy_friction"] + carried, abs=1e-10)

@@ -1,0 +1,523 @@
+"""Time stepping to the steady state against unrelated methods and closed forms, and its error against the truth."""
+
+from __future__ import annotations
+
+import math
+import os
+
+import collocation
+import numpy as np
+import pytest
+from collocation import REFERENCE
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import ValidationError
+from strategies import scenes_in_the_plane, scenes_on_the_line
+
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.stribeck import Stribeck
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.march.method import March
+from frictionlab.methods.march.run import SUMMED, MarchRun, Resolution
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.numerics.richardson import REVERSING, SMOOTH, bias, richardson
+from frictionlab.orbit.read import READ
+from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
+
+LAW = Coulomb(mu=0.4)
+DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
+PLANAR = sorted(REFERENCE.glob("planar_fig*.csv"))
+FIGURES = {
+    (4.0, 1.0): 45.0,
+    (2.0, 1.0): 30.0,
+    (1.5, 1.0): 28.0,
+    (1.0, 1.0): 52.0,
+    (1.5, 10.0): 28.0,
+    (1.0, 10.0): 52.0,
+}
+LEINE = Stribeck(curve="hyperbolic", mu_static=1.0, mu_kinetic=0.0, stribeck_speed=1.0 / 3.0)
+BLOCK = Scene(damping_ratio=0.0, normal_load=1.0, belt_speed=0.2)
+FALLING = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=1.0, stribeck_exponent=1.0)
+PERIOD = 12.001031294830
+"""Of Leine's block [time]; ``period`` holds it over 2 pi."""
+
+
+def scene(belt_speed, **changes):
+    """One degree of freedom at resonance, gamma^2 = 10, but for the changes."""
+    values = {
+        "damping_ratio": 0.1,
+        "normal_load": 10.0,
+        "drive": Drive(unbalance=10.0, frequency=1.0),
+        **changes,
+    }
+    return Scene(belt_speed=belt_speed, **values)
+
+
+def solve(scenes, law=LAW, tolerance=1e-4, **keys):
+    """Answers, each scene accepted."""
+    scenes = [scenes] if isinstance(scenes, Scene) else scenes
+    method = March(**keys)
+    assert all(method.refusal(one, law) is None for one in scenes)
+    return method.solve(scenes, law, tolerance)
+
+
+def covered(answers, expected, known_to=1e-10):
+    """Whether every mean is as near to the truth as it says."""
+    error = answers.columns["error"]
+    return bool(np.all(np.abs(answers.columns["mean_friction"] - expected) <= error + known_to))
+
+
+# --- against methods that step nothing ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("figure", FIGURES, ids=str)
+def test_ten_points_of_every_figure_along_the_belt_agree_with_the_exact_method(figure):
+    frequency, load = figure
+    drive = Drive(unbalance=10.0, frequency=frequency)
+    scenes = [scene(v, normal_load=load, drive=drive) for v in np.linspace(0.5, FIGURES[figure], 10).tolist()]
+    answers = solve(scenes, tolerance=3e-4)
+    assert answers.status == ["ok"] * 10
+    assert np.all(answers.columns["error"] <= 3e-4)
+    assert covered(answers, Exact().solve(scenes, LAW, 1e-11).columns["mean_friction"])
+
+
+@pytest.mark.parametrize("path", PLANAR, ids=lambda path: path.stem)
+def test_ten_points_of_every_figure_in_the_plane_agree_with_the_reference(path):
+    table = np.genfromtxt(path, delimiter=",", names=True)[1:]
+    table = table[np.linspace(0, len(table) - 1, 10).astype(int)]
+    numbers = collocation.numbers_of(path, 0.0)
+    across = Transverse(
+        natural_frequency=numbers.natural_frequency, damping_ratio=0.1, load=Load(unbalance=10.0)
+    )
+    drive = Drive(unbalance=10.0, frequency=numbers.frequency)
+    load = numbers.friction / 0.4
+    scenes = [scene(v, normal_load=load, drive=drive, transverse=across) for v in table["v_b"].tolist()]
+    answers = solve(scenes, tolerance=1e-4)
+    assert answers.status == ["ok"] * 10
+    assert np.all(answers.columns["error"] <= 1e-4)
+    assert covered(answers, table["mu_bar_dop853"])
+    assert answers.columns["mean_friction_transverse"] == pytest.approx(table["mu2_bar"], abs=1e-4)
+    assert answers.columns["velocity_harmonic"] == pytest.approx(table["V1"], rel=2e-3)
+
+
+@given(one=scenes_on_the_line(), theta=st.sampled_from([0.5, 1.0]))
+def test_the_error_of_moreau_covers_random_scenes_along_the_belt(one, theta):
+    expected = Exact().solve([one], LAW, 1e-9)
+    answers = solve(one, tolerance=1e-3, theta=theta)
+    if answers.status == ["ok"] and expected.status == ["ok"]:
+        assert covered(answers, expected.columns["mean_friction"], expected.columns["error"])
+
+
+@given(one=scenes_in_the_plane())
+def test_the_error_of_moreau_covers_random_scenes_in_the_plane(one):
+    expected = Shooting().solve([one], LAW, 1e-8)
+    answers = solve(one, tolerance=1e-3)
+    if answers.status == ["ok"] and expected.status == ["ok"]:
+        assert covered(answers, expected.columns["mean_friction"], expected.columns["error"])
+
+
+@pytest.mark.parametrize(
+    "keys", [{"steps": 200}, {"steps": 200, "theta": 1}, {"stepper": "rk4", "steps": 400}]
+)
+def test_the_error_of_given_steps_covers(keys):
+    scenes = [scene(v) for v in (0.5, 5.0, 20.0, 40.0, 45.0, 49.9, 55.0)]
+    assert covered(solve(scenes, **keys), Exact().solve(scenes, LAW, 1e-11).columns["mean_friction"])
+
+
+@pytest.mark.parametrize("smoothing", ["tanh", "square_root", "arctan"])
+@pytest.mark.parametrize("width", [0.5, 0.05])
+def test_the_error_of_smoothed_friction_covers_its_bias(smoothing, width):
+    scenes = [scene(v) for v in (2.0, 20.0, 40.0, 43.0, 49.5, 55.0)]
+    answers = solve(scenes, stepper="smoothed", smoothing=smoothing, width=width)
+    assert answers.status == ["ok"] * len(scenes)
+    assert covered(answers, Exact().solve(scenes, LAW, 1e-11).columns["mean_friction"])
+
+
+def test_extrapolation_is_used_where_the_order_is_seen_and_told():
+    across = Transverse(natural_frequency=0.5, damping_ratio=0.1, load=Load(unbalance=10.0))
+    one = scene(26.5, normal_load=1.0, transverse=across)
+    answers = solve(one, tolerance=1e-6)
+    assert "extrapolated at order 2" in answers.model[0]
+    expected = Shooting().solve([one], LAW, 1e-10).columns["mean_friction"]
+    assert covered(answers, expected)
+    steps = int(answers.model[0].split(": ")[1].split(" ")[0])
+    plain = solve(one, steps=steps, tolerance=1e-6).columns["mean_friction"]
+    assert abs(answers.columns["mean_friction"] - expected) < 0.2 * abs(plain - expected)
+
+
+# --- what is read ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "keys", [{}, {"stepper": "rk4", "steps": 4000}, {"stepper": "smoothed", "width": 0.01}]
+)
+def test_the_other_columns_are_those_of_the_exact_method(keys):
+    one = scene(20.0)
+    found, expected = solve(one, **keys).columns, Exact().solve([one], LAW, 1e-10).columns
+    for name in (
+        "velocity_amplitude",
+        "velocity_harmonic",
+        "energy_viscous",
+        "energy_friction",
+        "energy_contact",
+    ):
+        assert found[name] == pytest.approx(expected[name], rel=5e-3), name
+    assert found["energy_input"] == pytest.approx(
+        found["energy_viscous"] + found["energy_friction"], rel=1e-4
+    )
+    assert found["reversals"] >= 2.0
+    assert found["period"] == 1.0
+
+
+def test_the_share_of_stick_is_that_of_the_exact_method_and_empty_for_steppers_that_never_rest():
+    one = scene(0.5, drive=Drive(amplitude=2.5, frequency=0.5))
+    expected = Exact().solve([one], LAW, 1e-10).columns["stick_fraction"]
+    assert solve(one).columns["stick_fraction"] == pytest.approx(expected, abs=2e-3)
+    assert np.isnan(solve(one, stepper="smoothed").columns["stick_fraction"][0])
+
+
+def test_an_orbit_holds_the_mean_and_one_period():
+    answers = solve(scene(20.0), steps=1000)
+    orbit = answers.orbit(0)
+    assert orbit.tau[-1, -1] - orbit.tau[0, 0] == pytest.approx(2.0 * math.pi)
+    assert orbit.friction[:, 0].mean().real == pytest.approx(-answers.columns["mean_friction"][0], abs=1e-4)
+
+
+def test_a_load_along_the_belt_alone_leaves_one_degree_of_freedom():
+    across = Transverse(natural_frequency=2.0, damping_ratio=0.1)
+    planar, line = solve(scene(20.0, transverse=across)), solve(scene(20.0))
+    assert planar.columns["mean_friction"] == pytest.approx(line.columns["mean_friction"], abs=1e-12)
+    start = Initial(x=1.0, x2=5.0)
+    kicked = solve(scene(20.0, transverse=across, initial=start))
+    assert abs(kicked.columns["mean_friction"] - line.columns["mean_friction"]) < 2e-4
+
+
+@pytest.mark.parametrize(
+    ("one", "steps"),
+    [(scene(5.0), 400), (scene(5.0), 1000), (scene(0.5, drive=Drive(amplitude=2.5, frequency=0.5)), 4000)],
+)
+def test_chatter_of_steps_over_many_laps_is_read_as_one_drive_period(one, steps):
+    answers = solve(one, stepper="rk4", steps=steps)
+    found, expected = answers.columns, Exact().solve([one], LAW, 1e-10).columns
+    assert found["period"][0] == 1.0
+    orbit = answers.orbit(0)
+    assert np.ptp(orbit.tau) * one.frequency / (2.0 * math.pi) == pytest.approx(1.0)
+    for name in ("velocity_harmonic", "energy_input", "energy_viscous", "energy_contact"):
+        assert found[name] == pytest.approx(expected[name], rel=2e-2), name
+    if expected["reversals"][0] == 2.0:
+        assert found["reversals"] == pytest.approx(2.0, abs=0.5)
+        assert found["force_reversals"] == pytest.approx(2.0, abs=0.5)
+
+
+def test_several_periods_read_at_once_give_means_and_the_energies_of_one():
+    one = scene(2.0, drive=Drive(unbalance=10.0, frequency=0.7))
+    walker = MarchRun(one, LAW, "moreau")
+    run = walker.run(Resolution(steps=2000, enough=1e-8, most=1000))
+    single, triple = (walker.columns(walker.track(run, laps), laps) for laps in (1, 3))
+    assert triple == pytest.approx(single, rel=1e-6, nan_ok=True)
+    whole = walker.columns(walker.track(run, 3), 1)
+    for i, name in enumerate(READ):
+        assert whole[i] == pytest.approx(single[i] * (3.0 if SUMMED[i] else 1.0), rel=1e-6, nan_ok=True), name
+
+
+def test_the_period_is_the_smallest_after_which_the_motion_repeats():
+    one = scene(1.0, drive=Drive(amplitude=1.5, frequency=0.5))
+    walker = MarchRun(one, Coulomb(mu=0.4, mu_static=0.6), "moreau")
+    pace = Resolution(steps=512, enough=1e-6, most=1000)
+    run = walker.run(pace)
+    assert run.stride == 2
+    march = walker._marched(walker._way(pace)._replace(stride=8), run.place)
+    assert [walker._least(march, laps, 2e-6) for laps in (8, 4, 2, 3)] == [2, 2, 2, 3]
+
+
+# --- nothing drives -------------------------------------------------------------------------------------------------
+
+
+def test_the_period_of_leines_block_is_met_and_its_deflection():
+    answers = solve(BLOCK, LEINE, 1e-6)
+    assert answers.status == ["ok"]
+    assert answers.columns["period"][0] * 2.0 * math.pi == pytest.approx(PERIOD, rel=1e-4)
+    assert answers.orbit(0).x.real.max() == pytest.approx(1.133944676441, abs=2e-3)
+    assert "no other start was tried" in answers.reason[0]
+
+
+@pytest.mark.parametrize(
+    ("smoothing", "width", "percent"),
+    [("arctan", 1e-3, -5.86), ("arctan", 1e-4, -1.61), ("tanh", 1e-2, -5.99), ("tanh", 1e-3, -0.837)],
+)
+def test_smoothing_shortens_the_period_of_leines_block_by_the_published_share(smoothing, width, percent):
+    answers = solve(BLOCK, LEINE, 1e-4, stepper="smoothed", smoothing=smoothing, width=width)
+    period = answers.columns["period"][0] * 2.0 * math.pi
+    assert 100.0 * (period / PERIOD - 1.0) == pytest.approx(percent, abs=6e-3)
+    exact = 0.31582076645  # of the unsmoothed block, by stepping a million times per unit of time
+    assert covered(answers, exact)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_two_level_friction_without_damping_has_the_period_of_its_closed_form(side):
+    one = Scene(damping_ratio=0.0, normal_load=1.0, belt_speed=0.3 * side)
+    answers = solve(one, Coulomb(mu=0.4, mu_static=0.6), 1e-6)
+    period = 2.0 * 0.2 / 0.3 + 2.0 * math.pi - 2.0 * math.atan(0.2 / 0.3)
+    assert answers.columns["period"][0] * 2.0 * math.pi == pytest.approx(period, rel=1e-4)
+    assert answers.columns["mean_friction"][0] == pytest.approx(0.4 * side, abs=answers.columns["error"][0])
+
+
+@pytest.mark.parametrize("stepper", ["moreau", "rk4", "smoothed"])
+def test_an_undriven_mass_on_a_belt_at_rest_stays_where_it_rests_from_the_default_start(stepper):
+    one = Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=0.0)
+    answers = solve(one, stepper=stepper)
+    assert answers.status == Shooting().solve([one], LAW, 1e-8).status == ["ok"]
+    assert answers.columns["mean_friction"][0] == 0.0
+    assert np.isnan(answers.columns["period"][0])
+
+
+@pytest.mark.parametrize("damping", [0.05, 3.0])
+def test_an_undriven_mass_that_comes_to_slide_steadily_has_no_period(damping):
+    answers = solve(Scene(damping_ratio=damping, normal_load=1.0, belt_speed=-0.5))
+    assert answers.columns["mean_friction"][0] == pytest.approx(-0.4, abs=1e-9)
+    assert np.isnan(answers.columns["period"][0])
+
+
+# --- prescribed slip ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.7, 1.5])
+def test_prescribed_slip_along_the_belt_is_averaged_to_its_closed_form(ratio):
+    answers = solve(
+        Scene(belt_speed=3.0 * ratio, slip=Slip(velocity_amplitude=3.0, frequency=2.0)), tolerance=1e-4
+    )
+    expected = 0.4 * (2.0 / math.pi * math.asin(ratio) if ratio < 1.0 else 1.0)
+    assert answers.columns["error"][0] <= 1e-4
+    assert covered(answers, expected)
+
+
+@pytest.mark.parametrize("width", [0.3, 0.01])
+def test_prescribed_slip_with_smoothed_friction_tells_its_bias(width):
+    one = Scene(belt_speed=2.99, slip=Slip(velocity_amplitude=3.0, frequency=2.0))
+    answers = solve(one, tolerance=1e-5, stepper="smoothed", smoothing="arctan", width=width)
+    assert covered(answers, 0.4 * 2.0 / math.pi * math.asin(2.99 / 3.0))
+
+
+def test_prescribed_slip_in_the_plane_agrees_with_quadrature():
+    one = Scene(
+        belt_speed=0.7,
+        slip=Slip(velocity_amplitude=1.0, frequency=1.0),
+        transverse_slip=TransverseSlip(velocity_amplitude=0.8, phase=50.0),
+    )
+    answers, expected = solve(one, tolerance=1e-8), Exact().solve([one], LAW, 1e-12)
+    assert covered(answers, expected.columns["mean_friction"])
+    assert answers.columns["error"][0] <= 1e-8
+    assert answers.orbit(0) is not None
+
+
+@pytest.mark.parametrize(("speed", "ratio", "expected"), [(0.5, 1.5, 1.040), (2.0, 1.5, 1.002)])
+def test_a_stribeck_curve_without_reversal_gives_the_published_ratio(speed, ratio, expected):
+    law = Stribeck(mu_static=0.4, mu_kinetic=0.25, stribeck_speed=speed)
+    one = Scene(belt_speed=ratio, slip=Slip(velocity_amplitude=1.0, frequency=1.0))
+    found = solve(one, law, 1e-6).columns["mean_friction"][0] / law.sliding_friction(ratio)
+    assert found == pytest.approx(expected, abs=1e-3)
+
+
+# --- where there is no one number -----------------------------------------------------------------------------------
+
+
+def test_too_few_periods_fail_with_how_much_the_motion_still_changes():
+    answers = solve(scene(5.0), periods=4, steps=100)
+    assert answers.status == ["failed"]
+    assert "still changes by" in answers.reason[0]
+    assert "give more periods" in answers.reason[0]
+
+
+def test_a_belt_at_rest_that_can_hold_the_mass_needs_a_start():
+    held = {"drive": Drive(amplitude=2.0, frequency=0.5)}
+    answers = solve(scene(0.0, **held))
+    assert answers.status == ["not_unique"]
+    assert answers.columns["mean_high"][0] > 0.1
+    started = solve(scene(0.0, initial=Initial(x=1.0), **held))
+    assert started.status == ["ok"]
+    assert started.columns["mean_friction"][0] == pytest.approx(0.1, abs=1e-6)
+
+
+def test_a_motion_that_never_repeats_shows_the_range_of_its_means():
+    law = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=1.0, stribeck_exponent=1.0)
+    one = scene(0.3, damping_ratio=0.01, drive=Drive(amplitude=0.1, frequency=math.sqrt(2.0)))
+    answers = solve(one, law, 1e-3)
+    assert answers.status == ["not_unique"]
+    assert "do not repeat within" in answers.reason[0]
+    assert np.isnan(answers.columns["mean_friction"][0])
+    assert answers.columns["mean_high"][0] - answers.columns["mean_low"][0] > 0.1
+    assert answers.columns["window"][0] == 1.0
+
+
+@pytest.mark.parametrize("start", [None, Initial(x=0.5)])
+def test_a_response_of_several_drive_periods_has_as_many_means_as_shooting_says(start):
+    one = scene(0.3, damping_ratio=0.01, drive=Drive(amplitude=0.2, frequency=1.3), initial=start)
+    answers, expected = solve(one, FALLING, 1e-4), Shooting().solve([one], FALLING, 1e-8)
+    assert answers.status == expected.status == ["not_unique"]
+    for name in ("mean_low", "mean_high", "window", "period"):
+        assert answers.columns[name] == pytest.approx(expected.columns[name], abs=1e-4), name
+    assert "an orbit of 6 drive periods has means over one from 0.1461" in answers.reason[0]
+    assert "0.2528" in answers.reason[0]
+    assert np.isnan(answers.columns["mean_friction"][0])
+
+
+@pytest.mark.parametrize(("speed", "drop"), [(5.0, 0.15), (20.0, 0.15), (8.0, 0.05)])
+def test_falling_friction_has_one_answer_where_every_start_leads_to_it(speed, drop):
+    law = Stribeck(mu_kinetic=0.4 - drop, mu_static=0.4)
+    one = scene(speed)
+    answers = solve(one, law, 1e-3)
+    assert answers.status == ["ok"]
+    assert answers.reason == [""]
+    assert covered(answers, Shooting().solve([one], law, 1e-9).columns["mean_friction"])
+
+
+def test_laps_that_only_the_steps_tell_apart_are_one_period():
+    """Grids of times let these motions repeat every second or third lap alone, with means that hardly differ."""
+    cases = [
+        (3.194823253184358, 0.0202443167605986, 4.684440948320098, 1.837842953397773, 1.7927314064445161),
+        (1.767605955803072, 0.019368873959953795, 8.987281104255821, 2.1483614340595896, 1.9200149258819195),
+    ]
+    falling = Stribeck(
+        mu_kinetic=0.1740271552560635, mu_static=0.2712210164685681, stribeck_speed=0.5978317463856075
+    )
+    laws = [falling, Coulomb(mu=0.13301141811255532, mu_static=0.24165455533167568)]
+    for (speed, damping, load, unbalance, frequency), law in zip(cases, laws, strict=True):
+        drive = Drive(unbalance=unbalance, frequency=frequency)
+        one = scene(speed, damping_ratio=damping, normal_load=load, drive=drive)
+        answers = solve(one, law, 1e-4)
+        assert answers.status == ["ok"]
+        assert answers.columns["period"][0] == 1.0
+        assert answers.columns["reversals"] == pytest.approx(2.0, abs=0.5)
+        assert covered(answers, Shooting().solve([one], law, 1e-7).columns["mean_friction"])
+
+
+def test_where_two_states_attract_both_are_told_and_the_given_start_decides():
+    law = Stribeck(mu_static=0.8, mu_kinetic=0.2, stribeck_speed=0.1, viscosity=0.01)
+    quiet = {"damping_ratio": 0.01, "normal_load": 1.0, "drive": Drive(amplitude=0.05, frequency=3.0)}
+    open_ = solve(scene(0.6, **quiet), law)
+    sliding = scene(0.6, **quiet, initial=Initial(x=law.sliding_friction(0.6)))
+    given_, expected = solve(sliding, law), Shooting().solve([sliding], law, 1e-8)
+    assert open_.status == ["not_unique"]
+    assert open_.columns["window"][0] == 1.0
+    assert "friction falls with speed: " in open_.reason[0]
+    assert given_.status == expected.status == ["ok"]
+    assert covered(given_, expected.columns["mean_friction"])
+    assert "reached from scene.initial; an orbit of one drive period" in given_.reason[0]
+    low, high = open_.columns["mean_low"][0], open_.columns["mean_high"][0]
+    assert low <= given_.columns["mean_friction"][0] <= high
+
+
+def test_a_mass_released_between_two_steps_is_covered_by_the_error():
+    one = scene(
+        1.0222722879465589,
+        damping_ratio=0.04817590485445829,
+        normal_load=6.823999749239544,
+        drive=Drive(unbalance=0.7848973081220899, frequency=1.4791080092357505),
+    )
+    law = Coulomb(mu=0.389242475132789, mu_static=0.42705304029373664)
+    assert covered(solve(one, law), 0.32519027814629664)
+
+
+# --- keys and refusals ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ({"width": 0.1}, r"width\n.*leave it out, stepper moreau knows theta, steps and periods"),
+        ({"stepper": "rk4", "theta": 1}, r"theta\n.*leave it out, stepper rk4 knows steps and periods"),
+        (
+            {"stepper": "smoothed", "steps": 100},
+            r"steps\n.*leave it out, stepper smoothed knows width, smoothing and periods",
+        ),
+        ({"theta": 0.7}, "must be 0.5 or 1"),
+        ({"steps": 10.5}, "must be a whole number"),
+        ({"steps": True}, "must be a whole number"),
+        ({"steps": 2}, "greater than or equal to 4"),
+        ({"stepper": "euler"}, "'smoothed', 'exponential' or 'sdirk2'"),
+    ],
+)
+def test_keys_that_do_not_belong_are_refused_by_name(keys, said):
+    with pytest.raises(ValidationError, match=said):
+        March(**keys)
+
+
+def test_a_key_that_does_not_belong_is_told_beside_a_value_that_is_bad():
+    with pytest.raises(ValidationError) as caught:
+        March(stepper="rk4", theta=1, steps=0, width=-1)
+    told = {error["loc"]: error["msg"] for error in caught.value.errors()}
+    assert set(told) == {("theta",), ("steps",), ("width",)}
+    assert "leave it out, stepper rk4 knows steps and periods" in told["theta",]
+    assert "leave it out" in told["width",]
+    assert "greater than or equal to 4" in told["steps",]
+
+
+@pytest.mark.parametrize("stepper", ["rk4", "smoothed"])
+def test_a_stepper_that_never_rests_refuses_static_friction_of_its_own(stepper):
+    said = March(stepper=stepper).refusal(scene(1.0), Coulomb(mu=0.4, mu_static=0.6))
+    assert said is not None
+    assert "use stepper moreau" in said
+    assert March().refusal(scene(1.0), Coulomb(mu=0.4, mu_static=0.6)) is None
+
+
+# --- what sequences tell --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_a_sequence_of_the_declared_order_is_extrapolated_and_one_that_is_not_is_not(order):
+    values = [1.0 + 0.3 * 2.0 ** (-order * level) for level in range(5)]
+    limit = richardson(values, order, SMOOTH)
+    assert limit.order == order
+    assert limit.value == pytest.approx(1.0, abs=1e-14)
+    assert richardson(values, order, REVERSING).order == 0
+    assert richardson([1.0 + 0.3 * 2.0 ** (-0.5 * level) for level in range(5)], order, SMOOTH).order == 0
+
+
+@given(signs=st.lists(st.floats(0.2, 1.0).map(lambda x: x if x < 0.6 else -x), min_size=6, max_size=6))
+def test_an_erratic_sequence_of_order_one_is_not_taken_for_a_closer_one(signs):
+    values = [1.0 + sign * 2.0**-level for level, sign in enumerate(signs)]
+    limit = richardson(values, 2, REVERSING)
+    assert limit.value == values[-1]
+    assert limit.error >= 0.1 * abs(limit.value - 1.0)
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
+def test_a_bias_of_any_order_from_the_square_root_on_is_covered(order):
+    wide, asked, narrow, narrowest = (0.2 * (2.0 * 2.0**-level) ** order for level in range(4))
+    assert abs(asked) <= bias(wide, asked, narrow, narrowest) <= 6.0 * abs(asked)
+
+
+def test_static_friction_above_that_of_slip_is_refused_in_the_plane():
+    across = Transverse(natural_frequency=2.0, damping_ratio=0.1, load=Load(unbalance=10.0))
+    planar = Scene(
+        damping_ratio=0.1, normal_load=1.0, belt_speed=5.0, drive=Drive(unbalance=10.0, frequency=1.0),
+        transverse=across,
+    )  # fmt: skip
+    jump = Coulomb(mu=0.3, mu_static=0.4)
+
+    assert "use shooting" in March().refusal(planar, jump)
+    assert March().refusal(planar, Coulomb(mu=0.3)) is None
+    assert March().refusal(planar.model_copy(update={"transverse": None}), jump) is None
+
+
+def test_a_belt_slower_than_the_chatter_of_rk4_leaves_the_mean_anywhere():
+    law, steps = Coulomb(mu=0.4), 100
+    jump = 10.0 * 0.4 * 2.0 * math.pi / (4 * steps)  # what friction does to the velocity in the finest step
+    slow, quick = (
+        March(stepper="rk4", steps=steps).solve(
+            [
+                Scene(
+                    damping_ratio=0.1,
+                    normal_load=10.0,
+                    belt_speed=v,
+                    drive=Drive(unbalance=10.0, frequency=1.0),
+                )
+            ],
+            law,
+            1e-3,
+        )
+        for v in (0.5 * jump, 20.0 * jump)
+    )
+
+    assert slow.columns["error"][0] >= 0.4
+    assert quick.columns["error"][0] < 0.4

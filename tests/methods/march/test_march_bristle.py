@@ -1,0 +1,447 @@
+"""Time stepping of laws with bristles: orders, limits and errors against references of unrelated methods."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import ValidationError
+from strategies import sizes
+
+from frictionlab.compile.cache import compiled
+from frictionlab.compile.decorators import njit
+from frictionlab.dynamics.contact import advance_bristle, project_to_yield
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.elasto_plastic import ElastoPlastic
+from frictionlab.laws.jenkins import Jenkins
+from frictionlab.laws.lugre import LuGre
+from frictionlab.methods.march.bristle_adapter import march_bristle_rk4, march_exponential, march_sdirk2
+from frictionlab.methods.march.laps import MarchSettings
+from frictionlab.methods.march.method import March
+from frictionlab.methods.march.run import loaded
+from frictionlab.numerics.steppers.bristle_rk4 import DECAY
+from frictionlab.scene.body import Mass, on_the_line
+from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse, TransverseSlip
+
+REFERENCE = Path(__file__).parents[2] / "reference"
+DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
+KERNELS = {"rk4": march_bristle_rk4, "exponential": march_exponential, "sdirk2": march_sdirk2}
+KNOWN = 2e-7
+"""Accuracy of the reference rows of a mass; of prescribed slip 5e-9."""
+STEADY = LuGre(mu_kinetic=0.4, presliding_length=1.0, damping=0.05)
+FALLING = LuGre(mu_kinetic=0.25, mu_static=0.4, stribeck_speed=10.0, presliding_length=1.0, damping=0.05)
+
+
+def scene(belt_speed, **changes):
+    """One degree of freedom at resonance, gamma^2 = 10, but for the changes."""
+    values = {
+        "damping_ratio": 0.1,
+        "normal_load": 10.0,
+        "drive": Drive(unbalance=10.0, frequency=1.0),
+        **changes,
+    }
+    return Scene(belt_speed=belt_speed, **values)
+
+
+def rows_of(kind, planar):
+    """Reference rows of a law, on the line or in the plane, both presliding lengths and several belt speeds."""
+    with (REFERENCE / "dynamic_laws_system.csv").open() as file:
+        rows = [
+            row for row in csv.DictReader(file) if row["law"] == kind and (row["omega_r"] != "none") == planar
+        ]
+    return rows[5::11][:3] if planar else rows[3::23]
+
+
+def law_of(row):
+    """The law of a reference row."""
+    length = float(row["z_ss"])
+    if row["law"] == "dahl":
+        return Dahl(mu=0.4, presliding_length=length)
+    if row["law"] == "lugre":
+        return LuGre(mu_kinetic=0.4, presliding_length=length, contact_damping=math.sqrt(float(row["s"])))
+    return ElastoPlastic(mu_kinetic=0.4, presliding_length=length)
+
+
+def scene_of(row):
+    """The scene of a reference row."""
+    across = None
+    if row["omega_r"] != "none":
+        across = Transverse(
+            natural_frequency=float(row["omega_r"]), damping_ratio=0.1, load=Load(unbalance=10.0)
+        )
+    drive = Drive(unbalance=10.0, frequency=float(row["Omega"]))
+    return scene(float(row["v_b"]), normal_load=float(row["gamma2"]), drive=drive, transverse=across)
+
+
+def solve(one, law, tolerance=1e-5, **keys):
+    """The answer to a scene that is accepted."""
+    method = March(**keys)
+    assert method.refusal(one, law) is None
+    return method.solve([one], law, tolerance)
+
+
+# --- against references ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("kind", "stepper", "planar"),
+    [
+        ("lugre", "exponential", False),
+        ("lugre", "rk4", False),
+        ("lugre", "sdirk2", False),
+        ("dupont", "exponential", False),
+        ("lugre", "exponential", True),
+        *([("dahl", "exponential", True), ("lugre", "sdirk2", True), ("lugre", "rk4", True)] if DEEP else []),
+    ],
+)
+def test_the_error_covers_the_reference(kind, stepper, planar):
+    for row in rows_of(kind, planar):
+        answers = solve(scene_of(row), law_of(row), stepper=stepper)
+        assert answers.status == ["ok"]
+        error = answers.columns["error"][0]
+        assert error <= 1e-5
+        assert abs(answers.columns["mean_friction"][0] - float(row["mu_bar"])) <= error + KNOWN
+
+
+def test_given_steps_tell_their_error():
+    row = rows_of("lugre", False)[0]
+    for stepper, steps in (("exponential", 200), ("sdirk2", 100), ("rk4", 1000)):
+        answers = solve(scene_of(row), law_of(row), stepper=stepper, steps=steps)
+        off = abs(answers.columns["mean_friction"][0] - float(row["mu_bar"]))
+        assert f"{stepper}: {steps} steps per period" in answers.model[0]
+        assert off <= answers.columns["error"][0] + KNOWN
+        assert answers.columns["error"][0] <= 0.05
+
+
+@pytest.mark.parametrize("stepper", ["exponential", "rk4"])
+def test_prescribed_slip_agrees_with_the_exact_two_leg_map(stepper):
+    with (REFERENCE / "rigid_kinematics.csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if 1e-3 <= float(row["lam"]) <= 1.0][7::9]
+    for row in rows:
+        one = Scene(belt_speed=float(row["kappa"]), slip=Slip(velocity_amplitude=1.0, frequency=1.0))
+        answers = solve(one, Dahl(mu=0.4, presliding_length=float(row["lam"])), 1e-7, stepper=stepper)
+        off = abs(answers.columns["mean_friction"][0] - 0.4 * float(row["dahl_exact"]))
+        assert answers.status == ["ok"]
+        assert off <= answers.columns["error"][0] + 5e-9 <= 1.1e-7
+
+
+def test_bristles_as_stiff_as_may_be_rub_like_coulomb_friction_under_a_prescribed_slip():
+    one = Scene(belt_speed=0.5, slip=Slip(velocity_amplitude=1.0, frequency=1.0))
+    answers = solve(one, Dahl(mu=0.4, presliding_length=1e-9), 1e-6)
+    assert answers.columns["mean_friction"][0] == pytest.approx(0.4 / 3.0, abs=1e-6)
+
+
+def test_columns_besides_the_mean_balance():
+    found = solve(scene(20.0), STEADY).columns
+    assert found["energy_input"] == pytest.approx(
+        found["energy_viscous"] + found["energy_friction"], rel=1e-4
+    )
+    assert found["energy_contact"][0] > 0.0
+    assert found["reversals"] == pytest.approx(2.0, abs=0.1)
+    assert found["period"] == 1.0
+    assert np.isnan(found["stick_fraction"][0])
+
+
+# --- orders -------------------------------------------------------------------------------------------------------
+
+
+END = 10.37
+PUSHED = Mass(0.2, 1.0, 0.0, 1.0, 10.0, 1.0, 10.0 + 0j, 0j)
+"""P = 10, gamma^2 = 10, beta = 0.1."""
+FREE = Mass(0.0, 0.0, 0.0, 0.0, 1e-12, 1.0, 0j, 0j)
+"""A mass that next to nothing slows down: slip at a fixed velocity."""
+
+
+def stepped(stepper, mass, steps, h, law=STEADY, **start):
+    """So many equal steps of a mass in one lap."""
+    values = {"belt_speed": 0.0, "v": 0.0, "z": 0.0, **start}
+    loads = (mass.force * np.exp(0.5j * h * np.arange(2 * steps + 1))).imag
+    way = MarchSettings(
+        belt_speed=values["belt_speed"], driven=True, loads=loads, span=h * steps, first=h, theta=0.5, width=1.0,
+        shape=0.0, accuracy=1.0, reach=h, enough=0.0, most=1, stride=2, rate=0.0, near=0.0, work=10**9, window=50,
+        room=0, z=values["z"],
+    )  # fmt: skip
+    body = loaded(on_the_line(mass), mass, True)
+    march = compiled(KERNELS[stepper], law)(body, way, 0.0, values["v"])
+    return np.array([march.x[-1].real, march.v[-1].real, march.z[-1, 0].real])
+
+
+def order_of(stepper, grids, shifts, **case):
+    """The slope of the largest error of several neighbouring grids: one alone may round reversals luckily."""
+    exact = stepped("rk4", PUSHED, 400_000, END / 400_000, **case)
+    errors = [
+        max(
+            np.abs(stepped(stepper, PUSHED, steps, END / steps, **case) - exact).sum()
+            for steps in range(grid, grid + 3 * shifts, 3)
+        )
+        for grid in grids
+    ]
+    return float(np.polyfit(-np.log(grids), np.log(errors), 1)[0])
+
+
+@pytest.mark.parametrize(("stepper", "order"), [("rk4", 4), ("exponential", 2), ("sdirk2", 2)])
+def test_slip_that_does_not_reverse_is_stepped_at_the_declared_order(stepper, order):
+    soft = STEADY.model_copy(update={"presliding_length": 30.0})
+    assert order_of(stepper, [200, 400, 800], 1, law=soft, belt_speed=60.0) == pytest.approx(order, abs=0.2)
+
+
+@pytest.mark.parametrize("stepper", KERNELS)
+def test_where_slip_reverses_the_order_is_two(stepper):
+    assert 1.6 <= order_of(stepper, [1600, 6400, 25_600], 6, belt_speed=5.0) <= 2.5
+
+
+# --- limits -------------------------------------------------------------------------------------------------------
+
+
+def slid(stepper, slip, h, steps, z=0.0):
+    """The deflection after so many steps at a fixed slip velocity."""
+    return stepped(stepper, FREE, steps, h, v=slip, z=z)[2]
+
+
+@pytest.mark.parametrize("speed", [0.3, 30.0])
+def test_rk4_is_stable_up_to_its_limit_and_not_beyond(speed):
+    rest, limit = STEADY.presliding(), DECAY / STEADY.largest_rate(speed)
+    assert slid("rk4", speed, 0.97 * limit, 400) == pytest.approx(rest, rel=1e-6)
+    assert abs(slid("rk4", speed, 1.05 * limit, 60)) > 1e3 * rest
+
+
+@pytest.mark.parametrize("share", [-1.0, 0.0, 0.9])
+def test_the_exponential_stepper_ends_in_steady_slip_however_long_the_step(share):
+    largest = STEADY.largest_deflection()
+    for h in (1e-3, 1.0, 1e6):
+        z = slid("exponential", 3.0, h, 1, share * largest)
+        assert z == pytest.approx(largest + (share - 1.0) * largest * math.exp(-3.0 * h), rel=1e-9)
+
+
+@pytest.mark.parametrize("share", [-1.0, 0.0, 0.9])
+def test_sdirk2_forgets_in_one_step_what_decays_a_million_times_faster(share):
+    speed, largest = 30.0, STEADY.largest_deflection()
+    h = 1e6 / STEADY.largest_rate(speed)
+    assert slid("sdirk2", speed, h, 1, share * largest) == pytest.approx(largest, rel=2e-5)
+
+
+def test_rk4_refuses_stiff_bristles_and_names_the_steps_that_would_do():
+    stiff, one = Dahl(mu=0.4, presliding_length=5e-4), scene(5.0)
+    why = March(stepper="rk4", steps=200_000).refusal(one, stiff)
+    assert "unstable" in why
+    assert "200,000 steps" in why
+    named = int(why.split("about ")[1].split(" ")[0].replace(",", ""))
+    assert 200_000 < named <= 400_000
+    assert March(stepper="rk4", steps=named).refusal(one, stiff) is None
+    h = 2.0 * math.pi / named
+    assert h * stiff.largest_rate(50.0 + 5.0) <= DECAY
+    assert "too many to be doubled" in March(stepper="rk4").refusal(one, Dahl(mu=0.4, presliding_length=5e-6))
+
+
+def test_rk4_stops_where_slip_gets_too_fast_for_its_steps():
+    answers = March(stepper="rk4", steps=40).solve([scene(5.0)], STEADY, 1e-5)
+    assert answers.status == ["refused"]
+    assert "unstable on bristles this stiff with 40 steps" in answers.reason[0]
+    assert 40 < int(answers.reason[0].split("about ")[1].split(" ")[0]) < 4000
+
+
+def test_the_exponential_stepper_asks_for_steps_that_hold_the_mass_on_its_bristles():
+    stiff, one = LuGre(mu_kinetic=0.4, presliding_length=5e-6), scene(5.0)
+    held = math.sqrt(1.0 + 10.0 * 0.4 / 5e-6)
+    fewest = math.ceil(2.0 * math.pi * held / 2.0)
+    assert "would do; or use stepper sdirk2" in March(steps=fewest).refusal(one, stiff)
+    assert March(steps=math.ceil(1.03 * fewest)).refusal(one, stiff) is None
+    assert March(stepper="sdirk2", steps=64).refusal(one, stiff) is None
+
+
+# --- bristles carried along --------------------------------------------------------------------------------------
+
+
+@njit
+def moved(law, h, v, z):
+    """The deflection after constant slip, for tests."""
+    return advance_bristle(law, h, v, z)
+
+
+@njit
+def brought_back(law, z):
+    """The deflection brought back to where the law yields, for tests."""
+    return project_to_yield(law, z)
+
+
+@given(speed=sizes(1e-3, 1e3), h=sizes(1e-6, 1e6), share=st.floats(-1.0, 1.0))
+def test_bristles_on_a_falling_curve_never_leave_the_invariant_set_and_end_in_steady_slip(speed, h, share):
+    largest = FALLING.largest_deflection()
+    z = compiled(moved, FALLING)(h, speed, share * largest)
+    assert abs(z) <= largest * (1.0 + 1e-12)
+    steady = FALLING.sliding_friction(speed) / FALLING.bristle_stiffness
+    expected = steady + (share * largest - steady) * math.exp(-h * FALLING.largest_rate(speed))
+    assert z == pytest.approx(expected, rel=1e-9, abs=1e-9 * largest)
+
+
+turns = st.floats(-3.2, 3.2)
+BREAKING = ElastoPlastic(mu_kinetic=0.25, mu_static=0.4, stiffness=0.5)
+
+
+@given(speed=sizes(1e-3, 1e3), h=sizes(1e-6, 1e6), share=st.floats(0.0, 1.0), a=turns, b=turns)
+def test_bristles_that_break_away_stay_in_their_invariant_set_and_turn_with_the_plane(speed, h, share, a, b):
+    largest = BREAKING.largest_deflection()
+    v, z = complex(speed, 0.0), share * largest * complex(math.cos(a), math.sin(a))
+    turn = complex(math.cos(b), math.sin(b))
+    move = compiled(moved, BREAKING)
+    after = move(h, v, z)
+    assert abs(after) <= largest * (1.0 + 1e-12)
+    if abs(z.real) > 1e-9 * abs(
+        z
+    ):  # at a right angle to the slip rounding decides whether bristles break away
+        assert move(h, v * turn, z * turn) == pytest.approx(after * turn, abs=1e-9 * largest)
+
+
+def test_small_moves_of_bristles_that_break_away_are_of_order_two():
+    z, v, law = 0.55, 1.0, BREAKING
+    move = compiled(moved, law)
+
+    def gone(n):
+        end = z
+        for _ in range(n):
+            end = move(0.2 / n, v, end)
+        return end
+
+    exact, coarse, fine = gone(4096), gone(8), gone(32)
+    assert math.log((coarse - exact) / (fine - exact), 4.0) == pytest.approx(2.0, abs=0.2)
+    assert move(1e-3, v, 0.0) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_forms_of_the_plane_differ_in_what_is_carried():
+    z, v, h = complex(0.2, -0.1), complex(0.6, 0.8), 0.3
+    line = compiled(moved, BREAKING)
+    each = complex(line(h, v.real, z.real), line(h, v.imag, z.imag))
+    assert compiled(moved, BREAKING.model_copy(update={"planar": "per-axis"}))(h, v, z) == each
+    along = complex(line(h, 1.0, z.real), 0.0)
+    assert compiled(moved, BREAKING.model_copy(update={"planar": "rotated"}))(h, v, z) == pytest.approx(along)
+
+
+@given(size=sizes(1e-3, 1e3), angle=turns)
+def test_a_step_beyond_yield_is_brought_back_to_it(size, angle):
+    law = Jenkins(mu=0.4, stiffness=1.3)
+    z = size * complex(math.cos(angle), math.sin(angle))
+    back = compiled(brought_back, law)(z)
+    if size <= law.reach:
+        assert back == z
+    else:
+        assert law.reach <= abs(back) <= law.reach * (1.0 + 1e-14)
+
+
+# --- where there is no one number, or no answer -----------------------------------------------------------------
+
+
+def test_bristles_that_only_bend_keep_what_they_began_with():
+    one = Scene(belt_speed=0.0, slip=Slip(velocity_amplitude=0.1, frequency=1.0))
+    answers = solve(one, Dahl(mu=0.4, presliding_length=1.0, exponent=0.0))
+    assert answers.status == ["not_unique"]
+    assert answers.columns["mean_high"][0] - answers.columns["mean_low"][0] > 0.1
+    assert np.isnan(answers.columns["mean_friction"][0])
+
+
+ACROSS = TransverseSlip(velocity_amplitude=1.2310254529015219, phase=40)
+NEARLY_BACK = TransverseSlip(velocity_amplitude=0.4508060362819711, phase=167.61212592399406)
+BENT_BACK = TransverseSlip(velocity_amplitude=0.7020434447685906, phase=154.06421298900176)
+
+
+@pytest.mark.parametrize(
+    ("law", "belt_speed", "frequency", "across", "tolerance", "mean"),
+    [
+        # three grids can agree by chance on reversals of an axis, on a lag finer than steps, on unloading
+        (
+            Jenkins(mu=0.4, presliding_length=0.011003229075035235, planar="per-axis"),
+            *(0.97, 0.7599995519720324, ACROSS, 1e-4, 0.36898091867),
+        ),
+        (
+            Jenkins(mu=0.4, presliding_length=0.0012444663977646652),
+            *(1.0684317736735658, 0.8552844715063177, NEARLY_BACK, 1e-4, 0.32894053117),
+        ),
+        (
+            ElastoPlastic(mu_kinetic=0.4, presliding_length=0.7315027763453661),
+            *(0.19375812042639326, 0.6308845703395107, BENT_BACK, 1e-5, 0.07371751281),
+        ),
+    ],
+    ids=["reversals of an axis", "lag", "unloading"],
+)
+def test_corners_inside_steps_of_a_prescribed_slip_in_the_plane_are_in_the_error(
+    law, belt_speed, frequency, across, tolerance, mean
+):
+    """Means: shooting, which steps from corner to corner; march comes to them with its steps."""
+    slip = Slip(velocity_amplitude=1.0, frequency=frequency)
+    found = solve(Scene(belt_speed=belt_speed, slip=slip, transverse_slip=across), law, tolerance).columns
+    assert abs(found["mean_friction"][0] - mean) <= found["error"][0] <= tolerance
+
+
+def test_friction_that_nears_its_limit_ever_more_slowly_is_as_far_off_as_the_error_says():
+    law = Dahl(mu=0.4, presliding_length=0.1, exponent=2.0)
+    found = solve(Scene(damping_ratio=0.1, normal_load=10.0, belt_speed=1.0), law, 1e-6).columns
+    assert 1e-8 < 0.4 - found["mean_friction"][0] <= found["error"][0] <= 1e-6
+
+
+def test_a_driven_mass_that_slips_one_way_is_as_far_from_steady_sliding_as_the_error_says():
+    law = Dahl(mu=0.4, presliding_length=0.1, exponent=3.0)
+    driven = scene(15.0, normal_load=1.0, drive=Drive(unbalance=1.0, frequency=1.0))
+    found = solve(driven, law, 0.01).columns
+    assert 1e-4 < 0.4 - found["mean_friction"][0] <= found["error"][0] <= 0.01
+
+
+def test_a_motion_on_bristles_that_never_repeats_shows_the_range_of_its_means():
+    law = LuGre(
+        mu_kinetic=0.2,
+        mu_static=0.4,
+        stribeck_exponent=1.0,
+        presliding_length=1e-2,
+        damping=0.0,
+        viscosity=0.0,
+    )
+    one = scene(0.3, damping_ratio=0.01, drive=Drive(amplitude=0.1, frequency=math.sqrt(2.0)))
+    answers = solve(one, law, 1e-3)
+    assert answers.status == ["not_unique"]
+    assert answers.columns["mean_high"][0] - answers.columns["mean_low"][0] > 0.05
+
+
+def test_undriven_bristles_on_a_falling_curve_stick_and_slip_like_dry_friction():
+    law = LuGre(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=0.1, presliding_length=1e-3)
+    answers = solve(Scene(damping_ratio=0.0, normal_load=1.0, belt_speed=0.1), law, 1e-3)
+    assert answers.status == ["ok"]
+    assert answers.columns["period"][0] > 1.2
+    assert answers.columns["velocity_amplitude"][0] > 0.1
+
+
+@pytest.mark.parametrize(
+    ("keys", "law", "said"),
+    [
+        ({"stepper": "moreau"}, FALLING, "knows no friction with memory; use exponential, rk4 or sdirk2"),
+        ({"theta": 1}, FALLING, "theta is a key of stepper moreau"),
+        ({"stepper": "rk4"}, Dahl(mu=0.4, stiffness=1.0, exponent=0.5), "needs a bound"),
+        ({"stepper": "sdirk2"}, Jenkins(mu=0.4, stiffness=1.0), "rates that do not jump"),
+        ({"stepper": "sdirk2"}, Coulomb(mu=0.4), "this law has none; use moreau, rk4 or smoothed"),
+    ],
+)
+def test_a_stepper_of_another_kind_of_law_is_refused_with_what_to_use(keys, law, said):
+    assert said in March(**keys).refusal(scene(5.0), law)
+
+
+def test_a_law_without_a_vector_form_is_refused_in_the_plane_alone():
+    law = Dahl(mu=0.4, stiffness=1.0, exponent=2.0)
+    across = Transverse(natural_frequency=2.0, damping_ratio=0.1, load=Load(unbalance=10.0))
+    planar = Scene(
+        belt_speed=1.0,
+        slip=Slip(velocity_amplitude=1.0, frequency=1.0),
+        transverse_slip=TransverseSlip(velocity_amplitude=1.0),
+    )
+    for one in (scene(5.0, transverse=across), planar):
+        assert law.no_vector_form() in March().refusal(one, law)
+        assert March().refusal(one, law.model_copy(update={"planar": "per-axis"})) is None
+    assert March().refusal(scene(5.0), law) is None
+
+
+def test_a_key_of_another_stepper_is_refused_by_name():
+    with pytest.raises(ValidationError, match="stepper exponential knows steps and periods"):
+        March(stepper="exponential", width=0.1)

@@ -1,0 +1,131 @@
+"""Time stepping of laws with several memories or scalars: against another law, and against shooting."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+from memory_laws import Ageing, elements
+
+from frictionlab.laws.jenkins import Jenkins
+from frictionlab.methods.march.memory_stability import fewest_steps
+from frictionlab.methods.march.method import March
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Drive, Scene, Slip, Transverse
+
+DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
+deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
+ONE = elements(stiffness=(4.0,), reach=(0.1,))
+THREE = elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
+AGEING = Ageing(mu0=0.4, a=0.01, b=0.008, slip_length=2.0)
+
+
+def driven(belt_speed, **changes):
+    """A body that forgets where it started within some ten periods, shaken at a speed of 13."""
+    drive = Drive(unbalance=10.0, frequency=1.5)
+    return Scene(
+        **({"damping_ratio": 0.4, "normal_load": 10.0, "belt_speed": belt_speed, "drive": drive} | changes)
+    )
+
+
+def solve(method, scene, law, tolerance):
+    """Mean and error of an answer that is accepted and ok."""
+    assert method.refusal(scene, law) is None
+    answers = method.solve([scene], law, tolerance)
+    assert answers.status == ["ok"], answers.reason
+    return float(answers.columns["mean_friction"][0]), float(answers.columns["error"][0])
+
+
+def agree(one, other):
+    """Whether two answers agree within their errors."""
+    return abs(one[0] - other[0]) <= one[1] + other[1]
+
+
+@pytest.mark.parametrize("belt_speed", [0.5, 5.0])
+def test_one_element_is_marched_to_the_mean_of_jenkins_friction(belt_speed):
+    scene, jenkins = driven(belt_speed), Jenkins(mu=0.4, stiffness=4.0)
+
+    found = solve(March(), scene, ONE, 1e-4)
+
+    assert found[1] <= 1e-4
+    assert agree(found, solve(March(stepper="rk4"), scene, jenkins, 1e-4))
+    assert agree(found, solve(Shooting(), scene, jenkins, 1e-8))
+
+
+def test_march_and_shooting_agree_about_three_elements():
+    scene = driven(1.0)
+
+    assert agree(solve(March(), scene, THREE, 1e-4), solve(Shooting(), scene, THREE, 1e-6))
+
+
+@deep
+@pytest.mark.parametrize("law", [AGEING, AGEING.model_copy(update={"b": 0.015})], ids=["rising", "falling"])
+def test_march_and_shooting_agree_about_an_age_where_slip_never_reverses(law):
+    scene = driven(20.0)
+
+    assert agree(solve(March(), scene, law, 1e-6), solve(Shooting(), scene, law, 1e-8))
+
+
+def test_where_slip_comes_to_rest_an_age_is_refused_by_march_and_left_to_shooting():
+    answers = March().solve([driven(5.0)], AGEING, 1e-3)
+
+    assert answers.status == ["refused"]
+    assert "comes to rest" in answers.reason[0]
+    assert "use method shooting" in answers.reason[0]
+
+
+def test_an_age_that_grows_too_quickly_for_the_steps_asked_for_is_refused_with_those_that_would_do():
+    scene = driven(20.0)
+    refused = March(steps=50).refusal(scene, AGEING)
+    fewest = int(refused.split("about ")[1].split()[0])
+
+    assert "with 50 steps per period" in refused
+    assert March(steps=fewest - 1).refusal(scene, AGEING) is not None
+    assert solve(March(steps=fewest), scene, AGEING, 1e-2)[0] == pytest.approx(0.4039, abs=1e-3)
+
+
+def test_a_motion_faster_than_without_friction_takes_more_steps_by_itself():
+    """The longer spring brings the body to resonance."""
+    soft = elements(stiffness=(0.1, 0.35), reach=(4.0, 0.07))
+    scene = driven(2.0, damping_ratio=0.1)
+    fewest = fewest_steps(scene, soft)
+    given = March(steps=fewest).solve([scene], soft, 1e-2)
+
+    assert given.status == ["refused"]
+    assert "would do" in given.reason[0]
+    assert agree(solve(March(), scene, soft, 1e-3), solve(March(steps=32 * fewest), scene, soft, 1e-4))
+
+
+def test_errors_of_given_steps_hold_what_finer_steps_change():
+    scene = driven(1.0)
+    fine = solve(March(), scene, THREE, 1e-5)
+
+    for steps in (4096, 8192):
+        assert agree(solve(March(steps=steps), scene, THREE, 1e-2), fine)
+
+
+def test_in_the_plane_without_a_load_across_march_answers_as_along_the_belt():
+    across = Transverse(natural_frequency=1.0, damping_ratio=0.4)
+    planar = driven(5.0, transverse=across)
+
+    assert solve(March(), planar, ONE, 1e-3)[0] == pytest.approx(solve(March(), driven(5.0), ONE, 1e-3)[0])
+
+
+@pytest.mark.parametrize(
+    ("scene", "keys", "law", "said"),
+    [
+        (
+            Scene(belt_speed=1, normal_load=1, slip=Slip(velocity_amplitude=2, frequency=1)),
+            {},
+            ONE,
+            "shooting",
+        ),
+        (driven(1.0, drive=None, initial={"x": 1.0}), {}, ONE, "give a drive"),
+        (driven(1.0), {"stepper": "moreau"}, ONE, "use rk4"),
+        (driven(1.0), {"theta": 1}, ONE, "leave it out"),
+        (driven(1.0), {}, elements(stiffness=(1e6,), reach=(1e-6,)), "steps per period"),
+    ],
+    ids=["prescribed", "undriven", "stepper", "theta", "stiff"],
+)
+def test_march_says_what_it_cannot_do_with_several_memories(scene, keys, law, said):
+    assert said in March(**keys).refusal(scene, law)

@@ -1,0 +1,469 @@
+"""Bristle laws under a prescribed slip: closed forms, limits, orderings, and an independent way to the numbers."""
+
+from __future__ import annotations
+
+import csv
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, example, given
+from hypothesis import strategies as st
+from oracle import REFERENCE
+
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.elasto_plastic import ElastoPlastic
+from frictionlab.laws.jenkins import Jenkins
+from frictionlab.laws.lugre import LuGre
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.orbit.panels import WEIGHTS
+from frictionlab.orbit.sample import sample
+from frictionlab.scene.scene import Scene, Slip, TransverseSlip
+
+TOLERANCE = 1e-9
+RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)
+
+
+def slip(ratio, along=1.0, across=None, angle=0.0, frequency=1.0, normal_load=1.0):
+    """Slip on a belt of speed ``ratio``; ``across`` leads by ``angle`` degrees."""
+    own = frequency if along is None else None
+    return Scene(
+        belt_speed=ratio,
+        normal_load=normal_load,
+        slip=Slip(velocity_amplitude=along, frequency=frequency) if along is not None else None,
+        transverse_slip=(
+            TransverseSlip(velocity_amplitude=across, phase=angle, frequency=own)
+            if across is not None
+            else None
+        ),
+    )
+
+
+def transverse(ratio, size=1.0):
+    return slip(ratio, None, size)
+
+
+def circular(ratio):
+    return slip(ratio, 1.0, 1.0, 90.0)
+
+
+def dahl(softness, **more):
+    return Dahl(mu=1.0, presliding_length=softness, **more)
+
+
+def elasto_plastic(softness, **more):
+    return ElastoPlastic(mu_kinetic=1.0, presliding_length=softness, **more)
+
+
+def answer(scene, law, tolerance=TOLERANCE):
+    method = Exact() if Exact().refusal(scene, law) is None else Shooting()
+    assert method.refusal(scene, law) is None
+    return method.solve([scene], law, tolerance)
+
+
+def mean(scene, law):
+    """The mean friction, whose error is below the tolerance."""
+    answers = answer(scene, law)
+    assert answers.status == ["ok"], answers.reason
+    assert answers.columns["error"][0] <= TOLERANCE
+    return answers.columns["mean_friction"][0]
+
+
+def rows():
+    """(column, accuracy stated, law, ratio, expected) of every value of the reference."""
+    with open(REFERENCE / "rigid_kinematics.csv") as file:
+        for row in csv.DictReader(file):
+            softness, ratio = float(row["lam"]), float(row["kappa"])
+            laws = {
+                "dahl_exact": (dahl(softness), 5e-9),
+                "dahl_numeric": (dahl(softness), 5e-9),
+                "lugre_numeric_sig0p1": (
+                    LuGre(mu_kinetic=1.0, presliding_length=softness, damping=0.1 / softness),
+                    5e-9,
+                ),
+                "dupont_rba0p7_numeric": (elasto_plastic(softness), 1e-6),
+            }
+            for column, (law, accuracy) in laws.items():
+                if row[column]:
+                    yield column, accuracy, law, ratio, float(row[column])
+
+
+@pytest.mark.parametrize(
+    "column", ["dahl_exact", "dahl_numeric", "lugre_numeric_sig0p1", "dupont_rba0p7_numeric"]
+)
+def test_every_row_of_the_rigid_reference_is_met_within_its_accuracy_and_the_error(column):
+    checked = 0
+    for name, accuracy, law, ratio, expected in rows():
+        if name != column:
+            continue
+        answers = answer(slip(ratio), law, 1e-8)
+        checked += 1
+        if answers.status == [
+            "not_unique"
+        ]:  # a belt at rest and slip within the elastic range: the start decides
+            assert ratio == 0.0
+            assert law.elastic_deflection() > 1.0
+            assert answers.columns["mean_low"][0] <= expected <= answers.columns["mean_high"][0]
+            continue
+        off = abs(answers.columns["mean_friction"][0] - expected)
+        assert answers.columns["error"][0] <= 1e-8
+        assert off <= accuracy + answers.columns["error"][0], (law, ratio)
+    assert checked > 70
+
+
+def closed_form(ratio, softness):
+    """Dahl friction of two legs: end forces in closed form, the mean by the trapezoidal rule on a stretched grid."""
+    turn, height = math.pi - math.acos(ratio), math.sqrt(1.0 - ratio * ratio)
+    p = math.exp(-2.0 * (ratio * turn + height) / softness)
+    q = math.exp(-2.0 * (ratio * (turn - math.pi) + height) / softness)
+    first, second = (-1 + 2 * q - p * q) / (1 - p * q), (1 - 2 * p + p * q) / (1 - p * q)
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+    ahead = turn * nodes
+    path = ratio * (ahead + turn) + np.sin(ahead) + height
+    total = turn * (weights * (1.0 - (1.0 - first) * np.exp(-path / softness))).sum()
+    back = math.pi + (math.pi - turn) * nodes
+    path = height - ratio * (back - turn) - np.sin(back)
+    total += (math.pi - turn) * (weights * (-1.0 + (1.0 + second) * np.exp(-path / softness))).sum()
+    return total / (2.0 * math.pi)
+
+
+@given(ratio=st.floats(0.01, 0.99), softness=st.floats(-1.3, 2.0).map(lambda power: 10.0**power))
+def test_dahl_friction_along_the_belt_has_its_closed_form(ratio, softness):
+    assert mean(slip(ratio), dahl(softness)) == pytest.approx(closed_form(ratio, softness), abs=1e-11)
+
+
+def test_softer_dahl_contacts_lose_less_friction_along_the_belt_and_more_across_it():
+    soft = [1e-3, 0.1, 1.0, 10.0, 1e5]
+    for ratio in RATIOS:
+        stiffest = [
+            answer(one(ratio), Coulomb(mu=1.0)).columns["mean_friction"][0] for one in (slip, transverse)
+        ]
+        along = [stiffest[0], *(mean(slip(ratio), dahl(one)) for one in soft)]
+        across = [stiffest[1], *(mean(transverse(ratio), dahl(one)) for one in soft)]
+
+        assert (np.diff(along) > 0.0).all()
+        assert (np.diff(across) < 0.0).all()
+        assert along[-1] == pytest.approx(soft_limit(ratio), abs=1e-9)
+
+
+def soft_limit(ratio):
+    return 0.5 * math.pi * ratio / (ratio * math.asin(ratio) + math.sqrt(1.0 - ratio * ratio))
+
+
+@pytest.mark.parametrize(
+    ("scene", "stiff", "soft"),
+    [
+        (transverse(0.05), 0.13941705, 0.07806354),
+        (transverse(0.3), 0.48816332, 0.41403702),
+        (transverse(1.0), 0.83462684, 0.82236387),
+        (transverse(3.0), 0.97383483, 0.97349718),
+        (circular(0.3), 0.15174728, None),
+        (circular(0.9), 0.52230600, None),
+        (circular(1.5), 0.87732822, None),
+    ],
+)
+def test_planar_dahl_tends_to_coulomb_and_to_its_soft_limit(scene, stiff, soft):
+    assert mean(scene, dahl(1e-10)) == pytest.approx(stiff, abs=6e-9)
+    if soft is not None:
+        assert mean(scene, dahl(1e8)) == pytest.approx(soft, abs=6e-9)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.5, 0.9])
+def test_a_stiff_dahl_contact_differs_from_coulomb_by_its_first_term(ratio):
+    coulomb = 2.0 / math.pi * math.asin(ratio)
+    for softness, within in ((1e-3, 2e-2), (1e-5, 1e-3)):
+        slope = (mean(slip(ratio), dahl(softness)) - coulomb) / softness
+        assert slope == pytest.approx(2.0 / (3.0 * math.pi) * ratio / (1.0 - ratio**2), rel=within)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.5, 0.9])
+def test_the_soft_limit_is_approached_as_the_square_of_softness(ratio):
+    near, far = ((soft_limit(ratio) - mean(slip(ratio), dahl(one))) * one**2 for one in (10.0, 100.0))
+
+    assert near == pytest.approx(far, rel=0.015)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.5, 0.9])
+def test_soft_contacts_have_their_closed_forms(ratio):
+    turn, height = math.pi - math.acos(ratio), math.sqrt(1.0 - ratio**2)
+    legs = (ratio * (turn - math.pi) + height) / (ratio * turn + height)
+    for exponent in (0.5, 2.0, 3.0):
+        share = legs ** (1.0 / exponent)
+        found = mean(slip(ratio), dahl(1e7, exponent=exponent))
+        assert found == pytest.approx((1.0 - share) / (1.0 + share), abs=1e-6)
+    y = mean(slip(ratio), elasto_plastic(100.0))
+    alpha = 0.5 + 0.5 * math.sin(math.pi * (y - 0.85) / 0.3)
+    assert y > 0.7
+    assert y * alpha == pytest.approx(1.0 - legs, abs=6e-3)  # of the mean: 6e-4 times its slope there
+    assert 1.0 - mean(slip(ratio), Jenkins(mu=1.0, presliding_length=1e6)) < 4e-6
+
+
+@given(
+    ratio=st.floats(0.0, 1.2),
+    softness=st.floats(-3.0, 2.0).map(lambda power: 10.0**power),
+    speed=st.floats(0.1, 50.0),
+    frequency=st.floats(0.1, 20.0),
+    load=st.floats(0.1, 20.0),
+)
+def test_only_the_two_ratios_count(ratio, softness, speed, frequency, load):
+    scene = slip(ratio * speed, speed, frequency=frequency, normal_load=load)
+    stretched = dahl(softness * speed / frequency)
+    at_load = Dahl(mu=1.0, contact_stiffness=load / (softness * speed / frequency))
+
+    assert mean(scene, stretched) == pytest.approx(mean(slip(ratio), dahl(softness)), abs=1e-11)
+    assert mean(scene, at_load) == pytest.approx(mean(scene, stretched), abs=1e-12)
+
+
+def test_the_initial_curvature_along_the_belt_changes_sign_with_softness():
+    def curvature(softness):
+        one, two = (mean(slip(ratio), dahl(softness)) for ratio in (0.01, 0.02))
+        return two - 2.0 * one
+
+    assert curvature(0.93) > 0.0 > curvature(0.95)
+
+
+def area(law):
+    """Signed area between a curve and its chord, up to the belt speed of the slip."""
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    angle = 0.25 * math.pi * (nodes + 1.0)
+    ratios = np.sin(angle)  # squeezed towards the kink
+    means = np.array([mean(slip(ratio), law) for ratio in ratios])
+    return 2.0 * 0.25 * math.pi * (weights * np.cos(angle) * (means - ratios)).sum()
+
+
+def test_the_chord_area_of_a_rigid_dahl_curve_is_zero_at_its_published_softness():
+    assert area(dahl(0.01)) == pytest.approx(-0.262, abs=2e-3)
+    assert area(dahl(0.4717)) == pytest.approx(0.0, abs=2e-4)
+    assert area(dahl(1.0)) == pytest.approx(0.141, abs=1e-3)
+
+
+@pytest.mark.parametrize("ratio", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("softness", [0.1, 0.3])
+def test_dahl_friction_of_vanishing_exponent_is_jenkins(ratio, softness):
+    jenkins = mean(slip(ratio), Jenkins(mu=1.0, presliding_length=softness))
+    off = [abs(mean(slip(ratio), dahl(softness, exponent=one)) - jenkins) for one in (0.1, 0.01, 0.001)]
+
+    assert off[0] <= (0.02 if ratio < 0.8 else 0.1) * 0.1
+    assert 8.0 < off[0] / off[1] < 12.0
+    assert 8.0 < off[1] / off[2] < 12.0
+    assert mean(slip(ratio), dahl(softness, exponent=0.0)) == pytest.approx(jenkins, abs=1e-13)
+
+
+def dragged(scene, reach, n, periods):
+    """Jenkins friction by radial return at n slips a period, after so many periods: of first order."""
+    motion, angle = scene.motion(), (np.arange(n) + 0.5) * 2.0 * math.pi / n
+    turn = np.exp(1j * angle)
+    v = (motion.velocity * turn).imag - scene.belt_speed + 1j * (motion.transverse_velocity * turn).imag
+    z, total = 0j, 0j
+    for _ in range(periods):
+        total = 0j
+        for step in (v * 2.0 * math.pi / n).tolist():
+            moved = z + step
+            moved = moved * (reach / abs(moved)) if abs(moved) > reach else moved
+            total, z = total + 0.5 * (z + moved), moved
+    return -total.real / n / reach
+
+
+@pytest.mark.parametrize("reach", [0.01, 0.3])
+@pytest.mark.parametrize("scene", [slip(0.5, 1.0, 1.0, 60.0), transverse(0.2), slip(0.3, 0.5, 1.0, 90.0)])
+def test_jenkins_in_the_plane_is_what_radial_return_tends_to(scene, reach):
+    coarse, fine = (dragged(scene, reach, n, 4) for n in (4000, 8000))
+
+    assert mean(scene, Jenkins(mu=1.0, presliding_length=reach)) == pytest.approx(
+        2.0 * fine - coarse, abs=5e-7
+    )
+
+
+def followed(scene, law, n, periods):
+    """Friction by the midpoint rule in n steps, after so many periods."""
+    motion = scene.motion()
+    turn = np.exp(0.5j * np.arange(2 * n) * 2.0 * math.pi / n)
+    v = (motion.velocity * turn).imag - scene.belt_speed + 1j * (motion.transverse_velocity * turn).imag
+    v, h, z, total = v.tolist(), 2.0 * math.pi / n, 0j, 0j
+    for _ in range(periods):
+        total = 0j
+        for i in range(n):
+            half = z + 0.5 * h * law.rate(v[2 * i], z)
+            dz = law.rate(v[2 * i + 1], half)
+            total, z = total + law.friction(v[2 * i + 1], half, dz), z + h * dz
+    return -total.real / n
+
+
+@pytest.mark.parametrize("scene", [slip(0.5, 1.0, 1.0, 60.0), transverse(0.2)])
+def test_elasto_plastic_friction_in_the_plane_is_what_small_steps_tend_to(scene):
+    law = elasto_plastic(0.3, mu_static=1.2, damping=0.1, viscosity=0.05)
+    coarse, fine = (followed(scene, law, n, 4) for n in (6000, 12000))
+
+    assert abs(fine - coarse) < 5e-5
+    assert mean(scene, law) == pytest.approx(fine, abs=2.0 * abs(fine - coarse) + 1e-6)
+
+
+def test_slip_that_turns_and_comes_to_rest_for_an_instant_is_between_its_neighbours():
+    slower, at_rest, faster = (mean(circular(ratio), elasto_plastic(0.3)) for ratio in (0.999, 1.0, 1.001))
+
+    assert slower < at_rest < faster
+
+
+@pytest.mark.parametrize("law", [dahl, elasto_plastic, lambda one: Jenkins(mu=1.0, presliding_length=one)])
+@pytest.mark.parametrize("scene", [slip(0.5), slip(0.5, 1.0, 1.0, 60.0)])
+def test_twenty_decades_of_stiffness_are_one_smooth_curve_of_small_error(law, scene):
+    means = np.array([mean(scene, law(10.0**power)) for power in range(-10, 11)])
+    coulomb = answer(scene, Coulomb(mu=1.0)).columns["mean_friction"][0]
+
+    assert abs(means[0] - coulomb) < 1e-8
+    assert means[-1] == pytest.approx(means[-2], abs=1e-8)
+    assert (np.abs(means) <= 1.0).all()
+
+
+@pytest.mark.parametrize("law", [dahl(0.4), elasto_plastic(0.4)])
+def test_a_belt_that_outruns_the_slip_feels_full_friction(law):
+    for ratio in (1.0, 1.0 + 1e-9, 1.7):
+        for side in (1.0, -1.0):
+            assert mean(slip(side * ratio), law) == pytest.approx(side, abs=1e-12)
+
+
+def test_viscosity_adds_its_mean():
+    plain, viscous = (LuGre(mu_kinetic=1.0, presliding_length=0.4, viscosity=one) for one in (0.0, 0.3))
+    for ratio in (0.4, 1.3):
+        assert mean(slip(ratio), viscous) == pytest.approx(mean(slip(ratio), plain) + 0.3 * ratio, abs=1e-12)
+
+
+def test_the_mean_is_odd_in_the_belt_speed_and_free_of_the_phase():
+    for law in (dahl(0.3), elasto_plastic(0.3)):
+        forward = mean(slip(0.4), law)
+        shifted = Scene(belt_speed=-0.4, slip=Slip(velocity_amplitude=1.0, frequency=1.0, phase=137.0))
+        assert mean(shifted, law) == pytest.approx(-forward, abs=1e-13)
+
+
+def test_per_axis_friction_along_the_belt_is_that_of_the_line_and_rotated_dahl_is_coulomb():
+    for law in (dahl(0.3, planar="per-axis"), elasto_plastic(0.3, planar="per-axis")):
+        assert mean(slip(0.4, 1.0, 0.7, 50.0), law) == mean(slip(0.4), law)
+    scene = slip(0.4, 1.0, 0.7, 50.0)
+    coulomb = answer(scene, Coulomb(mu=1.0)).columns["mean_friction"][0]
+    assert mean(scene, dahl(0.3, planar="rotated")) == pytest.approx(coulomb, abs=1e-12)
+
+
+def test_a_law_without_a_vector_form_is_refused_in_the_plane_and_answered_on_the_line():
+    law = dahl(0.3, exponent=2.0)
+
+    assert "vector form" in Shooting().refusal(slip(0.4, 1.0, 0.7), law)
+    assert Shooting().refusal(slip(0.4), law) is None
+    assert Shooting().refusal(slip(0.4, 1.0, 0.7), dahl(0.3, exponent=2.0, planar="per-axis")) is None
+    assert "two" not in (Exact().refusal(slip(0.4), law) or "")
+    assert "use shooting" in Exact().refusal(slip(0.4, 1.0, 0.7), dahl(0.3))
+    assert "use shooting" in Exact().refusal(slip(0.4), elasto_plastic(0.3))
+
+
+@pytest.mark.parametrize(
+    ("scene", "law", "most"),
+    [
+        (slip(0.0), Jenkins(mu=1.0, presliding_length=4.0), 0.75),
+        (slip(0.0), elasto_plastic(4.0, breakaway_ratio=0.5), 0.25),
+        (slip(0.0, 1.0, 1.0, 90.0), Jenkins(mu=1.0, presliding_length=4.0), 0.75),
+        (transverse(0.0, 3.0), Jenkins(mu=1.0, presliding_length=5.0), 0.8),
+        (slip(0.0, 0.0), dahl(1.0), 1.0),
+    ],
+)
+def test_slip_within_the_elastic_range_on_a_belt_at_rest_leaves_the_mean_to_the_start(scene, law, most):
+    answers = answer(scene, law)
+
+    assert answers.status == ["not_unique"]
+    assert answers.columns["mean_high"][0] == pytest.approx(most, abs=1e-6)
+    assert answers.columns["mean_low"][0] == -answers.columns["mean_high"][0]
+    assert math.isnan(answers.columns["mean_friction"][0])
+
+
+def test_a_belt_at_rest_drags_nothing_else():
+    for scene in (slip(0.0), transverse(0.0), circular(0.0)):
+        assert mean(scene, dahl(0.3)) == 0.0
+    assert mean(slip(0.0), Jenkins(mu=1.0, presliding_length=0.9)) == 0.0
+
+
+@pytest.mark.parametrize("softness", [0.01, 0.5, 20.0])
+def test_the_loop_of_a_belt_at_rest_turns_its_area_into_heat(softness):
+    loop = 4.0 * softness * (1.0 / softness - math.tanh(1.0 / softness))
+
+    assert answer(slip(0.0), dahl(softness)).columns["energy_contact"][0] == pytest.approx(loop, abs=1e-12)
+
+
+def test_friction_falls_though_its_force_never_changes_sign():
+    answers = answer(slip(0.9), dahl(1.0))
+
+    assert answers.columns["mean_friction"][0] == pytest.approx(0.9645, abs=1e-4)
+    assert answers.columns["reversals"][0] == 2.0
+    assert answers.columns["force_reversals"][0] == 0.0
+    assert answer(slip(0.1), dahl(0.1)).columns["force_reversals"][0] == 2.0
+
+
+@pytest.mark.parametrize(
+    ("scene", "law"),
+    [
+        (slip(0.4), dahl(0.3)),
+        (slip(-0.4), elasto_plastic(0.3)),
+        (slip(0.4, 1.0, 0.7, 50.0), dahl(0.3)),
+        (slip(0.4, 1.0, 0.7, 50.0), dahl(0.3, planar="per-axis")),
+        (slip(0.4, 1.0, 0.7, 50.0), dahl(0.3, planar="rotated")),
+    ],
+)
+def test_the_orbit_has_the_mean_and_the_energies_of_the_columns(scene, law):
+    answers = answer(scene, law)
+    orbit = answers.orbit(0)
+    weights = 0.5 * (orbit.tau[:, -1:] - orbit.tau[:, :1]) * WEIGHTS
+    period = 2.0 * math.pi
+
+    assert (orbit.tau[0, 0], orbit.tau[-1, -1]) == (0.0, pytest.approx(period))
+    friction = (weights * orbit.friction).sum() / period
+    assert -friction.real == pytest.approx(answers.columns["mean_friction"][0], abs=1e-8)
+    taken = (weights * (orbit.friction * orbit.v.conjugate()).real).sum()
+    assert taken == pytest.approx(answers.columns["energy_friction"][0], abs=1e-7)
+    heat = (weights * (orbit.friction * (orbit.v - scene.belt_speed).conjugate()).real).sum()
+    assert heat == pytest.approx(answers.columns["energy_contact"][0], abs=1e-7)
+    assert len(sample(orbit, scene, 50).tau) == 50
+
+
+@given(
+    ratio=st.floats(-1.5, 1.5).filter(lambda ratio: abs(ratio) > 1e-3),
+    size=st.floats(0.0, 2.0),
+    angle=st.floats(-180.0, 180.0),
+    softness=st.floats(-9.0, 9.0).map(lambda power: 10.0**power),
+)
+@example(ratio=1.0, size=0.0, angle=0.0, softness=0.1)
+@example(ratio=1e-3, size=1.0, angle=0.0, softness=1e-9)
+def test_any_ellipse_at_any_stiffness_has_a_mean_within_the_coefficient_and_its_error(
+    ratio, size, angle, softness
+):
+    assert abs(mean(slip(ratio, 1.0, size, angle), dahl(softness))) <= 1.0 + TOLERANCE
+
+
+@given(
+    belt_speed=st.floats(0.1, 3.0),
+    along=st.floats(0.0, 2.0),
+    across=st.floats(0.3, 2.0),
+    phase=st.floats(20.0, 160.0),
+)
+def test_coulombs_mean_is_the_gradient_of_the_mean_slip_speed(
+    belt_speed: float, along: float, across: float, phase: float
+) -> None:
+    """C1: <T> = mu grad <|slip|> over the steady part of slip, on any ellipse."""
+    angle = np.arange(4096) * 2 * np.pi / 4096
+    shaken = along * np.sin(angle) + 1j * across * np.sin(angle + np.radians(phase))
+
+    def mean_speed(steady: complex) -> float:
+        return float(np.abs(shaken - steady).mean())
+
+    closest = np.abs(shaken - belt_speed).min()
+    assume(closest > 0.02)
+    h = 1e-5
+    gradient = (mean_speed(belt_speed + h) - mean_speed(belt_speed - h)) / (2 * h)
+    gradient += 1j * (mean_speed(belt_speed + 1j * h) - mean_speed(belt_speed - 1j * h)) / (2 * h)
+    scene = Scene(
+        belt_speed=belt_speed,
+        slip=Slip(velocity_amplitude=along, frequency=1.0),
+        transverse_slip=TransverseSlip(velocity_amplitude=across, phase=phase),
+    )
+    answers = Shooting().solve([scene], Coulomb(mu=0.4), 1e-9)
+    means = answers.columns["mean_friction"][0], answers.columns["mean_friction_transverse"][0]
+    assert abs(means[0] - 0.4 * gradient.real) <= 1e-7
+    assert abs(means[1] - 0.4 * gradient.imag) <= 1e-7

@@ -1,0 +1,272 @@
+"""Shooting under friction that varies with speed: unrelated integrations, symmetries, means that are not unique."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad, solve_ivp
+from strategies import sizes
+
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.stribeck import Stribeck
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse
+from frictionlab.theory.uniqueness import is_convergent
+
+MILD = Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=8.0)
+ACROSS = Transverse(natural_frequency=4.0, damping_ratio=0.1, load=Load(unbalance=10.0))
+
+
+def scene(belt_speed, transverse=None, **changes):
+    """W1: one degree of freedom at resonance, gamma^2 = 10, but for the changes."""
+    values = {"damping_ratio": 0.1, "normal_load": 10.0, "drive": Drive(unbalance=10.0, frequency=1.0)}
+    return Scene(belt_speed=belt_speed, transverse=transverse, **{**values, **changes})
+
+
+def chaotic(belt_speed=0.3):
+    """A steep fall at light damping, resonance near by."""
+    law = Stribeck(mu_static=0.4, mu_kinetic=0.2, stribeck_speed=1.0, stribeck_exponent=1.0)
+    drive = Drive(unbalance=0.2, frequency=1.3)
+    return scene(belt_speed, damping_ratio=0.01, drive=drive), law
+
+
+def solve(one, law, tolerance=1e-8):
+    """The answers of one scene."""
+    assert Shooting().refusal(one, law) is None
+    answers = Shooting().solve([one], law, tolerance)
+    return answers, {name: float(column[0]) for name, column in answers.columns.items()}
+
+
+class Line:
+    """x'' + c x' + x + N T = F sin(Omega t) under a falling law, by scipy between events; for tests alone."""
+
+    def __init__(self, one, law):
+        self.mass, self.law, self.belt = one.mass(), law, one.belt_speed
+        self.period = 2.0 * math.pi / self.mass.frequency
+
+    def held(self, t, x):
+        """What friction holds at rest on the belt."""
+        load = (self.mass.force * np.exp(1j * self.mass.frequency * t)).imag
+        return load - self.mass.damping * self.belt - x
+
+    def means(self, periods):
+        """Means over one period each, from rest on the belt."""
+        state, t, side, found = [0.0, self.belt, 0.0], 0.0, 0.0, []
+        for count in range(1, periods + 1):
+            state[2] = 0.0
+            while t < count * self.period * (1.0 - 1e-13):
+                state, t, side = (self.slip if side else self.stick)(state, t, count * self.period, side)
+            found.append(-state[2] / self.period)
+        return np.array(found)
+
+    def stick(self, state, t, end, _side):
+        limit = self.mass.normal_load * self.law.static_friction()
+        force = self.held(t, state[0])
+        later = self.held(t + 1e-7, state[0] + 1e-7 * self.belt)
+        if abs(force) >= limit * (1.0 - 1e-12) and abs(later) > abs(force):
+            return state, t, math.copysign(1.0, force)
+
+        def released(s, y):
+            return abs(self.held(s, y[0])) - limit
+
+        released.terminal, released.direction = True, 1.0
+        rates = lambda s, y: [self.belt, 0.0, self.held(s, y[0]) / self.mass.normal_load]  # noqa: E731
+        way = self._solved(rates, state, t, end, released)
+        here = way.t[-1]
+        side = math.copysign(1.0, self.held(here, way.y[0, -1])) if way.status == 1 else 0.0
+        return list(way.y[:, -1]), here, side
+
+    def slip(self, state, t, end, side):
+        def rates(s, y):
+            rub = side * self.law.sliding_friction(max(side * (y[1] - self.belt), 0.0))
+            load = (self.mass.force * np.exp(1j * self.mass.frequency * s)).imag
+            return [y[1], load - self.mass.damping * y[1] - y[0] - self.mass.normal_load * rub, rub]
+
+        def stopped(s, y):
+            return side * (y[1] - self.belt) if s > t + 1e-5 * self.period else 1.0
+
+        stopped.terminal, stopped.direction = True, -1.0
+        way = self._solved(rates, state, t, end, stopped)
+        x, v, rubbed = way.y[:, -1]
+        if way.status != 1:
+            return [x, v, rubbed], way.t[-1], side
+        force = self.held(way.t[-1], x)
+        holds = abs(force) <= self.mass.normal_load * self.law.static_friction()
+        return [x, self.belt, rubbed], way.t[-1], 0.0 if holds else math.copysign(1.0, force)
+
+    def _solved(self, rates, state, t, end, event):
+        options = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-12, "max_step": self.period / 40.0}
+        return solve_ivp(rates, (t, end), state, events=event, **options)
+
+
+@pytest.mark.parametrize(
+    ("one", "law"),
+    [
+        (scene(5.0), MILD),
+        (scene(46.0), Coulomb(mu=0.4, mu_static=0.5)),
+        (scene(1.1, drive=Drive(amplitude=2.5, frequency=0.5)), Coulomb(mu=0.4, mu_static=0.45)),
+        (scene(20.0, normal_load=3.0), Stribeck(mu_kinetic=0.3, mu_static=0.5, curve="hyperbolic")),
+        (scene(-8.0), Stribeck(mu_kinetic=0.3, mu_static=0.4, curve="hess-soom", viscosity=0.005)),
+    ],
+)
+def test_the_mean_is_that_of_an_unrelated_integration_from_rest(one, law):
+    _, row = solve(one, law)
+    means = Line(one, law).means(80)
+
+    assert abs(means[-1] - means[-2]) < 1e-8  # the transient is gone
+    assert row["mean_friction"] == pytest.approx(means[-1], abs=row["error"] + 2e-8)
+    assert row["floquet"] < 1.0
+
+
+def test_in_the_plane_too():
+    one = scene(9.0, ACROSS, normal_load=1.0, drive=Drive(unbalance=10.0, frequency=4.0))
+    _, row = solve(one, MILD)
+    mass, speed, period = one.mass(), one.belt_speed, 2.0 * math.pi / 4.0
+
+    def rates(t, y):
+        slip = complex(y[2] - speed, y[3])
+        rub = MILD.sliding_vector(slip)
+        turn = np.exp(4j * t)
+        along = (mass.force * turn).imag - mass.damping * y[2] - y[0] - rub.real
+        load = (mass.transverse_force * turn).imag
+        across = load - mass.transverse_damping * y[3] - mass.transverse_stiffness * y[1] - rub.imag
+        return [y[2], y[3], along, across, rub.real]
+
+    way = solve_ivp(
+        rates, (0.0, 120 * period), [0.0] * 5, "DOP853", [118 * period, 119 * period, 120 * period],
+        rtol=1e-10, atol=1e-11,
+    )  # fmt: skip
+    means = -np.diff(way.y[4]) / period
+
+    assert abs(means[1] - means[0]) < 1e-8
+    assert row["mean_friction"] == pytest.approx(means[1], abs=row["error"] + 1e-7)
+
+
+@pytest.mark.parametrize("transverse", [None, ACROSS])
+def test_a_curve_without_a_fall_is_that_of_coulomb_friction(transverse):
+    flat = Stribeck(mu_kinetic=0.4, mu_static=0.4)
+    for speed in (2.0, 30.0):
+        one = scene(speed, transverse)
+        _, stribeck = solve(one, flat)
+        _, coulomb = solve(one, Coulomb(mu=0.4))
+
+        assert stribeck["mean_friction"] == pytest.approx(coulomb["mean_friction"], abs=1e-12)
+
+
+def test_a_coefficient_at_rest_that_is_never_needed_changes_nothing():
+    one = scene(20.0)
+    _, row = solve(one, Coulomb(mu=0.4, mu_static=0.6))
+    exact = Exact().solve([one], Coulomb(mu=0.4), 1e-10).columns["mean_friction"][0]
+
+    assert row["stick_fraction"] == 0.0
+    assert row["mean_friction"] == pytest.approx(exact, abs=row["error"] + 1e-12)
+
+
+@given(speed=sizes(1.0, 60.0), drop=st.floats(0.02, 0.15), fast=sizes(2.0, 50.0))
+def test_the_mean_turns_round_with_the_belt_and_balances_the_spring(speed, drop, fast):
+    law = Stribeck(mu_kinetic=0.4, mu_static=0.4 + drop, stribeck_speed=fast)
+    there, row = solve(scene(speed), law)
+    back, other = solve(scene(-speed), law)
+
+    assert there.status == back.status == ["ok"]
+    assert other["mean_friction"] == pytest.approx(
+        -row["mean_friction"], abs=row["error"] + other["error"] + 1e-12
+    )
+    orbit = there.orbit(0)
+    from frictionlab.orbit.panels import WEIGHTS
+
+    half = 0.5 * (orbit.tau[:, -1] - orbit.tau[:, 0])
+    mean_position = (half[:, None] * WEIGHTS * orbit.x.real).sum() / (2.0 * half.sum())
+    assert mean_position == pytest.approx(10.0 * row["mean_friction"], abs=1e-6)
+
+
+@given(speed=sizes(0.5, 60.0), fall=sizes(0.01, 1.0))
+def test_the_error_covers_what_a_finer_tolerance_changes(speed, fall):
+    law = Stribeck(mu_kinetic=0.4, mu_static=0.5, stribeck_speed=1.0 / fall)
+    _, coarse = solve(scene(speed), law, 1e-5)
+    answers, fine = solve(scene(speed), law, 1e-10)
+    if answers.status == ["ok"]:
+        assert abs(coarse["mean_friction"] - fine["mean_friction"]) <= coarse["error"] + fine["error"]
+
+
+def test_damping_decides_whether_a_fall_needs_a_look_at_other_starts():
+    gentle = Stribeck(mu_kinetic=0.39, mu_static=0.4, stribeck_speed=10.0)  # falls by 8.6e-4 per unit at most
+
+    assert is_convergent(scene(5.0, damping_ratio=0.1), gentle)  # 10*8.6e-4 < 2*0.1
+    assert not is_convergent(scene(5.0, damping_ratio=0.002), gentle)
+    weak_across = ACROSS.model_copy(update={"damping_ratio": 0.001})
+    assert not is_convergent(scene(5.0, weak_across), gentle)
+    assert is_convergent(scene(5.0, weak_across.model_copy(update={"load": None})), gentle)
+    assert not is_convergent(scene(5.0, damping_ratio=10.0), Coulomb(mu=0.4, mu_static=0.41))
+    assert is_convergent(scene(5.0, damping_ratio=0.0), Coulomb(mu=0.4))
+
+
+def test_a_mean_that_differs_from_period_to_period_is_a_spread_and_no_number():
+    one, law = chaotic()
+    answers, row = solve(one, law)
+    means = Line(one, law).means(120)[60:]
+
+    assert answers.status == ["not_unique"]
+    assert math.isnan(row["mean_friction"])
+    assert row["mean_high"] - row["mean_low"] > 0.2
+    assert row["mean_low"] == pytest.approx(means.min(), abs=1e-5)
+    assert row["mean_high"] == pytest.approx(means.max(), abs=1e-5)
+    assert row["window"] == 1.0
+    assert row["period"] == 4.0
+    assert "4 drive periods" in answers.reason[0]
+    assert answers.orbit(0) is None
+
+
+def test_a_motion_that_never_repeats_is_told_from_one_that_takes_several_periods():
+    one, law = chaotic(0.1)
+    answers, row = solve(one, law)
+
+    assert answers.status == ["not_unique"]
+    assert math.isnan(row["period"])
+    assert "do not repeat within" in answers.reason[0]
+
+
+def test_where_two_states_attract_the_start_decides():
+    # Sliding without reversal and a stick-slip motion, both driven weakly at light damping.
+    law = Stribeck(mu_static=0.8, mu_kinetic=0.2, stribeck_speed=0.1, viscosity=0.01)
+    quiet = {"damping_ratio": 0.01, "normal_load": 1.0, "drive": Drive(amplitude=0.05, frequency=3.0)}
+    open_, row = solve(scene(0.6, **quiet), law)
+    sliding = Initial(x=law.sliding_friction(0.6), velocity=0.0)
+    given_, answer = solve(scene(0.6, **quiet, initial=sliding), law)
+
+    assert open_.status == ["not_unique"]
+    assert given_.status == ["ok"]
+    assert "scene.initial" in given_.reason[0]
+    assert answer["mean_friction"] == pytest.approx(law.sliding_friction(0.6), rel=0.05)
+    assert row["mean_low"] <= answer["mean_friction"] <= row["mean_high"]
+
+
+def test_one_that_sticks_for_good_depends_on_where_it_stops_up_to_the_static_coefficient():
+    one = scene(0.0, drive=Drive(amplitude=2.0, frequency=0.5))
+    answers, row = solve(one, Coulomb(mu=0.3, mu_static=0.5))
+
+    assert answers.status == ["not_unique"]
+    assert row["mean_high"] == pytest.approx(0.5 - 0.2, abs=1e-6)  # static friction less the load
+
+
+@pytest.mark.parametrize("below", [0.0, 1e-15, 1e-12, 1e-9, 1e-3])
+def test_a_prescribed_slip_keeps_its_digits_where_it_only_just_reverses(below):
+    # by the angle from the crest, slip is belt - V + 2 V sin^2(t/2), without a difference
+    law, belt = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=0.3), 1.0 - below
+    short = 1.0 - belt  # exact
+    turn = 2.0 * math.asin(math.sqrt(0.5 * short))
+
+    def friction(t):
+        return law.sliding_friction(abs(2.0 * math.sin(0.5 * t) ** 2 - short))
+
+    options = {"epsabs": 1e-15, "epsrel": 1e-13, "limit": 500}
+    ahead, back = quad(friction, turn, math.pi, **options)[0], quad(friction, 0.0, turn, **options)[0]
+    one = Scene(belt_speed=belt, slip=Slip(velocity_amplitude=1.0, frequency=1.0))
+    _, row = solve(one, law)
+
+    assert row["mean_friction"] == pytest.approx((ahead - back) / math.pi, abs=row["error"] + 1e-13)

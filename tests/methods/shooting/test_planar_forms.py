@@ -1,0 +1,158 @@
+"""Bristles by axis and bristles along the slip: beside LSODA on the equations of motion, which knows of neither."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import frictionlab as fl
+from frictionlab.bench.peers.bristle_motion import BristleMotion
+from frictionlab.bench.peers.scipy_bristle import one_period, scales
+from frictionlab.laws.memory import BristleLaw
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.orbit.panels import WEIGHTS
+
+BY_AXIS = fl.Dahl(mu=0.4, presliding_length=0.3, planar="per-axis")
+ALONG_SLIP = fl.Dahl(mu=0.4, presliding_length=400.0, planar="rotated")
+
+
+def scene(belt_speed: float, across: float = 8.0) -> fl.Scene:
+    return fl.Scene(
+        damping_ratio=0.1,
+        normal_load=4.0,
+        belt_speed=belt_speed,
+        drive=fl.Drive(amplitude=10.0, frequency=1.3, phase=30.0),
+        transverse=fl.Transverse(
+            natural_frequency=2.1, damping_ratio=0.05, load=fl.Load(amplitude=across, phase=100.0)
+        ),
+    )
+
+
+def solved(scene: fl.Scene, law: BristleLaw, tolerance: float = 1e-8) -> tuple[dict[str, float], fl.Orbit]:
+    answers = Shooting().solve([scene], law, tolerance)
+    orbit = answers.orbit(0)
+    assert answers.status == ["ok"]
+    assert orbit is not None
+    return {name: float(values[0]) for name, values in answers.columns.items()}, orbit
+
+
+def followed(scene: fl.Scene, law: BristleLaw, state: list[float]) -> np.ndarray:
+    """The state after a period, and the integral of friction."""
+    motion = BristleMotion(scene, law, 1_000_000)
+    return one_period(motion, np.array([*state, 0.0]), "LSODA", 1e-12, scales(motion, law, scene) * 1e-12)
+
+
+def start_of(orbit: fl.Orbit, deflection: complex) -> list[float]:
+    x, v = complex(orbit.x[0, 0]), complex(orbit.v[0, 0])
+    return [x.real, v.real, x.imag, v.imag, deflection.real, deflection.imag]
+
+
+@pytest.mark.parametrize("belt_speed", [0.7, 4.0])
+def test_bristles_by_axis_repeat_in_the_coupled_equations_of_motion(belt_speed: float) -> None:
+    here = scene(belt_speed)
+    row, orbit = solved(here, BY_AXIS)
+    state = start_of(orbit, complex(orbit.friction[0, 0]) / BY_AXIS.bristle_stiffness)
+    end = followed(here, BY_AXIS, state)
+    assert end[:-1] == pytest.approx(state, abs=1e-6)
+    mean = -end[-1] * here.mass().frequency / (2.0 * math.pi)
+    assert abs(mean - row["mean_friction"]) <= row["error"] + 1e-9
+
+
+def test_columns_of_both_axes_are_those_of_their_common_orbit() -> None:
+    here = scene(2.0)
+    row, orbit = solved(here, BY_AXIS)
+    weight = 0.5 * np.diff(orbit.tau[:, [0, -1]]) * WEIGHTS
+    mass, period = here.mass(), float(np.ptp(orbit.tau))
+    assert period == pytest.approx(2.0 * math.pi / mass.frequency)
+    rub, v = orbit.friction, orbit.v
+    assert -(weight * rub.real).sum() / period == pytest.approx(row["mean_friction"], abs=1e-7)
+    assert -(weight * rub.imag).sum() / period == pytest.approx(row["mean_friction_transverse"], abs=1e-7)
+    taken = mass.normal_load * (weight * (rub.real * v.real + rub.imag * v.imag)).sum()
+    assert taken == pytest.approx(row["energy_friction"], rel=1e-6)
+    assert row["energy_input"] == pytest.approx(row["energy_viscous"] + row["energy_friction"], rel=1e-6)
+    assert row["transverse_velocity_amplitude"] == pytest.approx(0.5 * np.ptp(v.imag), rel=1e-3)
+    harmonic = 2.0 / period * (weight * v.imag * np.exp(-1j * mass.frequency * orbit.tau)).sum()
+    assert abs(harmonic) == pytest.approx(row["transverse_velocity_harmonic"], rel=1e-6)
+    lead = math.degrees(np.angle(1j * harmonic / mass.force))
+    assert lead == pytest.approx(row["transverse_velocity_phase"], abs=1e-4)
+
+
+def test_a_mass_held_elastically_across_the_belt_has_a_mean_along_it() -> None:
+    law = fl.Jenkins(mu=0.4, presliding_length=2.0, planar="per-axis")
+    here = scene(2.0, across=0.5)
+    answers = Shooting().solve([here], law, 1e-8)
+    assert answers.status == ["ok"]
+    assert "elastically: its mean there depends on the start" in answers.reason[0]
+    assert math.isnan(answers.columns["mean_friction_transverse"][0])
+    mass = here.mass()
+    spring = mass.transverse_stiffness + mass.normal_load * law.bristle_stiffness
+    dynamic = complex(spring - mass.frequency**2, mass.frequency * mass.transverse_damping)
+    moved = mass.frequency * abs(mass.transverse_force / dynamic)
+    assert answers.columns["transverse_velocity_amplitude"][0] == pytest.approx(moved, rel=1e-6)
+    assert answers.columns["floquet"][0] == pytest.approx(1.0, abs=1e-6)
+    alone = Shooting().solve([here.model_copy(update={"transverse": None})], law, 1e-8)
+    assert answers.columns["mean_friction"][0] == alone.columns["mean_friction"][0]
+
+
+def test_a_deflection_along_the_slip_ends_at_its_limit_and_is_forgotten_slowly() -> None:
+    here, limit = scene(6.0), 400.0
+    row, orbit = solved(here, ALONG_SLIP)
+    end = followed(here, ALONG_SLIP, start_of(orbit, complex(limit, 0.0)))
+    assert end[:-1] == pytest.approx(start_of(orbit, complex(limit, 0.0)), abs=1e-6)
+    mean = -end[-1] * here.mass().frequency / (2.0 * math.pi)
+    assert abs(mean - row["mean_friction"]) <= row["error"] + 1e-9
+    lacking = followed(here, ALONG_SLIP, start_of(orbit, complex(limit - 1e-3, 0.0)))
+    assert (limit - lacking[4]) / 1e-3 == pytest.approx(row["floquet"], rel=1e-3)
+
+
+def test_corners_that_the_planar_map_does_not_locate_do_not_stop_an_answer() -> None:
+    """Yield by axis that took the planar map minutes, and no answer."""
+    across = fl.Transverse(
+        natural_frequency=2.0667, damping_ratio=0.0239, load=fl.Load(amplitude=8.9327, phase=133.32)
+    )
+    here = fl.Scene(
+        damping_ratio=0.06465,
+        normal_load=0.76581,
+        belt_speed=4.10308,
+        drive=fl.Drive(amplitude=14.30244, frequency=1.24511, phase=199.6852),
+        transverse=across,
+    )
+    law = fl.Jenkins(mu=0.66428, presliding_length=0.08527, planar="per-axis")
+    row, _ = solved(here, law, 1e-6)
+    assert row["error"] <= 1e-6
+    marched = fl.steady_state(here, law, method=fl.March(stepper="rk4"), tolerance=1e-3)
+    assert abs(marched.mean_friction - row["mean_friction"]) <= marched.error + row["error"]
+
+
+def test_a_slider_along_the_slip_holds_no_more_than_its_friction() -> None:
+    """The planar map also closed with its spring stretched further than it reaches, and gave 0.4333."""
+    across = fl.Transverse(
+        natural_frequency=0.310121, damping_ratio=0.0371532, load=fl.Load(amplitude=0.309817)
+    )
+    here = fl.Scene(
+        damping_ratio=0.104649,
+        normal_load=0.0434252,
+        belt_speed=0.152624,
+        drive=fl.Drive(amplitude=0.127950, frequency=1.277137, phase=178.874),
+        transverse=across,
+    )
+    law = fl.Jenkins(mu=0.826357, presliding_length=1.68817e-4, planar="rotated")
+    _row, orbit = solved(here, law, 1e-7)
+    assert np.abs(orbit.friction).max() <= 0.826357 * (1.0 + 1e-12)
+    smooth = fl.Dahl(mu=0.826357, presliding_length=1.68817e-4, planar="rotated")  # the same once it slides
+    state = start_of(orbit, complex(1.68817e-4, 0.0))
+    assert followed(here, smooth, state)[:-1] == pytest.approx(state, abs=1e-6)
+
+
+def test_on_a_belt_at_rest_no_start_tells_where_bristles_along_the_slip_hold() -> None:
+    here = scene(0.0, across=0.1)
+    here = here.model_copy(
+        update={"drive": fl.Drive(amplitude=0.2, frequency=1.3), "initial": fl.Initial(x=0.05)}
+    )
+    answers = Shooting().solve([here], ALONG_SLIP, 1e-6)
+    assert answers.status == ["not_unique"]
+    assert "the mass stays wherever it stops" in answers.reason[0]
+    assert "scene.initial" not in answers.reason[0]
+    assert 0.0 < answers.columns["mean_high"][0] == -answers.columns["mean_low"][0] < 0.4

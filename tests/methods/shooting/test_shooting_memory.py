@@ -1,0 +1,242 @@
+"""Bodies on contacts with several memories or with scalars: against other laws, and against scipy."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import os
+from typing import Any
+
+import numpy as np
+import pytest
+from maxwell_slip import MaxwellSlip
+from memory_laws import Ageing, Elements, elements
+from scipy.integrate import solve_ivp
+
+import frictionlab as fl
+from frictionlab.methods.periodic.maps.memory_state import Scales, kept, recalled
+
+DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
+deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
+ONE = elements(stiffness=(40.0,), reach=(0.01,))
+THREE = elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
+STIFF = elements(stiffness=(1e4, 2e3, 5e2), reach=(1.5e-5, 5e-5, 3e-4))
+TOLERANCES = [1e-4, 1e-6, 1e-8]
+
+
+def driven(belt_speed: float, damping: float = 0.4) -> fl.Scene:
+    """A body that forgets where it started within some ten periods."""
+    drive = fl.Drive(unbalance=10, frequency=1.5)
+    return fl.Scene(damping_ratio=damping, normal_load=10, belt_speed=belt_speed, drive=drive)
+
+
+def by_lsoda(scene: fl.Scene, law: Ageing, periods: int) -> float:
+    """The mean friction of the last of so many periods, with the interpreted law; slip is integrated as such."""
+    mass = scene.mass()
+    span = 2.0 * math.pi / mass.frequency
+
+    def rates(tau: float, state: Any) -> list[float]:
+        x, w, age, _ = state.tolist()
+        rub = law.friction(w, [age], [0.0])
+        v = w + scene.belt_speed
+        push = (mass.force * cmath.exp(1j * mass.frequency * tau)).imag - mass.damping * v - x
+        return [v, push - mass.normal_load * rub, law.rate(w, [age], 0), rub]
+
+    state = np.array([0.0, -scene.belt_speed, law.steady(scene.belt_speed, 0), 0.0])
+    for _ in range(periods):
+        state[3] = 0.0
+        found = solve_ivp(rates, (0.0, span), state, "LSODA", rtol=1e-10, atol=1e-12)
+        state = found.y[:, -1]
+    return float(-state[3] / span)
+
+
+def by_legs(scene: fl.Scene, law: MaxwellSlip | Elements, periods: int) -> float:
+    """The same for elements: between reversals of slip each deflection is the way slid, cut off at its reach."""
+    mass = scene.mass()
+    span, reach = 2.0 * math.pi / mass.frequency, np.array(law.reach)
+    z, state, tau, rubbed = -reach, np.array([0.0, -scene.belt_speed, 0.0]), 0.0, 0.0
+
+    def slip(tau: float, state: Any, start: Any) -> float:
+        return float(state[1])
+
+    def rates(tau: float, state: Any, start: Any) -> list[float]:
+        way = state[0] - start[0] - scene.belt_speed * (tau - start[1])
+        rub = float(np.dot(law.stiffness, np.clip(start[2] + way, -reach, reach)))
+        v = state[1] + scene.belt_speed
+        push = (mass.force * cmath.exp(1j * mass.frequency * tau)).imag - mass.damping * v - state[0]
+        return [v, push - mass.normal_load * rub, rub]
+
+    slip.terminal = True  # type: ignore[attr-defined]
+    for n in range(1, periods + 1):
+        state[2] = 0.0
+        while tau < n * span:
+            start = state[0], tau, z
+            slip.direction = -math.copysign(1.0, state[1])  # type: ignore[attr-defined]
+            options = {"events": slip, "rtol": 1e-12, "atol": 1e-13}
+            leg = solve_ivp(rates, (tau, n * span), state, "DOP853", args=(start,), **options)
+            way = leg.y[0, -1] - start[0] - scene.belt_speed * (leg.t[-1] - tau)
+            z, tau, state = np.clip(z + way, -reach, reach), leg.t[-1], leg.y[:, -1].copy()
+            if leg.status == 1:
+                state[1] = math.copysign(1e-14, slip.direction)  # type: ignore[attr-defined]
+        rubbed = state[2]
+    return float(-rubbed / span)
+
+
+def by_planar_legs(scene: fl.Scene, law: MaxwellSlip | Elements, periods: int) -> float:
+    """In the plane: each deflection goes with the slip, or turns on its circle, until it reaches or leaves that."""
+    mass = scene.mass()
+    span, reach, stiffness = 2.0 * math.pi / mass.frequency, np.array(law.reach), np.array(law.stiffness)
+    yields, state, tau = np.zeros(reach.size, bool), np.zeros(6 + 2 * reach.size), 0.0
+
+    def deflections(state: Any) -> Any:
+        return np.where(yields, reach * np.exp(1j * state[6::2]), state[6::2] + 1j * state[7::2])
+
+    def rates(tau: float, state: Any) -> Any:
+        z, w = deflections(state), complex(state[2] - scene.belt_speed, state[3])
+        rub, sine = (stiffness * z).sum(), math.sin(mass.frequency * tau)
+        along = mass.force.real * sine - mass.damping * state[2] - mass.stiffness * state[0]
+        across = mass.transverse_force.real * sine - mass.transverse_damping * state[3]
+        across -= mass.transverse_stiffness * state[1]
+        turning = (w * z.conjugate()).imag / reach**2
+        moved = [np.where(yields, turning, w.real), np.where(yields, 0.0, w.imag)]
+        push = along - mass.normal_load * rub.real, across - mass.normal_load * rub.imag
+        return np.array([*state[2:4], *push, rub.real, rub.imag, *np.column_stack(moved).ravel()])
+
+    def until(k: int) -> Any:
+        def corner(tau: float, state: Any) -> float:
+            z, w = deflections(state)[k], complex(state[2] - scene.belt_speed, state[3])
+            return float((w * z.conjugate()).real if yields[k] else abs(z) - reach[k])
+
+        corner.terminal = True  # type: ignore[attr-defined]
+        corner.direction = -1.0 if yields[k] else 1.0  # type: ignore[attr-defined]
+        return corner
+
+    for n in range(1, periods + 1):
+        state[4] = 0.0
+        while tau < n * span:
+            events = [until(k) for k in range(reach.size)]
+            options = {"events": events, "rtol": 1e-11, "atol": 1e-13, "max_step": span / 60.0}
+            leg = solve_ivp(rates, (tau, n * span), state, "DOP853", **options)
+            tau, state = leg.t[-1], leg.y[:, -1].copy()
+            for k in [k for k, met in enumerate(leg.t_events) if met.size]:
+                z = deflections(state)[k] * (1.0 - 1e-13)
+                state[6 + 2 * k : 8 + 2 * k] = (z.real, z.imag) if yields[k] else (cmath.phase(z), 0.0)
+                yields[k] = not yields[k]
+    return float(-state[4] / span)
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("belt_speed", [0.5, 5.0])
+def test_one_element_is_jenkins_friction(belt_speed: float, tolerance: float) -> None:
+    scene = driven(belt_speed, damping=0.1)
+
+    known = fl.steady_state(scene, fl.Jenkins(mu=0.4, stiffness=40), "shooting")
+    found = fl.steady_state(scene, ONE, tolerance=tolerance)
+
+    assert found.status == "ok", found.reason
+    assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("belt_speed", [0.1, 0.5, 1.5])
+def test_one_element_is_jenkins_friction_under_a_prescribed_slip(belt_speed: float, tolerance: float) -> None:
+    slip = fl.Slip(velocity_amplitude=1, frequency=2, phase=30)
+    scene = fl.Scene(belt_speed=belt_speed, normal_load=3, slip=slip)
+
+    known = fl.steady_state(scene, fl.Jenkins(mu=0.4, stiffness=4))
+    found = fl.steady_state(scene, elements(stiffness=(4.0,), reach=(0.1,)), tolerance=tolerance)
+
+    assert found.status == "ok", found.reason
+    assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
+    assert found.energy_contact == pytest.approx(known.energy_contact, rel=1e-3)
+
+
+@deep
+def test_elements_that_never_yield_leave_the_mean_open() -> None:
+    slip = fl.Slip(velocity_amplitude=0.05, frequency=2)
+
+    found = fl.steady_state(fl.Scene(belt_speed=0, slip=slip), elements(stiffness=(4.0,), reach=(0.1,)))
+
+    assert found.status == "not_unique"
+    assert "start" in found.reason
+
+
+SLIPPERY = Ageing(a=0.03, b=0.02)
+TAKING_NOTHING_BACK = Elements(stiffness=THREE.stiffness, reach=THREE.reach)
+
+
+@pytest.mark.parametrize(
+    ("law", "belt_speed"),
+    [
+        pytest.param(THREE, 1.0, id="three elements"),
+        pytest.param(STIFF, 1.0, id="three stiff elements"),
+        pytest.param(TAKING_NOTHING_BACK, 1.0, id="springs that stay where a step overshot", marks=deep),
+        pytest.param(SLIPPERY, 40.0, id="no reversal", marks=deep),
+        pytest.param(SLIPPERY, 3.0, id="two reversals", marks=deep),
+    ],
+)
+def test_the_error_covers_what_scipy_finds_on_the_interpreted_law(
+    law: Ageing | MaxwellSlip | Elements, belt_speed: float
+) -> None:
+    scene = driven(belt_speed)
+    known = by_lsoda(scene, law, 14) if isinstance(law, Ageing) else by_legs(scene, law, 14)
+
+    for tolerance in TOLERANCES:
+        found = fl.steady_state(scene, law, tolerance=tolerance)
+
+        assert found.status == "ok", found.reason
+        assert found.error <= tolerance
+        assert abs(found.mean_friction - known) <= found.error + 3e-9
+
+
+def test_a_curve_of_elements_has_every_column_of_a_steady_state() -> None:
+    table = fl.curve(driven(1.0), THREE, belt_speed=np.linspace(0.5, 25.0, 8), tolerance=1e-6)
+
+    assert set(table["status"]) == {"ok"}
+    assert "mass and memory" in table["model"][0]
+    balance = table["energy_input"] - table["energy_viscous"] - table["energy_friction"]
+    assert np.abs(balance).max() <= 1e-4 * table["energy_input"].abs().max()
+    assert table["floquet"].max() < 1.0
+
+
+@deep
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+def test_one_element_is_jenkins_friction_in_the_plane(tolerance: float) -> None:
+    drive, load = fl.Drive(unbalance=10, frequency=1.5), fl.Load(unbalance=6)
+    across = fl.Transverse(natural_frequency=0.7, damping_ratio=0.1, load=load)
+    scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=2, drive=drive, transverse=across)
+
+    known = fl.steady_state(scene, fl.Jenkins(mu=0.4, stiffness=4))
+    found = fl.steady_state(scene, elements(stiffness=(4.0,), reach=(0.1,)), tolerance=tolerance)
+
+    assert found.status == "ok", found.reason
+    assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
+
+
+@deep
+@pytest.mark.parametrize("law", [THREE, TAKING_NOTHING_BACK], ids=["takes back", "stays"])
+def test_the_error_covers_what_scipy_finds_of_elements_in_the_plane(law: MaxwellSlip | Elements) -> None:
+    across = fl.Transverse(natural_frequency=0.7, damping_ratio=0.4, load=fl.Load(unbalance=6))
+    scene = driven(2.0).model_copy(update={"transverse": across})
+    known = by_planar_legs(scene, law, 16)
+
+    for tolerance in TOLERANCES:
+        found = fl.steady_state(scene, law, tolerance=tolerance)
+
+        assert found.status == "ok", found.reason
+        assert abs(found.mean_friction - known) <= found.error + 3e-9
+
+
+@pytest.mark.parametrize("share", [1e-30, 1e-3, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 40.0, 1e9])
+def test_an_age_of_any_size_is_kept_in_a_state_and_grows_no_faster_there_than_it_does(share: float) -> None:
+    law, like = Ageing(), 0.0
+    scales = Scales(np.array([2.0]), np.array([3.0]), np.array([True]))
+    write, read = kept.bodies[0], recalled.bodies[0]
+    state, memory = np.zeros(2), np.zeros(1)
+
+    write(np.array([3.0 * share]), law, scales, state[:1], 0, like)
+    write(np.array([3.0 * share + 1e-3]), law, scales, state[1:], 0, like)
+    read(memory, law, scales, state, 0, like)
+
+    assert memory[0] == pytest.approx(3.0 * share, rel=1e-12)
+    assert 0.0 < state[1] - state[0] <= 2.0 * (1e-3 / 3.0) * 1.0001 or share < 1.0

@@ -1,0 +1,174 @@
+"""Undriven scenes: limit cycles against closed forms and published numbers, and the states that do not move."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from strategies import sizes
+
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.stribeck import Stribeck
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Initial, Scene, Transverse
+
+TURN = 2.0 * math.pi
+LEINE = Stribeck(mu_static=1.0, mu_kinetic=0.0, stribeck_speed=1.0 / 3.0, curve="hyperbolic")
+CUBIC = Stribeck(mu_static=0.4, mu_kinetic=0.25, stribeck_speed=0.5, curve="cubic")
+
+
+def solve(law, belt_speed, tolerance=1e-8, **scene):
+    """Answers of one undriven scene: its row, its largest deflection, its status."""
+    values = {"damping_ratio": 0.0, "normal_load": 1.0, **scene}
+    one = Scene(belt_speed=belt_speed, **values)
+    assert Shooting().refusal(one, law) is None
+    answers = Shooting().solve([one], law, tolerance)
+    row = {name: float(column[0]) for name, column in answers.columns.items()}
+    orbit = answers.orbit(0)
+    deflection = float(orbit.x.real.max()) if orbit is not None else math.nan
+    return answers.status[0], row, deflection, answers.model[0]
+
+
+def test_leines_block_has_its_published_period_and_deflection():
+    # x'' + x = friction 1/(1 + 3|v|) on a belt of speed 0.2 (Leine, van Campen, de Kraker & van den Steen, 1998);
+    # the digits are of an event-driven integration at 1e-13
+    status, row, deflection, _ = solve(LEINE, 0.2)
+
+    assert status == "ok"
+    assert row["period"] * TURN == pytest.approx(12.001031294830, abs=1e-8)
+    assert deflection == pytest.approx(1.133944676441, abs=1e-5)  # the highest node of the orbit's record
+    assert row["floquet"] == 0.0
+
+
+def test_leines_block_deflects_as_far_as_published():
+    values = {"damping_ratio": 0.0, "normal_load": 1.0}
+    orbit = Shooting().solve([Scene(belt_speed=0.2, **values)], LEINE, 1e-10).orbit(0)
+    row = int(np.flatnonzero((orbit.v.real[:, 0] > 0.0) & (orbit.v.real[:, -1] <= 0.0))[0])
+    half = 0.5 * (orbit.tau[row, -1] - orbit.tau[row, 0])
+    nodes = (orbit.tau[row] - orbit.tau[row, 0]) / half - 1.0
+    x, v = (np.polynomial.Polynomial.fit(nodes, part[row].real, 9) for part in (orbit.x, orbit.v))
+    turning = [root.real for root in v.roots() if abs(root.imag) < 1e-9 and abs(root.real) <= 1.0]
+
+    assert max(x(root) for root in turning) == pytest.approx(1.133944676441, abs=1e-8)
+
+
+@given(
+    mu=sizes(0.05, 2.0), jump=sizes(0.02, 2.0), load=sizes(0.1, 10.0), belt_speed=sizes(0.02, 5.0),
+    side=st.sampled_from([-1.0, 1.0]),
+)  # fmt: skip
+def test_two_level_friction_without_damping_sticks_and_slips_as_in_closed_form(
+    mu, jump, load, belt_speed, side
+):
+    # amplitude sqrt(v_b^2 + D^2) about x = f and period 2 D/v_b + 2 pi - 2 atan(D/v_b), D = (mu_s - mu) N
+    law = Coulomb(mu=mu, mu_static=mu * (1.0 + jump))
+    status, row, _, _ = solve(law, side * belt_speed, normal_load=load)
+    drop = mu * jump * load
+
+    assert status == "ok"
+    expected = 2.0 * drop / belt_speed + TURN - 2.0 * math.atan(drop / belt_speed)
+    assert row["period"] * TURN == pytest.approx(expected, rel=1e-8)
+    assert row["mean_friction"] == pytest.approx(side * mu, rel=1e-8, abs=row["error"])
+    assert row["velocity_amplitude"] == pytest.approx(
+        0.5 * (belt_speed + math.hypot(belt_speed, drop)), rel=1e-6
+    )
+    assert row["energy_input"] == 0.0
+    assert row["energy_friction"] == pytest.approx(0.0, abs=1e-6 * (drop + belt_speed) ** 2)
+
+
+@pytest.mark.parametrize("below", [0.999, 0.95, 0.92])
+def test_just_below_the_critical_belt_speed_a_cycle_of_slip_has_the_published_amplitude(below):
+    # Thomsen & Fidlin (2003), to leading order: A = 2 sqrt(v_b1^2 - v_b^2) below v_b1 as here
+    critical = 0.5 * math.sqrt(1.0 - 4.0 * 0.01 * 0.5 / (3.0 * 0.15))
+    status, row, _, model = solve(CUBIC, below * critical, damping_ratio=0.01)
+    amplitude = 2.0 * critical * math.sqrt(1.0 - below**2)
+
+    assert status == "ok"
+    assert "cycle of slip" in model
+    assert row["velocity_amplitude"] == pytest.approx(amplitude, rel=0.3 * (1.0 - below) + 1e-3)
+    assert row["stick_fraction"] == 0.0
+    assert 0.0 < row["floquet"] < 1.0
+
+
+def test_above_the_critical_belt_speed_sliding_is_steady():
+    critical = 0.5 * math.sqrt(1.0 - 4.0 * 0.01 * 0.5 / (3.0 * 0.15))
+    status, row, deflection, model = solve(CUBIC, 1.01 * critical, damping_ratio=0.01)
+
+    assert status == "ok"
+    assert "steady sliding" in model
+    assert row["mean_friction"] == pytest.approx(CUBIC.sliding_friction(1.01 * critical), rel=1e-14)
+    assert deflection == pytest.approx(row["mean_friction"], rel=1e-12)
+    assert math.isnan(row["period"])
+    assert row["velocity_amplitude"] == pytest.approx(0.0, abs=1e-12)
+
+
+@given(damping=sizes(1e-3, 5.0), belt_speed=sizes(1e-3, 10.0), side=st.sampled_from([-1.0, 1.0]))
+def test_plain_coulomb_friction_on_a_damped_mass_always_ends_in_steady_sliding(damping, belt_speed, side):
+    status, row, _, model = solve(Coulomb(mu=0.4), side * belt_speed, damping_ratio=damping)
+
+    assert status == "ok"
+    assert "steady sliding" in model
+    assert row["mean_friction"] == side * 0.4
+
+
+@given(law=st.sampled_from([LEINE, CUBIC, Coulomb(mu=0.3, mu_static=0.6)]), belt_speed=sizes(1e-4, 0.3))
+@example(law=LEINE, belt_speed=10.0**-0.9375)
+@example(law=Coulomb(mu=0.3, mu_static=0.6), belt_speed=0.01)
+def test_the_error_of_a_limit_cycle_covers_what_a_finer_tolerance_changes(law, belt_speed):
+    _, coarse, _, _ = solve(law, belt_speed, 1e-5, damping_ratio=0.02)
+    _, fine, _, _ = solve(law, belt_speed, 1e-11, damping_ratio=0.02)
+
+    assert abs(coarse["mean_friction"] - fine["mean_friction"]) <= coarse["error"] + fine["error"]
+    assert fine["error"] <= 1e-9
+
+
+def test_a_limit_cycle_turns_round_with_the_belt():
+    _, there, _, _ = solve(LEINE, 0.2)
+    _, back, _, _ = solve(LEINE, -0.2)
+
+    assert back["mean_friction"] == pytest.approx(-there["mean_friction"], abs=1e-10)
+    assert back["period"] == pytest.approx(there["period"], abs=1e-10)
+
+
+def test_the_state_is_the_one_reached_from_the_start():
+    # Two states attract here: steady sliding, and stick-slip around it.
+    law = Stribeck(mu_static=0.8, mu_kinetic=0.2, stribeck_speed=0.1, viscosity=0.01)
+    *_, from_rest = solve(law, 0.4, damping_ratio=0.001)
+    sliding = Initial(x=law.sliding_friction(0.4), velocity=0.0)
+    *_, from_sliding = solve(law, 0.4, damping_ratio=0.001, initial=sliding)
+
+    assert "stick-slip" in from_rest
+    assert "steady sliding" in from_sliding
+
+
+def test_on_a_belt_at_rest_the_mass_stays_where_it_stops():
+    # free decay takes 2 f from every half swing: from 1.0 the mass stops on the other side, at 0.2 < f
+    status, row, deflection, model = solve(Coulomb(mu=0.4), 0.0, initial=Initial(x=1.0))
+
+    assert status == "ok"
+    assert "at rest" in model
+    assert deflection == pytest.approx(-0.2, abs=1e-9)
+    assert row["mean_friction"] == pytest.approx(-0.2, abs=1e-9)
+
+
+def test_a_free_oscillation_that_never_dies_has_a_multiplier_of_one():
+    status, row, _, model = solve(Coulomb(mu=0.4), 0.5)
+
+    assert status == "ok"
+    assert "never dies" in model
+    assert row["mean_friction"] == 0.4
+    assert row["floquet"] == 1.0
+
+
+def test_a_start_across_the_belt_is_refused_without_a_drive():
+    scene = Scene(
+        damping_ratio=0.1,
+        normal_load=1.0,
+        belt_speed=0.2,
+        transverse=Transverse(natural_frequency=1.0, damping_ratio=0.1),
+        initial=Initial(x2=1.0),
+    )
+
+    assert "initial.x2" in Shooting().refusal(scene, LEINE)

@@ -1,0 +1,143 @@
+"""The eighth-order step: its order conditions by what it does, and its order on planar Coulomb friction."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from frictionlab.compile.decorators import fast, njit
+from frictionlab.numerics.steppers.dop853 import State, stepper
+
+
+class Power(NamedTuple):
+    """x'' = tau^power - stiffness*x; friction tau^power."""
+
+    power: int
+    stiffness: float
+
+
+@fast
+def _power_rates(problem, tau, x, v):
+    return tau**problem.power - problem.stiffness * x, tau**problem.power
+
+
+_power_step = stepper(_power_rates)
+
+
+@njit
+def power_step(problem, tau, x, v, h):
+    a, f = _power_rates(problem, tau, x, v)
+    return _power_step(problem, tau, State(x, v, a, f), h)
+
+
+class Belt(NamedTuple):
+    """A circularly driven mass on a belt: x'' = load e^(i tau) - x - 0.2 x' - friction w/|w|, w = x' - belt."""
+
+    load: float
+    friction: float
+    belt: float
+
+
+@fast
+def _belt_rates(problem, tau, x, v):
+    w = v - problem.belt
+    rub = w / math.sqrt(w.real * w.real + w.imag * w.imag)
+    turn = complex(math.cos(tau), math.sin(tau))
+    return problem.load * turn - x - 0.2 * v - problem.friction * rub, rub
+
+
+_belt_step = stepper(_belt_rates)
+
+
+@njit
+def belt_run(problem, x, v, end, steps):
+    """Position, velocity and friction impulse after so many equal steps."""
+    h, rubbed = end / steps, 0j
+    for i in range(steps):
+        a, f = _belt_rates(problem, i * h, x, v)
+        taken = _belt_step(problem, i * h, State(x, v, a, f), h)
+        x, v, rubbed = taken.x, taken.v, rubbed + taken.rubbed
+    return x, v, rubbed
+
+
+@njit
+def belt_errors(problem, x, v, h):
+    """The error estimates of one step of the velocity, of order 5 and 3."""
+    a, f = _belt_rates(problem, 0.0, x, v)
+    taken = _belt_step(problem, 0.0, State(x, v, a, f), h)
+    return abs(taken.v_error5), abs(taken.v_error3)
+
+
+@pytest.mark.parametrize("power", range(8))
+def test_powers_of_time_below_the_eighth_are_integrated_exactly(power):
+    tau, h = 0.7, 0.9
+    taken = power_step(Power(power, 0.0), tau, 0.3, -0.2, h)
+    first = ((tau + h) ** (power + 1) - tau ** (power + 1)) / (power + 1)
+    second = ((tau + h) ** (power + 2) - tau ** (power + 2)) / ((power + 1) * (power + 2))
+    second -= h * tau ** (power + 1) / (power + 1)
+    assert taken.v == pytest.approx(-0.2 + first, rel=1e-14, abs=1e-15)
+    assert taken.rubbed == pytest.approx(first, rel=1e-14, abs=1e-15)
+    if power < 7:  # a position is a double integral: one order more
+        assert taken.x == pytest.approx(0.3 - 0.2 * h + second, rel=1e-14, abs=1e-15)
+
+
+def test_the_eighth_power_of_time_is_not():
+    taken = power_step(Power(8, 0.0), 0.0, 0.0, 0.0, 1.0)
+    assert abs(taken.v - 1.0 / 9.0) > 1e-9
+
+
+def test_free_motion_is_straight_and_has_no_error():
+    taken = power_step(Power(0, 0.0), 0.0, 1.0, 2.0, 0.5)
+    assert taken.x == pytest.approx(1.0 + 2.0 * 0.5 + 0.125, rel=1e-15)
+    for name in ("x_error5", "x_error3", "v_error5", "v_error3"):
+        assert abs(getattr(taken, name)) <= 1e-14, name
+
+
+def test_powers_the_error_estimates_are_blind_to_are_those_of_their_order():
+    for power in range(7):
+        taken = power_step(Power(power, 0.0), 0.0, 0.0, 0.0, 1.0)
+        assert (abs(taken.v_error5) < 1e-14) == (power < 5)
+        assert (abs(taken.v_error3) < 1e-14) == (power < 3)
+
+
+def test_a_spring_is_stepped_to_the_ninth_power_of_the_step():
+    def error(h):
+        taken = power_step(Power(0, 1.0), 0.0, 2.0, 0.0, h)
+        return abs(taken.x - (1.0 + math.cos(h)))
+
+    steps = np.array([0.5, 0.7, 1.0, 1.4])
+    slope = np.polyfit(np.log(steps), np.log([error(h) for h in steps]), 1)[0]
+    assert 8.5 <= slope <= 10.5
+
+
+def test_planar_coulomb_friction_is_integrated_to_order_eight():
+    problem, start = Belt(10.0, 4.0, 5.0), (0.4 - 9.0j, 9.0 + 1.0j)
+    end = 2.0 * math.pi
+    fine = belt_run(problem, *start, end, 4000)
+    counts = np.array([32, 40, 48, 64])
+    for part in range(3):
+        errors = [abs(belt_run(problem, *start, end, n)[part] - fine[part]) for n in counts]
+        assert errors[-1] > 1e-13
+        slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+        assert 7.5 <= slope <= 9.0, part
+
+
+def test_the_error_estimates_shrink_with_their_order():
+    problem, start = Belt(10.0, 2.0, 1.5), (0.4 - 9.0j, 9.0 + 1.0j)
+    steps = np.array([0.05, 0.1, 0.2])
+    fifth, third = np.array([belt_errors(problem, *start, h) for h in steps]).T
+    assert 5.5 <= np.polyfit(np.log(steps), np.log(fifth), 1)[0] <= 7.0
+    assert 3.5 <= np.polyfit(np.log(steps), np.log(third), 1)[0] <= 5.0
+
+
+def test_line_and_plane_are_one_step():
+    on_the_line = power_step(Power(2, 1.3), 0.2, 0.7, -0.4, 0.6)
+    turn = cmath.rect(1.0, 0.0)
+    in_the_plane = power_step(Power(2, 1.3), 0.2, 0.7 * turn, -0.4 * turn, 0.6)
+    assert in_the_plane.x.imag == in_the_plane.v.imag == 0.0
+    assert in_the_plane.x.real == pytest.approx(on_the_line.x, rel=1e-15)
+    assert in_the_plane.v.real == pytest.approx(on_the_line.v, rel=1e-15)

@@ -1,0 +1,251 @@
+"""The time steppers alone: the orders they declare, stability, and friction's impulse within its disk."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from strategies import sizes
+
+from frictionlab.compile.cache import compiled
+from frictionlab.compile.decorators import inner
+from frictionlab.dynamics import smoothing
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.stribeck import Stribeck
+from frictionlab.methods.march.laps import (
+    TIRED,
+    MarchSettings,
+    march_moreau,
+    march_rk4,
+    march_smoothed,
+    restoring_force,
+)
+from frictionlab.methods.march.run import loaded
+from frictionlab.numerics.steppers import moreau
+from frictionlab.scene.body import Body, Mass, in_the_plane, on_the_line
+
+LAW = Coulomb(mu=0.4)
+END = 10.37
+GRIDS = 200 * 2 ** np.arange(8)
+
+
+class Push(NamedTuple):
+    """A mass from rest, gamma^2 = 10, beta = 0.1, loads P along x1 and across at a quarter period's lag."""
+
+    load: float
+    belt_speed: float
+    planar: bool
+
+
+CROSSING, STICK = Push(10.0, 14.0, False), Push(6.0, 0.5, False)
+SMOOTH = Push(10.0, 14.0, True)
+
+
+def body_of(push: Push) -> Body:
+    """The body of a push, all of its load on it."""
+    mass = Mass(
+        damping=0.2,
+        stiffness=1.0,
+        transverse_damping=0.3,
+        transverse_stiffness=2.0,
+        normal_load=10.0,
+        frequency=1.0,
+        force=complex(push.load),
+        transverse_force=1j * push.load,
+    )
+    return loaded(in_the_plane(mass) if push.planar else on_the_line(mass), mass, not push.planar)
+
+
+def alike() -> Body:
+    """The planar body with springs and dashpots that know no direction."""
+    body = body_of(SMOOTH)
+    return body._replace(damping_mean=0.2, damping_split=0.0, stiffness_mean=1.0, stiffness_split=0.0)
+
+
+def way_of(push: Push, steps: int, theta: float, **changes: Any) -> MarchSettings:
+    """Once from tau = 0 to the end in equal steps."""
+    angle = np.arange(2 * steps + 1) * (END / (2 * steps))
+    loads = push.load * np.sin(angle) + (1j * push.load * np.cos(angle) if push.planar else 0.0)
+    values = {
+        "belt_speed": push.belt_speed, "driven": True, "loads": loads, "span": END, "first": END / steps,
+        "theta": theta, "width": 1.0, "shape": smoothing.TANH, "accuracy": 1e-12, "reach": END / steps,
+        "enough": 0.0, "most": 1, "stride": 2, "rate": 0.0, "near": 0.0, "work": 10**9, "window": 50,
+        "room": 0,
+    }  # fmt: skip
+    return MarchSettings(**(values | changes))
+
+
+def end_of(kernel: Any, push: Push, steps: int, theta: float = 0.5, **changes: Any) -> np.ndarray:
+    """Position and velocity at the end."""
+    start = 0j if push.planar else 0.0
+    march = compiled(kernel, LAW)(body_of(push), way_of(push, steps, theta, **changes), start, start)
+    assert march.verdict != TIRED
+    return np.array([march.x[-1], march.v[-1]])
+
+
+def reference(push: Push) -> np.ndarray:
+    """By another stepper: smooth motion by the eighth-order one with next to no smoothing, jumps by many steps."""
+    if push.planar:
+        return end_of(march_smoothed, push, 100, width=1e-3, accuracy=1e-13, first=1e-3)
+    return end_of(march_moreau, push, 3_276_800)
+
+
+def worst_order(kernel: Any, push: Push, theta: float, shifts: int) -> float:
+    """The slope of the largest error of several neighbouring grids: one alone may round reversals luckily."""
+    exact = reference(push)
+    errors = [
+        max(np.abs(end_of(kernel, push, steps + 3 * shift, theta) - exact).sum() for shift in range(shifts))
+        for steps in GRIDS.tolist()
+    ]
+    return float(np.polyfit(np.log(1.0 / GRIDS), np.log(errors), 1)[0])
+
+
+@pytest.mark.parametrize(
+    ("push", "kernel", "theta", "low", "high"),
+    [
+        (CROSSING, march_rk4, 0.5, 0.7, 1.5),
+        (CROSSING, march_moreau, 0.5, 0.8, 1.5),
+        (CROSSING, march_moreau, 1.0, 0.9, 1.1),
+        (STICK, march_rk4, 0.5, 0.7, 1.5),
+        (STICK, march_moreau, 0.5, 1.7, 2.3),
+        (STICK, march_moreau, 1.0, 0.9, 1.1),
+    ],
+)
+def test_jumps_of_friction_leave_the_orders_that_are_known_of_them(push, kernel, theta, low, high):
+    assert low <= worst_order(kernel, push, theta, 6) <= high
+
+
+@pytest.mark.parametrize(
+    ("kernel", "theta", "order", "grids"),
+    [(march_rk4, 0.5, 4, 400), (march_moreau, 0.5, 2, 800), (march_moreau, 1.0, 1, 12_800)],
+)
+def test_planar_slip_without_rest_is_stepped_at_the_declared_order(kernel, theta, order, grids):
+    exact = reference(SMOOTH)
+    coarse, fine = (np.abs(end_of(kernel, SMOOTH, n, theta) - exact).sum() for n in (grids, 4 * grids))
+    assert math.log(coarse / fine, 4.0) == pytest.approx(order, abs=0.25 if order < 4 else 1.0)
+
+
+@pytest.mark.parametrize("steps", [12_800, 51_200, 102_403, 1_638_400])
+@pytest.mark.parametrize("kernel", [march_rk4, march_moreau])
+def test_equal_steps_end_with_the_lap_however_their_sum_is_rounded(kernel, steps):
+    """One more, of rounding's length, would read a load beyond the last."""
+    march = compiled(kernel, LAW)(body_of(CROSSING), way_of(CROSSING, steps, 1.0), 0.0, 0.0)
+    assert march.steps == steps
+
+
+# --- moreau -------------------------------------------------------------------------------------------------------
+
+
+class Problem(NamedTuple):
+    """What a step of moreau sees."""
+
+    law: Any
+    body: Body
+    belt_speed: float
+    loads: Any
+    theta: float
+
+
+_step = moreau.stepper(restoring_force)
+
+
+@inner
+def one_step(law, body, belt_speed, loads, theta, x, v, h):
+    """One step, for tests."""
+    return _step(Problem(law, body, belt_speed, loads, theta), 0, x, v, h)
+
+
+def step(body, belt_speed, load, theta, x, v, h, law=LAW):
+    """One step of moreau under a constant load."""
+    loads = np.full(3, load)
+    return compiled(one_step, law)(body, belt_speed, loads, theta, x, v, h)
+
+
+planar = st.builds(
+    lambda size, angle: size * complex(math.cos(angle), math.sin(angle)),
+    sizes(1e-3, 1e3),
+    st.floats(-3.2, 3.2),
+)
+thetas = st.sampled_from([0.5, 1.0])
+
+
+@given(x=planar, v=planar, load=planar, h=sizes(1e-5, 1e3), theta=thetas)
+def test_the_impulse_of_friction_never_leaves_its_disk(x, v, load, h, theta):
+    law = Stribeck(mu_static=0.6, mu_kinetic=0.3, stribeck_speed=0.5)
+    taken = step(body_of(SMOOTH), 0.7, load, theta, x, v, h, law)
+    highest = 0.6 if taken.stuck else 0.6 * (1.0 + 1e-12)
+    assert abs(taken.rubbed) <= highest * h * (1.0 + 1e-12)
+    assert not taken.stuck or taken.v == 0.7
+
+
+@given(x=planar, v=planar, load=planar, h=sizes(1e-5, 1e2), theta=thetas)
+def test_friction_never_pushes_the_mass_along_its_slip(x, v, load, h, theta):
+    taken = step(body_of(SMOOTH), 0.7, load, theta, x, v, h)
+    if not taken.stuck:
+        mean = theta * taken.v + (1.0 - theta) * v - 0.7
+        assert (taken.rubbed * mean.conjugate()).real >= -1e-12 * abs(taken.rubbed) * (
+            abs(v) + abs(taken.v) + 0.7
+        )
+
+
+@given(
+    x=sizes(1e-3, 1e3), v=sizes(1e-3, 1e3), load=st.floats(-100.0, 100.0), h=sizes(1e-5, 1e2), theta=thetas
+)
+def test_a_step_in_the_plane_along_the_belt_is_the_step_on_the_line(x, v, load, h, theta):
+    on_the_line = step(body_of(CROSSING), 14.0, load, theta, x, -v, h)
+    in_the_plane = step(alike(), 14.0, complex(load), theta, complex(x), complex(-v), h)
+    size = abs(x) + abs(v) + abs(load) + 14.0
+    assert in_the_plane.x == pytest.approx(on_the_line.x, abs=1e-11 * size * (1.0 + h))
+    assert in_the_plane.v == pytest.approx(on_the_line.v, abs=1e-11 * size)
+
+
+@given(x=planar, v=planar, load=planar, angle=st.floats(-3.2, 3.2), h=sizes(1e-4, 10.0), theta=thetas)
+def test_a_step_turns_with_the_plane_where_nothing_has_a_direction(x, v, load, angle, h, theta):
+    turn = complex(math.cos(angle), math.sin(angle))
+    one, turned = (
+        step(alike(), 0.0, load, theta, x, v, h),
+        step(alike(), 0.0, turn * load, theta, turn * x, turn * v, h),
+    )
+    size = (abs(x) + abs(v) + abs(load)) * (1.0 + h)
+    assert turned.x == pytest.approx(turn * one.x, abs=1e-9 * size)
+    assert turned.v == pytest.approx(turn * one.v, abs=1e-9 * size)
+
+
+@pytest.mark.parametrize("theta", [0.5, 1.0])
+@pytest.mark.parametrize("h", [10.0, 1e3, 1e6])
+def test_a_free_mass_never_gains_energy_however_long_the_step(theta, h):
+    body = body_of(SMOOTH)
+    x, v = 3.0 - 2.0j, 5.0 + 1.0j
+    for _ in range(50):
+        taken = step(body, 0.0, 0j, theta, x, v, h)
+        before, after = (abs(b) ** 2 + a.real**2 + 2.0 * a.imag**2 for a, b in ((x, v), (taken.x, taken.v)))
+        assert after <= before * (1.0 + 1e-9)
+        x, v = taken.x, taken.v
+
+
+# --- smoothed -----------------------------------------------------------------------------------------------------
+
+
+@inner
+def share_of(shape, u):
+    """The share of friction at u widths, for tests."""
+    return smoothing.share(shape, u)
+
+
+@pytest.mark.parametrize(
+    ("shape", "slope", "tail"),
+    [
+        (smoothing.TANH, 1.0, lambda u: 2.0 * math.exp(-2.0 * u)),
+        (smoothing.SQUARE_ROOT, 1.0, lambda u: 0.5 / u**2),
+        (smoothing.ARCTAN, 2.0 / math.pi, lambda u: 2.0 / math.pi / u),
+    ],
+)
+def test_smoothing_rises_at_its_slope_and_leaves_its_tail(shape, slope, tail):
+    share = compiled(share_of)
+    assert share(shape, 1e-6) == pytest.approx(slope * 1e-6, rel=1e-9)
+    for u in (3.0, 10.0, 30.0):
+        assert 0.0 <= 1.0 - share(shape, u) <= tail(u) * (1.0 + 1e-9) + 1e-16

@@ -1,0 +1,368 @@
+"""Laws from outside that are broken: each is told with its package, what is wrong and what to do; others go on."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from frictionlab import cli, registry
+from frictionlab.registry import smoke_test
+from frictionlab.run.yaml_text import yaml_text
+
+HEAD = "from typing import ClassVar\n\nimport frictionlab as fl\n\n\n"
+GOOD = f'''{HEAD}class Good(fl.SlidingLaw):
+    """Friction of one strength. Source: Amontons (1699)."""
+
+    mu: fl.Positive
+
+    def sliding_friction(self, speed):
+        return self.mu
+'''
+SLIP = {"slip": {"velocity_amplitude": 2, "frequency": 1}, "belt_speed": 1}
+SCENE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
+
+Brings = Callable[..., Path]
+
+
+@pytest.fixture
+def brings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Brings]:
+    """Installs a package: a module and the entry point that leads to it."""
+    monkeypatch.chdir(tmp_path)
+    site = tmp_path / "site"
+    monkeypatch.syspath_prepend(str(site))
+
+    def bring(
+        text: str, value: str = "some_law:Good", name: str = "some", package: str = "somebodys"
+    ) -> Path:
+        home = site / f"{package}-1.2.dist-info"
+        home.mkdir(parents=True)
+        (home / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {package}\nVersion: 1.2\n")
+        (home / "entry_points.txt").write_text(f"[frictionlab.laws]\n{name} = {value}\n")
+        if text:
+            (site / "some_law.py").write_text(text)
+        _forget()
+        return site
+
+    yield bring
+    sys.modules.pop("some_law", None)
+    _forget()
+
+
+def _forget() -> None:
+    importlib.invalidate_caches()
+    registry._doors.cache_clear()
+    registry._load.cache_clear()
+
+
+def study(kind: str, scene: object = SLIP) -> str:
+    given = {"schema": 1, "scene": scene, "laws": [{"kind": kind, "mu": 0.4}]}
+    Path(f"{kind}.yaml").write_text(yaml_text(given))
+    return f"{kind}.yaml"
+
+
+def good(changes: dict[str, str]) -> str:
+    text = GOOD
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+RETURN, DEF, MU = "return self.mu", "def sliding_friction(self, speed)", "    mu: fl.Positive\n"
+BRISTLE = f"{HEAD}class Good(fl.BristleLaw):\n    def sliding_friction(self, speed):\n        return 0.4\n"
+BROKEN = {
+    "syntax error": (
+        {RETURN: "return self.mu +"},
+        "cannot be loaded: SyntaxError: invalid syntax\n  {file}:12: return self.mu +",
+    ),
+    "missing dependency": (
+        {HEAD: f"import not_there.at_all\n{HEAD}"},
+        "needs 'not_there', which is not installed\n  {file}:1: import not_there.at_all\n"
+        "install that, or leave it out: pip install not_there",
+    ),
+    "error at import": (
+        {HEAD: f"{HEAD}LIMIT = 1 / 0\n\n\n"},
+        "cannot be loaded: ZeroDivisionError: division by zero\n  {file}:6: LIMIT = 1 / 0",
+    ),
+    "exit at import": (
+        {HEAD: f"raise SystemExit(3)\n{HEAD}"},
+        "cannot be loaded: SystemExit: 3\n  {file}:1: raise SystemExit(3)",
+    ),
+    "missing method": (
+        {GOOD: BRISTLE},
+        "class Good does not define friction(self, v, z, dz), rate(self, v, z)",
+    ),
+    "wrong signature": (
+        {DEF: "def sliding_friction(self, speed, load)"},
+        "sliding_friction(self, speed, load) must take (self, speed)\n  {file}:11: def",
+    ),
+    "static method": (
+        {f"    {DEF}": "    @staticmethod\n    def sliding_friction(speed)", RETURN: "return 0.4"},
+        "sliding_friction must be an ordinary method, sliding_friction(self, speed), not a staticmethod",
+    ),
+    "returns nothing": (
+        {RETURN: "self.mu"},
+        "sliding_friction(speed=1.0) returns None, which is no number: is its return missing?\n  {file}:11: def",
+    ),
+    "returns a word": (
+        {RETURN: "return 'fast'"},
+        "sliding_friction(speed=1.0) returns 'fast', which is no number\n  {file}:11: def",
+    ),
+    "returns a number for a yes": (
+        {RETURN: "return self.mu\n\n    def monotone(self):\n        return 1.0"},
+        "monotone() returns 1.0, which is no True or False\n  {file}:14: def monotone(self):",
+    ),
+    "raises in a method": (
+        {RETURN: "return self.muu"},
+        "sliding_friction(speed=1.0) raises AttributeError: 'Good' object has no attribute 'muu'\n  {file}:12:",
+    ),
+    "raises in a property": (
+        {f"    {DEF}": f"    @property\n    def half(self):\n        return self.moo / 2\n\n    {DEF}"},
+        "its properties raises AttributeError: 'Good' object has no attribute 'moo'\n  {file}:13: return",
+    ),
+    "mutable default": (
+        {MU: f"{MU}    table: list[float] = [1.0]\n"},
+        "parameter 'table' has a default that can change, a list; a law is its parameters and nothing else",
+    ),
+    "mutable attribute": (
+        {MU: f"{MU}    seen: ClassVar[list[float]] = []\n"},
+        "it keeps seen = [], which can change; a law is its",
+    ),
+    "private state": (
+        {MU: f"{MU}    _last: float = 0.0\n"},
+        "it keeps a state of its own, _last; a law is its parameters",
+    ),
+    "raises on construction": (
+        {f"    {DEF}": f"    def model_post_init(self, _):\n        raise KeyError('mu')\n\n    {DEF}"},
+        "Good(mu=1) raises KeyError: 'mu'\n  {file}:12: raise KeyError('mu')",
+    ),
+    "refuses its defaults": (
+        {
+            MU: "    mu: fl.Positive = 1.0\n\n    def model_post_init(self, _):\n        assert 0, 'too small'\n"
+        },
+        "its own defaults are refused: Assertion failed, too small",
+    ),
+    "not a class": ({GOOD: "Good = 3\n"}, "is not a class but 3; its entry point must name the class itself"),
+    "not a law": (
+        {"fl.SlidingLaw": "fl.Drive", f"\n{MU}": ""},
+        "class Good is not derived from frictionlab.SlidingLaw, BristleLaw or MemoryLaw",
+    ),
+    "broken citation": ({MU: f"{MU}    bibtex: ClassVar[str] = '@article{{x, year = '\n"}, "its bibtex: "),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_a_broken_law_is_told_with_its_package_and_the_remedy_and_others_go_on(
+    case: str, brings: Brings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    changes, words = BROKEN[case]
+    site = brings(good(changes))
+    told = words.format(file=site / "some_law.py")
+
+    assert cli.main(["laws"]) == 4
+    said = capsys.readouterr()
+    assert "coulomb" in said.out
+    assert "some " not in said.out
+    assert said.err.startswith("law 'some' of package somebodys 1.2 (some_law:Good): ")
+    assert told in said.err
+    assert "pip install not_there" in said.err or "mend it, or: pip uninstall somebodys" in said.err
+    assert "Traceback" not in said.err
+
+    assert cli.main(["run", study("some")]) == 4
+    assert told in capsys.readouterr().err
+    assert cli.main(["laws", "some"]) == 4
+    assert cli.main(["check", study("coulomb")]) == 0
+    assert cli.main(["schema"]) == 0
+    assert '"some"' not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ("nowhere:Good", "leads to nothing: there is no module 'nowhere'"),
+        ("some_law.deeper:Good", "leads to nothing: there is no module 'some_law.deeper'"),
+        ("some_law:Bad", "leads to nothing: module 'some_law' has no attribute 'Bad'"),
+    ],
+)
+def test_an_entry_point_to_nothing_says_what_is_missing(
+    value: str, words: str, brings: Brings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    brings(GOOD, value)
+
+    assert cli.main(["run", study("some")]) == 4
+    said = capsys.readouterr().err
+    assert f"law 'some' of package somebodys 1.2 ({value}): {words}" in said
+    assert "pip uninstall somebodys" in said
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        good({RETURN: "while True: pass"}),
+        good({DEF: "def model_post_init(self, _):\n        while True: pass\n\n    " + DEF}),
+    ],
+)
+def test_a_law_that_hangs_is_stopped(
+    text: str, brings: Brings, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Only for a while, so that no thread outlives the test.
+    brings(text.replace("while True: pass", "import time; time.sleep(1.0); return 0.4"))
+    monkeypatch.setattr(smoke_test, "LIMIT", 0.2)
+
+    assert cli.main(["laws"]) == 4
+    assert "does not return: stopped after 0.2 s" in capsys.readouterr().err
+
+
+def test_a_package_with_a_sound_law_is_in_the_list_the_schema_and_studies(
+    brings: Brings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    brings(GOOD)
+
+    assert cli.main(["laws", "--json"]) == 0
+    assert "some" in [record["name"] for record in json.loads(capsys.readouterr().out)]
+    assert cli.main(["schema"]) == 0
+    assert '"some"' in capsys.readouterr().out
+    assert cli.main(["run", study("some"), "-o", "out"]) == 0
+    account = json.loads(Path("out/provenance.json").read_text())
+    assert list(account["code"]) == ["some"]
+
+
+def test_an_edited_package_is_noticed_and_a_removed_one_leaves_the_report(
+    brings: Brings, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    site = brings(GOOD)
+    assert cli.main(["run", study("some"), "-o", "out"]) == 0
+
+    (site / "some_law.py").write_text(good({RETURN: "return 2 * self.mu"}))
+    sys.modules.pop("some_law")
+    _forget()
+    assert cli.main(["run", "some.yaml", "-o", "out"]) == 2
+    assert "the code of law 'some' was edited since" in capsys.readouterr().err
+
+    monkeypatch.setattr(sys, "path", [path for path in sys.path if path != str(site)])
+    _forget()
+    assert cli.main(["report", "out"]) == 0
+    assert cli.main(["run", "some.yaml", "-o", "out"]) == 2
+    assert "install the package that brings it, or list its file under plugins" in capsys.readouterr().err
+
+
+def test_two_packages_that_bring_one_name_are_both_told(
+    brings: Brings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    brings(f"{GOOD}\n\nclass Other(Good):\n    pass\n")
+    brings("", "some_law:Other", package="anothers")
+
+    assert cli.main(["run", study("some")]) == 4
+    said = capsys.readouterr().err
+    assert "law 'some' is brought by " in said
+    assert "somebodys 1.2 (some_law:Good)" in said
+    assert "anothers 1.2 (some_law:Other)" in said
+    assert "mend one of them, or uninstall it" in said
+
+
+def test_nobody_takes_the_place_of_a_law_of_frictionlab(
+    brings: Brings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    brings(GOOD, name="coulomb")
+
+    assert registry.law_class("coulomb").__module__ == "frictionlab.laws.coulomb"
+    assert cli.main(["run", study("coulomb"), "-o", "out"]) == 0
+    capsys.readouterr()
+    assert cli.main(["laws"]) == 4
+    said = capsys.readouterr()
+    assert "coulomb" in said.out
+    assert "somebodys 1.2 (some_law:Good)" in said.err
+    assert "frictionlab's own is used; the others need another name" in said.err
+
+
+def test_a_law_that_numba_cannot_compile_fails_its_points_with_the_authors_line(
+    brings: Brings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    site = brings(
+        good({RETURN: "return self.half(speed)\n\n    def half(self, speed):\n        return self.mu"})
+    )
+    Path("both.yaml").write_text(
+        yaml_text(
+            {"schema": 1, "scene": SCENE, "laws": [{"kind": kind, "mu": 0.4} for kind in ("some", "coulomb")]}
+        )
+    )
+
+    assert cli.main(["run", "both.yaml", "-o", "out"]) == 4
+    said = capsys.readouterr()
+    line = f"{site / 'some_law.py'}:12: return self.half(speed)"
+    words = (
+        "cannot be compiled by numba: a method cannot call the law's own method 'half': make that a function"
+    )
+    assert f"broken plugin: law Good (some_law) {words} of the module; {line}; Use only float" in said.out
+    assert "1 ok, 1 failed" in said.out or "1 failed, 1 ok" in said.out
+    assert "Traceback" not in said.err
+
+
+def test_a_law_that_fails_with_the_parameters_given_is_told_before_the_run(
+    brings: Brings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    site = brings(good({RETURN: "return self.mu if self.mu > 0.5 else None"}))
+
+    assert cli.main(["laws"]) == 0
+    assert cli.main(["run", study("some")]) == 4
+    assert (
+        f"sliding_friction(speed=1.0) returns None, which is no number: is its return missing?\n  {site}"
+        in (capsys.readouterr().err)
+    )
+
+
+def test_an_error_only_some_speeds_meet_fails_those_points(
+    brings: Brings, capsys: pytest.CaptureFixture[str]
+) -> None:
+    brings(good({RETURN: "return self.mu if speed < 2.9 else [][3]"}))
+    path = Path(study("some"))
+    path.write_text(path.read_text() + "sweep: {scene.belt_speed: [0.1, 1]}\n")
+
+    assert cli.main(["run", str(path), "-o", "out"]) == 4
+    said = capsys.readouterr()
+    assert "broken plugin: a law of" in said.out
+    assert "IndexError: list index out of range" in said.out
+    assert "Traceback" not in said.err
+
+
+def test_a_law_in_a_file_is_told_with_its_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, changes in {
+        "one": {RETURN: "return self.mu +"},
+        "two": {RETURN: "self.mu"},
+        "three": {GOOD: "x = 1\n"},
+    }.items():
+        (tmp_path / f"{name}.py").write_text(good(changes))
+    one, two, three = (str(tmp_path / f"{name}.py") for name in ("one", "two", "three"))
+
+    assert cli.main(["laws", "--law", one]) == 4
+    assert (
+        f"file {one}: cannot be loaded: SyntaxError: invalid syntax\n  {one}:12: " in capsys.readouterr().err
+    )
+    assert cli.main(["laws", "--law", two]) == 4
+    said = capsys.readouterr()
+    assert f"law 'good' (class Good) of file {two}: sliding_friction(speed=1.0) returns None" in said.err
+    assert "coulomb" in said.out
+    assert cli.main(["laws", "--law", three]) == 4
+    assert f"file {three}: defines no law: give it a class derived from" in capsys.readouterr().err
+
+
+def test_the_command_itself_lists_what_works_beside_what_does_not(brings: Brings) -> None:
+    site = brings(good({RETURN: "while True: pass"}))
+    done = subprocess.run(
+        [sys.executable, "-c", "import sys; from frictionlab.cli import main; sys.exit(main())", "laws"],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(site), *filter(None, sys.path)])},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+
+    assert done.returncode == 4
+    assert "stribeck" in done.stdout
+    assert "sliding_friction(speed=1.0) does not return: stopped after 2 s" in done.stderr

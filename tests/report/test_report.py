@@ -1,0 +1,759 @@
+# ruff: noqa: RUF001
+"""The report of a run: everything is on the page, nothing on it runs, and nothing is fetched for it."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+from fake_methods import Fake, breaks_down
+from pages import Page, complaints
+
+import frictionlab as fl
+from frictionlab import registry
+from frictionlab.columns import _IN_SI, _NAMES
+from frictionlab.registry.bibliography import references
+from frictionlab.report import bibtex, figures, tables, write_index, write_report
+from frictionlab.report.markup import html, symbol_html
+from frictionlab.report.page import report, wall
+from frictionlab.report.sources import sources
+from frictionlab.run import api
+from frictionlab.run.errors import FolderError, SaveError
+from frictionlab.run.saved import Saved, read_saved, saved_as
+from frictionlab.scaffold.study import new_study
+from frictionlab.study import StudyError
+
+SCENE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
+HOSTILE = "<script>alert(1)</script></title></style> & \"quotes\" 'and' {{ 7 * 7 }} $\\mu$"
+SVG = '<svg xmlns="http://www.w3.org/2000/svg"/>'
+
+
+@pytest.fixture(autouse=True)
+def _with_a_method_that_does_as_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = registry.method_class
+    monkeypatch.setattr(registry, "method_class", lambda name: Fake if name == "fake" else known(name))
+    names = registry.method_names()
+    monkeypatch.setattr(registry, "method_names", lambda: [*names, "fake"])
+
+
+Runner = Callable[..., Saved]
+
+
+@pytest.fixture
+def ran(tmp_path: Path) -> Runner:
+    """Runs a study, with pictures of nothing in place of figures."""
+
+    def run(name: str = "run", **changes: Any) -> Saved:
+        given = {"schema": 1, "scene": SCENE, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["fake"]}
+        sweep = {"sweep": {"scene.belt_speed": [4.0, 13.0, -2.0, 9.0, 3.0, 5.0]}}
+        done = fl.run(given | sweep | changes, out=tmp_path / name)
+        draw_nothing(tmp_path / name)
+        return saved_as(done)
+
+    return run
+
+
+def draw_nothing(folder: Path) -> None:
+    (folder / "figures").mkdir()
+    for name in ("mean_friction", "velocity", "energies"):
+        (folder / "figures" / f"{name}.svg").write_text(SVG)
+
+
+def stop(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Saved:
+    """A run that is interrupted once one of its two chunks is done."""
+
+    def collect_one(left: Any, pool: Any, take: Any, tick: Any) -> None:
+        collect(left[:1], pool, take, tick)
+        raise KeyboardInterrupt
+
+    collect = api.collect
+    monkeypatch.setattr(api, "collect", collect_one)
+    study = {"schema": 1, "scene": SCENE, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["fake"]}
+    study |= {"sweep": {"scene.drive.frequency": [1.0, 1.5], "scene.belt_speed": [1.0, 2.0]}}
+    study |= {"expect": [{"column": "mean_friction", "below": 1}]}
+    with pytest.raises(api.Interrupted):
+        fl.run(study, out=tmp_path / "stopped")
+    return read_saved(tmp_path / "stopped")
+
+
+ODD_STUDIES: dict[str, dict[str, Any]] = {
+    "markup everywhere": {
+        "title": HOSTILE,
+        "source": HOSTILE,
+        "laws": [
+            {"kind": "coulomb", "mu": 0.4, "label": HOSTILE},
+            {"kind": "coulomb", "mu": 0.3, "label": "_{^"},
+        ],
+        "methods": [{"kind": "fake", "label": HOSTILE}],
+        "expect": [{"column": "mean_friction", "below": 1, "because": HOSTILE}],
+    },
+    "very long labels": {"laws": [{"kind": "coulomb", "mu": 0.4, "label": "long " * 80 + "L" * 300}]},
+    "other scripts": {
+        "title": "Ωμέγα, трение, 摩擦 🙂",
+        "laws": [{"kind": "coulomb", "mu": 0.4, "label": "µ 摩"}],
+    },
+    "forty curves": {
+        "sweep": {
+            "scene.drive.frequency": {"start": 0.1, "stop": 4, "num": 40},
+            "scene.belt_speed": [1.0, 2.0],
+        }
+    },
+    "no point that is ok": {"sweep": {"scene.belt_speed": [13.0]}},
+    "one point": {"sweep": {}},
+    "prescribed slip": {
+        "scene": {"belt_speed": 0.5, "slip": {"velocity_amplitude": 1, "frequency": 1}},
+    },
+    "the plane": {"scene": SCENE | {"transverse": {"natural_frequency": 0.5, "damping_ratio": 0.1}}},
+    "panels": {
+        "sweep": {
+            "scene.drive.frequency": [1.0, 2.0],
+            "scene.damping_ratio": [0.1, 0.2, 0.3],
+            "scene.belt_speed": [1.0, 2.0],
+        }
+    },
+}
+
+
+@pytest.mark.parametrize("name", ODD_STUDIES)
+def test_a_page_is_sound_html_that_needs_nothing_else_and_can_be_heard(name: str, ran: Runner) -> None:
+    assert complaints(report(ran(**ODD_STUDIES[name]))) == []
+
+
+def test_the_reader_of_pages_sees_what_is_wrong_with_one() -> None:
+    bad = (
+        '<html><body><h1>A</h1><h3 onclick="x">B</h3><img src="http://x/y.png"><script>1</script><b>'
+        '<a href="#no">c</a></i><table><tr><th>d</th></tr></table><i id="e"></i><i id="e"></i>'
+        "<style>p { background: url(x) }</style></body></html>"
+    )
+
+    found = " ".join(complaints(bad))
+
+    for complaint in ("no language", "level 3", "onclick", "<script>", "http://x", "without words", "url("):
+        assert complaint in found
+    for complaint in (
+        "closes nothing",
+        "stays open",
+        "nowhere: #no",
+        "without scope",
+        "without caption",
+        "twice: e",
+    ):
+        assert complaint in found
+
+
+def test_text_of_a_study_is_text_on_the_page(ran: Runner) -> None:
+    page = Page(report(ran(**ODD_STUDIES["markup everywhere"])))
+
+    assert page.title == page.all("title")[0].text == HOSTILE
+    assert {row[0] for row in page.table("The friction laws")[1:]} == {HOSTILE, "_{^"}
+    assert HOSTILE in page.table("What the study expects")[1][1]
+    assert f"Source: {HOSTILE}" in page.all("main")[0].text
+    assert HOSTILE in page.all("figcaption")[0].text
+    assert HOSTILE in page.all("img")[0].attributes["alt"]
+
+
+def test_a_table_that_is_wider_than_the_page_shows_that_it_scrolls(ran: Runner) -> None:
+    (style,) = [element for element in Page(report(ran())).elements if element.tag == "style"]
+    rules = re.findall(r"([^{}]+)\{([^{}]*)\}", style.text.partition("@media print")[0])
+    boxes = " ".join(rule for names, rule in rules if names.strip().endswith(".scroll, pre"))
+
+    assert "background-attachment: local, local, scroll, scroll" in boxes
+    assert any("::-webkit-scrollbar" in names for names, _ in rules)
+
+
+def test_the_page_forbids_a_browser_to_run_or_fetch_anything(ran: Runner) -> None:
+    policies = [
+        element.attributes["content"]
+        for element in Page(report(ran())).all("meta")
+        if element.attributes.get("http-equiv") == "Content-Security-Policy"
+    ]
+
+    assert policies == ["default-src 'none'; img-src data:; style-src 'unsafe-inline'"]
+
+
+def test_what_was_asked_is_there_in_words_symbols_and_numbers(ran: Runner) -> None:
+    laws = [
+        {"kind": "coulomb", "mu": 0.4, "label": "a.b"},
+        {"kind": "coulomb", "mu": 0.2, "label": "slippery"},
+    ]
+    sweep = {"scene.belt_speed": {"start": 0.5, "stop": 10, "num": 20}, "laws.a.b.mu": [0.1, 0.3]}
+    page = Page(report(ran(laws=laws, sweep=sweep, tolerance=1e-6, keep={"orbit": 20})))
+
+    scene = {row[0]: row[1:] for row in page.table("The scene")}
+    assert scene["normal load"] == ["γ2", "10"]
+    assert scene["drive frequency"] == ["Ω", "1"]
+    assert scene["belt speed"] == ["vb", "swept: 0.5 … 10, 20 values in steps of 0.5"]
+    assert [row[-1] for row in page.table("The friction laws")[1:]] == ["μ = swept: 0.1, 0.3", "μ = 0.2"]
+    assert page.table("The sweep")[1:] == [
+        ["belt speed vb", "scene.belt_speed", "0.5 … 10, 20 values in steps of 0.5"],
+        ["friction coefficient μ of a.b", "laws.a.b.mu", "0.1, 0.3"],
+    ]
+    words = " ".join(page.all("main")[0].text.split())
+    assert "one degree of freedom, on a moving belt, shaken along it" in words
+    assert "of at most 1e-06. Of every steady state 20 samples are kept" in words
+
+
+@pytest.mark.parametrize(
+    ("scene", "words"),
+    [
+        (SCENE, "one degree of freedom, on a moving belt, shaken along it."),
+        (
+            {"belt_speed": 1, "slip": {"velocity_amplitude": 1, "frequency": 1}},
+            "Prescribed slip: a body whose slip",
+        ),
+        (
+            SCENE | {"transverse": {"natural_frequency": 1, "damping_ratio": 1, "load": {"unbalance": 1}}},
+            "in the plane, on a moving belt, shaken along and across it.",
+        ),
+        (
+            {"damping_ratio": 0.1, "normal_load": 1, "belt_speed": 1},
+            "on a moving belt, which nothing shakes.",
+        ),
+    ],
+)
+def test_the_kind_of_a_scene_is_told_in_a_sentence(scene: dict[str, Any], words: str, ran: Runner) -> None:
+    assert words in Page(report(ran(scene=scene))).all("main")[0].text
+
+
+def test_there_is_a_line_for_every_curve_and_what_tells_it_apart(ran: Runner) -> None:
+    sweep = {"scene.drive.frequency": [1.0, 1.5], "scene.belt_speed": [1.0, 2.0, 13.0]}
+    head, *rows = Page(report(ran(sweep=sweep))).table("Curves")
+
+    assert head == ["law", "method", "curve", "points", "mean friction μ̄"]
+    assert rows == [
+        ["coulomb", "fake", "Ω = 1", "2 ok, 1 refused", "0.101546 … 0.128537"],
+        ["coulomb", "fake", "Ω = 1.5", "2 ok, 1 refused", "0.101546 … 0.128537"],
+    ]
+
+
+def test_the_measures_of_curves_are_shown_with_their_errors_where_there_are_any(ran: Runner) -> None:
+    saved = ran()
+    measured = {"law": ["coulomb"], "kind": ["coulomb"], "method": ["fake"], "scene.normal_load": [10.0]}
+    measured |= {"shape_area": [0.0577], "shape_area_error": [2e-4], "shape": ["concave"], "reason": [None]}
+    (saved.folder / "curves.csv").write_text(pd.DataFrame(measured).to_csv(index=False))
+
+    with_them = Page(report(read_saved(saved.folder)))
+    (saved.folder / "curves.csv").unlink()
+    without = Page(report(read_saved(saved.folder)))
+
+    assert with_them.table("Shape") == [
+        ["law", "method", "shape area", "shape"],
+        ["coulomb", "fake", "0.0577 ± 0.0002", "concave"],
+    ]
+    assert not any("Shape" in caption.text for caption in without.all("caption"))
+
+
+def test_every_point_that_is_not_ok_is_counted_with_its_reason_and_examples(
+    ran: Runner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Fake, "troubles", {float(speed): breaks_down for speed in (20, 21, 22, 23, 24)})
+    monkeypatch.setattr(Fake, "nothing_at", frozenset({17.0}))
+    saved = ran(sweep={"scene.belt_speed": [1.0, 13.0, 17.0, 20.0, 21.0, 22.0, 23.0, 24.0]})
+    head, *rows = Page(report(saved)).table("Points that are not plainly ok")
+
+    assert head == ["status", "points", "reason", "laws", "methods", "for example"]
+    told = {row[2]: row for row in rows}
+    assert sum(int(row[1]) for row in rows) == (saved.table["status"] != "ok").sum() == 7
+    assert told["thirteen, of all numbers"][:2] == ["refused", "1"]
+    broken = told["ZeroDivisionError: float division by zero"]
+    assert broken[:2] == ["failed", "5"]
+    assert broken[-1] == "vb = 20; vb = 21; vb = 22; and 2 points more"
+
+
+def test_reasons_alike_but_for_numbers_are_one_line_that_says_so(ran: Runner) -> None:
+    saved = ran(sweep={"scene.belt_speed": [1.0, 2.0, 3.0]})
+    saved.table["status"] = "failed"
+    saved.table["reason"] = [f"error of {error}, above 1e-8" for error in ("1.5e-7", "2e-7", "0.25")]
+    (row,) = Page(report(saved)).table("Points that are not plainly ok")[1:]
+
+    assert row[:3] == ["failed", "3", "error of 1.5e-7, above 1e-8 (and 2 more that differ in the numbers)"]
+
+
+def test_a_point_that_is_ok_with_a_reservation_and_one_that_has_a_range_are_told(ran: Runner) -> None:
+    saved = ran(sweep={"scene.belt_speed": [1.0, 2.0, 3.0]})
+    saved.table["reason"] = [None, "the error is above the tolerance", "three starts, two means"]
+    saved.table.loc[2, ["mean_low", "mean_high", "window"]] = [0.1, 0.25, 100.0]
+    saved.table.loc[2, "status"] = "not_unique"
+    first, second = Page(report(saved)).table("Points that are not plainly ok")[1:]
+
+    assert first[:3] == ["not unique", "1", "three starts, two means"]
+    assert first[-1] == "vb = 3: means from 0.1 to 0.25 over 100 periods"
+    assert second[:3] == ["ok, but", "1", "the error is above the tolerance"]
+
+
+def test_a_run_without_trouble_says_so(ran: Runner) -> None:
+    assert (
+        "None: every point is ok, without reservation."
+        in Page(report(ran(sweep={"scene.belt_speed": [1.0]}))).all("main")[0].text
+    )
+
+
+def test_an_interrupted_run_is_told_to_be_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    text = report(stop(monkeypatch, tmp_path))
+    page = Page(text)
+    words = " ".join(page.all("body")[0].text.split())
+
+    assert complaints(text) == []
+    assert "This run is not finished: 2 of 4 points were not reached." in words
+    assert "The study has 1 expectations; none was judged" in words
+    (row,) = page.table("Points that are not plainly ok")[1:]
+    assert (row[0], row[1], row[2]) == ("killed", "2", "interrupted")
+    assert "frictionlab run study.yaml -o . " in words
+
+
+def test_verdicts_are_those_of_the_run_and_failed_ones_come_first(ran: Runner) -> None:
+    claims = [
+        {"column": "mean_friction", side: 0.9, "where": {"scene.belt_speed": 4}}
+        for side in ("below", "above")
+    ]
+    page = Page(report(ran(expect=claims)))
+
+    (_, failed, passed) = page.table("What the study expects")
+    assert failed[0] == "FAILED"
+    assert failed[1].startswith("mean_friction above 0.9 where scene.belt_speed 4: 0.133")
+    assert passed[0] == "passed"
+    assert "1 expectation holds" in page.all("header")[0].text
+    assert "1 expectation FAILED" in page.all("header")[0].text
+
+
+def test_many_expectations_that_all_hold_are_folded_and_not_left_out(ran: Runner) -> None:
+    claims = [{"column": "error", "below": 1, "because": f"reason {n}"} for n in range(20)]
+    page = Page(report(ran(expect=claims, sweep={"scene.belt_speed": [1.0]})))
+
+    assert len(page.table("What the study expects")) == 21
+    assert "All 20 expectations of the study hold." in page.all("main")[0].text
+
+
+def test_many_expectations_of_which_one_fails_are_not_folded(ran: Runner) -> None:
+    claims = [{"column": "error", "below": 1, "because": f"reason {n}"} for n in range(19)]
+    claims.append({"column": "error", "above": 1})
+    page = Page(report(ran(expect=claims, sweep={"scene.belt_speed": [1.0]})))
+
+    assert page.table("What the study expects")[1][0] == "FAILED"
+    assert "expectations of the study hold" not in page.all("main")[0].text
+    assert [each.text for each in page.all("summary")] == [
+        "As BibTeX, frictionlab included",
+        "The study, with every default and every sweep written out",
+    ]
+
+
+def test_errors_are_given_by_curve_with_place_kind_and_tolerance(ran: Runner) -> None:
+    saved = ran(sweep={"scene.belt_speed": [1.0, 2.0, 3.0]}, tolerance=1e-6)
+    saved.table["error"] = [1e-9, 3e-5, 2e-8]
+    saved.table["error_kind"] = ["guaranteed", "estimated", "estimated"]
+    page = Page(report(saved))
+
+    assert page.table("Errors")[1:] == [
+        ["coulomb", "fake", "3.0e-05", "vb = 2", "2.0e-08", "guaranteed, estimated", "1 point"]
+    ]
+    assert (
+        "The largest is 3.0e-05, the median 2.0e-08; the tolerance asked for was 1e-06."
+        in page.all("main")[0].text
+    )
+
+
+def test_models_are_counted_and_those_alike_but_for_numbers_are_one_line(ran: Runner) -> None:
+    saved = ran(sweep={"scene.belt_speed": [1.0, 2.0, 3.0]})
+    saved.table["model"] = ["closed form (V_lin = 50)", "closed form (V_lin = 26.25)", "legs"]
+
+    assert Page(report(saved)).table("What produced the numbers")[1:] == [
+        ["fake", "closed form (V_lin = 50) (and 1 more that differ in the numbers)", "2 points", "coulomb"],
+        ["fake", "legs", "1 point", "coulomb"],
+    ]
+
+
+def test_a_table_of_few_points_is_shown_whole(ran: Runner) -> None:
+    few = Page(report(ran(sweep={"scene.belt_speed": [1.0, 2.0]}))).table("Every number found")
+    many = Page(report(ran("many")))
+
+    assert few[0] == ["quantity", "coulomb by fake, vb = 1", "coulomb by fake, vb = 2"]
+    assert few[1][0] == "mean friction μ̄"
+    assert not any(caption.text == "Every number found" for caption in many.all("caption"))
+
+
+def test_a_long_table_says_how_many_rows_it_leaves_to_the_file(
+    ran: Runner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tables, "MOST_ROWS", 5)
+    page = Page(report(ran(**ODD_STUDIES["forty curves"])))
+
+    assert len(page.table("Curves")) == 6
+    assert "... and 35 more curves, all of them in results.csv" in page.all("main")[0].text
+
+
+def test_sources_are_those_of_the_study_its_laws_and_the_methods_at_work(ran: Runner) -> None:
+    saved = ran(source="Smith (1999), Fig. 3", methods=["auto"], sweep={"scene.belt_speed": [60.0]})
+    saved.table["model"] = "closed form (auto: exact, lowest rung that can)"
+    cited = {each.what: each.words for each in sources(saved)}
+
+    assert cited["the study"] == "Smith (1999), Fig. 3"
+    assert cited["law coulomb"].startswith("Sources: Amontons (1699)")
+    assert "Den Hartog" in cited["method exact, which auto chose"]
+    assert not any("shooting" in what for what in cited)
+    assert "Den Hartog" in Page(report(saved)).all("dl")[0].text
+
+
+def test_where_auto_does_not_name_its_choice_all_it_may_choose_is_cited_as_such(ran: Runner) -> None:
+    saved = ran(methods=["auto"], sweep={"scene.belt_speed": [60.0]})
+    saved.table["model"] = "closed form"
+
+    assert {"method exact, which auto may choose", "method shooting, which auto may choose"} <= set(
+        each.what for each in sources(saved)
+    )
+
+
+def test_what_gave_no_number_is_not_cited(ran: Runner) -> None:
+    laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "dahl", "mu": 0.4, "stiffness": 1.0}]
+    saved = ran(laws=laws)
+    saved.table.loc[saved.table["kind"] == "dahl", ["mean_friction", "status"]] = [float("nan"), "refused"]
+
+    assert [each.what for each in sources(saved) if each.what.startswith("law")] == ["law coulomb"]
+    assert {each.key for each in references(bibtex([saved]))} == {
+        *("frictionlab", "amontons1699", "coulomb1785", "sulollari"),
+    }
+
+
+def test_sources_in_words_alone_are_cited_in_these_words(ran: Runner) -> None:
+    text = bibtex([ran("one", source="My own & unpublished @ home"), ran("two", source="Yours")])
+    entries = {each.key: each for each in references(text)}
+
+    assert entries["the-study"].fields["note"] == r"My own \& unpublished at home"
+    assert entries["the-study-2"].fields["note"] == "Yours"
+    assert text.count("@misc{frictionlab,") == 1
+
+
+def test_the_page_shows_publications_in_full_and_as_bibtex(ran: Runner) -> None:
+    saved = ran(source="Dahl (1968), section 2")
+    page = Page(report(saved))
+
+    assert any("TOR-0158(3107-18)-1" in item.text for item in page.all("li"))
+    assert bibtex([saved]) in [block.text for block in page.all("pre")]
+
+
+def test_versions_runs_and_overrides_are_those_of_the_account(tmp_path: Path, ran: Runner) -> None:
+    saved = ran()
+    account = json.loads((saved.folder / "provenance.json").read_text())
+    account["packages"]["numpy"] = "9.8.7"
+    account["runs"][0] |= {"overrides": ["scene.normal_load=3"], "seconds": 83.4}
+    (saved.folder / "provenance.json").write_text(json.dumps(account))
+    page = Page(report(read_saved(saved.folder)))
+
+    assert ["numpy", "9.8.7"] in page.table("Versions")
+    assert ["python", account["python"]] in page.table("Versions")
+    assert page.table("When it ran")[1][1:] == [
+        "83 s",
+        "6 points",
+        "--set scene.normal_load=3",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(0.0123, "0.012 s"), (1.26, "1.3 s"), (99.4, "99 s"), (100.0, "1 min 40 s"), (3601, "60 min 1 s")],
+)
+def test_wall_times_are_written_to_the_digits_that_matter(seconds: float, words: str) -> None:
+    assert wall(seconds) == words
+
+
+def test_the_study_on_the_page_is_the_study(ran: Runner) -> None:
+    saved = ran(**ODD_STUDIES["markup everywhere"])
+    (shown,) = [each for each in Page(report(saved)).all("pre") if "schema: 1" in each.text]
+
+    assert shown.text.strip() == (saved.folder / "study.yaml").read_text().strip()
+
+
+@pytest.mark.parametrize("name", [*_NAMES, *(f"scene.dimensional.{name}" for name in _IN_SI)])
+def test_every_symbol_of_a_figure_has_its_letters_on_the_page(name: str) -> None:
+    shown = symbol_html(name)
+
+    assert not re.search(r"[\\${}^_]", shown)
+    assert shown.striptags()
+
+
+def test_symbols_are_letters_with_accents_and_levels_and_other_text_is_escaped() -> None:
+    assert html(r"a < b $\bar\mu$, $\hat V_1$ [m/s$^2$]") == (
+        "a &lt; b <i>μ\u0304</i>, <i>V\u0302</i><sub>1</sub> [m/s<sup>2</sup>]"
+    )
+    assert html(r"$E_\mathrm{in}$") == "<i>E</i><sub>in</sub>"
+
+
+# Figures
+
+
+def test_captions_say_what_is_drawn_what_tells_curves_apart_and_what_is_held_fixed(ran: Runner) -> None:
+    sweep = {"scene.drive.frequency": [1.0, 1.5], "scene.belt_speed": [1.0, 13.0]}
+    first = figures.pictures(ran(sweep=sweep))[0]
+
+    assert first.caption.striptags() == (
+        "Mean friction coefficient μ̄ against belt speed vb. Law coulomb; method fake. A curve for each Ω = 1, 1.5. "
+        "Held fixed: β1 = 0.1, γ2 = 10, α = 10, φ1 = 0 deg. Without a number, and marked as such: 2 points refused."
+    )
+    assert first.description.endswith("mean friction coefficient μ̄: from 0.1015 to 0.1015.")
+
+
+def test_a_scene_in_si_units_is_told_in_them_throughout(ran: Runner) -> None:
+    given = {"mass_kg": 3, "stiffness_N_per_m": 300, "damping_N_s_per_m": 2, "length_m": 0.01}
+    given |= {"belt_speed_m_per_s": 0.1, "drive": {"amplitude_N": 5, "frequency_rad_per_s": 10}}
+    path = "scene.dimensional."
+    sweep = {f"{path}drive.amplitude_N": [5.0, 6.0], f"{path}belt_speed_m_per_s": [0.1, 0.2, 0.3]}
+    saved = ran(scene={"dimensional": given}, sweep=sweep)
+    page = Page(report(saved))
+    caption = figures.pictures(saved)[0].caption.striptags()
+
+    assert complaints(report(saved)) == []
+    assert ["mass [kg]", "M", "3"] in page.table("The scene")
+    assert "against belt speed Vb [m/s]. " in caption
+    assert "A curve for each F1 = 5, 6 N. Held fixed: M = 3 kg, K1 = 300 N/m," in caption
+    for name in ("Curves", "Shape", "Errors"):
+        assert [row[2] for row in page.table(name)[1:]] == ["F1 = 5 N", "F1 = 6 N"]
+
+
+def test_a_run_without_a_sweep_has_no_figures_and_no_heading_for_them(ran: Runner) -> None:
+    page = Page(report(ran(sweep={})))
+
+    assert page.all("figure") == []
+    assert "Figures" not in [heading.text for heading in page.all("h2")]
+
+
+def test_a_figure_is_in_the_page_as_a_drawing_or_as_pixels_where_that_is_less(tmp_path: Path) -> None:
+    svg, png = tmp_path / "f.svg", tmp_path / "f.png"
+    svg.write_text(SVG)
+    png.write_bytes(b"pixels")
+    small = figures.address(tmp_path / "f")
+    svg.write_text(SVG + " " * figures.LARGEST_SVG)
+    large = figures.address(tmp_path / "f")
+
+    assert small == "data:image/svg+xml;base64," + base64.b64encode(SVG.encode()).decode()
+    assert large == "data:image/png;base64," + base64.b64encode(b"pixels").decode()
+
+
+def test_a_figure_that_is_not_there_is_said_to_be_missing(ran: Runner) -> None:
+    saved = ran()
+    (saved.folder / "figures" / "mean_friction.svg").unlink()
+    text = report(saved)
+
+    assert complaints(text) == []
+    assert "figures/mean_friction.svg is not there" in Page(text).all("figure")[0].text
+
+
+# The folder of a run
+
+
+def test_the_page_made_from_the_folder_is_the_page_made_by_the_run(ran: Runner) -> None:
+    saved = ran(title="A title", expect=[{"column": "error", "below": 1}])
+
+    assert report(read_saved(saved.folder)) == report(saved)
+
+
+def test_a_page_takes_its_name_from_the_study_its_file_or_the_folder(tmp_path: Path, ran: Runner) -> None:
+    saved = ran("a folder")
+    file = tmp_path / "some_study.yaml"
+    file.write_text((saved.folder / "study.yaml").read_text())
+    fl.run(file, out=tmp_path / "x")
+
+    assert saved.title == "a folder"
+    assert read_saved(tmp_path / "x").title == "some_study"
+    assert ran("y", title="The title").title == "The title"
+
+
+def test_title_source_and_expectations_may_be_edited_in_the_folder(ran: Runner) -> None:
+    saved = ran(title="Old")
+    study = saved.folder / "study.yaml"
+    study.write_text(study.read_text().replace("Old", "New"))
+
+    assert Page(report(read_saved(saved.folder))).title == "New"
+
+
+def nothing(folder: Path) -> None:
+    for path in sorted(folder.rglob("*"), reverse=True):
+        path.rmdir() if path.is_dir() else path.unlink()
+    folder.rmdir()
+
+
+def into_a_file(folder: Path) -> None:
+    nothing(folder)
+    folder.write_text("no folder")
+
+
+def without_an_account(folder: Path) -> None:
+    (folder / "provenance.json").unlink()
+
+
+def one_folder_up(folder: Path) -> None:
+    (folder / "inner").mkdir()
+    for name in ("results.parquet", "study.yaml", "provenance.json"):
+        (folder / name).rename(folder / "inner" / name)
+
+
+def cut_short(folder: Path) -> None:
+    whole = (folder / "results.parquet").read_bytes()
+    (folder / "results.parquet").write_bytes(whole[: len(whole) // 2])
+
+
+def another_table(folder: Path) -> None:
+    pd.DataFrame({"a": [1.0]}).to_parquet(folder / "results.parquet")
+
+
+def fewer_rows(folder: Path) -> None:
+    pd.read_parquet(folder / "results.parquet").iloc[1:].to_parquet(folder / "results.parquet")
+
+
+def words_for_numbers(folder: Path) -> None:
+    table = pd.read_parquet(folder / "results.parquet")
+    table.assign(error="small").to_parquet(folder / "results.parquet")
+
+
+def no_json(folder: Path) -> None:
+    (folder / "provenance.json").write_text("{")
+
+
+def other_json(folder: Path) -> None:
+    (folder / "provenance.json").write_text('{"expect": [1], "runs": 7}')
+
+
+def a_list(folder: Path) -> None:
+    (folder / "provenance.json").write_text("[1, 2]")
+
+
+def other_numbers(folder: Path) -> None:
+    study = folder / "study.yaml"
+    study.write_text(study.read_text().replace("normal_load: 10", "normal_load: 11"))
+
+
+def broken_curves(folder: Path) -> None:
+    (folder / "curves.csv").write_bytes(b"a,b\n1\n1,2,3\n\xff")
+
+
+@pytest.mark.parametrize(
+    ("damage", "message"),
+    [
+        (nothing, "no such folder; RUN is a folder that 'frictionlab run STUDY -o RUN' wrote"),
+        (into_a_file, "is a file, not a folder; RUN is a folder that"),
+        (without_an_account, "is not the folder of a run: no provenance.json in it; RUN is a folder that"),
+        (one_folder_up, "it holds runs, give one of them: "),
+        (cut_short, "results.parquet cannot be read ("),
+        (
+            another_table,
+            "is not a result table: it has no column law; run the study again: frictionlab run STUDY",
+        ),
+        (fewer_rows, "study.yaml is not the study of results.parquet (it has 6 points, the table 5"),
+        (words_for_numbers, "is not a result table: its column error does not hold numbers; run the study"),
+        (no_json, "provenance.json is not the account of a run; run the study again"),
+        (other_json, "provenance.json is not the account of a run; run the study again"),
+        (a_list, "provenance.json is not the account of a run; run the study again"),
+        (other_numbers, "study.yaml is not the study of results.parquet (it has 6 points, the table 6"),
+        (broken_curves, "curves.csv cannot be read ("),
+    ],
+)
+def test_what_is_no_run_or_a_damaged_one_is_told_in_one_message(
+    damage: Callable[[Path], None], message: str, ran: Runner
+) -> None:
+    folder = ran().folder
+    damage(folder)
+    with pytest.raises(FolderError) as raised:
+        read_saved(folder)
+
+    assert message in str(raised.value)
+    assert str(raised.value).startswith(str(folder))
+    assert "\n" not in str(raised.value)
+
+
+def test_a_damaged_study_is_told_as_any_study_is(ran: Runner) -> None:
+    folder = ran().folder
+    (folder / "study.yaml").write_text("schema: 2\n")
+    with pytest.raises(StudyError, match=r"study\.yaml:1:9: schema: must be 1"):
+        read_saved(folder)
+
+
+def test_a_page_that_cannot_be_written_is_a_message_and_leaves_nothing_behind(ran: Runner) -> None:
+    saved = ran()
+    (saved.folder / "report.html").mkdir()
+    before = sorted(saved.folder.iterdir())
+    with pytest.raises(SaveError, match=r"cannot write .*report\.html"):
+        write_report(saved)
+
+    assert sorted(saved.folder.iterdir()) == before
+
+
+# The index
+
+
+@pytest.fixture
+def three(ran: Runner) -> list[Saved]:
+    at_four = {"column": "error", "where": {"scene.belt_speed": 4}}
+    return [
+        ran("all/first one", title=HOSTILE, sweep={"scene.belt_speed": [1.0, 13.0]}),
+        ran("all/second", expect=[at_four | {"below": 0.5}] * 2 + [at_four | {"above": 0.5}]),
+        ran("all/third", sweep={}),
+    ]
+
+
+def test_an_index_has_a_row_for_each_study_that_leads_to_its_report(
+    three: list[Saved], tmp_path: Path
+) -> None:
+    for saved in three:
+        write_report(saved)
+    file = write_index(tmp_path / "all", three)
+    page = Page(file.read_text())
+    rows = page.table("The studies")[1:]
+
+    assert complaints(file.read_text()) == []
+    assert [row[0] for row in rows] == [f"{HOSTILE}first one", "second", "third"]
+    assert [row[1] for row in rows] == ["1 ok, 1 refused", "5 ok, 1 refused", "1 ok"]
+    assert [row[2] for row in rows] == ["none", "1 FAILED, 2 passed", "none"]
+    links = [link.attributes["href"] for link in page.all("a")]
+    assert links == ["first%20one/report.html", "second/report.html", "third/report.html"]
+    assert "3 studies, 9 points" in page.all("header")[0].text
+
+
+# The first study
+
+
+def test_a_new_study_is_one_that_runs_and_keeps_its_promise(tmp_path: Path) -> None:
+    file = new_study(tmp_path / "mine")
+    done = fl.run(file)
+
+    assert file == tmp_path / "mine.yaml"
+    assert set(done.table["status"]) == {"ok"}
+    assert [verdict.passed for verdict in done.verdicts] == [True]
+
+
+def test_what_is_commented_out_in_a_new_study_is_right_too(tmp_path: Path) -> None:
+    file = new_study(tmp_path / "mine.yml")
+    lines = file.read_text().splitlines()
+    awake = [re.sub(r"^( *)# (?=[ -]*[{\w.]+[:{ ])", r"\1", line) for line in lines]
+    file.write_text("\n".join(awake) + "\n")
+
+    study = fl.run(
+        file, overrides=["sweep.scene.belt_speed=[5]", "sweep.laws.coulomb.mu=[0.4]", "expect=[]"]
+    ).study
+    assert study.source
+    assert study.keep_orbit == 200
+    assert study.scene.degrees_of_freedom == 2
+    assert [law.label for law in study.laws] == ["coulomb", "slippery"]
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("there.yaml", "there.yaml is there already and stays as it is; choose another name"),
+        ("there", "there.yaml is there already and stays as it is; choose another name"),
+        ("folder", "is a folder: name the file too, as in "),
+        ("none/mine", "there is no folder "),
+        ("there.yaml/mine", "there is no folder "),
+    ],
+)
+def test_a_new_study_replaces_nothing_and_makes_no_folder(name: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "there.yaml").write_text("mine")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(FolderError, match=re.escape(message)):
+        new_study(tmp_path / name)
+
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["folder", "there.yaml"]
+    assert (tmp_path / "there.yaml").read_text() == "mine"

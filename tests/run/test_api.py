@@ -1,0 +1,758 @@
+"""The runner: every point gets a row, rows do not depend on the way they were made, nothing found is lost."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import io
+import json
+import math
+import os
+import pickle
+import re
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from fake_methods import Another, Fake, breaks_down, is_broken, is_wrong
+from pandas.testing import assert_frame_equal
+
+import frictionlab as fl
+from frictionlab import registry
+from frictionlab.columns import RESULTS, TEXT
+from frictionlab.results.summary import summary
+from frictionlab.results.table import headings, inputs, records
+from frictionlab.run import accumulate, api, folder
+from frictionlab.run.chunks import Task, chunks, curves
+from frictionlab.run.errors import FolderError, SaveError
+from frictionlab.run.progress import Meter
+from frictionlab.run.solve import solve
+from frictionlab.run.yaml_text import yaml_text
+from frictionlab.study import load_study, parse_study
+
+Trouble = Callable[[dict[float, Callable[[], None]]], None]
+
+
+@pytest.fixture(autouse=True)
+def _fake_methods(monkeypatch: pytest.MonkeyPatch) -> None:
+    known, names = registry.method_class, registry.method_names()
+    fakes: dict[str, Any] = {"fake": Fake, "another": Another}
+    monkeypatch.setattr(registry, "method_class", lambda name: fakes.get(name) or known(name))
+    monkeypatch.setattr(registry, "method_names", lambda: sorted([*names, *fakes]))
+
+
+@pytest.fixture
+def trouble(monkeypatch: pytest.MonkeyPatch) -> Trouble:
+    return lambda troubles: monkeypatch.setattr(Fake, "troubles", troubles)
+
+
+def study(**changes: Any) -> dict[str, Any]:
+    given = {
+        "schema": 1,
+        "scene": {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
+        | {"drive": {"unbalance": 10, "frequency": 1}},
+        "laws": [{"kind": "coulomb", "mu": 0.4}],
+        "methods": ["fake"],
+        "sweep": {"scene.belt_speed": [4, 13, -2, 0, 17, 9]},
+    }
+    return given | changes
+
+
+SCENE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+LAW = fl.Coulomb(mu=0.4)
+MANY = {"scene.belt_speed": {"start": 0.5, "stop": 40, "num": 400}, "scene.drive.frequency": [1, 1.5]}
+
+
+def test_the_table_has_the_inputs_first_and_every_result_column_in_the_order_of_the_contract() -> None:
+    table = fl.run(study()).table
+
+    scene = [
+        "damping_ratio",
+        "normal_load",
+        "belt_speed",
+        "drive.unbalance",
+        "drive.phase",
+        "drive.frequency",
+    ]
+    given = ["law", "kind", "method", *(f"scene.{name}" for name in scene), "law.mu"]
+    assert list(table.columns) == [*given, *RESULTS]
+
+
+def test_rows_are_in_the_order_of_the_cases() -> None:
+    two = study(laws=[{"kind": "coulomb", "mu": 0.4}, {"kind": "coulomb", "mu": 0.2, "label": "weak"}])
+    done = fl.run(two | {"methods": ["fake", "another"]})
+
+    rows = done.table[["law", "method", "scene.belt_speed", "law.mu"]].itertuples(index=False, name=None)
+    assert list(rows) == [
+        (case.law_label, case.method_label, case.scene.belt_speed, case.law.numbers()["mu"])
+        for case in done.study.cases()
+    ]
+    assert done.table["scene.belt_speed"].tolist()[:6] == [4, 13, -2, 0, 17, 9]
+
+
+def test_headings_are_those_of_the_cases() -> None:
+    plan = parse_study(study(methods=["fake", "another"], sweep={"laws.coulomb.mu": [0.1, 0.2], **MANY}))
+
+    assert inputs(headings(plan)) == inputs(plan.cases())
+
+
+def test_every_point_is_answered_where_one_is_refused_and_one_has_no_number() -> None:
+    done = fl.run(study())
+
+    assert done.table["status"].tolist() == ["ok", "refused", "ok", "ok", "failed", "ok"]
+    assert done.table["reason"].tolist()[1] == "thirteen, of all numbers"
+    assert "no finite mean_friction" in done.table["reason"].tolist()[4]
+    assert done.counts == {"ok": 4, "refused": 1, "failed": 1}
+    assert done.table["mean_friction"].tolist()[0] == pytest.approx(0.4 * math.tanh(4) / 3, abs=1e-15)
+
+
+def test_a_breakdown_of_arithmetic_costs_its_own_point_alone(trouble: Trouble) -> None:
+    trouble({4.0: breaks_down})
+    table = fl.run(study()).table
+
+    assert table["status"].tolist() == ["failed", "refused", "ok", "ok", "failed", "ok"]
+    assert table["reason"].tolist()[0] == "ZeroDivisionError: float division by zero"
+
+
+def test_an_error_of_the_program_is_called_one_and_stays_in_its_chunk(trouble: Trouble) -> None:
+    trouble({4.0: is_wrong})
+    table = fl.run(study(sweep={"scene.belt_speed": [4, 9], "scene.damping_ratio": [0.1, 0.2]})).table
+    assert table["status"].tolist() == ["failed"] * 4
+    assert set(table["reason"]) == {"internal error: TypeError: no such operand"}
+
+    mixed = fl.run(study(methods=["fake", "auto"], sweep={"scene.belt_speed": [4]})).table
+    assert mixed["status"].tolist() == ["failed", "ok"]
+
+
+def test_a_broken_plugin_stops_the_run(trouble: Trouble, tmp_path: Path) -> None:
+    trouble({4.0: is_broken})
+    with pytest.raises(registry.BrokenPlugin, match="does not compile"):
+        fl.run(study(), out=tmp_path / "out")
+
+
+def test_a_method_that_answers_too_few_points_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = Fake.solve
+    monkeypatch.setattr(Fake, "solve", lambda self, scenes, *rest: whole(self, scenes[1:], *rest))
+
+    table = fl.run(study()).table
+
+    assert set(table["status"]) == {"failed", "refused"}
+    assert "gave [4] answers for 5 points" in table["reason"].tolist()[0]
+
+
+def test_mean_friction_belt_speed_and_load_are_told_against_their_natural_scales() -> None:
+    table = fl.run(study()).table
+
+    assert table["normalized_friction"].tolist()[2] == pytest.approx(math.tanh(2) / 3, rel=1e-14)
+    assert np.isnan(table["normalized_friction"].tolist()[3])
+    # at resonance V_lin = alpha / (2 beta) = 50, and the force amplitude is alpha Omega^2 = 10
+    assert table["velocity_ratio"].tolist()[0] == pytest.approx(4 / 50, rel=1e-14)
+    assert set(table["friction_to_drive"]) == {0.4}
+    assert table["presliding_ratio"].isna().all()
+
+
+def test_friction_is_told_against_the_load_across_the_belt_where_nothing_pushes_along_it() -> None:
+    across = {"natural_frequency": 2, "damping_ratio": 0.1, "load": {"amplitude": 8}}
+    scene = study()["scene"] | {"drive": {"amplitude": 0, "frequency": 1}, "transverse": across}
+    table = fl.run(study(scene=scene)).table
+
+    assert set(table["friction_to_drive"]) == {0.5}
+    assert table["velocity_ratio"].isna().all()
+
+
+def test_a_prescribed_slip_has_no_force_to_tell_friction_against() -> None:
+    scene = {"belt_speed": 5, "slip": {"velocity_amplitude": 8, "frequency": 1}}
+    table = fl.run(study(scene=scene)).table
+
+    assert table["friction_to_drive"].isna().all()
+    assert table["velocity_ratio"].tolist()[0] == 0.5
+
+
+def test_chunks_hold_neighbours_of_one_curve_in_rising_belt_speed() -> None:
+    cases = parse_study(study(sweep=MANY)).cases()
+    pieces = chunks(cases, Task(1e-8))
+
+    assert sorted(row for piece in pieces for row in piece.rows) == list(range(800))
+    assert all(64 <= len(piece.rows) <= 250 for piece in pieces)
+    assert [len(curve) for curve in curves(cases)] == [400, 400]
+    for piece in pieces:
+        assert len({scene.frequency for scene in piece.scenes}) == 1
+        speeds = [scene.belt_speed for scene in piece.scenes]
+        assert speeds == sorted(speeds)
+
+
+def test_a_continued_run_solves_what_is_left_of_the_very_chunks_of_a_whole_one() -> None:
+    cases = parse_study(study(sweep=MANY)).cases()
+    done = frozenset(range(0, 800, 3))
+
+    whole = [piece.rows for piece in chunks(cases, Task(1e-8))]
+    left = [piece.rows for piece in chunks(cases, Task(1e-8), done)]
+    assert left == [tuple(row for row in rows if row not in done) for rows in whole]
+
+
+@pytest.mark.parametrize("points", [2, 64, 187, 188, 250, 251, 312, 313, 1000])
+def test_no_chunk_is_longer_than_250_points_nor_shorter_than_64_but_for_want_of_points(points: int) -> None:
+    speeds = {"scene.belt_speed": {"start": 1, "stop": 40, "num": points}}
+    sizes = [len(piece.rows) for piece in chunks(parse_study(study(sweep=speeds)).cases(), Task(1e-8))]
+
+    assert sum(sizes) == points
+    assert max(sizes) <= 250
+    assert min(sizes) >= min(points, 64)
+
+
+def test_rows_do_not_depend_on_the_number_of_workers() -> None:
+    def run_with(workers: int) -> pd.DataFrame:
+        with ThreadPoolExecutor(workers) as pool:
+            return fl.run(study(methods=["exact", "fake"], sweep=MANY), executor=pool).table
+
+    one = run_with(1).drop(columns="seconds")
+    assert_frame_equal(one, run_with(7).drop(columns="seconds"), check_exact=True)
+
+
+def test_chunks_and_answers_can_cross_to_another_process() -> None:
+    piece = chunks(parse_study(study(keep={"orbit": 4})).cases(), Task(1e-8, 4))[0]
+    parts = pickle.loads(pickle.dumps(solve(pickle.loads(pickle.dumps(piece)))))
+
+    assert sorted(row for part in parts for row in part.rows) == list(range(6))
+    assert [sorted(part.orbits) for part in parts] == [[], [0, 2, 4, 5]]
+
+
+def test_nothing_is_written_without_an_output_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    fl.run(study(keep={"orbit": 4}))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_folder_of_a_run_holds_the_table_twice_its_study_and_its_account(tmp_path: Path) -> None:
+    done = fl.run(study(title="Oh: a title, #1"), out=tmp_path / "deep" / "out")
+    out = tmp_path / "deep" / "out"
+
+    assert sorted(path.name for path in out.iterdir()) == [
+        "curves.csv",
+        "provenance.json",
+        "results.csv",
+        "results.parquet",
+        "study.yaml",
+    ]
+    assert_frame_equal(pd.read_parquet(out / "results.parquet"), done.table, check_exact=True)
+    assert load_study(out / "study.yaml") == done.study
+    account = json.loads((out / "provenance.json").read_text())
+    assert account["digest"] == done.study.digest()
+    assert account["counts"] == done.counts
+    assert [run["computed"] for run in account["runs"]] == [6]
+    assert account["frictionlab"] == fl.__version__
+    assert {"numpy", "numba"} <= set(account["packages"])
+
+
+def test_the_folder_holds_one_row_per_curve_with_its_shape(tmp_path: Path) -> None:
+    expect = [{"where": {"scene.drive.frequency": 1.5}, "shape": "convex", "measure": "initial"}]
+    plan = study(methods=["exact"], sweep=MANY, expect=expect)
+    done = fl.run(plan, out=tmp_path / "out")
+    written = tmp_path / "out" / "curves.csv"
+    read = pd.read_csv(written)
+
+    assert read["scene.drive.frequency"].tolist() == [1.0, 1.5]
+    assert read["shape"].fillna("").tolist() == ["", "convex"]
+    assert (
+        read["reason"].fillna("").tolist()[0]
+        == "the curve ends at belt speed 40, below the end of reversal, 50"
+    )
+    assert read["shape_area"].tolist()[1] == done.curves["shape_area"].tolist()[1]
+    assert [verdict.passed for verdict in done.verdicts] == [True]
+
+    text = written.read_bytes()
+    written.unlink()
+    assert fl.run(plan, out=tmp_path / "out").computed == 0
+    assert written.read_bytes() == text
+    fl.run(
+        study(methods=["exact"], sweep={"scene.damping_ratio": [0.1, 0.2]}), tmp_path / "out", (), "replace"
+    )
+    assert not written.exists()
+
+
+def test_an_interrupted_run_tells_no_shapes(tmp_path: Path) -> None:
+    def stop(done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    with ThreadPoolExecutor(1) as pool, pytest.raises(api.Interrupted) as caught:
+        fl.run(study(sweep=MANY), out=tmp_path / "out", executor=pool, progress=stop)
+
+    assert caught.value.run.curves.empty
+    assert not (tmp_path / "out" / "curves.csv").exists()
+
+
+def test_floats_come_back_from_the_csv_file_bit_for_bit(tmp_path: Path) -> None:
+    done = fl.run(study(sweep=MANY), out=tmp_path / "out")
+    with (tmp_path / "out" / "results.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+
+    for row, record in zip(rows, records(done.table), strict=True):
+        assert {name: _value(name, cell) for name, cell in row.items()} == record
+    assert rows[0]["mean_friction"] == repr(done.table["mean_friction"].tolist()[0])
+
+
+def _value(name: str, cell: str) -> str | float | None:
+    if not cell:
+        return None
+    return cell if name in {"law", "kind", "method", *TEXT} else float(cell)
+
+
+def test_finished_points_are_taken_over(tmp_path: Path, trouble: Trouble) -> None:
+    first = fl.run(study(), out=tmp_path / "out")
+    trouble(dict.fromkeys([4.0, -2.0, 0.0, 9.0], is_wrong))
+    again = fl.run(study(title="Only the title is new"), out=tmp_path / "out")
+
+    assert (first.computed, again.computed) == (6, 0)
+    assert_frame_equal(again.table, first.table, check_exact=True)
+    assert "Only the title" in (tmp_path / "out" / "study.yaml").read_text()
+
+
+def test_no_method_is_loaded_where_every_point_is_finished(tmp_path: Path, monkeypatch: Any) -> None:
+    plan = parse_study(study())
+    fl.run(plan, out=tmp_path / "out")
+    fresh = parse_study(study())
+    monkeypatch.setattr(registry, "method_class", lambda name: pytest.fail(f"{name} was loaded"))
+
+    assert fl.run(fresh, out=tmp_path / "out").computed == 0
+
+
+def test_points_that_were_killed_are_solved_by_the_next_run(tmp_path: Path) -> None:
+    whole = fl.run(study(), out=tmp_path / "out").table
+    partial = whole.copy()
+    partial.loc[[0, 3], "status"] = "killed"
+    partial.loc[[0, 3], "mean_friction"] = np.nan
+    partial.to_parquet(tmp_path / "out" / "results.parquet")
+
+    again = fl.run(study(), out=tmp_path / "out")
+
+    assert again.computed == 2
+    assert_frame_equal(again.table, whole, check_exact=True)
+    assert_frame_equal(pd.read_parquet(tmp_path / "out" / "results.parquet"), whole, check_exact=True)
+
+
+def test_a_run_that_dies_loses_little(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(accumulate, "SAVE_EVERY", 0.0)
+    slow = study(methods=[{"kind": "fake", "pause": 0.12}], sweep=MANY)
+
+    def die(done: int, total: int) -> None:
+        assert total == 800
+        if done and (tmp_path / "out" / "results.parquet").exists():
+            raise MemoryError
+
+    with ThreadPoolExecutor(1) as pool, pytest.raises(MemoryError):
+        fl.run(slow, out=tmp_path / "out", executor=pool, progress=die)
+    left = pd.read_parquet(tmp_path / "out" / "results.parquet")
+    assert left["status"].value_counts()["ok"] >= 133
+    assert left["reason"][left["status"] == "killed"].unique().tolist() == ["not finished"]
+
+    again = fl.run(slow, out=tmp_path / "out")
+    assert again.computed == (left["status"] == "killed").sum()
+    assert_frame_equal(again.table, fl.run(slow).table, check_exact=True)
+
+
+def test_an_interrupted_run_keeps_what_is_done_and_says_which_points_are_not(tmp_path: Path) -> None:
+    def stop(done: int, total: int) -> None:
+        if done:
+            raise KeyboardInterrupt
+
+    slow = study(methods=[{"kind": "fake", "pause": 0.05}], sweep=MANY)
+    with ThreadPoolExecutor(1) as pool, pytest.raises(api.Interrupted) as caught:
+        fl.run(slow, out=tmp_path / "out", executor=pool, progress=stop)
+
+    table = caught.value.run.table
+    killed = table[table["status"] == "killed"]
+    assert 0 < len(killed) < len(table)
+    assert set(killed["reason"]) == {"interrupted"}
+    assert killed["mean_friction"].isna().all()
+    assert_frame_equal(pd.read_parquet(tmp_path / "out" / "results.parquet"), table, check_exact=True)
+    assert fl.run(slow, out=tmp_path / "out").computed == len(killed)
+
+
+def test_an_interrupted_run_keeps_the_chunk_it_was_just_solving(tmp_path: Path) -> None:
+    def stop(done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    slow = study(methods=[{"kind": "fake", "pause": 0.3}], sweep=MANY)
+    with ThreadPoolExecutor(1) as pool, pytest.raises(api.Interrupted) as caught:
+        fl.run(slow, out=tmp_path / "out", executor=pool, progress=stop)
+
+    assert caught.value.run.computed == 133
+
+
+class Mortal(ThreadPoolExecutor):
+    """Workers of which the second chunk's dies."""
+
+    chunks = 0
+
+    def submit(self, *work: Any, **how: Any) -> Any:
+        self.chunks += 1
+        return super().submit(*work, **how) if self.chunks != 2 else super().submit(self.die)
+
+    @staticmethod
+    def die() -> None:
+        raise BrokenExecutor("out of memory")
+
+
+def test_points_whose_worker_died_are_killed_and_the_next_run_solves_them(tmp_path: Path) -> None:
+    with Mortal(1) as pool:
+        done = fl.run(study(sweep=MANY), out=tmp_path / "out", executor=pool)
+
+    killed = done.table[done.table["status"] == "killed"]
+    assert 0 < len(killed) < len(done.table)
+    assert set(killed["reason"]) == {"a worker died: out of memory"}
+    assert fl.run(study(sweep=MANY), out=tmp_path / "out").computed == len(killed)
+
+
+def test_another_study_is_refused_a_folder_that_is_taken(tmp_path: Path) -> None:
+    fl.run(study(), out=tmp_path / "out")
+    before = {path: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    other = study(tolerance=1e-6)
+
+    with pytest.raises(
+        FolderError, match=r"another study(.|\n)*tolerance: 1.0e-08(.|\n)*1.0e-06(.|\n)*--force"
+    ):
+        fl.run(other, out=tmp_path / "out")
+
+    assert {path: path.read_bytes() for path in (tmp_path / "out").iterdir()} == before
+    assert fl.run(other, out=tmp_path / "out", existing="replace").computed == 6
+    assert fl.run(other, out=tmp_path / "out").computed == 0
+
+
+def test_studies_that_differ_in_long_lines_are_told_apart_in_short_ones(tmp_path: Path) -> None:
+    fl.run(study(sweep=MANY), out=tmp_path / "out")
+
+    with pytest.raises(FolderError) as caught:
+        fl.run(study(), out=tmp_path / "out")
+    shown = str(caught.value).splitlines()[1:-1]
+    assert any("0.5989974937343359" in line for line in shown)
+    assert max(map(len, shown)) < 90
+
+
+def test_studies_that_differ_at_the_end_of_a_long_line_are_told_apart_there(tmp_path: Path) -> None:
+    drives = [{"unbalance": 10, "frequency": frequency} for frequency in (1.25, 1.5)]
+    here, other = (study(scene=study()["scene"] | {"drive": drive}) for drive in drives)
+    fl.run(here, out=tmp_path / "out")
+
+    with pytest.raises(FolderError) as caught:
+        fl.run(other, out=tmp_path / "out")
+
+    there, now, remedy = str(caught.value).splitlines()[1:]
+    assert re.search(r"drive: \{.*frequency: 1.25", there)
+    assert re.search(r"drive: \{.*frequency: 1.5", now)
+    assert remedy.startswith("choose another folder with -o")
+
+
+def test_another_version_is_refused_a_folder_that_is_taken(tmp_path: Path, monkeypatch: Any) -> None:
+    fl.run(study(), out=tmp_path / "out")
+    monkeypatch.setattr(api, "__version__", "99.0")
+
+    with pytest.raises(FolderError, match=f"frictionlab {fl.__version__}, this is 99.0; .*--force"):
+        fl.run(study(), out=tmp_path / "out")
+
+
+def test_replacing_results_takes_away_those_of_the_other_study_and_nothing_else(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    fl.run(study(keep={"orbit": 4}), out=out)
+    (out / "figures").mkdir()
+    (out / "figures" / "old.svg").write_text("old")
+    (out / "mine.txt").write_text("mine")
+
+    fl.run(study(tolerance=1e-6), out=out, existing="replace")
+
+    assert not (out / "orbits.parquet").exists()
+    assert not (out / "figures" / "old.svg").exists()
+    assert (out / "mine.txt").read_text() == "mine"
+
+
+@pytest.mark.parametrize("damage", ["provenance.json", "results.parquet"])
+def test_a_damaged_folder_is_refused(tmp_path: Path, damage: str) -> None:
+    fl.run(study(), out=tmp_path / "out")
+    (tmp_path / "out" / damage).write_text("{")
+
+    with pytest.raises(FolderError, match="--force"):
+        fl.run(study(), out=tmp_path / "out")
+    fl.run(study(), out=tmp_path / "out", existing="replace")
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_computed(
+    tmp_path: Path, trouble: Trouble
+) -> None:
+    trouble({4.0: is_broken})
+    (tmp_path / "file").write_text("")
+    for out in (tmp_path / "file", tmp_path / "file" / "deep" / "out"):
+        with pytest.raises(FolderError, match="file is a file, not a folder"):
+            fl.run(study(), out=out)
+
+
+def test_a_folder_without_permission_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.raises(FolderError, match="no permission"):
+        fl.run(study(), out=tmp_path / "out")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def disk_full_for(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
+    def fill(name: str) -> None:
+        def replace(source: Path, target: Path) -> None:
+            if target.name == name:
+                raise OSError(errno.ENOSPC, "No space left on device")
+            whole(source, target)
+
+        monkeypatch.setattr(folder.os, "replace", replace)
+
+    whole = os.replace
+    return fill
+
+
+@pytest.mark.parametrize("name", ["results.parquet", "results.csv", "orbits.parquet"])
+def test_a_full_disk_leaves_the_table_in_hand(
+    tmp_path: Path, disk_full_for: Callable[[str], None], name: str
+) -> None:
+    disk_full_for(name)
+    with pytest.raises(api.UnsavedError, match=rf"cannot write .*{name}: No space left") as caught:
+        fl.run(study(keep={"orbit": 4}), out=tmp_path / "out")
+
+    assert caught.value.run.counts["ok"] == 4
+    assert not [path for path in (tmp_path / "out").iterdir() if path.name.startswith(".")]
+
+
+def test_a_disk_that_is_full_at_the_start_stops_the_run_before_it_computes(
+    tmp_path: Path, disk_full_for: Callable[[str], None], trouble: Trouble
+) -> None:
+    trouble({4.0: is_broken})
+    disk_full_for("provenance.json")
+    with pytest.raises(SaveError, match="No space left"):
+        fl.run(study(), out=tmp_path / "out")
+
+
+def test_orbits_are_kept_row_by_row_and_survive_an_interruption(tmp_path: Path) -> None:
+    kept = study(keep={"orbit": 4})
+    whole = fl.run(kept, out=tmp_path / "out")
+    assert whole.orbits is not None
+    assert whole.orbits.columns.tolist()[:4] == ["row", "tau", "x1", "v1"]
+    assert whole.orbits.groupby("row").size().to_dict() == {0: 4, 2: 4, 4: 4, 5: 4}
+    assert whole.orbits["v1"][whole.orbits["row"] == 5].tolist() == pytest.approx([9.0] * 4)
+
+    partial = whole.table.copy()
+    partial.loc[2, "status"] = "killed"
+    partial.to_parquet(tmp_path / "out" / "results.parquet")
+    again = fl.run(kept, out=tmp_path / "out")
+
+    assert again.computed == 1
+    assert_frame_equal(again.orbits, whole.orbits)
+    assert_frame_equal(pd.read_parquet(tmp_path / "out" / "orbits.parquet"), whole.orbits)
+
+
+def test_asking_for_other_orbits_computes_them(tmp_path: Path) -> None:
+    fl.run(study(), out=tmp_path / "out")
+    assert fl.run(study(keep={"orbit": 4}), out=tmp_path / "out").computed == 6
+    assert fl.run(study(keep={"orbit": 4}), out=tmp_path / "out").computed == 0
+    assert fl.run(study(keep={"orbit": 8}), out=tmp_path / "out").computed == 6
+
+
+def test_what_a_study_expects_is_judged_and_every_verdict_is_in_the_account(tmp_path: Path) -> None:
+    claims = [{"column": "mean_friction", "below": 0.2}, {"column": "mean_friction", "above": 0.2}]
+    where = {"where": {"scene.belt_speed": 4}}
+    done = fl.run(study(expect=[where | claim for claim in claims]), out=tmp_path / "out")
+    account = json.loads((tmp_path / "out" / "provenance.json").read_text())
+
+    assert [verdict.passed for verdict in done.verdicts] == [True, False]
+    assert account["expect"] == [
+        {"passed": verdict.passed, "sentence": verdict.sentence} for verdict in done.verdicts
+    ]
+
+
+def test_records_hold_null_where_the_table_is_empty() -> None:
+    (first, *_) = records(fl.run(study()).table)
+
+    assert first["reason"] is None
+    assert first["floquet"] is None
+    assert json.loads(json.dumps(first, allow_nan=False))["mean_friction"] == first["mean_friction"]
+
+
+def test_a_study_file_is_run_with_its_overrides(tmp_path: Path) -> None:
+    (tmp_path / "study.yaml").write_text(yaml_text(study()))
+    done = fl.run(tmp_path / "study.yaml", overrides=["scene.normal_load=3"])
+
+    assert set(done.table["scene.normal_load"]) == {3.0}
+
+
+def test_a_curve_comes_back_in_the_order_it_was_asked_for() -> None:
+    table = fl.curve(SCENE, LAW, belt_speed=np.array([9.0, 4.0, 9.0]), method="fake", tolerance=1e-6)
+
+    assert table["scene.belt_speed"].tolist() == [9.0, 4.0, 9.0]
+    assert table["kind"].tolist() == ["coulomb"] * 3
+    assert table["error"].tolist() == [1e-6] * 3
+    assert table["mean_friction"].tolist()[0] == table["mean_friction"].tolist()[2]
+
+
+@pytest.mark.parametrize("speeds", [[], [1.0, math.nan], [[1.0], [2.0]]])
+def test_belt_speeds_that_are_no_list_of_numbers_are_refused(speeds: list[Any]) -> None:
+    with pytest.raises(ValueError, match="belt_speed must be"):
+        fl.curve(SCENE, LAW, belt_speed=speeds, method="fake")
+
+
+def test_a_steady_state_has_every_result_column_and_nothing_else() -> None:
+    names = {field.name for field in fields(fl.SteadyState)}
+    assert names - {"sampled", "si"} == set(RESULTS)
+
+
+def test_a_steady_state_is_the_row_of_the_same_scene() -> None:
+    state = fl.steady_state(SCENE, LAW)
+    (row,) = records(fl.curve(SCENE, LAW, belt_speed=[5.0]))
+
+    for name in set(RESULTS) - {"seconds"}:
+        value = getattr(state, name)
+        assert row[name] == (None if value == "" or value != value else value), name
+    assert state.normalized_friction == state.mean_friction / 0.4
+
+
+def test_the_orbit_of_a_steady_state_is_one_period_along_the_belt() -> None:
+    orbit = fl.steady_state(SCENE, LAW).orbit(64)
+
+    assert orbit.tau[0] == 0.0
+    assert orbit.tau[1] == pytest.approx(2 * math.pi / 64)
+    assert not orbit.x2.any()
+    assert np.allclose(orbit.load, 10 * np.sin(orbit.tau))
+    assert np.abs(orbit.friction).max() == pytest.approx(0.4)
+
+
+def test_a_refused_steady_state_is_an_answer_without_an_orbit() -> None:
+    state = fl.steady_state(SCENE.model_copy(update={"belt_speed": 13.0}), LAW, method=Fake())
+
+    assert (state.status, state.reason) == ("refused", "thirteen, of all numbers")
+    assert math.isnan(state.mean_friction)
+    with pytest.raises(ValueError, match="'refused': thirteen, of all numbers"):
+        state.orbit(8)
+
+
+def test_a_failed_steady_state_is_an_answer_too(trouble: Trouble) -> None:
+    trouble({5.0: is_wrong})
+    state = fl.steady_state(SCENE, LAW, method="fake")
+
+    assert (state.status, state.reason) == ("failed", "internal error: TypeError: no such operand")
+
+
+def test_methods_and_tolerances_that_make_no_sense_are_refused_by_name() -> None:
+    with pytest.raises(ValueError, match="no method 'magic'; there are another, auto, exact"):
+        fl.steady_state(SCENE, LAW, method="magic")
+    for tolerance in (0.0, -1e-8, math.nan, math.inf):
+        with pytest.raises(ValueError, match="tolerance must be a positive number"):
+            fl.steady_state(SCENE, LAW, method="fake", tolerance=tolerance)
+
+
+class Screen(io.StringIO):
+    """A stream that says it is a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize("stream", [io.StringIO, Screen])
+def test_progress_is_told_after_two_seconds_and_not_before(
+    stream: type[io.StringIO], monkeypatch: Any
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr("frictionlab.run.progress.time.monotonic", lambda: now[0])
+    told = stream()
+    meter = Meter(told)
+    meter(100, 400)
+    now[0] = 101.9
+    meter(200, 400)
+    assert told.getvalue() == ""
+
+    now[0] = 104.0
+    meter(200, 400)
+    meter.close()
+    line = "200 of 400 points, 4 s, about 8 s left"
+    assert told.getvalue() == ("\r" if stream is Screen else "") + line + "\n"
+
+
+def test_time_spent_compiling_is_named_and_not_held_against_the_points(monkeypatch: Any) -> None:
+    from numba.core.compiler_lock import global_compiler_lock
+
+    now = [100.0]
+    monkeypatch.setattr("frictionlab.run.progress.time.monotonic", lambda: now[0])
+    told = io.StringIO()
+    meter = Meter(told)
+    meter(0, 400)
+    with ThreadPoolExecutor(1) as elsewhere:
+        now[0] = 130.0
+        elsewhere.submit(global_compiler_lock.acquire).result()
+        meter(100, 400)
+        elsewhere.submit(global_compiler_lock.release).result()
+    now[0] = 136.0
+    meter(200, 400)
+
+    assert told.getvalue().splitlines() == [
+        "100 of 400 points, 30 s, compiling kernels (once per machine)",
+        "200 of 400 points, 36 s, about 6 s left",
+    ]
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        "plain words",
+        "yes",
+        "a: b",
+        "- x",
+        "#1",
+        "1e3",
+        "",
+        " ",
+        'it\'s "so"',
+        "tab\t",
+        "é",
+        "1.5",
+        "null",
+        "~",
+        "@a",
+    ],
+)
+def test_words_survive_the_study_file(value: str) -> None:
+    from ruamel.yaml import YAML
+
+    tree = {
+        "title": value,
+        "numbers": [1e-8, 5, -0.1, 1e300, 5e-324],
+        "deep": {value or "k": [{"a": value}] * 30},
+    }
+    assert YAML(typ="safe").load(yaml_text(tree)) == tree
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"law": "coulomb"}, "law must be a friction law such as fl.Coulomb"),
+        ({"scene": {}}, "scene must be an fl.Scene"),
+        ({"tolerance": "x"}, "tolerance must be a positive number, not 'x'"),
+    ],
+)
+def test_what_is_no_scene_law_or_tolerance_is_told_in_python(wrong: dict[str, Any], message: str) -> None:
+    one = fl.Scene(belt_speed=1.0, slip=fl.Slip(velocity_amplitude=2.0, frequency=1.0))
+    given = {"scene": one, "law": fl.Coulomb(mu=0.4), **wrong}
+
+    with pytest.raises((TypeError, ValueError), match=message):
+        fl.steady_state(**given)
+    with pytest.raises((TypeError, ValueError), match=message):
+        fl.curve(**given, belt_speed=[1.0])
+
+
+def test_models_that_differ_in_numbers_alone_are_one_line_of_the_summary() -> None:
+    done = fl.run(study(methods=["fake"]))
+    models = [f"closed form: belt speed >= {speed}" for speed in range(len(done.table))]
+    done.table["model"] = [*models[:-1], "another"]
+    lines = summary(done).splitlines()
+
+    assert [line for line in lines if line.startswith("model")] == [
+        f"model 1: closed form: belt speed >= 0 (and {len(models) - 2} more that differ in the numbers)",
+        "model 2: another",
+    ]
+    assert any(line.endswith(" 1, 2") for line in lines)

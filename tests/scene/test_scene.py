@@ -1,0 +1,345 @@
+"""Scenes: what they refuse and how they say it, and the numbers they hand to kernels."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import ValidationError
+from strategies import scenes_in_the_plane, sizes
+
+from frictionlab.scene.body import in_the_plane, on_the_line, restoring_force
+from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
+
+FREE = {
+    "damping_ratio": 0.1,
+    "normal_load": 10.0,
+    "belt_speed": 5.0,
+    "drive": {"unbalance": 10.0, "frequency": 1.5},
+}
+ACROSS = {"natural_frequency": 2.0, "damping_ratio": 0.2, "load": {"amplitude": 3.0, "phase": 30.0}}
+PLANAR = FREE | {"transverse": ACROSS}
+SLIDING = {"belt_speed": 5.0, "slip": {"velocity_amplitude": 3.0, "frequency": 2.0}}
+
+
+def put(tree, path, value):
+    """A copy with one value put at a dotted path."""
+    head, _, rest = path.partition(".")
+    return tree | {head: put(tree.get(head, {}), rest, value) if rest else value}
+
+
+def without(tree, path):
+    head, _, rest = path.partition(".")
+    if rest:
+        return tree | {head: without(tree[head], rest)}
+    return {key: value for key, value in tree.items() if key != head}
+
+
+def complaints(values):
+    """Where a scene is refused and why: dotted path, sentence."""
+    with pytest.raises(ValidationError) as caught:
+        Scene(**values)
+    return {".".join(map(str, problem["loc"])): problem["msg"] for problem in caught.value.errors()}
+
+
+NUMBERS = [
+    "damping_ratio",
+    "normal_load",
+    "belt_speed",
+    "drive.unbalance",
+    "drive.frequency",
+    "drive.phase",
+    "transverse.natural_frequency",
+    "transverse.damping_ratio",
+    "transverse.load.amplitude",
+    "transverse.load.phase",
+]
+NOT_POSITIVE = ["normal_load", "drive.frequency", "transverse.natural_frequency"]
+NEGATIVE = ["damping_ratio", "drive.unbalance", "transverse.damping_ratio", "transverse.load.amplitude"]
+
+
+@pytest.mark.parametrize("path", NUMBERS)
+@pytest.mark.parametrize("value", [math.nan, math.inf, "5", True, [5.0]])
+def test_what_is_no_finite_number_is_refused_by_the_name_of_its_field(path, value):
+    assert list(complaints(put(PLANAR, path, value))) == [path]
+
+
+@pytest.mark.parametrize("path", NEGATIVE + NOT_POSITIVE)
+def test_a_negative_size_is_refused_by_the_name_of_its_field(path):
+    assert list(complaints(put(PLANAR, path, -1.0))) == [path]
+
+
+@pytest.mark.parametrize("path", NOT_POSITIVE)
+def test_zero_is_refused_where_it_makes_no_sense(path):
+    assert list(complaints(put(PLANAR, path, 0.0))) == [path]
+
+
+@pytest.mark.parametrize("path", NEGATIVE)
+def test_zero_is_allowed_where_it_makes_sense(path):
+    assert Scene(**put(PLANAR, path, 0.0)).degrees_of_freedom == 2
+
+
+@pytest.mark.parametrize("path", ["slip.velocity_amplitude", "slip.frequency", "slip.phase"])
+def test_a_prescribed_slip_is_refused_by_the_name_of_its_field(path):
+    assert list(complaints(put(SLIDING, path, math.nan))) == [path]
+    if not path.endswith("phase"):
+        assert list(complaints(put(SLIDING, path, -1.0))) == [path]
+
+
+@pytest.mark.parametrize("path", ["", "drive.", "transverse.", "transverse.load.", "initial."])
+def test_an_unknown_key_is_refused_by_its_name(path):
+    values = put(PLANAR, "initial.x", 0.0)
+
+    assert list(complaints(put(values, f"{path}wobble", 1.0))) == [f"{path}wobble"]
+
+
+@pytest.mark.parametrize(
+    ("path", "where"),
+    [
+        ("drive.waveform", "drive"),
+        ("drive.direction", "drive"),
+        ("transverse.load.waveform", "transverse.load"),
+        ("transverse.load.frequency", "transverse.load"),
+    ],
+)
+def test_a_key_whose_time_has_not_come_is_said_to_be_just_that(path, where):
+    (place, message), *more = complaints(put(PLANAR, path, "sine")).items()
+
+    assert not more
+    assert place == where
+    assert f"{path.rpartition('.')[2]}: not available yet" in message
+
+
+@pytest.mark.parametrize("path", ["drive", "transverse.load"])
+def test_a_force_needs_exactly_one_of_unbalance_and_amplitude(path):
+    twice = put(put(PLANAR, f"{path}.unbalance", 1.0), f"{path}.amplitude", 1.0)
+    never = put(PLANAR, path, {"frequency": 1.0} if path == "drive" else {})
+
+    for values in (twice, never):
+        ((place, message),) = complaints(values).items()
+        assert place == path
+        assert "exactly one of unbalance and amplitude" in message
+
+
+@pytest.mark.parametrize("name", ["damping_ratio", "normal_load"])
+def test_what_a_free_mass_lacks_is_named(name):
+    ((_, message),) = complaints(without(FREE, name)).items()
+
+    assert f"{name}: required" in message
+
+
+def test_a_scene_without_a_drive_has_a_frequency_of_one_and_starts_at_rest_on_the_belt():
+    one = Scene.model_validate(without(FREE, "drive"))
+
+    assert one.undriven
+    assert one.frequency == 1.0
+    assert one.mass().force == 0.0
+    assert one.load_along_belt_only
+    assert (one.start.x, one.start.velocity) == (0.0, one.belt_speed)
+    assert not Scene.model_validate(FREE).undriven
+    assert not Scene.model_validate(SLIDING).undriven
+
+
+def test_all_that_is_missing_is_named_at_once():
+    ((_, message),) = complaints({"belt_speed": 5.0}).items()
+
+    assert "damping_ratio: required; normal_load: required" in message
+    assert list(complaints(without(FREE, "belt_speed"))) == ["belt_speed"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("damping_ratio", 0.1), ("drive", FREE["drive"]), ("transverse", ACROSS), ("initial", {"x": 1.0})],
+)
+def test_what_has_no_place_beside_a_prescribed_slip_is_named(name, value):
+    ((_, message),) = complaints(SLIDING | {name: value}).items()
+
+    assert f"{name}: leave it out with a prescribed slip" in message
+
+
+def test_a_prescribed_slip_has_one_frequency_and_only_one():
+    across = {"velocity_amplitude": 1.0}
+    with_own = across | {"frequency": 2.0}
+    ((_, twice),) = complaints(SLIDING | {"transverse_slip": with_own}).items()
+    ((_, never),) = complaints({"belt_speed": 1.0, "transverse_slip": across}).items()
+
+    assert "transverse_slip.frequency: leave it out" in twice
+    assert "transverse_slip.frequency: required where slip is left out" in never
+    assert Scene(**SLIDING, transverse_slip=across).frequency == 2.0
+    assert Scene(belt_speed=1.0, transverse_slip=with_own | {"frequency": 3.0}).frequency == 3.0
+
+
+def test_the_normal_load_of_a_prescribed_slip_is_one_unless_given():
+    assert Scene(**SLIDING).normal_load == 1.0
+    assert Scene(**SLIDING, normal_load=7.0).normal_load == 7.0
+    assert Scene(**SLIDING).motion().normal_load == 1.0
+
+
+@pytest.mark.parametrize("name", ["x2", "velocity2"])
+def test_a_start_across_the_belt_needs_a_motion_across_the_belt(name):
+    ((_, message),) = complaints(FREE | {"initial": {name: 1.0}}).items()
+
+    assert f"initial.{name}: needs transverse" in message
+    assert getattr(Scene(**PLANAR, initial={name: 1.0}).initial, name) == 1.0
+
+
+def test_degrees_of_freedom_are_counted():
+    assert Scene(**SLIDING).degrees_of_freedom == 0
+    assert Scene(**FREE).degrees_of_freedom == 1
+    assert Scene(**PLANAR).degrees_of_freedom == 2
+
+
+@pytest.mark.parametrize(
+    ("values", "alone"),
+    [
+        (FREE, True),
+        (PLANAR, False),
+        (without(PLANAR, "transverse.load"), True),
+        (put(PLANAR, "transverse.load.amplitude", 0.0), True),
+        (SLIDING, True),
+        (SLIDING | {"transverse_slip": {"velocity_amplitude": 0.0}}, True),
+        (SLIDING | {"transverse_slip": {"velocity_amplitude": 1.0}}, False),
+    ],
+)
+def test_a_scene_knows_whether_anything_pushes_across_the_belt(values, alone):
+    assert Scene(**values).load_along_belt_only is alone
+
+
+@given(
+    size=sizes(1e-3, 1e3),
+    frequency=sizes(1e-2, 1e2),
+    phase=st.floats(-720.0, 720.0),
+    tau=st.floats(0.0, 50.0),
+)
+def test_a_load_is_a_sine_that_leads_by_its_phase(size, frequency, phase, tau):
+    drives = (
+        Drive(amplitude=size, frequency=frequency, phase=phase),
+        Drive(unbalance=size / frequency**2, frequency=frequency, phase=phase),
+    )
+    expected = size * math.sin(frequency * tau + math.radians(phase))
+
+    for drive in drives:
+        load = (drive.phasor(frequency) * cmath.exp(1j * frequency * tau)).imag
+        assert load == pytest.approx(expected, abs=1e-12 * size * (1.0 + frequency * tau))
+
+
+def test_an_unbalance_pushes_with_the_square_of_the_frequency_on_both_axes():
+    scene = Scene(**put(PLANAR, "transverse.load", {"unbalance": 2.0, "phase": 90.0}))
+
+    assert scene.mass().force == pytest.approx(22.5)
+    assert scene.mass().transverse_force == pytest.approx(4.5j)
+
+
+def test_the_numbers_of_the_mass_are_those_of_the_equations_of_motion():
+    mass = Scene(**PLANAR).mass()
+
+    assert mass.damping == pytest.approx(0.2)
+    assert mass.stiffness == 1.0
+    assert mass.transverse_damping == pytest.approx(0.8)
+    assert mass.transverse_stiffness == 4.0
+    assert mass.normal_load == 10.0
+    assert mass.frequency == 1.5
+    assert mass.transverse_force == pytest.approx(cmath.rect(3.0, math.pi / 6.0))
+
+
+def test_a_prescribed_motion_has_its_phases():
+    scene = Scene(
+        **put(SLIDING, "slip.phase", 60.0), transverse_slip={"velocity_amplitude": 2.0, "phase": -90.0}
+    )
+    motion = scene.motion()
+
+    assert motion.velocity == pytest.approx(cmath.rect(3.0, math.pi / 3.0))
+    assert motion.transverse_velocity == pytest.approx(-2.0j)
+    assert motion.frequency == 2.0
+
+
+def test_values_are_every_number_by_its_dotted_path():
+    assert Scene(**PLANAR, initial={"x2": 1.5}).values() == {
+        "damping_ratio": 0.1,
+        "normal_load": 10.0,
+        "belt_speed": 5.0,
+        "drive.unbalance": 10.0,
+        "drive.phase": 0.0,
+        "drive.frequency": 1.5,
+        "transverse.natural_frequency": 2.0,
+        "transverse.damping_ratio": 0.2,
+        "transverse.load.amplitude": 3.0,
+        "transverse.load.phase": 30.0,
+        "initial.x": 0.0,
+        "initial.velocity": 0.0,
+        "initial.x2": 1.5,
+        "initial.velocity2": 0.0,
+    }
+
+
+@given(scene=scenes_in_the_plane())
+def test_the_friction_free_response_solves_the_equations_of_motion(scene):
+    mass, body = scene.mass(), in_the_plane(scene.mass())
+    tau = np.linspace(0.0, 2.0 * math.pi / mass.frequency, 9)
+    sine, cosine = np.sin(mass.frequency * tau), np.cos(mass.frequency * tau)
+    x = body.reference_sine * sine + body.reference_cosine * cosine
+    v = mass.frequency * (body.reference_sine * cosine - body.reference_cosine * sine)
+    turn = np.exp(1j * mass.frequency * tau)
+    load = (mass.force * turn).imag + 1j * (mass.transverse_force * turn).imag
+
+    held = restoring_force(body, x, v) - mass.frequency**2 * x
+    np.testing.assert_allclose(held, load, rtol=0, atol=1e-10 * (np.abs(load).max() + np.abs(x).max()))
+    assert body.force_sine == 0
+    assert body.force_cosine == 0
+
+
+@given(scene=scenes_in_the_plane(), x=st.floats(-9, 9), v=st.floats(-9, 9))
+def test_the_body_on_the_line_is_the_body_in_the_plane_without_what_is_across(scene, x, v):
+    line, plane = on_the_line(scene.mass()), in_the_plane(scene.mass())
+
+    assert restoring_force(line, x, v) == pytest.approx(restoring_force(plane, complex(x), complex(v)).real)
+    assert restoring_force(plane, complex(x), complex(v)).imag == 0.0
+    for name in ("force_sine", "force_cosine", "reference_sine", "reference_cosine"):
+        assert getattr(line, name) == getattr(plane, name).real
+    assert line.normal_load == plane.normal_load
+
+
+@given(scene=scenes_in_the_plane(), x=st.floats(-9, 9), v=st.floats(-9, 9))
+def test_springs_and_dashpots_act_along_their_own_axis(scene, x, v):
+    mass, plane = scene.mass(), in_the_plane(scene.mass())
+    across = restoring_force(plane, 1j * x, 1j * v)
+    size = mass.transverse_damping * abs(v) + mass.transverse_stiffness * abs(x) + abs(x) + abs(v)
+
+    assert across.real == pytest.approx(0.0, abs=1e-14 * size)
+    expected = mass.transverse_damping * v + mass.transverse_stiffness * x
+    assert across.imag == pytest.approx(expected, abs=1e-13 * size)
+
+
+def test_at_undamped_resonance_the_load_drives_the_deviation_instead():
+    body = on_the_line(
+        Scene(**(FREE | {"damping_ratio": 0.0, "drive": {"amplitude": 3.0, "frequency": 1.0}})).mass()
+    )
+
+    assert (body.reference_sine, body.reference_cosine) == (0.0, 0.0)
+    assert (body.force_sine, body.force_cosine) == (3.0, 0.0)
+
+
+def test_a_scene_is_frozen_hashes_and_survives_pickling():
+    scene = Scene(**PLANAR)
+
+    assert pickle.loads(pickle.dumps(scene)) == scene
+    assert hash(Scene(**PLANAR)) == hash(scene)
+    with pytest.raises(ValidationError, match="frozen"):
+        scene.belt_speed = 1.0
+
+
+def test_parts_may_be_records_as_well_as_mappings():
+    load = Load(amplitude=3.0, phase=30.0)
+    across = Transverse(natural_frequency=2.0, damping_ratio=0.2, load=load)
+    drive = Drive(unbalance=10.0, frequency=1.5)
+    slip = Slip(velocity_amplitude=3.0, frequency=2.0)
+
+    assert Scene(**(PLANAR | {"drive": drive, "transverse": across})) == Scene(**PLANAR)
+    assert Scene(belt_speed=5.0, slip=slip) == Scene(**SLIDING)
+    assert Scene(**PLANAR, initial=Initial(x=1.0)).initial == Initial(x=1.0)
+    assert TransverseSlip(velocity_amplitude=1.0).frequency is None

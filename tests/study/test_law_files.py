@@ -1,0 +1,317 @@
+"""Laws from one Python file: in a study, on the command line, in the folder of a run and in its report."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import frictionlab as fl
+from frictionlab import cli, registry
+from frictionlab.compile.cache import compiled
+from frictionlab.compile.decorators import njit
+from frictionlab.registry.law_file import law_name, read_law_file
+from frictionlab.report import write_report
+from frictionlab.run.errors import FolderError
+from frictionlab.run.saved import read_saved
+from frictionlab.run.yaml_text import yaml_text
+from frictionlab.study import StudyError, load_study
+
+LAW = '''"""A law for tests."""
+
+from __future__ import annotations
+
+import frictionlab as fl
+from frictionlab.laws.base import Positive
+
+SHARE = 1.0
+
+
+def told(mu: float) -> float:
+    return SHARE * mu
+
+
+class MyLaw(fl.SlidingLaw):
+    """Friction of one strength, as Coulomb's is.
+
+    mu [-], > 0: friction coefficient.
+    Source: Amontons (1699).
+    """
+
+    mu: Positive
+
+    def sliding_friction(self, speed: float) -> float:
+        return told(self.mu)
+
+    def steepest_fall(self) -> float:
+        return 0.0
+'''
+SCENE = {"slip": {"velocity_amplitude": 2, "frequency": 1}, "belt_speed": 1}
+GIVEN = {"schema": 1, "scene": SCENE, "plugins": ["laws/my_law.py"], "laws": [{"kind": "my-law", "mu": 0.4}]}
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def study(folder: str = ".", law: str = LAW, **changes: Any) -> Path:
+    """A study and the file of its law beside it."""
+    file = Path(folder) / "laws" / "my_law.py"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(law)
+    (Path(folder) / "study.yaml").write_text(yaml_text(GIVEN | changes))
+    return Path(folder) / "study.yaml"
+
+
+def mean(path: Path) -> float:
+    return float(fl.run(path).table["mean_friction"].iloc[0])
+
+
+def said(path: Path) -> list[str]:
+    with pytest.raises(StudyError) as problem:
+        load_study(path)
+    return [str(mistake).partition("\n")[0] for mistake in problem.value.mistakes]
+
+
+CLOSED = (
+    0.4 * (2 / np.pi) * np.arcsin(0.5)
+)  # v_b / V = 1/2: the belt outruns the slip 1/2 + asin(1/2)/pi of the time
+
+
+def test_a_law_of_a_file_beside_the_study_is_a_law_like_any() -> None:
+    table = fl.run(study("deep/er")).table
+
+    assert table["law"].tolist() == table["kind"].tolist() == ["my-law"]
+    assert table["mean_friction"].iloc[0] == pytest.approx(CLOSED, abs=1e-8)
+    assert table["law.mu"].tolist() == [0.4]
+
+
+@njit
+def friction_at(law: Any, speed: float) -> float:
+    return law.sliding_friction(speed)
+
+
+def compiled_strength(path: Path) -> float:
+    (law,) = load_study(path).laws
+    return float(compiled(friction_at, law.law())(1.0))
+
+
+EDITS = pytest.mark.parametrize(
+    ("old", "new", "share"),
+    [
+        ("return told(self.mu)", "return 0.5 * told(self.mu)", 0.5),
+        ("return SHARE * mu", "return SHARE * mu / 4", 0.25),
+        ("SHARE = 1.0", "SHARE = 2.0", 2.0),
+    ],
+    ids=["method", "helper", "constant"],
+)
+
+
+@EDITS
+def test_an_edited_file_gives_new_numbers(old: str, new: str, share: float) -> None:
+    assert mean(study()) == pytest.approx(CLOSED, abs=1e-8)
+    assert mean(study(law=LAW.replace(old, new))) == pytest.approx(share * CLOSED, abs=1e-8)
+
+
+@EDITS
+def test_kernels_compiled_for_a_file_are_not_those_of_the_edited_one(
+    old: str, new: str, share: float
+) -> None:
+    assert compiled_strength(study()) == pytest.approx(0.4)
+    assert compiled_strength(study(law=LAW.replace(old, new))) == pytest.approx(share * 0.4)
+
+
+def test_kernels_of_two_files_of_one_name_do_not_mix() -> None:
+    one, two = study("one"), study("two", LAW.replace("SHARE = 1.0", "SHARE = 0.5"))
+
+    assert [compiled_strength(path) for path in (one, two, one)] == pytest.approx([0.4, 0.2, 0.4])
+
+
+def test_two_files_of_one_name_in_two_folders_do_not_mix() -> None:
+    halved = study("one/half", LAW.replace("SHARE = 1.0", "SHARE = 0.5"))
+    whole = study("one/whole")
+    Path("one/half.yaml").write_text(halved.read_text().replace("laws/", "half/laws/"))
+    Path("one/whole.yaml").write_text(whole.read_text().replace("laws/", "whole/laws/"))
+
+    assert cli.main(["run", "one", "-o", "out"]) == 0
+    means = [pd.read_csv(f"out/{name}/results.csv")["mean_friction"].iloc[0] for name in ("half", "whole")]
+    assert means == pytest.approx([0.5 * CLOSED, CLOSED], abs=1e-8)
+
+
+def test_a_study_takes_laws_of_several_files_and_several_laws_of_one() -> None:
+    second = LAW.replace("class MyLaw", "class OneLaw") + LAW.partition("\n\n\n")[2].replace(
+        "MyLaw", "OtherLaw"
+    )
+    path = study(
+        plugins=["laws/my_law.py", "more.py"],
+        laws=[{"kind": k, "mu": 1} for k in ("my-law", "one-law", "other-law")],
+    )
+    Path("more.py").write_text(second)
+
+    assert [law.law_class.__name__ for law in load_study(path).laws] == ["MyLaw", "OneLaw", "OtherLaw"]
+
+
+def test_a_run_keeps_a_copy_of_the_file_and_its_study_runs_again_from_the_folder() -> None:
+    path = study(sweep={"scene.belt_speed": [0.5, 1]})
+    first = fl.run(path, out="out")
+    path.with_name("laws").rename("gone")
+
+    assert Path("out/laws/my_law.py").read_text() == LAW
+    assert load_study("out/study.yaml") == first.study
+    again = fl.run("out/study.yaml").table
+    assert again["mean_friction"].tolist() == pytest.approx(first.table["mean_friction"].tolist(), abs=1e-14)
+    account = json.loads(Path("out/provenance.json").read_text())
+    assert account["code"] == {"my-law": read_law_file(Path("gone/my_law.py")).code}
+    assert account["plugins"] == ["laws/my_law.py"]
+
+
+def test_two_files_of_one_name_are_kept_under_two() -> None:
+    path = study(
+        plugins=["laws/my_law.py", "other/my_law.py"], laws=[{"kind": k, "mu": 1} for k in ("my-law", "two")]
+    )
+    Path("other").mkdir()
+    Path("other/my_law.py").write_text(LAW.replace("MyLaw", "Two"))
+    done = fl.run(path, out="out")
+
+    assert done.study.resolved()["plugins"] == ["laws/my_law.py", "laws/my_law_2.py"]
+    assert load_study("out/study.yaml") == done.study
+
+
+def test_points_of_an_edited_law_are_not_taken_over(capsys: pytest.CaptureFixture[str]) -> None:
+    fl.run(study(), out="out")
+    assert fl.run(study(), out="out").computed == 0
+
+    edited = study(law=LAW.replace("SHARE = 1.0", "SHARE = 0.5"))
+    assert cli.main(["run", str(edited), "-o", "out"]) == 2
+    assert "  the code of law 'my-law' was edited since" in capsys.readouterr().err
+    assert fl.run(edited, out="out", existing="replace").computed == 1
+    assert "SHARE = 0.5" in Path("out/laws/my_law.py").read_text()
+
+
+def test_a_copy_never_takes_the_place_of_a_file_of_ones_own() -> None:
+    path = study("elsewhere")
+    Path("laws").mkdir()
+    Path("laws/my_law.py").write_text("mine = 1")
+
+    with pytest.raises(FolderError, match=r"laws/my_law\.py is in the way"):
+        fl.run(path, out=".")
+    assert Path("laws/my_law.py").read_text() == "mine = 1"
+
+
+def test_a_report_needs_no_law_and_runs_no_code_of_the_folder() -> None:
+    path = study(
+        law=f"{LAW}\nwith open('marks', 'a') as file:\n    file.write('x')\n",
+        sweep={"scene.belt_speed": [0.5, 1]},
+    )
+    fl.run(path, out="out")
+    told = write_report(read_saved(Path("out"))).read_text()
+
+    assert Path("marks").read_text() == "x"
+    assert "Friction of one strength, as Coulomb&#39;s is." in told
+    assert "Amontons (1699)" in told
+    Path("out/laws/my_law.py").unlink()
+    assert "my-law" in write_report(read_saved(Path("out"))).read_text()
+    assert cli.main(["plot", "out"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("listed", "words"),
+    [
+        ("laws/my_lwa.py", "plugins[0]: laws/my_lwa.py: no such file"),
+        ("laws", "plugins[0]: laws: must be a Python file, *.py"),
+        ("odd.py", "plugins[0]: odd.py: is not UTF-8 text (byte 1)"),
+        ("folder.py", "plugins[0]: folder.py: is not a file"),
+    ],
+)
+def test_a_file_that_cannot_be_read_is_one_mistake_at_its_place(listed: str, words: str) -> None:
+    Path("odd.py").write_bytes(b"\xff")
+    Path("folder.py").mkdir()
+
+    (mistake,) = said(study(plugins=[listed]))
+    assert mistake.startswith("study.yaml:3:")
+    assert mistake.endswith(words)
+
+
+def test_a_misspelt_file_is_guessed() -> None:
+    with pytest.raises(StudyError, match=r"did you mean 'laws/my_law\.py'\?"):
+        load_study(study(plugins=["laws/my_lwa.py"]))
+
+
+def test_a_law_nobody_brings_is_told_with_what_there_is_and_what_to_do() -> None:
+    (mistake,) = said(study(laws=[{"kind": "my-lwa", "mu": 0.4}]))
+
+    assert "laws[0].kind: unknown law 'my-lwa'; installed: " in mistake
+    assert "coulomb, dahl, " in mistake
+    assert "my-law" in mistake
+    assert mistake.endswith("install the package that brings it, or list its file under plugins")
+
+
+def test_a_name_is_given_once(capsys: pytest.CaptureFixture[str]) -> None:
+    taken = study(law=LAW.replace("MyLaw", "Coulomb"))
+    assert cli.main(["run", str(taken)]) == 4
+    assert (
+        "law 'coulomb' (class Coulomb) of file laws/my_law.py: an installed law has that name; rename the class"
+        in (capsys.readouterr().err)
+    )
+
+    twice = study(plugins=["laws/my_law.py", "second.py"])
+    Path("second.py").write_text(f"{LAW}# another\n")
+    with pytest.raises(
+        registry.BrokenPlugin, match=r"of file second\.py: laws/my_law\.py has one of that name"
+    ):
+        load_study(twice)
+
+
+def test_the_command_line_takes_files_of_laws(capsys: pytest.CaptureFixture[str]) -> None:
+    path, law = study(), "laws/my_law.py"
+    path.write_text(path.read_text().replace("plugins: [laws/my_law.py]\n", ""))
+
+    assert cli.main(["run", str(path)]) == 2
+    assert cli.main(["run", str(path), "--law", law, "-o", "out"]) == 0
+    assert load_study("out/study.yaml").resolved()["plugins"] == ["laws/my_law.py"]
+    assert cli.main(["check", str(path), "--law", law]) == 0
+    capsys.readouterr()
+    assert cli.main(["laws", "--law", law, "--json"]) == 0
+    classes = {record["name"]: record["class"] for record in json.loads(capsys.readouterr().out)}
+    assert classes["my-law"].endswith("laws/my_law.py:MyLaw")
+    assert classes["dahl"] == "frictionlab.laws.dahl.Dahl"
+    assert cli.main(["schema", "--law", law]) == 0
+    assert '"my-law"' in capsys.readouterr().out
+    assert cli.main(["laws", "my-law", "--law", "no.py"]) == 2
+    assert cli.main(["run", str(path), "--law", "no.py"]) == 2
+    assert [line for line in capsys.readouterr().err.splitlines() if "no.py" in line] == [
+        "--law no.py: no such file",
+        f"--law no.py: plugins[0]: {Path('no.py').absolute()}: no such file",
+    ]
+
+
+def test_a_study_given_as_a_mapping_takes_files_of_laws() -> None:
+    study()
+
+    assert fl.run(GIVEN).table["status"].tolist() == ["ok"]
+
+
+@pytest.mark.parametrize(
+    ("name", "law"), [("MyLaw", "my-law"), ("HTTPLaw", "http-law"), ("Dahl2", "dahl2"), ("a_Law", "a-law")]
+)
+def test_the_class_is_named_in_capitals_and_the_law_with_hyphens(name: str, law: str) -> None:
+    assert law_name(name) == law
+
+
+def test_a_file_may_be_called_as_a_module_of_python_and_is_still_followed() -> None:
+    path = study(plugins=["math.py"])
+    for share in (0.5, 0.25):
+        Path("math.py").write_text(LAW.replace("SHARE = 1.0", f"SHARE = {share}"))
+        assert compiled_strength(path) == pytest.approx(share * 0.4)
+
+
+def test_a_file_that_is_named_twice_is_one() -> None:
+    path = study()
+
+    assert cli.main(["run", str(path), "--law", "laws/my_law.py", "-o", "out"]) == 0
+    assert load_study("out/study.yaml").resolved()["plugins"] == ["laws/my_law.py"]

@@ -1,0 +1,791 @@
+"""The study file: what loads, what it becomes, and every mistake at its place."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from study_mistakes import EDITS, GOOD
+
+from frictionlab import columns, registry
+from frictionlab.study import Expectation, Study, StudyError, load_study, parse_study
+from frictionlab.study.schema import schema
+
+
+@pytest.fixture
+def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Write text as study.yaml in the working directory and give its name."""
+    monkeypatch.chdir(tmp_path)
+
+    def write(text: str | bytes) -> str:
+        content = text.encode() if isinstance(text, str) else text
+        Path("study.yaml").write_bytes(content)
+        return "study.yaml"
+
+    return write
+
+
+def heads(problem: StudyError) -> list[str]:
+    """The first line of each mistake."""
+    return [str(mistake).splitlines()[0] for mistake in problem.mistakes]
+
+
+def mistakes(path: str, overrides: tuple[str, ...] = ()) -> list[str]:
+    with pytest.raises(StudyError) as caught:
+        load_study(path, overrides)
+    return heads(caught.value)
+
+
+def outcome(read: Callable[[], Study]) -> Study | str:
+    """The study, or its mistakes as they are shown."""
+    try:
+        return read()
+    except StudyError as problem:
+        return str(problem)
+
+
+def good() -> dict[str, Any]:
+    """The good study as plain values."""
+    return {
+        "schema": 1,
+        "scene": {
+            "damping_ratio": 0.1,
+            "normal_load": 10,
+            "belt_speed": 5,
+            "drive": {"unbalance": 10, "frequency": 1},
+        },
+        "laws": [{"kind": "coulomb", "mu": 0.4}],
+    }
+
+
+# What a study becomes
+
+
+def test_a_study_becomes_its_frozen_record(written: Any) -> None:
+    study = load_study(written(GOOD))
+
+    assert study.title == "Two loads"
+    assert study.source == "Fig. 9b"
+    assert study.path == Path("study.yaml")
+    assert [(law.label, law.kind, law.parameters) for law in study.laws] == [
+        ("coulomb", "coulomb", {"mu": 0.4}),
+        ("soft", "coulomb", {"mu": 0.3}),
+    ]
+    assert [(method.label, method.name) for method in study.methods] == [
+        ("auto", "auto"),
+        ("second", "shooting"),
+    ]
+    assert study.tolerance == 1e-6
+    assert study.keep_orbit == 200
+    assert list(study.sweep) == ["scene.belt_speed", "laws.soft.mu"]
+    assert study.expect == (
+        Expectation(
+            where={"law": "coulomb", "scene.belt_speed": 5.0}, column="error", below=1.0, because="Fig. 9b"
+        ),
+    )
+
+
+def test_a_shape_is_expected_by_area_unless_it_says_else_and_loads_back() -> None:
+    sweep = {"sweep": {"scene.belt_speed": [1, 2]}}
+    claims = [{"shape": "mixed"}, {"shape": "concave", "measure": "initial"}]
+    found = parse_study(good() | sweep | {"expect": claims})
+
+    assert [(claim.shape, claim.measure) for claim in found.expect] == [
+        ("mixed", "area"),
+        ("concave", "initial"),
+    ]
+    assert parse_study(found.resolved()) == found
+
+
+def test_a_shape_needs_a_curve() -> None:
+    with pytest.raises(
+        StudyError, match=re.escape("expect[0].shape: a shape needs a curve: sweep scene.belt_speed")
+    ):
+        parse_study(good() | {"expect": [{"shape": "mixed"}]})
+
+
+def test_a_shape_asks_for_the_belt_speed_of_its_scene_also_beside_other_mistakes() -> None:
+    wrong = {"scene": good()["scene"] | {"normal_load": -1}, "expect": [{"shape": "mixed"}]}
+
+    with pytest.raises(StudyError) as caught:
+        parse_study(good() | wrong)
+
+    assert caught.value.mistakes[-1].what == "a shape needs a curve: sweep scene.belt_speed"
+
+
+def test_what_is_left_out_takes_its_default() -> None:
+    study = parse_study(good())
+
+    assert [method.name for method in study.methods] == ["auto"]
+    assert study.tolerance == 1e-8
+    assert study.sweep == {}
+    assert study.keep_orbit is None
+    assert len(study.cases()) == 1
+
+
+def test_the_grid_is_full_and_a_law_is_swept_alone(written: Any) -> None:
+    cases = load_study(written(GOOD)).cases()
+
+    rows = {(c.law_label, c.law.numbers()["mu"], c.method_label, c.scene.belt_speed) for c in cases}
+    assert len(rows) == len(cases) == (1 + 2) * 2 * 120
+    assert {mu for label, mu, _, _ in rows if label == "coulomb"} == {0.4}
+    assert {mu for label, mu, _, _ in rows if label == "soft"} == {0.1, 0.2}
+    assert {speed for _, _, _, speed in rows} == {0.5 * i for i in range(1, 121)}
+
+
+def test_a_case_holds_the_method_that_was_chosen(written: Any) -> None:
+    case = load_study(written(GOOD)).cases()[-1]
+
+    assert case.method_label == "second"
+    assert type(case.method) is registry.method_class("shooting")
+
+
+def test_a_linear_range_is_correctly_rounded() -> None:
+    study = parse_study(good() | {"sweep": {"scene.belt_speed": {"start": 0.1, "stop": 1, "num": 10}}})
+
+    assert study.sweep["scene.belt_speed"] == (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+
+
+def test_a_logarithmic_range_has_exact_ends_and_equal_ratios() -> None:
+    range_ = {"start": 1e-3, "stop": 70.0, "num": 9, "spacing": "log"}
+    values = parse_study(good() | {"sweep": {"scene.belt_speed": range_}}).sweep["scene.belt_speed"]
+
+    assert (values[0], values[-1]) == (1e-3, 70.0)
+    np.testing.assert_allclose(np.diff(np.log(values)), np.log(70e3) / 8, rtol=1e-12)
+
+
+def test_an_optional_value_with_a_default_can_be_swept() -> None:
+    study = parse_study(good() | {"sweep": {"scene.drive.phase": [0, 90]}})
+
+    assert [case.scene.drive.phase for case in study.cases() if case.scene.drive] == [0, 90]
+
+
+def test_a_swept_value_need_not_be_given_a_second_time() -> None:
+    tree = good() | {"sweep": {"scene.belt_speed": [3, 4], "laws.coulomb.mu": [0.1, 0.2]}}
+    del tree["scene"]["belt_speed"], tree["laws"][0]["mu"]
+
+    assert parse_study(tree).scene.belt_speed == 3
+    cases = parse_study(tree).cases()
+    assert [(c.scene.belt_speed, c.law.numbers()["mu"]) for c in cases] == [
+        (3, 0.1),
+        (4, 0.1),
+        (3, 0.2),
+        (4, 0.2),
+    ]
+
+
+def test_aliases_and_every_way_to_write_a_number_are_read(written: Any) -> None:
+    text = GOOD.replace("drive: {unbalance: 10", "drive: {unbalance: &ten 0xA").replace(
+        "load: {unbalance: 10}", "load: {unbalance: *ten, phase: -1e-3}"
+    )
+    scene = load_study(written(text)).scene
+
+    assert scene.transverse is not None
+    assert scene.transverse.load is not None
+    assert (scene.transverse.load.unbalance, scene.transverse.load.phase) == (10.0, -1e-3)
+
+
+def test_a_folded_text_is_one_line_of_words(written: Any) -> None:
+    folded = GOOD.replace("source: Fig. 9b", "source: >-\n  first words\n  and more\n  to the end")
+
+    assert load_study(written(folded)).source == "first words and more to the end"
+
+
+def test_a_study_with_a_byte_order_mark_and_windows_lines_is_the_same_study(written: Any) -> None:
+    plain = load_study(written(GOOD))
+
+    assert load_study(written(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())) == plain
+
+
+def test_a_resolved_study_loads_back_to_the_same_study(written: Any) -> None:
+    study = load_study(written(GOOD))
+
+    again = parse_study(study.resolved())
+    assert again == study
+    assert again.digest() == study.digest()
+
+
+def test_a_resolved_study_is_complete_and_reads_naturally() -> None:
+    resolved = parse_study(good(), ["scene.belt_speed=2"]).resolved()
+
+    assert resolved["scene"]["drive"] == {"unbalance": 10, "phase": 0, "frequency": 1}
+    assert resolved["scene"]["belt_speed"] == 2
+    assert isinstance(resolved["scene"]["belt_speed"], int)
+    assert resolved["methods"] == ["auto"]
+    assert resolved["tolerance"] == 1e-8
+
+
+def test_a_prescribed_slip_and_an_initial_state_load_back() -> None:
+    slip = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
+    start = good()["scene"] | {"initial": {"x": 1, "velocity": 2}}
+    for scene in (slip, start):
+        study = parse_study(good() | {"scene": scene})
+        assert parse_study(study.resolved()) == study
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"title": "Other"},
+        {"source": "Other"},
+        {"expect": [{"status": "ok"}]},
+        {"keep": {"orbit": 9}},
+        {"tolerance": 1e-8},
+    ],
+)
+def test_the_digest_overlooks_what_does_not_change_the_numbers(change: dict[str, Any]) -> None:
+    assert parse_study(good() | change).digest() == parse_study(good()).digest()
+
+
+@pytest.mark.parametrize(
+    "override",
+    [
+        "scene.belt_speed=6",
+        "scene.drive.phase=1",
+        "laws.coulomb.mu=0.5",
+        "laws[0].label=other",
+        "methods=[exact]",
+        "tolerance=1e-9",
+        "sweep.scene.belt_speed=[5, 6]",
+    ],
+)
+def test_the_digest_sees_what_changes_the_numbers(override: str) -> None:
+    assert parse_study(good(), [override]).digest() != parse_study(good()).digest()
+
+
+def test_a_value_that_is_swept_anyway_is_not_in_the_digest() -> None:
+    sweep = {"sweep": {"scene.belt_speed": [1, 2], "laws.coulomb.mu": [0.1, 0.2]}}
+    other = good() | sweep
+    other["scene"] = other["scene"] | {"belt_speed": 7}
+    other["laws"] = [{"kind": "coulomb", "mu": 0.7}]
+
+    assert parse_study(other).digest() == parse_study(good() | sweep).digest()
+
+
+def test_numpy_numbers_and_arrays_do_in_a_mapping() -> None:
+    study = parse_study(good() | {"sweep": {"scene.belt_speed": np.linspace(1, 2, 3)}})
+
+    assert study.sweep["scene.belt_speed"] == (1.0, 1.5, 2.0)
+
+
+def test_loading_a_study_imports_no_compiler_no_tables_and_no_figures(written: Any) -> None:
+    path = written(GOOD)
+    code = (
+        f"import sys; from frictionlab.study import load_study; load_study({path!r}); "
+        "print(sorted({'numba', 'pandas', 'pyarrow', 'matplotlib', 'scipy'} & set(sys.modules)))"
+    )
+
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+# Overrides
+
+
+@pytest.mark.parametrize(
+    ("override", "found"),
+    [
+        ("scene.drive.frequency=1.5", lambda study: study.scene.frequency == 1.5),
+        ("scene.transverse.load.phase=90", lambda study: study.scene.transverse.load.phase == 90),
+        ("tolerance=1e-7", lambda study: study.tolerance == 1e-7),
+        ("laws.coulomb.mu=0.35", lambda study: study.laws[0].parameters == {"mu": 0.35}),
+        ("laws[0].mu=0.35", lambda study: study.laws[0].parameters == {"mu": 0.35}),
+        (
+            "sweep.scene.belt_speed=[1,2,3]",
+            lambda study: study.sweep["scene.belt_speed"] == (1.0, 2.0, 3.0),
+        ),
+        ("sweep.scene.belt_speed.num=2", lambda study: study.sweep["scene.belt_speed"] == (0.5, 60.0)),
+        ("sweep.scene.drive.frequency=[1, 2]", lambda study: len(study.scenes) == 240),
+        ("methods=[exact,shooting]", lambda study: [m.name for m in study.methods] == ["exact", "shooting"]),
+        ("sweep.scene.drive.phase=[0, 90]", lambda study: len(study.scenes) == 240),
+        ("title=a = b", lambda study: study.title == "a = b"),
+        ("keep.orbit=9", lambda study: study.keep_orbit == 9),
+        ("expect=[]", lambda study: study.expect == ()),
+    ],
+)
+def test_an_override_replaces_a_value(written: Any, override: str, found: Any) -> None:
+    assert found(load_study(written(GOOD), [override]))
+
+
+def test_an_override_can_mend_a_mistake_of_the_file(written: Any) -> None:
+    path = written(GOOD.replace("tolerance: 1e-6", "tolerance: !foo 3"))
+
+    assert load_study(path, ["tolerance=1e-6"]).tolerance == 1e-6
+
+
+@pytest.mark.parametrize(
+    ("override", "said"),
+    [
+        ("scene.drive.frequenzy=1", "scene.drive.frequenzy: unknown key; allowed: unbalance"),
+        ("tolerence=1", "tolerence: unknown key; allowed: schema"),
+        ("scene.damping_ratio=-1", "scene.damping_ratio: must be >= 0, got -1"),
+        ("scene.damping_ratio=", "scene.damping_ratio: must be a number, got null"),
+        ("scene.damping_ratio=[1", "the value is not YAML: while parsing a flow sequence"),
+        ("scene.damping_ratio", "write path=value, for example scene.belt_speed=5"),
+        ("=3", "write path=value, for example scene.belt_speed=5"),
+        ("scene..x=3", "'scene..x' is no path such as scene.belt_speed or laws[0].mu"),
+        ("laws.sofd.mu=3", "no law is labelled 'sofd'; there are coulomb, soft"),
+        ("laws[5].mu=3", "laws[5]: there is no item [5]"),
+        ("tolerance.x=3", "tolerance.x: there is no mapping to set it in"),
+        ("tolerance.x.y=3", "tolerance.x: there is no 'x' to set it in"),
+        ("scene.belt_speed=3", "scene.belt_speed: the study sweeps scene.belt_speed: set sweep."),
+        ("laws.soft.mu=3", "laws[1].mu: the study sweeps laws.soft.mu: set sweep.laws.soft.mu instead"),
+        ("sweep.scene.belt_sped=[1]", "sweep.scene.belt_sped: no such value in a scene"),
+        ("sweep.scene.drive.frequency=[1, -1]", "sweep.scene.drive.frequency[1]: must be > 0, got -1"),
+        ("scene.drive={unbalance: -1, frequency: 1}", "scene.drive.unbalance: must be >= 0, got -1"),
+        ("sweep.scene.belt_speed=[1, x]", "sweep.scene.belt_speed[1]: must be a number, got the text 'x'"),
+        ("sweep.scene.drive.phase=[0, x]", "sweep.scene.drive.phase[1]: must be a number, got the text 'x'"),
+        ("methods=[]", "methods: the list is empty; give at least one, such as [auto]"),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_an_override_names_the_override(written: Any, override: str, said: str) -> None:
+    found = mistakes(written(GOOD), (override,))
+
+    assert len(found) == 1
+    assert found[0].startswith(f"--set {override}: {said}")
+
+
+def test_a_misspelt_override_is_asked_about(written: Any) -> None:
+    with pytest.raises(StudyError, match=re.escape("did you mean 'frequency'?")):
+        load_study(written(GOOD), ["scene.drive.frequenzy=1"])
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "path"),
+    [
+        ("tolerance=1e-5", "tolerance=1e-6", "tolerance"),
+        ("laws.coulomb.mu=1", "laws=[{kind: coulomb, mu: 2}, {kind: coulomb, mu: 2, label: soft}]", "laws"),
+    ],
+)
+def test_a_value_set_twice_is_a_mistake(written: Any, first: str, second: str, path: str) -> None:
+    assert mistakes(written(GOOD), (first, second)) == [f"--set {second}: {path}: set twice"]
+
+
+def test_a_sweep_inside_a_list_is_a_mistake_of_the_list(written: Any) -> None:
+    found = mistakes(written(GOOD.replace("drive: {unbalance: 10, frequency: 1}", "drive: [1]")
+                             .replace("  scene.belt_speed: {", "  scene.drive.phase: {")))  # fmt: skip
+
+    assert found == ["study.yaml:8:3: scene.drive: must be a mapping (key: value), got a list"]
+
+
+# Mistakes
+
+
+def test_a_mistake_shows_its_place_its_line_a_caret_and_a_likely_meaning(written: Any) -> None:
+    with pytest.raises(StudyError) as caught:
+        load_study(written(GOOD.replace("  belt_speed", "  belt_sped")))
+
+    assert str(caught.value).splitlines() == [
+        "study.yaml:7:3: scene.belt_sped: unknown key; allowed: damping_ratio, normal_load, belt_speed, "
+        "drive, transverse, slip, transverse_slip, initial, dimensional",
+        "      belt_sped: 5",
+        "      ^",
+        "    did you mean 'belt_speed'?",
+    ]
+
+
+def test_the_caret_stands_under_the_column_of_a_long_line(written: Any) -> None:
+    numbers = ", ".join(str(i) for i in range(1, 200))
+    path = written(GOOD.replace("{start: 0.5, stop: 60, num: 120}", f"[{numbers}, .nan, {numbers[3:]}]"))
+    with pytest.raises(StudyError) as caught:
+        load_study(path)
+
+    _, line, caret, *_ = str(caught.value.mistakes[0]).splitlines()
+    assert line[caret.index("^") :].startswith(".nan")
+    assert len(line) <= 104
+
+
+def test_the_caret_stands_under_the_column_of_a_line_with_tabs(written: Any) -> None:
+    with pytest.raises(StudyError) as caught:
+        load_study(written(GOOD.replace("10, frequency: 1}", "10,\t frequency: x}")))
+
+    _, line, caret = str(caught.value).splitlines()
+    assert line.expandtabs()[caret.expandtabs().index("^")] == "x"
+
+
+@pytest.mark.parametrize(("swept", "told"), [("laws.sofd.mu", True), ("laws.dahl.mu", False)])
+def test_a_sweep_of_no_law_is_told_beside_a_law_of_unknown_kind_unless_that_may_be_the_one(
+    swept: str, told: bool
+) -> None:
+    laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "dhal", "mu": 0.4, "stiffness": 1}]
+    with pytest.raises(StudyError) as caught:
+        parse_study({"schema": 1, "scene": good()["scene"], "laws": laws, "sweep": {swept: [0.1, 0.2]}})
+
+    assert "laws[1].kind: unknown law 'dhal'" in str(caught.value)
+    assert ("no law is labelled 'sofd'" in str(caught.value)) == told
+
+
+def test_a_parameter_that_is_a_word_is_not_swept_and_the_way_to_vary_it_is_told() -> None:
+    laws, sweep = [{"kind": "dahl", "mu": 0.4, "stiffness": 1}], {"laws.dahl.planar": [1, 2]}
+    with pytest.raises(
+        StudyError, match=r"planar of the law 'dahl' is not one number: give a law of its own for each"
+    ):
+        parse_study({"schema": 1, "scene": good()["scene"], "laws": laws, "sweep": sweep})
+
+
+def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) -> None:
+    text = (
+        GOOD.replace("schema: 1", "schema: 2")
+        .replace("damping_ratio: 0.1\n  normal", "damping_ratio: -0.1\n  normal")
+        .replace("drive: {unbalance: 10, frequency: 1}", "drive: {amplitude: 1, unbalanse: '10'}")
+        .replace("mu: 0.4", "mu: true")
+        .replace("tolerance: 1e-6", "tolerance: .inf")
+        .replace("num: 120", "num: 1")
+        .replace("keep: {orbit: 200}", "plugins: 5")
+        .replace("column: error", "column: eror")
+    )
+
+    assert mistakes(written(text)) == [
+        "study.yaml:1:9: schema: must be 1, got 2",
+        "study.yaml:5:18: scene.damping_ratio: must be >= 0, got -0.1",
+        "study.yaml:8:3: scene.drive.frequency: required key is missing",
+        "study.yaml:8:3: scene.drive: give exactly one of unbalance and amplitude",
+        "study.yaml:8:25: scene.drive.unbalanse: unknown key; allowed: unbalance, amplitude, phase, "
+        "frequency",
+        "study.yaml:8:36: scene.drive.unbalanse: must be a number, got the text '10' (remove the quotes)",
+        "study.yaml:14:25: laws[0].mu: must be a number, got true",
+        "study.yaml:17:12: tolerance: must be a finite number, got .inf",
+        "study.yaml:19:49: sweep.scene.belt_speed.num: must be >= 2, got 1",
+        "study.yaml:21:10: plugins: must be a list of Python files such as [my_law.py], got 5",
+        "study.yaml:23:58: expect[0].column: must be a result column, got the text 'eror'",
+    ]
+
+
+@pytest.mark.parametrize(("old", "new", "said"), EDITS, ids=[said for _, _, said in EDITS])
+def test_one_mistake_gives_one_message_at_its_place(written: Any, old: str, new: str, said: str) -> None:
+    assert GOOD.count(old) >= 1
+
+    found = mistakes(written(GOOD.replace(old, new, 1)))
+
+    assert len(found) == 1
+    assert found[0].startswith(f"study.yaml:{said}")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "meant"),
+    [
+        ("title", "titel", "title"),
+        ("kind: coulomb, mu: 0.4", "kind: colomb, mu: 0.4", "coulomb"),
+        ("mu: 0.4", "mu: 0.4, mus: 1", "mu"),
+        ("methods: [auto", "methods: [autoo", "auto"),
+        ("  scene.belt_speed: {", "  belt_speed: {", "scene.belt_speed"),
+        ("laws.soft.mu: [", "laws.sofd.mu: [", "laws.soft.mu"),
+        ("column: error", "column: Error", "error"),
+        ("scene.belt_speed: 5}", "scene.belt_sped: 5}", "scene.belt_speed"),
+        ("law: coulomb, scene", "law: sofft, scene", "soft"),
+        ("num: 120", "num: 120, spacing: logg", "log"),
+    ],
+)
+def test_a_likely_meaning_is_offered(written: Any, old: str, new: str, meant: str) -> None:
+    with pytest.raises(StudyError) as caught:
+        load_study(written(GOOD.replace(old, new, 1)))
+
+    assert f"did you mean '{meant}'?" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (b"", "study.yaml:1:1: the study is empty"),
+        (b"# nothing\n", "study.yaml:1:1: the study is empty"),
+        (b"- schema: 1\n", "study.yaml:1:1: must be a mapping (key: value), got a list"),
+        (b"hello", "study.yaml:1:1: must be a mapping (key: value), got the text 'hello'"),
+        (b"a: [1\n", "study.yaml:2:1: not YAML: while parsing a flow sequence"),
+        (b"schema: 1\nlaws: ]\n", "study.yaml:2:7: not YAML: while parsing a block node expected"),
+        (b"a: 1\n---\nb: 2\n", "study.yaml:2:1: not YAML: expected a single document in the stream"),
+        (b"\x89PNG\r\n\x1a\n\x00\xff", "study.yaml: is not UTF-8 text (byte 1)"),
+        (b"schema: \x00 1", "study.yaml:1:9: is not text: character '\\x00'"),
+        (b"[" * 1000, "study.yaml: not a study: nested too deeply"),
+        (b"a: *nowhere", "study.yaml:1:4: not YAML: found undefined alias 'nowhere'"),
+    ],
+)
+def test_what_is_no_study_is_refused_in_one_message(written: Any, text: bytes, said: str) -> None:
+    found = mistakes(written(text))
+
+    assert len(found) >= 1
+    assert found[0].startswith(said)
+
+
+def test_a_missing_file_and_a_folder_are_refused(tmp_path: Path) -> None:
+    assert mistakes(str(tmp_path / "none.yaml")) == [f"{tmp_path}/none.yaml: no such file"]
+    assert mistakes(str(tmp_path)) == [f"{tmp_path}: is a folder; a study is a file"]
+
+
+def test_a_file_that_may_not_be_read_is_refused(written: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = written(GOOD)
+
+    def refuse(_: Path) -> bytes:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", refuse)
+
+    assert mistakes(path) == ["study.yaml: cannot be read: Permission denied"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pipes in the file system")
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe", stat.S_IRUSR | stat.S_IWUSR)
+
+    assert mistakes(str(tmp_path / "pipe")) == [f"{tmp_path}/pipe: is not an ordinary file"]
+
+
+def test_a_file_too_large_for_a_study_is_not_read(written: Any) -> None:
+    path = written("")
+    os.truncate(path, 6_000_000)
+
+    assert mistakes(path) == ["study.yaml: is larger than 5 MB; a study is a short text"]
+
+
+def test_aliases_that_multiply_without_end_are_stopped(written: Any) -> None:
+    layers = "\n".join(f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]" for i in range(1, 12))
+
+    assert "values" in mistakes(written(f"a0: &a0 [1, 2]\n{layers}\n"))[0]
+
+
+def test_a_value_that_contains_itself_is_a_mistake(written: Any) -> None:
+    found = mistakes(written(GOOD.replace("title: Two loads", "title: &t [*t]")))
+
+    assert "study.yaml:2:8: title[0]: contains itself" in found
+
+
+def test_a_mapping_has_no_lines_but_the_same_messages() -> None:
+    with pytest.raises(StudyError) as caught:
+        parse_study(good() | {"tolerance": -1, "laws": [{"kind": "coulomb", "mu": object()}]})
+
+    assert heads(caught.value) == [
+        "study: laws[0].mu: must be a number, got a object",
+        "study: tolerance: must be > 0, got -1",
+    ]
+
+
+# Any study
+
+
+@st.composite
+def studies(draw: st.DrawFn) -> dict[str, Any]:
+    """Studies without mistakes."""
+    positive = st.floats(1e-3, 1e3)
+    size = draw(st.sampled_from(["unbalance", "amplitude"]))
+    tree = good()
+    tree["scene"] = {
+        "damping_ratio": draw(st.floats(0, 3)),
+        "normal_load": draw(positive),
+        "belt_speed": draw(st.floats(-50, 50)),
+        "drive": {size: draw(positive), "frequency": draw(positive)},
+    }
+    if draw(st.booleans()):
+        tree["scene"]["transverse"] = {"natural_frequency": draw(positive), "damping_ratio": draw(positive)}
+    labels = draw(st.lists(st.sampled_from(["a", "b.c", "soft one", "coulomb"]), min_size=1, unique=True))
+    tree["laws"] = [{"kind": "coulomb", "mu": draw(positive), "label": label} for label in labels]
+    tree["tolerance"] = draw(st.floats(1e-12, 1))
+    values = st.lists(positive, min_size=1, max_size=4, unique=True)
+    paths = [
+        "scene.belt_speed",
+        f"scene.drive.{size}",
+        "scene.drive.phase",
+        *(f"laws.{label}.mu" for label in labels),
+    ]
+    chosen = draw(st.lists(st.sampled_from(paths), unique=True, max_size=3))
+    tree["sweep"] = {path: draw(values) for path in chosen}
+    tree["methods"] = draw(st.lists(st.sampled_from(["auto", "exact", "shooting"]), min_size=1, unique=True))
+    tree["title"] = draw(st.text(max_size=9))
+    return tree
+
+
+@given(studies())
+@example(good() | {"scene": good()["scene"] | {"belt_speed": -0.0}})
+@settings(max_examples=60)
+def test_any_study_survives_being_resolved_and_read_again(tree: dict[str, Any]) -> None:
+    study = parse_study(tree)
+
+    again = parse_study(study.resolved())
+    assert (again, again.digest()) == (study, study.digest())
+    assert [case.scene for case in again.cases()] == [case.scene for case in study.cases()]
+
+
+JUNK = st.recursive(
+    st.none() | st.booleans() | st.floats() | st.integers(-(10**400), 10**400) | st.text(max_size=5),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(st.sampled_from(["kind", "mu", "start", "x"]), inner, max_size=3)
+    ),
+    max_leaves=5,
+)
+
+
+def _every_path(tree: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    inner = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
+    return [path] + [found for key, item in inner for found in _every_path(item, (*path, key))]
+
+
+RICH = parse_study(
+    good()
+    | {
+        "sweep": {"scene.belt_speed": [1, 2], "laws.coulomb.mu": [0.1, 0.2]},
+        "expect": [{"where": {"law": "coulomb"}, "status": "ok"}],
+        "keep": {"orbit": 3},
+        "methods": ["auto", "exact"],
+    }
+).resolved()
+
+
+@given(st.data(), st.sampled_from(_every_path(RICH)[1:]), st.sampled_from(["delete", "replace", "add"]))
+@settings(max_examples=250)
+def test_a_study_with_anything_done_to_it_loads_or_tells_its_mistakes(
+    data: st.DataObject, path: tuple[Any, ...], deed: str
+) -> None:
+    tree = parse_study(RICH).resolved()
+    at: Any = tree
+    for step in path[:-1]:
+        at = at[step]
+    if deed == "delete":
+        del at[path[-1]]
+    elif deed == "replace":
+        at[path[-1]] = data.draw(JUNK)
+    elif isinstance(at, dict):
+        at[data.draw(st.text(max_size=5))] = data.draw(JUNK)
+
+    told = outcome(lambda: parse_study(tree))
+
+    assert isinstance(told, Study) or told.startswith("study: ")
+
+
+@given(st.binary(max_size=30), st.integers(0, len(GOOD)), st.integers(0, 10))
+@settings(max_examples=150)
+def test_a_file_with_any_bytes_in_it_loads_or_tells_its_mistakes(
+    tmp_path_factory: pytest.TempPathFactory, noise: bytes, at: int, lost: int
+) -> None:
+    file = tmp_path_factory.mktemp("noise") / "study.yaml"
+    file.write_bytes(GOOD.encode()[:at] + noise + GOOD.encode()[at + lost :])
+
+    told = outcome(lambda: load_study(file))
+
+    assert isinstance(told, Study) or told.startswith(str(file))
+
+
+# Schema and columns
+
+
+def _keys_of(made: dict[str, Any], at: dict[str, Any]) -> set[str]:
+    """Every dotted key that a schema allows under one of its parts."""
+    if "$ref" in at:
+        at = made["$defs"][at["$ref"].rpartition("/")[2]]
+    found = set()
+    for key, inner in at.get("properties", {}).items():
+        found |= {key} | {f"{key}.{below}" for below in _keys_of(made, inner)}
+    return found
+
+
+def _refused_as_unknown(tree: dict[str, Any], path: str) -> bool:
+    try:
+        parse_study(tree)
+    except StudyError as problem:
+        return any(m.path == path and m.what.startswith("unknown key") for m in problem.mistakes)
+    return False
+
+
+def _allowed(tree: dict[str, Any], path: str) -> list[str]:
+    """The keys that a refusal of a nonsense key says are allowed."""
+    with pytest.raises(StudyError) as caught:
+        parse_study(tree)
+    said = next(m.what for m in caught.value.mistakes if m.path == path)
+    return said.removeprefix("unknown key; allowed: ").split(", ")
+
+
+def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene() -> None:
+    made = schema()
+    probe = good() | {"zzz": 1}
+    probe["scene"] = probe["scene"] | {
+        "zzz": 1,
+        "drive": {"zzz": 1},
+        "transverse": {"zzz": 1, "load": {"zzz": 1}},
+        "slip": {"zzz": 1},
+        "transverse_slip": {"zzz": 1},
+        "initial": {"zzz": 1},
+    }
+    parts = {
+        "zzz": 1,
+        "drive": {"zzz": 1},
+        "transverse": {"zzz": 1, "load": {"zzz": 1}},
+        "initial": {"zzz": 1},
+    }
+    si = good() | {"scene": {"dimensional": parts}}
+
+    assert set(_allowed(probe, "zzz")) == set(made["properties"])
+    scene = _keys_of(made, made["properties"]["scene"])
+    both = ["", "drive.", "transverse.", "transverse.load.", "initial."]
+    found = {
+        part + key
+        for part in [*both, "slip.", "transverse_slip."]
+        for key in _allowed(probe, f"scene.{part}zzz")
+    }
+    ours = [f"dimensional.{part}" for part in both]
+    assert scene == found | {part + key for part in ours for key in _allowed(si, f"scene.{part}zzz")}
+
+
+def _dotted_keys(tree: dict[str, Any]) -> set[str]:
+    inner = {f"{k}.{below}" for k, v in tree.items() if isinstance(v, dict) for below in _dotted_keys(v)}
+    return set(tree) | inner
+
+
+@pytest.mark.parametrize(
+    "file", sorted(Path(__file__).parents[2].glob("studies/*.yaml")), ids=lambda file: file.stem
+)
+def test_the_studies_use_keys_of_the_schema(file: Path) -> None:
+    made, tree = schema(), load_study(file).resolved()
+
+    assert set(tree) <= set(made["properties"])
+    assert _dotted_keys(tree["scene"]) <= _keys_of(made, made["properties"]["scene"])
+
+
+def test_the_schema_and_the_reader_allow_the_same_keys_in_every_law_and_method() -> None:
+    made = schema()["properties"]
+    laws = {law["title"]: law["properties"] for law in made["laws"]["items"]["oneOf"]}
+    methods = {method["title"]: method for method in made["methods"]["items"]["oneOf"] if "title" in method}
+
+    assert list(laws) == registry.law_names()
+    assert list(methods) == registry.method_names()
+    for name, keys in laws.items():
+        allowed = _allowed(good() | {"laws": [{"kind": name, "zzz": 1}]}, "laws[0].zzz")
+        assert set(keys) == {"kind", "label", *allowed} - {"none"}
+    for name, method in methods.items():
+        allowed = _allowed(good() | {"methods": [{"kind": name, "zzz": 1}]}, "methods[0].zzz")
+        assert set(method["properties"]) == {"kind", "label", *allowed} - {"none"}
+
+
+def test_the_schema_and_the_reader_allow_the_same_keys_in_expectations_and_ranges() -> None:
+    made = schema()["properties"]
+    probe = good() | {"expect": [{"zzz": 1}], "sweep": {"scene.belt_speed": {"zzz": 1}}, "keep": {"zzz": 1}}
+
+    kinds = made["expect"]["items"]["oneOf"]
+    assert set(_allowed(probe, "expect[0].zzz")) == {key for kind in kinds for key in kind["properties"]}
+    ranged = made["sweep"]["additionalProperties"]["oneOf"][1]
+    assert set(_allowed(probe, "sweep.scene.belt_speed.zzz")) == set(ranged["properties"])
+    assert set(_allowed(probe, "keep.zzz")) == set(made["keep"]["properties"])
+
+
+def test_the_schema_gives_bounds_and_no_null_and_lets_a_sweep_give_any_value() -> None:
+    made = schema()
+    scene = made["properties"]["scene"]["properties"]
+
+    assert scene["damping_ratio"]["minimum"] == 0
+    assert scene["normal_load"]["exclusiveMinimum"] == 0
+    assert "null" not in str(made)
+    assert made["required"] == ["schema", "scene", "laws"]
+    assert "required" not in made["properties"]["scene"]
+    assert made["properties"]["laws"]["items"]["oneOf"][0]["required"] == ["kind"]
+
+
+def test_text_columns_are_result_columns() -> None:
+    assert set(columns.RESULTS) > columns.TEXT
+    assert not set(columns.RESULTS) & set(columns.INPUTS)

@@ -43,14 +43,14 @@ _HOMES = {
     "SlidingLaw": "frictionlab.laws.base",
     "Slip": "frictionlab.scene.scene",
     "Speed": "frictionlab.laws.base",
-    "SteadyState": "frictionlab.run.api",
+    "SteadyState": "frictionlab.runner.api",
     "Stiffness": "frictionlab.laws.compliant",
     "Stribeck": "frictionlab.laws.stribeck",
     "Transverse": "frictionlab.scene.scene",
     "TransverseSlip": "frictionlab.scene.scene",
-    "curve": "frictionlab.run.api",
-    "run": "frictionlab.run.api",
-    "steady_state": "frictionlab.run.api",
+    "curve": "frictionlab.runner.api",
+    "run": "frictionlab.runner.api",
+    "steady_state": "frictionlab.runner.api",
 }
 
 __all__ = ["__version__", *sorted(_HOMES)]

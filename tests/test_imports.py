@@ -60,15 +60,15 @@ ARROWS = {
         *("columns", "laws", "methods.base", "orbit", "quantities", "registry", "scene", "shape", "study"),
         "theory",
     ],
-    "run": [
+    "runner": [
         *("columns", "faults", "laws", "methods.base", "orbit", "quantities", "registry", "results", "scene"),
         "study",
     ],
     "charts": ["columns"],
-    "report": ["charts", "columns", "registry", "results", "run", "scene", "study"],
-    "scaffold": ["registry", "run"],
+    "report": ["charts", "columns", "registry", "results", "runner", "scene", "study"],
+    "scaffold": ["registry", "runner"],
     "bench": [
-        *("charts", "columns", "compile", "laws", "quantities", "run", "scene", "study"),
+        *("charts", "columns", "compile", "laws", "quantities", "runner", "scene", "study"),
         *("methods.base", "methods.exact", "methods.periodic", "methods.shooting"),
     ],
     "testing": [
@@ -82,7 +82,7 @@ ARROWS = {
         "registry",
         "report",
         "results",
-        "run",
+        "runner",
         "scaffold",
         "study",
         "testing",
@@ -95,14 +95,14 @@ OUTSIDE = {
     "pydantic": ["quantities", "laws", "scene", "methods", "registry", "study", "bench", "testing"],
     "numpy": [
         *("quantities", "compile", "theory", "shape", "orbit", "numerics", "dynamics", "methods", "study"),
-        *("results", "run", "charts", "bench", "testing"),
+        *("results", "runner", "charts", "bench", "testing"),
     ],
     "hypothesis": ["testing"],
     "numba": ["compile", "bench.peers"],  # the peers' integrators are called with numba's C functions
     "llvmlite": ["compile"],
-    "ruamel": ["study", "run"],
-    "pandas": ["results", "run", "charts", "report", "cli"],
-    "pyarrow": ["results", "run"],
+    "ruamel": ["study", "runner"],
+    "pandas": ["results", "runner", "charts", "report", "cli"],
+    "pyarrow": ["results", "runner"],
     "matplotlib": ["charts", "bench.chart"],
     "scipy": ["bench.peers"],
     "heyoka": ["bench.peers"],

@@ -14,7 +14,7 @@ import pytest
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.run.saved import read_saved
+from frictionlab.runner.saved import read_saved
 from frictionlab.study import load_study
 
 DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"

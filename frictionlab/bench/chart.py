@@ -18,7 +18,7 @@ from frictionlab.bench.measure import Measured, Row
 from frictionlab.bench.record import Contender
 from frictionlab.bench.report import largest, remark
 from frictionlab.charts.figures import PAGE, STYLE
-from frictionlab.run.errors import SaveError
+from frictionlab.runner.errors import SaveError
 
 OURS = ("#08306b", "#7f0000", "#00441b", "#4a1486", "#662506", "#252525")
 THEIRS = ("#e6550d", "#31a354", "#756bb1", "#969696")

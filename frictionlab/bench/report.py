@@ -11,7 +11,7 @@ from typing import Any
 from frictionlab.bench.measure import STATUSES, Measured, Row
 from frictionlab.bench.record import Contender, Reference
 from frictionlab.bench.timing import Times
-from frictionlab.run.errors import SaveError
+from frictionlab.runner.errors import SaveError
 
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
 HEAD = (

@@ -12,8 +12,8 @@ from frictionlab.bench.peers.base import Peer
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
-from frictionlab.run.chunks import Chunk, Task
-from frictionlab.run.solve import answer
+from frictionlab.runner.chunks import Chunk, Task
+from frictionlab.runner.solve import answer
 from frictionlab.scene.scene import Scene
 
 

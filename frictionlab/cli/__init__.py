@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from frictionlab.bench import Measured
     from frictionlab.registry import Laws
     from frictionlab.results.run import Run
-    from frictionlab.run.batch import Job
-    from frictionlab.run.plan import Planned
+    from frictionlab.runner.batch import Job
+    from frictionlab.runner.plan import Planned
 
 
 OK, BUG, WRONG, FAILED, BROKEN_PLUGIN, INTERRUPTED = 0, 1, 2, 3, 4, 130
@@ -98,7 +98,7 @@ def _explained(problem: BaseException) -> int:
 
 def _classified(problem: BaseException) -> tuple[int, str]:
     from frictionlab.faults import BrokenPlugin, blamed
-    from frictionlab.run.errors import FolderError, SaveError
+    from frictionlab.runner.errors import FolderError, SaveError
     from frictionlab.study import StudyError
 
     if isinstance(problem, CommandError):
@@ -183,7 +183,7 @@ def run(**options: Any) -> int:
 
     The same study into the same DIR takes over the points that are finished.
     """
-    from frictionlab.run import batch  # with pandas
+    from frictionlab.runner import batch  # with pandas
 
     given = RunOptions(**options)
     if given.as_json and given.cite:
@@ -226,8 +226,8 @@ def _run(job: Job, given: RunOptions) -> Run:
     """Run one study, print what it found, then draw it: figures wait for nobody's table."""
     from concurrent.futures import ThreadPoolExecutor
 
-    from frictionlab.run import api
-    from frictionlab.run.progress import Meter
+    from frictionlab.runner import api
+    from frictionlab.runner.progress import Meter
 
     meter = Meter(sys.stderr)
     pool = ThreadPoolExecutor(given.workers or os.cpu_count())
@@ -275,7 +275,7 @@ def _draw(job: Job, result: Run) -> None:
 def _drawn(table: DataFrame, title: str, folder: Path) -> list[Path]:
     """Draw the figures of a run; the files. Raises SaveError."""
     from frictionlab.charts.figures import draw  # with matplotlib, which takes a second
-    from frictionlab.run.errors import SaveError
+    from frictionlab.runner.errors import SaveError
 
     try:
         return draw(table, title, folder / "figures")
@@ -285,21 +285,21 @@ def _drawn(table: DataFrame, title: str, folder: Path) -> list[Path]:
 
 def _report(result: Run) -> None:
     from frictionlab.report import write_report
-    from frictionlab.run.saved import saved_as
+    from frictionlab.runner.saved import saved_as
 
     _tell(f"report in {write_report(saved_as(result))}")
 
 
 def _write_index(folder: Path, done: Sequence[Run]) -> None:
     from frictionlab.report import write_index
-    from frictionlab.run.saved import saved_as
+    from frictionlab.runner.saved import saved_as
 
     _tell(f"index in {write_index(folder, [saved_as(result) for result in done])}")
 
 
 def _cite(done: Sequence[Run]) -> None:
     from frictionlab.report import bibtex
-    from frictionlab.run.saved import saved_as
+    from frictionlab.runner.saved import saved_as
 
     _print(bibtex([saved_as(result) for result in done]))
 
@@ -330,7 +330,7 @@ def _code(result: Run) -> int:
 @click.argument("run", type=click.Path(path_type=Path))
 def plot(run: Path) -> None:
     """Draw the figures of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
-    from frictionlab.run.saved import read_saved
+    from frictionlab.runner.saved import read_saved
 
     saved = read_saved(run)
     files = _drawn(saved.table, saved.title, run)
@@ -342,7 +342,7 @@ def plot(run: Path) -> None:
 def report(run: Path) -> None:
     """Write the figures and the report.html of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
     from frictionlab.report import write_report
-    from frictionlab.run.saved import read_saved
+    from frictionlab.runner.saved import read_saved
 
     saved = read_saved(run)
     _drawn(saved.table, saved.title, run)
@@ -397,8 +397,8 @@ def law(path: Path, memory: Literal["none", "bristle"]) -> None:
 @json_option
 def check(study: Path, overrides: tuple[str, ...], law_files: tuple[Path, ...], as_json: bool) -> None:
     """Check STUDY and tell what it will take: models, refusals, cost. Nothing is computed."""
-    from frictionlab.run import batch
-    from frictionlab.run.plan import plan
+    from frictionlab.runner import batch
+    from frictionlab.runner.plan import plan
 
     planned = [(job.name, plan(job.study)) for job in batch.jobs(study, None, overrides, law_files)]
     if as_json:

@@ -14,7 +14,7 @@ from frictionlab.charts.figures import figure_columns
 from frictionlab.report.markup import symbol_html, unit_html, word_html
 from frictionlab.report.question import values_listed
 from frictionlab.report.tables import listed, points, setting
-from frictionlab.run.saved import Saved
+from frictionlab.runner.saved import Saved
 
 LARGEST_SVG = 400_000
 """Bytes of a drawing above which the pixels of the same figure are put into the page, where they are fewer."""

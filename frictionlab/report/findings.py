@@ -27,7 +27,7 @@ from frictionlab.report.tables import (
 )
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.summary import alike, pattern, statuses
-from frictionlab.run.saved import Saved
+from frictionlab.runner.saved import Saved
 
 FEW_ROWS = 4
 """A table of so few rows is shown whole."""

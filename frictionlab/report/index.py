@@ -12,8 +12,8 @@ from frictionlab.report.figures import address
 from frictionlab.report.page import rendered, wall
 from frictionlab.report.tables import points, size
 from frictionlab.results.summary import statuses
-from frictionlab.run.folder import write_page
-from frictionlab.run.saved import Saved
+from frictionlab.runner.folder import write_page
+from frictionlab.runner.saved import Saved
 
 LARGEST_THUMBNAIL = 200_000
 """Length of a picture's data above which the index goes without it: the report has it."""

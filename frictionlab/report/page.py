@@ -15,9 +15,9 @@ from frictionlab.report import findings, question
 from frictionlab.report.figures import pictures
 from frictionlab.report.sources import bibtex, published, sources
 from frictionlab.report.tables import Grid, grid, points, swept_inputs
-from frictionlab.run.folder import write_page
-from frictionlab.run.saved import Saved
-from frictionlab.run.yaml_text import yaml_text
+from frictionlab.runner.folder import write_page
+from frictionlab.runner.saved import Saved
+from frictionlab.runner.yaml_text import yaml_text
 
 TEMPLATES = Path(__file__).parent / "templates"
 GENERATOR = f"frictionlab {__version__}"

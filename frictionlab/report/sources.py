@@ -16,7 +16,7 @@ import pandas as pd
 
 from frictionlab import registry
 from frictionlab.registry.bibliography import Reference, publications, remark
-from frictionlab.run.saved import Saved
+from frictionlab.runner.saved import Saved
 from frictionlab.study import LawChoice
 
 

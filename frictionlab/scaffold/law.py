@@ -11,7 +11,7 @@ from typing import Literal
 
 from frictionlab import registry
 from frictionlab.registry.law_file import law_name
-from frictionlab.run.errors import not_written
+from frictionlab.runner.errors import not_written
 
 Memory = Literal["none", "bristle"]
 TEMPLATES = Path(__file__).parent

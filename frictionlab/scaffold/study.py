@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from frictionlab.run.errors import FolderError, not_written
+from frictionlab.runner.errors import FolderError, not_written
 
 TEMPLATE = Path(__file__).with_suffix(".yaml")
 ENDINGS = (".yaml", ".yml")

@@ -19,8 +19,8 @@ from fake_methods import Fake, breaks_down, is_broken
 
 from frictionlab import cli, registry
 from frictionlab.registry.bibliography import references
-from frictionlab.run import api, execute
-from frictionlab.run.yaml_text import yaml_text
+from frictionlab.runner import api, execute
+from frictionlab.runner.yaml_text import yaml_text
 
 POINTS = [4.0, 13.0, -2.0, 9.0]
 DOOR = "[frictionlab.methods]\nfake = fake_methods:Fake\n"
@@ -156,7 +156,7 @@ def test_a_page_that_cannot_be_written_is_code_3_with_the_table_safe(
         whole(source, target)
 
     whole = os.replace
-    monkeypatch.setattr("frictionlab.run.folder.os.replace", replace)
+    monkeypatch.setattr("frictionlab.runner.folder.os.replace", replace)
     said = frictionlab("run", study(), "-o", "out")
 
     assert said.code == 3
@@ -378,7 +378,7 @@ def test_a_full_disk_is_code_3_and_the_summary_is_printed(frictionlab: Any, monk
         whole(source, target)
 
     whole = os.replace
-    monkeypatch.setattr("frictionlab.run.folder.os.replace", replace)
+    monkeypatch.setattr("frictionlab.runner.folder.os.replace", replace)
     said = frictionlab("run", study(), "-o", "out")
 
     assert said.code == 3
@@ -532,7 +532,7 @@ def test_an_interrupted_run_does_not_wait_for_a_method_that_takes_for_ever(
     monkeypatch.setattr(execute, "GRACE", 0.05)
     monkeypatch.setattr(cli.os, "_exit", left.append)
     monkeypatch.setattr(
-        "frictionlab.run.progress.Meter.__call__", lambda *_: signal.raise_signal(signal.SIGINT)
+        "frictionlab.runner.progress.Meter.__call__", lambda *_: signal.raise_signal(signal.SIGINT)
     )
     said = frictionlab("run", study(methods=[{"kind": "fake", "pause": 4.0}]), "-o", "out")
 

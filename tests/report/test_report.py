@@ -23,9 +23,9 @@ from frictionlab.report import bibtex, figures, tables, write_index, write_repor
 from frictionlab.report.markup import html, symbol_html
 from frictionlab.report.page import report, wall
 from frictionlab.report.sources import sources
-from frictionlab.run import api
-from frictionlab.run.errors import FolderError, SaveError
-from frictionlab.run.saved import Saved, read_saved, saved_as
+from frictionlab.runner import api
+from frictionlab.runner.errors import FolderError, SaveError
+from frictionlab.runner.saved import Saved, read_saved, saved_as
 from frictionlab.scaffold.study import new_study
 from frictionlab.study import StudyError
 

@@ -447,7 +447,7 @@ def test_a_run_in_si_units_is_taken_over_and_another_body_is_refused(tmp_path: A
 
 
 def test_a_curve_in_si_units_is_solved_as_one_curve() -> None:
-    from frictionlab.run.chunks import curves
+    from frictionlab.runner.chunks import curves
 
     tree = study(
         sweep={"scene.dimensional.belt_speed_m_per_s": [0.1, 0.2, 0.3], "scene.dimensional.mass_kg": [1, 2]}

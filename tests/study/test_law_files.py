@@ -16,9 +16,9 @@ from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.registry.law_file import law_name, read_law_file
 from frictionlab.report import write_report
-from frictionlab.run.errors import FolderError
-from frictionlab.run.saved import read_saved
-from frictionlab.run.yaml_text import yaml_text
+from frictionlab.runner.errors import FolderError
+from frictionlab.runner.saved import read_saved
+from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import StudyError, load_study
 
 LAW = '''"""A law for tests."""

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from frictionlab import registry
-from frictionlab.run.chunks import curves
+from frictionlab.runner.chunks import curves
 from frictionlab.study import Case, Study
 
 

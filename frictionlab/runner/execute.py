@@ -7,8 +7,8 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from contextlib import suppress
 
 from frictionlab.results.part import Part
-from frictionlab.run.chunks import Chunk
-from frictionlab.run.solve import solve
+from frictionlab.runner.chunks import Chunk
+from frictionlab.runner.solve import solve
 
 TICK = 0.1
 """Seconds between two looks at what goes on."""

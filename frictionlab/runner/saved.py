@@ -13,7 +13,7 @@ from frictionlab import __version__
 from frictionlab.columns import INPUTS, RESULTS, TEXT
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
-from frictionlab.run.errors import FolderError
+from frictionlab.runner.errors import FolderError
 from frictionlab.study import Study, read_back
 from frictionlab.study.grid import grid_size
 

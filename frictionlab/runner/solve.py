@@ -12,7 +12,7 @@ from frictionlab.faults import MARK, BrokenPlugin, CannotCompile, blamed
 from frictionlab.methods.base import Answers, refused
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import derived_columns
-from frictionlab.run.chunks import Chunk
+from frictionlab.runner.chunks import Chunk
 
 if TYPE_CHECKING:
     from frictionlab.orbit.sample import Samples

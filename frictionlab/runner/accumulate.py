@@ -14,9 +14,9 @@ import pandas as pd
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.part import Part
 from frictionlab.results.table import Inputs, Results, finished_rows, orbit_rows
-from frictionlab.run.errors import SaveError
-from frictionlab.run.folder import Existing, RunFolder
-from frictionlab.run.progress import Progress, silent
+from frictionlab.runner.errors import SaveError
+from frictionlab.runner.folder import Existing, RunFolder
+from frictionlab.runner.progress import Progress, silent
 
 if TYPE_CHECKING:
     from frictionlab.orbit.sample import Samples

@@ -14,8 +14,8 @@ from typing import Any, Literal
 
 import pandas as pd
 
-from frictionlab.run.errors import FolderError, SaveError
-from frictionlab.run.yaml_text import yaml_text
+from frictionlab.runner.errors import FolderError, SaveError
+from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study.study import LAW_COPIES
 
 PACKAGES = ("numpy", "numba", "llvmlite", "pandas", "pyarrow", "pydantic", "scipy")

@@ -27,12 +27,12 @@ from frictionlab import registry
 from frictionlab.columns import RESULTS, TEXT
 from frictionlab.results.summary import summary
 from frictionlab.results.table import headings, inputs, records
-from frictionlab.run import accumulate, api, folder
-from frictionlab.run.chunks import Task, chunks, curves
-from frictionlab.run.errors import FolderError, SaveError
-from frictionlab.run.progress import Meter
-from frictionlab.run.solve import solve
-from frictionlab.run.yaml_text import yaml_text
+from frictionlab.runner import accumulate, api, folder
+from frictionlab.runner.chunks import Task, chunks, curves
+from frictionlab.runner.errors import FolderError, SaveError
+from frictionlab.runner.progress import Meter
+from frictionlab.runner.solve import solve
+from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import load_study, parse_study
 
 Trouble = Callable[[dict[float, Callable[[], None]]], None]
@@ -659,7 +659,7 @@ def test_progress_is_told_after_two_seconds_and_not_before(
     stream: type[io.StringIO], monkeypatch: Any
 ) -> None:
     now = [100.0]
-    monkeypatch.setattr("frictionlab.run.progress.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("frictionlab.runner.progress.time.monotonic", lambda: now[0])
     told = stream()
     meter = Meter(told)
     meter(100, 400)
@@ -678,7 +678,7 @@ def test_time_spent_compiling_is_named_and_not_held_against_the_points(monkeypat
     from numba.core.compiler_lock import global_compiler_lock
 
     now = [100.0]
-    monkeypatch.setattr("frictionlab.run.progress.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("frictionlab.runner.progress.time.monotonic", lambda: now[0])
     told = io.StringIO()
     meter = Meter(told)
     meter(0, 400)

@@ -26,13 +26,13 @@ from frictionlab.results.expectations import judge
 from frictionlab.results.part import Part
 from frictionlab.results.state import SteadyState
 from frictionlab.results.table import headings, inputs
-from frictionlab.run.accumulate import Gathering
-from frictionlab.run.chunks import Chunk, Task, chunks
-from frictionlab.run.errors import SaveError
-from frictionlab.run.execute import collect
-from frictionlab.run.folder import Existing, Identity, RunFolder
-from frictionlab.run.progress import Progress, silent
-from frictionlab.run.solve import answer, parts
+from frictionlab.runner.accumulate import Gathering
+from frictionlab.runner.chunks import Chunk, Task, chunks
+from frictionlab.runner.errors import SaveError
+from frictionlab.runner.execute import collect
+from frictionlab.runner.folder import Existing, Identity, RunFolder
+from frictionlab.runner.progress import Progress, silent
+from frictionlab.runner.solve import answer, parts
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Case, Study, load_study, parse_study
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from frictionlab.run.api import run_folder
-from frictionlab.run.errors import FolderError
-from frictionlab.run.folder import Existing, check_page
+from frictionlab.runner.api import run_folder
+from frictionlab.runner.errors import FolderError
+from frictionlab.runner.folder import Existing, check_page
 from frictionlab.study import Mistake, Study, StudyError, load_study
 
 

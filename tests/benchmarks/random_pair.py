@@ -1,0 +1,388 @@
+"""Random scenes of every law and method, solved by two checkouts and compared.
+
+python tests/benchmarks/random_pair.py solve OUT.csv [--count 2000] [--seed 1] [--python /other/.venv/bin/python]
+python tests/benchmarks/random_pair.py compare A.csv B.csv
+
+``solve`` draws scenes (the same for a seed, whatever the checkout) and solves each with the frictionlab of the given
+python, one scene at a time in a process of its own that is started again where a scene takes more than --limit
+seconds of processor time (20; the row is then ``slow`` and not compared). Compiling does not count: a scene that runs
+out of time is given --patience seconds (180) to compile, and tried again. The rows of OUT.csv are kept: the same
+command goes on with what is left.
+
+``compare`` prints every row whose status is another one or whose means differ by more than the sum of their errors,
+and exits with code 1 where there is one. Scenes without one mean (not_unique) are compared by status alone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import math
+import os
+import random
+import subprocess
+import sys
+import threading
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[2]
+COLUMNS = (
+    *("number", "family", "freedom", "method", "tolerance", "status", "mean_friction", "error"),
+    *("mean_low", "mean_high", "cpu", "reason", "scene", "law"),
+)
+SLOW = 75
+"""The exit code of a process that a scene kept too long."""
+FAMILIES = (
+    *(
+        "coulomb",
+        "coulomb",
+        "coulomb",
+        "more at rest",
+        "stribeck",
+        "dahl",
+        "exponent",
+        "lugre",
+        "falling lugre",
+    ),
+    *("elasto-plastic", "jenkins", "maxwell-slip", "rate-and-state"),
+)
+NO_MEMORY = "coulomb", "more at rest", "stribeck"
+PLUGINS = {"maxwell-slip": "maxwell_slip:MaxwellSlip", "rate-and-state": "rate_and_state:RateAndState"}
+CLASSES = {
+    "coulomb": "Coulomb", "stribeck": "Stribeck", "dahl": "Dahl", "lugre": "LuGre", "elasto-plastic": "ElastoPlastic",
+    "jenkins": "Jenkins",
+}  # fmt: skip
+
+
+# What is drawn: plain numbers alone, so that two checkouts are given the same whatever they are made of.
+
+
+def draw(rng: random.Random) -> dict[str, Any]:
+    """A scene, a law, a method and a tolerance, as plain values."""
+    family, freedom = rng.choice(FAMILIES), rng.choice((0, 1, 1, 1, 2))
+    if family in PLUGINS and freedom == 2:  # seconds a scene
+        freedom = 1
+    scene, speed = _prescribed(rng) if freedom == 0 else _free(rng, freedom)
+    one = {
+        "family": family,
+        "freedom": freedom,
+        "scene": scene,
+        "law": _law(rng, family, freedom, scene, speed),
+    }
+    return one | {"method": _method(rng, family, freedom), "tolerance": rng.choice((1e-4, 1e-6, 1e-8))}
+
+
+def _log(rng: random.Random, low: float, high: float) -> float:
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def _prescribed(rng: random.Random) -> tuple[dict[str, Any], float]:
+    size, frequency, which = (
+        _log(rng, 0.1, 30.0),
+        _log(rng, 0.2, 5.0),
+        rng.choice(("along", "along", "across", "both")),
+    )
+    scene: dict[str, Any] = {"belt_speed": _belt_speed(rng, size)}
+    if which != "across":
+        phase = rng.uniform(0.0, 360.0)
+        scene["slip"] = {"velocity_amplitude": size, "frequency": frequency, "phase": phase}
+    if which != "along":
+        across = {"velocity_amplitude": size * _log(rng, 0.1, 5.0), "phase": rng.uniform(0.0, 360.0)}
+        scene["transverse_slip"] = across | ({"frequency": frequency} if which == "across" else {})
+    return scene, size
+
+
+def _free(rng: random.Random, freedom: int) -> tuple[dict[str, Any], float]:
+    """A body, driven but for one in twenty; friction is 0.01 ... 2 of the load."""
+    frequency, damping, load = _log(rng, 0.3, 5.0), _log(rng, 0.02, 0.5), _log(rng, 0.1, 100.0)
+    if rng.random() < 0.05:
+        damping = rng.choice((0.0, 1.0))
+    stiffness = math.hypot(1.0 - frequency**2, 2.0 * damping * frequency)
+    speed = load * frequency / max(stiffness, 1e-3)
+    pressed = load * _log(rng, 0.01, 2.0) / 0.4
+    scene: dict[str, Any] = {"damping_ratio": damping, "normal_load": pressed}
+    scene["belt_speed"] = _belt_speed(rng, speed)
+    driven = rng.random() > 0.05
+    if driven:
+        scene["drive"] = {"amplitude": load, "frequency": frequency, "phase": rng.uniform(0.0, 360.0)}
+    if freedom == 2:
+        scene["transverse"] = {
+            "natural_frequency": _log(rng, 0.3, 5.0),
+            "damping_ratio": _log(rng, 0.02, 0.5),
+        }
+        if driven and rng.random() < 0.9:
+            across = {
+                "amplitude": load * _log(rng, 0.1, 10.0),
+                "phase": rng.choice((0.0, rng.uniform(0.0, 360.0))),
+            }
+            scene["transverse"]["load"] = across
+    if rng.random() < 0.1:
+        scene["initial"] = {"x": rng.uniform(-1.0, 1.0) * speed, "velocity": rng.uniform(-1.0, 1.0) * speed}
+    return scene, speed
+
+
+def _belt_speed(rng: random.Random, speed: float) -> float:
+    kind = rng.random()
+    if kind < 0.05:
+        return 0.0
+    side = -1.0 if kind > 0.85 else 1.0
+    grazing = 1.0 + rng.choice((-1.0, 1.0)) * 10.0 ** rng.uniform(-6.0, -2.0)
+    return side * speed * (grazing if kind < 0.15 else _log(rng, 0.01, 1.5))
+
+
+def _law(
+    rng: random.Random, family: str, freedom: int, scene: dict[str, Any], speed: float
+) -> dict[str, Any]:
+    """mu about 0.4; speeds and lengths in shares of those of the motion."""
+    mu, part = (
+        rng.uniform(0.2, 0.6),
+        scene.get("drive") or scene.get("slip") or scene.get("transverse_slip") or {},
+    )
+    length = _log(rng, 1e-4, 1e2) * speed / part.get("frequency", 1.0)
+    higher = {"mu_static": mu * rng.uniform(1.0, 1.6), "stribeck_speed": _log(rng, 0.05, 2.0) * speed}
+    bristles: dict[str, Any] = {"presliding_length": length}
+    if freedom != 1 and rng.random() < 0.2:
+        bristles["planar"] = rng.choice(("rotated", "per-axis"))
+    damped = bristles | ({"damping": _log(rng, 1e-4, 0.3) * mu / speed} if rng.random() < 0.7 else {})
+    if family == "stribeck":
+        curve = rng.choice(("exponential", "hyperbolic", "hess-soom", "cubic"))
+        viscosity = rng.choice((0.0, _log(rng, 1e-3, 0.3) * mu / speed))
+        return {"kind": "stribeck", "mu_kinetic": mu, "curve": curve, "viscosity": viscosity, **higher}
+    if family == "maxwell-slip":
+        shares, stiff = [0.5, 0.3, 0.2], [1.0, 0.4, 0.1]
+        return {
+            "kind": family,
+            "mu": [mu * share for share in shares],
+            "stiffness": [mu * k / length for k in stiff],
+        }
+    if family == "rate-and-state":
+        law = {"kind": family, "mu": mu, "a": 0.01, "b": rng.choice((0.008, 0.015)), "slip_length": length}
+        return law | {"reference_speed": speed}
+    return {
+        "coulomb": {"kind": "coulomb", "mu": mu},
+        "more at rest": {"kind": "coulomb", "mu": mu, "mu_static": mu * rng.uniform(1.0, 1.6)},
+        "dahl": {"kind": "dahl", "mu": mu, **bristles},
+        "exponent": {"kind": "dahl", "mu": mu, "exponent": rng.uniform(0.5, 2.0), **bristles},
+        "lugre": {"kind": "lugre", "mu_kinetic": mu, **damped},
+        "falling lugre": {"kind": "lugre", "mu_kinetic": mu, **higher, **damped},
+        "elasto-plastic": {
+            "kind": "elasto-plastic", "mu_kinetic": mu, "breakaway_ratio": rng.uniform(0.1, 0.95), **damped,
+        },
+        "jenkins": {"kind": "jenkins", "mu": mu, **bristles},
+    }[family]  # fmt: skip
+
+
+def _method(rng: random.Random, family: str, freedom: int) -> dict[str, Any]:
+    kind = rng.random()
+    if kind < 0.4:
+        return {"kind": "auto"}
+    if kind < 0.65:
+        return {"kind": "shooting"}
+    if kind < 0.78:
+        return {"kind": "exact" if family in NO_MEMORY or freedom == 0 else "shooting"}
+    if kind < 0.95:
+        return {"kind": rng.choice(("mdsm", "harmonic_balance"))}
+    return {"kind": "march", "steps": 200}
+
+
+# The process that solves, with whichever frictionlab its python has.
+
+
+class Watch(threading.Thread):
+    """Ends this process, with code SLOW, where a scene takes more processor time than it may."""
+
+    def __init__(self) -> None:
+        super().__init__(daemon=True)
+        self.until = math.inf
+
+    def run(self) -> None:
+        """Look now and then."""
+        while time.process_time() < self.until:
+            time.sleep(0.2)
+        os._exit(SLOW)
+
+
+def serve() -> None:
+    """Answer one scene a line, as JSON, until the input ends."""
+    import importlib
+
+    import frictionlab as fl
+
+    home = Path(fl.__file__).parents[1] / "plugins"
+    sys.path[:0] = [str(folder) for folder in sorted(home.glob("*")) if folder.is_dir()]
+    classes: dict[str, Any] = {kind: getattr(fl, name) for kind, name in CLASSES.items()}
+    for kind, place in PLUGINS.items():
+        module, _, name = place.partition(":")
+        classes[kind] = getattr(importlib.import_module(module), name)
+    watch = Watch()
+    watch.start()
+    print("ready", flush=True)
+    for text in sys.stdin:
+        start, one = time.process_time(), json.loads(text)
+        watch.until = start + one["limit"]
+        answer = _answered(fl, classes, one)
+        watch.until = math.inf
+        print(json.dumps({**answer, "cpu": round(time.process_time() - start, 4)}), flush=True)
+
+
+def _answered(fl: Any, classes: dict[str, Any], one: dict[str, Any]) -> dict[str, Any]:
+    scene, law, method = dict(one["scene"]), dict(one["law"]), dict(one["method"])
+    kind = method.pop("kind")
+    solver = fl.March(**method) if kind == "march" else kind
+    try:
+        made = classes[law.pop("kind")](**law)
+        table = fl.curve(fl.Scene(**scene), made, [scene["belt_speed"]], solver, one["tolerance"])
+    except Exception as problem:  # told as what it is, and compared like a status
+        return {"status": f"raised {type(problem).__name__}", "reason": str(problem)}
+    row = table.iloc[0].to_dict()
+    names = "status", "mean_friction", "error", "mean_low", "mean_high", "reason"
+    return {name: row[name] for name in names if row[name] == row[name] and row[name] is not None}
+
+
+class Solver:
+    """A process that solves, and is started again where it takes too long."""
+
+    def __init__(self, python: str) -> None:
+        self.python = python
+        self.process: subprocess.Popen[str] | None = None
+
+    def _started(self) -> subprocess.Popen[str]:
+        if self.process is None:
+            command = [self.python, str(Path(__file__)), "serve"]
+            self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+            assert self.process.stdout is not None
+            if self.process.stdout.readline().strip() != "ready":
+                raise SystemExit(f"{self.python} cannot import frictionlab and its plugins")
+        return self.process
+
+    def solve(self, one: dict[str, Any], limit: float) -> dict[str, Any]:
+        """The answer; status slow where it took more than limit seconds, died where the process ended by itself."""
+        process = self._started()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.write(json.dumps({**one, "limit": limit}) + "\n")
+        process.stdin.flush()
+        text = process.stdout.readline()
+        if text:
+            return json.loads(text)  # type: ignore[no-any-return]
+        self.process = None
+        return {"status": "slow" if process.wait() == SLOW else "died"}
+
+    def end(self) -> None:
+        """End the process."""
+        if self.process is not None:
+            assert self.process.stdin is not None
+            self.process.stdin.close()
+            self.process.wait()
+
+
+def solve(out: Path, given: argparse.Namespace) -> None:
+    """Solve what OUT does not have yet."""
+    rng = random.Random(given.seed)
+    drawn = [draw(rng) for _ in range(given.count)]
+    done = {int(row["number"]) for row in read(out)} if out.exists() else set()
+    solver = Solver(given.python)
+    with out.open("a", newline="") as file:
+        rows = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        if not done:
+            rows.writeheader()
+        for number, one in enumerate(drawn):
+            if number in done:
+                continue
+            answer = solver.solve(one, given.limit)
+            if (
+                answer["status"] == "slow"
+            ):  # perhaps it was compiling: what it compiled is not lost but for the last
+                solver.solve(one, given.patience)
+                answer = solver.solve(one, given.limit)
+            row = {name: one[name] for name in ("family", "freedom", "tolerance")} | answer
+            words = {name: json.dumps(one[name]) for name in ("method", "scene", "law")}
+            rows.writerow({"number": number, **row, **words})
+            file.flush()
+    solver.end()
+    print(*sorted(Counter(row["status"] for row in read(out)).items()))
+
+
+def read(path: Path) -> list[dict[str, str]]:
+    """The rows of a table."""
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def compare(first: Path, second: Path) -> int:
+    """Print the rows that differ; 1 where there are any."""
+    new, counted = {row["number"]: row for row in read(second)}, Counter[str]()
+    same = "scene", "law", "method", "tolerance"
+    for row in read(first):
+        other = new.get(row["number"])
+        if other is None:
+            counted["only in the first"] += 1
+            continue
+        if any(row[name] != other[name] for name in same):
+            raise SystemExit(
+                f"row {row['number']}: not the same scene; solve both with one seed and this script"
+            )
+        verdict = "slow, not compared" if "slow" in (row["status"], other["status"]) else _verdict(row, other)
+        counted[verdict or "agree"] += 1
+        if verdict and "slow" not in verdict:
+            told = [
+                f"{name} {row[name] or '-'} -> {other[name] or '-'}"
+                for name in ("status", "mean_friction", "error")
+            ]
+            print(f"{row['number']}: {verdict}: {'; '.join(told)}; {row['family']}, {row['method']}, "
+                  f"{row['scene']}, {row['law']}, tolerance {row['tolerance']}")  # fmt: skip
+    identical = sum(
+        row["mean_friction"] == new[row["number"]]["mean_friction"]
+        for row in read(first)
+        if row["number"] in new
+    )
+    print(
+        *(f"{name}: {count}" for name, count in sorted(counted.items())),
+        f"same to the last bit: {identical}",
+        sep="\n",
+    )
+    return int(any(counted[name] for name in ("another status", "further apart than their errors")))
+
+
+def _verdict(row: dict[str, str], other: dict[str, str]) -> str:
+    if row["status"] != other["status"]:
+        return "another status"
+    if row["status"] != "ok":
+        return ""
+    apart = abs(float(row["mean_friction"]) - float(other["mean_friction"]))
+    return "" if apart <= float(row["error"]) + float(other["error"]) else "further apart than their errors"
+
+
+def main() -> int:
+    """The command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    commands = parser.add_subparsers(dest="command", required=True)
+    one = commands.add_parser("solve")
+    one.add_argument("out", type=Path)
+    one.add_argument("--count", type=int, default=2_000)
+    one.add_argument("--seed", type=int, default=1)
+    one.add_argument("--python", default=sys.executable)
+    one.add_argument("--limit", type=float, default=20.0)
+    one.add_argument("--patience", type=float, default=180.0)
+    two = commands.add_parser("compare")
+    two.add_argument("first", type=Path)
+    two.add_argument("second", type=Path)
+    commands.add_parser("serve")
+    given = parser.parse_args()
+    if given.command == "serve":
+        serve()
+    elif given.command == "solve":
+        solve(given.out, given)
+    else:
+        return compare(given.first, given.second)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

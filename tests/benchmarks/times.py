@@ -254,6 +254,7 @@ def main() -> None:
         times = {key: [{"least": min(one), "all": one} for one in lists] for key, lists in found.items()}
         machine = {
             "cores": os.cpu_count(),
+            "load": [round(load, 1) for load in os.getloadavg()],
             "machine": platform.machine(),
             "python": platform.python_version(),
         }

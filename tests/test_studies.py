@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,12 @@ def is_for_the_deep_profile(study: Path) -> bool:
 
 def test_there_are_studies() -> None:
     assert STUDIES
+
+
+@pytest.mark.parametrize("study", STUDIES, ids=lambda path: path.stem)
+def test_a_study_has_a_short_name_and_its_claim_in_the_title(study: Path) -> None:
+    assert re.fullmatch(r"[a-z][a-z0-9_]{1,39}", study.stem)
+    assert " " in load_study(study).title
 
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda path: path.stem)

@@ -167,7 +167,7 @@ def test_a_page_that_cannot_be_written_is_code_3_with_the_table_safe(
 
 def test_force_takes_the_report_of_the_earlier_study_away(frictionlab: Any, monkeypatch: Any) -> None:
     frictionlab("run", study(), "-o", "out")
-    monkeypatch.setattr(cli, "_report", lambda *_: None)
+    monkeypatch.setattr("frictionlab.cli.run._report", lambda *_: None)
     frictionlab("run", study(tolerance=1e-6), "-o", "out", "--force")
 
     assert not Path("out/report.html").exists()
@@ -216,7 +216,9 @@ def test_a_new_study_is_written_once_and_runs_as_it_is(frictionlab: Any) -> None
 
 def test_the_table_is_on_disk_before_the_drawing_begins(frictionlab: Any, monkeypatch: Any) -> None:
     seen = []
-    monkeypatch.setattr(cli, "_draw", lambda *_: seen.extend(path.name for path in Path("out").iterdir()))
+    monkeypatch.setattr(
+        "frictionlab.cli.run._draw", lambda *_: seen.extend(path.name for path in Path("out").iterdir())
+    )
     frictionlab("run", study(), "-o", "out")
 
     assert {"results.parquet", "results.csv", "study.yaml", "provenance.json"} <= set(seen)
@@ -540,6 +542,13 @@ def test_an_interrupted_run_does_not_wait_for_a_method_that_takes_for_ever(
     assert "interrupted: 0 of 4 points are done; the same command continues" in said.err
 
 
+def test_every_command_is_a_module_of_its_name() -> None:
+    files = {path.stem for path in Path(cli.__file__).parent.glob("*.py")}
+
+    assert {*cli.COMMANDS} == files - {"__init__", "figures", "options", "output"}
+    assert [*cli.COMMANDS] == sorted(cli.COMMANDS)
+
+
 def test_a_reader_that_had_enough_sees_no_traceback(surroundings: dict[str, str]) -> None:
     study()
     text = " ".join(f"'{part}'" for part in COMMAND)
@@ -577,9 +586,9 @@ def test_an_output_that_takes_nothing_is_code_3(surroundings: dict[str, str]) ->
 @pytest.mark.parametrize(
     ("arguments", "stranger"),
     [
-        (["--help"], ["numpy", "pandas", "numba", "pydantic", "matplotlib", "jinja2"]),
-        (["run", "--help"], ["numpy", "pandas", "numba", "pydantic", "matplotlib", "jinja2"]),
-        (["laws"], ["pandas", "numba", "matplotlib"]),
+        (["--help"], ["numpy", "scipy", "pandas", "numba", "pydantic", "matplotlib", "jinja2"]),
+        (["run", "--help"], ["numpy", "scipy", "pandas", "numba", "pydantic", "matplotlib", "jinja2"]),
+        (["laws"], ["pandas", "scipy", "numba", "matplotlib"]),
         (["run", "missing.yaml"], ["numba", "matplotlib"]),
         (["run", "study.yaml", "-o", "out"], ["numba"]),
     ],

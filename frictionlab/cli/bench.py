@@ -1,0 +1,51 @@
+"""``bench``: error against time of methods and of solvers from outside."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from frictionlab.cli import options
+from frictionlab.cli.output import INTERRUPTED, CommandError, print_message, print_result
+
+if TYPE_CHECKING:
+    from frictionlab.bench import Measured
+
+
+@click.command("bench")
+@click.argument("bench_list", metavar="LIST", type=click.Path(path_type=Path))
+@options.folder("runs/bench-<list name>")
+@click.option("--only", multiple=True, metavar="NAME", help="Measure this curve alone; may be repeated.")
+def command(bench_list: Path, out: Path | None, only: tuple[str, ...]) -> None:
+    """Measure error against time per point of every method and peer in LIST; one chart and table per curve."""
+    from frictionlab import bench
+
+    try:
+        asked = bench.load_bench(bench_list).only(only)
+    except bench.UnknownCurve as problem:
+        raise click.UsageError(str(problem)) from None
+    folder = out or Path("runs") / f"bench-{asked.name}"
+    try:
+        done = bench.measure(asked, print_message)
+    except bench.Interrupted as problem:
+        _save(problem.done, folder)
+        raise CommandError(
+            INTERRUPTED, f"interrupted: {len(problem.done)} of {len(asked.workloads)} curves done"
+        ) from problem
+    print_result(bench.summary(done))
+    _save(done, folder)
+
+
+def _save(done: Sequence[Measured], folder: Path) -> None:
+    """Write tables, then charts: the tables are on disk before matplotlib is imported."""
+    if not done:
+        return
+    from frictionlab.bench import write
+    from frictionlab.bench.chart import draw
+
+    write(done, folder)
+    draw(done, folder)
+    print_message(f"tables and charts in {folder}")

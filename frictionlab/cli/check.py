@@ -1,0 +1,56 @@
+"""``check``: what a study will take, before anything is computed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from frictionlab.cli import options
+from frictionlab.cli.output import print_records, print_result
+
+if TYPE_CHECKING:
+    from frictionlab.runner.plan import Planned
+
+
+@click.command("check")
+@click.argument("study", type=click.Path(path_type=Path))
+@options.overrides
+@options.law_files
+@options.as_json
+def command(study: Path, overrides: tuple[str, ...], law_files: tuple[Path, ...], as_json: bool) -> None:
+    """Check STUDY and tell what it will take: models, refusals, cost. Nothing is computed."""
+    from frictionlab.runner import batch
+    from frictionlab.runner.plan import plan
+
+    planned = [(job.name, plan(job.study)) for job in batch.jobs(study, None, overrides, law_files)]
+    if as_json:
+        print_records([{"study": name, **entry.record()} for name, entries in planned for entry in entries])
+    else:
+        lines = [line for name, entries in planned for line in _planned_lines(name, entries)]
+        costs = _cost_lines([entry for _, entries in planned for entry in entries])
+        print_result("\n".join([*lines, *costs]))
+
+
+def _planned_lines(name: str, planned: Sequence[Planned]) -> list[str]:
+    lines = [name]
+    for entry in planned:
+        lines.append(f"  {entry.law} by {entry.method}: points {entry.points}, curves {entry.curves}")
+        lines += [f"    {count} by {model}" for model, count in entry.models.items()]
+        lines += [f"    {count} refused: {reason}" for reason, count in entry.refused.items()]
+    return lines
+
+
+def _cost_lines(planned: Sequence[Planned]) -> list[str]:
+    kernel, cores = sum(entry.seconds for entry in planned), os.cpu_count() or 1
+    return [
+        f"about {_time(kernel)} of kernel time, {_time(kernel / cores)} on {cores} cores",
+        "not counted: compiling kernels, once per machine, which may take longer than all the rest",
+    ]
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds * 1e3:.3g} ms" if seconds < 1.0 else f"{seconds:.3g} s"

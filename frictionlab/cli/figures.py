@@ -1,0 +1,20 @@
+"""The figures of a run, drawn by ``run``, ``plot`` and ``report``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+
+def draw_figures(table: DataFrame, title: str, folder: Path) -> list[Path]:
+    """Draw the figures of a run into its folder; the files. Raises SaveError."""
+    from frictionlab.charts.figures import draw  # with matplotlib, which takes a second
+    from frictionlab.runner.errors import SaveError
+
+    try:
+        return draw(table, title, folder / "figures")
+    except OSError as problem:
+        raise SaveError(f"cannot write the figures in {folder}: {problem.strerror or problem}") from problem

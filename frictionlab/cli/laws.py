@@ -1,0 +1,103 @@
+"""``laws``: the installed laws, and their conformance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+from frictionlab.cli import options
+from frictionlab.cli.output import BROKEN_PLUGIN, FAILED, OK, print_message, print_records, print_result
+
+if TYPE_CHECKING:
+    from frictionlab.registry import Laws
+
+
+@click.command("laws")
+@click.argument("names", nargs=-1, metavar="[NAME | test NAME...]")
+@options.law_files
+@options.as_json
+@click.option("--markdown", is_flag=True, help="With test: print a table to publish beside the law.")
+@click.option(
+    "--examples",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="With test: examples per check, 100 if left out; fewer where they are dear.",
+)
+def command(names: tuple[str, ...], law_files: tuple[Path, ...], **given: Any) -> int:
+    """List the installed laws, tell all about the law NAME, or test NAME: put it through the conformance battery.
+
+    With test and no NAME, the laws of --law, else every installed law. Broken laws are told on stderr, and the exit
+    code is then 4; it is 3 where a check fails that was not expected to.
+    """
+    from frictionlab.study import laws_of_files
+
+    known = laws_of_files(law_files)
+    testing = names[:1] == ("test",)
+    asked = names[1:] if testing else names
+    for name in asked:
+        if name not in known.names():
+            raise click.UsageError(f"no law '{name}'; installed: {', '.join(known.names())}")
+    if testing:
+        return _test(asked or _to_test(known, law_files), known, TestOptions(**given))
+    if len(names) > 1 or given["markdown"] or given["examples"]:
+        raise click.UsageError("one NAME, or: laws test NAME; --markdown and --examples go with test")
+    return _list(asked, known, given["as_json"])
+
+
+def _list(asked: tuple[str, ...], known: Laws, as_json: bool) -> int:
+    from frictionlab.registry.records import details, law_record, one_line_each
+
+    records = [law_record(each, known.named(each)) for each in asked or known.usable()]
+    if as_json:
+        print_records(records)
+    else:
+        print_result(details(records[0]) if asked else one_line_each(records))
+    return OK if asked else _print_broken(known)
+
+
+def _print_broken(known: Laws) -> int:
+    """Print which laws are broken, and why; the exit code."""
+    broken = known.broken()
+    for message in broken:
+        print_message(message)
+    return BROKEN_PLUGIN if broken else OK
+
+
+class TestOptions(NamedTuple):
+    """The options of ``laws test``."""
+
+    as_json: bool
+    markdown: bool
+    examples: int | None
+
+
+def _to_test(known: Laws, law_files: Sequence[Path]) -> tuple[str, ...]:
+    """The laws of the files given, else every law; one of two names of the same law."""
+    from frictionlab import registry
+
+    names = [name for name in known.usable() if not law_files or name not in registry.law_names()]
+    first = {known.named(name): name for name in reversed(names)}
+    return tuple(name for name in names if first[known.named(name)] == name)
+
+
+def _test(names: Sequence[str], known: Laws, given: TestOptions) -> int:
+    """Put laws through the battery, one after the other; the table grows as checks end."""
+    from frictionlab.testing import EXAMPLES, check_law, heading
+
+    reports = []
+    say = print_message if given.as_json or given.markdown else print_result
+    for name in names:
+        say(heading(name))
+        examples = given.examples or EXAMPLES
+        law = known.named(name)
+        report = check_law(law, examples=examples, on_failure="return", tell=lambda one: say(one.line()))
+        say(report.summary(name))
+        reports.append((name, report))
+        if given.markdown:
+            print_result(f"{report.markdown(name)}\n")
+    if given.as_json:
+        print_records([{"name": name, **record} for name, report in reports for record in report.records()])
+    return OK if all(report.passed for _, report in reports) else FAILED

@@ -1,0 +1,52 @@
+"""``new``: a study or a law to begin from."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Literal
+
+import click
+
+from frictionlab.cli.output import print_message, print_result
+
+
+@click.group("new")
+def command() -> None:
+    """Write a file to begin from."""
+
+
+@command.command("study")
+@click.argument("path", type=click.Path(path_type=Path))
+def study(path: Path) -> None:
+    """Write a commented study to the file PATH, which ``run`` takes as it is. Never replaces a file."""
+    from frictionlab.scaffold.study import new_study
+
+    file = new_study(path)
+    print_result(str(file))
+    print_message(f"change what it says, then: frictionlab run {shlex.quote(str(file))}")
+
+
+@command.command("law")
+@click.argument("path", metavar="NAME", type=click.Path(path_type=Path))
+@click.option(
+    "--memory",
+    type=click.Choice(["none", "bristle"]),
+    default="bristle",
+    show_default=True,
+    help="What friction remembers: none, set by slip alone; bristle, a deflection of the contact.",
+)
+def law(path: Path, memory: Literal["none", "bristle"]) -> None:
+    """Write the folder NAME: a law that installs, with its test and a study. Never replaces anything."""
+    from frictionlab.scaffold.law import BadName, new_law
+
+    try:
+        folder = new_law(path, memory)
+    except BadName as problem:
+        raise click.UsageError(str(problem)) from None
+    module = folder / f"{path.name.replace('-', '_')}.py"
+    print_result(str(folder))
+    print_message(
+        f"the law is in {module}; try it: "
+        f"frictionlab run {shlex.quote(str(folder / 'study.yaml'))} --law {shlex.quote(str(module))}"
+    )

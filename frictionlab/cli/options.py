@@ -1,0 +1,32 @@
+"""The options that several commands share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+overrides = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="PATH=VALUE",
+    help="Replace a value of the study; may be repeated.",
+)
+law_files = click.option(
+    "--law",
+    "law_files",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Take the laws of a Python file, too; may be repeated.",
+)
+as_json = click.option("--json", "as_json", is_flag=True, help="Print a list of records instead of text.")
+
+
+def folder(default: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """The option ``-o``, the folder that a command writes to."""
+    help_text = f"Where to; {default} if left out."
+    return click.option("-o", "out", type=click.Path(path_type=Path), metavar="DIR", help=help_text)

@@ -1,0 +1,23 @@
+"""``plot``: the figures of a finished run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from frictionlab.cli.figures import draw_figures
+from frictionlab.cli.output import print_message, print_result
+
+
+@click.command("plot")
+@click.argument("run", type=click.Path(path_type=Path))
+def command(run: Path) -> None:
+    """Draw the figures of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
+    from frictionlab.runner.saved import read_saved
+
+    saved = read_saved(run)
+    if files := draw_figures(saved.table, saved.title, run):
+        print_result("\n".join(map(str, files)))
+    else:
+        print_message(f"no figures: the study of {run} sweeps nothing")

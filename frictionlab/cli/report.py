@@ -1,0 +1,22 @@
+"""``report``: the report of a finished run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from frictionlab.cli.figures import draw_figures
+from frictionlab.cli.output import print_result
+
+
+@click.command("report")
+@click.argument("run", type=click.Path(path_type=Path))
+def command(run: Path) -> None:
+    """Write the figures and the report.html of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
+    from frictionlab.report import write_report
+    from frictionlab.runner.saved import read_saved
+
+    saved = read_saved(run)
+    draw_figures(saved.table, saved.title, run)
+    print_result(str(write_report(saved)))

@@ -1,0 +1,172 @@
+"""``run``: a study, or a folder of them, to its table, figures and report."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import click
+
+from frictionlab.cli import options
+from frictionlab.cli.figures import draw_figures
+from frictionlab.cli.output import (
+    BROKEN_PLUGIN,
+    FAILED,
+    INTERRUPTED,
+    OK,
+    CommandError,
+    print_message,
+    print_records,
+    print_result,
+)
+
+if TYPE_CHECKING:
+    from frictionlab.results.run import Run
+    from frictionlab.runner.batch import Job
+
+
+class RunOptions(NamedTuple):
+    """The options of ``run``."""
+
+    study: Path
+    out: Path | None
+    overrides: tuple[str, ...]
+    law_files: tuple[Path, ...]
+    workers: int | None
+    as_json: bool
+    cite: bool
+    force: bool
+
+    @property
+    def existing(self) -> Literal["reuse", "replace"]:
+        """What becomes of results already in the folder."""
+        return "replace" if self.force else "reuse"
+
+
+@click.command("run")
+@click.argument("study", type=click.Path(path_type=Path))
+@options.folder("runs/<study name>")
+@options.overrides
+@options.law_files
+@click.option(
+    "-j", "workers", type=click.IntRange(min=1), metavar="N", help="Threads; all cores if left out."
+)
+@options.as_json
+@click.option("--cite", is_flag=True, help="Print the publications to cite, as BibTeX, instead of text.")
+@click.option("--force", is_flag=True, help="Replace the results of another study or version in DIR.")
+def command(**given: Any) -> int:
+    """Run STUDY, a file or a folder of studies, and write its table, figures and report to DIR.
+
+    The same study into the same DIR takes over the points that are finished.
+    """
+    from frictionlab.runner import batch  # with pandas
+
+    asked = RunOptions(**given)
+    if asked.as_json and asked.cite:
+        raise click.UsageError("--json and --cite print different things; give one of them")
+    jobs = batch.jobs(asked.study, asked.out, asked.overrides, asked.law_files)
+    batch.check_folders(jobs, asked.existing)
+    index = batch.index_folder(asked.study, asked.out)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    done = [_run(job, asked) for job in jobs]
+    if index is not None:
+        _write_index(index, done)
+    if asked.as_json:
+        print_records(
+            [record for job, result in zip(jobs, done, strict=True) for record in _rows(job, result, asked)]
+        )
+    if asked.cite:
+        _cite(done)
+    return max(_exit_code(result) for result in done)
+
+
+def _run(job: Job, asked: RunOptions) -> Run:
+    """Run one study, print its summary, then draw it: the summary does not wait for the figures."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    from frictionlab.runner import api
+    from frictionlab.runner.progress import Meter
+
+    meter = Meter(sys.stderr)
+    pool = ThreadPoolExecutor(asked.workers or os.cpu_count())
+    try:
+        result = api.run(job.study, job.out, asked.overrides, asked.existing, pool, meter)
+    except api.Interrupted as problem:
+        raise CommandError(INTERRUPTED, _how_far(problem.run)) from problem
+    except api.UnsavedError as problem:
+        print_records(_rows(job, problem.run, asked)) if asked.as_json else _show(problem.run)
+        raise
+    finally:
+        meter.close()
+        pool.shutdown(wait=False, cancel_futures=True)
+    _show_failed(result) if asked.as_json or asked.cite else _show(result)
+    _draw(job, result)
+    _report(result)
+    return result
+
+
+def _how_far(result: Run) -> str:
+    done = len(result.table) - result.counts.get("killed", 0)
+    kept = f" and kept in {result.folder}" if result.folder and done else ""
+    return f"interrupted: {done} of {len(result.table)} points are done{kept}; the same command continues"
+
+
+def _show(result: Run) -> None:
+    from frictionlab.results.summary import summary
+
+    print_result(summary(result))
+
+
+def _show_failed(result: Run) -> None:
+    """The expectations that failed, on stderr: stdout belongs to the records."""
+    from frictionlab.results.summary import failed_lines
+
+    for line in failed_lines(result.verdicts):
+        print_message(line)
+
+
+def _draw(job: Job, result: Run) -> None:
+    if draw_figures(result.table, job.study.title or job.name, job.out):
+        print_message(f"figures in {job.out / 'figures'}")
+
+
+def _report(result: Run) -> None:
+    from frictionlab.report import write_report
+    from frictionlab.runner.saved import saved_as
+
+    print_message(f"report in {write_report(saved_as(result))}")
+
+
+def _write_index(folder: Path, done: Sequence[Run]) -> None:
+    from frictionlab.report import write_index
+    from frictionlab.runner.saved import saved_as
+
+    print_message(f"index in {write_index(folder, [saved_as(result) for result in done])}")
+
+
+def _cite(done: Sequence[Run]) -> None:
+    from frictionlab.report import bibtex
+    from frictionlab.runner.saved import saved_as
+
+    print_result(bibtex([saved_as(result) for result in done]))
+
+
+def _rows(job: Job, result: Run, asked: RunOptions) -> list[dict[str, Any]]:
+    """The records of a run; of a folder of studies, each names its study."""
+    from frictionlab.results.table import records
+
+    whose = {"study": job.name} if asked.study.is_dir() else {}
+    return [whose | record for record in records(result.table)]
+
+
+def _exit_code(result: Run) -> int:
+    from frictionlab.faults import MARK
+
+    if result.table["reason"].astype("str").str.startswith(MARK).any():
+        return BROKEN_PLUGIN
+    bad = result.counts.keys() & {"failed", "killed"}
+    return FAILED if bad or not all(verdict.passed for verdict in result.verdicts) else OK

@@ -1,0 +1,21 @@
+"""``schema``: the JSON Schema of a study file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from frictionlab.cli import options
+from frictionlab.cli.output import print_result
+
+
+@click.command("schema")
+@options.law_files
+def command(law_files: tuple[Path, ...]) -> None:
+    """Print the JSON Schema of a study file."""
+    from frictionlab.study import laws_of_files
+    from frictionlab.study.schema import schema
+
+    print_result(json.dumps(schema(laws_of_files(law_files)), indent=2))

@@ -1,0 +1,40 @@
+"""The page on the architecture says what the code is: its drawing, its rooms and the files it sends a reader to."""
+
+from __future__ import annotations
+
+import re
+
+import architecture
+import pytest
+from structure import Tree, arrows, floors
+
+PAGE = (architecture.PROJECT / "docs" / "architecture.md").read_text()
+
+
+def test_the_drawing_is_that_of_the_imports() -> None:
+    assert architecture.PICTURE.read_text() == architecture.picture(), "run: python tests/architecture.py"
+
+
+def test_every_room_has_its_line() -> None:
+    rooms = set(arrows(Tree(architecture.PROJECT)))
+    table = PAGE.partition("| room |")[2].partition("\n\n")[0]
+
+    assert rooms == {
+        name for line in table.splitlines()[1:] for name in re.findall(r"`(\w+)`", line.split("|")[1])
+    }
+
+
+@pytest.mark.parametrize(
+    "place", sorted(set(re.findall(r"`((?:[\w*]+/)+(?:[\w*]+\.py)?|\w+\.py|\w+\.toml)`", PAGE)))
+)
+def test_every_file_named_is_there(place: str) -> None:
+    roots = architecture.PROJECT, architecture.PROJECT / "frictionlab"
+
+    assert any(list(root.glob(place.rstrip("/"))) for root in roots)
+
+
+def test_a_room_stands_above_all_it_imports() -> None:
+    drawn = arrows(Tree(architecture.PROJECT))
+    height = floors(drawn)
+
+    assert all(height[above] > height[below] for above, rooms in drawn.items() for below in rooms)

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frictionlab.compile import dispatch
+from frictionlab.compile import cache
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.compile.dispatch import by_dimension
@@ -32,7 +32,7 @@ FILES = {
     "law_package/__init__.py": "",
     "law_package/inside.py": "SHIFT = 0.25\n",
     "law_helper.py": """
-from frictionlab.kernel import inner
+from frictionlab.compile.decorators import inner
 FACTOR = 2.0
 
 @inner
@@ -53,7 +53,7 @@ class Edited(SlidingLaw):
         return LEVEL + scaled(self.mu, speed) + law_package.inside.SHIFT
 """,
     "pair.py": """
-from frictionlab.kernel import by_dimension, by_law
+from frictionlab.compile.dispatch import by_dimension, by_law
 
 def on_the_line(v):
     return 100.0
@@ -72,7 +72,7 @@ def of_bristle(law, v):
 kind = by_law(of_sliding, of_bristle)
 """,
     "kernel_of_test.py": """
-from frictionlab.kernel import njit
+from frictionlab.compile.decorators import njit
 from pair import body, kind
 
 @njit
@@ -80,7 +80,7 @@ def answer(law, speed):
     return law.sliding_friction(speed) + body(speed) + kind(law, speed)
 """,
     "main.py": """
-from frictionlab.kernel import compiled
+from frictionlab.compile.cache import compiled
 from kernel_of_test import answer
 from edited import Edited
 print(repr(compiled(answer, Edited(mu=0.5))(2.0)))
@@ -190,7 +190,7 @@ def test_a_comment_and_the_place_in_the_file_change_nothing(compiled_once):
 
 @pytest.mark.parametrize("root", [answer_curve, followed, rubbed, sampled, harmonic_friction, LuGre])
 def test_the_name_of_a_kept_kernel_holds_no_address(root):
-    assert not [piece for piece in dispatch._pieces([root], set()) if " at 0x" in piece]
+    assert not [piece for piece in cache._pieces([root], set()) if " at 0x" in piece]
 
 
 def test_two_processes_on_a_cold_cache_are_both_right(tmp_path):
@@ -243,7 +243,7 @@ class Double(SlidingLaw):
 """,
     "heavy.py": """
 import math
-from frictionlab.kernel import inner, njit
+from frictionlab.compile.decorators import inner, njit
 
 @inner
 def heavy(law, speed):  # heavy, and called from three places: it is linked and not inlined
@@ -261,7 +261,7 @@ def thrice(law, speed):  # shares it with the entry before
 """.replace("WORK", " + ".join(f"math.sin(speed + {k}.5) * math.exp(-{k}.0 * speed)" for k in range(80))),
     "look.py": """
 import sys
-from frictionlab.kernel import compiled
+from frictionlab.compile.cache import compiled
 from heavy import answer, thrice
 import lookalikes
 for word in sys.argv[1:]:
@@ -296,7 +296,7 @@ def test_a_law_that_numba_cannot_compile_says_so_and_still_runs_interpreted():
 
     with pytest.raises(CannotCompile) as caught:
         run(1.0)
-    assert "law Interpreted (test_kernel) cannot be compiled by numba" in str(caught.value)
+    assert "law Interpreted (test_cache) cannot be compiled by numba" in str(caught.value)
     assert "Use only float and complex arithmetic and the math module" in str(caught.value)
     assert friction_at.py_func(law, 1.0) == 0.4
 
@@ -425,5 +425,5 @@ def test_threads_that_ask_for_one_kernel_at_once_get_one_entry():
 
     with ThreadPoolExecutor(threads) as pool:
         for _ in range(20):
-            dispatch._entry.cache_clear()
+            cache._entry.cache_clear()
             assert len(set(pool.map(ask, range(threads)))) == 1

@@ -104,7 +104,11 @@ OUTSIDE = {
     "pandas": ["results", "runner", "charts", "report", "cli"],
     "pyarrow": ["results", "runner"],
     "matplotlib": ["charts", "bench.chart"],
-    "scipy": ["bench.peers"],
+    "scipy": [
+        "theory",
+        "numerics",
+        "bench.peers",
+    ],  # inside functions: nothing imports it before it is needed
     "heyoka": ["bench.peers"],
     "numbalsoda": ["bench.peers"],
     "jinja2": ["report"],

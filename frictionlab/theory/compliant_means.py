@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from frictionlab.quantities import Floats
-from frictionlab.theory.elliptic import second_integral
 from frictionlab.theory.loops import moment
 
 
@@ -54,10 +53,11 @@ def mean_soft_transverse(ratio: ArrayLike) -> Floats:
 
     ratio [-]: belt speed over velocity amplitude, any sign. Source: averaging, as ``mean_soft_dahl``.
     """
+    from scipy.special import ellipe
+
     size = np.asarray(ratio, dtype=np.float64)
     whole = np.hypot(1.0, size)
-    modulus = np.minimum(1.0 / whole, 1.0 - 1e-16)
-    return np.asarray(0.5 * np.pi * size / whole / second_integral(modulus))
+    return np.asarray(0.5 * np.pi * size / whole / ellipe(1.0 / whole**2))
 
 
 def mean_soft_circular(ratio: ArrayLike) -> Floats:
@@ -67,9 +67,11 @@ def mean_soft_circular(ratio: ArrayLike) -> Floats:
 
     ratio [-]: belt speed over the speed of the turning slip, any sign. Source: averaging, as ``mean_soft_dahl``.
     """
+    from scipy.special import ellipe
+
     size = np.abs(np.asarray(ratio, dtype=np.float64))
-    modulus = np.minimum(2.0 * np.sqrt(size) / (1.0 + size), 1.0 - 1e-16)
-    mean = 0.5 * np.pi * size / (1.0 + size) / second_integral(modulus)
+    whole = 1.0 + size
+    mean = 0.5 * np.pi * size / whole / ellipe(4.0 * size / whole**2)
     return np.copysign(mean, ratio)
 
 
@@ -77,19 +79,19 @@ def mean_soft_elasto_plastic(ratio: ArrayLike, breakaway_ratio: float) -> Floats
     """Mean elasto-plastic friction of constant g under a sine along the belt, where the bristles are soft.
 
     m of m alpha(m) = 1 - slip back/slip forth, alpha rising from 0 at breakaway_ratio to 1 at 1: not less than
-    breakaway_ratio however slow the belt, since nothing drifts below. By bisection; the sign is that of the belt.
+    breakaway_ratio however slow the belt, since nothing drifts below. The sign is that of the belt.
 
     ratio [-]: belt speed over velocity amplitude, not 0; breakaway_ratio [-] in (0, 1).
     Source: averaging Dupont et al. (2002), IEEE TAC 47, 787, as ``mean_soft_dahl``.
     """
-    wanted = 1.0 - _share_back(ratio)
-    low, high = np.full_like(wanted, breakaway_ratio), np.ones_like(wanted)
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        turn = np.pi * (middle - 0.5 * (1.0 + breakaway_ratio)) / (1.0 - breakaway_ratio)
-        above = middle * (0.5 + 0.5 * np.sin(turn)) > wanted
-        low, high = np.where(above, low, middle), np.where(above, middle, high)
-    return np.copysign(0.5 * (low + high), ratio)
+    from scipy.optimize.elementwise import find_root
+
+    def excess(mean: Floats, wanted: Floats) -> Floats:
+        turn = np.pi * (mean - 0.5 * (1.0 + breakaway_ratio)) / (1.0 - breakaway_ratio)
+        return np.asarray(mean * (0.5 + 0.5 * np.sin(turn)) - wanted)
+
+    found = find_root(excess, (breakaway_ratio, 1.0), args=(1.0 - _share_back(ratio),))
+    return np.copysign(found.x, ratio)
 
 
 def mean_soft_jenkins(ratio: ArrayLike, presliding: ArrayLike) -> Floats:
@@ -101,15 +103,15 @@ def mean_soft_jenkins(ratio: ArrayLike, presliding: ArrayLike) -> Floats:
     ratio [-]: belt speed over velocity amplitude, > 0 or < 0; presliding [X] > 0.
     Source: the play operator of the spring in series with the slider.
     """
+    from scipy.optimize.elementwise import find_root
+
+    def gain(phase: Floats, size: Floats, most: Floats) -> Floats:
+        return np.asarray(size * phase + np.sin(phase) - most)
+
     size = np.minimum(np.abs(np.asarray(ratio, dtype=np.float64)), 1.0)
     turn = np.arccos(-size)
-    low, high = 2.0 * np.pi - turn, 2.0 * np.pi + turn
     most = size * turn + np.sin(turn)
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        beyond = size * middle + np.sin(middle) > most
-        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-    again = 0.5 * (low + high)
+    again = find_root(gain, (2.0 * np.pi - turn, 2.0 * np.pi + turn), args=(size, most)).x
     behind = most * (again - turn) - 0.5 * size * (again**2 - turn**2) + np.cos(again) - np.cos(turn)
     back, length = slip_back_and_forth(ratio)[0], np.asarray(presliding, dtype=np.float64)
     mean = np.where(back <= 2.0 * length, 1.0 - behind / (2.0 * np.pi * length), np.nan)

@@ -179,12 +179,12 @@ def _bounds_in_reversal(line: Line, belt_speeds: Floats) -> tuple[Floats, Floats
 def _at(line: Line, belt_speeds: Floats) -> Motions:
     """The motions at these belt speeds; the belt speed rises as the share of forward slip falls."""
 
-    def excess(share: Floats) -> Floats:
+    def excess(share: Floats, belt_speed: Floats) -> Floats:
         speed = motions(line, share).belt_speed
-        return np.where(np.isnan(speed), line.friction_free, speed) - belt_speeds
+        return np.where(np.isnan(speed), line.friction_free, speed) - belt_speed
 
     size = np.full(len(belt_speeds), 1.0)
-    return motions(line, monotone_root(excess, 1e-9 * size, 0.5 * size))
+    return motions(line, monotone_root(excess, 1e-9 * size, 0.5 * size, belt_speeds))
 
 
 def _sure_points(line: Line) -> Motions:

@@ -88,12 +88,12 @@ def _reversal(scene: Scene, friction: float, belt_speeds: Floats) -> Floats:
     """Phase from the peak of x1' to reversal, arccos of belt speed over amplitude: resolved where that tends to 1."""
     widest = math.acos(one_harmonic_least_ratio(scene, friction))
 
-    def excess(angle: Floats) -> Floats:
+    def excess(angle: Floats, belt_speed: Floats) -> Floats:
         ratio = np.cos(angle)
-        return np.asarray(ratio * one_harmonic_velocity(scene, friction, ratio) - belt_speeds)
+        return np.asarray(ratio * one_harmonic_velocity(scene, friction, ratio) - belt_speed)
 
     size = np.ones(len(belt_speeds))
-    angle = monotone_root(excess, 0.0 * size, widest * size)
+    angle = monotone_root(excess, 0.0 * size, widest * size, belt_speeds)
     return np.where(belt_speeds == 0.0, 0.5 * math.pi, angle)
 
 

@@ -10,24 +10,21 @@ import cmath
 import math
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled
-from frictionlab.dynamics.radau_panel import STAGES
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Answers
-from frictionlab.methods.reduced.amplitudes import Balance, balances, contact_of
-from frictionlab.methods.reduced.bristle_frequency_time import Line, Settled, panel_edges, settle
+from frictionlab.methods.prescribed.bristle import BristlePoint
+from frictionlab.methods.reduced.amplitudes import Balance, balances
 from frictionlab.methods.reduced.common import ROUNDING, Harmonic, judged, motion_columns
-from frictionlab.methods.reduced.contact import NODES as RADAU
-from frictionlab.methods.reduced.contact import friction_over
 from frictionlab.methods.refusals import suggest_shooting
-from frictionlab.orbit.panels import NODES
+from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
-from frictionlab.scene.scene import Scene
+from frictionlab.scene.scene import Scene, Slip
 from frictionlab.theory import friction_free_velocity
 
 TEXT = "one harmonic of x1' and of the bristles' friction balanced, friction averaged over the harmonic slip"
@@ -35,25 +32,19 @@ FORGETS = 1.0 - 1e-6
 """Share of a disturbed deflection left after a period above which it is not called forgotten."""
 STEADY = 0.98
 """Largest Floquet multiplier above which a motion of the drive's period is not called steady."""
-SAFETY = 1.05
-"""On the change of the mean from one harmonic to all."""
-UNSETTLED = (
-    "no useful bound on the model error: the harmonics left out do not settle (long rest on stiff bristles, or "
-    "nearly undamped resonance of the contact); use shooting"
-)
+TOLERANCE = 1e-9
+"""On the mean that shooting finds."""
+UNKNOWN = "no useful bound on the model error: the steady state is not known"
 UNSTEADY = "the motion of one drive period is not stable, or hardly so: the mean may not be one; use shooting"
-STICK_SLIP = (
-    "slip that never turns under friction that falls with speed faster than damping makes up for: stick-slip may be "
-    "another steady state; use shooting"
-)
 REMEMBERED = "slip within the bristles' elastic reach: the mean depends on where it started; use shooting"
 
 
 class _Point(NamedTuple):
-    """One scene's balance and its motion of all harmonics; or the reason why not."""
+    """One scene's balance, the mean that shooting finds and its error; or the reason why not."""
 
     balance: Balance | None
-    settled: Settled | None
+    mean: float
+    error: float
     reason: str
 
 
@@ -73,7 +64,7 @@ def bristle_refusal(name: str, scene: Scene, law: BristleLaw) -> str | None:
 
 
 def answer_bristle(scenes: Sequence[Scene], law: BristleLaw, tolerance: float) -> Answers:
-    """Answers on scenes that differ in belt speed alone, their error from the motion of all harmonics."""
+    """Answers on scenes that differ in belt speed alone, their error from the mean that shooting finds."""
     start = time.perf_counter()
     law = law.under_load(scenes[0].mass().normal_load)
     points = [_point(scene, law) for scene in scenes]
@@ -90,35 +81,25 @@ def answer_bristle(scenes: Sequence[Scene], law: BristleLaw, tolerance: float) -
 def _point(scene: Scene, law: BristleLaw) -> _Point:
     mass, speed = scene.mass(), abs(scene.belt_speed)
     if mass.damping == 0.0 and speed >= friction_free_velocity(scene):
-        return _Point(None, None, "without damping and without slip reversal the free oscillation never dies")
+        return _unknown(None, "without damping and without slip reversal the free oscillation never dies")
     found, near = balances(mass, speed, law)
     if len(found) + len(near) != 1:
-        return _Point(None, None, _ambiguous([balance.amplitude for balance in found], near))
+        return _unknown(None, _ambiguous([balance.amplitude for balance in found], near))
     balance = found[0]
-    friction = balance.friction
-    if friction.multiplier > FORGETS:
-        return _Point(balance, None, REMEMBERED)
-    held = complex(friction.sine, friction.cosine) / balance.amplitude
-    settled = settle(Line(mass, speed, law, contact_of(law), held), _velocity(scene, balance))
-    reason = UNSETTLED if settled is None else _unsteady(scene, law, settled)
-    return _Point(balance, settled, reason)
-
-
-def _unsteady(scene: Scene, law: BristleLaw, settled: Settled) -> str:
-    """Why the motion of all harmonics may not be the steady state; empty where nothing speaks against it."""
-    mass = scene.mass()
+    if balance.friction.multiplier > FORGETS:
+        return _unknown(balance, REMEMBERED)
+    free = scene.model_copy(update={"initial": None, "dimensional": None, "belt_speed": speed})
+    steady = Shooting().solve([free], law, TOLERANCE)
+    if steady.status[0] != "ok":
+        return _unknown(balance, f"{UNKNOWN} ({steady.reason[0]}); use shooting")
     decay = math.exp(-math.pi * mass.damping / mass.frequency)
-    if settled.multiplier > max(STEADY, 0.5 * (1.0 + decay)):
-        return UNSTEADY
-    falls = not law.constant_sliding_friction() and _steepest_fall(law) * mass.normal_load >= mass.damping
-    return STICK_SLIP if falls and settled.turns == 0 else ""
+    if steady.columns["floquet"][0] > max(STEADY, 0.5 * (1.0 + decay)):
+        return _unknown(balance, UNSTEADY)
+    return _Point(balance, float(steady.columns["mean_friction"][0]), float(steady.columns["error"][0]), "")
 
 
-def _steepest_fall(law: BristleLaw) -> float:
-    """Of steady sliding friction with speed, from a comb of speeds."""
-    speeds = np.logspace(-6.0, 6.0, 481)
-    friction = np.array([law.sliding_friction(speed) for speed in speeds.tolist()])
-    return float(np.max(-np.diff(friction) / np.diff(speeds)))
+def _unknown(balance: Balance | None, reason: str) -> _Point:
+    return _Point(balance, math.nan, math.nan, reason)
 
 
 def _ambiguous(amplitudes: list[float], near: list[float]) -> str:
@@ -166,43 +147,21 @@ def _numbers(balance: Balance | None) -> list[float]:
 
 
 def _error(point: _Point, law: BristleLaw) -> float:
-    """What the other harmonics change of the mean, and three times what that may be off by."""
-    if point.balance is None or point.settled is None:
+    """What the other harmonics change of the mean, and what that may be off by."""
+    if point.balance is None:
         return math.nan
-    change = abs(point.settled.mean + point.balance.friction.mean)
-    return SAFETY * change + 3.0 * point.settled.left + 100.0 * ROUNDING * law.sliding_friction(0.0)
+    change = abs(point.mean + point.balance.friction.mean)
+    return change + point.error + 100.0 * ROUNDING * law.sliding_friction(0.0)
 
 
-def orbit_of_one_harmonic(scene: Scene, law: BristleLaw, balance: Balance) -> Orbit:
-    """The motion about the position where its mean friction loads the spring; friction over it."""
-    mass, amplitude = scene.mass(), balance.amplitude
-    side = math.copysign(1.0, scene.belt_speed)
-    lead = cmath.phase(mass.force) - balance.lag
-    phasor = side * cmath.rect(amplitude, lead)  # seen from a belt that moves forward
-    edges = panel_edges(mass, abs(scene.belt_speed), contact_of(law), np.array([phasor]))
-    edges = edges - 2.0 * math.pi * math.floor(edges[0] / (2.0 * math.pi))
-    friction = side * _between(_friction(scene, law, phasor, edges))
-    angle = edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (1.0 + NODES)
-    moving = amplitude * np.exp(1j * (angle + lead))
-    position = -side * mass.normal_load * balance.friction.mean - moving.real / mass.frequency
-    stick = np.zeros(len(angle), np.bool_)
-    x, v, along = (part.astype(np.complex128) for part in (position, moving.imag, friction))
-    return Orbit(angle / mass.frequency, x, v, along, stick)
-
-
-def _friction(scene: Scene, law: BristleLaw, phasor: complex, edges: Floats) -> Floats:
-    """At the Radau nodes of the panels."""
-    half = 0.5 * np.diff(edges)
-    angle = edges[:-1, None] + half[:, None] * (1.0 + RADAU)
-    slip = (phasor * np.exp(1j * angle)).imag - abs(scene.belt_speed)
-    entry = compiled(friction_over, law)
-    return np.asarray(entry(contact_of(law), half / scene.frequency, slip))
-
-
-def _between(friction: Floats) -> Floats:
-    """From Radau nodes to those of an orbit, by the polynomial through them and the end of the panel before."""
-    before = np.roll(friction[:, -1], 1)[:, None]
-    at = np.concatenate([[-1.0], RADAU])
-    powers = np.arange(STAGES + 1.0)
-    weights = NODES[:, None] ** powers @ np.linalg.inv(at[:, None] ** powers)
-    return np.concatenate([before, friction], axis=1) @ weights.T
+def orbit_of_one_harmonic(scene: Scene, law: BristleLaw, balance: Balance) -> Orbit | None:
+    """The motion about the position where its mean friction loads the spring, as a prescribed slip; friction over it."""
+    mass = scene.mass()
+    lead = math.degrees(cmath.phase(mass.force) - balance.lag)
+    slip = Slip(velocity_amplitude=balance.amplitude, frequency=mass.frequency, phase=lead)
+    prescribed = Scene(belt_speed=scene.belt_speed, normal_load=mass.normal_load, slip=slip)
+    orbit = BristlePoint(prescribed, law, TOLERANCE).orbit()
+    if orbit is None:
+        return None
+    mean = -math.copysign(1.0, scene.belt_speed) * balance.friction.mean
+    return replace(orbit, x=orbit.x + mass.normal_load * mean)

@@ -187,63 +187,6 @@ def _closed(law: Any, contact: Any, halves: Any, slip: Any, deflections: Any, co
     return 1.0 + slope
 
 
-@njit
-def friction_over(law: Any, contact: Any, halves: Any, slip: Any) -> Any:
-    """The friction coefficient at the nodes [panels, nodes] of a periodic slip; panels by half their duration."""
-    friction = np.empty(slip.shape)
-    _closed(law, contact, halves, slip, friction, len(halves))
-    for p in range(len(halves)):
-        for k in range(STAGES):
-            _, friction[p, k] = resistance(law, slip[p, k], friction[p, k])
-    return friction
-
-
-@njit
-def disturbance_over(law: Any, contact: Any, mass: Any, halves: Any, slip: Any) -> Any:
-    """What a period makes of small disturbances of position, velocity and deflection of a mass with this slip [3, 3].
-
-    mass: its damping, stiffness and normal load.
-    """
-    deflections = np.empty(slip.shape)
-    _closed(law, contact, halves, slip, deflections, len(halves))
-    matrix, right = np.empty((3 * STAGES, 3 * STAGES)), np.empty((3 * STAGES, 3))
-    slopes, state = np.zeros((3, 3)), np.eye(3)
-    for p in range(len(halves)):
-        for row in range(3 * STAGES):
-            for column in range(3 * STAGES):
-                matrix[row, column] = 1.0 if row == column else 0.0
-            for column in range(3):
-                right[row, column] = state[row % 3, column]
-        for k in range(STAGES):
-            _slopes(law, contact, mass, slip[p, k], deflections[p, k], slopes)
-            for i in range(STAGES):
-                for row in range(3):
-                    for column in range(3):
-                        part = halves[p] * INTEGRAL[i, k] * slopes[row, column]
-                        matrix[3 * i + row, 3 * k + column] = matrix[3 * i + row, 3 * k + column] - part
-        _solved(matrix, right)
-        for row in range(3):
-            for column in range(3):
-                state[row, column] = right[3 * (STAGES - 1) + row, column]
-    return state
-
-
-@inner
-def _slopes(law: Any, contact: Any, mass: Any, v: float, z: float, slopes: Any) -> None:
-    """Of (x', v', z') by (x, v, z), friction's by differences."""
-    damping, stiffness, normal_load = mass
-    small_v, small_z = 1e-7 * max(abs(v), 1e-3 * contact.size), 1e-7 * contact.size
-    rate, friction = resistance(law, v, z)
-    rate_v, friction_v = resistance(law, v + small_v, z)
-    rate_z, friction_z = resistance(law, v, z + small_z)
-    slopes[0, 1] = 1.0
-    slopes[1, 0] = -stiffness
-    slopes[1, 1] = -damping - normal_load * (friction_v - friction) / small_v
-    slopes[1, 2] = -normal_load * (friction_z - friction) / small_z
-    slopes[2, 1] = (rate_v - rate) / small_v
-    slopes[2, 2] = (rate_z - rate) / small_z
-
-
 @inner
 def _edges(turn: float, reach: Any, least: float, size: float, corners: Any, edges: Any) -> int:
     """Panel edges of one period from ``turn`` on, short near it and near pi - turn; their number.

@@ -33,7 +33,7 @@ class HarmonicBalance(Method):
     stick included, do to the mean: bounds on it come from motions that reverse twice with all their harmonics.
 
     Bristle friction has a part in phase with the displacement as well, and both parts ask for a loop of the law at
-    every amplitude looked at (methods/harmonic_bristle.py); its error comes from the motion of all harmonics.
+    every amplitude looked at (methods/reduced/bristle.py); its error comes from the mean that shooting finds.
 
     Source: Sulollari, van Dalen & Cabboi, Eqs. 5, 8 and 9 and appendix A.
     """
@@ -58,7 +58,7 @@ class HarmonicBalance(Method):
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Two root searches on whole arrays; slow drives need more samples to be sure of the reversals.
 
-        With bristles a search for every amplitude that balances, and their motion of all harmonics.
+        With bristles a search for every amplitude that balances, and shooting.
         """
         if isinstance(law, BristleLaw):
             return 4e-2

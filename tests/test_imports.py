@@ -51,7 +51,7 @@ ARROWS = {
     ],
     "methods.reduced": [
         *("compile", "dynamics", "laws", "numerics", "orbit", "quantities", "scene", "theory"),
-        *("methods.base", "methods.prescribed", "methods.refusals"),
+        *("methods.base", "methods.exact", "methods.prescribed", "methods.refusals", "methods.shooting"),
     ],
     "methods.auto": ["laws", "methods.base", "methods.exact", "methods.shooting", "scene"],
     "registry": ["faults", "laws", "methods.base"],

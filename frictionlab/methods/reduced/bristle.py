@@ -20,8 +20,8 @@ from frictionlab.methods.base import Answers
 from frictionlab.methods.prescribed.bristle import BristlePoint
 from frictionlab.methods.reduced.amplitudes import Balance, balances
 from frictionlab.methods.reduced.common import ROUNDING, Harmonic, judged, motion_columns
+from frictionlab.methods.reduced.full_mean import full_mean
 from frictionlab.methods.refusals import suggest_shooting
-from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene, Slip
@@ -33,8 +33,7 @@ FORGETS = 1.0 - 1e-6
 STEADY = 0.98
 """Largest Floquet multiplier above which a motion of the drive's period is not called steady."""
 TOLERANCE = 1e-9
-"""On the mean that shooting finds."""
-UNKNOWN = "no useful bound on the model error: the steady state is not known"
+"""On the mean friction of the loop of one harmonic."""
 UNSTEADY = "the motion of one drive period is not stable, or hardly so: the mean may not be one; use shooting"
 REMEMBERED = "slip within the bristles' elastic reach: the mean depends on where it started; use shooting"
 
@@ -88,14 +87,11 @@ def _point(scene: Scene, law: BristleLaw) -> _Point:
     balance = found[0]
     if balance.friction.multiplier > FORGETS:
         return _unknown(balance, REMEMBERED)
-    free = scene.model_copy(update={"initial": None, "dimensional": None, "belt_speed": speed})
-    steady = Shooting().solve([free], law, TOLERANCE)
-    if steady.status[0] != "ok":
-        return _unknown(balance, f"{UNKNOWN} ({steady.reason[0]}); use shooting")
+    full = full_mean(scene.model_copy(update={"belt_speed": speed}), law)
     decay = math.exp(-math.pi * mass.damping / mass.frequency)
-    if steady.columns["floquet"][0] > max(STEADY, 0.5 * (1.0 + decay)):
+    if full.floquet > max(STEADY, 0.5 * (1.0 + decay)):
         return _unknown(balance, UNSTEADY)
-    return _Point(balance, float(steady.columns["mean_friction"][0]), float(steady.columns["error"][0]), "")
+    return _Point(balance, full.mean, full.error, full.reason)
 
 
 def _unknown(balance: Balance | None, reason: str) -> _Point:
@@ -155,7 +151,7 @@ def _error(point: _Point, law: BristleLaw) -> float:
 
 
 def orbit_of_one_harmonic(scene: Scene, law: BristleLaw, balance: Balance) -> Orbit | None:
-    """The motion about the position where its mean friction loads the spring, as a prescribed slip; friction over it."""
+    """The motion about the position where its mean friction loads the spring, its slip taken as prescribed."""
     mass = scene.mass()
     lead = math.degrees(cmath.phase(mass.force) - balance.lag)
     slip = Slip(velocity_amplitude=balance.amplitude, frequency=mass.frequency, phase=lead)

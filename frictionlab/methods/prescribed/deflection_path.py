@@ -3,6 +3,8 @@
 A step is taken whole and in two halves, and shortened until both agree on the deflection and on the friction's sum;
 so the steps find by themselves where the law's rate jumps. Towards slow slip they are graded, as what happens there
 may be too short for steps to notice.
+
+Licence (tests/benchmarks/specialists.py): those of the closed loops on the line and in the plane, which this serves.
 """
 
 from __future__ import annotations

@@ -104,11 +104,8 @@ OUTSIDE = {
     "pandas": ["results", "runner", "charts", "report", "cli"],
     "pyarrow": ["results", "runner"],
     "matplotlib": ["charts", "bench.chart"],
-    "scipy": [
-        "theory",
-        "numerics",
-        "bench.peers",
-    ],  # inside functions: nothing imports it before it is needed
+    # inside functions alone: nothing imports it before it is needed
+    "scipy": ["theory", "numerics", "methods.reduced", "bench.peers"],
     "heyoka": ["bench.peers"],
     "numbalsoda": ["bench.peers"],
     "jinja2": ["report"],

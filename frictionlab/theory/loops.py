@@ -13,8 +13,6 @@ from frictionlab.quantities import Floats
 
 Complexes = NDArray[np.complex128]
 
-SERIES_UP_TO = 50.0
-
 
 def dahl_path(start: ArrayLike, path: ArrayLike, exponent: float = 1.0) -> Floats:
     """Friction after slip of this length in one direction, along which friction is counted, by the law of Dahl.
@@ -81,26 +79,11 @@ def dahl_describing_function(amplitude: ArrayLike) -> Complexes:
 
     amplitude a [presliding lengths] > 0 of the slip. Source: first harmonic of the loop of ``dahl_path``.
     """
+    from scipy.special import i1e  # I_1(a) exp(-a)
+
     size = np.asarray(amplitude, dtype=np.float64)
-    stiffness = 4.0 * _scaled_bessel(size) / (1.0 + np.exp(-2.0 * size))
+    stiffness = 4.0 * i1e(size) / size / (1.0 + np.exp(-2.0 * size))
     return np.asarray(stiffness + 1j * (dahl_loop_area(size) / np.pi / size / size))
-
-
-def _scaled_bessel(x: Floats) -> Floats:
-    """I_1(x) exp(-x)/x for x > 0.
-
-    The mean of exp(x (cos t - 1)) sin^2 t over a turn (Abramowitz & Stegun 9.6.18), exact to rounding by 128
-    points up to 50; from there on the asymptotic series (A&S 9.7.1).
-    """
-    angle = 2.0 * np.pi * np.arange(128) / 128.0
-    small = np.minimum(x, SERIES_UP_TO)[..., np.newaxis]
-    mean = np.mean(np.exp(small * (np.cos(angle) - 1.0)) * np.sin(angle) ** 2, axis=-1)
-    large = np.maximum(x, SERIES_UP_TO)
-    total, term = np.zeros_like(large), np.ones_like(large)
-    for k in range(1, 16):
-        total = total + term
-        term = term * ((2 * k - 1) ** 2 - 4.0) / (8.0 * k * large)
-    return np.asarray(np.where(x < SERIES_UP_TO, mean, total / np.sqrt(2.0 * np.pi * large) / large))
 
 
 def jenkins_describing_function(amplitude: ArrayLike) -> Complexes:

@@ -56,7 +56,7 @@ def balances(mass: Mass, belt_speed: float, law: BristleLaw) -> Balances:
     amplitudes, excess = np.concatenate([amplitudes, dips])[order], np.concatenate([excess, missed])[order]
     above = excess > 0.0
     changes = np.flatnonzero(above[1:] != above[:-1]).tolist()
-    ends = [_crossing(reader, amplitudes[i : i + 2], excess[i : i + 2]) for i in changes]
+    ends = [_crossing(reader, amplitudes[i : i + 2]) for i in changes]
     return Balances([reader.balance(amplitude) for amplitude in ends], near)
 
 
@@ -143,21 +143,9 @@ def _nearest(reader: _Reader, low: float, high: float, side: float) -> float:
     return inner if at_inner < at_outer else outer
 
 
-def _crossing(reader: _Reader, ends: Floats, excess: Floats) -> float:
-    """Where the excess crosses zero: Illinois' regula falsi, and halving where that stalls."""
-    (a, b), (fa, fb) = ends.tolist(), excess.tolist()
-    for step in range(100):
-        if fa == 0.0 or fb == 0.0 or b - a <= 4e-16 * b:
-            break
-        at = 0.5 * (a + b) if step % 6 == 5 else (a * fb - b * fa) / (fb - fa)
-        at = min(max(at, a), b)
-        value = reader.excess(at)
-        if (value > 0.0) == (fb > 0.0):
-            fa = fa if b == at else 0.5 * fa
-            b, fb = at, value
-        else:
-            fb = fb if a == at else 0.5 * fb
-            a, fa = at, value
-        if abs(value) <= 1e-14 * abs(reader.mass.force) or b - a <= 4e-16 * b:
-            return at
-    return a if abs(fa) < abs(fb) else b
+def _crossing(reader: _Reader, ends: Floats) -> float:
+    """Where the excess crosses zero between two amplitudes, by Brent's method."""
+    from scipy.optimize import brentq
+
+    low, high = ends.tolist()
+    return float(brentq(reader.excess, low, high, xtol=4e-16 * high))

@@ -28,6 +28,14 @@ def inner(function: Callable[..., Any]) -> Any:
     return numba.njit(**INNER)(function)
 
 
+def inlined(function: Callable[..., Any]) -> Any:
+    """Put a function's text in the place of every call: its arrays on the stack are then those of the caller.
+
+    For such alone: numba compiles the text anew for every call.
+    """
+    return numba.njit(inline="always", **INNER)(function)
+
+
 def fast(function: Callable[..., Any]) -> Any:
     """The same for inner arithmetic that never meets NaN or infinity on purpose."""
     return numba.njit(fastmath=True, **INNER)(function)

@@ -83,7 +83,16 @@ for _method in (
     "yield_deflection",
 ):
     _open_door(BristleLaw, _method)
-for _method in ("count", "rate", "friction", "steady", "stored", "within", "largest_rate"):
+for _method in (
+    "count",
+    "rate",
+    "friction",
+    "steady",
+    "stored",
+    "within",
+    "largest_rate",
+    "yield_deflection",
+):
     _open_door(MemoryLaw, _method)
 
 
@@ -107,17 +116,24 @@ def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
 
 
 def by_law(
-    of_sliding: Any, of_bristle: Any, of_path: Any = None, of_memory: Any = None, of_vectors: Any = None
+    of_sliding: Any,
+    of_bristle: Any,
+    of_path: Any = None,
+    of_memory: Any = None,
+    of_vectors: Any = None,
+    of_yielding: Any = None,
 ) -> Any:
     """A kernel function with several bodies of one signature, chosen by the law its first argument is.
 
     of_path is for bristle laws on the line (no argument is complex) whose path is exact, of_memory for memory laws,
-    of_vectors for those whose memories are deflections in the plane; the choice is made when kernels are compiled,
-    so that what a law does not need is never compiled for it.
+    of_vectors for those whose memories are deflections in the plane, of_yielding for those whose memories are few
+    deflections that each have a yield surface; the choice is made when kernels are compiled, so that what a law does
+    not need is never compiled for it.
     """
     memory = of_memory or of_sliding
     choices = of_sliding, of_bristle, of_path or of_bristle, memory, of_vectors or memory
-    bodies = [getattr(body, "py_func", body) for body in choices]
+    yielding = of_yielding or memory, of_yielding or of_vectors or memory
+    bodies = [getattr(body, "py_func", body) for body in (*choices, *yielding)]
 
     def chosen(*arguments: Any) -> Any:
         law, planar = arguments[0], any(isinstance(argument, complex) for argument in arguments)
@@ -135,6 +151,8 @@ def by_law(
 
 def _which(law: type[FrictionLaw], structure: tuple[str, ...], planar: bool) -> int:
     if issubclass(law, MemoryLaw):
+        if "yield surfaces" in structure:
+            return 6 if planar else 5
         return 4 if law.memory_kind == "deflections" and planar else 3
     if not issubclass(law, BristleLaw):
         return 0

@@ -130,6 +130,10 @@ def in_the_plane(law: Any, v: complex, z: complex) -> Any:
     return complex(rate, 0.0), law.friction(speed, z.real, rate) * direction
 
 
+FEW = 16
+"""Numbers remembered up to which kernels are compiled for their count."""
+
+
 class MemoryLaw(FrictionLaw, ABC):
     """A law whose memory is a fixed number of numbers, all of one kind.
 
@@ -141,7 +145,10 @@ class MemoryLaw(FrictionLaw, ABC):
 
     @abstractmethod
     def rate(self, v: Any, memory: Any, k: int) -> Any:
-        """Rate of the k-th memory [its unit/scene time] at slip velocity ``v``; ``memory`` is indexed by 0, 1, ..."""
+        """Rate of the k-th memory [its unit/scene time] at slip velocity ``v``.
+
+        ``memory`` is to be indexed by 0, 1, ... and nothing more: kernels have no array, and know no length of it.
+        """
 
     @abstractmethod
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
@@ -153,8 +160,12 @@ class MemoryLaw(FrictionLaw, ABC):
         return 1.0 if self.memory_kind == "deflections" else 0.0
 
     def structure(self) -> tuple[str, ...]:
-        """Which kind of memory it is."""
-        return (self.memory_kind,)
+        """Which kind of memory it is, and how many numbers, if few: kernels are compiled for that many."""
+        if self.count() > FEW:
+            return (self.memory_kind,)
+        surfaces = (self.yield_deflection(k) for k in range(self.count()))
+        yields = self.memory_kind == "deflections" and all(math.isfinite(radius) for radius in surfaces)
+        return self.memory_kind, *(("yield surfaces",) if yields else ()), f"{self.count()} numbers"
 
     def count(self) -> int:
         """How many numbers the law remembers."""
@@ -167,6 +178,14 @@ class MemoryLaw(FrictionLaw, ABC):
     def stored(self, memory: Any) -> float:
         """The work [scene length, per unit load] that the memory can give back; used where a law is passive."""
         return 0.0
+
+    def yield_deflection(self, k: int) -> float:
+        """Deflection [scene length] below which the k-th moves with the slip, and which it never exceeds.
+
+        At it and with z.v > 0, ``rate`` moves it along the circle of that radius. Infinite for none, or where a law
+        does not say: its corners are then searched for.
+        """
+        return math.inf
 
     def within(self, memory: Any) -> bool:
         """Whether the memory lies in the set that no slip history leaves."""

@@ -87,6 +87,10 @@ class MaxwellSlip(MemoryLaw):
         """At its reach, along the slip."""
         return self.reach[k] * (v / abs(v))
 
+    def yield_deflection(self, k: int) -> float:
+        """Its reach."""
+        return self.reach[k]
+
     def stored(self, memory: Any) -> float:
         """In the springs."""
         total = 0.0

@@ -59,6 +59,22 @@ class ElementsApart(Springs):
         return complex(super().rate(v.real, one, k), super().rate(v.imag, two, k))
 
 
+class Declared(Springs):
+    """The same, its yield surfaces declared."""
+
+    def yield_deflection(self, k: int) -> float:
+        """The reach."""
+        return self.reach[k]
+
+
+class SecondYieldsEarly(Declared):
+    """All but the first spring drag their sliders before they reach as far as declared."""
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """At nine tenths."""
+        return super().rate(v, [z / 0.9 for z in memory] if k > 0 else memory, k)
+
+
 class StoresTwice(Springs):
     """Springs that hold less than told."""
 
@@ -111,6 +127,7 @@ CASES = (
     Case(SignedElements, Springs, "oddness"),
     Case(BackwardsLost, Springs, "invariant_set"),
     Case(ElementsApart, Springs, "rotation"),
+    Case(SecondYieldsEarly, Declared, "yield_deflection"),
     Case(StoresTwice, Springs, "passivity"),
     Case(Ageing, Renewed, "unit_scaling"),
     Case(SteadyTwice, Ageing, "steady_sliding"),

@@ -13,6 +13,7 @@ from typing import Any
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.methods.periodic.maps.bristle import bristle_map, coarsest, dimension, taken
+from frictionlab.methods.periodic.maps.deflection import deflection_map
 from frictionlab.methods.periodic.maps.memory import begun, coarsest_of_memory, follow, grain_of_memory
 from frictionlab.methods.periodic.maps.memory_rates import work_of
 from frictionlab.methods.periodic.maps.memory_state import (
@@ -183,7 +184,36 @@ def _mapped_with_memory(
     return Mapped(end_y, end_u, taken(work.at, 2, like), 0.0, closest, -1.0, steps)
 
 
-period_map = by_law(_mapped_without_memory, _mapped_with_a_bristle, None, _mapped_with_memory)
+def _mapped_with_deflections(
+    law: Any,
+    body: Body,
+    belt_speed: float,
+    state: Any,
+    residual: Any,
+    accuracy: float,
+    track: Track,
+    like: Any,
+) -> Mapped:
+    y, u = unpack(body, state, like)
+    scales, z, d = scales_of(law, body, like), memory_of(law, like), dimension(like)
+    recalled(z, law, scales, state, 2 * d, z[0])
+    pulled(law, z, memory_of(law, like))
+    image = deflection_map(law, body, belt_speed, y, u, z, accuracy, track)
+    kept(z, law, scales, residual, 2 * d, z[0])
+    pack(body, residual, image.y - y, image.u - u)
+    for row in range(2 * d, residual.size):
+        residual[row] = residual[row] - state[row]
+    return image
+
+
+period_map = by_law(
+    _mapped_without_memory,
+    _mapped_with_a_bristle,
+    None,
+    _mapped_with_memory,
+    None,
+    _mapped_with_deflections,
+)
 """One span from a state, noted on a track with room; leaves image - state in residual."""
 
 

@@ -8,8 +8,9 @@ from typing import Any
 from hypothesis import assume
 from hypothesis import strategies as st
 
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.testing.check import check
+from frictionlab.testing.check import check, for_laws_of
 from frictionlab.testing.checks.declared import BRISTLES, WITH_MEMORY
 from frictionlab.testing.contact import dot, response, size_of
 from frictionlab.testing.example import Given
@@ -182,19 +183,38 @@ def elastic_unloading(one: Given) -> None:
         _follows(one, law, v, -math.copysign(share * size_of(law), v), back=" back")
 
 
+def _yield_surfaces(law: FrictionLaw) -> list[float]:
+    """The radius of each deflection's yield surface; none for laws that have none in the plane."""
+    if isinstance(law, MemoryLaw):
+        return [law.yield_deflection(k) for k in range(law.count())] if law.turning else []
+    return [law.yield_deflection()] if isinstance(law, BristleLaw) and not law.no_vector_form() else []
+
+
+def _own_rate(law: Any, v: complex, memory: list[complex], k: int) -> Any:
+    """The rate of one deflection, whatever form a bristle law takes in the plane."""
+    return law.rate(v, memory, k) if isinstance(law, MemoryLaw) else law.rate(v, memory[k])
+
+
 @check(
     "yield_deflection",
     declares="yield_deflection",
-    skips=BRISTLES,
+    skips=for_laws_of(BristleLaw, MemoryLaw, without="of laws with deflections"),
     seldom="yield_deflection() is infinite for all parameters drawn",
 )
 def yield_deflection(one: Given) -> None:
-    """Below the deflection of yield the bristle follows the slip; at it, it moves along a circle."""
-    law = one.law(lambda law: law.yield_deflection() < math.inf and not law.no_vector_form())
+    """Below the deflection of yield a bristle follows the slip; at it, it moves along a circle."""
+    law = one.law(lambda law: any(radius < math.inf for radius in _yield_surfaces(law)))
     v, turn = one.planar_slip(), one.draw("turn", turns)
     share = one.draw("share", seldom(st.just(0.999), evenly(0.0, 0.999)))
-    _follows(one, law, v, share * law.yield_deflection() * turn)
-    at = (1.0 + 1e-14) * law.yield_deflection() * turn
-    assume(dot(v, turn) > 1e-6 * abs(v))
-    out = dot(law.rate(v, at), turn)
-    one.require(abs(out) <= 1e-11 * abs(v), "the bristle leaves the circle of yield", outward_rate=out)
+    surfaces = _yield_surfaces(law)
+    inside = [share * min(radius, 1e300) * turn for radius in surfaces]
+    at = [(1.0 + 1e-14) * min(radius, 1e300) * turn for radius in surfaces]
+    for k in [k for k, radius in enumerate(surfaces) if radius < math.inf]:
+        rate = _own_rate(law, v, inside, k)
+        follows = abs(rate - v) <= 1e-12 * abs(v)
+        one.require(follows, f"deflection {k} does not follow the slip", share=share, rate=rate)
+        assume(dot(v, turn) > 1e-6 * abs(v))
+        out = dot(_own_rate(law, v, at, k), turn)
+        one.require(
+            abs(out) <= 1e-11 * abs(v), f"deflection {k} leaves its circle of yield", outward_rate=out
+        )

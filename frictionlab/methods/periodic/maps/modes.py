@@ -1,0 +1,238 @@
+"""Modes of deflections and the guards at which they change: a yield surface is met or left, slip reverses.
+
+A guard is positive as long as a mode holds; it is measured as a velocity or a deflection in the norm of energy, and
+comes with its rate, so that where it passes zero is found by Newton's method. Guards are numbered: one for each
+deflection, and last, on the line, that of the slip itself, where a law's own rate may have a corner.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from frictionlab.compile.decorators import fast, inner
+from frictionlab.compile.dispatch import by_dimension, by_law
+from frictionlab.compile.stack import count_of
+from frictionlab.dynamics.motion import turned
+from frictionlab.laws.memory import VECTORIAL
+from frictionlab.methods.periodic.maps.rates import (
+    FOLLOWS,
+    MEMORY,
+    SMOOTH,
+    YIELDS,
+    Flow,
+    Work,
+    on_circle,
+    rates,
+)
+from frictionlab.methods.periodic.maps.step import step
+
+OPEN = 1e300
+"""The guard of what has no corner."""
+SLACK = 1e-12
+"""Of a yield surface: a smaller excess is rounding."""
+CLOSE = 1e-3
+"""Of the accuracy: how far beyond its zero a guard may be where a step ends at it."""
+
+
+def _yield_of_a_bristle(law: Any, k: int, w: Any) -> float:
+    radius = law.yield_deflection()
+    return radius if radius < math.inf and law.form == VECTORIAL else 0.0
+
+
+def _yield_of_memory(law: Any, k: int, w: Any) -> float:
+    radius = law.yield_deflection(k)
+    return radius if radius < math.inf else 0.0
+
+
+yield_radius = by_law(_yield_of_a_bristle, _yield_of_a_bristle, None, _yield_of_memory)
+"""yield_radius(law, k, w): of the k-th deflection's yield surface, 0 for none."""
+
+
+def _along_on_the_line(z: float, w: float) -> float:
+    return z * w
+
+
+def _along_in_the_plane(z: complex, w: complex) -> float:
+    return z.real * w.real + z.imag * w.imag
+
+
+along = by_dimension(_along_on_the_line, _along_in_the_plane)
+"""along(z, w): the inner product."""
+
+
+def _size_on_the_line(z: float) -> float:
+    return math.fabs(z)
+
+
+def _size_in_the_plane(z: complex) -> float:
+    return math.sqrt(z.real * z.real + z.imag * z.imag)
+
+
+size = by_dimension(_size_on_the_line, _size_in_the_plane)
+
+
+class Guard(NamedTuple):
+    """A guard's number, its value and its rate."""
+
+    number: int
+    value: float
+    rate: float
+
+
+def _reversal_on_the_line(flow: Flow, a: float, w: float) -> Guard:
+    return Guard(-1, flow.side * w, flow.side * a)
+
+
+def _reversal_in_the_plane(flow: Flow, a: complex, w: complex) -> Guard:
+    """In the plane slip turns round without coming to rest."""
+    return Guard(-1, OPEN, 0.0)
+
+
+_reversal = by_dimension(_reversal_on_the_line, _reversal_in_the_plane)
+
+
+def _unloading_on_the_line(k: int, a: float, work: Work, w: float) -> Guard:
+    """On the line it is the slip's reversal that unloads."""
+    return Guard(k, OPEN, 0.0)
+
+
+def _unloading_in_the_plane(k: int, a: complex, work: Work, w: complex) -> Guard:
+    """Positive until slip has no part along a yielding deflection any more."""
+    z, share = work.memory[k], 1.0 / work.radius[k]
+    return Guard(k, share * along(z, w), share * (along(z, a) + along(work.moving[k], w)))
+
+
+_unloading = by_dimension(_unloading_on_the_line, _unloading_in_the_plane)
+
+
+@inner
+def guard_of(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
+    """One guard at ``work.memory``, which moves at ``work.moving``, slip w at the rate a."""
+    if number == count_of(flow.law):
+        return _reversal(flow, a, w)
+    z, radius = work.memory[number], work.radius[number]
+    if work.mode[number] == YIELDS and radius > 0.0:
+        return _unloading(number, a, work, w)
+    if work.mode[number] == FOLLOWS and radius > 0.0:
+        far = size(z)
+        outward = along(z, w) / far if far > 0.0 else size(w)
+        unit = work.unit[number]
+        return Guard(number, unit * (radius * (1.0 + SLACK) - far), -unit * outward)
+    return Guard(number, OPEN, 0.0)
+
+
+@inner
+def lowest(flow: Flow, w: Any, a: Any, work: Work) -> Guard:
+    """The lowest of all guards at ``work.memory``."""
+    found = Guard(0, OPEN, 0.0)
+    for number in range(count_of(flow.law) + 1):
+        guard = guard_of(flow, number, w, a, work)
+        if guard.value < found.value:
+            found = Guard(number, guard.value, guard.rate)
+    return found
+
+
+@inner
+def rates_at_end(flow: Flow, tau: float, work: Work, like: Any) -> Any:
+    """Slip and its rate at ``work.end``, the time tau; leaves the memory there in ``work.memory``."""
+    for row in range(MEMORY + count_of(flow.law)):
+        work.stage[row] = work.end[row]
+    sine, cosine = turned(flow, tau)
+    return rates(flow, sine, cosine, work, like)
+
+
+@inner
+def begin(flow: Flow, a: Any, w: Any, work: Work) -> None:
+    """Set the modes at ``work.start``, and put on its yield surface what yields; slip w moves at the rate a."""
+    for k in range(count_of(flow.law)):
+        radius, z = yield_radius(flow.law, k, w), work.start[MEMORY + k]
+        work.radius[k], work.mode[k] = radius, SMOOTH
+        if radius > 0.0:
+            loaded = along(z, w) > 0.0 or (along(z, w) == 0.0 and along(z, a) > 0.0)
+            work.mode[k] = YIELDS if loaded and size(z) >= radius * (1.0 - 1e-13) else FOLLOWS
+
+
+@inner
+def restore(flow: Flow, work: Work) -> None:
+    """Put the yielding deflections of ``work.start`` back on their surfaces, which errors of a step lead off."""
+    for k in range(count_of(flow.law)):
+        if work.mode[k] == YIELDS and work.radius[k] > 0.0:
+            work.start[MEMORY + k] = on_circle(work.radius[k], work.start[MEMORY + k])
+
+
+@inner
+def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, like: Any) -> float:
+    """The step to the first guard that passes zero within a step of ``high``, just beyond it; left in ``work.end``.
+
+    Newton's method on the lowest guard, kept between a step that no guard ends and one that a guard does.
+    """
+    low, h, within = 0.0, high, CLOSE * accuracy
+    for turn in range(60):
+        w, a = rates_at_end(flow, tau + h, work, like)
+        guard = lowest(flow, w, a, work)
+        if guard.value <= 0.0:
+            high = h
+        else:
+            low = h
+        if -within <= guard.value <= 0.0 or high - low <= 4e-16 * (tau + high):
+            break
+        # half of what may remain beyond: an approach from the near side does not end there
+        trial = h - (guard.value + 0.5 * within) / guard.rate if guard.rate < 0.0 else low
+        # on a bend Newton's steps may creep towards one end: halve now and then
+        h = trial if low < trial < high and turn % 4 < 3 else 0.5 * (low + high)
+        step(flow, tau, h, work, like)
+    if h != high:
+        step(flow, tau, high, work, like)
+    return high
+
+
+@inner
+def change(flow: Flow, w: Any, a: Any, work: Work) -> float:
+    """Change every mode whose guard has been passed at ``work.memory``; returns the side of slip."""
+    n = count_of(flow.law)
+    reverses = guard_of(flow, n, w, a, work).value <= 0.0
+    for k in range(n):
+        passed = guard_of(flow, k, w, a, work).value <= 0.0
+        if work.mode[k] == YIELDS and (passed or reverses):
+            work.mode[k] = FOLLOWS
+        elif work.mode[k] == FOLLOWS and passed:
+            work.mode[k] = YIELDS
+    return -flow.side if reverses else flow.side
+
+
+@inner
+def note_guards(flow: Flow, w: Any, a: Any, work: Work) -> None:
+    """Keep every guard at ``work.memory`` and its rate, to be compared with those at the end of a step."""
+    n = count_of(flow.law)
+    for number in range(n + 1):
+        guard = guard_of(flow, number, w, a, work)
+        work.guards[2 * number], work.guards[2 * number + 1] = guard.value, guard.rate
+
+
+@fast
+def _lowest_between(h: float, value0: float, rate0: float, value1: float, rate1: float) -> Any:
+    """Where the cubic through two values and rates is lowest between them, and how low."""
+    # its derivative is rate0 + 2 b s + 3 c s^2 with s from 0 to 1, negative at 0 and positive at 1
+    c = h * (rate0 + rate1) - 2.0 * (value1 - value0)
+    b = 3.0 * (value1 - value0) - h * (2.0 * rate0 + rate1)
+    root = math.sqrt(max(b * b - 3.0 * c * h * rate0, 0.0))
+    s = -h * rate0 / (b + root) if b + root > 0.0 else 0.5
+    s = min(max(s, 0.0), 1.0)
+    return s, value0 + s * (h * rate0 + s * (b + s * c))
+
+
+@inner
+def hidden(flow: Flow, h: float, w: Any, a: Any, work: Work) -> float:
+    """A shorter step where a guard may come close to zero within one that none ends, or pass it twice; else h.
+
+    The guards at the start are those noted, at the end those of ``work.memory``.
+    """
+    for number in range(count_of(flow.law) + 1):
+        value0, rate0 = work.guards[2 * number], work.guards[2 * number + 1]
+        guard = guard_of(flow, number, w, a, work)
+        if rate0 < 0.0 < guard.rate:
+            share, least = _lowest_between(h, value0, rate0, guard.value, guard.rate)
+            if least < 0.0625 * min(value0, guard.value) and 0.01 < share < 0.99:
+                return share * h
+    return h

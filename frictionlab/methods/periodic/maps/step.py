@@ -1,0 +1,157 @@
+"""One step of a mass and what its friction remembers: Rodas5P, by elimination along an arrow.
+
+The rate of a deflection z_k depends on slip and on z_k alone. With the blocks A_k = dr_k/dz_k, B_k = dr_k/dw,
+F_k = dmu/dz_k, G = dmu/dw, each a number on the line and a pair in the plane, the equations of a stage
+
+    (1/(gamma h) - A_k) k_zk - B_k k_u = r_zk,    (1/(gamma h) + D + gamma h K + N G) k_u + N sum F_k k_zk = r_u
+
+are solved deflection by deflection: E_k = (1/(gamma h) - A_k)^-1 and C_k = E_k B_k give k_zk = E_k r_zk + C_k k_u,
+and what is left is one block for k_u. The cost grows with the number of deflections, not with its cube.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from frictionlab.compile.decorators import fast, inner
+from frictionlab.compile.dispatch import by_dimension
+from frictionlab.compile.stack import count_of
+from frictionlab.dynamics.motion import turned
+from frictionlab.methods.periodic.maps.rates import IMPULSE, MEMORY, Flow, U, Work, Y, load_on, rates
+from frictionlab.numerics.blocks import add, apply, block, diagonal, inverse, keep, product, scale
+from frictionlab.numerics.steppers.rodas5p import COUPLINGS, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
+from frictionlab.scene.body import Body
+
+SIMULTANEOUS = 6
+"""From the stage before this one on, all are at the end of the step: its sine and cosine serve them all."""
+
+
+@fast
+def factor(flow: Flow, h: float, work: Work, like: Any) -> None:
+    """Fill ``work.factors`` for a step of h from ``work.jacobian``.
+
+    No pivots: a block that is singular to rounding makes an error that is not finite, and the step is repeated.
+    """
+    body, n, diagonally = flow.body, count_of(flow.law), 1.0 / (GAMMA * h)
+    # friction by slip: at once, and through every deflection that slip moves within the step
+    by_slip = block(work.jacobian, 3 * n, like)
+    for k in range(n):
+        own = scale(-1.0, block(work.jacobian, 3 * k + 1, like), like)
+        alone = inverse(add(diagonal(diagonally, 0.0, like), own, like), like)
+        moved = product(alone, block(work.jacobian, 3 * k, like), like)
+        by_slip = add(by_slip, product(block(work.jacobian, 3 * k + 2, like), moved, like), like)
+        keep(work.factors, 2 * k, alone, like)
+        keep(work.factors, 2 * k + 1, moved, like)
+    mean = diagonally + body.damping_mean + GAMMA * h * body.stiffness_mean
+    mass = diagonal(mean, body.damping_split + GAMMA * h * body.stiffness_split, like)
+    keep(work.factors, 2 * n, inverse(add(mass, scale(load_on(body), by_slip, like), like), like), like)
+    keep(work.factors, 2 * n + 1, by_slip, like)
+
+
+def _stretched_on_the_line(body: Body, x: float) -> float:
+    return (body.stiffness_mean + body.stiffness_split) * x
+
+
+def _stretched_in_the_plane(body: Body, x: complex) -> complex:
+    return body.stiffness_mean * x + body.stiffness_split * x.conjugate()
+
+
+_stretched = by_dimension(_stretched_on_the_line, _stretched_in_the_plane)
+"""The force of the springs."""
+
+
+@fast
+def _argument(i: int, law: Any, work: Work) -> None:
+    """Where stage i asks for rates: the start and what the stages before it add."""
+    size = MEMORY + count_of(law)
+    for row in range(size):
+        work.stage[row] = work.start[row]
+    for j in range(i):
+        share = INCREMENTS[i, j]
+        for row in range(size):
+            work.stage[row] = work.stage[row] + share * work.increments[size * j + row]
+
+
+@fast
+def _right_side(i: int, law: Any, h: float, work: Work) -> None:
+    """Add to the rates what the stages before i and the slope in time bring to the right-hand sides."""
+    size, late, per = MEMORY + count_of(law), h * SLOPES[i], 1.0 / h
+    for row in range(size):
+        work.rates[row] = work.rates[row] + late * work.slope[row]
+    for j in range(i):
+        share = COUPLINGS[i, j] * per
+        for row in range(size):
+            work.rates[row] = work.rates[row] + share * work.increments[size * j + row]
+
+
+@fast
+def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
+    """The increments of stage i from its right-hand sides in ``work.rates``."""
+    n, body = count_of(flow.law), flow.body
+    first = (MEMORY + n) * i
+    alone = 0.0 * like  # friction of what the deflections would do if the mass kept its velocity
+    for k in range(n):
+        moved = apply(block(work.factors, 2 * k, like), work.rates[MEMORY + k])
+        work.increments[first + MEMORY + k] = moved
+        alone = alone + apply(block(work.jacobian, 3 * k + 2, like), moved)
+    right = work.rates[U] - GAMMA * h * _stretched(body, work.rates[Y]) - load_on(body) * alone
+    u = apply(block(work.factors, 2 * n, like), right)
+    friction = work.rates[IMPULSE] + alone + apply(block(work.factors, 2 * n + 1, like), u)
+    work.increments[first + Y] = GAMMA * h * (work.rates[Y] + u)
+    work.increments[first + U] = u
+    work.increments[first + IMPULSE] = GAMMA * h * friction
+    for k in range(n):
+        moved = apply(block(work.factors, 2 * k + 1, like), u)
+        work.increments[first + MEMORY + k] = work.increments[first + MEMORY + k] + moved
+
+
+def _square_on_the_line(x: float) -> float:
+    return x * x
+
+
+def _square_in_the_plane(x: complex) -> float:
+    return x.real * x.real + x.imag * x.imag
+
+
+square = by_dimension(_square_on_the_line, _square_in_the_plane)
+
+
+def _elastic_on_the_line(body: Body, x: float) -> float:
+    return (body.stiffness_mean + body.stiffness_split) * x * x
+
+
+def _elastic_in_the_plane(body: Body, x: complex) -> float:
+    along, across = body.stiffness_mean + body.stiffness_split, body.stiffness_mean - body.stiffness_split
+    return along * x.real * x.real + across * x.imag * x.imag
+
+
+_elastic = by_dimension(_elastic_on_the_line, _elastic_in_the_plane)
+"""Twice the energy of the springs."""
+
+
+@inner
+def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
+    """One step from ``work.start`` to ``work.end``; returns its error in the norm of energy, the impulse's too.
+
+    It starts at the anchor of the flow.
+    """
+    law, body, n = flow.law, flow.body, count_of(flow.law)
+    factor(flow, h, work, like)
+    sine, cosine = turned(flow, tau)
+    for i in range(STAGES):
+        _argument(i, law, work)
+        if 0 < i < SIMULTANEOUS:
+            sine, cosine = turned(flow, tau + TIMES[i] * h)
+        rates(flow, sine, cosine, work, like)
+        _right_side(i, law, h, work)
+        _solve(i, flow, h, work, like)
+    # the last increment is the difference to the embedded method of order 4, and ends the step
+    last = (MEMORY + n) * (STAGES - 1)
+    for row in range(MEMORY + n):
+        work.end[row] = work.stage[row] + work.increments[last + row]
+    error = _elastic(body, work.increments[last + Y]) + square(work.increments[last + U])
+    error += square(body.normal_load * work.increments[last + IMPULSE])
+    for k in range(n):
+        error += square(work.unit[k] * work.increments[last + MEMORY + k])
+    return math.sqrt(error)

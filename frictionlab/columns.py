@@ -1,4 +1,4 @@
-"""The columns of the result table: one place for their names, their order and what they mean."""
+"""The columns of the result tables: names, order, meaning, symbols and units."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ RESULTS: dict[str, str] = {
     "error": "bound on the absolute error of mean_friction against the scene as stated",
     "error_kind": "guaranteed (proved) or estimated",
     "status": "ok, refused, failed, not_unique or killed",
-    "reason": "why, where the status is not plainly ok",
+    "reason": "why the status is not ok, or what to note about an ok point",
     "mean_low": "smallest mean seen where the steady state is not unique",
     "mean_high": "largest mean seen where the steady state is not unique",
     "window": "periods averaged for mean_low and mean_high",
@@ -34,7 +34,7 @@ RESULTS: dict[str, str] = {
     "force_reversals": "sign changes of the friction force along x1, per period",
     "energy_input": "work of the loads, per period of the response",
     "energy_viscous": "loss in the dashpots, per period",
-    "energy_friction": "what friction takes from the mass, per period",
+    "energy_friction": "work absorbed by friction, per period",
     "energy_contact": "heat in the contact, per period",
     "period": "period of the response in drive periods, of an undriven one in units of 2 pi",
     "floquet": "largest modulus of the Floquet multipliers, without the trivial one of an undriven orbit",
@@ -42,14 +42,14 @@ RESULTS: dict[str, str] = {
     "velocity_ratio": "belt_speed / V_lin, the friction-free velocity amplitude",
     "friction_to_drive": "friction coefficient * normal_load / force amplitude",
     "presliding_ratio": "presliding length * frequency / V_lin",
-    "model": "what produced the number, and for auto why",
+    "model": "the method that computed the number, and for auto the reason for its choice",
     "seconds": "kernel time",
 }
 """The columns after the inputs, in the order of the table, with one line each."""
 
 
 class InSI(NamedTuple):
-    """A result column in SI units: the column it is made of, the scale that multiplies it, what it means."""
+    """A result column in SI units: the nondimensional column, the scale that multiplies it, and its meaning."""
 
     column: str
     scale: str
@@ -72,9 +72,7 @@ SI: dict[str, InSI] = {
     ),
     "energy_input_J": InSI("energy_input", "energy", "work of the loads, per period of the response [J]"),
     "energy_viscous_J": InSI("energy_viscous", "energy", "loss in the dashpots, per period [J]"),
-    "energy_friction_J": InSI(
-        "energy_friction", "energy", "what friction takes from the mass, per period [J]"
-    ),
+    "energy_friction_J": InSI("energy_friction", "energy", "work absorbed by friction, per period [J]"),
     "energy_contact_J": InSI("energy_contact", "energy", "heat in the contact, per period [J]"),
     "period_s": InSI("period", "drive period", "period of the response [s]"),
 }
@@ -83,18 +81,18 @@ SI: dict[str, InSI] = {
 BELT_SPEED = "scene.belt_speed"
 _GIVEN_IN_SI = "scene.dimensional."
 BELT_SPEEDS = (BELT_SPEED, f"{_GIVEN_IN_SI}belt_speed_m_per_s")
-"""What runs along a curve, in either scale."""
+"""The abscissa of a curve: the belt speed, nondimensional or in m/s."""
 SCALED = "law.nondimensional."
-"""What the columns begin with that hold the parameters of a law given in SI units in the scale of the scene."""
+"""Prefix of the columns with the nondimensional parameters of a law that is given in SI units."""
 
 
 def belt_speed(names: Iterable[str]) -> str:
-    """The column of the belt speed as it was given."""
+    """The column of the belt speed, in the units in which the scene was given."""
     return BELT_SPEEDS[1] if BELT_SPEEDS[1] in names else BELT_SPEEDS[0]
 
 
 def given(names: Iterable[str]) -> list[str]:
-    """The columns of scene and law values as they were given: those in SI units instead of those made from them."""
+    """The columns of scene and law values in the units in which they were given."""
     columns = [name for name in names if name.startswith(("scene.", "law.")) and not name.startswith(SCALED)]
     in_si = [name for name in columns if name.startswith((_GIVEN_IN_SI, "law."))]
     return in_si if belt_speed(columns) != BELT_SPEED else columns
@@ -140,7 +138,7 @@ _NAMES = {
     "transverse_velocity_amplitude": ("transverse velocity amplitude", r"\hat v_2"),
     "energy_input": ("work of the loads", r"E_\mathrm{in}"),
     "energy_viscous": ("viscous loss", r"E_\mathrm{v}"),
-    "energy_friction": ("friction's take", r"E_\mathrm{f}"),
+    "energy_friction": ("work absorbed by friction", r"E_\mathrm{f}"),
     "energy_contact": ("heat in the contact", r"E_\mathrm{c}"),
     "scene.belt_speed": ("belt speed", "v_b"),
     "scene.damping_ratio": ("damping ratio", r"\beta_1"),
@@ -181,7 +179,7 @@ _IN_SI = {  # words, symbol, unit; inputs without the "scene.dimensional." befor
     "transverse_velocity_amplitude_m_per_s": ("transverse velocity amplitude", r"\hat V_2", "m/s"),
     "energy_input_J": ("work of the loads", r"E_\mathrm{in}", "J"),
     "energy_viscous_J": ("viscous loss", r"E_\mathrm{v}", "J"),
-    "energy_friction_J": ("friction's take", r"E_\mathrm{f}", "J"),
+    "energy_friction_J": ("work absorbed by friction", r"E_\mathrm{f}", "J"),
     "energy_contact_J": ("heat in the contact", r"E_\mathrm{c}", "J"),
     "mass_kg": ("mass", "M", "kg"),
     "stiffness_N_per_m": ("stiffness", "K_1", "N/m"),
@@ -204,24 +202,24 @@ _IN_SI = {  # words, symbol, unit; inputs without the "scene.dimensional." befor
 
 def symbol(name: str) -> str:
     """The symbol of an input or column in mathtext; for one without a symbol the last part of its path."""
-    return f"${_said(name)[1]}$" if _said(name) else name.rpartition(".")[2].replace("_", " ")
+    return f"${_entry(name)[1]}$" if _entry(name) else name.rpartition(".")[2].replace("_", " ")
 
 
 def word(name: str, longest: int = 80) -> str:
-    """The words of an input or column with its symbol and unit, on lines of so many letters.
+    """Name, symbol and unit of an input or column, wrapped to lines of at most ``longest`` letters.
 
     For one without a symbol: the last part of its path.
     """
-    if not (said := _said(name)):
+    if not (entry := _entry(name)):
         return symbol(name)
-    unit = f" [{said[2]}]" if len(said) > 2 else ""
-    return f"{textwrap.fill(said[0], longest)} {symbol(name)}{unit}"
+    unit = f" [{entry[2]}]" if len(entry) > 2 else ""
+    return f"{textwrap.fill(entry[0], longest)} {symbol(name)}{unit}"
 
 
-def _said(name: str) -> tuple[str, ...]:
+def _entry(name: str) -> tuple[str, ...]:
     if name.startswith(_LAWS_IN_SI):
         parameter = name.removeprefix(_LAWS_IN_SI)
-        return _LAWS[parameter] if parameter in _LAWS else _said(f"law.{parameter}")
-    plain = {f"law.{parameter}": said[:2] for parameter, said in _LAWS.items()}
+        return _LAWS[parameter] if parameter in _LAWS else _entry(f"law.{parameter}")
+    plain = {f"law.{parameter}": entry[:2] for parameter, entry in _LAWS.items()}
     known: dict[str, tuple[str, ...]] = {**_IN_SI, **_NAMES, **plain}
     return known.get(name.removeprefix("scene.dimensional."), ())

@@ -1,4 +1,4 @@
-"""Whose fault an error is: the author's own file, line and source line, where code from outside is to blame."""
+"""Errors in laws and methods of other packages: the file, the line and the source line that caused them."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from types import CodeType
 from frictionlab.laws.base import FrictionLaw
 
 LAW_FILE = "frictionlab_law_"
-"""How the module of a law from a file is called, before the file's name."""
-_HOUSE = __file__.removesuffix("faults.py")
+"""Beginning of the module name of a law from a file; the name of the file follows."""
+_PACKAGE = __file__.removesuffix("faults.py")
 MARK = "broken plugin: "
-"""How the reason of a point begins that a law from outside has spoilt."""
+"""Beginning of the reason of a point that failed in a law of another package."""
 
 
 class BrokenPlugin(Exception):
-    """A law or method from outside that cannot be used; the message names it and says what to do."""
+    """A law or method of another package that cannot be used; the message names it and the remedy."""
 
 
 class CannotCompile(Exception):
-    """A law that runs interpreted but not compiled; the message names the law, the line and the remedy."""
+    """A law that runs as Python but that numba cannot compile; the message names the law, the line and the remedy."""
 
 
 def from_outside(law: type) -> bool:
-    """Whether a class is no part of frictionlab."""
+    """Whether a class is defined outside the package frictionlab."""
     return law.__module__.partition(".")[0] != "frictionlab"
 
 
 def files_of(law: type) -> set[str]:
-    """The files in which a law from outside, and what it is derived from, are written."""
+    """The source files of a law of another package and of its base classes outside frictionlab."""
     modules = {
         kind.__module__ for kind in law.__mro__ if issubclass(kind, FrictionLaw) and from_outside(kind)
     }
@@ -40,53 +40,54 @@ def files_of(law: type) -> set[str]:
     return {file for file in files if file is not None}
 
 
-def in_words(problem: BaseException, files: Collection[str]) -> str:
-    """An error by its kind and message, and the innermost line of these files that it went through."""
+def describe_error(problem: BaseException, files: Collection[str]) -> str:
+    """Type and message of an error, and the innermost line of these files in its traceback."""
     if isinstance(problem, SyntaxError) and problem.filename:
-        return f"SyntaxError: {problem.msg}{shown(problem.filename, problem.lineno or 1)}"
+        return f"SyntaxError: {problem.msg}{source_line(problem.filename, problem.lineno or 1)}"
     text = f"{type(problem).__name__}: {problem}" if str(problem) else type(problem).__name__
-    return text + (place_in(problem, files) or "")
+    return text + (innermost_line(problem, files) or "")
 
 
-def place_in(problem: BaseException, files: Collection[str]) -> str | None:
-    """The innermost line of these files that an error went through, as ``shown``; None for none."""
+def innermost_line(problem: BaseException, files: Collection[str]) -> str | None:
+    """The innermost line of these files in the traceback of an error, as ``source_line``; None for none."""
     frames = [frame for frame in traceback.extract_tb(problem.__traceback__) if frame.filename in files]
-    return shown(frames[-1].filename, frames[-1].lineno or 1) if frames else None
+    return source_line(frames[-1].filename, frames[-1].lineno or 1) if frames else None
 
 
-def shown(file: str, line: int) -> str:
-    """A line of a file, below what is said of it: where it is, and what it says."""
+def source_line(file: str, line: int) -> str:
+    """File, line number and text of a source line, indented on a line of its own below a message."""
     return f"\n  {file}:{line}: {linecache.getline(file, line).strip()}"
 
 
-def first_line(code: CodeType) -> str:
-    """Where a function begins, as ``shown``; at its ``def`` where decorators stand before it."""
+def definition_line(code: CodeType) -> str:
+    """The line of a function's ``def``, below its decorators, as ``source_line``."""
     lines = range(code.co_firstlineno, code.co_firstlineno + 20)
     found = (line for line in lines if "def " in linecache.getline(code.co_filename, line))
-    return shown(code.co_filename, next(found, code.co_firstlineno))
+    return source_line(code.co_filename, next(found, code.co_firstlineno))
 
 
-def cannot_compile(law: type[FrictionLaw], said: str) -> CannotCompile:
-    """What numba said of a law, in a line; and the author's own line that it said it of."""
-    spots = [spot for spot in _SPOT.finditer(said) if _own(spot["file"], law)]
-    where = shown(_own(spots[0]["file"], law), int(spots[0]["line"] or spots[0]["number"])) if spots else ""
-    why = _why(said[: spots[0].start()], law) if spots else said.strip().partition("\n")[0]
+def cannot_compile(law: type[FrictionLaw], message: str) -> CannotCompile:
+    """The error for a law that numba rejects: numba's reason in one line and the line of the law it refers to."""
+    spots = [spot for spot in _LOCATION.finditer(message) if _own_file(spot["file"], law)]
+    spot = spots[0] if spots else None
+    where = source_line(_own_file(spot["file"], law), int(spot["line"] or spot["number"])) if spot else ""
+    why = _numba_reason(message[: spot.start()], law) if spot else message.strip().partition("\n")[0]
     return CannotCompile(
         f"law {law.__name__} ({home_of_law(law)}) cannot be compiled by numba: {why}{where}\n{_REMEDY}"
     )
 
 
-_SPOT = re.compile(
+_LOCATION = re.compile(
     r'(?:File "|at |from )(?P<file>[^"\n()]+?\.py)(?:", line (?P<line>\d+)| \((?P<number>\d+)\))'
 )
 _REMEDY = (
-    "Use only float and complex arithmetic and the math module in its methods, and plain functions of such; "
-    "what a method needs beside its arguments is a parameter or a property of the law."
+    "In its methods use only float and complex arithmetic, the math module and plain functions of these; make any "
+    "number that a method needs beside its arguments a parameter or a property of the law."
 )
 
 
-def _why(before: str, law: type[FrictionLaw]) -> str:
-    """The sentence that numba says before it names a line; in other words where those would not help."""
+def _numba_reason(before: str, law: type[FrictionLaw]) -> str:
+    """The sentence of numba's message before it names a line; reworded where it would not help the author."""
     lines = [line.strip() for line in before.splitlines() if line.strip()]
     said = re.sub(r"(, defined|Raised)$", "", lines[-1] if lines else "").strip()
     unknown = re.match(r"Unknown attribute '(\w+)' of type Numbers", said)
@@ -94,33 +95,33 @@ def _why(before: str, law: type[FrictionLaw]) -> str:
         return f"a method cannot call the law's own method '{unknown[1]}': make that a function of the module"
     if unknown:
         return f"the law has no parameter or property '{unknown[1]}' that is a number"
-    return "it cannot tell what this line means" if said.startswith(("During:", "^")) else said
+    return "numba does not support this line" if said.startswith(("During:", "^")) else said
 
 
 def home_of_law(law: type[FrictionLaw]) -> str:
-    """The module of a law, as its author knows it: one that a study brings along has but a file."""
+    """The module of a law; its file where a study names the law by file."""
     return law.__module__ if not law.__module__.startswith(LAW_FILE) else ", ".join(sorted(files_of(law)))
 
 
-def _own(file: str, law: type[FrictionLaw]) -> str:
-    """The law's file that numba means, which tells paths from where the command runs; nothing for another's."""
+def _own_file(file: str, law: type[FrictionLaw]) -> str:
+    """The file of the law with this name, '' if none: numba gives paths relative to the current directory."""
     name = re.split(r"[\\/]", file)[-1]
     return next((own for own in files_of(law) if re.split(r"[\\/]", own)[-1] == name), "")
 
 
-def blamed(problem: BaseException) -> str | None:
-    """The law from outside whose lines an error went through last, and what went wrong there; None for none."""
-    for law in _laws(FrictionLaw):  # type: ignore[type-abstract]  # its concrete ones are met
+def failing_law(problem: BaseException) -> str | None:
+    """A sentence naming the law of another package in whose lines an error arose; None if in none of them."""
+    for law in _laws(FrictionLaw):  # type: ignore[type-abstract]  # only subclasses are read
         files = files_of(law)
-        if place_in(problem, files):
-            return f"a law of {', '.join(sorted(files))} fails: {in_words(problem, files)}\nmend that line"
+        if innermost_line(problem, files):
+            return f"a law of {', '.join(sorted(files))} fails: {describe_error(problem, files)}\ncorrect that line"
     return None
 
 
 def outside_files(problem: BaseException) -> set[str]:
-    """The files an error went through that are neither frictionlab's nor Python's machinery of imports."""
+    """The files in the traceback of an error, without those of frictionlab and of Python's import system."""
     names = {frame.filename for frame in traceback.extract_tb(problem.__traceback__)}
-    return {name for name in names if not name.startswith(("<", _HOUSE)) and "importlib" not in name}
+    return {name for name in names if not name.startswith(("<", _PACKAGE)) and "importlib" not in name}
 
 
 def _laws(kind: type[FrictionLaw]) -> Iterator[type[FrictionLaw]]:

@@ -1,4 +1,4 @@
-"""The numbers a law, a scene or a study may hold: finite, real and not a string or a truth value in disguise."""
+"""The numbers that laws, scenes and studies hold: finite and real; strings and booleans are refused."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 
 def _a_number(value: object) -> object:
-    """Let real numbers through (numpy's included); refuse what merely converts to one."""
+    """Accept real numbers, those of numpy included; refuse values that could only be converted to one."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError(f"must be a number, not {value!r}")
     return float(value)
@@ -25,9 +25,9 @@ Positive = Annotated[float, BeforeValidator(_a_number), Field(allow_inf_nan=Fals
 
 @dataclass(frozen=True)
 class Dimension:
-    """What a number measures, as powers of force, length and time; written beside its limits in an annotation.
+    """Physical dimension of a number as powers of force, length and time; written beside its limits in an annotation.
 
-    It says how the number is scaled where a scene is given in SI units. A number without one has no dimension.
+    It gives the unit of the number where a scene is given in SI units. A number without it is dimensionless.
     """
 
     force: int = 0

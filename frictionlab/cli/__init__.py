@@ -65,7 +65,7 @@ def _report(problem: BaseException) -> int:
 
 def _diagnose(problem: BaseException) -> tuple[int, str]:
     """The exit code and the message of an error: the study's, the disk's, a plugin's or our own."""
-    from frictionlab.faults import BrokenPlugin, blamed
+    from frictionlab.faults import BrokenPlugin, failing_law
     from frictionlab.runner.errors import FolderError, SaveError
     from frictionlab.study import StudyError
 
@@ -79,7 +79,7 @@ def _diagnose(problem: BaseException) -> tuple[int, str]:
         return BROKEN_PLUGIN, str(problem)
     if isinstance(problem, OSError) and problem.errno in (errno.ENOSPC, errno.EDQUOT):
         return FAILED, f"cannot write the output: {problem.strerror}"
-    if law := blamed(problem):
+    if law := failing_law(problem):
         return BROKEN_PLUGIN, law
     text = "".join(traceback.format_exception(problem))
     return BUG, f"{text}\nThis is a bug of frictionlab; please report it with the lines above and the study."

@@ -210,11 +210,19 @@ def _pieces_of_code(value: Any, seen: set[int]) -> Iterator[str]:
 
 def _pieces_of_bytecode(code: CodeType) -> Iterator[str]:
     yield repr((code.co_code, code.co_names, code.co_varnames))
-    for constant in code.co_consts:
+    for constant in _constants(code):
         if isinstance(constant, CodeType):
             yield from _pieces_of_bytecode(constant)
         else:
             yield repr(constant)
+
+
+def _constants(code: CodeType) -> tuple[Any, ...]:
+    """The constants of a function without its docstring, which changes nothing that it computes."""
+    has_docstring = 0x4000000  # the flag of Python 3.13; before, None stands for a docstring that is missing
+    named = code.co_flags & has_docstring if sys.version_info >= (3, 13) else not code.co_name.startswith("<")
+    documented = bool(named) and isinstance(code.co_consts[0], str)
+    return code.co_consts[1:] if documented else code.co_consts
 
 
 def _globals_used(function: FunctionType) -> Iterator[Any]:

@@ -1,4 +1,4 @@
-"""What every friction law is: a frozen record of parameters with its physics as ordinary methods.
+"""The base classes of friction laws: a frozen record of parameters whose methods state the physics.
 
 The same methods run interpreted (with the record itself as ``self``) and compiled (with a named tuple of its
 numbers as ``self``), and on the line (``float`` slip velocity) and in the plane (``complex``: x1 + i x2).
@@ -28,15 +28,15 @@ __all__ = [
 
 
 Number = float | int | tuple[float, ...]
-"""What a law may know its parameters by: a number, a whole number to count with, numbers to choose from by index."""
+"""A parameter as compiled code receives it: a number, a whole number, or a tuple of numbers to index."""
 
 
 class FrictionLaw(Record, ABC):
     """A law of dry friction: the friction coefficient, per unit normal load, that resists slip.
 
-    Its docstring names its sources as in "Source: Dahl (1968)". ``bibtex`` holds their BibTeX entries as one string,
-    but for those of frictionlab's own bibliography; without an entry, what follows "Source:" is cited as it stands.
-    ``expected_failures`` names checks of the conformance battery that the law fails, and why it must.
+    The docstring of a law names its sources as in "Source: Dahl (1968)". ``bibtex`` holds their BibTeX entries as one
+    string, except those already in frictionlab's bibliography; a source without an entry is cited as written.
+    ``expected_failures`` maps each check of the conformance battery that the law must fail to the reason.
     """
 
     bibtex: ClassVar[str] = ""
@@ -65,8 +65,7 @@ class FrictionLaw(Record, ABC):
     def steepest_fall(self) -> float:
         """Largest rate at which sliding friction falls as speed grows [1/scene velocity], rest included.
 
-        Slower than the damping can make up for, no law without memory has more than one steady state. Infinite where
-        it may jump.
+        If damping outweighs it, a law without memory has exactly one steady state. Infinite where friction may jump.
         """
         return 0.0 if self.constant_sliding_friction() else math.inf
 
@@ -78,14 +77,14 @@ class FrictionLaw(Record, ABC):
         return False
 
     def structure(self) -> tuple[str, ...]:
-        """What about the parameters decides which kernels are compiled, in words."""
+        """The properties of the parameters that select which kernels are compiled, as words."""
         return ()
 
     def numbers(self) -> dict[str, Number]:
-        """The parameters as the kernels see them: every number, whole number, tuple of numbers, and every property.
+        """The parameters that kernels receive: every number, whole number, tuple of numbers, and every property.
 
-        A number that may be left out (``None``) is for a property to read: the kernels of a law are then the same
-        whether it is given or not. To kernels a tuple is an array: ask for its ``len`` and index it.
+        Optional numbers (default ``None``) are left out: only properties read them, so the kernels of a law do not
+        depend on which are given. Kernels receive a tuple as an array: use ``len`` and indices.
         """
         required = {name for name, field in type(self).model_fields.items() if field.default is not None}
         fields = {name: value for name, value in self if name in required and _is_number(value)}
@@ -93,9 +92,9 @@ class FrictionLaw(Record, ABC):
 
 
 class SlidingLaw(FrictionLaw, ABC):
-    """A law without memory: friction is set by the slip velocity, and is set-valued at rest.
+    """A law without memory: the slip velocity alone determines friction, which is set-valued at rest.
 
-    At rest any vector up to the static coefficient is allowed; resolving that is the method's business.
+    At rest friction is any vector up to the static coefficient; the method determines which one.
     """
 
     def static_friction(self) -> float:
@@ -103,7 +102,7 @@ class SlidingLaw(FrictionLaw, ABC):
         return self.sliding_friction(0.0)
 
     def steepest_fall(self) -> float:
-        """None where friction is monotone."""
+        """0 where friction is monotone."""
         return 0.0 if self.monotone() else math.inf
 
 
@@ -114,13 +113,13 @@ def _is_number(value: object) -> bool:
 
 
 def _number(value: Any) -> Number:
-    """A property as kernels see it; what is neither a whole number nor several numbers is ``float``."""
+    """A property as kernels receive it: ``int`` and tuples keep their type, everything else becomes ``float``."""
     if isinstance(value, tuple):
         return tuple(float(each) for each in value)
     return value if isinstance(value, int) and not isinstance(value, bool) else float(value)
 
 
 def _properties(law: type[FrictionLaw]) -> list[str]:
-    """The names of what a law derives from its parameters, its own and those of its bases."""
+    """The names of the properties of a law and of its base classes."""
     own = [name for kind in law.__mro__ if issubclass(kind, FrictionLaw) for name in vars(kind)]
     return [name for name in dict.fromkeys(own) if isinstance(getattr(law, name), property)]

@@ -23,7 +23,7 @@ ContactDamping = Annotated[NonNegative, Dimension(force=1, length=-1, time=1)]
 
 
 class CompliantLaw(BristleLaw, ABC):
-    """A bristle law of a known stiffness, given per unit normal load, by its presliding length or as the contact's.
+    """A bristle law whose stiffness is given per unit normal load, by its presliding length or as contact stiffness.
 
     stiffness [1/scene length], > 0: friction coefficient per deflection, or instead
     presliding_length [scene length], > 0: friction coefficient in slow sliding over stiffness, or instead
@@ -47,18 +47,18 @@ class CompliantLaw(BristleLaw, ABC):
         return self
 
     def saturated_friction(self) -> float:
-        """The friction coefficient [-] that the presliding length is told by: that of vanishing slip speed."""
+        """The friction coefficient [-] that defines the presliding length: at vanishing slip speed."""
         return self.sliding_friction(0.0)
 
     @property
     def bristle_stiffness(self) -> float:
-        """Friction coefficient per deflection [1/scene length], however it was given."""
+        """Friction coefficient per deflection [1/scene length], from whichever of the three parameters is given."""
         if self.stiffness is not None:
             return self.stiffness
         if self.presliding_length is not None:
             return self.saturated_friction() / self.presliding_length
         raise ValueError(
-            "contact_stiffness: is per normal load only under a load; call under_load(normal_load)"
+            "contact_stiffness: the stiffness per unit load needs the normal load; call under_load(normal_load)"
         )
 
     def presliding(self) -> float:
@@ -66,7 +66,7 @@ class CompliantLaw(BristleLaw, ABC):
         return self.saturated_friction() / self.bristle_stiffness
 
     def under_load(self, normal_load: float) -> Self:
-        """The same law per unit of this normal load [scene force], without what is given as the contact's."""
+        """The same law per unit of this normal load [scene force]: contact parameters are divided by the load."""
         if self.contact_stiffness is None:
             return self
         stiffness = self.contact_stiffness / normal_load
@@ -91,15 +91,15 @@ class DampedLaw(CompliantLaw, ABC):
 
     @property
     def bristle_damping(self) -> float:
-        """Friction coefficient per rate of deflection [1/scene velocity], however it was given."""
+        """Friction coefficient per rate of deflection [1/scene velocity], from either parameter."""
         if self.contact_damping is not None:
             raise ValueError(
-                "contact_damping: is per normal load only under a load; call under_load(normal_load)"
+                "contact_damping: the damping per unit load needs the normal load; call under_load(normal_load)"
             )
         return self.damping or 0.0
 
     def under_load(self, normal_load: float) -> Self:
-        """The same law per unit of this normal load [scene force], without what is given as the contact's."""
+        """The same law per unit of this normal load [scene force]: contact parameters are divided by the load."""
         law = super().under_load(normal_load)
         if law.contact_damping is None:
             return law

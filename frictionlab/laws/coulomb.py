@@ -10,7 +10,7 @@ from frictionlab.laws.base import Positive, SlidingLaw
 
 
 class Coulomb(SlidingLaw):
-    """Amontons-Coulomb friction: a constant coefficient against the slip, any vector up to another at rest.
+    """Amontons-Coulomb friction: constant coefficient in sliding; at rest, any force up to the static limit.
 
     mu [-], > 0: friction coefficient in slip.
     mu_static [-], >= mu: friction coefficient at rest; mu where left out.
@@ -22,7 +22,7 @@ class Coulomb(SlidingLaw):
     mu_static: Positive | None = None
 
     @model_validator(mode="after")
-    def _rest_holds_at_least_as_much(self) -> Coulomb:
+    def _static_not_below_kinetic(self) -> Coulomb:
         if self.mu_static is not None and self.mu_static < self.mu:
             raise ValueError(f"mu_static: must be >= mu = {self.mu:g}, got {self.mu_static:g}")
         return self
@@ -45,9 +45,9 @@ class Coulomb(SlidingLaw):
         return True
 
     def monotone(self) -> bool:
-        """Where rest holds no more than slip: Coulomb friction is then the subdifferential of mu |v|."""
+        """Where mu_static = mu: Coulomb friction is then the subdifferential of mu |v|."""
         return self.at_rest == self.mu
 
     def steepest_fall(self) -> float:
-        """None, or a jump where rest holds more than slip."""
+        """0, or infinite where mu_static > mu: friction then jumps at rest."""
         return 0.0 if self.monotone() else math.inf

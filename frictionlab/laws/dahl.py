@@ -1,4 +1,4 @@
-"""Dahl friction: a spring that yields as friction nears its limit."""
+"""Dahl friction: a spring whose stiffness falls as friction approaches its limit."""
 
 from __future__ import annotations
 
@@ -7,19 +7,18 @@ from typing import Any
 
 from frictionlab.laws.base import NonNegative, Positive
 from frictionlab.laws.compliant import CompliantLaw
-from frictionlab.laws.decay import faded
+from frictionlab.laws.decay import exp_decay
 
 
 class Dahl(CompliantLaw):
-    """Dahl friction: friction grows with slip as fast as it is away from its limit, dT/dx = stiffness*sgn(u)|u|^i.
+    """Dahl friction approaches its limit at a rate set by the remaining distance, dT/dx = stiffness*sgn(u)|u|^i.
 
     mu [-], > 0: friction coefficient in steady sliding, its limit; u = 1 - (T/mu) sgn(v).
     stiffness [1/scene length], presliding_length [scene length] or contact_stiffness [K_1], > 0: exactly one.
-    exponent [-], >= 0: i; 1 where left out, 0 an ideal spring that slips (``jenkins``). Only 1 has a vector form.
-
-    The power keeps its sign, so that friction beyond its limit falls back to it for every exponent.
+    exponent [-], >= 0: i; 1 where left out, 0 an ideal spring in series with a slider (``jenkins``). Only 1 has a
+    vector form. The sign function makes friction beyond its limit return to it for every exponent.
     Sources: Dahl (1968); Dahl (1976); in the plane z' = v - |v| z stiffness/mu, as Velenis, Tsiotras & Canudas de Wit
-    (2002) carry LuGre friction there.
+    (2002) write LuGre friction.
     """
 
     mu: Positive
@@ -42,7 +41,7 @@ class Dahl(CompliantLaw):
         return v * math.copysign(math.fabs(left) ** self.exponent, left)
 
     def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """The spring's."""
+        """stiffness z."""
         return self.bristle_stiffness * z
 
     def constant_sliding_friction(self) -> bool:
@@ -62,7 +61,7 @@ class Dahl(CompliantLaw):
         return self.saturation
 
     def elastic_deflection(self) -> float:
-        """That of steady sliding for exponent 0, else none."""
+        """That of steady sliding for exponent 0, else 0."""
         return self.saturation if self.exponent == 0.0 else 0.0
 
     def largest_rate(self, speed: float) -> float:
@@ -76,7 +75,7 @@ class Dahl(CompliantLaw):
         return True
 
     def passive(self) -> bool:
-        """Always: what the spring does not store is lost."""
+        """Always: work that the spring does not store is dissipated."""
         return True
 
     def exact_path(self) -> bool:
@@ -90,12 +89,12 @@ class Dahl(CompliantLaw):
             return z
         end = (self.saturation / length) * path
         if self.exponent == 1.0:
-            return end + (z - end) * faded(length / self.saturation)
+            return end + (z - end) * exp_decay(length / self.saturation)
         left, steeper = 1.0 - z.real / end.real, self.exponent - 1.0
         if left == 0.0:
             return end
         gone = steeper * (length / self.saturation) * math.fabs(left) ** steeper
-        if gone <= -1.0:  # of an exponent below one: the limit was met on the way
+        if gone <= -1.0:  # for an exponent below one: the limit was reached on the way
             return end
         return end - end * (left * math.exp(-math.log1p(gone) / steeper))  # log1p: for exponents near 1
 

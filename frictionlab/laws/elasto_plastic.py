@@ -1,4 +1,4 @@
-"""Elasto-plastic friction (Dupont): bristles that only deflect until they begin to break away."""
+"""Elasto-plastic friction (Dupont): bristles that are purely elastic below their breakaway deflection."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Share = Annotated[Positive, Field(lt=1)]
 
 
 class ElastoPlastic(StribeckBristle):
-    """Elasto-plastic friction: LuGre bristles that follow the slip until they begin to break away, and unloading.
+    """Elasto-plastic friction: LuGre bristles that are purely elastic below breakaway and on unloading.
 
     z' = v - alpha |v| z stiffness/g(|v|), friction = stiffness z + damping z' + viscosity v; alpha = 0 where
     z.v <= 0 or |z| <= z_ba, 1 where |z| >= z_max = g/stiffness, in between (1 + sin(pi (|z| - (z_max + z_ba)/2)
@@ -39,10 +39,10 @@ class ElastoPlastic(StribeckBristle):
         speed = abs(v)
         curve = stribeck_curve(self, speed) / self.bristle_stiffness
         begins = self.breakaway_ratio * self.mu_kinetic / self.bristle_stiffness
-        return v - (broken_away(abs(z), begins, curve) * speed / curve) * z
+        return v - (breakaway_share(abs(z), begins, curve) * speed / curve) * z
 
     def largest_rate(self, speed: float) -> float:
-        """speed stiffness/g times the largest d(alpha |z|)/d|z|, which is steepest half way through breaking away.
+        """speed stiffness/g times the largest d(alpha |z|)/d|z|, which is steepest halfway between z_ba and z_max.
 
         With t = pi (|z| - middle)/(z_max - z_ba): (1 + sin t + t cos t)/2 + pi middle/(2 (z_max - z_ba)) cos t, its
         first part never above 1.2.
@@ -61,8 +61,8 @@ class ElastoPlastic(StribeckBristle):
         return True
 
 
-def broken_away(size: float, begins: float, ends: float) -> float:
-    """alpha: the share of slip that bristles deflected by ``size`` no longer follow, from 0 to 1."""
+def breakaway_share(size: float, begins: float, ends: float) -> float:
+    """alpha: the share of slip, 0 to 1, that bristles of deflection ``size`` do not follow."""
     if size <= begins:
         return 0.0
     if size >= ends:

@@ -7,16 +7,16 @@ from typing import Any
 
 from frictionlab.laws.base import Positive
 from frictionlab.laws.compliant import CompliantLaw
-from frictionlab.laws.decay import faded
+from frictionlab.laws.decay import exp_decay
 
 
 class Jenkins(CompliantLaw):
-    """Jenkins friction: a spring that carries all slip up to the force mu, and a Coulomb slider that takes the rest.
+    """Jenkins friction: a spring that deflects with the slip up to the force mu, in series with a Coulomb slider.
 
     mu [-], > 0: the slider's friction coefficient.
     stiffness [1/scene length], presliding_length [scene length] (mu/stiffness) or contact_stiffness [K_1], > 0.
 
-    In the plane the slider is dragged as by a rope: it moves along the spring while that holds mu (a tractrix).
+    In the plane the slider moves along the spring while the spring force is mu: its path is a tractrix.
     Sources: Jenkins (1962); Griffin (1980); the spring is the contact stiffness of Menq, Bielak & Griffin (1986).
     """
 
@@ -32,14 +32,14 @@ class Jenkins(CompliantLaw):
         return self.mu
 
     def rate(self, v: Any, z: Any) -> Any:
-        """v, less its part along the spring where that is stretched to its reach and would be stretched further."""
+        """v; where slip would stretch the spring beyond yield, v without its component along the spring."""
         along = (z * v.conjugate()).real
         if along <= 0.0 or abs(z) < self.reach:
             return v
         return v - (along / (z * z.conjugate()).real) * z
 
     def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """The spring's."""
+        """stiffness z."""
         return self.bristle_stiffness * z
 
     def constant_sliding_friction(self) -> bool:
@@ -47,11 +47,11 @@ class Jenkins(CompliantLaw):
         return True
 
     def largest_deflection(self) -> float:
-        """The slider's reach."""
+        """The yield deflection."""
         return self.reach
 
     def largest_rate(self, speed: float) -> float:
-        """In the plane, where the spring turns towards the slip: speed/reach."""
+        """In the plane, where the spring turns towards the slip: speed/yield deflection."""
         return speed / self.reach
 
     def rate_independent(self) -> bool:
@@ -59,7 +59,7 @@ class Jenkins(CompliantLaw):
         return True
 
     def passive(self) -> bool:
-        """Always: what the spring does not store, the slider takes."""
+        """Always: work that the spring does not store is dissipated by the slider."""
         return True
 
     def exact_path(self) -> bool:
@@ -67,7 +67,7 @@ class Jenkins(CompliantLaw):
         return True
 
     def deflected(self, z: Any, path: Any) -> Any:
-        """Elastic up to the reach, then the tractrix: tan(angle/2) falls as exp(-path/reach)."""
+        """Elastic up to yield, then the tractrix: tan(angle/2) falls as exp(-path/yield deflection)."""
         length = abs(path)
         if length == 0.0:
             return z
@@ -79,7 +79,7 @@ class Jenkins(CompliantLaw):
             return z + path
         start = z + max(free, 0.0) * direction
         turn = start * direction.conjugate() / self.reach  # exp(i angle) from the slip to the spring
-        left = faded((length - max(free, 0.0)) / self.reach)
+        left = exp_decay((length - max(free, 0.0)) / self.reach)
         # with c = cos(angle): tan^2(angle/2) = (1 - c)/(1 + c), to be multiplied by left^2
         below, above = (1.0 - turn.real) * left * left, 1.0 + turn.real
         size = below + above
@@ -89,11 +89,11 @@ class Jenkins(CompliantLaw):
         )
 
     def saturation_path(self, z: float, side: float) -> float:
-        """Up to the reach."""
+        """The path to yield."""
         return self.reach - side * z
 
     def elastic_deflection(self) -> float:
-        """The reach."""
+        """The yield deflection."""
         return self.reach
 
     def elastic_unloading(self) -> bool:
@@ -101,5 +101,5 @@ class Jenkins(CompliantLaw):
         return True
 
     def yield_deflection(self) -> float:
-        """The reach."""
+        """The yield deflection."""
         return self.reach

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from frictionlab.laws.decay import faded
+from frictionlab.laws.decay import exp_decay
 from frictionlab.laws.stribeck_bristle import StribeckBristle, stribeck_curve
 
 
 class LuGre(StribeckBristle):
-    """LuGre friction: bristles that deflect like Dahl's towards a Stribeck curve g, damped, plus viscosity.
+    """LuGre friction: damped Dahl bristles whose steady friction is a Stribeck curve g, plus viscosity.
 
     z' = v - |v| z stiffness/g(|v|), friction = stiffness z + damping z' + viscosity v,
     g = mu_kinetic + (mu_static - mu_kinetic) exp(-(|v|/stribeck_speed)^stribeck_exponent).
@@ -41,4 +41,4 @@ class LuGre(StribeckBristle):
             return z
         saturation = self.mu_kinetic / self.bristle_stiffness
         end = (saturation / length) * path
-        return end + (z - end) * faded(length / saturation)
+        return end + (z - end) * exp_decay(length / saturation)

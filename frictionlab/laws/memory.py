@@ -1,7 +1,7 @@
-"""Laws that remember more than one bristle deflection: several deflections, or scalars such as a contact's age.
+"""Laws with memory: one bristle deflection, several deflections, or scalars such as the age of a contact.
 
-A law names how many numbers it remembers and gives each of them its rate; methods keep them in an array. Written
-once, as every law: interpreted and compiled, on the line and in the plane.
+A law states how many numbers it remembers and the rate of each; methods keep them in an array. One source serves
+interpreted and compiled runs, on the line and in the plane.
 """
 
 from __future__ import annotations
@@ -16,12 +16,11 @@ VECTORIAL, ROTATED, PER_AXIS = 0.0, 1.0, 2.0
 
 
 class BristleLaw(FrictionLaw, ABC):
-    """A law whose memory is a bristle deflection z [scene length], moved by slip and felt as friction.
+    """A law whose memory is one bristle deflection z [scene length]: slip changes it and friction depends on it.
 
-    planar: how the law of one direction is carried into the plane. ``vectorial``: |v| and z become the vectors'
-    (isotropic; Velenis & Tsiotras, 2002); ``rotated``: one deflection along the slip direction, whatever it was
-    (isotropic, without memory of direction); ``per-axis``: each axis for itself (not isotropic: its yield set is a
-    square).
+    planar: how the law of one direction extends to the plane. ``vectorial``: v and z are vectors (isotropic; Velenis
+    & Tsiotras, 2002); ``rotated``: one scalar deflection along the current slip direction (isotropic, without memory
+    of direction); ``per-axis``: one law per axis (not isotropic: its yield set is a square).
     """
 
     planar: Literal["vectorial", "rotated", "per-axis"] = "vectorial"
@@ -36,11 +35,11 @@ class BristleLaw(FrictionLaw, ABC):
 
     @property
     def form(self) -> float:
-        """``planar`` as kernels know it."""
+        """``planar`` as a number for kernels."""
         return {"vectorial": VECTORIAL, "rotated": ROTATED, "per-axis": PER_AXIS}[self.planar]
 
     def structure(self) -> tuple[str, ...]:
-        """Whether the path is exact."""
+        """Selects kernels that use ``deflected`` where the path is exact."""
         return ("exact path",) if self.exact_path() else ()
 
     def no_vector_form(self) -> str:
@@ -52,33 +51,33 @@ class BristleLaw(FrictionLaw, ABC):
         return math.inf
 
     def presliding(self) -> float:
-        """The presliding length [scene length]: deflection that steady sliding in quick slip tends to."""
+        """The presliding length [scene length]: the deflection in steady sliding at high speed."""
         return self.largest_deflection()
 
     def elastic_deflection(self) -> float:
-        """Deflection [scene length] up to which z moves with the slip whatever its direction: nothing drifts."""
+        """Deflection [scene length] up to which z follows the slip in every direction: the contact is elastic."""
         return 0.0
 
     def largest_rate(self, speed: float) -> float:
-        """Largest modulus of d(rate)/dz [1/scene time] at this slip speed: what explicit steps are limited by."""
+        """Largest modulus of d(rate)/dz [1/scene time] at this slip speed; it limits explicit steps."""
         return math.inf
 
     def rate_independent(self) -> bool:
-        """Whether friction depends on the path of the slip alone, not on how fast it is travelled."""
+        """Whether friction depends on the path of the slip alone, not on its speed."""
         return False
 
     def passive(self) -> bool:
-        """Whether the work of friction from any slip history is at least minus what the bristle has stored."""
+        """Whether the work of friction over any slip history is at least minus the ``stored`` work."""
         return False
 
     def stored(self, z: Any) -> float:
-        """The work per unit normal load [scene length] that the bristle can give back: that of a linear spring."""
+        """The recoverable work per unit normal load [scene length] of the bristle: that of a linear spring."""
         return 0.5 * float((z * self.friction(0.0 * z, z, 0.0 * z).conjugate()).real)
 
     def damps_across(self, speed: float) -> bool:
-        """Whether friction never feeds a motion across the slip, at slip speeds up to this.
+        """Whether friction never does positive work on a motion across the slip, at slip speeds up to this.
 
-        Spring and bristle across then only lose energy, and with no load across the belt x2 dies out.
+        Spring and bristle across then only lose energy, and without a load across the belt x2 decays.
         """
         return self.planar != "rotated"
 
@@ -91,18 +90,18 @@ class BristleLaw(FrictionLaw, ABC):
         return z
 
     def saturation_path(self, z: float, side: float) -> float:
-        """Length of one-directional slip (side: 1 or -1) after which friction stays what it is, exactly.
+        """Length of slip in one direction (side: 1 or -1) after which friction is exactly constant.
 
-        Infinite where that is only approached: there ``deflected`` is smooth along the whole path.
+        Infinite where the limit is only approached: ``deflected`` is then smooth along the whole path.
         """
         return math.inf
 
     def elastic_unloading(self) -> bool:
-        """Whether z moves with the slip wherever z.v <= 0: friction may have a corner where that begins or ends."""
+        """Whether z follows the slip wherever z.v <= 0: friction may have a corner where that begins or ends."""
         return False
 
     def yield_deflection(self) -> float:
-        """Deflection [scene length] below which z moves with the slip, and which it never exceeds; infinite for none.
+        """Deflection [scene length] below which z follows the slip and which it never exceeds; infinite for none.
 
         At it and with z.v > 0, ``rate`` moves z along the circle of that radius.
         """
@@ -116,7 +115,7 @@ def on_the_line(law: Any, v: float, z: float) -> Any:
 
 
 def in_the_plane(law: Any, v: complex, z: complex) -> Any:
-    """Rate of deflection and friction coefficient of a bristle law in the plane, in the form it names."""
+    """Rate of deflection and friction coefficient of a bristle law in the plane, in its ``planar`` form."""
     if law.form == VECTORIAL:
         dz = law.rate(v, z)
         return dz, law.friction(v, z, dz)
@@ -137,8 +136,8 @@ FEW = 16
 class MemoryLaw(FrictionLaw, ABC):
     """A law whose memory is a fixed number of numbers, all of one kind.
 
-    memory_kind: ``deflections`` [scene length] turn round and turn with the slip: ``float`` on the line and
-    ``complex`` (x1 + i x2) in the plane, as the slip velocity. ``scalars`` know no direction: ``float`` everywhere.
+    memory_kind: ``deflections`` [scene length] reverse and rotate with the slip: ``float`` on the line and
+    ``complex`` (x1 + i x2) in the plane, as the slip velocity. ``scalars`` have no direction: always ``float``.
     """
 
     memory_kind: ClassVar[Literal["deflections", "scalars"]] = "deflections"
@@ -152,15 +151,15 @@ class MemoryLaw(FrictionLaw, ABC):
 
     @abstractmethod
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
-        """Friction coefficient [-] along ``v`` that resists slip, at a memory that moves at ``rates``."""
+        """Friction coefficient [-] along ``v`` that resists slip, at a memory that changes at ``rates``."""
 
     @property
     def turning(self) -> float:
-        """``memory_kind`` as kernels know it: 1 for deflections, 0 for scalars."""
+        """``memory_kind`` as a number for kernels: 1 for deflections, 0 for scalars."""
         return 1.0 if self.memory_kind == "deflections" else 0.0
 
     def structure(self) -> tuple[str, ...]:
-        """Which kind of memory it is, and how many numbers, if few: kernels are compiled for that many."""
+        """Selects kernels by the kind of memory and, where they are few, by the count of the numbers."""
         if self.count() > FEW:
             return (self.memory_kind,)
         surfaces = (self.yield_deflection(k) for k in range(self.count()))
@@ -168,15 +167,15 @@ class MemoryLaw(FrictionLaw, ABC):
         return self.memory_kind, *(("yield surfaces",) if yields else ()), f"{self.count()} numbers"
 
     def count(self) -> int:
-        """How many numbers the law remembers."""
+        """The number of memories."""
         return 1
 
     def steady(self, v: Any, k: int) -> Any:
-        """The k-th memory in steady sliding at slip velocity ``v`` (not zero); zero where a law does not say."""
+        """The k-th memory in steady sliding at slip velocity ``v`` (not zero); zero if the law does not define it."""
         return 0.0 * v
 
     def stored(self, memory: Any) -> float:
-        """The work [scene length, per unit load] that the memory can give back; used where a law is passive."""
+        """The recoverable work [scene length, per unit load] in the memory; used where a law is passive."""
         return 0.0
 
     def yield_deflection(self, k: int) -> float:
@@ -188,7 +187,7 @@ class MemoryLaw(FrictionLaw, ABC):
         return math.inf
 
     def within(self, memory: Any) -> bool:
-        """Whether the memory lies in the set that no slip history leaves."""
+        """Whether the memory lies in the set that no slip history can leave."""
         return True
 
     def largest_rate(self, speed: float) -> float:
@@ -196,9 +195,9 @@ class MemoryLaw(FrictionLaw, ABC):
         return math.inf
 
     def rate_independent(self) -> bool:
-        """Whether friction depends on the path of the slip alone, not on how fast it is travelled."""
+        """Whether friction depends on the path of the slip alone, not on its speed."""
         return False
 
     def passive(self) -> bool:
-        """Whether the work of friction from any slip history is at least minus what was ``stored``."""
+        """Whether the work of friction over any slip history is at least minus the ``stored`` work."""
         return False

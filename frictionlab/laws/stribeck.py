@@ -1,4 +1,4 @@
-"""Stribeck friction: a coefficient that falls from its static value as slip sets in."""
+"""Stribeck friction: a coefficient that falls from its static value with slip speed."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any, Literal
 from pydantic import model_validator
 
 from frictionlab.laws.base import NonNegative, PerSpeed, Positive, SlidingLaw, Speed
-from frictionlab.laws.decay import fallen, steepest_fall
+from frictionlab.laws.decay import exp_power_decay, steepest_slope
 
 EXPONENTIAL, RATIONAL, CUBIC = 0.0, 1.0, 2.0
 
 
 class Stribeck(SlidingLaw):
-    """Stribeck friction: from mu_static at rest down to mu_kinetic in quick slip, along one of four curves.
+    """Stribeck friction: falls from mu_static at rest to mu_kinetic at high speed, along one of four curves.
 
-    mu_kinetic [-], >= 0: coefficient at high speed; for the cubic curve its minimum, met at stribeck_speed.
+    mu_kinetic [-], >= 0: coefficient at high speed; for the cubic curve its minimum, at stribeck_speed.
     mu_static [-], >= mu_kinetic, > 0: coefficient at rest and at vanishing speed.
     stribeck_speed [scene velocity], > 0: speed of the fall.
     stribeck_exponent [-], > 0: of the exponential curve alone, 2 where left out.
@@ -55,12 +55,12 @@ class Stribeck(SlidingLaw):
 
     @property
     def family(self) -> float:
-        """Which formula the curve is of: a number, for kernels know no words."""
+        """The formula of the curve as a number for kernels."""
         return {"exponential": EXPONENTIAL, "cubic": CUBIC}.get(self.curve, RATIONAL)
 
     @property
     def power(self) -> float:
-        """The exponent of speed in it."""
+        """The exponent of speed in the formula."""
         return self.stribeck_exponent or (2.0 if self.curve == "hess-soom" else 1.0)
 
     def sliding_friction(self, speed: float) -> float:
@@ -69,30 +69,30 @@ class Stribeck(SlidingLaw):
         if self.family == CUBIC:
             left = 1.0 - 0.5 * u * (3.0 - u * u)
         elif self.family == EXPONENTIAL:
-            left = fallen(u, self.power)
+            left = exp_power_decay(u, self.power)
         else:
             left = 1.0 / (1.0 + u**self.power)
         return self.mu_kinetic + (self.mu_static - self.mu_kinetic) * left + self.viscosity * speed
 
     def constant_sliding_friction(self) -> bool:
-        """Where nothing falls and nothing is viscous."""
+        """Where mu_static = mu_kinetic and viscosity = 0."""
         return self.mu_static == self.mu_kinetic and self.viscosity == 0.0
 
     def monotone(self) -> bool:
-        """Where viscosity makes up for the fall at every speed."""
+        """Where viscosity outweighs the fall at every speed."""
         return self.steepest_fall() == 0.0
 
     def steepest_fall(self) -> float:
-        """By the speed of steepest descent of each curve; infinite for an exponent below one."""
+        """From the steepest slope of each curve; infinite for an exponent below one."""
         drop = self.mu_static - self.mu_kinetic
         if drop == 0.0:
             return 0.0
         return max(0.0, drop / self.stribeck_speed * self._steepest() - self.viscosity)
 
     def _steepest(self) -> float:
-        """The largest slope of the fall from 1 to 0 over u."""
+        """The largest slope over u of the curve that falls from 1 to 0."""
         if self.family == CUBIC:
             return 1.5
         if self.family == RATIONAL:
             return 1.0 if self.power == 1.0 else 0.375 * math.sqrt(3.0)
-        return steepest_fall(self.power)
+        return steepest_slope(self.power)

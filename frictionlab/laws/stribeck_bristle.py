@@ -1,4 +1,4 @@
-"""What LuGre and elasto-plastic friction share: damped bristles, a Stribeck curve and viscosity."""
+"""Base class of LuGre and elasto-plastic friction: damped bristles, a Stribeck curve and viscosity."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from frictionlab.laws.base import PerSpeed, Positive, Speed
 from frictionlab.laws.compliant import DampedLaw
-from frictionlab.laws.decay import fallen, steepest_fall
+from frictionlab.laws.decay import exp_power_decay, steepest_slope
 
 
 class StribeckBristle(DampedLaw, ABC):
@@ -57,11 +57,11 @@ class StribeckBristle(DampedLaw, ABC):
         return self.bristle_stiffness * z + self.bristle_damping * dz + self.viscosity * v
 
     def constant_sliding_friction(self) -> bool:
-        """Where nothing falls and nothing is viscous."""
+        """Where mu_static = mu_kinetic and viscosity = 0."""
         return self.peak == self.mu_kinetic and self.viscosity == 0.0
 
     def largest_deflection(self) -> float:
-        """Where the spring force is the coefficient at vanishing speed (in quick slip steady deflection is less)."""
+        """mu_static/stiffness: the steady deflection at vanishing speed, larger than at high speed."""
         return self.peak / self.bristle_stiffness
 
     def largest_rate(self, speed: float) -> float:
@@ -73,7 +73,7 @@ class StribeckBristle(DampedLaw, ABC):
         drop = self.peak - self.mu_kinetic
         if drop == 0.0:
             return 0.0
-        return max(0.0, drop / self.stribeck_speed * steepest_fall(self.stribeck_exponent) - self.viscosity)
+        return max(0.0, drop / self.stribeck_speed * steepest_slope(self.stribeck_exponent) - self.viscosity)
 
     def damps_across(self, speed: float) -> bool:
         """damping^2 speed/mu_kinetic <= 4 (damping + viscosity)."""
@@ -81,7 +81,7 @@ class StribeckBristle(DampedLaw, ABC):
         return super().damps_across(speed) and self.bristle_damping**2 * speed / self.mu_kinetic <= 4.0 * lost
 
     def rate_independent(self) -> bool:
-        """Where g is the same at every speed, and neither bristles nor slip are damped."""
+        """Where g is the same at every speed and there is neither damping nor viscosity."""
         return self.constant_sliding_friction() and self.bristle_damping == 0.0
 
     def passive(self) -> bool:
@@ -94,4 +94,4 @@ def stribeck_curve(law: Any, speed: float) -> float:
     drop = law.peak - law.mu_kinetic
     if drop == 0.0:
         return law.mu_kinetic
-    return law.mu_kinetic + drop * fallen(speed / law.stribeck_speed, law.stribeck_exponent)
+    return law.mu_kinetic + drop * exp_power_decay(speed / law.stribeck_speed, law.stribeck_exponent)

@@ -30,8 +30,8 @@ READ = (
     "energy_friction",
     "energy_contact",
 )
-"""What ``read`` returns, in this order. The mean positions are there for the mean balance: <x1> = N mean_friction,
-omega_r^2 <x2> = N mean_friction_transverse."""
+"""The columns that ``read`` returns, in this order. The mean positions serve to check the mean balance:
+<x1> = N mean_friction, omega_r^2 <x2> = N mean_friction_transverse."""
 
 
 class Sums(NamedTuple):
@@ -50,7 +50,7 @@ class Sums(NamedTuple):
 
 @inner
 def read(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_speed: float) -> Any:
-    """Everything of ``READ`` from one period: arrays [panels, nodes], stick [panels]."""
+    """The columns ``READ`` of one period, given as arrays [panels, nodes] and stick [panels]."""
     sums = _integrals(tau, x, v, friction, stick, mass)
     period = sums.duration
     part = np.empty(tau.shape)
@@ -139,7 +139,8 @@ def _highest(values: Any, sign: float, stick: Any) -> float:
 
 @inner
 def _sign_changes(values: Any, level: float, stick: Any, skip_stick: bool) -> int:
-    """Crossings of the level once around the period, seen at interior nodes: on events it is met, not crossed."""
+    """Crossings of the level within the period, counted at interior nodes: at the ends of panels, which are events,
+    the value equals the level without crossing it."""
     changes, first, last = 0, 0.0, 0.0
     for panel in range(values.shape[0]):
         for node in range(1, values.shape[1] - 1):

@@ -1,4 +1,4 @@
-"""One period of a steady state in smooth pieces."""
+"""The record of one period of a steady state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The record of an orbit while a kernel follows it, piece by piece."""
+"""The arrays into which a kernel writes an orbit, panel by panel."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from frictionlab.orbit.panels import NODES
 
 
 class Track(NamedTuple):
-    """Room for the panels of an orbit [panels, nodes], stick [panels], and how many are filled [1]."""
+    """Arrays for the panels of an orbit [panels, nodes], stick [panels], and the number of panels written [1]."""
 
     tau: Any
     x: Any
@@ -23,7 +23,7 @@ class Track(NamedTuple):
 
 @inner
 def track_of(room: int) -> Track:
-    """An empty track with room for so many panels; none to note nothing."""
+    """An empty track for at most ``room`` panels; with 0 nothing is recorded."""
     nodes = NODES.size
     return Track(
         np.empty((room, nodes)),

@@ -15,7 +15,7 @@ from frictionlab.scene.scene import Scene
 class Samples(NamedTuple):
     """One period of a steady state at n equally spaced times [nondimensional, scales of ``scene``].
 
-    friction and load are forces' coefficients: friction [-] resists the slip; load [K_1 L] drives the mass.
+    friction [-] is the coefficient that resists slip; load [K_1 L] is the force that drives the mass.
     """
 
     tau: Floats

@@ -7,7 +7,14 @@ from collections.abc import Iterator, Sequence
 from importlib.metadata import EntryPoint
 from typing import Any, NamedTuple
 
-from frictionlab.faults import BrokenPlugin, first_line, from_outside, in_words, outside_files, place_in
+from frictionlab.faults import (
+    BrokenPlugin,
+    definition_line,
+    describe_error,
+    from_outside,
+    innermost_line,
+    outside_files,
+)
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.registry.bibliography import references
@@ -93,10 +100,10 @@ def unloadable(home: Home, problem: BaseException) -> BrokenPlugin:
     """That a module cannot be run to its end."""
     files = outside_files(problem)
     if isinstance(problem, ModuleNotFoundError):
-        what = f"needs '{problem.name}', which is not installed{place_in(problem, files) or ''}"
+        what = f"needs '{problem.name}', which is not installed{innermost_line(problem, files) or ''}"
         remedy = f"install that, or leave it out: pip install {str(problem.name).partition('.')[0]}"
         return home._replace(remedy=remedy).broken(what, problem)
-    return home.broken(f"cannot be loaded: {in_words(problem, files)}", problem)
+    return home.broken(f"cannot be loaded: {describe_error(problem, files)}", problem)
 
 
 def checked(loaded: Any, home: Home) -> Any:
@@ -139,7 +146,8 @@ def _signatures(law: type[FrictionLaw]) -> Iterator[str]:
         try:
             inspect.signature(given).bind(*wanted)
         except TypeError:
-            yield f"{name}({', '.join(_names(given))}) must take ({', '.join(wanted)}){first_line(given.__code__)}"
+            line = definition_line(given.__code__)
+            yield f"{name}({', '.join(_names(given))}) must take ({', '.join(wanted)}){line}"
 
 
 def _mutable(law: type[FrictionLaw]) -> Iterator[str]:

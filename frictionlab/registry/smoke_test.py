@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
-from frictionlab.faults import files_of, first_line, from_outside, in_words
+from frictionlab.faults import definition_line, describe_error, files_of, from_outside
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 
@@ -63,7 +63,7 @@ def _built_and_tried(law: type[FrictionLaw], now: _Slow) -> Iterator[Wrong]:
             continue
         except Exception as problem:
             given = ", ".join(f"{name}={value:g}" for name, value in parameters.items())
-            yield f"{law.__name__}({given}) raises {in_words(problem, files_of(law))}"
+            yield f"{law.__name__}({given}) raises {describe_error(problem, files_of(law))}"
             return
         yield from _tried(made, now)
         return
@@ -153,7 +153,7 @@ def _asked(law: FrictionLaw, name: str, interface: Any, arguments: dict[str, Any
         return None
     hint = ": is its return missing?" if answer[0] is None else ""
     code = inspect.unwrap(getattr(type(law), name)).__code__
-    return f"{call} returns {answer[0]!r}, which is no {_KINDS[kind]}{hint}{first_line(code)}"
+    return f"{call} returns {answer[0]!r}, which is no {_KINDS[kind]}{hint}{definition_line(code)}"
 
 
 def _raised(law: FrictionLaw, what: str, call: Callable[[], object]) -> Wrong | None:
@@ -163,7 +163,7 @@ def _raised(law: FrictionLaw, what: str, call: Callable[[], object]) -> Wrong | 
     except (ArithmeticError, ValueError):
         return None
     except Exception as problem:
-        return f"{what} raises {in_words(problem, files_of(type(law)))}"
+        return f"{what} raises {describe_error(problem, files_of(type(law)))}"
     return None
 
 

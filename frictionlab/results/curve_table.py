@@ -1,4 +1,4 @@
-"""The table of curves: everything but belt speed equal, one row each, with the shape of its mean friction."""
+"""The table of curves: one row per set of inputs other than belt speed, with the shape of its mean friction."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS, SCALED
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.table import value_in
-from frictionlab.shape.ends import Loads, Rows, end_of_reversal, friction_at_rest
-from frictionlab.shape.shakedown import Hold, Value, hold_of_a_body, hold_of_a_slip
-from frictionlab.shape.verdict import Curve, Measured, Shape, Unreadable, reduction, shape_of
+from frictionlab.shape.ends import Loads, Rows, end_of_reversal, start_friction
+from frictionlab.shape.shakedown import Shakedown, Value, shakedown_of_body, shakedown_of_slip
+from frictionlab.shape.verdict import Estimate, FrictionCurve, Shape, UnreadableCurve, reduction, shape_of
 
 TEXT = frozenset({"shape", "shape_by_initial", "reason"})
 INSTALLED = registry.Laws()
@@ -25,9 +25,9 @@ _NEEDED = [name if name != "belt_speed" else "scene.belt_speed" for name in Rows
 
 
 def curve_table(table: pd.DataFrame, laws: registry.Laws = INSTALLED) -> pd.DataFrame:
-    """One row per curve of a result table, in its order; none where no curve has two belt speeds.
+    """One row per curve of a result table, in its order; no rows if no curve has two belt speeds.
 
-    Rows without a number are left out of their curve. A measure that cannot be read is empty, with the reason.
+    Points without a number are left out. A measure that cannot be determined is empty, with the reason.
     """
     keys = curve_inputs(table.columns)
     groups = table.groupby(keys, sort=False, dropna=False).indices if len(table) else {}
@@ -46,7 +46,7 @@ def curve_table(table: pd.DataFrame, laws: registry.Laws = INSTALLED) -> pd.Data
 
 
 def curve_inputs(columns: Iterable[str]) -> list[str]:
-    """The inputs that are the same all along a curve."""
+    """The inputs that are equal along a curve."""
     return [
         name
         for name in columns
@@ -66,7 +66,7 @@ def _rows(numbers: Floats) -> Rows:
 
 
 def _loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
-    """What the inputs of a curve say about its loads."""
+    """The loads on the body, from the inputs of a curve."""
 
     def value(name: str) -> float:
         found = given.get(name)
@@ -82,51 +82,53 @@ def _loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
     slips = [value(f"scene.{slip}.velocity_amplitude") for slip in ("slip", "transverse_slip")]
     forces = force("scene.drive"), force("scene.transverse.load")
     bristles = _bristle_law(given, laws)
-    hold = None if bristles is None else _hold(bristles, value, forces, any(slips))
-    return Loads(*forces, slips[1], static or math.nan, any(slips), hold, _unread(given, laws))
+    shakedown = None if bristles is None else _shakedown(bristles, value, forces, any(slips))
+    return Loads(*forces, slips[1], static or math.nan, any(slips), shakedown, _unknown_start(given, laws))
 
 
-def _unread(given: Mapping[str, Any], laws: registry.Laws) -> str:
-    """Why nothing is known of the friction on a belt that creeps; '' where it is."""
+def _unknown_start(given: Mapping[str, Any], laws: registry.Laws) -> str:
+    """Why the limit of friction at vanishing belt speed is not known; '' where it is."""
     law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
     if law is None or not issubclass(law, MemoryLaw) or law.memory_kind != "deflections":
         return ""
-    return "deflections may hold the body on a slow belt: where the curve starts is known for a single one"
+    return "the body may stick elastically to a slow belt: the start of the curve is known for one deflection only"
 
 
-def _hold(law: BristleLaw, value: Value, forces: tuple[complex, complex], prescribed: bool) -> Hold | None:
-    """Of the bristles of a curve's law; None where one direction at a time leaves no memory."""
+def _shakedown(
+    law: BristleLaw, value: Value, forces: tuple[complex, complex], prescribed: bool
+) -> Shakedown | None:
+    """The shakedown of the bristles of a curve's law; None for a planar form without memory of direction."""
     in_a_plane = value("scene.transverse.natural_frequency") or value(
         "scene.transverse_slip.velocity_amplitude"
     )
     if in_a_plane and law.planar == "rotated":
         return None
-    return hold_of_a_slip(law, value) if prescribed else hold_of_a_body(law, value, *forces)
+    return shakedown_of_slip(law, value) if prescribed else shakedown_of_body(law, value, *forces)
 
 
 def _bristle_law(given: Mapping[str, Any], laws: registry.Laws) -> BristleLaw | None:
-    """The law as methods took it, made again from the inputs; None without bristles or without a known name."""
+    """The law of a row as methods received it, rebuilt from its inputs; None if it is no known bristle law."""
     law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
     if law is None or not issubclass(law, BristleLaw):
         return None
-    told = {name: value_in(given, f"law.{name}") for name in law.model_fields}
-    scaled = {name: value_in(given, f"{SCALED}{name}") for name in told}
-    values = {name: value for name, value in told.items() if value is not None}
+    written = {name: value_in(given, f"law.{name}") for name in law.model_fields}
+    scaled = {name: value_in(given, f"{SCALED}{name}") for name in written}
+    values = {name: value for name, value in written.items() if value is not None}
     values |= {name: value for name, value in scaled.items() if value is not None}
     return law.model_validate(values).under_load(float(given["scene.normal_load"]))
 
 
 def _measures(rows: Rows, loads: Loads) -> dict[str, Any]:
-    """Every measure that can be read from a curve; the reason where one cannot."""
+    """The measures of a curve that can be determined, and the reason why others cannot."""
     found: dict[str, Any] = _reduction(rows)
     try:
         if not rows.belt_speed.size:
-            raise Unreadable("no point at a belt speed > 0 has a number")
+            raise UnreadableCurve("no point at a belt speed > 0 has a number")
         end, kinked = end_of_reversal(rows, loads)
         found |= _entry("reversal_end", end)
-        start = friction_at_rest(rows, loads)
-        shape = shape_of(Curve(rows.belt_speed, rows.mean_friction, rows.error, start, end, kinked))
-    except Unreadable as problem:
+        start = start_friction(rows, loads)
+        shape = shape_of(FrictionCurve(rows.belt_speed, rows.mean_friction, rows.error, start, end, kinked))
+    except UnreadableCurve as problem:
         return found | {"reason": str(problem)}
     return found | _shape(shape)
 
@@ -147,5 +149,5 @@ def _shape(shape: Shape) -> dict[str, Any]:
     return found | _entry("shape_initial", shape.initial) | {"shape_by_initial": shape.by_initial}
 
 
-def _entry(name: str, measured: Measured) -> dict[str, float]:
+def _entry(name: str, measured: Estimate) -> dict[str, float]:
     return {name: measured.value, f"{name}_error": measured.error}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from frictionlab.faults import MARK, BrokenPlugin, CannotCompile, blamed
+from frictionlab.faults import MARK, BrokenPlugin, CannotCompile, failing_law
 from frictionlab.methods.base import Answers, refused
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import derived_columns
@@ -78,7 +78,7 @@ def _reason(problem: Exception) -> str:
     sentence = f"{type(problem).__name__}: {problem}"
     if _numerical(problem):
         return sentence
-    law = str(problem) if isinstance(problem, CannotCompile) else blamed(problem)
+    law = str(problem) if isinstance(problem, CannotCompile) else failing_law(problem)
     return (
         f"internal error: {sentence}"
         if law is None

@@ -1,4 +1,4 @@
-"""The numbers of a scene as kernels see them: mass, springs, dashpots, loads, and the friction-free response."""
+"""The numbers of a scene for kernels: mass, springs, dashpots, loads, and the friction-free response."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 
 class Mass(NamedTuple):
-    """A scene's numbers as kernels see them; every force is Im(phasor exp(i frequency tau))."""
+    """The numbers of a free scene for kernels; every force is Im(phasor exp(i frequency tau))."""
 
     damping: float
     stiffness: float
@@ -20,13 +20,13 @@ class Mass(NamedTuple):
 
 
 class Body(NamedTuple):
-    """A free scene's numbers for one source on the line (``float``) and in the plane (``complex``: x1 + i x2).
+    """The numbers of a free scene, for kernels that run on the line (``float``) and in the plane (``complex``).
 
-    A direction-dependent constant acts as mean*x + split*conj(x). The motion is split into a harmonic reference,
-    the friction-free response where it is bounded, and the deviation from it: ``force`` is what drives the
-    deviation besides friction. A sine/cosine pair stands for sine*sin(Omega tau) + cosine*cos(Omega tau).
-    The motion is followed over ``periods`` of the drive at a time. Where it is ``prescribed`` it is the reference,
-    whatever friction does.
+    A constant that differs between x1 and x2 acts as mean*x + split*conj(x), x = x1 + i x2. The motion is the sum of
+    a harmonic reference, the friction-free response where that is bounded, and the deviation from it: ``force``
+    drives the deviation, besides friction. A sine/cosine pair stands for sine*sin(Omega tau) + cosine*cos(Omega tau).
+    A period map spans ``periods`` periods of the drive. Where ``prescribed``, the motion is the reference and
+    friction does not change it.
     """
 
     damping_mean: float
@@ -93,18 +93,18 @@ def _friction_free(damping: float, stiffness: float, frequency: float, force: co
 
 
 def restoring_force(body: Body, x: Any, v: Any) -> Any:
-    """Springs and dashpots: what they take from the acceleration."""
+    """Force of springs and dashpots per unit mass, to be subtracted from the acceleration."""
     damping = body.damping_mean * v + body.damping_split * v.conjugate()
     return damping + body.stiffness_mean * x + body.stiffness_split * x.conjugate()
 
 
 def span(body: Body) -> float:
-    """The time its motion is followed at once."""
+    """The time that one period map covers."""
     return 2.0 * math.pi * body.periods / body.frequency
 
 
 class Motion(NamedTuple):
-    """Prescribed slip as kernels see it: velocities Im(phasor exp(i frequency tau))."""
+    """The numbers of a prescribed slip for kernels: velocities Im(phasor exp(i frequency tau))."""
 
     normal_load: float
     frequency: float

@@ -1,5 +1,5 @@
 # ruff: noqa: N815 - a key ends in its unit, and N stands for newton
-"""A scene in SI units, and the one place where SI numbers become nondimensional.
+"""A scene in SI units and its conversion to nondimensional numbers.
 
 Scales of Sulollari, van Dalen & Cabboi, Eq. 2, with omega_1 = sqrt(K_1/M): time 1/omega_1, a length L, force
 K_1 L, and from these velocity omega_1 L and energy K_1 L^2. L is any length: no result in SI units depends on it.
@@ -18,10 +18,10 @@ from frictionlab.quantities import Dimension, Finite, NonNegative, Positive, Rec
 
 STANDARD_GRAVITY = 9.81
 
-R = TypeVar("R", bound=Record)
+RecordT = TypeVar("RecordT", bound=Record)
 
 
-class Scales(NamedTuple):
+class Units(NamedTuple):
     """The units of a scene's nondimensional numbers: length L [m], time 1/omega_1 [s], force K_1 L [N]."""
 
     length: float
@@ -39,7 +39,7 @@ class Scales(NamedTuple):
         return self.force * self.length
 
     def of(self, dimension: Dimension) -> float:
-        """The unit of what has this dimension."""
+        """The unit of a number of this dimension."""
         return self.force**dimension.force * self.length**dimension.length * self.time**dimension.time
 
 
@@ -56,7 +56,7 @@ class _Force(Record):
             raise ValueError("give exactly one of unbalance_kg_m and amplitude_N")
         return self
 
-    def scaled(self, mass: float, scales: Scales) -> dict[str, float]:
+    def scaled(self, mass: float, scales: Units) -> dict[str, float]:
         """unbalance/(M L) or amplitude/(K_1 L), and the phase."""
         if self.unbalance_kg_m is not None:
             return {"unbalance": self.unbalance_kg_m / (mass * scales.length), "phase": self.phase}
@@ -98,7 +98,7 @@ class Dimensional(Record):
     """A body on a moving belt, shaken, in SI units.
 
     mass_kg > 0: M. stiffness_N_per_m > 0, damping_N_s_per_m >= 0: K_1 and C_1, along the belt. length_m > 0: L,
-    the length that makes numbers nondimensional. belt_speed_m_per_s. The normal load is the weight, by
+    the length scale. belt_speed_m_per_s. The normal load is the weight, by
     gravity_m_per_s2 > 0 (9.81), or normal_load_N > 0 instead. Leave ``transverse`` out for one degree of freedom.
     """
 
@@ -139,7 +139,7 @@ class Dimensional(Record):
             yield from (f"initial.{name}: needs transverse" for name in sorted(stray))
 
     def _out_of_range(self) -> Iterator[str]:
-        """Units mistaken by a hundred decades: what no floating-point number can hold."""
+        """Values in wrong units whose nondimensional numbers overflow or vanish."""
         try:
             numbers = [*self.scales, *_numbers(self.scaled())]
         except (ZeroDivisionError, OverflowError):
@@ -148,10 +148,10 @@ class Dimensional(Record):
             yield "length_m: these values have no nondimensional numbers: check their units"
 
     @property
-    def scales(self) -> Scales:
+    def scales(self) -> Units:
         """L, 1/omega_1 and K_1 L."""
         time = math.sqrt(self.mass_kg / self.stiffness_N_per_m)
-        return Scales(self.length_m, time, self.stiffness_N_per_m * self.length_m)
+        return Units(self.length_m, time, self.stiffness_N_per_m * self.length_m)
 
     @property
     def load(self) -> float:
@@ -190,7 +190,7 @@ class Dimensional(Record):
         return found
 
     def _scaled_initial(self, initial: DimensionalInitial) -> dict[str, float]:
-        """Only what was given: a start across the belt is no part of a scene on the line."""
+        """Only the values that are given: a scene with one degree of freedom refuses x2 and velocity2."""
         given = initial.model_dump(exclude_unset=True)
         units = {"m": self.scales.length, "m_per_s": self.scales.velocity}
         parts = {key: key.partition("_") for key in given}
@@ -212,7 +212,7 @@ def dimensions(record: type[Record]) -> dict[str, Dimension]:
 
 
 def _dimension(annotation: Any, metadata: Any) -> Dimension | None:
-    """The marker beside a type, or beside one of the alternatives of an optional one."""
+    """The ``Dimension`` in the annotation of a type, or of one of the alternatives of an optional type."""
     for mark in metadata:
         if isinstance(mark, Dimension):
             return mark
@@ -222,20 +222,20 @@ def _dimension(annotation: Any, metadata: Any) -> Dimension | None:
     return next((dimension for dimension in inner if dimension is not None), None)
 
 
-def scaled_parameters(record: Record, scales: Scales) -> dict[str, float | tuple[float, ...]]:
+def scaled_parameters(record: Record, scales: Units) -> dict[str, float | tuple[float, ...]]:
     """The parameters of a law that have a dimension, made nondimensional."""
     values = {
         name: (getattr(record, name), scales.of(unit)) for name, unit in dimensions(type(record)).items()
     }
-    return {name: _divided(value, unit) for name, (value, unit) in values.items() if value is not None}
+    return {name: _divide(value, unit) for name, (value, unit) in values.items() if value is not None}
 
 
-def _divided(value: float | tuple[float, ...], unit: float) -> float | tuple[float, ...]:
+def _divide(value: float | tuple[float, ...], unit: float) -> float | tuple[float, ...]:
     return tuple(each / unit for each in value) if isinstance(value, tuple) else value / unit
 
 
-@lru_cache(maxsize=4096)  # the rows of a curve share theirs
-def scaled_law(law: R, scales: Scales) -> R:
-    """A law given in SI units in the lengths and times of a scene."""
+@lru_cache(maxsize=4096)  # the rows of a curve share their law
+def scaled_law(law: RecordT, scales: Units) -> RecordT:
+    """A law given in SI units, converted to the lengths and times of a scene."""
     parameters = scaled_parameters(law, scales)
     return type(law).model_validate(law.model_dump(exclude_none=True) | parameters) if parameters else law

@@ -23,7 +23,7 @@ from frictionlab.scene.dimensional import Dimensional
 
 
 class _Part(Record):
-    """A part of a scene; names the keys whose time has not come instead of calling them unknown."""
+    """A part of a scene; reports planned keys as not available yet instead of as unknown."""
 
     not_available_yet: ClassVar[frozenset[str]] = frozenset()
 
@@ -67,7 +67,7 @@ class Drive(_Force):
 
 
 class Load(_Force):
-    """The force along x2, at the frequency of the drive. Units as for ``Drive``."""
+    """The force along x2, at the frequency of the drive; units as for ``Drive``."""
 
     not_available_yet: ClassVar[frozenset[str]] = frozenset({"waveform", "frequency"})
 
@@ -109,7 +109,7 @@ class Scene(_Part):
     """A body on a moving belt, shaken: damping_ratio and drive, or a prescribed slip instead of both.
 
     damping_ratio (>= 0, may exceed 1), normal_load (gamma^2 > 0; 1 by default for prescribed slip), belt_speed.
-    Leave ``transverse`` out for one degree of freedom, ``drive`` for a scene that nothing shakes. ``dimensional``
+    Leave ``transverse`` out for one degree of freedom, ``drive`` for an undriven scene. ``dimensional``
     gives all of it in SI units instead; every other field is then filled from it (Eq. 2).
     """
 
@@ -133,7 +133,7 @@ class Scene(_Part):
     @model_validator(mode="before")
     @classmethod
     def _from_si_units(cls, data: Any) -> Any:
-        """Fill the fields from ``dimensional``, whose own mistakes are left for its field to tell."""
+        """Fill the fields from ``dimensional``; mistakes inside it are reported by the check of that field."""
         if not isinstance(data, dict) or data.get("dimensional") is None:
             return data
         both = sorted(set(data) & set(cls.model_fields) - {"dimensional"})
@@ -183,12 +183,12 @@ class Scene(_Part):
 
     @property
     def undriven(self) -> bool:
-        """Whether nothing shakes the mass: then the period of its motion is its own."""
+        """Whether no load drives the mass: the period of its motion is then unknown."""
         return self.degrees_of_freedom > 0 and self.drive is None
 
     @property
     def start(self) -> Initial:
-        """``initial``, or where it is left out, resting on the belt with the spring undeflected."""
+        """``initial``; where it is left out, at rest on the belt with the spring undeflected."""
         return self.initial or Initial(velocity=self.belt_speed)
 
     @property
@@ -202,7 +202,7 @@ class Scene(_Part):
 
     @property
     def load_along_belt_only(self) -> bool:
-        """Whether nothing pushes across the belt: then x2 dies out from every start (isotropic friction)."""
+        """Whether no load acts across the belt: with isotropic friction x2 then decays from every start."""
         if self.degrees_of_freedom == 0:
             return self.transverse_slip is None or self.transverse_slip.velocity_amplitude == 0
         load = self.transverse.load if self.transverse is not None else None
@@ -235,14 +235,14 @@ class Scene(_Part):
         return Motion(self.normal_load, self.frequency, *phasors)
 
     def values(self) -> dict[str, float]:
-        """Every number of the scene by its dotted path, without the leading ``scene.``; SI ones as well."""
+        """Every number of the scene by its dotted path, without the leading ``scene.``; SI numbers included."""
         return _flat(self.model_dump(exclude_none=True))
 
     def given(self) -> dict[str, Any]:
-        """Nested plain values that make the same scene again: in SI units where it was given so."""
+        """Nested plain values from which the same scene can be built; in SI units if the scene was given in them."""
         tree = self.model_dump(exclude_none=True)
         if self.initial is not None:
-            # Its defaults for x2 would be refused in a scene without x2.
+            # A scene without x2 would refuse the defaults for x2.
             tree["initial"] = self.initial.model_dump(exclude_unset=True)
         if self.dimensional is None:
             return tree
@@ -251,7 +251,7 @@ class Scene(_Part):
         return {"dimensional": tree["dimensional"]}
 
     def given_values(self) -> dict[str, float]:
-        """Those of ``values`` that were given: the SI ones alone where the scene is in SI units."""
+        """Those of ``values`` that were given: only the SI ones where the scene is in SI units."""
         kept = "" if self.dimensional is None else "dimensional."
         return {path: value for path, value in self.values().items() if path.startswith(kept)}
 

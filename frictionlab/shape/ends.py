@@ -1,4 +1,4 @@
-"""Both ends of a friction curve, read from its rows: where slip stops reversing, and friction at rest."""
+"""Both ends of a friction curve from its rows: the end of reversal, and friction at vanishing belt speed."""
 
 from __future__ import annotations
 
@@ -8,20 +8,19 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionlab.quantities import Floats
-from frictionlab.shape.shakedown import Hold, largest_turn
-from frictionlab.shape.verdict import Measured, Unreadable
+from frictionlab.shape.shakedown import Shakedown, largest_magnitude
+from frictionlab.shape.verdict import Estimate, UnreadableCurve
 
 _ROUNDING = 1e-14
-_SAME = 1e-9  # relative spread of what is one number but for rounding
+_SAME = 1e-9  # relative spread of equal numbers with rounding errors
 
 
 class Loads(NamedTuple):
-    """What shakes the body of a curve, the same at every belt speed.
+    """The loads on the body of a curve, the same at every belt speed; forces in K_1 L.
 
     along, across: phasors of the forces along and across the belt. static_limit: the largest friction force at
-    rest, where the law has one of its own; NaN otherwise. prescribed: the slip itself is given. hold: of a law
-    with bristles, what they do on a belt that creeps. unread: why the start of the curve is not known, '' where it
-    is. Forces in K_1 L.
+    rest if the law defines one, else NaN. prescribed: whether the slip is prescribed. shakedown: for bristles, their
+    state on a belt of vanishing speed. unknown_start: why the start of the curve is not known, '' where it is.
     """
 
     along: complex
@@ -29,18 +28,18 @@ class Loads(NamedTuple):
     across_slip: float
     static_limit: float
     prescribed: bool
-    hold: Hold | None = None
-    unread: str = ""
+    shakedown: Shakedown | None = None
+    unknown_start: str = ""
 
     @property
     def along_belt_only(self) -> bool:
-        """Whether nothing moves the body across the belt."""
+        """Whether no load and no slip act across the belt."""
         return self.across == 0 and not self.across_slip > 0.0
 
     @property
     def largest(self) -> float:
-        """The largest size the turning load reaches within a period."""
-        return largest_turn(self.along, self.across)
+        """The largest magnitude of the load vector within a period."""
+        return largest_magnitude(self.along, self.across)
 
 
 class Rows(NamedTuple):
@@ -68,79 +67,81 @@ class Rows(NamedTuple):
         return bool(known.size and np.ptp(known) <= _SAME * np.abs(known).max())
 
 
-def end_of_reversal(rows: Rows, loads: Loads) -> tuple[Measured, bool]:
-    """The belt speed above which slip neither reverses nor sticks; whether friction is known to have a kink there.
+def end_of_reversal(rows: Rows, loads: Loads) -> tuple[Estimate, bool]:
+    """The belt speed above which slip neither reverses nor sticks, and whether friction has a known kink there.
 
-    V_lin for constant friction along the belt (and for prescribed slip, whose amplitude it is), else between the
-    last point that reverses or sticks and the next. Raises Unreadable.
+    V_lin for constant friction along the belt (and for prescribed slip, whose velocity amplitude it is), else between
+    the last point with reversal or stick and the next. Raises UnreadableCurve.
     """
     ratio = rows.velocity_ratio[np.isfinite(rows.velocity_ratio) & (rows.velocity_ratio > 0.0)]
     kinked = loads.along_belt_only and (rows.constant_friction or loads.prescribed)
     if ratio.size and (kinked or loads.prescribed):
         speed = float((rows.belt_speed / rows.velocity_ratio)[-1])
-        return Measured(speed, _ROUNDING * speed), kinked and rows.constant_friction
-    return _bracketed(rows), False
+        return Estimate(speed, _ROUNDING * speed), kinked and rows.constant_friction
+    return _bracket_end(rows), False
 
 
-def _bracketed(rows: Rows) -> Measured:
-    """Between two points, at the place where the velocity amplitude of x1 falls below the belt speed."""
+def _bracket_end(rows: Rows) -> Estimate:
+    """The end of reversal between two points, where the velocity amplitude of x1 falls below the belt speed."""
     excess = rows.velocity_amplitude - rows.belt_speed
-    told = np.isfinite(rows.reversals)
-    reverses = np.where(told, (rows.reversals > 0.0) | (rows.stick_fraction > 0.0), excess > 0.0)
+    counted = np.isfinite(rows.reversals)
+    reverses = np.where(counted, (rows.reversals > 0.0) | (rows.stick_fraction > 0.0), excess > 0.0)
     if not reverses.any():
-        raise Unreadable("slip reverses at no point")
+        raise UnreadableCurve("slip reverses at none of the points")
     last = int(np.flatnonzero(reverses)[-1])
     if last + 1 == reverses.size:
-        raise Unreadable(f"slip still reverses at the highest belt speed, {rows.belt_speed[-1]:.6g}")
+        raise UnreadableCurve(f"slip still reverses at the highest belt speed, {rows.belt_speed[-1]:.6g}")
     low, high = (float(speed) for speed in rows.belt_speed[last : last + 2])
     fall = float(excess[last] - excess[last + 1])
     share = float(np.clip(excess[last] / fall, 0.0, 1.0)) if fall > 0.0 else 0.5
     place = low + share * (high - low)
-    return Measured(place, max(place - low, high - place))
+    return Estimate(place, max(place - low, high - place))
 
 
-def friction_at_rest(rows: Rows, loads: Loads) -> Measured:
-    """The limit of mean friction as belt speed falls to zero. Raises Unreadable.
+def start_friction(rows: Rows, loads: Loads) -> Estimate:
+    """The limit of mean friction as belt speed falls to zero. Raises UnreadableCurve.
 
-    Zero by symmetry where the body moves on a belt at rest, or where bristles drift as it vibrates. A
-    body that constant friction holds against its load creeps with the belt until the load's peak frees it: the
-    spring then carries what the peak leaves, and the limit is mu (1 - load/friction).
+    Zero by symmetry where the body moves on a belt at rest, or where vibrated bristles drift. A body that sticks
+    under constant friction moves with the belt until spring and load at its peak exceed friction: the limit is
+    mu (1 - load/friction).
     """
-    if loads.unread:
-        raise Unreadable(loads.unread)
-    if loads.hold is not None:
-        return _on_bristles(rows, loads.hold, loads.prescribed)
+    if loads.unknown_start:
+        raise UnreadableCurve(loads.unknown_start)
+    if loads.shakedown is not None:
+        return _bristle_start(rows, loads.shakedown, loads.prescribed)
     if loads.prescribed:
-        return Measured(0.0, 0.0)
+        return Estimate(0.0, 0.0)
     force = abs(loads.along) or abs(loads.across)
     if force == 0.0:
-        raise Unreadable("nothing shakes the body: its friction at rest has no limit that is known")
+        raise UnreadableCurve(
+            "no load drives the body: the limit of friction at vanishing belt speed is not known"
+        )
     kinetic = float(np.nanmax(rows.friction_to_drive)) * force
     limit = kinetic if math.isnan(loads.static_limit) else max(kinetic, loads.static_limit)
     if limit <= loads.largest:
-        return Measured(0.0, 0.0)
+        return Estimate(0.0, 0.0)
     if loads.along_belt_only and rows.constant_friction and limit <= kinetic * (1.0 + _SAME):
         steady = float(np.nanmedian(rows.steady))
-        return Measured(steady * (1.0 - loads.largest / limit), _ROUNDING * steady)
-    raise Unreadable(
-        "friction holds the body on a belt at rest: where the curve then starts is known for constant friction "
-        "along the belt alone"
+        return Estimate(steady * (1.0 - loads.largest / limit), _ROUNDING * steady)
+    raise UnreadableCurve(
+        "the body sticks to a belt at rest: the start of its curve is known only for constant friction and a load "
+        "along the belt"
     )
 
 
-def _on_bristles(rows: Rows, hold: Hold, prescribed: bool) -> Measured:
-    """The friction of bristles held elastically, zero where they drift.
+def _bristle_start(rows: Rows, shakedown: Shakedown, prescribed: bool) -> Estimate:
+    """The limit of friction on elastic bristles, zero where they drift.
 
-    A body might also vibrate farther than its elastic bristles let it: the limit would then be zero. That friction
-    at the slowest belt is above the elastic limit, and how near, tells how sure it is.
+    The error is the distance to friction at the slowest belt: were the body to vibrate beyond the elastic range, the
+    limit would be zero and that friction below the elastic limit.
     """
-    limit = hold.friction()
+    limit = shakedown.friction()
     if prescribed or limit == 0.0:
-        return Measured(limit, _ROUNDING * limit)
+        return Estimate(limit, _ROUNDING * limit)
     above = float(rows.mean_friction[0] - limit)
     if above < -float(rows.error[0]):
-        raise Unreadable(
-            f"bristles can hold the body on a slow belt, where the curve would start at {limit:.6g}, and its first "
-            "point lies below"
+        raise UnreadableCurve(
+            f"the body may stick elastically to a slow belt, and the curve would then start at {limit:.6g}, but its "
+            "first point lies below"
         )
-    return Measured(limit, min(limit, abs(above) + float(rows.error[0])))
+    return Estimate(limit, min(limit, abs(above) + float(rows.error[0])))

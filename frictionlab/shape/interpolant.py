@@ -1,4 +1,4 @@
-"""The course of a friction curve between its points, from rest to the end of reversal."""
+"""Interpolation of a friction curve between its points, from rest to the end of reversal."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from numpy.typing import ArrayLike
 from frictionlab.quantities import Floats
 
 LEAST_POINTS = 8
-"""Points below the end of reversal without which no course is read."""
+"""Fewest points below the end of reversal for which a curve is interpolated."""
 WIDEST_GAP = 0.2
-"""Widest gap between neighbours, as a share of the end of reversal, that is read across."""
+"""Widest gap between neighbours, as a share of the end of reversal, that is interpolated."""
 WINDOW = 0.8
-"""Share of the range of the second course, clear of the kink at the end of reversal."""
+"""Share of the range in which the curve is interpolated a second time, without the kink at the end of reversal."""
 STEP = 0.05
 """Step of the second difference at rest, as a share of the end of reversal."""
 
-_FLAT = "friction does not surely rise between rest and the end of reversal"
+_FLAT = "friction may not rise between rest and the end of reversal"
 _ROUNDING = 1e-12
 # Equal panels of four Gauss points in the angle arcsin(u).
 _PANELS = 128
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _ANGLE = ((np.arange(_PANELS)[:, None] + 0.5 * (1.0 + _NODES)) * (0.5 * np.pi / _PANELS)).ravel()
-SHARE = np.sin(_ANGLE)
-"""Belt speeds over the end of reversal at which courses are known, from 0 to 1."""
-MEASURE = np.tile(_WEIGHTS, _PANELS) * (0.25 * np.pi / _PANELS) * np.cos(_ANGLE)
-"""Weights of the integral over them."""
+ABSCISSAE = np.sin(_ANGLE)
+"""Belt speeds over the end of reversal at which curves are interpolated, from 0 to 1."""
+AREA_WEIGHTS = np.tile(_WEIGHTS, _PANELS) * (0.25 * np.pi / _PANELS) * np.cos(_ANGLE)
+"""Weights of the integral over ``ABSCISSAE``."""
 
 
-class Unreadable(ValueError):
-    """A curve that a shape cannot be read from, and why."""
+class UnreadableCurve(ValueError):
+    """A curve whose shape cannot be determined; the message says why."""
 
 
-class Measured(NamedTuple):
+class Estimate(NamedTuple):
     """A number and the bound on its error."""
 
     value: float
@@ -48,37 +48,37 @@ class Measured(NamedTuple):
 
     @property
     def ends(self) -> list[float]:
-        """Both ends of the range the number may lie in; none where they are one but for rounding."""
+        """Both ends of the interval of the number; empty where they agree to rounding."""
         sharp = self.error <= _ROUNDING * abs(self.value)
         return [] if sharp else [self.value - self.error, self.value + self.error]
 
 
 @dataclass(frozen=True)
-class Curve:
-    """Mean friction at rising belt speeds > 0, and what is known of both ends.
+class FrictionCurve:
+    """Mean friction at rising belt speeds > 0, and both ends of the curve.
 
     friction, error: mean friction and the bounds on its error. start: its limit as belt speed falls to zero.
-    end: the end of reversal. kinked: whether friction is constant from there on, with a kink that is known.
+    end: the end of reversal. kinked: whether friction is known to have a kink there and to be constant beyond.
     """
 
     speed: Floats
     friction: Floats
     error: Floats
-    start: Measured
-    end: Measured
+    start: Estimate
+    end: Estimate
     kinked: bool
 
     @property
     def end_friction(self) -> float:
-        """At the end of reversal: of the first point from there on, or interpolated where friction is smooth."""
+        """Friction at the end of reversal: of the first point beyond a kink, interpolated for smooth friction."""
         if self.kinked:
             first = int(np.searchsorted(self.speed, self.end.value * (1.0 - _ROUNDING)))
             return float(self.friction[first])
-        return float(monotone(self.speed, self.friction)(self.end.value))
+        return float(monotone_cubic(self.speed, self.friction)(self.end.value))
 
 
-class Course(NamedTuple):
-    """A curve between its points: its rise from 0 to 1 at ``SHARE``, over the range and over the window.
+class Interpolant(NamedTuple):
+    """An interpolated curve: its rise from 0 to 1 at ``ABSCISSAE``, over the range and over the window.
 
     half: friction at half the range over that at its end. initial: the second difference at rest, scaled by the
     range and by friction at its end.
@@ -90,54 +90,60 @@ class Course(NamedTuple):
     initial: float
 
 
-def course_of(curve: Curve) -> Course:
+def interpolant_of(curve: FrictionCurve) -> Interpolant:
     """The monotone cubic through the points in the angle arcsin(v/v_e).
 
     In that angle the square-root kink of one degree of freedom is smooth, and prescribed slip a straight line.
-    Raises Unreadable for a curve that does not rise.
+    Raises UnreadableCurve for a curve that does not rise.
     """
     low, high = curve.start.value, curve.end_friction
     if high - low <= _ROUNDING * float(np.abs(curve.friction).max()):
-        raise Unreadable(_FLAT)
+        raise UnreadableCurve(_FLAT)
     inside = curve.speed < curve.end.value * (1.0 - _ROUNDING)
     angle = np.concatenate(([0.0], np.arcsin(curve.speed[inside] / curve.end.value), [0.5 * np.pi]))
-    path = monotone(angle, np.concatenate(([low], curve.friction[inside], [high])))
+    path = monotone_cubic(angle, np.concatenate(([low], curve.friction[inside], [high])))
     edge, half, first, second = path(np.arcsin([WINDOW, 0.5, STEP, 2.0 * STEP]))
-    rise = max(float(edge) - low, _ROUNDING * abs(high))  # a curve that falls again has no window to speak of
-    return Course(
+    rise = max(
+        float(edge) - low, _ROUNDING * abs(high)
+    )  # a curve that falls again may have no rise within the window
+    return Interpolant(
         range=(path(_ANGLE) - low) / (high - low),
-        window=(path(np.arcsin(WINDOW * SHARE)) - low) / rise,
+        window=(path(np.arcsin(WINDOW * ABSCISSAE)) - low) / rise,
         half=float(half) / high,
         initial=float(second - 2.0 * first + low) / STEP**2 / high,
     )
 
 
-def check(curve: Curve) -> None:
-    """Raises Unreadable for a curve that does not reach the end of reversal, or has too few points on the way."""
+def check_points(curve: FrictionCurve) -> None:
+    """Raises UnreadableCurve for a curve that ends below the end of reversal or has too few points up to it."""
     end, below = curve.end.value, curve.speed[curve.speed < curve.end.value]
     if not curve.speed.size or curve.speed[-1] < end * (1.0 - _ROUNDING):
         last = f"ends at belt speed {curve.speed[-1]:.6g}," if curve.speed.size else "has no points"
-        raise Unreadable(f"the curve {last} below the end of reversal, {end:.6g}")
+        raise UnreadableCurve(f"the curve {last} below the end of reversal, {end:.6g}")
     if below.size < LEAST_POINTS:
-        raise Unreadable(f"{below.size} points below the end of reversal, {end:.6g}; needs {LEAST_POINTS}")
+        raise UnreadableCurve(
+            f"{below.size} points below the end of reversal, {end:.6g}; needs {LEAST_POINTS}"
+        )
     places = np.concatenate(([0.0], below, [end]))
     gap = int(np.argmax(np.diff(places)))
     if places[gap + 1] - places[gap] > WIDEST_GAP * end:
         between = f"{places[gap]:.6g} and {places[gap + 1]:.6g}"
-        raise Unreadable(f"no point between belt speeds {between}, more than {WIDEST_GAP:.0%} of the range")
+        raise UnreadableCurve(
+            f"no point between belt speeds {between}, more than {WIDEST_GAP:.0%} of the range"
+        )
     if curve.end_friction - curve.start.value <= 2.0 * float(curve.error.max()) + curve.start.error:
-        raise Unreadable(_FLAT)
+        raise UnreadableCurve(_FLAT)
 
 
-class Monotone(NamedTuple):
-    """A continuously differentiable piecewise cubic through points, without overshoot; see ``monotone``."""
+class MonotoneCubic(NamedTuple):
+    """A continuously differentiable piecewise cubic through points, without overshoot; see ``monotone_cubic``."""
 
     x: Floats
     y: Floats
     slope: Floats
 
     def __call__(self, at: ArrayLike) -> Floats:
-        """The values at any places; those outside the points take the value of the nearest one."""
+        """Values of the interpolant; outside the points the value of the nearest one."""
         x = np.clip(np.asarray(at, dtype=np.float64), self.x[0], self.x[-1])
         left = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, len(self.x) - 2)
         width = self.x[left + 1] - self.x[left]
@@ -148,10 +154,10 @@ class Monotone(NamedTuple):
         return np.asarray(self.y[left] + s * (self.slope[left] + s * (square + s * cube)))
 
 
-def monotone(x: Floats, y: Floats) -> Monotone:
+def monotone_cubic(x: Floats, y: Floats) -> MonotoneCubic:
     """The monotone cubic through points, x strictly rising, at least two of them.
 
-    Slopes of the parabola through each point and its neighbours, limited so that nothing overshoots: second
+    Slopes of the parabola through each point and its neighbours, limited to prevent overshoot: second
     order on any spacing and, unlike the harmonic mean of the chords, third where the curve is smooth.
 
     Source: Steffen, Astron. Astrophys. 239 (1990), Eqs. 8, 11, 24-27.
@@ -159,14 +165,14 @@ def monotone(x: Floats, y: Floats) -> Monotone:
     width = np.diff(x)
     chord = np.diff(y) / width
     if len(chord) == 1:
-        return Monotone(x, y, np.repeat(chord, 2))
+        return MonotoneCubic(x, y, np.repeat(chord, 2))
     before, after = chord[:-1], chord[1:]
     parabola = (before * width[1:] + after * width[:-1]) / (width[1:] + width[:-1])
     least = np.minimum(np.minimum(np.abs(before), np.abs(after)), 0.5 * np.abs(parabola))
     inner = (np.sign(before) + np.sign(after)) * least
     first = _end_slope(chord[0], chord[1], width[0] / (width[0] + width[1]))
     last = _end_slope(chord[-1], chord[-2], width[-1] / (width[-1] + width[-2]))
-    return Monotone(x, y, np.concatenate(([first], inner, [last])))
+    return MonotoneCubic(x, y, np.concatenate(([first], inner, [last])))
 
 
 def _end_slope(near: float, far: float, share: float) -> float:

@@ -1,8 +1,8 @@
-"""The shape of a friction curve: on which side of its chord it runs, by how much, and how sure that is.
+"""The shape of a friction curve: its side of the chord, the area between them, and the errors of both.
 
-Mean friction m over belt speed, from rest to the end of reversal v_e, from where on slip neither reverses nor
-sticks. Every number comes with an error made of the errors of the points, of their spacing, and of what is not
-known about both ends.
+The curve is mean friction m over belt speed, from rest to the end of reversal v_e, above which slip neither
+reverses nor sticks. Every number has an error bound: the sum of the effects of the errors of the points, of their
+spacing, and of both ends.
 """
 
 from __future__ import annotations
@@ -14,36 +14,36 @@ import numpy as np
 
 from frictionlab.quantities import Floats
 from frictionlab.shape.interpolant import (
-    MEASURE,
-    SHARE,
+    ABSCISSAE,
+    AREA_WEIGHTS,
     STEP,
     WINDOW,
-    Course,
-    Curve,
-    Measured,
-    Unreadable,
-    check,
-    course_of,
+    Estimate,
+    FrictionCurve,
+    Interpolant,
+    UnreadableCurve,
+    check_points,
+    interpolant_of,
 )
 
-__all__ = ["Curve", "Measured", "Shape", "Unreadable", "reduction", "shape_of"]
+__all__ = ["Estimate", "FrictionCurve", "Shape", "UnreadableCurve", "reduction", "shape_of"]
 
 
 @dataclass(frozen=True)
 class Shape:
-    """The measures of a curve; ``initial`` is None where the points begin too late for it.
+    """The measures of a curve; ``initial`` is None where no points lie near enough to rest.
 
     area: chord area; > 0 above the chord. window_area: the same over the first 0.8 of the range, against its
     own chord. half: friction at half the range over that at its end. initial: curvature at rest. above, below:
     the parts of the area on either side of the chord, area = above - below.
     """
 
-    area: Measured
-    window_area: Measured
-    half: Measured
-    initial: Measured | None
-    above: Measured
-    below: Measured
+    area: Estimate
+    window_area: Estimate
+    half: Estimate
+    initial: Estimate | None
+    above: Estimate
+    below: Estimate
 
     @property
     def by_area(self) -> str:
@@ -62,36 +62,38 @@ class Shape:
         return ("undecided", "convex", "concave")[self.initial.sign]
 
 
-def shape_of(curve: Curve) -> Shape:
-    """Every measure of a curve with its error. Raises Unreadable."""
-    check(curve)
-    best = course_of(curve)
-    error = _total([_of_points(curve, best), _of_spacing(curve, best), *_of_ends(curve, best)])
-    above, below = (2.0 * float(MEASURE @ np.maximum(side * (best.range - SHARE), 0.0)) for side in (1, -1))
+def shape_of(curve: FrictionCurve) -> Shape:
+    """Every measure of a curve with its error. Raises UnreadableCurve."""
+    check_points(curve)
+    best = interpolant_of(curve)
+    error = _total([_point_errors(curve, best), _spacing_errors(curve, best), *_end_errors(curve, best)])
+    above, below = (
+        2.0 * float(AREA_WEIGHTS @ np.maximum(side * (best.range - ABSCISSAE), 0.0)) for side in (1, -1)
+    )
     return Shape(
-        area=Measured(_area(best.range), error.area),
-        window_area=Measured(_area(best.window), error.window_area),
-        half=Measured(best.half, error.half),
-        initial=Measured(best.initial, error.initial) if _starts_early(curve) else None,
-        above=Measured(above, error.area),
-        below=Measured(below, error.area),
+        area=Estimate(_area(best.range), error.area),
+        window_area=Estimate(_area(best.window), error.window_area),
+        half=Estimate(best.half, error.half),
+        initial=Estimate(best.initial, error.initial) if _reaches_rest(curve) else None,
+        above=Estimate(above, error.area),
+        below=Estimate(below, error.area),
     )
 
 
-def reduction(normalized: Floats, error: Floats) -> Measured:
+def reduction(normalized: Floats, error: Floats) -> Estimate:
     """The largest fall of friction below that of steady sliding over the points: 1 - m/steady.
 
     normalized: mean friction over that of steady sliding, at rising belt speeds; error: of that ratio. Where the
-    least value lies between others, a quarter of the rise beside it is added for the dip between the points.
+    least value lies between others, a quarter of the rise beside it is added for the minimum between the points.
     """
     at = int(np.argmin(normalized))
     beside = normalized[at - 1 : at + 2] if 0 < at < len(normalized) - 1 else normalized[at : at + 1]
     dip = 0.25 * float(np.max(beside) - normalized[at])
-    return Measured(float(1.0 - normalized[at]), float(error[at]) + dip)
+    return Estimate(float(1.0 - normalized[at]), float(error[at]) + dip)
 
 
 class _Error(NamedTuple):
-    """What one uncertainty can do to each measure."""
+    """The effect of one uncertainty on each measure."""
 
     area: float
     window_area: float
@@ -103,30 +105,30 @@ def _total(errors: list[_Error]) -> _Error:
     return _Error(*(float(sum(parts)) for parts in zip(*errors, strict=True)))
 
 
-def _area(course: Floats) -> float:
-    return 2.0 * float(MEASURE @ course) - 1.0
+def _area(rise: Floats) -> float:
+    return 2.0 * float(AREA_WEIGHTS @ rise) - 1.0
 
 
 def _between(one: Floats, other: Floats) -> float:
-    """The area between two courses, in the units of the area between a course and its chord."""
-    return 2.0 * float(MEASURE @ np.abs(one - other))
+    """The area between two interpolants, in the units of the area between a curve and its chord."""
+    return 2.0 * float(AREA_WEIGHTS @ np.abs(one - other))
 
 
-def _starts_early(curve: Curve) -> bool:
+def _reaches_rest(curve: FrictionCurve) -> bool:
     """Whether two points lie within the second difference at rest."""
     return int(np.count_nonzero(curve.speed <= 2.0 * STEP * curve.end.value)) >= 2
 
 
-def _of_points(curve: Curve, best: Course) -> _Error:
-    """The errors of the points; and the first interval, where a curve that rises may run anywhere."""
+def _point_errors(curve: FrictionCurve, best: Interpolant) -> _Error:
+    """The effect of the errors of the points, and of the first interval, in which the curve is only known to rise."""
     low, high = curve.start.value, curve.end_friction
     rise, share = high - low, curve.speed / curve.end.value
-    edge = max(float(np.interp(WINDOW, SHARE, best.range)), 1e-12)  # a curve may fall again
+    edge = max(float(np.interp(WINDOW, ABSCISSAE, best.range)), 1e-12)  # a curve may fall again
     before = abs(float(curve.friction[0]) - low) / rise * float(share[0])
     places = [WINDOW, 0.5, 1.0, STEP, 2.0 * STEP]
     at_edge, middle, last, first, second = (float(error) for error in np.interp(places, share, curve.error))
     mean, mean_in_window = (
-        float(MEASURE @ np.interp(width * SHARE, share, curve.error)) for width in (1.0, WINDOW)
+        float(AREA_WEIGHTS @ np.interp(width * ABSCISSAE, share, curve.error)) for width in (1.0, WINDOW)
     )
     return _Error(
         2.0 * (mean + last) / rise + before,
@@ -136,20 +138,20 @@ def _of_points(curve: Curve, best: Course) -> _Error:
     )
 
 
-def _of_spacing(curve: Curve, best: Course) -> _Error:
-    """The distance to the course through every second point; at one place it is the largest one around it.
+def _spacing_errors(curve: FrictionCurve, best: Interpolant) -> _Error:
+    """The distance to the interpolant of every second point; for a local measure the largest distance around it.
 
-    Twice the spacing makes the error of the interpolant four times as large or more.
+    Twice the spacing makes the error of the interpolant at least four times as large.
     """
-    every = slice((curve.speed.size - 1) % 2, None, 2)  # the last point, which closes the range, stays
+    every = slice((curve.speed.size - 1) % 2, None, 2)  # keep the last point, the end of the range
     columns = {name: getattr(curve, name)[every] for name in ("speed", "friction", "error")}
-    coarse = course_of(replace(curve, **columns))
-    early = SHARE < 3.0 * STEP
+    coarse = interpolant_of(replace(curve, **columns))
+    early = ABSCISSAE < 3.0 * STEP
     rises = best.range[early][-1] > 0.0 < coarse.range[early][-1]
     scale = (
         best.range[early][-1] / coarse.range[early][-1] if rises else 1.0
-    )  # a coarser end, the same beginning
-    away = np.abs(coarse.range - best.range)[np.abs(SHARE - 0.5) < 2.0 * STEP]
+    )  # compare the beginnings at the same scale
+    away = np.abs(coarse.range - best.range)[np.abs(ABSCISSAE - 0.5) < 2.0 * STEP]
     bent = np.abs(scale * coarse.range - best.range)[early]
     return _Error(
         _between(coarse.range, best.range),
@@ -159,14 +161,14 @@ def _of_spacing(curve: Curve, best: Course) -> _Error:
     )
 
 
-def _of_ends(curve: Curve, best: Course) -> list[_Error]:
-    """What becomes of each measure where an end of the curve lies at an end of its own range."""
-    starts = [replace(curve, start=Measured(place, 0.0)) for place in curve.start.ends]
-    ends = [replace(curve, end=Measured(place, 0.0)) for place in curve.end.ends]
-    return [_largest([course_of(other) for other in alike], best) for alike in (starts, ends) if alike]
+def _end_errors(curve: FrictionCurve, best: Interpolant) -> list[_Error]:
+    """The change of each measure when the start or the end of the curve moves to a bound of its interval."""
+    starts = [replace(curve, start=Estimate(place, 0.0)) for place in curve.start.ends]
+    ends = [replace(curve, end=Estimate(place, 0.0)) for place in curve.end.ends]
+    return [_largest([interpolant_of(other) for other in alike], best) for alike in (starts, ends) if alike]
 
 
-def _largest(others: list[Course], best: Course) -> _Error:
+def _largest(others: list[Interpolant], best: Interpolant) -> _Error:
     return _Error(
         max(_between(other.range, best.range) for other in others),
         max(_between(other.window, best.window) for other in others),

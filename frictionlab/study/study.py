@@ -15,7 +15,7 @@ from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.registry.law_file import LawFile
-from frictionlab.scene.dimensional import Scales, scaled_law
+from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.scene.scene import Scene
 from frictionlab.study.mistakes import number_text
 
@@ -221,7 +221,7 @@ class Study:
         return {name: v for name, v in law.parameters.items() if f"laws.{law.label}.{name}" not in swept}
 
 
-def _in_scene(law: FrictionLaw, scales: Scales | None, normal_load: float | None) -> FrictionLaw:
+def _in_scene(law: FrictionLaw, scales: Units | None, normal_load: float | None) -> FrictionLaw:
     """A law as given, in these scales and per unit of this normal load."""
     assert normal_load is not None  # no valid scene is without
     scaled = law if scales is None else scaled_law(law, scales)

@@ -15,7 +15,7 @@ from hypothesis import Phase, given
 from hypothesis import strategies as st
 from hypothesis.errors import Unsatisfiable
 
-from frictionlab.faults import in_words
+from frictionlab.faults import describe_error
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.testing.check import Check
 from frictionlab.testing.example import Given
@@ -93,7 +93,7 @@ def _said(problem: Exception, law: type[FrictionLaw]) -> str:
     if isinstance(problem, AssertionError):
         return str(problem)
     files = {getattr(sys.modules.get(kind.__module__), "__file__", None) for kind in law.__mro__[:-1]}
-    return in_words(problem, {file for file in files if file is not None and "pydantic" not in file})
+    return describe_error(problem, {file for file in files if file is not None and "pydantic" not in file})
 
 
 @contextmanager

@@ -1,6 +1,6 @@
 """Mean friction of compliant contacts under a prescribed slip, in the limits of soft and of stiff bristles.
 
-Sinusoidal slip of displacement amplitude X rides on the belt's; ratio is belt speed over its velocity amplitude,
+The slip is the sum of the belt's and a sine of displacement amplitude X; ratio is belt speed over velocity amplitude,
 presliding the presliding length over X. A mean is relative to the friction coefficient of steady sliding.
 """
 
@@ -18,8 +18,8 @@ from frictionlab.theory.loops import moment
 def slip_back_and_forth(ratio: ArrayLike) -> tuple[Floats, Floats]:
     """The slip against and along the belt's, per period [X], of a sine along the belt.
 
-    2 (sin t - t cos t) and that plus 2 pi cos t, with cos t = ratio, whose sign does not matter; nothing goes back
-    from ratio 1 on.
+    2 (sin t - t cos t) and that plus 2 pi cos t, with cos t = ratioof either sign; from ratio 1 on the slip
+    against the belt is 0.
     """
     size = np.abs(np.asarray(ratio, dtype=np.float64))
     angle = np.arccos(np.minimum(size, 1.0))
@@ -37,7 +37,7 @@ def mean_soft_dahl(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
     """Mean Dahl friction under a sine along the belt, where the bristles are soft: (1 - r)/(1 + r).
 
     r = (slip back/slip forth)^(1/exponent); for exponent 1 the mean velocity over the mean speed, which LuGre
-    friction of constant g shares. Missed by the order of presliding^-2 at finite stiffness.
+    friction of constant g shares. The error at finite stiffness is of order presliding^-2.
 
     ratio [-]: belt speed over velocity amplitude, any sign; exponent [-] > 0.
     Source: averaging Dahl (1968) over a period in which friction hardly changes.
@@ -61,11 +61,11 @@ def mean_soft_transverse(ratio: ArrayLike) -> Floats:
 
 
 def mean_soft_circular(ratio: ArrayLike) -> Floats:
-    """Mean friction of soft vectorial Dahl or LuGre bristles along the belt, under a slip that turns.
+    """Mean friction of soft vectorial Dahl or LuGre bristles along the belt, under a circular slip.
 
     Mean velocity over mean speed, ratio/[(2/pi) (1 + ratio) E(2 sqrt(ratio)/(1 + ratio))]: above Coulomb's.
 
-    ratio [-]: belt speed over the speed of the turning slip, any sign. Source: averaging, as ``mean_soft_dahl``.
+    ratio [-]: belt speed over the speed of the circular slip, any sign. Source: averaging, as ``mean_soft_dahl``.
     """
     from scipy.special import ellipe
 
@@ -78,8 +78,8 @@ def mean_soft_circular(ratio: ArrayLike) -> Floats:
 def mean_soft_elasto_plastic(ratio: ArrayLike, breakaway_ratio: float) -> Floats:
     """Mean elasto-plastic friction of constant g under a sine along the belt, where the bristles are soft.
 
-    m of m alpha(m) = 1 - slip back/slip forth, alpha rising from 0 at breakaway_ratio to 1 at 1: not less than
-    breakaway_ratio however slow the belt, since nothing drifts below. The sign is that of the belt.
+    m solves m alpha(m) = 1 - slip back/slip forth, alpha rising from 0 at breakaway_ratio to 1 at 1: at least
+    breakaway_ratio however slow the belt, since bristles are elastic below. m has the belt's sign.
 
     ratio [-]: belt speed over velocity amplitude, not 0; breakaway_ratio [-] in (0, 1).
     Source: averaging Dupont et al. (2002), IEEE TAC 47, 787, as ``mean_soft_dahl``.
@@ -119,10 +119,10 @@ def mean_soft_jenkins(ratio: ArrayLike, presliding: ArrayLike) -> Floats:
 
 
 def stiff_correction(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
-    """What a stiff Dahl contact adds to Coulomb's mean under a sine along the belt, per presliding/X.
+    """Mean friction of a stiff Dahl contact minus Coulomb's, under a sine along the belt, per presliding/X.
 
     (2/(3 pi)) H ratio/(1 - ratio^2), H = 2^(1 - i)/(2 - i) the path, in presliding lengths, over which the jump of
-    friction at a reversal is felt: 1 for exponent i = 1 and for 0, an ideal spring that slips (Jenkins). The terms
+    friction at a reversal is spread: 1 for exponent i = 1 and for 0, an ideal spring that slips (Jenkins). The terms
     in sqrt(presliding) of the two reversals of a period cancel. Infinite for i >= 2, where it falls more slowly.
 
     ratio [-]: belt speed over velocity amplitude, in (-1, 1), not near its ends; exponent [-] >= 0.

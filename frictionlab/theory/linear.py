@@ -1,4 +1,4 @@
-"""The body without friction."""
+"""The friction-free response of the body."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ def friction_free_velocity(scene: Scene) -> float:
     """V_lin: the velocity amplitude of x1 without friction [omega_1 L], infinite at undamped resonance.
 
     Amplitude of the linear response to the load along x1; for a prescribed slip its own amplitude along x1.
-    Above it a body of one degree of freedom never reverses its slip: the kink of the curve, for every law of
-    constant sliding friction.
+    At belt speeds above it a body of one degree of freedom under constant sliding friction never reverses its slip;
+    the curve of the mean has its kink there.
 
     Source: Sulollari, van Dalen & Cabboi, Eq. 6 (there the response where friction is a small perturbation).
     """

@@ -1,4 +1,4 @@
-"""Loops of friction over slip: Dahl's path from anywhere, closed loops, their first harmonic, drift.
+"""Hysteresis loops of friction over slip: Dahl's path, closed loops, their first harmonic, drift.
 
 Friction is relative to its limit mu, lengths to the presliding length mu/stiffness, so a stiffness is relative to
 that of the bristles. A describing function is the complex stiffness k + i Omega c of one harmonic of slip.
@@ -18,7 +18,7 @@ def dahl_path(start: ArrayLike, path: ArrayLike, exponent: float = 1.0) -> Float
     """Friction after slip of this length in one direction, along which friction is counted, by the law of Dahl.
 
     u = 1 - friction falls as u' = -sgn(u) |u|^i: exp(-path) for i = 1, else u^(1 - i) = u_0^(1 - i) + (i - 1) path,
-    which for i < 1 ends at the limit exactly. Written with log1p, so that i near 1 loses nothing.
+    which for i < 1 ends at the limit exactly. Evaluated with log1p to keep all digits for i near 1.
 
     start [mu]: friction at the beginning, beyond its limit too; path [presliding lengths] >= 0; exponent i >= 0.
     Source: integral of Dahl (1968), Aerospace TOR-0158(3107-18)-1.

@@ -1,4 +1,4 @@
-"""Curves of Coulomb friction by balancing one harmonic."""
+"""Curves of mean Coulomb friction by balance of one harmonic."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from frictionlab.scene.scene import Scene
 def one_harmonic_velocity(scene: Scene, friction: float, ratio: ArrayLike) -> Floats:
     """Velocity amplitude of x1 by balancing one harmonic of Coulomb friction, explicit in belt speed over amplitude.
 
-    With A = 1 - Omega^2, a = 2 beta Omega, c = 4 friction/pi and s = sqrt(1 - ratio^2),
-    V = Omega (P^2 - c^2 s^2) / (a c s + sqrt(P^2 (A^2 + a^2) - A^2 c^2 s^2)): the positive root of Eq. 8, written
-    without cancellation. The belt speed is then ratio*V and the mean (2/pi) arcsin(ratio): a curve without a search.
+    With A = 1 - Omega^2, a = 2 beta Omega, c = 4 friction/pi and s = sqrt(1 - ratio^2), V = Omega (P^2 - c^2 s^2) /
+    (a c s + sqrt(P^2 (A^2 + a^2) - A^2 c^2 s^2)): the positive root of Eq. 8, written without cancellation. The
+    belt speed is then ratio*V and the mean (2/pi) arcsin(ratio): no root has to be searched.
 
     friction = mu*normal_load [K_1 L]; ratio [-] in [0, 1]. Zero where the load cannot overcome the friction's first
     harmonic, P <= c s. Source: Sulollari, van Dalen & Cabboi, Eqs. 8-9, solved for V.
@@ -43,9 +43,9 @@ def one_harmonic_least_ratio(scene: Scene, friction: float) -> float:
 
 
 CONCAVE_BY_INITIAL_CURVATURE = math.pi / 16.0
-"""Friction force over unbalance from which on a curve at resonance starts concave, by one harmonic."""
+"""Friction force over unbalance above which a curve at resonance starts concave, by one harmonic."""
 CONCAVE_BY_AREA = math.pi / 4.0 * (2.0 - math.pi / 2.0)
-"""The same by chord area: ``chord_area_at_resonance`` is zero there."""
+"""Friction force over unbalance at which ``chord_area_at_resonance`` is zero."""
 
 
 def chord_area_at_resonance(ratio: ArrayLike) -> Floats:
@@ -61,7 +61,7 @@ def chord_area_at_resonance(ratio: ArrayLike) -> Floats:
 
 
 def initial_concavity(scene: Scene, friction: float) -> float:
-    """How far the curve of a scene starts concave, by one harmonic: 4 c (c + a V_0)/P^2 - 1, > 0 if it does.
+    """Initial curvature of the curve of a scene, by one harmonic: 4 c (c + a V_0)/P^2 - 1, > 0 if concave.
 
     Forces of one harmonic at frequency Omega: P of the drive, c = (4/pi) friction, a V of the dashpot; V_0 is the
     velocity amplitude on a belt at rest. At resonance the sign changes at friction = (pi/16) unbalance, whatever
@@ -71,7 +71,7 @@ def initial_concavity(scene: Scene, friction: float) -> float:
     Source: expansion of Sulollari, van Dalen & Cabboi, Eqs. 5, 8 and 9, for small v_b.
     """
     if scene.degrees_of_freedom == 0 or not scene.mass().force:
-        raise ValueError("a curve starts concave or convex by its drive: this scene has none")
+        raise ValueError("initial_concavity: the scene has no drive")
     mass, harmonic = scene.mass(), 4.0 / math.pi * friction
     force = abs(mass.force)
     if force <= harmonic:

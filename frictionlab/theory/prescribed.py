@@ -1,4 +1,4 @@
-"""Mean Coulomb friction under a slip that is prescribed."""
+"""Mean Coulomb friction under prescribed slip."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def mean_prescribed_transverse(ratio: ArrayLike) -> Floats:
 
 
 def mean_prescribed_circular(ratio: ArrayLike) -> Floats:
-    """Mean Coulomb friction along the belt under a slip of constant speed that turns at a constant rate.
+    """Mean Coulomb friction along the belt under circular slip: constant speed, direction turning at a constant rate.
 
     (2/pi) [E(k) - (1 - k^2) K(k)]/k with modulus k = ratio up to 1, (2/pi) E(1/ratio) from there on: Landen's
     transformation of [(1 + r) E(m) - (1 - r) K(m)]/(pi r), m = 4r/(1 + r)^2, which loses digits at small r. The
     difference up to 1 is k^2 (1 - k^2) R_D(0, 1, 1 - k^2)/3 (DLMF 19.25.1), where nothing cancels.
 
-    ratio [-]: belt speed over the speed of the turning slip, any sign.
+    ratio [-]: belt speed over the speed of the circular slip, any sign.
     Source: gradient of the mean slip speed; elliptic integrals in the notation of Byrd & Friedman (1971).
     """
     from scipy.special import ellipe, elliprd

@@ -1,4 +1,4 @@
-"""When the mass stays at rest on a belt at rest, and the friction that can hold it there."""
+"""Static equilibrium of the mass on a belt at rest."""
 
 from __future__ import annotations
 
@@ -8,34 +8,34 @@ from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.scene.scene import Scene
 
 CREEP = 1e-9
-"""Slip speed that counts as slow."""
+"""Slip speed at which the friction of slow slip is evaluated."""
 
 
 def friction_at_rest(law: FrictionLaw) -> float:
-    """The coefficient that slip must overcome to begin, slowly."""
+    """The friction coefficient at the onset of slip."""
     if isinstance(law, SlidingLaw):
         return law.static_friction()
     return law.sliding_friction(0.0) or law.sliding_friction(
         CREEP
-    )  # regularised at rest it is that of slow slip
+    )  # a law that is zero at rest is evaluated in slow slip
 
 
 def stays_at_rest(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether friction can hold the loads for ever on a belt at rest; a bristle always gives a little."""
+    """Whether static friction balances the loads at all times on a belt at rest; bristles always deflect: False."""
     if not isinstance(law, SlidingLaw):
         return False
     return scene.belt_speed == 0.0 and resting_range(scene, law) >= 0.0
 
 
 def resting_range(scene: Scene, law: SlidingLaw) -> float:
-    """The largest mean friction coefficient of a mass at rest on a belt at rest; negative where none can rest.
+    """The largest mean friction coefficient of a mass at rest on a belt at rest; negative where rest is impossible.
 
-    The spring holds k, friction the rest of the load: |load - k| <= limit all the time, a convex set of k,
-    symmetric about zero; the mean is k1/normal_load.
+    The spring force k and friction balance the load: |load - k| <= limit at all times, a convex set of k symmetric
+    about zero; the mean is k1/normal_load.
     """
     mass = scene.mass()
     limit = mass.normal_load * law.static_friction()
-    angle = np.linspace(0.0, np.pi, 721)  # the other half of the ellipse of loads mirrors this one
+    angle = np.linspace(0.0, np.pi, 721)  # the other half of the ellipse of loads follows by symmetry
     turn = np.exp(1j * angle)
     load = (mass.force * turn).imag + 1j * (mass.transverse_force * turn).imag
     load = np.concatenate([load, -load])

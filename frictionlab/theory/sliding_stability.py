@@ -1,4 +1,4 @@
-"""Steady sliding on damped bristles: its impedance, and whether a mass on a spring slides steadily."""
+"""Steady sliding on damped bristles: its impedance and its stability with a mass on a spring."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class SteadySliding:
-    """A bristle contact that slides steadily at v_0, seen by small changes of its slip velocity.
+    """A bristle contact in steady sliding at v_0, linearized for small changes of its slip velocity.
 
-    slope [force/velocity]: dg/dv of its steady friction force, viscosity apart; negative where friction falls.
-    lag [time]: g/(stiffness v_0), of the bristles behind the slip. lead [time]: damping/stiffness of the bristles.
-    viscosity [force/velocity].
+    slope [force/velocity]: dg/dv of its steady friction force, viscosity apart; negative where friction falls. lag
+    [time]: g/(stiffness v_0), by which bristles lag behind the slip. lead [time]: damping/stiffness of the
+    bristles. viscosity [force/velocity].
     """
 
     slope: float
@@ -27,9 +27,9 @@ class SteadySliding:
         return self.slope * (1.0 + self.lead * s) / (1.0 + self.lag * s) + self.viscosity
 
     def stable(self, damping: float, stiffness: float) -> bool:
-        """Whether a unit mass on this spring and dashpot slides steadily on the belt.
+        """Whether steady sliding of a unit mass on this spring and dashpot is stable.
 
-        The lag of the bristles steadies a falling characteristic. damping [force/velocity] and stiffness
+        The lag of the bristles stabilizes a falling characteristic. damping [force/velocity] and stiffness
         [force/length] per unit mass. Source: Routh (1877) on lag s^3 + b s^2 + c s + stiffness.
         """
         damped = damping + self.viscosity

@@ -7,17 +7,17 @@ from frictionlab.scene.scene import Scene
 
 
 def is_convergent(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether no two motions ever move apart, by friction's fall being slower than damping can make up for.
+    """Whether any two motions converge: damping outweighs the steepest fall of friction with speed.
 
     The steady state of a law without memory is then unique and attracts every start (Leine & van de Wouw, 2008).
-    Where nothing pushes across the belt the motion across dies out under every isotropic law, and only damping along
-    it counts. No theorem covers laws with memory.
+    Without a load across the belt the motion across decays under every isotropic law, and only the damping along
+    the belt matters. The theorem does not cover laws with memory.
     """
     return isinstance(law, SlidingLaw) and (law.monotone() or falls_slowly(scene, law))
 
 
 def falls_slowly(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether damping makes up for the steepest fall of steady sliding friction."""
+    """Whether damping outweighs the steepest fall of steady sliding friction."""
     mass = scene.mass()
     along, across = mass.damping, mass.transverse_damping
     damping = along if scene.load_along_belt_only else min(along, across)

@@ -37,6 +37,7 @@ FACTOR = 2.0
 
 @inner
 def scaled(mu, speed):
+    '''One docstring.'''
     return FACTOR * mu
 """,
     "edited.py": """
@@ -178,14 +179,22 @@ def test_an_edit_is_never_answered_by_a_stale_kernel(compiled_once, name, before
         compiled_once.edit(name, after, before)
 
 
-def test_a_comment_and_the_place_in_the_file_change_nothing(compiled_once):
-    before = compiled_once.kept()
-    compiled_once.edit("edited.py", "# a comment", "# another\n        # comment")
+@pytest.mark.parametrize(
+    ("name", "before", "after"),
+    [
+        ("edited.py", "# a comment", "# another\n        # comment"),
+        ("law_helper.py", "'''One docstring.'''", "'''Another\n\n    docstring.'''"),
+    ],
+    ids=["a comment", "a docstring"],
+)
+def test_words_and_the_place_in_the_file_change_nothing(compiled_once, name, before, after):
+    kept = compiled_once.kept()
+    compiled_once.edit(name, before, after)
     try:
         assert compiled_once.number() == 104.25
-        assert compiled_once.kept() == before
+        assert compiled_once.kept() == kept
     finally:
-        compiled_once.edit("edited.py", "# another\n        # comment", "# a comment")
+        compiled_once.edit(name, after, before)
 
 
 @pytest.mark.parametrize("root", [answer_curve, followed, rubbed, sampled, harmonic_friction, LuGre])
@@ -297,7 +306,7 @@ def test_a_law_that_numba_cannot_compile_says_so_and_still_runs_interpreted():
     with pytest.raises(CannotCompile) as caught:
         run(1.0)
     assert "law Interpreted (test_cache) cannot be compiled by numba" in str(caught.value)
-    assert "Use only float and complex arithmetic and the math module" in str(caught.value)
+    assert "In its methods use only float and complex arithmetic and the math module" in str(caught.value)
     assert friction_at.py_func(law, 1.0) == 0.4
 
 

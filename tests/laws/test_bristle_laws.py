@@ -26,11 +26,11 @@ from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.dynamics.contact import resistance
 from frictionlab.laws.dahl import Dahl
-from frictionlab.laws.elasto_plastic import ElastoPlastic, broken_away
+from frictionlab.laws.elasto_plastic import ElastoPlastic, breakaway_share
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import in_the_plane, on_the_line
-from frictionlab.scene.dimensional import Scales, scaled_law
+from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.theory import (
     SteadySliding,
     dahl_describing_function,
@@ -190,7 +190,7 @@ def test_friction_is_the_same_in_other_units_and_deflection_moves_at_the_same_sp
     law = data.draw(BRISTLE_LAWS[name])
     z = share * radius(law) * data.draw(turns)
     assume(abs(dot(z, v)) > 1e-9 * abs(z) * abs(v) and min(abs(z.real), abs(z.imag)) > 1e-9 * abs(z))
-    scales = Scales(length, time, 7.0)
+    scales = Units(length, time, 7.0)
     dz, friction = in_the_plane(law, v, z)
 
     scaled, speed = scaled_law(law, scales), scales.velocity
@@ -699,11 +699,11 @@ def test_only_laws_of_constant_g_follow_a_path_in_closed_form():
 def test_bristles_break_away_smoothly(begins, size):
     ends, step = 1.0, 1e-6 * (1.0 - begins)
 
-    assert 0.0 <= broken_away(size, begins, ends) <= 1.0
+    assert 0.0 <= breakaway_share(size, begins, ends) <= 1.0
     for corner, level in ((begins, 0.0), (ends, 1.0)):
-        assert broken_away(corner, begins, ends) == level
+        assert breakaway_share(corner, begins, ends) == level
         for side in (-1.0, 1.0):
-            assert abs(broken_away(corner + side * step, begins, ends) - level) <= 1e-11  # slope zero
+            assert abs(breakaway_share(corner + side * step, begins, ends) - level) <= 1e-11  # slope zero
 
 
 # LuGre about steady sliding, Jenkins in the plane

@@ -11,7 +11,7 @@ import pytest
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.laws.dahl import Dahl
-from frictionlab.laws.decay import fallen, steepest_fall
+from frictionlab.laws.decay import exp_power_decay, steepest_slope
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
@@ -126,11 +126,11 @@ def test_a_rational_fall_is_as_steep_as_at_its_inflection(curve: Any, steepest: 
 @pytest.mark.parametrize("power", [1.0, 1.05, 1.5, 2.0, 4.0, 30.0])
 def test_an_exponential_fall_is_as_steep_as_its_largest_slope(power: float) -> None:
     u = np.linspace(0.0, 3.0, 300_001)
-    falls = -np.diff([fallen(speed, power) for speed in u.tolist()]) / np.diff(u)
+    falls = -np.diff([exp_power_decay(speed, power) for speed in u.tolist()]) / np.diff(u)
 
-    assert fallen(0.0, power) == 1.0
-    assert fallen(1e9, power) == 0.0
-    assert steepest_fall(power) == pytest.approx(falls.max(), rel=1e-4)
+    assert exp_power_decay(0.0, power) == 1.0
+    assert exp_power_decay(1e9, power) == 0.0
+    assert steepest_slope(power) == pytest.approx(falls.max(), rel=1e-4)
 
 
 class Even(Silent):

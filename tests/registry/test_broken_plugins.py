@@ -300,7 +300,10 @@ def test_a_law_that_numba_cannot_compile_fails_its_points_with_the_authors_line(
     words = (
         "cannot be compiled by numba: a method cannot call the law's own method 'half': make that a function"
     )
-    assert f"broken plugin: law Good (some_law) {words} of the module; {line}; Use only float" in said.out
+    assert (
+        f"broken plugin: law Good (some_law) {words} of the module; {line}; In its methods use only float"
+        in said.out
+    )
     assert "1 ok, 1 failed" in said.out or "1 failed, 1 ok" in said.out
     assert "Traceback" not in said.err
 

@@ -18,7 +18,7 @@ from frictionlab.charts import figures
 from frictionlab.charts.curves import family_of, kinks
 from frictionlab.columns import RESULTS, SI
 from frictionlab.laws.base import Dimension, Positive, Record
-from frictionlab.scene.dimensional import Scales, dimensions, scaled_law
+from frictionlab.scene.dimensional import Units, dimensions, scaled_law
 from frictionlab.scene.scene import Scene
 from frictionlab.study import StudyError, parse_study
 from frictionlab.theory import friction_free_velocity
@@ -267,7 +267,7 @@ def test_every_law_in_si_units_gives_the_friction_it_gives_in_the_scales_of_a_sc
 ) -> None:
     law = data.draw(LAWS[name])
     mass, stiffness, length = body
-    scales = Scales(length, math.sqrt(mass / stiffness), stiffness * length)
+    scales = Units(length, math.sqrt(mass / stiffness), stiffness * length)
 
     scaled = scaled_law(law, scales)
     wanted = law.sliding_friction(speed)
@@ -275,7 +275,7 @@ def test_every_law_in_si_units_gives_the_friction_it_gives_in_the_scales_of_a_sc
 
 
 def test_a_law_without_a_parameter_of_speed_or_length_stays_the_very_same() -> None:
-    assert scaled_law(LAW, Scales(1e-3, 0.05, 0.8)) is LAW
+    assert scaled_law(LAW, Units(1e-3, 0.05, 0.8)) is LAW
     assert dimensions(fl.Coulomb) == {}
 
 
@@ -289,9 +289,9 @@ def test_dimensions_are_found_beside_optional_types_and_scale_by_their_powers() 
 
     assert dimensions(Contact) == {}
     assert dimensions(Marked) == {"reach": Dimension(length=1)}
-    assert scaled_law(Marked(reach=0.3), Scales(0.1, 5.0, 7.0)).reach == pytest.approx(3.0)
-    assert scaled_law(Marked(), Scales(0.1, 5.0, 7.0)) == Marked()
-    assert Scales(2.0, 3.0, 5.0).of(Dimension(force=1, length=-1, time=2)) == 5.0 / 2.0 * 9.0
+    assert scaled_law(Marked(reach=0.3), Units(0.1, 5.0, 7.0)).reach == pytest.approx(3.0)
+    assert scaled_law(Marked(), Units(0.1, 5.0, 7.0)) == Marked()
+    assert Units(2.0, 3.0, 5.0).of(Dimension(force=1, length=-1, time=2)) == 5.0 / 2.0 * 9.0
 
 
 STRIBECK: dict[str, Any] = {"kind": "stribeck", "mu_static": 0.5, "mu_kinetic": 0.3, "viscosity": 0.02}

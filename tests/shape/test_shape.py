@@ -20,8 +20,8 @@ import frictionlab as fl
 from frictionlab.columns import CURVES
 from frictionlab.results.curve_table import curve_table
 from frictionlab.scene.scene import Scene
-from frictionlab.shape.interpolant import monotone
-from frictionlab.shape.verdict import Curve, Measured, Unreadable, reduction, shape_of
+from frictionlab.shape.interpolant import monotone_cubic
+from frictionlab.shape.verdict import Estimate, FrictionCurve, UnreadableCurve, reduction, shape_of
 from frictionlab.theory import friction_free_velocity, mean_prescribed_transverse
 
 REFERENCE = Path(__file__).parents[1] / "reference"
@@ -52,23 +52,25 @@ def grids(end: float, points: int = 90) -> dict[str, Floats]:
     }
 
 
-def curve_of(form: Callable[[Floats], Floats], speed: Floats, end: float = 1.0, **changes: Any) -> Curve:
+def curve_of(
+    form: Callable[[Floats], Floats], speed: Floats, end: float = 1.0, **changes: Any
+) -> FrictionCurve:
     """A curve that keeps its last value from its end on, which is the end of reversal unless ``changes`` say else."""
     friction = form(np.minimum(speed / end, 1.0))
-    return Curve(
+    return FrictionCurve(
         **{
             "speed": speed,
             "friction": friction,
             "error": np.zeros_like(speed),
-            "start": Measured(0.0, 0.0),
-            "end": Measured(end, 0.0),
+            "start": Estimate(0.0, 0.0),
+            "end": Estimate(end, 0.0),
             "kinked": True,
         }
         | changes
     )
 
 
-def covers(measured: Measured | None, truth: float) -> bool:
+def covers(measured: Estimate | None, truth: float) -> bool:
     assert measured is not None
     return abs(measured.value - truth) <= measured.error + 1e-12
 
@@ -81,7 +83,7 @@ def test_the_interpolant_goes_through_its_points_and_never_beyond_its_neighbours
     steps: list[tuple[float, float]],
 ) -> None:
     x, y = np.cumsum([width for width, _ in steps]), np.array([value for _, value in steps])
-    path = monotone(x, y)
+    path = monotone_cubic(x, y)
     between = np.linspace(x[:-1], x[1:], 9)
 
     np.testing.assert_allclose(path(x), y, rtol=0, atol=1e-12)
@@ -94,9 +96,11 @@ def test_the_interpolant_is_exact_on_lines_and_third_order_on_what_is_smooth_and
     errors = []
     for points in (11, 21, 41, 81):
         x = np.linspace(0, 1, points)
-        errors.append(float(np.abs(monotone(x, np.exp(x))(at) - np.exp(at)).max()))
+        errors.append(float(np.abs(monotone_cubic(x, np.exp(x))(at) - np.exp(at)).max()))
 
-    np.testing.assert_allclose(monotone(np.array([0.0, 0.3, 1.0]), np.array([1.0, 1.6, 3.0]))(at), 1 + 2 * at)
+    np.testing.assert_allclose(
+        monotone_cubic(np.array([0.0, 0.3, 1.0]), np.array([1.0, 1.6, 3.0]))(at), 1 + 2 * at
+    )
     assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 2.7)
 
 
@@ -186,7 +190,7 @@ def test_points_too_uncertain_for_a_verdict_leave_it_undecided() -> None:
 @pytest.mark.parametrize("end", ["start", "end"])
 def test_what_is_not_known_about_an_end_is_in_the_errors(end: str) -> None:
     course, speed = FORMS["quarter of a circle"][0], grids(1.0)["uniform"]
-    place = Measured(0.02, 0.02) if end == "start" else Measured(0.97, 0.03)
+    place = Estimate(0.02, 0.02) if end == "start" else Estimate(0.97, 0.03)
     shape = shape_of(replace(curve_of(course, speed), **{end: place}))
 
     assert covers(shape.area, FORMS["quarter of a circle"][1])
@@ -204,12 +208,12 @@ def test_what_is_not_known_about_an_end_is_in_the_errors(end: str) -> None:
     ],
 )
 def test_a_curve_that_cannot_be_read_says_why(speed: Floats, reason: str) -> None:
-    with pytest.raises(Unreadable, match=reason):
+    with pytest.raises(UnreadableCurve, match=reason):
         shape_of(curve_of(np.sqrt, speed))
 
 
 def test_a_curve_that_does_not_rise_has_no_shape() -> None:
-    with pytest.raises(Unreadable, match="does not surely rise"):
+    with pytest.raises(UnreadableCurve, match="may not rise between"):
         shape_of(curve_of(lambda u: 0 * u, grids(1.0)["uniform"]))
 
 
@@ -218,12 +222,14 @@ def test_whatever_the_points_a_shape_has_finite_numbers_or_a_reason(
     values: list[float], kinked: bool, error: float
 ) -> None:
     speed = np.linspace(0.0, 1.3, len(values) + 1)[1:]
-    end = Measured(1.0, 0.0 if kinked else error)
+    end = Estimate(1.0, 0.0 if kinked else error)
     try:
         shape = shape_of(
-            Curve(speed, np.array(values), np.full(speed.size, error), Measured(0.0, 0.0), end, kinked)
+            FrictionCurve(
+                speed, np.array(values), np.full(speed.size, error), Estimate(0.0, 0.0), end, kinked
+            )
         )
-    except Unreadable:
+    except UnreadableCurve:
         return
     found = np.array([measured for measured in vars(shape).values() if measured is not None])
 
@@ -467,7 +473,7 @@ def test_friction_in_the_plane_above_both_loads_leaves_the_area_empty_and_says_w
 
     assert np.isfinite(row["reversal_end"])
     assert np.isnan(row["shape_area"])
-    assert "holds the body on a belt at rest" in row["reason"]
+    assert "the body sticks to a belt at rest" in row["reason"]
 
 
 def test_a_prescribed_slip_ends_its_reversals_at_its_own_amplitude() -> None:
@@ -492,7 +498,7 @@ def test_a_slip_across_the_belt_never_reverses_and_has_no_shape() -> None:
     np.testing.assert_allclose(
         table["mean_friction"], 0.4 * mean_prescribed_transverse(table["scene.belt_speed"] / 3), rtol=1e-7
     )
-    assert row["reason"] == "slip reverses at no point"
+    assert row["reason"] == "slip reverses at none of the points"
     assert row["reduction"] == pytest.approx(1 - float(mean_prescribed_transverse(0.05 / 3)), rel=1e-6)
 
 

@@ -27,9 +27,9 @@ from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.registry.records import law_record
 from frictionlab.results.curve_table import curve_table
-from frictionlab.scene.dimensional import Scales, dimensions
-from frictionlab.shape.shakedown import Hold, hold_of_a_body, hold_of_a_slip
-from frictionlab.shape.verdict import Unreadable
+from frictionlab.scene.dimensional import Units, dimensions
+from frictionlab.shape.shakedown import Shakedown, shakedown_of_body, shakedown_of_slip
+from frictionlab.shape.verdict import UnreadableCurve
 from frictionlab.study import StudyError, load_study, parse_study
 from frictionlab.study.schema import schema
 from frictionlab.theory import friction_free_velocity, mean_soft_elasto_plastic, mean_soft_jenkins
@@ -182,10 +182,10 @@ def test_a_resolved_study_loads_back_to_an_equal_one(kind: str, tmp_path: Path) 
 # Units
 
 
-units = st.builds(Scales, sizes(1e-9, 1.0), sizes(1e-6, 1.0), sizes(1e-3, 1e6))
+units = st.builds(Units, sizes(1e-9, 1.0), sizes(1e-6, 1.0), sizes(1e-3, 1e6))
 
 
-def _body_of(scales: Scales) -> dict[str, Any]:
+def _body_of(scales: Units) -> dict[str, Any]:
     """A body of these scales, of normal load 10 of them."""
     stiffness = scales.force / scales.length
     return {
@@ -202,7 +202,7 @@ def _body_of(scales: Scales) -> dict[str, Any]:
 @pytest.mark.parametrize("kind", BRISTLE_LAWS)
 @given(units, st.data())
 @settings(max_examples=15)
-def test_a_law_in_si_units_is_the_nondimensional_one(kind: str, scales: Scales, data: Any) -> None:
+def test_a_law_in_si_units_is_the_nondimensional_one(kind: str, scales: Units, data: Any) -> None:
     law = data.draw(BRISTLE_LAWS[kind])
     contact = data.draw(st.booleans())
     plain = law.model_dump(exclude_none=True)
@@ -220,7 +220,7 @@ def test_a_law_in_si_units_is_the_nondimensional_one(kind: str, scales: Scales, 
 
 
 def test_the_table_tells_the_parameters_of_a_contact_in_both_scales() -> None:
-    scales = Scales(1e-3, 0.05, 0.8)
+    scales = Units(1e-3, 0.05, 0.8)
     law = {"kind": "lugre", "mu_kinetic": 0.3, "contact_stiffness": 4000.0, "contact_damping": 80.0}
     scene = fl.Scene.model_validate({"dimensional": _body_of(scales)})
     made = registry.law_class("lugre").model_validate({k: v for k, v in law.items() if k != "kind"})
@@ -234,7 +234,7 @@ def test_the_table_tells_the_parameters_of_a_contact_in_both_scales() -> None:
 def test_a_swept_stiffness_has_its_unit_where_the_scene_is_in_si_units() -> None:
     law = {"kind": "dahl", "mu": 0.4}
     sweep = {"laws.dahl.presliding_length": [1e-4, 2e-4], "scene.dimensional.belt_speed_m_per_s": [0.1, 0.2]}
-    in_si = study(law, {"dimensional": _body_of(Scales(1e-3, 0.05, 0.8))}, sweep=sweep, methods=["mdsm"])
+    in_si = study(law, {"dimensional": _body_of(Units(1e-3, 0.05, 0.8))}, sweep=sweep, methods=["mdsm"])
     plain = study(law, sweep={"laws.dahl.presliding_length": [1, 2]}, methods=["mdsm"])
     told = [family_of(fl.run(each).table) for each in (in_si, plain)]
 
@@ -417,7 +417,7 @@ def test_bristles_that_do_not_drift_hold_what_the_vibration_leaves(
     slip = {"scene.slip.velocity_amplitude": 2 * along, "scene.slip.frequency": 2.0}
     other = {"scene.transverse_slip.velocity_amplitude": 2 * across, "scene.transverse_slip.frequency": 2.0}
     assert isinstance(law, BristleLaw)
-    limit = hold_of_a_slip(law, lambda name: (slip if along else other).get(name, 0.0)).friction()
+    limit = shakedown_of_slip(law, lambda name: (slip if along else other).get(name, 0.0)).friction()
     mu = law.sliding_friction(0.0)
     left = max(elastic - along, 0.0) if along else math.sqrt(max(elastic**2 - across**2, 0.0))
 
@@ -429,7 +429,7 @@ def test_bristles_that_do_not_drift_hold_what_the_vibration_leaves(
 def test_the_bristles_of_a_body_hold_what_its_load_leaves_as_a_stiff_contact_holds_coulomb_friction() -> None:
     scene = {"scene.damping_ratio": 0.1, "scene.normal_load": 10.0, "scene.drive.frequency": 0.5}
     law = fl.Jenkins(mu=0.4, stiffness=1e7)
-    hold = hold_of_a_body(law, lambda name: scene.get(name, 0.0), 2.5 + 0j, 0j)
+    hold = shakedown_of_body(law, lambda name: scene.get(name, 0.0), 2.5 + 0j, 0j)
 
     assert hold.friction() == pytest.approx(0.4 * (1 - 2.5 / 4), rel=1e-6)
 
@@ -437,7 +437,7 @@ def test_the_bristles_of_a_body_hold_what_its_load_leaves_as_a_stiff_contact_hol
 def test_a_soft_contact_adds_to_the_spring_and_the_dashpot_of_a_body() -> None:
     scene = {"scene.damping_ratio": 0.1, "scene.normal_load": 10.0, "scene.drive.frequency": 3.0}
     law = fl.ElastoPlastic(mu_kinetic=0.4, stiffness=0.02, damping=0.03, viscosity=0.01, breakaway_ratio=0.5)
-    hold = hold_of_a_body(law, lambda name: scene.get(name, 0.0), 9j, 0j)
+    hold = shakedown_of_body(law, lambda name: scene.get(name, 0.0), 9j, 0j)
 
     assert hold.along == pytest.approx(9j / (1 + 0.2 - 9 + 3j * (0.2 + 0.3 + 0.1)))
     assert hold.friction() == pytest.approx(0.02 * (10.0 - abs(hold.along)))
@@ -445,17 +445,17 @@ def test_a_soft_contact_adds_to_the_spring_and_the_dashpot_of_a_body() -> None:
 
 @pytest.mark.parametrize(("along", "across"), [(0.0, 0.0), (0.3, 0.3j)])
 def test_a_hold_that_is_not_known_says_so(along: complex, across: complex) -> None:
-    with pytest.raises(Unreadable, match="known"):
-        Hold(1.0, along, across, 1.0, "vectorial").friction()
+    with pytest.raises(UnreadableCurve, match="known"):
+        Shakedown(1.0, along, across, 1.0, "vectorial").friction()
 
 
 def test_bristles_per_axis_hold_along_the_belt_whatever_shakes_across_it() -> None:
-    assert Hold(1.0, 0.25, 5.0, 2.0, "per-axis").friction() == pytest.approx(1.5)
+    assert Shakedown(1.0, 0.25, 5.0, 2.0, "per-axis").friction() == pytest.approx(1.5)
 
 
 def test_undamped_resonance_of_a_contact_leaves_nothing_to_hold() -> None:
     scene = {"scene.normal_load": 1.0, "scene.drive.frequency": 2.0}
-    hold = hold_of_a_body(fl.Jenkins(mu=0.4, stiffness=3.0), lambda name: scene.get(name, 0.0), 1 + 0j, 0j)
+    hold = shakedown_of_body(fl.Jenkins(mu=0.4, stiffness=3.0), lambda name: scene.get(name, 0.0), 1 + 0j, 0j)
 
     assert hold.friction() == 0.0
 
@@ -557,7 +557,7 @@ def test_a_body_that_its_bristles_may_hold_is_believed_to_be_held_where_its_fric
 
     assert held["shape_area"] == pytest.approx(0.0, abs=0.02)
     assert held["shape_area_error"] < 0.05
-    assert "the curve would start at 0.15" in loose["reason"]
+    assert "the curve would then start at 0.15" in loose["reason"]
     assert np.isnan(loose["shape_area"])
 
 
@@ -570,7 +570,7 @@ def test_dahl_bristles_hold_no_body_however_strong_friction_is() -> None:
 
 
 def test_what_bristles_hold_is_read_in_the_scale_of_the_scene() -> None:
-    scales = Scales(1e-3, 0.05, 0.8)
+    scales = Units(1e-3, 0.05, 0.8)
     body = _body_of(scales) | {"drive": {"amplitude_N": 2.5 * scales.force, "frequency_rad_per_s": 10.0}}
     in_si = fl.Scene.model_validate({"dimensional": body})
     plain = fl.Scene(
@@ -590,7 +590,7 @@ def test_what_bristles_hold_is_read_in_the_scale_of_the_scene() -> None:
     ]
     start = 0.4 * (1 - 2.5 / (1 + 4 - 0.25))
 
-    assert [f"the curve would start at {start:.6g}" in table["reason"].iloc[0] for table in told] == [
+    assert [f"the curve would then start at {start:.6g}" in table["reason"].iloc[0] for table in told] == [
         True,
         True,
     ]

@@ -53,6 +53,6 @@ def test_the_code_of_a_mutant_takes_the_place_of_the_functions_own() -> None:
     changed = next(each for each in mutants(Path(decay.__file__)) if each.before == "-ways")
     copy = FunctionType(changed.code, vars(decay))
 
-    assert changed.function == "faded"
-    assert decay.faded(1.0) == math.exp(-1.0)
+    assert changed.function == "exp_decay"
+    assert decay.exp_decay(1.0) == math.exp(-1.0)
     assert copy(1.0) == math.exp(1.0)

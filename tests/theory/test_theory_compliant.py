@@ -14,7 +14,7 @@ from scipy.special import i1e
 from strategies import sizes
 
 from frictionlab.laws.dahl import Dahl
-from frictionlab.laws.elasto_plastic import broken_away
+from frictionlab.laws.elasto_plastic import breakaway_share
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.theory import (
     SteadySliding,
@@ -233,7 +233,7 @@ def test_soft_elasto_plastic_contacts_balance_what_breaks_away_and_never_fall_be
     mean = float(mean_soft_elasto_plastic(ratio, breakaway))
     back, forth = (float(way) for way in slip_back_and_forth(ratio))
 
-    assert mean * broken_away(mean, breakaway, 1.0) == pytest.approx(1 - back / forth, abs=1e-12)
+    assert mean * breakaway_share(mean, breakaway, 1.0) == pytest.approx(1 - back / forth, abs=1e-12)
     assert breakaway <= mean <= 1
     assert mean_soft_elasto_plastic(-ratio, breakaway) == -mean
 

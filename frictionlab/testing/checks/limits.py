@@ -12,7 +12,7 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.methods.march.method import March
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.scene.dimensional import Scales, scaled_law
+from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.scene.scene import Drive, Scene, Slip
 from frictionlab.testing.check import check
 from frictionlab.testing.checks.declared import WITH_MEMORY
@@ -30,7 +30,7 @@ SWING = 10.0
 def as_stiff(law: FrictionLaw, presliding: float) -> FrictionLaw:
     """The law in lengths and times so small that its deflection is of this length, and its speeds what they were."""
     times = _deflection(law) / presliding
-    return scaled_law(law, Scales(times, times, 1.0))
+    return scaled_law(law, Units(times, times, 1.0))
 
 
 def _deflection(law: FrictionLaw) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from frictionlab.laws.memory import MemoryLaw
-from frictionlab.scene.dimensional import Scales, scaled_law
+from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.testing.check import check
 from frictionlab.testing.contact import Response, mirrored, response, slid, turned, turns_with_slip
 from frictionlab.testing.example import Given
@@ -77,7 +77,7 @@ def unit_scaling(one: Given) -> None:
     law = one.law()
     v = one.slip()
     memory = one.memory(law)
-    scales = Scales(
+    scales = Units(
         one.draw("unit of length", sizes(1e-3, 1e3)), one.draw("unit of time", sizes(1e-3, 1e3)), 1.0
     )
     there, here = scaled_law(law, scales), response(law, v, memory)

@@ -123,7 +123,9 @@ def by_law(
     of_vectors: Any = None,
     of_yielding: Any = None,
 ) -> Any:
-    """A kernel function with several bodies of one signature, chosen by the law its first argument is.
+    """A kernel function with several bodies of one signature, chosen by the law its first argument is or holds.
+
+    The first argument is a law, or a record with a law in the field ``law``.
 
     of_path is for bristle laws on the line (no argument is complex) whose path is exact, of_memory for memory laws,
     of_vectors for those whose memories are deflections in the plane, of_yielding for those whose memories are few
@@ -136,17 +138,27 @@ def by_law(
     bodies = [getattr(body, "py_func", body) for body in (*choices, *yielding)]
 
     def chosen(*arguments: Any) -> Any:
-        law, planar = arguments[0], any(isinstance(argument, complex) for argument in arguments)
+        law, first = getattr(arguments[0], "law", arguments[0]), arguments[0]
+        inside = first if isinstance(first, tuple) else ()
+        planar = any(isinstance(argument, complex) for argument in (*arguments, *inside))
         return bodies[_which(type(law), law.structure(), planar)](*arguments)
 
     def resolve(*types: Any) -> Any:
-        law, structure = law_of_numbers[types[0].instance_class]
-        return bodies[_which(law, structure, any(isinstance(kind, numba.types.Complex) for kind in types))]
+        law, structure = law_of_numbers[_numbers_in(types[0]).instance_class]
+        kinds = *types, *types[0].types
+        return bodies[_which(law, structure, any(isinstance(kind, numba.types.Complex) for kind in kinds))]
 
     chosen.bodies = tuple(bodies)  # type: ignore[attr-defined]  # for the fingerprint to find
     resolve.__signature__ = inspect.signature(bodies[0])  # type: ignore[attr-defined]  # numba compares them
     _extending.overload(chosen, jit_options=INNER, strict=False)(resolve)
     return chosen
+
+
+def _numbers_in(first: Any) -> Any:
+    """The type of a law's numbers: that of the argument, or of its field ``law``."""
+    if first.instance_class in law_of_numbers:
+        return first
+    return first.types[first.fields.index("law")]
 
 
 def _which(law: type[FrictionLaw], structure: tuple[str, ...], planar: bool) -> int:

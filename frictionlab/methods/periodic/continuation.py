@@ -8,11 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import span
 from frictionlab.methods.periodic.attraction import reached
+from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.fixed_point import Goal, fixed_point
-from frictionlab.methods.periodic.memory_fixed_point import fixed_point_with_memory
 from frictionlab.methods.periodic.monodromy import free_inverse, monodromy
 from frictionlab.methods.periodic.period_map import period_map, size_of
 from frictionlab.orbit.read import READ, read
@@ -66,10 +65,6 @@ def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) ->
     return best
 
 
-closed_by = by_law(fixed_point, fixed_point_with_memory, None, fixed_point_with_memory)
-"""The fixed point of the period map from a guess, by the way that suits the law."""
-
-
 @inner
 def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, like: Any) -> Any:
     """States [n, size] and results [n, 6]: mean friction, across, error, maps, share of stick, slowest slip."""
@@ -86,10 +81,10 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, 
                     z[row] = guess[0, row]
         else:
             _extrapolated(states, belt_speeds, i, min(order, known), z)
-        closed = closed_by(law, body, belt_speeds[i], z, inverse, goal, expected, like)
+        closed = fixed_point(Case(law, body, belt_speeds[i], like), z, inverse, goal, expected)
         if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
             free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
-            closed = closed_by(law, body, belt_speeds[i], z, inverse, goal, 1e300, like)
+            closed = fixed_point(Case(law, body, belt_speeds[i], like), z, inverse, goal, 1e300)
         for row in range(size):
             states[i, row] = z[row]
         if closed.maps > 0 and known > 1:
@@ -148,7 +143,7 @@ def answer_curve(
         row = read(track.tau, track.x, track.v, track.friction, track.stick, mass, belt_speeds[i])
         for k in range(row.size):
             columns[i, k] = row[k]
-        monodromy(law, body, belt_speeds[i], states[i], 1.0, matrices[i], like)
+        monodromy(Case(law, body, belt_speeds[i], like), states[i], 1.0, matrices[i])
         if goal.asks:
             ends_there[i] = reached(law, body, belt_speeds[i], states[i], like)
     return Curve(states, results, columns, matrices, ends_there, track)

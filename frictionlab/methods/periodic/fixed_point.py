@@ -1,7 +1,9 @@
-"""Closing an orbit of a law without memory: the fixed point of a period map, and how far from it the answer is.
+"""The fixed point of a period map, and a bound on the error of the mean friction of its orbit.
 
-No two orbits of a monotone law move apart in the norm of energy (Leine & van de Wouw, 2008), which makes a Picard
-step always safe and turns a distance of states into a bound on the mean friction.
+One search serves every law: quasi-Newton steps with maps a little more accurate than the next residual; where the
+residual stops falling, a Newton step by difference quotients, then plain repetition of the map. Two estimators end
+it. No two orbits of a monotone law without memory move apart in the norm of energy (Leine & van de Wouw, 2008), so a
+distance of states bounds the mean. No theorem says so of laws with memory: there the mean's own change is measured.
 """
 
 from __future__ import annotations
@@ -11,12 +13,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import span
+from frictionlab.methods.periodic.case import Case, image_of
 from frictionlab.methods.periodic.maps.sliding import Mapped
 from frictionlab.methods.periodic.monodromy import free_inverse, newton_inverse
-from frictionlab.methods.periodic.period_map import period_map, rest_of, unpack
+from frictionlab.methods.periodic.period_map import coarsest_of, grain_of, rest_of, unpack
 from frictionlab.numerics.linalg import copy, multiply, norm, subtract
-from frictionlab.orbit.recorder import track_of
 from frictionlab.scene.body import Body
 
 MOST_MAPS = 600
@@ -24,6 +27,89 @@ MUCH_WORK = 500_000
 """Steps, some tenths of a second, after which an orbit that need not exist is no longer looked for."""
 FINER = 16.0
 """How much finer the last map is; of order eight, its own error is then a small part of what it measures."""
+ROUNDING = 2e-14
+"""What the sums of a period's friction lose to rounding, in the mean coefficient."""
+SURE = 0.05
+"""Of the bound on the mean that a distance of states gives where no two orbits move apart: it is some hundred times
+what the mean really moves, and a part of it stands in where two means agree by chance."""
+LOOSE = 2.0
+"""How much coarser than the tolerance the maps of a law with memory are; the two that end the search are finer."""
+PATIENCE = 3
+"""How often quasi-Newton steps stall before the maps of a law with memory are made finer."""
+MOST_CHECKS = 12
+"""How often the last maps of a law with memory may disagree before the search gives up."""
+
+
+class Goal(NamedTuple):
+    """What an orbit is closed for: the tolerance on the mean, and whether no two motions ever move apart.
+
+    asks: whether the two cheap starts are followed to see that they converge to the orbit.
+    """
+
+    tolerance: float
+    contracts: bool
+    asks: bool
+
+
+class FixedPoint(NamedTuple):
+    """A closed orbit's integral of friction [periods], error of the mean, and what it took; maps < 0: gave up."""
+
+    rubbed: Any
+    error: float
+    maps: int
+    stuck: float
+    closest: float
+    first: float  # residual of the guess
+
+
+class Search(NamedTuple):
+    """The state, the inverse of (monodromy - identity), the residual, and room for vectors, all [n]."""
+
+    z: Any
+    inverse: Any
+    residual: Any
+    trial: Any
+    fresh: Any
+    step: Any
+    work: Any
+
+
+class Progress(NamedTuple):
+    """How far a search is: its last map, the accuracy of that map and of the finest asked for, and what it took."""
+
+    image: Mapped
+    accuracy: float
+    finest: float
+    maps: int
+    stalls: int  # steps in a row without a fall of the residual
+    checks: int  # ends tried
+    newtons: int  # steps that were not quasi-Newton
+    error: float  # of the mean once the search has ended, else -1; infinite where it cannot go on
+
+
+@inner
+def mean_error(body: Body, residual: Any, distance: float) -> float:
+    """Bound on the error of the mean friction of an orbit that closes up to the residual.
+
+    Integrate the equation of motion along x1 over the period for the orbit and for the true one: the friction
+    impulses differ by the change of du + damping*dy, which the residual is, plus the integral of dx, which the
+    distance of the states bounds because orbits of a monotone law never move apart.
+    """
+    period = span(body)
+    ends = abs(residual[1]) + (body.damping_mean + body.damping_split) * abs(residual[0])
+    return (distance + ends / period) / body.normal_load
+
+
+@inner
+def mean_sensitivity(case: Case, search: Search, shift: Any, image: Mapped, accuracy: float) -> float:
+    """By how much the mean changes where the state, whose map is the image, is shifted."""
+    trial, residual = np.empty(search.z.size), np.empty(search.z.size)
+    subtract(search.z, shift, trial)
+    moved = image_of(case, trial, residual, accuracy)
+    return abs(moved.rubbed - image.rubbed) / span(case.body)
+
+
+# --- steps of the search --------------------------------------------------------------------------------------------
 
 
 @inner
@@ -46,69 +132,17 @@ def broyden(inverse: Any, step: Any, change: Any, work: Any) -> None:
             inverse[row, column] = inverse[row, column] + (step[row] - work[row]) * change[column]
 
 
-class Goal(NamedTuple):
-    """What an orbit is closed for: the tolerance on the mean, and whether no two motions ever move apart.
-
-    asks: whether starts that are quick to ask are to be followed until they come near.
-    """
-
-    tolerance: float
-    contracts: bool
-    asks: bool
-
-
-ROUNDING = 2e-14
-"""What the sums of a period's friction lose to rounding, in the mean coefficient."""
-
-
-class FixedPoint(NamedTuple):
-    """A closed orbit's integral of friction [periods], error of the mean, and what it took; maps < 0: gave up."""
-
-    rubbed: Any
-    error: float
-    maps: int
-    stuck: float
-    closest: float
-    first: float  # residual of the guess
-
-
 @inner
-def mean_sensitivity(
-    law: Any, body: Body, belt_speed: float, z: Any, shift: Any, image: Mapped, accuracy: float, like: Any
-) -> float:
-    """By how much the mean changes where the state z, whose map is the image, is shifted."""
-    trial, residual = np.empty(z.size), np.empty(z.size)
-    subtract(z, shift, trial)
-    moved = period_map(law, body, belt_speed, trial, residual, accuracy, track_of(0), like)
-    return abs(moved.rubbed - image.rubbed) / span(body)
-
-
-@inner
-def mean_error(body: Body, residual: Any, distance: float) -> float:
-    """Bound on the error of the mean friction of an orbit that closes up to the residual.
-
-    Integrate the equation of motion along x1 over the period for the orbit and for the true one: the friction
-    impulses differ by the change of du + damping*dy, which the residual is, plus the integral of dx, which the
-    distance of the states bounds because orbits of a monotone law never move apart.
-    """
-    period = span(body)
-    ends = abs(residual[1]) + (body.damping_mean + body.damping_split) * abs(residual[0])
-    return (distance + ends / period) / body.normal_load
-
-
-@inner
-def line_search(
-    law: Any, body: Body, belt_speed: float, z: Any, residual: Any, inverse: Any, accuracy: float, like: Any
-) -> int:
-    """Move z along the Newton step, halved until the residual falls; returns the maps it took, 8 for no fall."""
-    n = z.size
+def line_search(case: Case, search: Search, accuracy: float) -> int:
+    """Move the state along the Newton step, halved until the residual falls; the maps it took, 8 for no fall."""
+    n, z = search.z.size, search.z
     step, trial, fresh = np.empty(n), np.empty(n), np.empty(n)
-    multiply(inverse, residual, step)
-    length, part = norm(residual), 1.0
+    multiply(search.inverse, search.residual, step)
+    length, part = norm(search.residual), 1.0
     for tried in range(1, 8):
         for i in range(n):
             trial[i] = z[i] - part * step[i]
-        period_map(law, body, belt_speed, trial, fresh, accuracy, track_of(0), like)
+        image_of(case, trial, fresh, accuracy)
         if norm(fresh) < (1.0 - 0.1 * part) * length:
             copy(trial, z)
             return tried
@@ -117,111 +151,209 @@ def line_search(
 
 
 @inner
-def fixed_point(
-    law: Any,
-    body: Body,
-    belt_speed: float,
-    z: Any,
-    inverse: Any,
-    goal: Goal,
-    expected: float,
-    like: Any,
-) -> FixedPoint:
+def newton_step(case: Case, search: Search, accuracy: float, of_quotients: float) -> Any:
+    """A Newton step with a line search, or where it fails three repetitions of the map: the image, and maps taken."""
+    z, residual = search.z, search.residual
+    regular = newton_inverse(case, z, of_quotients, search.inverse)
+    if not regular:
+        free_inverse(case.body, case.body.normal_load, search.inverse, case.like)
+    tried = line_search(case, search, accuracy)
+    maps = 2 * z.size + tried + 1
+    if not regular or tried == 8:
+        for _ in range(3):
+            image_of(case, z, residual, accuracy)
+            for i in range(z.size):
+                z[i] = z[i] + residual[i]
+        maps += 3
+    return image_of(case, z, residual, accuracy), maps
+
+
+@inner
+def quasi_newton_step(case: Case, search: Search, now: Progress) -> Progress:
+    """One Broyden step, along ``search.step``; stalls counts those after which the residual has not fallen."""
+    length = norm(search.residual)
+    finer = max(now.finest, min(now.accuracy, 1e-4 * length))
+    subtract(search.z, search.step, search.trial)
+    image = image_of(case, search.trial, search.fresh, finer)
+    falls, usable = norm(search.fresh) < 0.7 * length, norm(search.fresh) <= 1.5 * length
+    if usable:
+        for i in range(search.z.size):
+            search.step[i] = -search.step[i]
+            search.work[i] = search.fresh[i] - search.residual[i]
+        copy(search.trial, search.z)
+        copy(search.fresh, search.residual)
+        if now.accuracy <= 0.05 * length:  # a coarser map's residual would spoil the inverse
+            broyden(search.inverse, search.step, search.work.copy(), search.work)
+    stalls = 0 if falls else now.stalls + 1 if usable else max(now.stalls + 1, 2)
+    return Progress(image, finer, now.finest, now.maps + 1, stalls, now.checks, now.newtons, -1.0)
+
+
+def _recover_without_memory(
+    case: Case, search: Search, now: Progress, length: float, floor: float
+) -> Progress:
+    """Ask for finer maps where what is left is their own error, else take a Newton step."""
+    finest, newtons = now.finest, now.newtons
+    if now.accuracy <= finest and length <= 30.0 * now.accuracy and finest > floor:
+        finest = max(floor, finest / FINER)
+        return Progress(now.image, now.accuracy, finest, now.maps, 1, now.checks, newtons, -1.0)
+    image, took = newton_step(case, search, now.accuracy, finest)
+    return Progress(image, now.accuracy, finest, now.maps + took, 1, now.checks, newtons + 1, -1.0)
+
+
+def _recover_with_memory(case: Case, search: Search, now: Progress, length: float, floor: float) -> Progress:
+    """Take a Newton step; after some of them what is open is no more than what the steps of a map jump about by."""
+    image, took = newton_step(case, search, now.accuracy, now.accuracy)
+    newtons = now.newtons + 1
+    finest = max(now.finest / FINER, floor) if newtons % PATIENCE == 0 else now.finest
+    return Progress(image, now.accuracy, finest, now.maps + took, 1, now.checks, newtons, -1.0)
+
+
+# --- the two estimators of the error --------------------------------------------------------------------------------
+
+
+def _check_without_memory(case: Case, search: Search, goal: Goal, now: Progress, floor: float) -> Progress:
+    """End where a map much finer than those of the search leaves a residual whose bound is below the tolerance."""
+    z, residual, work = search.z, search.residual, search.work
+    subtract(z, search.step, search.trial)
+    copy(search.trial, z)
+    accuracy = now.finest / FINER
+    image = image_of(case, z, residual, accuracy)
+    maps, checks, doubt = now.maps + 1, now.checks + 1, 0.0
+    # where the motion sticks, the map and its inverse jump with the events: both are taken anew
+    if image.stuck > 0.0 or now.newtons > 0 or not goal.contracts:
+        if not newton_inverse(case, z, accuracy, search.inverse):
+            return Progress(image, accuracy, now.finest, maps, 0, checks, now.newtons, np.inf)
+        coarser = image_of(case, z, search.fresh, FINER * accuracy)
+        maps += 2 * z.size + 1
+        subtract(search.fresh, residual, search.fresh)
+        multiply(search.inverse, search.fresh, work)
+        doubt = mean_error(case.body, search.fresh, norm(work)) + abs(coarser.rubbed - image.rubbed) / span(
+            case.body
+        )
+        if not goal.contracts:  # no theorem: measure how the mean moves with the state
+            doubt += mean_sensitivity(case, search, work, image, accuracy)
+            multiply(search.inverse, residual, work)
+            doubt += mean_sensitivity(case, search, work, image, accuracy)
+    multiply(search.inverse, residual, work)
+    error = 2.0 * (mean_error(case.body, residual, norm(work)) + doubt)
+    error += (floor + 0.1 * accuracy) / case.body.normal_load + ROUNDING  # and the finer map's own error
+    ended = error <= goal.tolerance or (now.finest <= floor and checks > 3)
+    newtons = now.newtons + 1 if checks > 2 else now.newtons
+    return Progress(
+        image, accuracy, max(floor, accuracy), maps, now.stalls, checks, newtons, error if ended else -1.0
+    )
+
+
+def _check_with_memory(case: Case, search: Search, goal: Goal, now: Progress, floor: float) -> Progress:
+    """End where two maps much finer than those of the search change the mean by less than the tolerance.
+
+    One is taken from where the orbit was found, one from where the first says it is; what is left open in them is
+    carried to the mean by how far the mean moved between the two.
+    """
+    z, residual, fresh, step = search.z, search.residual, search.fresh, search.step
+    body, period, coarse, accuracy, maps = case.body, span(case.body), now.image, now.accuracy, now.maps
+    if accuracy <= floor:  # two maps of one accuracy agree however wrong they are
+        coarse = image_of(case, z, residual, FINER * floor)
+        maps += 1
+    accuracy = max(accuracy / FINER, floor)
+    fine = image_of(case, z, fresh, accuracy)
+    subtract(fresh, residual, search.work)  # what the coarser map has wrong
+    multiply(search.inverse, search.work, search.trial)
+    multiply(search.inverse, fresh, step)
+    subtract(z, step, z)
+    image = image_of(case, z, residual, accuracy)
+    maps, checks = maps + 2, now.checks + 1
+    slope = abs(image.rubbed - fine.rubbed) / period / (norm(step) + 1e-300)
+    doubt = max(
+        abs(image.rubbed - coarse.rubbed) / period, SURE * mean_error(body, search.work, norm(search.trial))
+    )
+    multiply(search.inverse, residual, step)
+    rest = slope * norm(step) + SURE * mean_error(body, residual, norm(step))
+    error = (
+        2.0 * rest
+        + doubt
+        + floor / body.normal_load
+        + ROUNDING
+        + grain_of(case.law, body, accuracy, case.like)
+    )
+    settles = norm(residual) <= 0.5 * norm(fresh) + 10.0 * accuracy
+    if settles and (error <= goal.tolerance or (now.finest <= floor and checks > 3)):
+        return Progress(image, accuracy, accuracy, maps, now.stalls, checks, now.newtons, error)
+    if not settles or checks > 3:
+        image, took = newton_step(case, search, accuracy, accuracy)
+        maps += took
+    ended = np.inf if checks > MOST_CHECKS else -1.0
+    return Progress(image, accuracy, accuracy, maps, now.stalls, checks, now.newtons, ended)
+
+
+check = by_law(_check_without_memory, _check_with_memory, None, _check_with_memory)
+recover = by_law(_recover_without_memory, _recover_with_memory, None, _recover_with_memory)
+
+
+def _first_accuracy_without_memory(law: Any, body: Body, tolerance: float) -> Any:
+    return 0.5 * tolerance * body.normal_load, 10.0
+
+
+def _first_accuracy_with_memory(law: Any, body: Body, tolerance: float) -> Any:
+    return min(LOOSE * tolerance * body.normal_load, coarsest_of(law, body)), 3.0
+
+
+first_accuracy = by_law(
+    _first_accuracy_without_memory, _first_accuracy_with_memory, None, _first_accuracy_with_memory
+)
+"""The accuracy of the maps that find an orbit, and how near [tolerances] it must be for its error to be asked."""
+
+
+# --- the search -----------------------------------------------------------------------------------------------------
+
+
+@inner
+def _carried_by_the_belt(case: Case, search: Search, now: Progress) -> Progress:
+    """The mass rests on the belt all the time: go on by as many periods at once as it surely does."""
+    y, _u = unpack(case.body, search.z, case.like)
+    many = rest_of(case.law, case.body, case.belt_speed, y + span(case.body) * case.belt_speed)
+    for i in range(search.z.size):
+        search.z[i] = search.z[i] + many * search.residual[i]
+    image = image_of(case, search.z, search.residual, now.accuracy)
+    return Progress(image, now.accuracy, now.finest, now.maps + 1, now.stalls, now.checks, now.newtons, -1.0)
+
+
+@inner
+def fixed_point(case: Case, z: Any, inverse: Any, goal: Goal, expected: float) -> FixedPoint:
     """Find the fixed point from the guess z with the guess of the inverse of (monodromy - identity).
 
-    Broyden steps with maps a little more accurate than the next residual (expected: the first one); where the
-    residual stops falling, Newton with a difference Jacobian, then Picard. One criterion ends it: a map much
-    finer than those the orbit was found with leaves a residual whose bound on the mean is below the tolerance.
+    expected: the norm of the first residual; the maps are a little more accurate than the next one.
     """
-    n, tolerance = z.size, goal.tolerance
-    residual, trial, fresh, step, work = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    floor = 4e-15 * (1.0 + norm(z) + abs(belt_speed))
-    finest = max(0.5 * tolerance * body.normal_load, floor)
+    n, body, period = z.size, case.body, span(case.body)
+    search = Search(z, inverse, np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n))
+    floor = 4e-15 * (1.0 + norm(z) + abs(case.belt_speed))
+    finest, near = first_accuracy(case.law, body, goal.tolerance)
+    finest = max(finest, floor)
     accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
-    period = span(body)
-    image = period_map(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
-    maps, stalls, checks, first, troubled = 1, 0, 0, norm(residual), False
-    while maps < MOST_MAPS:
-        length = norm(residual)
-        if image.steps < 0 or not length < 1e300:
+    now = Progress(image_of(case, z, search.residual, accuracy), accuracy, finest, 1, 0, 0, 0, -1.0)
+    first = norm(search.residual)
+    while now.maps < MOST_MAPS and now.error < 0.0:
+        length = norm(search.residual)
+        if now.image.steps < 0 or not length < 1e300:
             break
-        if not goal.contracts and maps * image.steps > MUCH_WORK:
+        if not goal.contracts and now.maps * now.image.steps > MUCH_WORK:
             break  # what repels, or is not there, is not to be found: other starts will tell
-        if image.stuck >= period * (1.0 - 1e-9) and belt_speed != 0.0:
-            y, _u = unpack(body, z, like)
-            many = rest_of(law, body, belt_speed, y + period * belt_speed)
-            for i in range(n):  # carried by the belt all the time: go on by many periods at once
-                z[i] = z[i] + many * residual[i]
-            image = period_map(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
-            maps += 1
+        if now.image.stuck >= period * (1.0 - 1e-9):
+            if case.belt_speed == 0.0:  # at rest on a belt at rest
+                error = floor / body.normal_load + ROUNDING
+                return FixedPoint(now.image.rubbed, error, now.maps, now.image.stuck, 0.0, first)
+            now = _carried_by_the_belt(case, search, now)
             continue
-        if image.stuck >= period * (1.0 - 1e-9):  # at rest on a belt at rest
-            return FixedPoint(
-                image.rubbed, floor / body.normal_load + ROUNDING, maps, image.stuck, 0.0, first
-            )
-        multiply(inverse, residual, step)
-        if accuracy <= finest and mean_error(body, residual, norm(step)) <= 10.0 * tolerance:
-            subtract(z, step, trial)
-            copy(trial, z)
-            accuracy = finest / FINER
-            image = period_map(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
-            maps += 1
-            checks += 1
-            doubt = 0.0
-            if (
-                image.stuck > 0.0 or troubled or not goal.contracts
-            ):  # both jump with the events: take them anew
-                if not newton_inverse(law, body, belt_speed, z, accuracy, inverse, like):
-                    break
-                coarser = period_map(law, body, belt_speed, z, fresh, FINER * accuracy, track_of(0), like)
-                maps += 2 * n + 1
-                subtract(fresh, residual, fresh)
-                multiply(inverse, fresh, work)
-                doubt = mean_error(body, fresh, norm(work)) + abs(coarser.rubbed - image.rubbed) / period
-                if not goal.contracts:
-                    doubt += mean_sensitivity(law, body, belt_speed, z, work, image, accuracy, like)
-                    multiply(inverse, residual, work)
-                    doubt += mean_sensitivity(law, body, belt_speed, z, work, image, accuracy, like)
-            multiply(inverse, residual, work)
-            error = 2.0 * (mean_error(body, residual, norm(work)) + doubt)
-            error += (floor + 0.1 * accuracy) / body.normal_load + ROUNDING  # and the finer map's own error
-            if error <= tolerance or (finest <= floor and checks > 3):
-                return FixedPoint(image.rubbed, error, maps, image.stuck, image.closest, first)
-            finest, troubled = max(floor, accuracy), troubled or checks > 2
+        multiply(inverse, search.residual, search.step)
+        if (
+            now.accuracy <= now.finest
+            and mean_error(body, search.residual, norm(search.step)) <= near * goal.tolerance
+        ):
+            now = check(case, search, goal, now, floor)
             continue
-        finer = max(finest, min(accuracy, 1e-4 * length))
-        subtract(z, step, trial)
-        image = period_map(law, body, belt_speed, trial, fresh, finer, track_of(0), like)
-        maps += 1
-        falls, usable = norm(fresh) < 0.7 * length, norm(fresh) <= 1.5 * length
-        if usable:
-            for i in range(n):
-                step[i] = -step[i]
-                work[i] = fresh[i] - residual[i]
-            copy(trial, z)
-            copy(fresh, residual)
-            if accuracy <= 0.05 * length:
-                broyden(inverse, step, work.copy(), work)
-        accuracy = finer
-        stalls = 0 if falls else stalls + 1
-        if stalls == 0 or (stalls == 1 and usable):
-            continue
-        if accuracy <= finest and length <= 30.0 * accuracy and finest > floor:
-            finest = max(floor, finest / FINER)  # what is left is the error of the map itself
-        else:
-            troubled = True
-            regular = newton_inverse(law, body, belt_speed, z, finest, inverse, like)
-            maps += 2 * n
-            if not regular:
-                free_inverse(body, body.normal_load, inverse, like)
-            tried = line_search(law, body, belt_speed, z, residual, inverse, accuracy, like)
-            maps += tried
-            for _ in range(0 if regular and tried < 8 else 3):
-                image = period_map(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
-                maps += 1
-                for i in range(n):
-                    z[i] = z[i] + residual[i]
-            image = period_map(law, body, belt_speed, z, residual, accuracy, track_of(0), like)
-            maps += 1
-        stalls = 1
-    return FixedPoint(image.rubbed, 1e300, -maps, image.stuck, image.closest, first)
+        now = quasi_newton_step(case, search, now)
+        if now.stalls > 1:
+            now = recover(case, search, now, length, floor)
+    ended = 0.0 <= now.error < 1e300
+    error, maps = (now.error, now.maps) if ended else (1e300, -now.maps)
+    return FixedPoint(now.image.rubbed, error, maps, now.image.stuck, now.image.closest, first)

@@ -10,10 +10,9 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import span
+from frictionlab.methods.periodic.case import Case, image_of
 from frictionlab.methods.periodic.maps.bristle import dimension
-from frictionlab.methods.periodic.period_map import period_map
 from frictionlab.numerics.linalg import invert, norm
-from frictionlab.orbit.recorder import track_of
 from frictionlab.scene.body import Body
 
 
@@ -70,17 +69,15 @@ shift_of = by_law(_shift_without_memory, _shift_with_a_bristle, None, _shift_wit
 
 
 @inner
-def monodromy(
-    law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, matrix: Any, like: Any
-) -> int:
-    """The derivative of the period map by central differences [n, n]; returns the maps it took.
+def monodromy(case: Case, z: Any, accuracy: float, matrix: Any) -> None:
+    """The derivative of the period map by central differences [n, n]; it takes 2 n maps.
 
     The shift stays below the way the belt moves in a period: that much slip ends a period that was all stick.
     The maps are at least as accurate as asked, and always much finer than the shift.
     """
     n = z.size
-    carried = abs(belt_speed) * span(body)
-    relative = shift_of(law, n)
+    carried = abs(case.belt_speed) * span(case.body)
+    relative = shift_of(case.law, n)
     shift = relative * (1.0 + norm(z))
     shift = min(shift, max(0.01 * carried, 1e-3 * shift)) if carried > 0.0 else shift
     accuracy = min(accuracy, relative * shift)
@@ -88,21 +85,19 @@ def monodromy(
     for column in range(n):
         for row in range(n):
             trial[row] = z[row] + (shift if row == column else 0.0)
-        period_map(law, body, belt_speed, trial, ahead, accuracy, track_of(0), like)
+        image_of(case, trial, ahead, accuracy)
         trial[column] = z[column] - shift
-        period_map(law, body, belt_speed, trial, behind, accuracy, track_of(0), like)
+        image_of(case, trial, behind, accuracy)
         for row in range(n):
             matrix[row, column] = (ahead[row] - behind[row]) / (2.0 * shift) + (1.0 if row == column else 0.0)
-    return 2 * n
 
 
 @inner
-def newton_inverse(
-    law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, inverse: Any, like: Any
-) -> bool:
+def newton_inverse(case: Case, z: Any, accuracy: float, inverse: Any) -> bool:
+    """Leave the inverse of (monodromy - identity) in inverse; False where the matrix is singular."""
     n = z.size
     matrix = np.empty((n, n))
-    monodromy(law, body, belt_speed, z, accuracy, matrix, like)
+    monodromy(case, z, accuracy, matrix)
     for row in range(n):
         matrix[row, row] = matrix[row, row] - 1.0
     return invert(matrix, inverse)

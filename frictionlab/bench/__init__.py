@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
-from frictionlab.bench.measure import Interrupted, Measured, measure
+from frictionlab.bench.measure import MeasurementInterrupted, WorkloadResult, measure
 from frictionlab.bench.reader import load_bench
 from frictionlab.bench.record import Bench, UnknownCurve
-from frictionlab.bench.report import summary, write
+from frictionlab.bench.report import bench_summary, write
 
-__all__ = ["Bench", "Interrupted", "Measured", "UnknownCurve", "load_bench", "measure", "summary", "write"]
+__all__ = [
+    "Bench",
+    "MeasurementInterrupted",
+    "UnknownCurve",
+    "WorkloadResult",
+    "bench_summary",
+    "load_bench",
+    "measure",
+    "write",
+]

@@ -14,16 +14,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.bench.measure import Measured, Row
+from frictionlab.bench.measure import Row, WorkloadResult
 from frictionlab.bench.record import Contender
-from frictionlab.bench.report import largest, remark
+from frictionlab.bench.report import largest, point_remark
 from frictionlab.charts.figures import PAGE, STYLE
 from frictionlab.runner.errors import SaveError
 
 OURS = ("#08306b", "#7f0000", "#00441b", "#4a1486", "#662506", "#252525")
 THEIRS = ("#e6550d", "#31a354", "#756bb1", "#969696")
 MARKERS, HOLLOW = "osD^v<>", "oshdPX"
-LINES = ("solid", (0, (5, 1.5)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)))
+LINE_STYLES = ("solid", (0, (5, 1.5)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)))
 LEAST = 1e-17
 """An error of zero is drawn here."""
 HEIGHT = 3.0
@@ -31,7 +31,7 @@ LETTERS = 36
 """On a line of the legend."""
 
 
-def draw(done: Sequence[Measured], folder: Path) -> list[Path]:
+def draw_charts(done: Sequence[WorkloadResult], folder: Path) -> list[Path]:
     """Draw every curve as SVG and PNG; the files written. Raises SaveError."""
     files = []
     try:
@@ -46,7 +46,7 @@ def draw(done: Sequence[Measured], folder: Path) -> list[Path]:
     return files
 
 
-def chart(measured: Measured) -> Figure:
+def chart(measured: WorkloadResult) -> Figure:
     """The chart of one curve."""
     figure = Figure(figsize=(PAGE, HEIGHT), layout="constrained")
     FigureCanvasAgg(figure)
@@ -67,7 +67,7 @@ def chart(measured: Measured) -> Figure:
     return figure
 
 
-def _looks(measured: Measured) -> Iterator[tuple[Contender, dict[str, Any], list[Row]]]:
+def _looks(measured: WorkloadResult) -> Iterator[tuple[Contender, dict[str, Any], list[Row]]]:
     """Each contender with its look: methods dark and full, peers light and hollow."""
     contenders = list({row.contender.label: row.contender for row in measured.rows}.values())
     seen = {"method": 0, "peer": 0}
@@ -79,7 +79,7 @@ def _looks(measured: Measured) -> Iterator[tuple[Contender, dict[str, Any], list
             "color": color,
             "marker": (MARKERS if ours else HOLLOW)[n % len(MARKERS if ours else HOLLOW)],
             "markerfacecolor": color if ours else "white",
-            "linestyle": LINES[n % len(LINES)],
+            "linestyle": LINE_STYLES[n % len(LINE_STYLES)],
             "markersize": 4.5,
         }
         yield contender, look, [row for row in measured.rows if row.contender is contender]
@@ -97,7 +97,7 @@ def _draw(axes: Axes, contender: Contender, look: dict[str, Any], rows: Sequence
     for x, y in partly:
         axes.plot([x], [y], marker="x", markersize=8, color="0.2", linestyle="none")
     text = contender.label + (" (peer)" if contender.side == "peer" else "")
-    without = next((remark(row) for row in rows if remark(row)), "")
+    without = next((point_remark(row) for row in rows if point_remark(row)), "")
     if without:
         told = textwrap.shorten(f"{text}; {_share(rows)}{without}", 3 * LETTERS - 12, placeholder=" ...")
         text = "\n".join(textwrap.wrap(told, LETTERS))
@@ -110,7 +110,7 @@ def _share(rows: Sequence[Row]) -> str:
     return "" if missing in (0, len(rows)) else f"at {missing} of {len(rows)} settings (x) "
 
 
-def _shade_what_is_not_known(axes: Axes, measured: Measured) -> None:
+def _shade_what_is_not_known(axes: Axes, measured: WorkloadResult) -> None:
     """Errors below those of the references cannot be told apart."""
     known = largest([largest(reference.errors) for reference in measured.references])
     low, high = axes.get_ylim()

@@ -6,20 +6,20 @@ from typing import Any, NamedTuple
 
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.peers.listing import PEERS
-from frictionlab.bench.record import Contender, Setting, Trusted
+from frictionlab.bench.record import BenchSetting, Contender, ReferenceSource
 from frictionlab.methods.base import Method
 from frictionlab.study.choices import items, method_choice
-from frictionlab.study.mistakes import Notes, Path, described
-from frictionlab.study.validation import built
+from frictionlab.study.mistakes import Notes, Path, value_text
+from frictionlab.study.validation import build_record
 
-OWN = ("tolerance", "points")
+OWN_KEYS_OF_CONTENDER = ("tolerance", "points")
 TOLERANCE = 1e-8
 
 
 class Defaults(NamedTuple):
     """What holds for every scene that does not say otherwise."""
 
-    references: tuple[Trusted, ...]
+    references: tuple[ReferenceSource, ...]
     contenders: dict[str, Contender]
 
 
@@ -58,17 +58,17 @@ def _contender(given: Any, path: Path, head: str, notes: Notes) -> Contender | N
 
 def _solver(
     item: dict[str, Any], varied: str, value: Any, path: Path, head: str, notes: Notes
-) -> tuple[Setting, Method | Peer] | None:
+) -> tuple[BenchSetting, Method | Peer] | None:
     """The item with one of its values in place of the list."""
     item = item | {varied: value} if varied else item
     tolerance = notes.number(item.get("tolerance", TOLERANCE), (*path, "tolerance"))
     if tolerance is not None and tolerance <= 0.0:
-        notes.add((*path, "tolerance"), f"must be > 0, got {described(tolerance)}")
-    told = {key: each for key, each in item.items() if key not in OWN}
+        notes.add((*path, "tolerance"), f"must be > 0, got {value_text(tolerance)}")
+    told = {key: each for key, each in item.items() if key not in OWN_KEYS_OF_CONTENDER}
     solver = _method(told, path, notes) if head == "methods" else _peer(told, path, notes)
     if solver is None or tolerance is None or notes.below(path):
         return None
-    return Setting(varied, float(value) if varied else 0.0, tolerance), solver
+    return BenchSetting(varied, float(value) if varied else 0.0, tolerance), solver
 
 
 def _method(told: dict[str, Any], path: Path, notes: Notes) -> Method | None:
@@ -88,4 +88,4 @@ def _peer(told: dict[str, Any], path: Path, notes: Notes) -> Peer | None:
     if name is None or (not label and "label" in told):
         return None
     parameters = {key: value for key, value in told.items() if key not in ("kind", "label")}
-    return built(PEERS[name], parameters, path, notes)
+    return build_record(PEERS[name], parameters, path, notes)

@@ -10,21 +10,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictionlab.bench.peers.base import Peer
-from frictionlab.bench.record import Bench, Contender, Reference, Setting, Workload
-from frictionlab.bench.references import independent, worked_out
-from frictionlab.bench.solvers import Outcome, answered, mean_task, whole_task
-from frictionlab.bench.timing import Times, timed
+from frictionlab.bench.record import Bench, BenchSetting, Contender, ReferenceMeans, Workload
+from frictionlab.bench.references import independent, reference_means
+from frictionlab.bench.solvers import SolverAnswers, mean_task, solve_points, whole_task
+from frictionlab.bench.timing import Times, time_task
 from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
 
-STATUSES = ("ok", "refused", "failed", "not_unique")
+BENCH_STATUSES = ("ok", "refused", "failed", "not_unique")
 NO_TIME = Times(math.nan, (math.nan,) * 3, 0)
 
 
-class Interrupted(Exception):
+class MeasurementInterrupted(Exception):
     """Stopped by the user; ``done`` holds the workloads measured before."""
 
-    def __init__(self, done: list[Measured]) -> None:
+    def __init__(self, done: list[WorkloadResult]) -> None:
         super().__init__("interrupted")
         self.done = done
 
@@ -38,7 +38,7 @@ class Row:
     """
 
     contender: Contender
-    setting: Setting
+    setting: BenchSetting
     points: int
     counts: dict[str, int]
     reason: str
@@ -48,34 +48,34 @@ class Row:
     covered: int | None
     mean: Times
     whole: Times
-    reference: Reference | None
+    reference: ReferenceMeans | None
 
 
 @dataclass(frozen=True)
-class Measured:
+class WorkloadResult:
     """A workload with its references and rows."""
 
     work: Workload
-    references: list[Reference]
+    references: list[ReferenceMeans]
     rows: list[Row]
 
 
-def measure(bench: Bench, tell: Callable[[str], None]) -> list[Measured]:
+def measure(bench: Bench, tell: Callable[[str], None]) -> list[WorkloadResult]:
     """Measure a bench list. Raises Interrupted with what is finished."""
-    done: list[Measured] = []
+    done: list[WorkloadResult] = []
     try:
         for work in bench.workloads:
             tell(f"{work.name}: references")
-            found = worked_out(work)
+            found = reference_means(work)
             rows = list(_rows(bench, work, found, tell))
-            done.append(Measured(work, found, rows))
+            done.append(WorkloadResult(work, found, rows))
     except KeyboardInterrupt:
-        raise Interrupted(done) from None
+        raise MeasurementInterrupted(done) from None
     return done
 
 
 def _rows(
-    bench: Bench, work: Workload, found: Sequence[Reference], tell: Callable[[str], None]
+    bench: Bench, work: Workload, found: Sequence[ReferenceMeans], tell: Callable[[str], None]
 ) -> Iterator[Row]:
     for contender in work.contenders:
         for setting, solver in contender.solvers:
@@ -86,14 +86,14 @@ def _rows(
 def _row(
     bench: Bench,
     work: Workload,
-    found: Sequence[Reference],
+    found: Sequence[ReferenceMeans],
     contender: Contender,
-    setting: Setting,
+    setting: BenchSetting,
     solver: Method | Peer,
 ) -> Row:
     places = chosen(len(work.scenes), contender.points)
     scenes = [work.scenes[place] for place in places]
-    outcome = answered(solver, scenes, work.law, setting.tolerance)
+    outcome = solve_points(solver, scenes, work.law, setting.tolerance)
     reference = independent(found, contender.kind if contender.side == "method" else "", places)
     off, covered = _off(outcome, reference, places)
     mean, whole = _times(bench, work, setting, solver, [places[i] for i in _solved(outcome)])
@@ -101,7 +101,7 @@ def _row(
         contender,
         setting,
         len(places),
-        {status: Counter(outcome.status)[status] for status in STATUSES},
+        {status: Counter(outcome.status)[status] for status in BENCH_STATUSES},
         _reason(outcome, off, reference),
         float(np.max(off)) if off.size else math.nan,
         float(np.median(off)) if off.size else math.nan,
@@ -120,7 +120,7 @@ def chosen(size: int, points: int | None) -> list[int]:
     return sorted({round(place) for place in np.linspace(0, size - 1, points).tolist()})
 
 
-def _off(outcome: Outcome, reference: Reference | None, places: list[int]) -> tuple[Floats, int]:
+def _off(outcome: SolverAnswers, reference: ReferenceMeans | None, places: list[int]) -> tuple[Floats, int]:
     """The errors of the points that are ok and known to the reference, and how many are covered."""
     if reference is None:
         return np.empty(0), 0
@@ -130,7 +130,7 @@ def _off(outcome: Outcome, reference: Reference | None, places: list[int]) -> tu
     return off, int((off <= (outcome.errors + errors)[known]).sum())
 
 
-def _reason(outcome: Outcome, off: Floats, reference: Reference | None) -> str:
+def _reason(outcome: SolverAnswers, off: Floats, reference: ReferenceMeans | None) -> str:
     """The most frequent reason of a point without a number, or why there is no error."""
     reasons = Counter(
         reason for status, reason in zip(outcome.status, outcome.reason, strict=True) if status != "ok"
@@ -146,21 +146,21 @@ def _largest(errors: Floats) -> float:
     return float(np.nanmax(errors)) if np.isfinite(errors).any() else math.nan
 
 
-def _solved(outcome: Outcome) -> list[int]:
+def _solved(outcome: SolverAnswers) -> list[int]:
     """The points worth timing: those with an answer."""
     return [i for i, status in enumerate(outcome.status) if status in ("ok", "not_unique")]
 
 
 def _times(
-    bench: Bench, work: Workload, setting: Setting, solver: Method | Peer, places: list[int]
+    bench: Bench, work: Workload, setting: BenchSetting, solver: Method | Peer, places: list[int]
 ) -> tuple[Times, Times]:
     """Time of the mean alone and of everything; the same twice where a solver cannot leave anything out."""
     if not places:
         return NO_TIME, NO_TIME
     given = [work.scenes[place] for place in places], work.law, setting.tolerance
-    whole = timed(whole_task(solver, *given), bench.repeats, bench.seconds).each_of(len(places))
+    whole = time_task(whole_task(solver, *given), bench.repeats, bench.seconds).each_of(len(places))
     task = mean_task(solver, *given)
     if task is None:
         return whole, whole
     task()  # a kernel of its own, to be compiled first
-    return timed(task, bench.repeats, bench.seconds).each_of(len(places)), whole
+    return time_task(task, bench.repeats, bench.seconds).each_of(len(places)), whole

@@ -10,17 +10,17 @@ from typing import Any
 from frictionlab import columns
 from frictionlab.bench.contenders import Defaults, contenders
 from frictionlab.bench.record import Bench, Workload
-from frictionlab.bench.references import references
+from frictionlab.bench.references import read_references
 from frictionlab.study import Mistake, Study, StudyError
 from frictionlab.study.choices import items
-from frictionlab.study.mistakes import Notes, Path, described
+from frictionlab.study.mistakes import Notes, Path, value_text
 from frictionlab.study.reader import study_of
 from frictionlab.study.yaml_source import Source, read_file
 
-KEYS = ("schema", "title", "scenes", "references", "methods", "peers", "repeats", "seconds")
+BENCH_KEYS = ("schema", "title", "scenes", "references", "methods", "peers", "repeats", "seconds")
 SCENE_KEYS = ("name", "title", "scene", "laws", "sweep", "references", "methods", "peers")
 OWN_STUDY = ("scene", "laws", "sweep")
-SCHEMA = 1
+BENCH_SCHEMA = 1
 REPEATS, SECONDS = 30, 2.0
 
 
@@ -59,16 +59,16 @@ class _Reading:
         self._tree: dict[str, Any] = source.tree
 
     def bench(self) -> Bench | None:
-        if self._notes.mapping(self._tree, (), KEYS) is None:
+        if self._notes.mapping(self._tree, (), BENCH_KEYS) is None:
             return None
         self._required()
         repeats = self._notes.whole_number(self._tree.get("repeats", REPEATS), ("repeats",), 1)
         seconds = self._notes.number(self._tree.get("seconds", SECONDS), ("seconds",))
         if seconds is not None and seconds <= 0.0:
-            self._notes.add(("seconds",), f"must be > 0, got {described(seconds)}")
+            self._notes.add(("seconds",), f"must be > 0, got {value_text(seconds)}")
         title = self._notes.text(self._tree.get("title", ""), ("title",))
         defaults = Defaults(
-            references(self._tree.get("references", []), ("references",), self._path, self._notes),
+            read_references(self._tree.get("references", []), ("references",), self._path, self._notes),
             contenders(self._tree, (), self._notes),
         )
         given = self._tree.get("scenes", [])
@@ -83,9 +83,9 @@ class _Reading:
         for key in ("schema", "scenes"):
             if key not in self._tree:
                 self._notes.add((key,), "required key is missing")
-        given = self._tree.get("schema", SCHEMA)
-        if isinstance(given, bool) or given != SCHEMA:
-            self._notes.add(("schema",), f"must be {SCHEMA}, got {described(given)}")
+        given = self._tree.get("schema", BENCH_SCHEMA)
+        if isinstance(given, bool) or given != BENCH_SCHEMA:
+            self._notes.add(("schema",), f"must be {BENCH_SCHEMA}, got {value_text(given)}")
 
     def _workloads(self, block: Any, index: int, defaults: Defaults) -> list[Workload]:
         path: Path = ("scenes", index)
@@ -93,7 +93,7 @@ class _Reading:
             return []
         name = self._name(block, path)
         title = self._notes.text(block.get("title", ""), (*path, "title"))
-        trusted = references(block.get("references", []), (*path, "references"), self._path, self._notes)
+        trusted = read_references(block.get("references", []), (*path, "references"), self._path, self._notes)
         trusted = trusted or defaults.references
         if not trusted and not self._noted("references", path):
             self._notes.add(path, "no references: give a method or values to measure errors against")
@@ -155,7 +155,7 @@ class _Reading:
 
 def _part(source: Source, block: dict[str, Any], path: Path) -> Source:
     """The keys of a block that make a study, with their places in the whole file."""
-    tree = {"schema": SCHEMA} | {key: block[key] for key in OWN_STUDY if key in block}
+    tree = {"schema": BENCH_SCHEMA} | {key: block[key] for key in OWN_STUDY if key in block}
     depth = len(path)
     keys = {at[depth:]: place for at, place in source.keys.items() if at[:depth] == path}
     values = {at[depth:]: place for at, place in source.values.items() if at[:depth] == path}

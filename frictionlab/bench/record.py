@@ -18,7 +18,7 @@ class UnknownCurve(Exception):
 
 
 @dataclass(frozen=True)
-class Setting:
+class BenchSetting:
     """How well a solver is asked to do: the quantity that is varied, its value, and the tolerance to ask for."""
 
     quantity: str
@@ -36,7 +36,7 @@ class Contender:
 
     label: str
     kind: str
-    solvers: tuple[tuple[Setting, Method | Peer], ...]
+    solvers: tuple[tuple[BenchSetting, Method | Peer], ...]
     points: int | None
 
     @property
@@ -46,7 +46,7 @@ class Contender:
 
 
 @dataclass(frozen=True)
-class Trusted:
+class ReferenceSource:
     """What errors are measured against: a method at its finest, or values known from elsewhere.
 
     kind: of the method; empty for values, which are by belt speed. tolerance: asked of the method, or the error of
@@ -69,7 +69,7 @@ class Workload:
     scenes: tuple[Scene, ...]
     law: FrictionLaw
     contenders: tuple[Contender, ...]
-    references: tuple[Trusted, ...]
+    references: tuple[ReferenceSource, ...]
 
     def speeds(self) -> list[float]:
         """The belt speeds."""
@@ -96,7 +96,7 @@ class Bench:
 
 
 @dataclass(frozen=True)
-class Reference:
+class ReferenceMeans:
     """A reference worked out: mean friction and its own error at each point, NaN where it has none."""
 
     label: str

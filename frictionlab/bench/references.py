@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from frictionlab.bench.record import Reference, Trusted, Workload
-from frictionlab.bench.solvers import answered
+from frictionlab.bench.record import ReferenceMeans, ReferenceSource, Workload
+from frictionlab.bench.solvers import solve_points
 from frictionlab.study.choices import items, method_choice
-from frictionlab.study.mistakes import Notes, Path, described
+from frictionlab.study.mistakes import Notes, Path, value_text
 
-COLUMNS = ("belt_speed", "mean_friction")
+REFERENCE_COLUMNS = ("belt_speed", "mean_friction")
 
 
-def references(given: Any, path: Path, file: FilePath, notes: Notes) -> tuple[Trusted, ...]:
+def read_references(given: Any, path: Path, file: FilePath, notes: Notes) -> tuple[ReferenceSource, ...]:
     """The references of a list or of one of its scenes; those with mistakes are noted."""
     if given == []:
         return ()
@@ -27,7 +27,7 @@ def references(given: Any, path: Path, file: FilePath, notes: Notes) -> tuple[Tr
     return tuple(trusted for trusted in read if trusted is not None)
 
 
-def _trusted(item: Any, path: Path, file: FilePath, notes: Notes) -> Trusted | None:
+def _trusted(item: Any, path: Path, file: FilePath, notes: Notes) -> ReferenceSource | None:
     if notes.mapping(item, path) is None:
         return None
     if "values" in item:
@@ -43,17 +43,17 @@ def _trusted(item: Any, path: Path, file: FilePath, notes: Notes) -> Trusted | N
     choice = method_choice(told, path, notes)
     if choice is None or tolerance is None:
         return None
-    return Trusted(f"{choice.label} at {tolerance:g}", choice.name, choice.method, tolerance, {})
+    return ReferenceSource(f"{choice.label} at {tolerance:g}", choice.name, choice.method, tolerance, {})
 
 
 def _positive(item: dict[str, Any], key: str, path: Path, notes: Notes) -> float | None:
     value = notes.number(item[key], (*path, key))
     if value is not None and value <= 0.0:
-        notes.add((*path, key), f"must be > 0, got {described(value)}")
+        notes.add((*path, key), f"must be > 0, got {value_text(value)}")
     return value
 
 
-def _values(item: dict[str, Any], path: Path, file: FilePath, notes: Notes) -> Trusted | None:
+def _values(item: dict[str, Any], path: Path, file: FilePath, notes: Notes) -> ReferenceSource | None:
     """``{values: FILE, error: x, label: TEXT}``; the path is relative to the list."""
     notes.mapping(item, path, ("values", "error", "label"))
     if "error" not in item:
@@ -63,36 +63,38 @@ def _values(item: dict[str, Any], path: Path, file: FilePath, notes: Notes) -> T
     name = notes.text(item["values"], (*path, "values"))
     label = notes.text(item.get("label", name), (*path, "label"))
     table = _table(file.parent / name, (*path, "values"), notes) if name else None
-    return None if error is None or table is None else Trusted(label, "", None, error, table)
+    return None if error is None or table is None else ReferenceSource(label, "", None, error, table)
 
 
 def _table(file: FilePath, path: Path, notes: Notes) -> dict[float, float] | None:
     """Mean friction by belt speed."""
     try:
         with file.open(encoding="utf-8", newline="") as text:
-            rows = [[float(row[column]) for column in COLUMNS] for row in csv.DictReader(text)]
+            rows = [[float(row[column]) for column in REFERENCE_COLUMNS] for row in csv.DictReader(text)]
     except OSError as problem:
         notes.add(path, f"cannot be read: {problem.strerror}")
     except (KeyError, TypeError, ValueError):
-        notes.add(path, f"must be a CSV file of numbers with the columns {' and '.join(COLUMNS)}")
+        notes.add(path, f"must be a CSV file of numbers with the columns {' and '.join(REFERENCE_COLUMNS)}")
     else:
         return {speed: mean for speed, mean in rows}
     return None
 
 
-def worked_out(work: Workload) -> list[Reference]:
+def reference_means(work: Workload) -> list[ReferenceMeans]:
     """Every reference of a workload at each of its points."""
-    return [_worked_out(trusted, work) for trusted in work.references]
+    return [_reference_means(trusted, work) for trusted in work.references]
 
 
-def _worked_out(trusted: Trusted, work: Workload) -> Reference:
+def _reference_means(trusted: ReferenceSource, work: Workload) -> ReferenceMeans:
     if trusted.method is None:
         means = np.array([_known(trusted.values, speed) for speed in work.speeds()])
-        return Reference(trusted.label, "", means, np.where(np.isnan(means), math.nan, trusted.tolerance))
-    outcome = answered(trusted.method, work.scenes, work.law, trusted.tolerance)
+        return ReferenceMeans(
+            trusted.label, "", means, np.where(np.isnan(means), math.nan, trusted.tolerance)
+        )
+    outcome = solve_points(trusted.method, work.scenes, work.law, trusted.tolerance)
     good = np.array([status == "ok" for status in outcome.status])
     means, errors = (np.where(good, column, math.nan) for column in (outcome.means, outcome.errors))
-    return Reference(trusted.label, trusted.kind, means, errors)
+    return ReferenceMeans(trusted.label, trusted.kind, means, errors)
 
 
 def _known(values: dict[float, float], speed: float) -> float:
@@ -100,7 +102,7 @@ def _known(values: dict[float, float], speed: float) -> float:
     return next((mean for at, mean in values.items() if math.isclose(at, speed, rel_tol=1e-12)), math.nan)
 
 
-def independent(found: Sequence[Reference], kind: str, places: Sequence[int]) -> Reference | None:
+def independent(found: Sequence[ReferenceMeans], kind: str, places: Sequence[int]) -> ReferenceMeans | None:
     """The first reference not made by this kind of method that knows one of these points; kind empty: a peer."""
     others = (each for each in found if not kind or each.kind != kind)
     return next((each for each in others if np.isfinite(each.means[list(places)]).any()), None)

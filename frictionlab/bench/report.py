@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from frictionlab.bench.measure import STATUSES, Measured, Row
-from frictionlab.bench.record import Contender, Reference
+from frictionlab.bench.measure import BENCH_STATUSES, Row, WorkloadResult
+from frictionlab.bench.record import Contender, ReferenceMeans
 from frictionlab.bench.timing import Times
 from frictionlab.runner.errors import SaveError
 
@@ -20,7 +20,7 @@ HEAD = (
 )
 
 
-def write(done: Sequence[Measured], folder: Path) -> list[Path]:
+def write(done: Sequence[WorkloadResult], folder: Path) -> list[Path]:
     """One CSV and one Markdown table per curve; the files written. Raises SaveError."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -29,7 +29,7 @@ def write(done: Sequence[Measured], folder: Path) -> list[Path]:
         raise SaveError(f"cannot write the tables in {folder}: {problem.strerror or problem}") from problem
 
 
-def _write_one(measured: Measured, path: Path) -> list[Path]:
+def _write_one(measured: WorkloadResult, path: Path) -> list[Path]:
     table, text = path.with_name(f"{path.name}.csv"), path.with_name(f"{path.name}.md")
     records = [_record(measured, row) for row in measured.rows]
     with table.open("w", encoding="utf-8", newline="") as file:
@@ -40,7 +40,7 @@ def _write_one(measured: Measured, path: Path) -> list[Path]:
     return [table, text]
 
 
-def _record(measured: Measured, row: Row) -> dict[str, Any]:
+def _record(measured: WorkloadResult, row: Row) -> dict[str, Any]:
     """A row as the CSV holds it; times in microseconds per point, empty where there is none."""
     kind = "coulomb" if measured.work.law.constant_sliding_friction() else type(measured.work.law).__name__
     told: dict[str, Any] = {
@@ -71,7 +71,7 @@ def _cell(value: float) -> float | str:
     return "" if math.isnan(value) else value
 
 
-def _own_error(reference: Reference | None) -> float:
+def _own_error(reference: ReferenceMeans | None) -> float:
     return math.nan if reference is None else largest(reference.errors)
 
 
@@ -80,7 +80,7 @@ def largest(values: Any) -> float:
     return max((float(value) for value in values if math.isfinite(value)), default=math.nan)
 
 
-def markdown(measured: Measured) -> str:
+def markdown(measured: WorkloadResult) -> str:
     """One curve's table, with what its errors are measured against."""
     work = measured.work
     speeds = work.speeds()
@@ -93,14 +93,14 @@ def markdown(measured: Measured) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _by_contender(measured: Measured) -> list[list[Row]]:
+def _by_contender(measured: WorkloadResult) -> list[list[Row]]:
     rows: dict[str, list[Row]] = {}
     for row in measured.rows:
         rows.setdefault(row.contender.label, []).append(row)
     return list(rows.values())
 
 
-def reference_lines(measured: Measured) -> list[str]:
+def reference_lines(measured: WorkloadResult) -> list[str]:
     """Who is measured against what, how well that is known, and how far the references are apart."""
     lines = []
     for reference in measured.references:
@@ -128,14 +128,14 @@ def _line(row: Row, setting: str) -> str:
         _spread(row.mean),
         "" if not row.whole.repeats else _short(row.whole.least) if row.whole is not row.mean else "the same",
         str(row.mean.repeats or ""),
-        remark(row),
+        point_remark(row),
     ]
     return f"| {' | '.join(cells)} |"
 
 
-def remark(row: Row) -> str:
+def point_remark(row: Row) -> str:
     """What has no number, how often and why."""
-    counts = [f"{row.counts[s]} {s.replace('_', ' ')}" for s in STATUSES if s != "ok" and row.counts[s]]
+    counts = [f"{row.counts[s]} {s.replace('_', ' ')}" for s in BENCH_STATUSES if s != "ok" and row.counts[s]]
     return ": ".join(part for part in (", ".join(counts), row.reason) if part)
 
 
@@ -155,12 +155,12 @@ def _spread(times: Times) -> str:
     return f"{_short(times.least)} ({', '.join(map(_short, times.quartiles))})"
 
 
-def summary(done: Sequence[Measured]) -> str:
+def bench_summary(done: Sequence[WorkloadResult]) -> str:
     """Time per point to reach an error, for every curve and contender, with the ratio to the best method."""
     return "\n\n".join(_summary(each) for each in done)
 
 
-def _summary(measured: Measured) -> str:
+def _summary(measured: WorkloadResult) -> str:
     rows = measured.rows
     contenders = list({row.contender.label: row.contender for row in rows}.values())
     best = [
@@ -186,7 +186,7 @@ def _short_of_all(rows: Sequence[Row], contender: Contender) -> str:
     nearest = min(
         (row for row in own if math.isfinite(row.largest)), key=lambda row: row.largest, default=None
     )
-    remarks = [remark(row) for row in own if remark(row)]
+    remarks = [point_remark(row) for row in own if point_remark(row)]
     if nearest is None or nearest.counts["ok"] < nearest.points:
         return next(iter(remarks), "")
     return f"no nearer than {nearest.largest:.1e}, in {_short(nearest.mean.least)} us"

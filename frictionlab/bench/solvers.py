@@ -18,7 +18,7 @@ from frictionlab.scene.scene import Scene
 
 
 @dataclass(frozen=True)
-class Outcome:
+class SolverAnswers:
     """Status, reason, mean friction and stated error of each point; NaN where there is none."""
 
     status: list[str]
@@ -27,17 +27,19 @@ class Outcome:
     errors: Floats
 
     @classmethod
-    def without(cls, status: str, reason: str, n: int) -> Outcome:
+    def without(cls, status: str, reason: str, n: int) -> SolverAnswers:
         """The same answer n times: none."""
         return cls([status] * n, [reason] * n, np.full(n, np.nan), np.full(n, np.nan))
 
 
-def answered(solver: Method | Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Outcome:
+def solve_points(
+    solver: Method | Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
+) -> SolverAnswers:
     """The answers of a solver, refusals and failures included."""
     if isinstance(solver, Peer):
-        return _answered_by_peer(solver, scenes, law, tolerance)
+        return _peer_answers(solver, scenes, law, tolerance)
     n = len(scenes)
-    found = Outcome.without("failed", "", n)
+    found = SolverAnswers.without("failed", "", n)
     for piece in answer(Chunk(tuple(range(n)), tuple(scenes), law, solver, Task(tolerance))):
         for at, place in enumerate(piece.places):
             found.status[place] = piece.answers.status[at]
@@ -48,17 +50,17 @@ def answered(solver: Method | Peer, scenes: Sequence[Scene], law: FrictionLaw, t
     return found
 
 
-def _answered_by_peer(peer: Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Outcome:
+def _peer_answers(peer: Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> SolverAnswers:
     n = len(scenes)
     if (reason := peer.refusal(scenes[0], law)) is not None:
-        return Outcome.without("refused", reason, n)
+        return SolverAnswers.without("refused", reason, n)
     try:
         means = peer.solve(scenes, law, tolerance)
     except Exception as problem:  # another's library may raise anything, and keeps its place all the same
-        return Outcome.without("failed", str(problem) or type(problem).__name__, n)
+        return SolverAnswers.without("failed", str(problem) or type(problem).__name__, n)
     status = ["ok" if good else "failed" for good in np.isfinite(means)]
     reasons = ["" if good else "the answer is no finite number" for good in np.isfinite(means)]
-    return Outcome(status, reasons, means, np.full(n, np.nan))
+    return SolverAnswers(status, reasons, means, np.full(n, np.nan))
 
 
 def whole_task(

@@ -23,7 +23,7 @@ class Times(NamedTuple):
         return Times(self.least / points, (low, middle, high), self.repeats)
 
 
-def timed(task: Callable[[], object], repeats: int, seconds: float) -> Times:
+def time_task(task: Callable[[], object], repeats: int, seconds: float) -> Times:
     """Run a task so many times, or for so long if that is less, but once at least; the caller has warmed it up."""
     spent: list[float] = []
     collecting = gc.isenabled()

@@ -14,11 +14,11 @@ from frictionlab.columns import SCALED, belt_speed, given
 
 MOST_CURVES_IN_A_PICTURE = 12  # of several laws; more of them cannot be told apart
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
-Setting = tuple[str, float | None]  # a swept input and its value; None where a law has no such parameter
+SweptValue = tuple[str, float | None]  # a swept input and its value; None where a law has no such parameter
 
 
 @dataclass(frozen=True)
-class Curve:
+class CurveData:
     """The rows of one law and method whose inputs differ in the abscissa alone, sorted along it.
 
     member: the setting that tells the curve from its neighbours, if any; panel: those that give it a picture
@@ -27,8 +27,8 @@ class Curve:
 
     law: str
     method: str
-    panel: tuple[Setting, ...]
-    member: Setting | None
+    panel: tuple[SweptValue, ...]
+    member: SweptValue | None
     place: tuple[int, int, int]
     rows: pd.DataFrame
 
@@ -39,10 +39,10 @@ class Family:
 
     abscissa: str
     member: str | None
-    curves: list[Curve]
+    curves: list[CurveData]
 
     @property
-    def panels(self) -> list[tuple[Setting, ...]]:
+    def panels(self) -> list[tuple[SweptValue, ...]]:
         """The pictures the curves belong to, in order."""
         return list(dict.fromkeys(curve.panel for curve in self.curves))
 
@@ -66,11 +66,11 @@ def family_of(table: pd.DataFrame) -> Family | None:
         return None
     abscissa = _along_the_axis(table, swept)
     others = [name for name in swept if name != abscissa]
-    member = others.pop() if others and not _crowded(table, others[-1]) else None
+    member = others.pop() if others and not _merge_crowded(table, others[-1]) else None
     return Family(abscissa, member, _curves(table, abscissa, others, member))
 
 
-def _crowded(table: pd.DataFrame, member: str) -> bool:
+def _merge_crowded(table: pd.DataFrame, member: str) -> bool:
     laws = table["law"].nunique()
     curves = laws * table[member].nunique()
     return laws > 1 and member.startswith("scene.") and curves > MOST_CURVES_IN_A_PICTURE
@@ -98,7 +98,7 @@ def _swept_inputs(table: pd.DataFrame) -> list[str]:
     return scene + [name for name in parameters if table.groupby("law")[name].nunique().max() > 1]
 
 
-def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str | None) -> list[Curve]:
+def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str | None) -> list[CurveData]:
     laws, methods = table["law"].unique().tolist(), table["method"].unique().tolist()
     members = sorted(table[member].dropna().unique().tolist()) if member else []
     names = [*panels, member] if member else panels
@@ -107,23 +107,23 @@ def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str |
         settings = [_setting(name, value) for name, value in zip(names, values, strict=True)]
         own = settings.pop() if member else None
         place = laws.index(law), _index(members, own), methods.index(method)
-        curves.append(Curve(law, method, tuple(settings), own, place, rows.sort_values(abscissa)))
+        curves.append(CurveData(law, method, tuple(settings), own, place, rows.sort_values(abscissa)))
     return sorted(curves, key=_order)
 
 
-def _setting(name: str, value: Any) -> Setting:
+def _setting(name: str, value: Any) -> SweptValue:
     return name, None if pd.isna(value) else float(value)
 
 
-def _index(members: list[float], member: Setting | None) -> int:
+def _index(members: list[float], member: SweptValue | None) -> int:
     return 0 if member is None or member[1] is None else members.index(member[1])
 
 
-def _order(curve: Curve) -> tuple[Any, ...]:
+def _order(curve: CurveData) -> tuple[Any, ...]:
     return [(value is not None, value or 0.0) for _, value in curve.panel], curve.place
 
 
-def kinks(curve: Curve) -> list[float]:
+def kinks(curve: CurveData) -> list[float]:
     """V_lin, and its mirror image, inside the belt speeds of a curve that has its closed-form kink there.
 
     That is a curve whose body moves along the belt alone and whose friction of steady sliding is the same at

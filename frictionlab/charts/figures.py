@@ -27,7 +27,7 @@ from matplotlib.textpath import TextPath
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
-from frictionlab.charts.curves import Curve, Family, Setting, family_of, is_logarithmic, kinks
+from frictionlab.charts.curves import CurveData, Family, SweptValue, family_of, is_logarithmic, kinks
 from frictionlab.columns import SI, belt_speed, word
 
 FIGURES = {
@@ -86,7 +86,7 @@ class Data(NamedTuple):
     color: Any
 
 
-def draw(table: pd.DataFrame, title: str, folder: Path) -> list[Path]:
+def draw_figures(table: pd.DataFrame, title: str, folder: Path) -> list[Path]:
     """Draw every figure of a result table into a folder; the files written.
 
     A table without a sweep has no figure, nor has a quantity that applies nowhere. Raises OSError where the
@@ -141,7 +141,7 @@ def _figure(family: Family, columns: Sequence[str], title: str) -> Figure:
     return figure
 
 
-def _draw_panel(axes: Axes, family: Family, panel: tuple[Setting, ...], column: str) -> None:
+def _draw_panel(axes: Axes, family: Family, panel: tuple[SweptValue, ...], column: str) -> None:
     curves = [curve for curve in family.curves if curve.panel == panel]
     for curve in curves:
         _draw_curve(axes, family, curve, column)
@@ -190,7 +190,7 @@ def _lie_decades_apart(curves: Sequence[pd.Series]) -> bool:
     return high > 30.0 * low > ROUNDING * high and min(float(curve.min()) for curve in known) > 0.2 * low
 
 
-def _draw_curve(axes: Axes, family: Family, curve: Curve, column: str) -> None:
+def _draw_curve(axes: Axes, family: Family, curve: CurveData, column: str) -> None:
     x, y = (curve.rows[name].to_numpy(dtype=float) for name in (family.abscissa, column))
     look = _look(family, curve)
     if np.isnan(x).all():  # a law without the swept parameter: the level that the others are held against
@@ -205,7 +205,7 @@ def _draw_curve(axes: Axes, family: Family, curve: Curve, column: str) -> None:
     _mark_missing(axes, data)
 
 
-def _look(family: Family, curve: Curve) -> dict[str, Any]:
+def _look(family: Family, curve: CurveData) -> dict[str, Any]:
     """Colour, line and marker. Of several methods the first is broad and pale, the last lies thin on top."""
     law, member, method = curve.place
     _, members, methods = family.sizes
@@ -222,7 +222,7 @@ def _look(family: Family, curve: Curve) -> dict[str, Any]:
     }
 
 
-def _color(family: Family, curve: Curve) -> Any:
+def _color(family: Family, curve: CurveData) -> Any:
     law, member, method = curve.place
     laws, members, _ = family.sizes
     if laws * members == 1 and _methods_have_markers(family):
@@ -236,7 +236,7 @@ def _methods_have_markers(family: Family) -> bool:
     return family.sizes[2] > 2
 
 
-def _marked(y: NDArray[np.float64], curve: Curve, family: Family) -> list[int]:
+def _marked(y: NDArray[np.float64], curve: CurveData, family: Family) -> list[int]:
     """The points that get a marker: some of a curve with neighbours, and all that no line reaches."""
     known = np.isfinite(y)
     neighbours = np.concatenate([known[1:], [False]]) | np.concatenate([[False], known[:-1]])
@@ -248,7 +248,7 @@ def _marked(y: NDArray[np.float64], curve: Curve, family: Family) -> list[int]:
     return [int(place) for place in np.flatnonzero(marks & known)]
 
 
-def _stagger(points: int, curve: Curve, family: Family) -> tuple[int, int]:
+def _stagger(points: int, curve: CurveData, family: Family) -> tuple[int, int]:
     """The first marker of a curve and the step to the next: about ten, fewer where many methods coincide."""
     (law, member, method), (laws, members, methods) = curve.place, family.sizes
     step = max(1, points // 10)
@@ -347,7 +347,7 @@ def _shown(family: Family) -> set[int]:
     return set(np.linspace(0, members - 1, min(members, MOST_VALUES_IN_LEGEND)).round().astype(int).tolist())
 
 
-def _label(family: Family, curve: Curve) -> str:
+def _label(family: Family, curve: CurveData) -> str:
     laws, _, methods = family.sizes
     value = curve.member[1] if curve.member is not None else None
     room = LONGEST_LABEL if laws == 1 or methods == 1 else BESIDE
@@ -381,6 +381,6 @@ def _name(label: str, room: int) -> str:
     return _plain(label if len(label) <= room else f"{label[: room - 1]}…")
 
 
-def _sentence(setting: Setting) -> str:
+def _sentence(setting: SweptValue) -> str:
     name, value = setting
     return f"no {word(name)}" if value is None else f"{word(name)} = {value:.5g}"

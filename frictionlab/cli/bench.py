@@ -12,7 +12,7 @@ from frictionlab.cli import options
 from frictionlab.cli.output import INTERRUPTED, CommandError, print_message, print_result
 
 if TYPE_CHECKING:
-    from frictionlab.bench import Measured
+    from frictionlab.bench import WorkloadResult
 
 
 @click.command("bench")
@@ -30,22 +30,22 @@ def command(bench_list: Path, out: Path | None, only: tuple[str, ...]) -> None:
     folder = out or Path("runs") / f"bench-{asked.name}"
     try:
         done = bench.measure(asked, print_message)
-    except bench.Interrupted as problem:
+    except bench.MeasurementInterrupted as problem:
         _save(problem.done, folder)
         raise CommandError(
             INTERRUPTED, f"interrupted: {len(problem.done)} of {len(asked.workloads)} curves done"
         ) from problem
-    print_result(bench.summary(done))
+    print_result(bench.bench_summary(done))
     _save(done, folder)
 
 
-def _save(done: Sequence[Measured], folder: Path) -> None:
+def _save(done: Sequence[WorkloadResult], folder: Path) -> None:
     """Write tables, then charts: the tables are on disk before matplotlib is imported."""
     if not done:
         return
     from frictionlab.bench import write
-    from frictionlab.bench.chart import draw
+    from frictionlab.bench.chart import draw_charts
 
     write(done, folder)
-    draw(done, folder)
+    draw_charts(done, folder)
     print_message(f"tables and charts in {folder}")

@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 def draw_figures(table: DataFrame, title: str, folder: Path) -> list[Path]:
     """Draw the figures of a run into its folder; the files. Raises SaveError."""
-    from frictionlab.charts.figures import draw  # with matplotlib, which takes a second
+    from frictionlab.charts.figures import draw_figures  # with matplotlib, which takes a second
     from frictionlab.runner.errors import SaveError
 
     try:
-        return draw(table, title, folder / "figures")
+        return draw_figures(table, title, folder / "figures")
     except OSError as problem:
         raise SaveError(f"cannot write the figures in {folder}: {problem.strerror or problem}") from problem

@@ -12,8 +12,15 @@ from typing import Any
 from frictionlab.faults import BrokenPlugin, from_outside
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.registry.entry_points import OWN, Home, checked, clash, home_of, opened
-from frictionlab.registry.smoke_test import wrong_as_given
+from frictionlab.registry.entry_points import (
+    OWN_PACKAGE,
+    Home,
+    check_class,
+    describe_clash,
+    home_of,
+    open_entry_point,
+)
+from frictionlab.registry.smoke_test import fault_with_values
 
 __all__ = [
     "LAWS",
@@ -32,22 +39,22 @@ METHODS = "frictionlab.methods"
 
 def law_names() -> list[str]:
     """The names of every installed law, sorted."""
-    return sorted(_doors(LAWS))
+    return sorted(_entry_points(LAWS))
 
 
 def method_names() -> list[str]:
     """The names of every installed method, sorted."""
-    return sorted(_doors(METHODS))
+    return sorted(_entry_points(METHODS))
 
 
 def law_class(name: str) -> type[FrictionLaw]:
     """The law of this name. Raises KeyError for an unknown name, BrokenPlugin for one that cannot be used."""
-    return _sound(_load(LAWS, name))
+    return _usable(_load(LAWS, name))
 
 
 def method_class(name: str) -> type[Method]:
     """The method of this name. Raises KeyError for an unknown name, BrokenPlugin for one that is broken."""
-    return _sound(_load(METHODS, name))
+    return _usable(_load(METHODS, name))
 
 
 class Laws:
@@ -76,7 +83,7 @@ class Laws:
         wrong = [self._wrong(name) for name in self.names()]
         return [
             *filter(None, wrong),
-            *(_pushed_out(doors) for doors in _doors(LAWS).values() if _clashes(doors)),
+            *(_clash_message(doors) for doors in _entry_points(LAWS).values() if _has_clash(doors)),
         ]
 
     def _wrong(self, name: str) -> str:
@@ -91,18 +98,18 @@ class Laws:
         if name not in self._own:
             return law_class(name)
         return (
-            _sound(_checked(self._own[name], self._homes[name])) if name in self._homes else self._own[name]
+            _usable(_checked(self._own[name], self._homes[name])) if name in self._homes else self._own[name]
         )
 
     def check(self, name: str, law: FrictionLaw) -> None:
         """Raises BrokenPlugin where a law fails with the parameters it was given."""
-        if from_outside(type(law)) and (wrong := wrong_as_given(law)):
-            home = self._homes.get(name) or home_of(_doors(LAWS)[name][0])
+        if from_outside(type(law)) and (wrong := fault_with_values(law)):
+            home = self._homes.get(name) or home_of(_entry_points(LAWS)[name][0])
             raise home.broken(wrong)
 
 
 @cache
-def _doors(group: str) -> dict[str, tuple[EntryPoint, ...]]:
+def _entry_points(group: str) -> dict[str, tuple[EntryPoint, ...]]:
     """The entry points of each name; the same one twice, as from two copies of a package, is one."""
     found: dict[str, dict[str, EntryPoint]] = {}
     for door in metadata.entry_points(group=group):
@@ -110,20 +117,20 @@ def _doors(group: str) -> dict[str, tuple[EntryPoint, ...]]:
     return {name: tuple(doors.values()) for name, doors in found.items()}
 
 
-def _clashes(doors: Sequence[EntryPoint]) -> bool:
+def _has_clash(doors: Sequence[EntryPoint]) -> bool:
     """Whether one of ours has a name that others took too."""
-    return len(doors) > 1 and any(door.dist is not None and door.dist.name == OWN for door in doors)
+    return len(doors) > 1 and any(door.dist is not None and door.dist.name == OWN_PACKAGE for door in doors)
 
 
-def _pushed_out(doors: Sequence[EntryPoint]) -> str:
-    return f"{clash(doors)}\nfrictionlab's own is used; the others need another name"
+def _clash_message(doors: Sequence[EntryPoint]) -> str:
+    return f"{describe_clash(doors)}\nfrictionlab's own is used; the others need another name"
 
 
 @cache
 def _load(group: str, name: str) -> Any:
     """The class of this name, or the BrokenPlugin that it is: a law that hangs is tried once."""
     try:
-        return opened(_doors(group)[name], FrictionLaw if group == LAWS else Method)
+        return open_entry_point(_entry_points(group)[name], FrictionLaw if group == LAWS else Method)
     except BrokenPlugin as problem:
         return problem
 
@@ -131,12 +138,12 @@ def _load(group: str, name: str) -> Any:
 @cache
 def _checked(law: type[FrictionLaw], home: Home) -> Any:
     try:
-        return checked(law, home)
+        return check_class(law, home)
     except BrokenPlugin as problem:
         return problem
 
 
-def _sound(found: Any) -> Any:
+def _usable(found: Any) -> Any:
     """What was found, if it can be used. Raises BrokenPlugin, a new one every time."""
     if isinstance(found, BrokenPlugin):
         raise BrokenPlugin(*found.args) from found.__cause__

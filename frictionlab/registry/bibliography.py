@@ -19,7 +19,7 @@ _HOMES = ("journal", "booktitle", "publisher", "institution", "howpublished", "n
 
 
 @dataclass(frozen=True)
-class Reference:
+class Publication:
     """An entry: its kind, such as article, its key and fields, and its BibTeX as written."""
 
     kind: str
@@ -66,43 +66,43 @@ def _plain(text: str) -> str:
 
 
 @cache
-def bibliography() -> tuple[Reference, ...]:
+def bibliography() -> tuple[Publication, ...]:
     """The publications that frictionlab's own laws and methods draw on."""
-    return references(files("frictionlab.registry").joinpath("bibliography.bib").read_text(encoding="utf-8"))
+    return read_bibtex(files("frictionlab.registry").joinpath("bibliography.bib").read_text(encoding="utf-8"))
 
 
-def publications(text: str, bibtex: str) -> list[Reference]:
+def publications(text: str, bibtex: str) -> list[Publication]:
     """Those that a text names, and the entries that come with it, which go before our own of the same name."""
-    brought = references(bibtex)
+    brought = read_bibtex(bibtex)
     taken = {name for each in brought for name in each.names}
     known = [*brought, *(each for each in bibliography() if taken.isdisjoint(each.names))]
-    named = named_in(text, known)
+    named = publications_named(text, known)
     return [*named, *(each for each in brought if each not in named)]
 
 
-def remark(key: str, words: str) -> Reference:
+def unpublished_source(key: str, words: str) -> Publication:
     """An entry for a source that is told in words alone."""
     said = " ".join(re.sub(r"[\\{}]", "", words.replace("@", " at ")).split())
     note = re.sub(r"([&%$#_])", r"\\\1", said).replace("~", r"\~{}").replace("^", r"\^{}")
     name = "-".join(re.findall(r"\w+", key))
     fields = {"title": key, "note": note}
     lines = "".join(f"  {field} = {{{value}}},\n" for field, value in fields.items())
-    return Reference("misc", name, fields, f"@misc{{{name},\n{lines}}}")
+    return Publication("misc", name, fields, f"@misc{{{name},\n{lines}}}")
 
 
-def named_in(text: str, known: Iterable[Reference]) -> list[Reference]:
+def publications_named(text: str, known: Iterable[Publication]) -> list[Publication]:
     """Those of the known publications that a text names, in the order of the text."""
     words = " ".join(text.split())
     places = {each: _place(each, words) for each in known}
     return sorted((each for each, place in places.items() if place >= 0), key=lambda each: places[each])
 
 
-def _place(reference: Reference, words: str) -> int:
+def _place(reference: Publication, words: str) -> int:
     found = [re.search(rf"(?<!\w){re.escape(name)}(?!\w)", words) for name in reference.names]
     return min((match.start() for match in found if match), default=-1)
 
 
-def references(bibtex: str) -> tuple[Reference, ...]:
+def read_bibtex(bibtex: str) -> tuple[Publication, ...]:
     """The entries of a text of BibTeX; what stands between them is comment. Raises ValueError for a broken one."""
     if not isinstance(bibtex, str):
         raise ValueError(f"must be one text of BibTeX entries, not a {type(bibtex).__name__}")
@@ -112,7 +112,7 @@ def references(bibtex: str) -> tuple[Reference, ...]:
         if begin is None:
             raise ValueError(f"no BibTeX entry such as @article{{key, ...}}: {_start(bibtex, at)}")
         fields, end = _fields(bibtex, begin)
-        found.append(Reference(begin[1].lower(), begin[2], fields, bibtex[at:end]))
+        found.append(Publication(begin[1].lower(), begin[2], fields, bibtex[at:end]))
         at = end
     return tuple(found)
 

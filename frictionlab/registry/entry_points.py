@@ -17,10 +17,10 @@ from frictionlab.faults import (
 )
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.registry.bibliography import references
-from frictionlab.registry.smoke_test import written, wrong_with_any
+from frictionlab.registry.bibliography import read_bibtex
+from frictionlab.registry.smoke_test import fault_with_samples, overridden_methods
 
-OWN = "frictionlab"
+OWN_PACKAGE = "frictionlab"
 
 
 class Home(NamedTuple):
@@ -49,33 +49,33 @@ def home_of(door: EntryPoint) -> Home:
     return Home(f"{what} '{door.name}'{whose} ({door.value})", f"mend it, or: pip uninstall {name}")
 
 
-def opened(doors: Sequence[EntryPoint], kind: type[FrictionLaw] | type[Method]) -> Any:
+def open_entry_point(doors: Sequence[EntryPoint], kind: type[FrictionLaw] | type[Method]) -> Any:
     """The law or method behind the entry points of one name. Raises BrokenPlugin."""
-    own = [door for door in doors if door.dist is not None and door.dist.name == OWN]
+    own = [door for door in doors if door.dist is not None and door.dist.name == OWN_PACKAGE]
     door, *others = own or doors  # a stranger never takes the place of one of ours
     if others:
-        raise BrokenPlugin(f"{clash(doors)}\nmend one of them, or uninstall it")
+        raise BrokenPlugin(f"{describe_clash(doors)}\nmend one of them, or uninstall it")
     home = home_of(door)
-    loaded = _loaded(door, home)
+    loaded = _load(door, home)
     if not isinstance(loaded, type):
         raise home.broken(f"is not a class but {loaded!r}; its entry point must name the class itself")
     if not issubclass(loaded, kind):
         raise home.broken(f"class {loaded.__name__} is not derived from frictionlab.{_bases(kind)}")
-    return checked(loaded, home)
+    return check_class(loaded, home)
 
 
 def _bases(kind: type) -> str:
     return "SlidingLaw, BristleLaw or MemoryLaw" if kind is FrictionLaw else kind.__name__
 
 
-def clash(doors: Sequence[EntryPoint]) -> str:
+def describe_clash(doors: Sequence[EntryPoint]) -> str:
     """That several packages bring something of one name."""
     brought = " and ".join(f"{package(door) or 'a package'} ({door.value})" for door in doors)
     what = doors[0].group.rpartition(".")[2].removesuffix("s")
     return f"{what} '{doors[0].name}' is brought by {brought}"
 
 
-def _loaded(door: EntryPoint, home: Home) -> Any:
+def _load(door: EntryPoint, home: Home) -> Any:
     try:
         return door.load()
     except ModuleNotFoundError as problem:
@@ -106,23 +106,23 @@ def unloadable(home: Home, problem: BaseException) -> BrokenPlugin:
     return home.broken(f"cannot be loaded: {describe_error(problem, files)}", problem)
 
 
-def checked(loaded: Any, home: Home) -> Any:
+def check_class(loaded: Any, home: Home) -> Any:
     """The class, which is sound as far as a few questions show. Raises BrokenPlugin."""
-    for wrong in _wrongs(loaded):
+    for wrong in _faults(loaded):
         raise home.broken(wrong)
     return loaded
 
 
-def _wrongs(loaded: Any) -> Iterator[str]:
+def _faults(loaded: Any) -> Iterator[str]:
     yield from _missing(loaded)
     try:
-        references(loaded.bibtex)
+        read_bibtex(loaded.bibtex)
     except ValueError as problem:
         yield f"its bibtex: {problem}"
     if issubclass(loaded, FrictionLaw) and from_outside(loaded):
         yield from _mutable(loaded)
         yield from _signatures(loaded)
-        if wrong := wrong_with_any(loaded):
+        if wrong := fault_with_samples(loaded):
             yield wrong
 
 
@@ -138,7 +138,7 @@ def _names(method: Any) -> list[str]:
 
 def _signatures(law: type[FrictionLaw]) -> Iterator[str]:
     """Methods that cannot be called as their interface says."""
-    for name, interface in written(law):
+    for name, interface in overridden_methods(law):
         given, wanted = inspect.getattr_static(law, name), _names(interface)
         if not inspect.isfunction(given):
             yield f"{name} must be an ordinary method, {name}({', '.join(wanted)}), not a {type(given).__name__}"

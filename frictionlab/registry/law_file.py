@@ -15,10 +15,10 @@ from frictionlab.faults import LAW_FILE
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.registry.entry_points import Home, unloadable
 
-LARGEST_FILE = 1_000_000
+LARGEST_LAW_FILE = 1_000_000
 
 
-class Unreadable(Exception):
+class UnreadableLawFile(Exception):
     """There is no file of Python text to read; the message says why."""
 
 
@@ -77,20 +77,20 @@ def _sha256(text: str) -> str:
 def text_of(path: Path) -> str:
     """What a file of laws holds. Raises Unreadable."""
     if path.suffix != ".py":
-        raise Unreadable("must be a Python file, *.py")
+        raise UnreadableLawFile("must be a Python file, *.py")
     if path.exists() and not path.is_file():
-        raise Unreadable("is not a file")
+        raise UnreadableLawFile("is not a file")
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise Unreadable(f"is larger than {LARGEST_FILE // 10**6} MB; a law is a page of text")
+        if path.stat().st_size > LARGEST_LAW_FILE:
+            raise UnreadableLawFile(f"is larger than {LARGEST_LAW_FILE // 10**6} MB; a law is a page of text")
         return path.read_bytes().decode("utf-8")
     except FileNotFoundError:
-        raise Unreadable("no such file") from None
+        raise UnreadableLawFile("no such file") from None
     except UnicodeDecodeError as problem:
-        raise Unreadable(f"is not UTF-8 text (byte {problem.start + 1})") from None
+        raise UnreadableLawFile(f"is not UTF-8 text (byte {problem.start + 1})") from None
     except (OSError, ValueError) as problem:
         reason = problem.strerror if isinstance(problem, OSError) else str(problem)
-        raise Unreadable(f"cannot be read: {reason}") from None
+        raise UnreadableLawFile(f"cannot be read: {reason}") from None
 
 
 @cache

@@ -19,40 +19,40 @@ LIMIT = 2.0
 SAMPLES = (1.0, 0.5, 2.0, 10.0)
 """Numbers for the parameters of a law that nobody has given any yet."""
 
-Wrong = str
+Fault = str
 """What is wrong with a law, in words."""
 
 
-class _Slow(NamedTuple):
+class _Progress(NamedTuple):
     """What was being done when time was up."""
 
     what: list[str]
 
 
-def wrong_as_given(law: FrictionLaw) -> Wrong | None:
+def fault_with_values(law: FrictionLaw) -> Fault | None:
     """What the methods of a law with these parameters do wrong; None for nothing."""
-    return _within(lambda now: _first(_tried(law, now)))
+    return _with_time_limit(lambda now: _first(_faults_of_methods(law, now)))
 
 
-def wrong_with_any(law: type[FrictionLaw]) -> Wrong | None:
+def fault_with_samples(law: type[FrictionLaw]) -> Fault | None:
     """What a law does wrong when it is built, and then asked, with parameters it accepts; None for nothing."""
-    return _within(lambda now: _first(_built_and_tried(law, now)))
+    return _with_time_limit(lambda now: _first(_faults_of_samples(law, now)))
 
 
-def _within(work: Callable[[_Slow], Wrong | None]) -> Wrong | None:
+def _with_time_limit(work: Callable[[_Progress], Fault | None]) -> Fault | None:
     """The answer of this work, or that it takes too long: the thread is left behind."""
-    now, found = _Slow([""]), []
+    now, found = _Progress([""]), []
     thread = threading.Thread(target=lambda: found.append(work(now)), daemon=True)
     thread.start()
     thread.join(LIMIT)
     return found[0] if found else f"{now.what[0]} does not return: stopped after {LIMIT:g} s"
 
 
-def _first(wrongs: Iterator[Wrong]) -> Wrong | None:
+def _first(wrongs: Iterator[Fault]) -> Fault | None:
     return next(wrongs, None)
 
 
-def _built_and_tried(law: type[FrictionLaw], now: _Slow) -> Iterator[Wrong]:
+def _faults_of_samples(law: type[FrictionLaw], now: _Progress) -> Iterator[Fault]:
     now.what[0] = "building it"
     for parameters in _samples(law):
         try:
@@ -65,7 +65,7 @@ def _built_and_tried(law: type[FrictionLaw], now: _Slow) -> Iterator[Wrong]:
             given = ", ".join(f"{name}={value:g}" for name, value in parameters.items())
             yield f"{law.__name__}({given}) raises {describe_error(problem, files_of(law))}"
             return
-        yield from _tried(made, now)
+        yield from _faults_of_methods(made, now)
         return
 
 
@@ -82,23 +82,23 @@ def _optional(law: type[FrictionLaw]) -> list[str]:
     return [name for name, field in law.model_fields.items() if field.default is None]
 
 
-def _tried(given: FrictionLaw, now: _Slow) -> Iterator[Wrong]:
+def _faults_of_methods(given: FrictionLaw, now: _Progress) -> Iterator[Fault]:
     """Every method of the interfaces that the law's author wrote, called on the line and in the plane."""
     now.what[0] = "under_load(1)"
     law = given.under_load(1.0)
     now.what[0] = "a property of it"
-    if wrong := _raised(law, "its properties", law.numbers):
+    if wrong := _fault_of_error(law, "its properties", law.numbers):
         yield wrong
         return
-    for v in (1.0, complex(0.6, 0.8)) if _has_a_plane(law) else (1.0,):
+    for v in (1.0, complex(0.6, 0.8)) if _is_planar(law) else (1.0,):
         arguments = _arguments(law, v)
-        for name, interface in written(type(law)):
-            now.what[0] = f"{name}({_listed(interface, arguments)})"
-            if wrong := _asked(law, name, interface, arguments):
+        for name, interface in overridden_methods(type(law)):
+            now.what[0] = f"{name}({_argument_text(interface, arguments)})"
+            if wrong := _fault_of_call(law, name, interface, arguments):
                 yield wrong
 
 
-def written(law: type[FrictionLaw]) -> list[tuple[str, Any]]:
+def overridden_methods(law: type[FrictionLaw]) -> list[tuple[str, Any]]:
     """The public methods of the interfaces that are written outside, with what the interface says of each."""
     interfaces = [kind for kind in law.__mro__ if issubclass(kind, FrictionLaw) and not from_outside(kind)]
     said: dict[str, Any] = {}
@@ -111,7 +111,7 @@ def written(law: type[FrictionLaw]) -> list[tuple[str, Any]]:
     ]
 
 
-def _has_a_plane(law: FrictionLaw) -> bool:
+def _is_planar(law: FrictionLaw) -> bool:
     return not isinstance(law, BristleLaw) or (law.planar == "vectorial" and not law.no_vector_form())
 
 
@@ -134,19 +134,19 @@ def _arguments(law: FrictionLaw, v: Any) -> dict[str, Any]:
     return told
 
 
-def _listed(method: Any, arguments: dict[str, Any]) -> str:
+def _argument_text(method: Any, arguments: dict[str, Any]) -> str:
     names = list(inspect.signature(method).parameters)[1:]
     return ", ".join(f"{name}={arguments.get(name)}" for name in names)
 
 
-def _asked(law: FrictionLaw, name: str, interface: Any, arguments: dict[str, Any]) -> Wrong | None:
+def _fault_of_call(law: FrictionLaw, name: str, interface: Any, arguments: dict[str, Any]) -> Fault | None:
     names = list(inspect.signature(interface).parameters)[1:]
     if not set(names) <= set(arguments):
         return None
     answer: list[Any] = []
-    call = f"{name}({_listed(interface, arguments)})"
+    call = f"{name}({_argument_text(interface, arguments)})"
     values = [arguments[each] for each in names]
-    if wrong := _raised(law, call, lambda: answer.append(getattr(law, name)(*values))):
+    if wrong := _fault_of_error(law, call, lambda: answer.append(getattr(law, name)(*values))):
         return wrong
     kind = str(inspect.signature(interface).return_annotation)
     if not answer or _is_a(answer[0], kind, any(isinstance(value, complex) for value in values)):
@@ -156,7 +156,7 @@ def _asked(law: FrictionLaw, name: str, interface: Any, arguments: dict[str, Any
     return f"{call} returns {answer[0]!r}, which is no {_KINDS[kind]}{hint}{definition_line(code)}"
 
 
-def _raised(law: FrictionLaw, what: str, call: Callable[[], object]) -> Wrong | None:
+def _fault_of_error(law: FrictionLaw, what: str, call: Callable[[], object]) -> Fault | None:
     """What a call raises that no numbers excuse: arithmetic may fail at some, and its points then say so."""
     try:
         call()

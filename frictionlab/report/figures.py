@@ -13,7 +13,7 @@ from frictionlab.charts.curves import Family, family_of
 from frictionlab.charts.figures import figure_columns
 from frictionlab.report.markup import symbol_html, unit_html, word_html
 from frictionlab.report.question import values_listed
-from frictionlab.report.tables import listed, points, setting
+from frictionlab.report.tables import joined_values, points, setting
 from frictionlab.runner.saved import Saved
 
 LARGEST_SVG = 400_000
@@ -83,9 +83,11 @@ def _lines(family: Family) -> list[Markup]:
     """Laws, methods and members, each named where there are several."""
     laws = list(dict.fromkeys(curve.law for curve in family.curves))
     methods = list(dict.fromkeys(curve.method for curve in family.curves))
-    told = [Markup("{} {}").format("Law" if len(laws) == 1 else "A colour per law:", listed(laws))]
+    told = [Markup("{} {}").format("Law" if len(laws) == 1 else "A colour per law:", joined_values(laws))]
     told += [
-        Markup("{} {}").format("method" if len(methods) == 1 else "a line style per method:", listed(methods))
+        Markup("{} {}").format(
+            "method" if len(methods) == 1 else "a line style per method:", joined_values(methods)
+        )
     ]
     sentence = Markup("; ").join(told)
     if family.member is None:

@@ -16,14 +16,14 @@ from frictionlab.report.tables import (
     Grid,
     curve_rows,
     grid,
-    listed,
+    joined_values,
     number,
     points,
     setting,
     settings,
     size,
-    span,
     swept_inputs,
+    value_range,
 )
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.summary import alike, pattern, statuses
@@ -45,7 +45,7 @@ def brief_grid(curves: Sequence[CurveRows]) -> Grid:
         Markup("mean friction {}").format(symbol_html("mean_friction")),
     ]
     rows = [
-        [curve.law, curve.method, curve.name, statuses(curve.rows), span(curve.rows["mean_friction"])]
+        [curve.law, curve.method, curve.name, statuses(curve.rows), value_range(curve.rows["mean_friction"])]
         for curve in curves
     ]
     return grid("Curves: everything equal but belt speed", head, rows, "curves")
@@ -126,7 +126,7 @@ def _errors(curve: CurveRows, tolerance: float) -> list[Cell]:
         size(float(error.max())),
         _speed(worst),
         size(float(error.median())),
-        listed(curve.rows.loc[error.notna(), "error_kind"].dropna()),
+        joined_values(curve.rows.loc[error.notna(), "error_kind"].dropna()),
         points(above) if above else "none",
     ]
 
@@ -141,7 +141,7 @@ def models_grid(table: pd.DataFrame) -> Grid:
     told = table[table["model"].notna()]
     groups = told.groupby([told["method"], told["model"].map(pattern)], sort=False)
     rows = [
-        [str(method), alike(rows["model"]), points(len(rows)), listed(rows["law"])]
+        [str(method), alike(rows["model"]), points(len(rows)), joined_values(rows["law"])]
         for (method, _), rows in groups
     ]
     return grid("What produced the numbers", ["method", "model, and why", "points", "laws"], rows, "models")
@@ -163,7 +163,7 @@ def _trouble(status: str, rows: pd.DataFrame, swept: Sequence[str]) -> list[Cell
     told = Markup("; ").join(_example(rows.iloc[place], swept) for place in range(shown))
     more = f"; and {points(len(rows) - shown)} more" if len(rows) > shown else ""
     words = status.replace("_", " ") if status != "ok" else "ok, but"
-    who = listed(rows["law"]), listed(rows["method"])
+    who = joined_values(rows["law"]), joined_values(rows["method"])
     return [words, str(len(rows)), alike(rows["reason"].fillna("")), *who, told + more]
 
 

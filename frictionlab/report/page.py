@@ -19,7 +19,7 @@ from frictionlab.runner.folder import write_page
 from frictionlab.runner.saved import Saved
 from frictionlab.runner.yaml_text import yaml_text
 
-TEMPLATES = Path(__file__).parent / "templates"
+REPORT_TEMPLATES = Path(__file__).parent / "templates"
 GENERATOR = f"frictionlab {__version__}"
 MOST_SHOWN_AT_ONCE = 12
 """Expectations that are shown unasked where all of them hold."""
@@ -47,7 +47,7 @@ def rendered(template: str, **values: Any) -> str:
 @cache
 def _environment() -> Environment:
     return Environment(
-        loader=FileSystemLoader(TEMPLATES),
+        loader=FileSystemLoader(REPORT_TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -57,7 +57,7 @@ def _environment() -> Environment:
 
 @cache
 def _style() -> Markup:
-    return Markup((TEMPLATES / "style.css").read_text(encoding="utf-8").strip())
+    return Markup((REPORT_TEMPLATES / "style.css").read_text(encoding="utf-8").strip())
 
 
 def _head(saved: Saved) -> dict[str, Any]:

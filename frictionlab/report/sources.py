@@ -15,14 +15,14 @@ from typing import NamedTuple
 import pandas as pd
 
 from frictionlab import registry
-from frictionlab.registry.bibliography import Reference, publications, remark
+from frictionlab.registry.bibliography import Publication, publications, unpublished_source
 from frictionlab.runner.saved import Saved
 from frictionlab.study import LawChoice
 
 
 def bibtex(runs: Sequence[Saved]) -> str:
     """One entry for each publication, under a comment that says what used it; keys differ."""
-    users: dict[Reference, list[str]] = {}
+    users: dict[Publication, list[str]] = {}
     for run in runs:
         users.setdefault(itself(str(run.account.get("frictionlab", ""))), ["the program"])
         for cited in sources(run):
@@ -33,7 +33,7 @@ def bibtex(runs: Sequence[Saved]) -> str:
     return "\n\n".join(f"% {who}\n{entry}" for who, entry in entries)
 
 
-def itself(version: str) -> Reference:
+def itself(version: str) -> Publication:
     """The entry of frictionlab. version: that which made the numbers."""
     fields = {
         "author": "{The frictionlab authors}",
@@ -41,10 +41,10 @@ def itself(version: str) -> Reference:
         "note": f"Python package, version {version}",
     }
     lines = "".join(f"  {name} = {{{value}}},\n" for name, value in fields.items())
-    return Reference("misc", "frictionlab", fields, f"@misc{{frictionlab,\n{lines}}}")
+    return Publication("misc", "frictionlab", fields, f"@misc{{frictionlab,\n{lines}}}")
 
 
-def with_keys_of_their_own(references: Iterable[Reference]) -> list[str]:
+def with_keys_of_their_own(references: Iterable[Publication]) -> list[str]:
     """The entries as written, but for a key that another entry has already: it gets a number."""
     entries, taken = [], set[str]()
     for each in references:
@@ -108,7 +108,7 @@ class Cited(NamedTuple):
 
     what: str
     words: str
-    references: list[Reference]
+    references: list[Publication]
 
 
 def sources(saved: Saved) -> list[Cited]:
@@ -125,7 +125,7 @@ def sources(saved: Saved) -> list[Cited]:
     return [each for each in cited if each.words or each.references]
 
 
-def published(cited: Iterable[Cited]) -> list[Reference]:
+def published(cited: Iterable[Cited]) -> list[Publication]:
     """The publications among them, each once."""
     return list(dict.fromkeys(each for one in cited for each in one.references if "author" in each.fields))
 
@@ -156,7 +156,7 @@ def _of_method(name: str, how: str) -> Cited:
 def _cited(what: str, words: str, bibtex: str) -> Cited:
     """What nobody has an entry for is cited in its own words."""
     found = publications(words, bibtex)
-    return Cited(what, words, found or ([remark(what, words)] if words else []))
+    return Cited(what, words, found or ([unpublished_source(what, words)] if words else []))
 
 
 def _named(text: str) -> str:

@@ -89,7 +89,7 @@ def size(value: float) -> str:
     return "" if pd.isna(value) else f"{value:.1e}"
 
 
-def span(values: pd.Series) -> str:
+def value_range(values: pd.Series) -> str:
     """The least and the greatest of some numbers."""
     found = values.dropna()
     if found.empty:
@@ -102,6 +102,6 @@ def points(count: int) -> str:
     return "1 point" if count == 1 else f"{count} points"
 
 
-def listed(words: Iterable[Cell]) -> Markup:
+def joined_values(words: Iterable[Cell]) -> Markup:
     """Words, each once, with commas."""
     return Markup(", ").join(dict.fromkeys(escape(word) for word in words))

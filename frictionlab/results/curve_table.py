@@ -20,11 +20,11 @@ from frictionlab.shape.shakedown import Shakedown, Value, shakedown_of_body, sha
 from frictionlab.shape.verdict import Estimate, FrictionCurve, Shape, UnreadableCurve, reduction, shape_of
 
 TEXT = frozenset({"shape", "shape_by_initial", "reason"})
-INSTALLED = registry.Laws()
+INSTALLED_LAWS = registry.Laws()
 _NEEDED = [name if name != "belt_speed" else "scene.belt_speed" for name in Rows._fields]
 
 
-def curve_table(table: pd.DataFrame, laws: registry.Laws = INSTALLED) -> pd.DataFrame:
+def curve_table(table: pd.DataFrame, laws: registry.Laws = INSTALLED_LAWS) -> pd.DataFrame:
     """One row per curve of a result table, in its order; no rows if no curve has two belt speeds.
 
     Points without a number are left out. A measure that cannot be determined is empty, with the reason.

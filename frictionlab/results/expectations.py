@@ -105,7 +105,7 @@ def _comparison(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
     excess = {"equals": (values - value).abs(), "below": values - value, "above": value - values}[name]
     worst = excess.idxmax()
     passed = excess[worst] <= within if name == "equals" else excess[worst] < within or excess[worst] < 0
-    return Verdict(bool(passed), f"{_text(values[worst])}{_worst_of(rows, 'row')}")
+    return Verdict(bool(passed), f"{_text(values[worst])}{_largest_error(rows, 'row')}")
 
 
 def _status(wanted: str, rows: pd.DataFrame) -> Verdict:
@@ -147,7 +147,7 @@ def _difference(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
     if missing:
         return Verdict(False, f"a mean is missing in {missing} of {len(pairs)} pairs of rows")
     worst = float(differences.max())
-    return Verdict(worst < expectation.below, f"{_text(worst)}{_worst_of(pairs, 'pair')}")
+    return Verdict(worst < expectation.below, f"{_text(worst)}{_largest_error(pairs, 'pair')}")
 
 
 def _inputs(rows: pd.DataFrame) -> list[str]:
@@ -168,7 +168,7 @@ def _first(rows: pd.DataFrame) -> str:
     return f"the row of {row['law']} by {row['method']}{scene}, {row['status']}{reason}"
 
 
-def _worst_of(rows: pd.DataFrame, what: str) -> str:
+def _largest_error(rows: pd.DataFrame, what: str) -> str:
     """How many rows or pairs of rows a number speaks for, where it is more than one."""
     return f" in the worst of {len(rows)} {what}s" if len(rows) > 1 else ""
 

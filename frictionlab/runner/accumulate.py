@@ -26,7 +26,7 @@ SAVE_EVERY = 10.0
 """Seconds of work that a crash may cost at most, give or take a chunk."""
 
 
-class Gathering:
+class Accumulator:
     """The rows of a run, those found so far, and the folder that keeps them, if any."""
 
     def __init__(

@@ -26,7 +26,7 @@ from frictionlab.results.expectations import judge
 from frictionlab.results.part import Part
 from frictionlab.results.state import SteadyState
 from frictionlab.results.table import headings, inputs
-from frictionlab.runner.accumulate import Gathering
+from frictionlab.runner.accumulate import Accumulator
 from frictionlab.runner.chunks import Chunk, Task, chunks
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.execute import collect
@@ -77,7 +77,7 @@ def run(
     folder = run_folder(ready, Path(out)) if out is not None else None
     if folder is not None:
         folder.check(existing)
-    gathering = Gathering(inputs(headings(ready)), folder, progress, overrides)
+    gathering = Accumulator(inputs(headings(ready)), folder, progress, overrides)
     task = Task(ready.tolerance, ready.keep_orbit or 0)
     gathering.resume(existing, task.samples)
     left = [] if gathering.complete else chunks(ready.cases(), task, gathering.finished)
@@ -100,7 +100,7 @@ def run_folder(study: Study, out: Path) -> RunFolder:
     return RunFolder(out, Identity(*told))
 
 
-def _solve(gathering: Gathering, left: list[Chunk], executor: Executor | None) -> bool:
+def _solve(gathering: Accumulator, left: list[Chunk], executor: Executor | None) -> bool:
     """Solve what is left and put it in the table; True when that was interrupted."""
     if not left:
         return False
@@ -129,7 +129,7 @@ def _workers(executor: Executor | None) -> Iterator[Executor]:
         pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _finished(study: Study, gathering: Gathering, folder: RunFolder | None, stopped: bool) -> Run:
+def _finished(study: Study, gathering: Accumulator, folder: RunFolder | None, stopped: bool) -> Run:
     """The run, saved and judged. Raises Interrupted or UnsavedError, both with the run."""
     table, orbits = gathering.table, gathering.orbits
     laws = registry.Laws({law.kind: law.law_class for law in study.laws})
@@ -147,7 +147,7 @@ def _finished(study: Study, gathering: Gathering, folder: RunFolder | None, stop
 
 
 def _saved(
-    gathering: Gathering, table: pd.DataFrame, orbits: pd.DataFrame | None, curves: pd.DataFrame
+    gathering: Accumulator, table: pd.DataFrame, orbits: pd.DataFrame | None, curves: pd.DataFrame
 ) -> SaveError | None:
     """Save the run; what kept it from being saved, to be raised once the run is whole."""
     try:
@@ -177,7 +177,7 @@ def curve(
     different, places = np.unique(speeds, return_inverse=True)  # a method is never given a belt speed twice
     scenes = [_scene(scene).at(float(speed)) for speed in different]
     cases = [Case(kind, kind, law, ready.name, ready, each) for each in scenes]
-    gathering = Gathering(inputs(cases))
+    gathering = Accumulator(inputs(cases))
     with _workers(None) as pool:
         collect(chunks(cases, task), pool, gathering.take, gathering.tick)
     return gathering.table.iloc[places].reset_index(drop=True)

@@ -36,7 +36,7 @@ class Chunk:
     task: Task
 
 
-def curves(cases: Sequence[Case]) -> list[list[int]]:
+def chunk_by_curve(cases: Sequence[Case]) -> list[list[int]]:
     """The rows of each curve (everything equal but belt speed), ascending in belt speed."""
     found: dict[Any, list[int]] = {}
     for row, case in enumerate(cases):
@@ -55,7 +55,7 @@ def chunks(cases: Sequence[Case], task: Task, finished: frozenset[int] = frozens
     Curves are cut before finished rows are left out: a run stopped and continued then solves the very chunks
     of one that went through.
     """
-    pieces = [piece for curve in curves(cases) for piece in _cut(curve)]
+    pieces = [piece for curve in chunk_by_curve(cases) for piece in _cut(curve)]
     left = [[row for row in piece if row not in finished] for piece in pieces]
     return [_chunk(cases, rows, task) for rows in left if rows]
 

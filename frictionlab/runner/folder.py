@@ -171,7 +171,7 @@ class RunFolder:
             for path in [*self._results(), *copies] if existing == "replace" else ():
                 path.unlink(missing_ok=True)
         except OSError as problem:
-            _raise_at_the_door(self.path, problem)
+            _refuse_folder(self.path, problem)
 
     def _results(self) -> Iterator[Path]:
         yield from (self.table, self.path / "results.csv", self.path / "curves.csv", self._orbits)
@@ -231,14 +231,14 @@ def _brief(line: str, others: Sequence[str]) -> str:
     """Of a long line the part, from a word on, in which it leaves the line most like it."""
     if len(line.strip()) <= SHOWN:
         return line.strip()
-    start = line.rfind(" ", 0, max(0, _alike(line, others) - SHOWN // 2)) + 1
+    start = line.rfind(" ", 0, max(0, _equal(line, others) - SHOWN // 2)) + 1
     if line[:start].endswith(": "):  # a value alone says little
         start = line.rfind(" ", 0, start - 1) + 1
     begins = f"{line.split(':')[0].strip()}: ... " if start else ""
     return f"{begins}{line[start : start + SHOWN].strip()}{' ...' if len(line) > start + SHOWN else ''}"
 
 
-def _alike(line: str, others: Sequence[str]) -> int:
+def _equal(line: str, others: Sequence[str]) -> int:
     """With how many letters one of the others begins like this line, at most."""
     shared = [[one == other for one, other in zip(line, text, strict=False)] for text in others]
     return max(([*same, False].index(False) for same in shared), default=0)
@@ -297,7 +297,7 @@ def _write_copy(path: Path, text: str) -> None:
     _write(path, lambda file: file.write_bytes(text.encode()))
 
 
-def _raise_at_the_door(path: Path, problem: OSError) -> None:
+def _refuse_folder(path: Path, problem: OSError) -> None:
     sentence = f"cannot make the folder {path}: {problem.strerror}"
     if problem.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
         raise SaveError(sentence) from problem

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from frictionlab import registry
-from frictionlab.runner.chunks import curves
+from frictionlab.runner.chunks import chunk_by_curve
 from frictionlab.study import Case, Study
 
 
@@ -47,7 +47,7 @@ def _planned(cases: Sequence[Case], tolerance: float) -> Planned:
         law=first.law_label,
         kind=first.kind,
         method=first.method_label,
-        curves=len(curves(cases)),
+        curves=len(chunk_by_curve(cases)),
         points=len(cases),
         refused=dict(Counter(reason for reason in reasons if reason is not None)),
         models=dict(Counter(_model(case) for case in able)),

@@ -80,11 +80,11 @@ def _check_is_a_run(folder: Path) -> None:
     missing = [name for name in names if not (folder / name).is_file()]
     if missing:
         raise FolderError(
-            f"{folder} is not the folder of a run: no {', '.join(missing)} in it; {_hint(folder)}"
+            f"{folder} is not the folder of a run: no {', '.join(missing)} in it; {_folder_hint(folder)}"
         )
 
 
-def _hint(folder: Path) -> str:
+def _folder_hint(folder: Path) -> str:
     runs = sorted(path.parent for path in folder.glob("*/results.parquet"))
     if not runs:
         return WANTED

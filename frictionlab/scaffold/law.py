@@ -13,8 +13,8 @@ from frictionlab import registry
 from frictionlab.registry.law_file import law_name
 from frictionlab.runner.errors import not_written
 
-Memory = Literal["none", "bristle"]
-TEMPLATES = Path(__file__).parent
+MemoryChoice = Literal["none", "bristle"]
+LAW_TEMPLATES = Path(__file__).parent
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*")
 
 
@@ -22,7 +22,7 @@ class BadName(ValueError):
     """A name no law, module and package could have at once; the message says why."""
 
 
-def new_law(path: Path, memory: Memory) -> Path:
+def new_law(path: Path, memory: MemoryChoice) -> Path:
     """Write the folder of a law of the name that the path ends in; where it is.
 
     memory: ``none`` for friction that slip alone sets, ``bristle`` for a contact that deflects.
@@ -57,7 +57,7 @@ def check_name(name: str) -> None:
         raise BadName(f"Python has a module or word '{module}' already; choose another name")
 
 
-def _files(name: str, memory: Memory) -> dict[str, str]:
+def _files(name: str, memory: MemoryChoice) -> dict[str, str]:
     """Every file of the folder, by name."""
     kind = "sliding" if memory == "none" else "bristle"
     sources = {
@@ -67,10 +67,10 @@ def _files(name: str, memory: Memory) -> dict[str, str]:
         "study.yaml": f"{kind}_study.yaml",
         "README.md": "README.md.txt",
     }
-    return {file: _renamed(TEMPLATES / source, name) for file, source in sources.items()}
+    return {file: _fill_template(LAW_TEMPLATES / source, name) for file, source in sources.items()}
 
 
-def _renamed(template: Path, name: str) -> str:
+def _fill_template(template: Path, name: str) -> str:
     text = template.read_text(encoding="utf-8")
     return text.replace("my-law", name).replace("my_law", _module(name)).replace("MyLaw", _class(name))
 

@@ -6,15 +6,15 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from frictionlab import registry
-from frictionlab.study.mistakes import Notes, Path, described, did_you_mean
+from frictionlab.study.mistakes import Notes, Path, did_you_mean, value_text
 from frictionlab.study.study import LawChoice, MethodChoice
-from frictionlab.study.validation import built
+from frictionlab.study.validation import build_record
 
 
 def items(given: Any, path: Path, example: str, notes: Notes) -> list[Any]:
     """The items of a list that may not be empty."""
     if not isinstance(given, list):
-        notes.add(path, f"must be a list such as {example}, got {described(given)}")
+        notes.add(path, f"must be a list such as {example}, got {value_text(given)}")
         return []
     if not given:
         notes.add(path, f"the list is empty; give at least one, such as {example}")
@@ -24,16 +24,16 @@ def items(given: Any, path: Path, example: str, notes: Notes) -> list[Any]:
 def law_choice(given: Any, path: Path, laws: registry.Laws, notes: Notes) -> LawChoice | None:
     """One law; None, noted, where there is a mistake."""
     if not isinstance(given, dict):
-        notes.add(path, f"must be a mapping such as {{kind: coulomb, mu: 0.4}}, got {described(given)}")
+        notes.add(path, f"must be a mapping such as {{kind: coulomb, mu: 0.4}}, got {value_text(given)}")
         return None
     if given.get("kind") not in laws.names() and notes.below(("plugins",)):
         return None  # a file that cannot be read may have brought it
-    kind = _kind(given, path, _named("law", laws.names(), notes), notes)
+    kind = _kind(given, path, _name_reader("law", laws.names(), notes), notes)
     label = _label(given, kind, path, notes)
     if kind is None or notes.mapping(given, path) is None:
         return None
     parameters = {key: value for key, value in given.items() if key not in ("kind", "label")}
-    law = built(laws.named(kind), parameters, path, notes)
+    law = build_record(laws.named(kind), parameters, path, notes)
     if law is None:
         return None
     laws.check(kind, law)
@@ -42,7 +42,7 @@ def law_choice(given: Any, path: Path, laws: registry.Laws, notes: Notes) -> Law
 
 def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:
     """One method, by its name or with parameters; None, noted, where there is a mistake."""
-    named = _named("method", registry.method_names(), notes)
+    named = _name_reader("method", registry.method_names(), notes)
     if not isinstance(given, dict):
         name = named(given, path)
         return None if name is None else MethodChoice(name, name, {})
@@ -53,7 +53,7 @@ def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:
         return None
     if not parameters:
         return MethodChoice(label, name, {})
-    method = built(registry.method_class(name), parameters, path, notes)
+    method = build_record(registry.method_class(name), parameters, path, notes)
     return None if method is None else MethodChoice(label, name, method.model_dump(exclude_unset=True))
 
 
@@ -63,7 +63,7 @@ def label_of(given: Any) -> str | None:
     return label if isinstance(label, str) else None
 
 
-def sure_labels(given: Any, installed: Iterable[str]) -> tuple[str, ...] | None:
+def certain_labels(given: Any, installed: Iterable[str]) -> tuple[str, ...] | None:
     """The labels of a list of laws or methods; None where a mistake makes them a matter of guessing.
 
     What refers to a label is then left unchecked: one mistake should not look like many.
@@ -76,10 +76,10 @@ def sure_labels(given: Any, installed: Iterable[str]) -> tuple[str, ...] | None:
     return tuple(str(label) for label in labels) if right and unique else None
 
 
-def sure_law_labels(given: Any, laws: registry.Laws) -> tuple[str, ...] | None:
+def certain_law_labels(given: Any, laws: registry.Laws) -> tuple[str, ...] | None:
     """The labels of a list of laws; None where they are a matter of guessing."""
     mappings = isinstance(given, list) and all(isinstance(item, dict) for item in given)
-    return sure_labels(given, laws.names()) if mappings else None
+    return certain_labels(given, laws.names()) if mappings else None
 
 
 def may_become_a_label(label: str, given: Any, laws: registry.Laws) -> bool:
@@ -89,7 +89,7 @@ def may_become_a_label(label: str, given: Any, laws: registry.Laws) -> bool:
     labels = [label_of(item) for item in given if "label" in item or "kind" in item]
     if not all(each and each.isprintable() for each in labels) or len(set(labels)) < len(labels):
         return True
-    return sure_law_labels(given, laws) is None and label in laws.names()
+    return certain_law_labels(given, laws) is None and label in laws.names()
 
 
 def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:
@@ -103,7 +103,7 @@ def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:
             notes.add(path, f"{head}[{first[label]}] has the label '{label}' too; give each its own label")
 
 
-def _named(what: str, installed: Iterable[str], notes: Notes) -> Callable[[Any, Path], str | None]:
+def _name_reader(what: str, installed: Iterable[str], notes: Notes) -> Callable[[Any, Path], str | None]:
     """A reader of a registered name."""
     names = list(installed)
 
@@ -119,7 +119,7 @@ def _named(what: str, installed: Iterable[str], notes: Notes) -> Callable[[Any, 
             )
             notes.add(path, f"unknown {what} '{given}'; installed: {', '.join(names)}{remedy}", hint)
         else:
-            notes.add(path, f"must be the name of a {what}, got {described(given)}")
+            notes.add(path, f"must be the name of a {what}, got {value_text(given)}")
         return None
 
     return name

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab import columns
-from frictionlab.study.mistakes import Notes, Path, described, did_you_mean
+from frictionlab.study.mistakes import Notes, Path, did_you_mean, value_text
 from frictionlab.study.study import Expectation
 
-KEYS = (
+EXPECTATION_KEYS = (
     *("where", "column", "equals", "below", "above", "within"),
     *("status", "max_difference", "shape", "measure", "because"),
 )
@@ -35,7 +35,7 @@ class Table:
 def expectations(given: Any, table: Table, notes: Notes) -> tuple[Expectation, ...]:
     """Every expectation; those with mistakes are noted and left out."""
     if not isinstance(given, list):
-        notes.add(("expect",), f"must be a list, got {described(given)}")
+        notes.add(("expect",), f"must be a list, got {value_text(given)}")
         return ()
     read = [_expectation(item, ("expect", index), table, notes) for index, item in enumerate(given)]
     return tuple(expectation for expectation in read if expectation is not None)
@@ -45,8 +45,8 @@ def _expectation(given: Any, path: Path, table: Table, notes: Notes) -> Expectat
     if notes.mapping(given, path) is None:
         return None
     for key in given:
-        if key not in KEYS:
-            notes.unknown_key((*path, key), KEYS)
+        if key not in EXPECTATION_KEYS:
+            notes.unknown_key((*path, key), EXPECTATION_KEYS)
     where = _where(given.get("where", {}), (*path, "where"), table, notes)
     said = _claim(given, path, table, notes)
     if "because" in given:
@@ -98,7 +98,7 @@ def _difference(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
     pair, at = given["max_difference"], (*path, "max_difference")
     below = _positive(given, "below", path, notes)
     if not (isinstance(pair, list) and len(pair) == 2):
-        notes.add(at, f"must be a list of two method labels, got {described(pair)}")
+        notes.add(at, f"must be a list of two method labels, got {value_text(pair)}")
         return {}
     labels = [_known_text(label, (*at, i), table.texts["method"], notes) for i, label in enumerate(pair)]
     if labels[0] is not None and labels[0] == labels[1]:
@@ -142,7 +142,7 @@ def _column(given: Any, path: Path, table: Table, notes: Notes) -> str | None:
         hint = did_you_mean(given, table.results) if isinstance(given, str) else ""
         in_si = given in columns.SI if isinstance(given, str) else False
         needed = " (this one needs a scene given in SI units: scene.dimensional)" if in_si else ""
-        notes.add(path, f"must be a result column, got {described(given)}{needed}", "" if in_si else hint)
+        notes.add(path, f"must be a result column, got {value_text(given)}{needed}", "" if in_si else hint)
         return None
     if given in columns.TEXT:
         notes.add(path, f"'{given}' holds text; only numbers can be compared")
@@ -155,12 +155,12 @@ def _positive(given: dict[str, Any], key: str, path: Path, notes: Notes) -> floa
         return None
     value = notes.number(given[key], (*path, key))
     if value is not None and value <= 0:
-        notes.add((*path, key), f"must be > 0, got {described(given[key])}")
+        notes.add((*path, key), f"must be > 0, got {value_text(given[key])}")
     return value
 
 
 def _only(given: dict[str, Any], own: tuple[str, ...], path: Path, notes: Notes) -> None:
     """Note the keys that belong to another kind of expectation."""
     for key in given:
-        if key in KEYS and key not in (*own, "where", "because"):
+        if key in EXPECTATION_KEYS and key not in (*own, "where", "because"):
             notes.on_key((*path, key), f"does not go with {own[0]}")

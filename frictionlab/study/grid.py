@@ -16,9 +16,9 @@ from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import label_of, may_become_a_label
-from frictionlab.study.mistakes import Notes, Path, described, did_you_mean, number_text
+from frictionlab.study.mistakes import Notes, Path, did_you_mean, number_text, value_text
 from frictionlab.study.study import Study
-from frictionlab.study.validation import harmless, number_paths, record_at, wrong_value
+from frictionlab.study.validation import number_paths, record_at, valid_number, wrong_value
 
 _GROUPS = (
     ("unbalance", "amplitude"),
@@ -31,7 +31,7 @@ _GROUPS = (
 
 
 @dataclass
-class Swept:
+class Sweeps:
     """The sweeps of a study, and where their first values stand in for what the study left out."""
 
     sweep: dict[str, tuple[float, ...]] = field(default_factory=dict)
@@ -47,9 +47,9 @@ class _Target:
     record: type[BaseModel]
 
 
-def swept(tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> Swept:
+def read_sweeps(tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> Sweeps:
     """Read the sweeps; a swept value that the study leaves out is put into the tree."""
-    found = Swept()
+    found = Sweeps()
     given = notes.mapping(tree.get("sweep", {}), ("sweep",)) or {}
     for key, range_ in given.items():
         values = sweep_values(range_, ("sweep", key), notes)
@@ -86,7 +86,7 @@ def _scene_target(tree: dict[str, Any], steps: list[str], path: Path, notes: Not
         if within is None:
             notes.on_key(path, f"the study has no {name}")
         return None
-    if other := _given_instead(within, steps[-1]):
+    if other := _alias_given(within, steps[-1]):
         notes.on_key(path, f"{name} gives {other}, so {steps[-1]} cannot be swept")
         return None
     record = record_at(Scene, tuple(steps[:-1]))
@@ -112,13 +112,13 @@ def _law_target(tree: dict[str, Any], key: str, laws: registry.Laws, notes: Note
             what = f"{parameter} of the law '{label}' is not one number: give a law of its own for each of its values"
         notes.on_key(("sweep", key), what, did_you_mean(parameter, number_paths(law)))
         return None
-    if other := _given_instead(tree["laws"][index], parameter):
+    if other := _alias_given(tree["laws"][index], parameter):
         notes.on_key(("sweep", key), f"the law '{label}' gives {other}, so {parameter} cannot be swept")
         return None
     return _Target(("laws", index), parameter, law)
 
 
-def _given_instead(within: dict[str, Any], key: str) -> str | None:
+def _alias_given(within: dict[str, Any], key: str) -> str | None:
     """Another name of what ``key`` names, where a part of a study gives it by that."""
     group = next((names for names in _GROUPS if key in names), ())
     return None if key in within else next((name for name in group if name in within), None)
@@ -166,7 +166,7 @@ def _stand_in(
     within = _at(tree, target.parent)
     if isinstance(within, dict) and target.key not in within:
         good = [value for value in values if wrong_value(target.record, target.key, value) is None]
-        within[target.key] = good[0] if good else harmless(target.record, target.key)
+        within[target.key] = good[0] if good else valid_number(target.record, target.key)
         stand_ins[(*target.parent, target.key)] = ("sweep", key)
 
 
@@ -225,14 +225,14 @@ _SPACINGS = ("linear", "log")
 def sweep_values(given: Any, path: Path, notes: Notes) -> tuple[float, ...]:
     """The values of one sweep, from a list or a range; empty, noted, where there is a mistake."""
     if isinstance(given, list):
-        return _listed(given, path, notes)
+        return _list_values(given, path, notes)
     if isinstance(given, dict):
-        return _ranged(given, path, notes)
-    notes.add(path, f"must be a list or {{start, stop, num, spacing}}, got {described(given)}")
+        return _range_values(given, path, notes)
+    notes.add(path, f"must be a list or {{start, stop, num, spacing}}, got {value_text(given)}")
     return ()
 
 
-def _listed(given: list[Any], path: Path, notes: Notes) -> tuple[float, ...]:
+def _list_values(given: list[Any], path: Path, notes: Notes) -> tuple[float, ...]:
     if not given:
         notes.add(path, "the list is empty: there is nothing to run")
     values = [notes.number(item, (*path, index)) for index, item in enumerate(given)]
@@ -243,7 +243,7 @@ def _listed(given: list[Any], path: Path, notes: Notes) -> tuple[float, ...]:
     return tuple(value for value in values if value is not None)
 
 
-def _ranged(given: dict[str, Any], path: Path, notes: Notes) -> tuple[float, ...]:
+def _range_values(given: dict[str, Any], path: Path, notes: Notes) -> tuple[float, ...]:
     notes.mapping(given, path, _KEYS)
     for key in ("start", "stop", "num"):
         if key not in given:

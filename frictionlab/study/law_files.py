@@ -14,14 +14,21 @@ from pydantic import create_model
 
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.registry.law_file import LawFile, Unreadable, code_of, law_name, read_law_file, text_of
-from frictionlab.study.mistakes import Mistake, Notes, Path, StudyError, described, did_you_mean
+from frictionlab.registry.law_file import (
+    LawFile,
+    UnreadableLawFile,
+    code_of,
+    law_name,
+    read_law_file,
+    text_of,
+)
+from frictionlab.study.mistakes import Mistake, Notes, Path, StudyError, did_you_mean, value_text
 from frictionlab.study.yaml_source import Source
 
 KEY = "plugins"
 
 
-class Brought(NamedTuple):
+class StudyLaws(NamedTuple):
     """The files of laws that come with a study, and every law it may name. codes: SHA-256 of those known before."""
 
     files: tuple[LawFile, ...]
@@ -37,7 +44,7 @@ class Brought(NamedTuple):
         return self.codes.get(kind) or next(own, "") or code_of(self.laws.named(kind))
 
 
-Bring = Callable[[dict[str, Any], FilePath, Notes], Brought]
+LawReader = Callable[[dict[str, Any], FilePath, Notes], StudyLaws]
 
 
 def add_law_files(source: Source, files: Iterable[FilePath]) -> None:
@@ -49,18 +56,18 @@ def add_law_files(source: Source, files: Iterable[FilePath]) -> None:
             listed.append(str(file.absolute()))
 
 
-def bring(tree: dict[str, Any], folder: FilePath, notes: Notes) -> Brought:
+def read_laws(tree: dict[str, Any], folder: FilePath, notes: Notes) -> StudyLaws:
     """The laws of the files a study lists, each file once. Raises BrokenPlugin for a file without usable laws."""
     read = [_read(name, path, folder, notes) for name, path in listed_files(tree, notes)]
     files = tuple(dict.fromkeys(file for file in read if file is not None))
-    return Brought(files, laws_of(files))
+    return StudyLaws(files, laws_of(files))
 
 
 def listed_files(tree: dict[str, Any], notes: Notes) -> list[tuple[str, Path]]:
     """The files a study lists, each with its path in the study."""
     given = tree.get(KEY, [])
     if not isinstance(given, list):
-        notes.add((KEY,), f"must be a list of Python files such as [my_law.py], got {described(given)}")
+        notes.add((KEY,), f"must be a list of Python files such as [my_law.py], got {value_text(given)}")
         return []
     named = [(notes.text(item, (KEY, index)), (KEY, index)) for index, item in enumerate(given)]
     return [(name, path) for name, path in named if name]
@@ -69,7 +76,7 @@ def listed_files(tree: dict[str, Any], notes: Notes) -> list[tuple[str, Path]]:
 def _read(name: str, path: Path, folder: FilePath, notes: Notes) -> LawFile | None:
     try:
         return read_law_file(folder / name)
-    except Unreadable as problem:
+    except UnreadableLawFile as problem:
         there = [str(file.relative_to(folder)) for file in sorted((folder / name).parent.glob("*.py"))]
         notes.add(path, f"{folder / name}: {problem}", did_you_mean(name, there))
         return None
@@ -96,12 +103,12 @@ def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:
     for path in paths:
         try:
             files.append(read_law_file(path))
-        except Unreadable as problem:
+        except UnreadableLawFile as problem:
             raise StudyError([Mistake(f"--law {path}", None, "", str(problem))]) from None
     return laws_of(list(dict.fromkeys(files)))
 
 
-class Told(NamedTuple):
+class LawText(NamedTuple):
     """What a law says of itself."""
 
     docstring: str
@@ -115,28 +122,28 @@ class SavedLaw(FrictionLaw):
         raise NotImplementedError(f"the law of a saved run cannot be asked for friction (at {speed})")
 
 
-def as_saved(codes: Mapping[str, str]) -> Bring:
+def saved_law_reader(codes: Mapping[str, str]) -> LawReader:
     """A reader of a saved study. codes: SHA-256 of its laws from outside, by kind, as its account has them."""
 
-    def bring(tree: dict[str, Any], folder: FilePath, notes: Notes) -> Brought:
-        files = tuple(_kept(folder / name) for name, _ in listed_files(tree, notes))
+    def bring(tree: dict[str, Any], folder: FilePath, notes: Notes) -> StudyLaws:
+        files = tuple(_saved_file(folder / name) for name, _ in listed_files(tree, notes))
         laws = tree.get("laws")
         given = [law for law in laws if isinstance(law, dict)] if isinstance(laws, list) else []
         kinds = {str(law.get("kind")): law for law in given if law.get("kind") in codes}
-        own = {kind: _stand_in(kind, given, _told(kind, files)) for kind in kinds}
-        return Brought(files, registry.Laws(own), codes)
+        own = {kind: _stand_in(kind, given, _law_text(kind, files)) for kind in kinds}
+        return StudyLaws(files, registry.Laws(own), codes)
 
     return bring
 
 
-def _kept(path: FilePath) -> LawFile:
+def _saved_file(path: FilePath) -> LawFile:
     try:
         return LawFile(path, text_of(path), {})
-    except Unreadable:  # a report of the run needs no law
+    except UnreadableLawFile:  # a report of the run needs no law
         return LawFile(path, "", {})
 
 
-def _stand_in(kind: str, given: list[dict[str, Any]], told: Told) -> type[FrictionLaw]:
+def _stand_in(kind: str, given: list[dict[str, Any]], told: LawText) -> type[FrictionLaw]:
     """A record of all the parameters that any law of this kind has in the study."""
     values = {key: value for law in given if law["kind"] == kind for key, value in law.items()}
     fields: dict[str, Any] = {
@@ -149,15 +156,15 @@ def _stand_in(kind: str, given: list[dict[str, Any]], told: Told) -> type[Fricti
     return made
 
 
-def _told(kind: str, files: tuple[LawFile, ...]) -> Told:
+def _law_text(kind: str, files: tuple[LawFile, ...]) -> LawText:
     """What the law says of itself in the copy of its file; else what one of its name says that is installed."""
     own = [node for file in files for node in _classes(file) if law_name(node.name) == kind]
     if own:
-        return Told(ast.get_docstring(own[0]) or "", _bibtex(own[0]))
+        return LawText(ast.get_docstring(own[0]) or "", _bibtex(own[0]))
     with suppress(KeyError, registry.BrokenPlugin):
         law = registry.law_class(kind)
-        return Told(inspect.getdoc(law) or "", law.bibtex)
-    return Told("", "")
+        return LawText(inspect.getdoc(law) or "", law.bibtex)
+    return LawText("", "")
 
 
 def _bibtex(law: ast.ClassDef) -> str:

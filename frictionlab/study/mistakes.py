@@ -13,7 +13,7 @@ Path = tuple[str | int, ...]
 _WIDTH = 100
 
 
-class Place(NamedTuple):
+class TextPosition(NamedTuple):
     """A position in a text, both counted from 1."""
 
     line: int
@@ -31,7 +31,7 @@ class Note:
     what: str
     hint: str = ""
     on_key: bool = False
-    place: Place | None = None
+    place: TextPosition | None = None
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Mistake:
     """A located mistake. origin: the file, or the ``--set`` that is at fault; place: None for the latter."""
 
     origin: str
-    place: Place | None
+    place: TextPosition | None
     path: str
     what: str
     hint: str = ""
@@ -109,7 +109,7 @@ def number_text(value: float) -> str:
     return repr(value)
 
 
-def described(value: Any) -> str:
+def value_text(value: Any) -> str:
     """What was given, in words, for ``got ...``; with advice where a text is nearly a number."""
     if value is None:
         return "null"
@@ -174,7 +174,7 @@ class Notes:
     def mapping(self, value: Any, path: Path, allowed: Iterable[str] | None = None) -> dict[str, Any] | None:
         """The value if it is a mapping, unknown keys noted; None, noted, if it is not."""
         if not isinstance(value, dict):
-            self.add(path, f"must be a mapping (key: value), got {described(value)}")
+            self.add(path, f"must be a mapping (key: value), got {value_text(value)}")
             return None
         for key in value if allowed is not None else ():
             if key not in (names := list(allowed or ())):
@@ -184,9 +184,9 @@ class Notes:
     def number(self, value: Any, path: Path) -> float | None:
         """The value as a finite number; None, noted, if it is not one."""
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            self.add(path, f"must be a number, got {described(value)}")
+            self.add(path, f"must be a number, got {value_text(value)}")
         elif not math.isfinite(value):
-            self.add(path, f"must be a finite number, got {described(value)}")
+            self.add(path, f"must be a finite number, got {value_text(value)}")
         else:
             return float(value)
         return None
@@ -194,7 +194,7 @@ class Notes:
     def whole_number(self, value: Any, path: Path, least: int) -> int | None:
         """The value as a whole number of at least ``least``; None, noted, if it is not one."""
         if isinstance(value, bool) or not isinstance(value, int):
-            self.add(path, f"must be a whole number >= {least}, got {described(value)}")
+            self.add(path, f"must be a whole number >= {least}, got {value_text(value)}")
         elif value < least:
             self.add(path, f"must be >= {least}, got {value}")
         else:
@@ -206,7 +206,7 @@ class Notes:
         if isinstance(value, str):
             return value
         kind = "" if isinstance(value, (dict, list)) or value is None else " (put it in quotes)"
-        self.add(path, f"must be text, got {described(value)}{kind}")
+        self.add(path, f"must be text, got {value_text(value)}{kind}")
         return ""
 
     def one_of(self, value: Any, path: Path, names: Iterable[str]) -> str | None:
@@ -215,5 +215,5 @@ class Notes:
         if isinstance(value, str) and value in allowed:
             return value
         hint = did_you_mean(value, allowed) if isinstance(value, str) else ""
-        self.add(path, f"must be one of {', '.join(allowed)}; got {described(value)}", hint)
+        self.add(path, f"must be one of {', '.join(allowed)}; got {value_text(value)}", hint)
         return None

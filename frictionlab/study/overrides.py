@@ -12,7 +12,7 @@ from frictionlab.study.yaml_source import Source, read_text
 _RANGE = ("start", "stop", "num", "spacing")
 
 
-def overridden(source: Source, overrides: Iterable[str]) -> None:
+def apply_overrides(source: Source, overrides: Iterable[str]) -> None:
     """Put every override into the source's values; what cannot be is noted there."""
     for text in overrides:
         _Override(source, text).apply()

@@ -14,24 +14,24 @@ from frictionlab import columns, registry
 from frictionlab.scene.dimensional import dimensions
 from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import (
+    certain_labels,
+    certain_law_labels,
     items,
     label_of,
     law_choice,
     method_choice,
     note_equal_labels,
-    sure_labels,
-    sure_law_labels,
 )
 from frictionlab.study.expectations import Table, expectations
-from frictionlab.study.grid import Swept, note_impossible_points, swept
-from frictionlab.study.law_files import Bring, Brought, add_law_files, as_saved, bring
-from frictionlab.study.mistakes import Notes, Path, StudyError, described
-from frictionlab.study.overrides import overridden
+from frictionlab.study.grid import Sweeps, note_impossible_points, read_sweeps
+from frictionlab.study.law_files import LawReader, StudyLaws, add_law_files, read_laws, saved_law_reader
+from frictionlab.study.mistakes import Notes, Path, StudyError, value_text
+from frictionlab.study.overrides import apply_overrides
 from frictionlab.study.study import SCHEMA, LawChoice, MethodChoice, Study
-from frictionlab.study.validation import built, number_paths
-from frictionlab.study.yaml_source import Odd, Source, plain_number, read_file
+from frictionlab.study.validation import build_record, number_paths
+from frictionlab.study.yaml_source import Source, UnsupportedValue, plain_number, read_file
 
-KEYS = (
+STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
     *("sweep", "expect", "keep"),
 )
@@ -60,7 +60,7 @@ def read_back(path: FilePath, codes: Mapping[str, str]) -> Study:
 
     Raises StudyError with every mistake.
     """
-    return replace(_study(read_file(path), (), path.parent, as_saved(codes)), path=path)
+    return replace(_study(read_file(path), (), path.parent, saved_law_reader(codes)), path=path)
 
 
 def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name: str = "study") -> Study:
@@ -76,20 +76,22 @@ def study_of(source: Source) -> Study:
     return _study(source, ())
 
 
-def _study(source: Source, overrides: Sequence[str], folder: FilePath = HERE, bring: Bring = bring) -> Study:
+def _study(
+    source: Source, overrides: Sequence[str], folder: FilePath = HERE, bring: LawReader = read_laws
+) -> Study:
     if isinstance(source.tree, dict):
-        overridden(source, overrides)
+        apply_overrides(source, overrides)
     notes = Notes(source.notes)
-    study = _Reading(source, notes, lambda tree: bring(tree, folder, notes)).study()
+    study = _StudyReader(source, notes, lambda tree: bring(tree, folder, notes)).study()
     if study is None or notes.all:
         raise StudyError(source.located(notes.all))
     return study
 
 
-class _Reading:
+class _StudyReader:
     """One pass over a study's values, in an order in which each step knows what it needs."""
 
-    def __init__(self, source: Source, notes: Notes, bring: Callable[[dict[str, Any]], Brought]) -> None:
+    def __init__(self, source: Source, notes: Notes, bring: Callable[[dict[str, Any]], StudyLaws]) -> None:
         self._source, self._notes, self._bring = source, notes, bring
         self._tree: dict[str, Any] = source.tree
         self._known = registry.Laws()
@@ -102,7 +104,11 @@ class _Reading:
         self._known = brought.laws
         sweep = self._sweep()
         laws, methods = self._laws(), self._methods()
-        scene = built(Scene, self._tree["scene"], ("scene",), self._notes) if "scene" in self._tree else None
+        scene = (
+            build_record(Scene, self._tree["scene"], ("scene",), self._notes)
+            if "scene" in self._tree
+            else None
+        )
         told = self._plain_values()
         told["expect"] = self._expect(scene)
         if self._notes.all or scene is None:
@@ -117,17 +123,17 @@ class _Reading:
         for key in self._tree:
             if key == "dimensional":
                 self._notes.on_key((key,), "is a part of the scene: write scene: {dimensional: {...}}")
-            elif key not in KEYS:
-                self._notes.unknown_key((key,), KEYS)
+            elif key not in STUDY_KEYS:
+                self._notes.unknown_key((key,), STUDY_KEYS)
         for key in REQUIRED:
             if key not in self._tree:
                 self._notes.add((key,), "required key is missing")
         given = self._tree.get("schema", SCHEMA)
         if isinstance(given, bool) or given != SCHEMA:
-            self._notes.add(("schema",), f"must be {SCHEMA}, got {described(given)}")
+            self._notes.add(("schema",), f"must be {SCHEMA}, got {value_text(given)}")
 
-    def _sweep(self) -> Swept:
-        found = swept(self._tree, self._known, self._notes)
+    def _sweep(self) -> Sweeps:
+        found = read_sweeps(self._tree, self._known, self._notes)
         for missing, sweep in found.stand_ins.items():
             if sweep in self._source.origins:
                 self._source.origins[missing] = self._source.origins[sweep]
@@ -166,7 +172,7 @@ class _Reading:
         told: dict[str, Any] = {key: notes.text(tree[key], (key,)) for key in words}
         told["tolerance"] = notes.number(tree.get("tolerance", DEFAULT_TOLERANCE), ("tolerance",))
         if told["tolerance"] is not None and told["tolerance"] <= 0:
-            notes.add(("tolerance",), f"must be > 0, got {described(tree['tolerance'])}")
+            notes.add(("tolerance",), f"must be > 0, got {value_text(tree['tolerance'])}")
         keep = notes.mapping(tree.get("keep", {}), ("keep",), ("orbit",)) or {}
         if "orbit" in keep:
             told["keep_orbit"] = notes.whole_number(keep["orbit"], ("keep", "orbit"), 2)
@@ -179,8 +185,8 @@ class _Reading:
     def _table(self, scene: Scene | None) -> Table:
         """What ``where`` may name; where the scene or a law has mistakes, whatever one could hold."""
         paths = list(scene.values()) if scene is not None else number_paths(Scene)
-        laws = sure_law_labels(self._tree.get("laws"), self._known)
-        methods = sure_labels(self._tree.get("methods", list(DEFAULT_METHODS)), registry.method_names())
+        laws = certain_law_labels(self._tree.get("laws"), self._known)
+        methods = certain_labels(self._tree.get("methods", list(DEFAULT_METHODS)), registry.method_names())
         kinds = tuple(dict.fromkeys(law["kind"] for law in self._tree["laws"])) if laws else None
         known = self._known.usable() if kinds is None else kinds
         classes = [self._known.named(kind) for kind in known]
@@ -207,4 +213,8 @@ def _plain(value: Any) -> Any:
         return [_plain(item) for item in value]
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return plain_number(value)
-    return value if value is None or isinstance(value, (str, bool)) else Odd(f"a {type(value).__name__}")
+    return (
+        value
+        if value is None or isinstance(value, (str, bool))
+        else UnsupportedValue(f"a {type(value).__name__}")
+    )

@@ -12,14 +12,14 @@ from frictionlab.study import reader
 from frictionlab.study.grid import LARGEST_GRID
 from frictionlab.study.study import SCHEMA
 
-INSTALLED = registry.Laws()
+INSTALLED_LAWS = registry.Laws()
 _NUMBER = {"type": "number"}
 _TEXT = {"type": "string"}
 # A bound behind a validator of our own keeps pydantic's name for it.
 _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
 
 
-def schema(laws: registry.Laws = INSTALLED) -> dict[str, Any]:
+def schema(laws: registry.Laws = INSTALLED_LAWS) -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of a study; what depends on several keys at once is left to ``check``."""
     definitions: dict[str, Any] = {}
     scene = _record(Scene, definitions)
@@ -39,35 +39,35 @@ def schema(laws: registry.Laws = INSTALLED) -> dict[str, Any]:
         "tolerance": {"type": "number", "exclusiveMinimum": 0, "default": reader.DEFAULT_TOLERANCE},
         "sweep": _sweep(),
         "expect": {"type": "array", "items": {"oneOf": _expectations()}},
-        "keep": _closed({"orbit": {"type": "integer", "minimum": 2}}, []),
+        "keep": _closed_object({"orbit": {"type": "integer", "minimum": 2}}, []),
     }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A frictionlab study",
-        **_closed(properties, list(reader.REQUIRED)),
+        **_closed_object(properties, list(reader.REQUIRED)),
         "$defs": definitions,
     }
 
 
-def _closed(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:
+def _closed_object(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:
     return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
 
 
 def _record(record: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:
     """The schema of a record; the records inside it join the definitions."""
-    made: dict[str, Any] = _as_written(record.model_json_schema(ref_template="#/$defs/{model}"))
+    made: dict[str, Any] = _study_schema(record.model_json_schema(ref_template="#/$defs/{model}"))
     definitions.update(made.pop("$defs", {}))
     return made
 
 
-def _as_written(schema: Any) -> Any:
+def _study_schema(schema: Any) -> Any:
     """A record's schema for a study: a key may be left out (a sweep can give it), but not be null."""
     if isinstance(schema, list):
-        return [_as_written(item) for item in schema]
+        return [_study_schema(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
     kept = {
-        _BOUNDS.get(key, key) if isinstance(item, (int, float)) else key: _as_written(item)
+        _BOUNDS.get(key, key) if isinstance(item, (int, float)) else key: _study_schema(item)
         for key, item in schema.items()
         if key != "required" and not (key == "default" and item is None)
     }
@@ -88,13 +88,13 @@ def _methods(definitions: dict[str, Any]) -> list[dict[str, Any]]:
 def _kind(name: str, record: dict[str, Any]) -> dict[str, Any]:
     """A law or method: its own keys, its registered name and a label."""
     own = {"kind": {"const": name}, "label": _TEXT}
-    closed = _closed({**own, **record.get("properties", {})}, ["kind"])
+    closed = _closed_object({**own, **record.get("properties", {})}, ["kind"])
     return {"title": name, "description": record.get("description", ""), **closed}
 
 
 def _sweep() -> dict[str, Any]:
     listed = {"type": "array", "minItems": 1, "uniqueItems": True, "items": _NUMBER}
-    ranged = _closed(
+    ranged = _closed_object(
         {
             "start": _NUMBER,
             "stop": _NUMBER,
@@ -117,11 +117,11 @@ def _expectations() -> list[dict[str, Any]]:
     statuses = [status for status in columns.STATUSES if status != "killed"]
     pair = {"type": "array", "minItems": 2, "maxItems": 2, "uniqueItems": True, "items": _TEXT}
     return [
-        _closed({**shared, **column, "equals": _NUMBER}, ["column", "equals", "within"]),
-        _closed({**shared, **column, "below": _NUMBER}, ["column", "below"]),
-        _closed({**shared, **column, "above": _NUMBER}, ["column", "above"]),
-        _closed({**shared, "status": {"enum": statuses}}, ["status"]),
-        _closed({**shared, "max_difference": pair, "below": positive}, ["max_difference", "below"]),
+        _closed_object({**shared, **column, "equals": _NUMBER}, ["column", "equals", "within"]),
+        _closed_object({**shared, **column, "below": _NUMBER}, ["column", "below"]),
+        _closed_object({**shared, **column, "above": _NUMBER}, ["column", "above"]),
+        _closed_object({**shared, "status": {"enum": statuses}}, ["status"]),
+        _closed_object({**shared, "max_difference": pair, "below": positive}, ["max_difference", "below"]),
         *(_shape(shared, measure) for measure in columns.SHAPES),
     ]
 
@@ -130,4 +130,4 @@ def _shape(shared: dict[str, Any], measure: str) -> dict[str, Any]:
     """A verdict on curves by one measure, which for area may be left out."""
     required = ["shape"] if measure == "area" else ["shape", "measure"]
     own = {"shape": {"enum": list(columns.SHAPES[measure])}, "measure": {"const": measure}}
-    return _closed({**shared, **own}, required)
+    return _closed_object({**shared, **own}, required)

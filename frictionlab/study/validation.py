@@ -11,9 +11,9 @@ from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
-from frictionlab.study.mistakes import Notes, Path, closest, described, did_you_mean, number_text
+from frictionlab.study.mistakes import Notes, Path, closest, did_you_mean, number_text, value_text
 
-R = TypeVar("R", bound=BaseModel)
+RecordT = TypeVar("RecordT", bound=BaseModel)
 
 # Each round mends what it found so that the next can see what was hidden behind it; a deep study needs four.
 _ROUNDS = 10
@@ -49,7 +49,7 @@ def wrong_value(record: type[BaseModel], key: str, value: Any) -> str | None:
     try:
         _field(record, key).validate_python(value)
     except ValidationError as problem:
-        return _in_words(problem.errors(include_url=False)[0])
+        return _value_mistake(problem.errors(include_url=False)[0])
     return None
 
 
@@ -60,7 +60,7 @@ def _field(record: type[BaseModel], key: str) -> TypeAdapter[Any]:
     return TypeAdapter(Annotated[(kind, *field.metadata)] if field.metadata else kind)
 
 
-def harmless(record: type[BaseModel], key: str) -> float:
+def valid_number(record: type[BaseModel], key: str) -> float:
     """A number that this number field takes: 1, or 0.5 for shares."""
     return 1.0 if wrong_value(record, key, 1.0) is None else 0.5
 
@@ -73,7 +73,7 @@ def record_at(record: type[BaseModel], path: Path) -> type[BaseModel] | None:
     return found
 
 
-def built(record: type[R], tree: Any, path: Path, notes: Notes) -> R | None:
+def build_record(record: type[RecordT], tree: Any, path: Path, notes: Notes) -> RecordT | None:
     """The record of this mapping; None, with every mistake noted, where it cannot be made."""
     if notes.mapping(tree, path) is None:
         return None
@@ -129,16 +129,16 @@ class _Check:
             self._note(inside, "required key is missing")
             return self._filled(inside)
         if error["type"] in ("model_type", "model_attributes_type", "dict_type"):
-            self._note(inside, f"must be a mapping (key: value), got {described(error['input'])}")
+            self._note(inside, f"must be a mapping (key: value), got {value_text(error['input'])}")
             return self._replaced(inside)
         if error["type"] == "value_error" and isinstance(error["input"], dict):
             return any([self._rule(inside, part, what) for part, what in self._said(inside, _message(error))])
         if error["type"] == "literal_error":
             names = re.findall("'([^']*)'", error["ctx"]["expected"])
             hint = did_you_mean(error["input"], names) if isinstance(error["input"], str) else ""
-            self._note(inside, _in_words(error), hint)
+            self._note(inside, _value_mistake(error), hint)
             return self._dropped(inside)
-        self._note(inside, _in_words(error))
+        self._note(inside, _value_mistake(error))
         return self._filled(inside)
 
     def _rule(self, whole: Path, inside: Path, what: str) -> bool:
@@ -191,7 +191,7 @@ class _Check:
             return False
         if str(inside[-1]) not in number_paths(record):
             return False
-        filler = harmless(record, str(inside[-1]))
+        filler = valid_number(record, str(inside[-1]))
         if tree.get(inside[-1]) == filler:
             return False
         tree[inside[-1]] = filler
@@ -219,7 +219,7 @@ class _Check:
 def _ones(record: type[BaseModel]) -> dict[str, float]:
     """A one for every number that a record requires."""
     numbers = [key for key in number_paths(record) if key in record.model_fields]
-    return {key: harmless(record, key) for key in numbers if record.model_fields[key].is_required()}
+    return {key: valid_number(record, key) for key in numbers if record.model_fields[key].is_required()}
 
 
 def _message(error: Any) -> str:
@@ -230,9 +230,9 @@ _BOUNDS = {"greater_than": (">", "gt"), "greater_than_equal": (">=", "ge")}
 _BOUNDS |= {"less_than": ("<", "lt"), "less_than_equal": ("<=", "le")}
 
 
-def _in_words(error: Any) -> str:
+def _value_mistake(error: Any) -> str:
     """An error of a single value as a plain sentence."""
-    given = described(error["input"])
+    given = value_text(error["input"])
     if isinstance(error["input"], float) and not math.isfinite(error["input"]):
         return f"must be a finite number, got {given}"
     if error["type"] in _BOUNDS:

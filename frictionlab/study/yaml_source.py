@@ -12,9 +12,9 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
-from frictionlab.study.mistakes import Mistake, Note, Path, Place, StudyError, dotted
+from frictionlab.study.mistakes import Mistake, Note, Path, StudyError, TextPosition, dotted
 
-LARGEST_FILE = 5_000_000
+LARGEST_YAML_FILE = 5_000_000
 MOST_NODES = 300_000
 
 _TAG = "tag:yaml.org,2002:"
@@ -22,7 +22,7 @@ _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ufffe\uffff
 
 
 @dataclass(frozen=True)
-class Odd:
+class UnsupportedValue:
     """A value no study has a use for, such as a date, in words."""
 
     words: str
@@ -43,8 +43,8 @@ class Source:
     name: str
     text: str = ""
     tree: Any = None
-    keys: dict[Path, Place] = field(default_factory=dict)
-    values: dict[Path, Place] = field(default_factory=dict)
+    keys: dict[Path, TextPosition] = field(default_factory=dict)
+    values: dict[Path, TextPosition] = field(default_factory=dict)
     origins: dict[Path, str] = field(default_factory=dict)
     refused: dict[Path, Path] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
@@ -61,7 +61,7 @@ class Source:
         path = dotted(self.refused.get(note.path, note.path))
         return Mistake(origin, place, path, note.what, note.hint, line)
 
-    def _where(self, note: Note) -> tuple[str, Place | None]:
+    def _where(self, note: Note) -> tuple[str, TextPosition | None]:
         """The path's own place, or that of the nearest thing around it which the study does have."""
         for length in range(len(note.path), -1, -1):
             path = note.path[:length]
@@ -81,10 +81,10 @@ def read_file(path: FilePath) -> Source:
 def read_text(text: str, name: str) -> Source:
     """YAML text as a source. Raises StudyError where it is not YAML or empty."""
     source = Source(name, text)
-    node = _composed(source)
+    node = _compose(source)
     if node is None:
-        raise _unreadable(source, "the study is empty", Place(1, 1))
-    source.tree = _Reading(source).value(node, ())
+        raise _unreadable(source, "the study is empty", TextPosition(1, 1))
+    source.tree = _NodeReader(source).value(node, ())
     return source
 
 
@@ -95,8 +95,10 @@ def _text_of(path: FilePath) -> str:
             raise _unreadable(nothing, "is a folder; a study is a file")
         if path.exists() and not path.is_file():
             raise _unreadable(nothing, "is not an ordinary file")
-        if path.exists() and path.stat().st_size > LARGEST_FILE:
-            raise _unreadable(nothing, f"is larger than {LARGEST_FILE // 10**6} MB; a study is a short text")
+        if path.exists() and path.stat().st_size > LARGEST_YAML_FILE:
+            raise _unreadable(
+                nothing, f"is larger than {LARGEST_YAML_FILE // 10**6} MB; a study is a short text"
+            )
         return path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError:
         raise _unreadable(nothing, "no such file") from None
@@ -107,15 +109,15 @@ def _text_of(path: FilePath) -> str:
         raise _unreadable(nothing, f"cannot be read: {reason}") from None
 
 
-def _unreadable(source: Source, what: str, place: Place | None = None) -> StudyError:
+def _unreadable(source: Source, what: str, place: TextPosition | None = None) -> StudyError:
     return StudyError(source.located([Note((), what, place=place)]))
 
 
-def _composed(source: Source) -> Node | None:
+def _compose(source: Source) -> Node | None:
     """The YAML node of the text; nodes, not values, because they know their places and keep double keys."""
     if odd := _CONTROL.search(source.text):
         before = source.text[: odd.start()].split("\n")
-        place = Place(len(before), len(before[-1]) + 1)
+        place = TextPosition(len(before), len(before[-1]) + 1)
         raise _unreadable(source, f"is not text: character {odd.group()!r}", place)
     try:
         node: Node | None = YAML(typ="rt").compose(source.text)
@@ -123,7 +125,7 @@ def _composed(source: Source) -> Node | None:
     except MarkedYAMLError as problem:
         mark = problem.problem_mark or problem.context_mark
         what = " ".join(str(part).strip() for part in (problem.context, problem.problem) if part)
-        at = Place(mark.line + 1, mark.column + 1) if mark else None
+        at = TextPosition(mark.line + 1, mark.column + 1) if mark else None
         raise _unreadable(source, f"not YAML: {what}", at) from None
     except RecursionError:
         raise _unreadable(source, "not a study: nested too deeply") from None
@@ -132,7 +134,7 @@ def _composed(source: Source) -> Node | None:
         raise _unreadable(source, f"not YAML: {str(problem).splitlines()[0] or 'unreadable'}") from None
 
 
-class _Reading:
+class _NodeReader:
     """One pass over the nodes of a source."""
 
     def __init__(self, source: Source) -> None:
@@ -142,7 +144,7 @@ class _Reading:
 
     def value(self, node: Node, path: Path) -> Any:
         """The node as a plain value; its place and those of all below are entered."""
-        place = Place(node.start_mark.line + 1, node.start_mark.column + 1)
+        place = TextPosition(node.start_mark.line + 1, node.start_mark.column + 1)
         self._source.values.setdefault(path, place)
         self._count += 1
         if self._count > MOST_NODES:
@@ -164,7 +166,7 @@ class _Reading:
     def _mapping(self, node: MappingNode, path: Path) -> dict[str, Any]:
         read: dict[str, Any] = {}
         for key, item in node.value:
-            place = Place(key.start_mark.line + 1, key.start_mark.column + 1)
+            place = TextPosition(key.start_mark.line + 1, key.start_mark.column + 1)
             if (name := self._key(key, path, place)) is None:
                 continue
             below = (*path, name)
@@ -179,7 +181,7 @@ class _Reading:
                 self._source.values[below] = place
         return read
 
-    def _key(self, key: Node, path: Path, place: Place) -> str | None:
+    def _key(self, key: Node, path: Path, place: TextPosition) -> str | None:
         if not isinstance(key, ScalarNode):
             self._source.notes.append(Note(path, "a key must be a name", place=place))
         elif key.tag == _TAG + "merge":
@@ -191,21 +193,21 @@ class _Reading:
     def _scalar(self, node: ScalarNode, path: Path) -> Any:
         kind = str(node.tag).removeprefix(_TAG)
         if kind == "timestamp":
-            return Odd(f"the date {node.value}")
+            return UnsupportedValue(f"the date {node.value}")
         if kind not in _SCALARS:
             return self._odd(path, f"the YAML tag {node.tag} has no meaning here")
-        text = _unmarked(node)
+        text = _scalar_text(node)
         try:
             return _SCALARS[kind](text)
         except ValueError:
             return text
 
-    def _odd(self, path: Path, what: str) -> Odd:
+    def _odd(self, path: Path, what: str) -> UnsupportedValue:
         self._source.notes.append(Note(path, what))
-        return Odd(what)
+        return UnsupportedValue(what)
 
 
-def _unmarked(node: ScalarNode) -> str:
+def _scalar_text(node: ScalarNode) -> str:
     """The text; ruamel's round-trip reader marks with a BEL where a folded one wraps."""
     return str(node.value).replace("\a", "") if node.style == ">" else str(node.value)
 

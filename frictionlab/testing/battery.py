@@ -11,7 +11,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.testing.check import Check
 from frictionlab.testing.checks import compiled, declared, limits, path, record, symmetry
 from frictionlab.testing.outcome import LawFailed, Outcome, Report
-from frictionlab.testing.running import run
+from frictionlab.testing.running import run_check
 
 CHECKS: tuple[Check, ...] = (
     record.loads_by_name,
@@ -115,7 +115,7 @@ def _outcome(
 ) -> Outcome:
     if any(outcome.check == NEEDED and outcome.result == "failed" for outcome in before):
         return Outcome(check.name, "skipped", 0, f"{NEEDED} failed: the law cannot be asked")
-    outcome = run(check, law, *most)
+    outcome = run_check(check, law, *most)
     if expected is None:
         return outcome
     if outcome.result == "failed":

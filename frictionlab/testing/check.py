@@ -10,7 +10,7 @@ from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.testing.example import Given
 
-Body = Callable[[Given], None]
+CheckFunction = Callable[[Given], None]
 Skips = Callable[[type[FrictionLaw]], str]
 BASES = (FrictionLaw, SlidingLaw, BristleLaw, MemoryLaw)
 
@@ -28,12 +28,12 @@ class Check:
 
     name: str
     about: str
-    body: Body
+    body: CheckFunction
     skips: Skips
     share: float = 1.0
     seldom: str = ""
     declares: str = ""
-    after: Body | None = None
+    after: CheckFunction | None = None
     patience: float = 1.0
 
     def needless(self, law: type[FrictionLaw]) -> str:
@@ -58,10 +58,10 @@ def for_laws_of(*kinds: Any, without: str) -> Skips:
     return lambda law: "" if issubclass(law, kinds) else without
 
 
-def check(name: str, *, skips: Skips = for_every_law, **told: Any) -> Callable[[Body], Check]:
+def make_check(name: str, *, skips: Skips = for_every_law, **told: Any) -> Callable[[CheckFunction], Check]:
     """Make a check of a body; its docstring is what the check is about, ``told`` the fields of Check."""
 
-    def made(body: Body) -> Check:
+    def made(body: CheckFunction) -> Check:
         return Check(name, " ".join((body.__doc__ or "").split()), body, skips, **told)
 
     return made

@@ -10,17 +10,17 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw, in_the_plane, on_the_line
 
-Memory = tuple[Any, ...]
+ContactMemory = tuple[Any, ...]
 
 
 class Response(NamedTuple):
     """How a contact answers a slip velocity: rates of its memory and the friction coefficient along the slip."""
 
-    rates: Memory
+    rates: ContactMemory
     friction: Any
 
 
-def response(law: FrictionLaw, v: Any, memory: Memory) -> Response:
+def response(law: FrictionLaw, v: Any, memory: ContactMemory) -> Response:
     """The law at slip velocity ``v``: ``float`` on the line, ``complex`` in the plane."""
     if isinstance(law, BristleLaw):
         rate, friction = (in_the_plane if isinstance(v, complex) else on_the_line)(law, v, memory[0])
@@ -32,43 +32,43 @@ def response(law: FrictionLaw, v: Any, memory: Memory) -> Response:
     return Response((), law.sliding_vector(v))
 
 
-def size_of(law: BristleLaw) -> float:
+def deflection_scale(law: BristleLaw) -> float:
     """The largest deflection, or else one of the law's size [scene length]."""
     return next(
         (size for size in (law.largest_deflection(), law.presliding()) if 0.0 < size < float("inf")), 1.0
     )
 
 
-def slid(law: FrictionLaw, v: Any, share: float) -> Memory:
+def memory_after_slip(law: FrictionLaw, v: Any, share: float) -> ContactMemory:
     """A share of the deflections that long slip at velocity ``v`` brings; of scalars, those of steady sliding."""
     if isinstance(law, BristleLaw):
-        return (share * size_of(law) * (v / abs(v)),)
+        return (share * deflection_scale(law) * (v / abs(v)),)
     if isinstance(law, MemoryLaw):
         share = share if law.memory_kind == "deflections" else 1.0
         return tuple(share * law.steady(v, k) for k in range(law.count()))
     return ()
 
 
-def stored(law: FrictionLaw, memory: Memory) -> float:
+def stored_work(law: FrictionLaw, memory: ContactMemory) -> float:
     """The work per unit normal load that the memory can give back [scene length]."""
     if isinstance(law, BristleLaw):
         return law.stored(memory[0])
     return law.stored(np.array(memory)) if isinstance(law, MemoryLaw) else 0.0
 
 
-def turned(law: FrictionLaw, memory: Memory, turn: complex) -> Memory:
+def rotate(law: FrictionLaw, memory: ContactMemory, turn: complex) -> ContactMemory:
     """The memory after everything was turned: deflections turn too, scalars and a deflection along slip do not."""
-    if not turns_with_slip(law):
+    if not has_direction(law):
         return memory
     return tuple(turn * each for each in memory)
 
 
-def mirrored(law: FrictionLaw, memory: Memory) -> Memory:
+def reflect(law: FrictionLaw, memory: ContactMemory) -> ContactMemory:
     """The memory reflected in the belt's line."""
-    return tuple(each.conjugate() for each in memory) if turns_with_slip(law) else memory
+    return tuple(each.conjugate() for each in memory) if has_direction(law) else memory
 
 
-def turns_with_slip(law: FrictionLaw) -> bool:
+def has_direction(law: FrictionLaw) -> bool:
     """Whether the memory has a direction."""
     if isinstance(law, BristleLaw):
         return law.planar != "rotated"
@@ -85,7 +85,7 @@ def dot(a: Any, b: Any) -> float:
     return float((a * b.conjugate()).real)
 
 
-def noise(law: FrictionLaw, v: Any, memory: Memory, step: float = 1e-13) -> Response:
+def rounding_noise(law: FrictionLaw, v: Any, memory: ContactMemory, step: float = 1e-13) -> Response:
     """How much the response moves with its arguments' own rounding: what no comparison can ask less of."""
     base = response(law, v, memory)
     rates, friction = [0.0] * len(memory), 0.0

@@ -13,7 +13,14 @@ from pydantic import ValidationError
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.testing import strategies
-from frictionlab.testing.contact import Memory, Response, no_plane, noise, response, size_of
+from frictionlab.testing.contact import (
+    ContactMemory,
+    Response,
+    deflection_scale,
+    no_plane,
+    response,
+    rounding_noise,
+)
 
 
 class Violation(AssertionError):
@@ -36,7 +43,7 @@ class Given:
 
     def law(self, when: Callable[[Any], bool] = lambda law: True) -> Any:
         """A law of any parameters for which this holds."""
-        law = self.draw("law", strategies.laws(self.kind))
+        law = self.draw("law", strategies.loaded_laws(self.kind))
         assume(when(law))
         return law
 
@@ -61,22 +68,24 @@ class Given:
     def planar_slip(self) -> complex:
         """A slip velocity in the plane."""
         return complex(
-            self.draw("slip velocity", st.builds(lambda v, t: v * t, strategies.speeds, strategies.turns))
+            self.draw(
+                "slip velocity", st.builds(lambda v, t: v * t, strategies.speeds, strategies.directions)
+            )
         )
 
-    def memory(self, law: FrictionLaw, planar: bool = False) -> Memory:
+    def memory(self, law: FrictionLaw, planar: bool = False) -> ContactMemory:
         """A memory that the law can have."""
-        directions = strategies.turns if planar else st.just(1.0)
+        directions = strategies.directions if planar else st.just(1.0)
         vectors = st.builds(lambda share, turn: share * turn, strategies.shares, directions)
         if isinstance(law, BristleLaw):
             if planar and law.planar == "rotated":
                 vectors = strategies.shares.map(complex)
-            return (self.draw("deflection", vectors.map(lambda share: share * size_of(law))),)
+            return (self.draw("deflection", vectors.map(lambda share: share * deflection_scale(law))),)
         if isinstance(law, MemoryLaw):
             return self._memories(law, vectors if law.memory_kind == "deflections" else None)
         return ()
 
-    def _memories(self, law: MemoryLaw, vectors: st.SearchStrategy[Any] | None) -> Memory:
+    def _memories(self, law: MemoryLaw, vectors: st.SearchStrategy[Any] | None) -> ContactMemory:
         """Each that of steady sliding at some speed, deflections by any share of it and in any direction."""
         speed = self.draw("speed slid at before", strategies.speeds)
         steady = [law.steady(speed, k) for k in range(law.count())]
@@ -92,11 +101,11 @@ class Given:
             raise Violation(f"{what}: {numbers}" if numbers else what)
 
     def require_same(
-        self, law: FrictionLaw, at: tuple[Any, Memory], got: Response, should: Response, what: str
+        self, law: FrictionLaw, at: tuple[Any, ContactMemory], got: Response, should: Response, what: str
     ) -> None:
         """Two responses differ by rounding alone, against their terms and what rounding of the arguments does."""
         v, memory = at
-        base, own = response(law, v, memory), noise(law, v, memory)
+        base, own = response(law, v, memory), rounding_noise(law, v, memory)
         pairs = zip(got.rates, should.rates, base.rates, own.rates, strict=True)
         for k, (a, b, rate, rounding) in enumerate(pairs):
             room = 1e-12 * (abs(rate) + _scale(law, v)) + 20.0 * rounding

@@ -83,7 +83,7 @@ class Report:
         """A table to publish beside the law."""
         head = ["| check | result | examples | remark |", "| --- | --- | ---: | --- |"]
         rows = [
-            f"| {outcome.check} | {outcome.result} | {outcome.examples} | {_in_a_cell(outcome.remark)} |"
+            f"| {outcome.check} | {outcome.result} | {outcome.examples} | {_table_cell(outcome.remark)} |"
             for outcome in self.outcomes
         ]
         return "\n".join([f"### {name or self.law}", "", *head, *rows, "", self.summary(name)])
@@ -103,5 +103,5 @@ def heading(name: str) -> str:
     return f"\n{name}\n{'check':32}  {'result':16}  {'ran':>5}"
 
 
-def _in_a_cell(text: str) -> str:
+def _table_cell(text: str) -> str:
     return " ".join(text.replace("|", "\\|").split())

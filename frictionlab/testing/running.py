@@ -23,11 +23,11 @@ from frictionlab.testing.outcome import Outcome
 from frictionlab.testing.strategies import quietly
 
 
-class TooLong(BaseException):
+class TimeLimitExceeded(BaseException):
     """No answer within the time limit; no ``except Exception`` of a law can swallow it."""
 
 
-class Counted:
+class ExampleCount:
     """What the examples of one check came to."""
 
     def __init__(self) -> None:
@@ -36,11 +36,11 @@ class Counted:
         self.notes: set[str] = set()
 
 
-def run(check: Check, law: type[FrictionLaw], examples: int, seconds: float) -> Outcome:
+def run_check(check: Check, law: type[FrictionLaw], examples: int, seconds: float) -> Outcome:
     """One check of one law. A check that ran nothing has failed, unless what it is about never comes up."""
     if reason := check.needless(law):
         return Outcome(check.name, "skipped", 0, reason)
-    counted, start = Counted(), time.perf_counter()
+    counted, start = ExampleCount(), time.perf_counter()
     problem = _problem(check, law, counted, max(1, round(check.share * examples)), seconds * check.patience)
     spent = time.perf_counter() - start
     if problem is None and counted.examples == 0:
@@ -53,7 +53,7 @@ def run(check: Check, law: type[FrictionLaw], examples: int, seconds: float) -> 
 
 
 def _problem(
-    check: Check, law: type[FrictionLaw], counted: Counted, examples: int, seconds: float
+    check: Check, law: type[FrictionLaw], counted: ExampleCount, examples: int, seconds: float
 ) -> str | None:
     """What is wrong, with the smallest counterexample; None where nothing is."""
     try:
@@ -64,14 +64,18 @@ def _problem(
                 check.after(counted.last)
     except Unsatisfiable:
         return None
-    except TooLong:
-        return f"no answer within {seconds:g} s; does a method of the law never return? {_told(counted)}"
+    except TimeLimitExceeded:
+        return (
+            f"no answer within {seconds:g} s; does a method of the law never return? {_drawn_values(counted)}"
+        )
     except Exception as problem:
-        return f"{_said(problem, law)}; {_told(counted)}".rstrip("; ")
+        return f"{_describe_failure(problem, law)}; {_drawn_values(counted)}".rstrip("; ")
     return None
 
 
-def _examples(check: Check, law: type[FrictionLaw], counted: Counted, examples: int) -> Callable[[], None]:
+def _examples(
+    check: Check, law: type[FrictionLaw], counted: ExampleCount, examples: int
+) -> Callable[[], None]:
     """The body on so many drawn examples; Hypothesis ends with the smallest one that fails."""
 
     def body(data: Any) -> None:
@@ -83,12 +87,12 @@ def _examples(check: Check, law: type[FrictionLaw], counted: Counted, examples: 
     return quietly(examples, Phase.shrink)(given(st.data())(body))
 
 
-def _told(counted: Counted) -> str:
+def _drawn_values(counted: ExampleCount) -> str:
     told = counted.last.told() if counted.last is not None else ""
     return f"seen with {told}" if told else ""
 
 
-def _said(problem: Exception, law: type[FrictionLaw]) -> str:
+def _describe_failure(problem: Exception, law: type[FrictionLaw]) -> str:
     """A violation's own words; of any other exception, the line of the law's file it came from too."""
     if isinstance(problem, AssertionError):
         return str(problem)
@@ -108,7 +112,7 @@ def time_limit(seconds: float) -> Iterator[None]:
             with turn:
                 if not done.is_set():
                     ctypes.pythonapi.PyThreadState_SetAsyncExc(
-                        ctypes.c_ulong(thread), ctypes.py_object(TooLong)
+                        ctypes.c_ulong(thread), ctypes.py_object(TimeLimitExceeded)
                     )
 
     watcher = threading.Thread(target=watch, daemon=True)

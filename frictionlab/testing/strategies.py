@@ -16,7 +16,7 @@ from pydantic.fields import FieldInfo
 
 from frictionlab.laws.base import FrictionLaw
 
-DECADES = 3.0
+PARAMETER_DECADES = 3.0
 """A number without an upper limit is drawn within so many decades of one."""
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 TRIES = 50
@@ -51,7 +51,7 @@ signs = st.sampled_from([1.0, -1.0])
 shares = seldom(st.sampled_from([0.0, 1.0, -1.0, 1.0, -1.0]), evenly(-1.0, 1.0))
 """Of what a memory can hold, either way: none and all of it often enough to be seen."""
 angles = evenly(-math.pi, math.pi)
-turns = seldom(
+directions = seldom(
     st.sampled_from([1.0 + 0j, -1.0 + 0j, 1j, -1j]),
     angles.map(lambda angle: complex(math.cos(angle), math.sin(angle))),
 )
@@ -60,7 +60,7 @@ speeds = sizes(1e-6, 1e6)
 
 
 @cache
-def laws(law: type[FrictionLaw]) -> st.SearchStrategy[FrictionLaw]:
+def loaded_laws(law: type[FrictionLaw]) -> st.SearchStrategy[FrictionLaw]:
     """A law with parameters drawn from its own limits, under a normal load. Raises NoParameters."""
     return st.builds(lambda made, load: made.under_load(load), unloaded_laws(law), sizes(1e-1, 1e1))
 
@@ -109,7 +109,7 @@ def _presences(law: type[FrictionLaw]) -> list[tuple[str, ...]]:
     choices = [name for name in optional if name not in free]
     subsets = [given for size in range(len(choices) + 1) for given in combinations(choices, size)]
     tried = [(*must, *free, *given) for given in subsets[:MOST_PRESENCES]]
-    found = [given for given in tried if _goes_together(law, given)]
+    found = [given for given in tried if _is_accepted(law, given)]
     if not found:
         raise NoParameters(
             f"no parameters within their limits make a {law.__name__}: {_refusal(law, tried[0])}"
@@ -117,7 +117,7 @@ def _presences(law: type[FrictionLaw]) -> list[tuple[str, ...]]:
     return found
 
 
-def _goes_together(law: type[FrictionLaw], given: tuple[str, ...]) -> bool:
+def _is_accepted(law: type[FrictionLaw], given: tuple[str, ...]) -> bool:
     """Whether some values of these make a law."""
     random = Random(0)
     fields = {name: law.model_fields[name] for name in given}
@@ -234,11 +234,11 @@ def limits(rules: tuple[Any, ...]) -> tuple[float, float]:
 def numbers(low: float, high: float) -> st.SearchStrategy[float]:
     """Numbers between two limits: log-uniform away from a limit at zero, even between two others."""
     if low >= 0.0 and high == math.inf:
-        spread = sizes(10.0**-DECADES, 10.0**DECADES).map(lambda size: low + size)
+        spread = sizes(10.0**-PARAMETER_DECADES, 10.0**PARAMETER_DECADES).map(lambda size: low + size)
         return spread if low > 0.0 else seldom(st.just(0.0), spread)
     if math.isfinite(low) and math.isfinite(high):
         return evenly(low + 1e-6 * (high - low), high - 1e-6 * (high - low))
-    size = sizes(10.0**-DECADES, 10.0**DECADES)
+    size = sizes(10.0**-PARAMETER_DECADES, 10.0**PARAMETER_DECADES)
     if math.isfinite(high):
         return size.map(lambda distance: high - distance)
     if math.isfinite(low):

@@ -14,7 +14,7 @@ from fake_methods import Another, Fake, breaks_down
 
 from frictionlab import bench, cli, registry
 from frictionlab.bench import chart, timing
-from frictionlab.bench.measure import Measured, Row, chosen
+from frictionlab.bench.measure import Row, WorkloadResult, chosen
 from frictionlab.bench.peers import base
 from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.peers.scipy_bristle import ScipyBristle
@@ -72,14 +72,14 @@ def _fakes_and_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     Path("known.csv").write_text("\n".join(["belt_speed,mean_friction", *means]))
 
 
-def measured(text: str = LIST) -> Measured:
+def measured(text: str = LIST) -> WorkloadResult:
     """The first curve of a list."""
     Path("list.yaml").write_text(text)
     (first, *_) = bench.measure(bench.load_bench(Path("list.yaml")), lambda line: None)
     return first
 
 
-def rows_of(found: Measured, label: str) -> list[Row]:
+def rows_of(found: WorkloadResult, label: str) -> list[Row]:
     return [row for row in found.rows if row.contender.label == label]
 
 
@@ -155,7 +155,7 @@ def test_a_method_that_refuses_points_keeps_its_place_with_the_reason() -> None:
     assert (row.points, row.counts["ok"], row.counts["refused"]) == (5, 4, 1)
     assert row.largest == pytest.approx(1e-3)
     assert "1 refused: thirteen, of all numbers" in Path("out/A.md").read_text()
-    assert "1 refused: thirteen, of all numbers" in bench.summary([found])
+    assert "1 refused: thirteen, of all numbers" in bench.bench_summary([found])
 
 
 def test_a_method_that_fails_keeps_its_place_in_tables_and_chart(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -182,7 +182,7 @@ def test_a_peer_that_is_not_installed_keeps_its_place(monkeypatch: pytest.Monkey
 
     for name in PEERS:
         assert [row.counts["refused"] for row in rows_of(found, name)] == [4, 4]
-    told = bench.summary([found])
+    told = bench.bench_summary([found])
     assert all(told.count(f"not installed: {peer.remedy}") >= 1 for peer in PEERS.values())
     assert told.count("not installed: pip install") == len(PEERS)
     assert {text.get_text().partition(" ")[0] for text in chart.chart(found).legends[0].get_texts()} == {
@@ -210,7 +210,7 @@ def clock(monkeypatch: pytest.MonkeyPatch, spent: Sequence[float]) -> None:
 def test_the_time_of_a_task_is_the_least_of_its_repeats(monkeypatch: pytest.MonkeyPatch) -> None:
     clock(monkeypatch, [4.0, 2.0, 3.0, 9.0])
 
-    times = timing.timed(lambda: None, repeats=4, seconds=100.0)
+    times = timing.time_task(lambda: None, repeats=4, seconds=100.0)
 
     assert times == timing.Times(2.0, (2.75, 3.5, 5.25), 4)
     assert times.each_of(2).least == 1.0
@@ -219,12 +219,12 @@ def test_the_time_of_a_task_is_the_least_of_its_repeats(monkeypatch: pytest.Monk
 def test_a_slow_task_is_not_repeated_beyond_its_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
     clock(monkeypatch, [4.0, 5.0, 3.0])
 
-    assert timing.timed(lambda: None, repeats=30, seconds=8.0).repeats == 2
+    assert timing.time_task(lambda: None, repeats=30, seconds=8.0).repeats == 2
 
 
 def test_the_summary_takes_the_cheapest_setting_that_is_good_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     found = measured(LIST + "      - {kind: another, label: good}\n")
-    told = bench.summary([found]).splitlines()
+    told = bench.bench_summary([found]).splitlines()
 
     off, good = (line.split() for line in told[2:])
     assert off[-1] == off[-2] == "-"  # 1e-9 and 1e-12: off by 1e-6 at best
@@ -480,7 +480,7 @@ def test_a_peer_of_bristle_laws_refuses_what_it_is_not_set_up_for(name: str) -> 
 
 def test_a_peer_of_bristle_laws_that_gives_up_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("scipy")
-    monkeypatch.setattr("frictionlab.bench.peers.scipy_bristle.MOST_STEPS", 3)
+    monkeypatch.setattr("frictionlab.bench.peers.scipy_bristle.MOST_ODEINT_STEPS", 3)
 
     with pytest.raises(ArithmeticError, match="odeint: Excess work"):
         ScipyBristle().solve([SLIDING], BRISTLES, 1e-6)

@@ -24,7 +24,7 @@ import numpy as np
 import frictionlab as fl
 from frictionlab.bench.peers import scipy_bristle
 from frictionlab.bench.peers.bristle_motion import BristleMotion
-from frictionlab.bench.peers.scipy_bristle import scales
+from frictionlab.bench.peers.scipy_bristle import absolute_scales
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
@@ -225,7 +225,7 @@ def followed(
     multiplier, turns = state.floquet, round(state.period) if state.period > 0.0 else 1
     if multiplier > 0.995:
         raise TooSlow("a multiplier above 0.995")
-    place, sizes = _start(motion, state), scales(motion, law, scene) * rtol
+    place, sizes = _start(motion, state), absolute_scales(motion, law, scene) * rtol
     means: list[float] = []
     try:
         while True:

@@ -18,7 +18,7 @@ import numpy as np
 import frictionlab as fl
 from frictionlab import bench
 from frictionlab.bench.cores import core
-from frictionlab.bench.timing import timed
+from frictionlab.bench.timing import time_task
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.methods.base import Method
@@ -45,7 +45,7 @@ def ratio_of(name: str, work: Callable[[ThreadPoolExecutor], object], repeats: i
     for threads in (1, THREADS):
         with ThreadPoolExecutor(threads) as pool:
             work(pool)
-            found.append(timed(lambda pool=pool: work(pool), repeats, 30.0).least)  # type: ignore[misc]  # mypy cannot type a bound default
+            found.append(time_task(lambda pool=pool: work(pool), repeats, 30.0).least)  # type: ignore[misc]  # mypy cannot type a bound default
     one, two = found
     print(
         f"{name:16s} one thread {1e3 * one:8.1f} ms, two {1e3 * two:8.1f} ms, ratio {one / two:.2f}",

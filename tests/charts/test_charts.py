@@ -18,7 +18,7 @@ from oracle import table_in_the_plane, table_of_one_degree_of_freedom
 
 from frictionlab.charts import figures
 from frictionlab.charts.curves import family_of, is_logarithmic, kinks
-from frictionlab.charts.figures import FIGURES, draw
+from frictionlab.charts.figures import FIGURES, draw_figures
 from frictionlab.columns import RESULTS, symbol, word
 
 
@@ -55,7 +55,7 @@ def _curves(figure: Figure, panel: int = 0) -> list[tuple[np.ndarray, np.ndarray
 
 
 def test_every_figure_is_written_as_svg_and_png(plane: pd.DataFrame, tmp_path: Path) -> None:
-    files = draw(plane, "Fig. 8a", tmp_path / "figures")
+    files = draw_figures(plane, "Fig. 8a", tmp_path / "figures")
 
     assert files == [tmp_path / "figures" / f"{name}.{kind}" for name in FIGURES for kind in ("svg", "png")]
     assert all(ElementTree.parse(file).getroot().tag.endswith("svg") for file in files[::2])
@@ -63,7 +63,7 @@ def test_every_figure_is_written_as_svg_and_png(plane: pd.DataFrame, tmp_path: P
 
 
 def test_the_same_table_gives_the_same_bytes(resonance: pd.DataFrame, tmp_path: Path) -> None:
-    first, second = (draw(resonance, "Twice", tmp_path / name) for name in ("first", "second"))
+    first, second = (draw_figures(resonance, "Twice", tmp_path / name) for name in ("first", "second"))
 
     assert [file.read_bytes() for file in first] == [file.read_bytes() for file in second]
 
@@ -75,14 +75,14 @@ def test_drawing_does_not_load_pyplot() -> None:
 
 
 def test_a_single_point_gives_no_figure_and_no_folder(line: pd.DataFrame, tmp_path: Path) -> None:
-    assert draw(line.iloc[:1], "One point", tmp_path / "figures") == []
+    assert draw_figures(line.iloc[:1], "One point", tmp_path / "figures") == []
     assert not (tmp_path / "figures").exists()
 
 
 def test_a_quantity_that_applies_nowhere_gives_no_figure(resonance: pd.DataFrame, tmp_path: Path) -> None:
     resonance[FIGURES["energies"]] = np.nan
 
-    assert [file.name for file in draw(resonance, "No energies", tmp_path)] == [
+    assert [file.name for file in draw_figures(resonance, "No energies", tmp_path)] == [
         "mean_friction.svg",
         "mean_friction.png",
         "velocity.svg",
@@ -419,7 +419,7 @@ def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
     laws = [resonance.assign(law=label) for label in (r"$\nope{$", "costs $5", "L" * 200)]
     table = pd.concat(laws, ignore_index=True)
 
-    assert len(draw(table, r"$\bad{ 摩擦 and $3", tmp_path)) == 2 * len(figures.figure_columns(table))
+    assert len(draw_figures(table, r"$\bad{ 摩擦 and $3", tmp_path)) == 2 * len(figures.figure_columns(table))
     assert _legend(_figure(table)) == [r"\$\nope{\$", r"costs \$5", "L" * 35 + "…"]
 
 

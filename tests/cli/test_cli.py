@@ -18,7 +18,7 @@ import pytest
 from fake_methods import Fake, breaks_down, is_broken
 
 from frictionlab import cli, registry
-from frictionlab.registry.bibliography import references
+from frictionlab.registry.bibliography import read_bibtex
 from frictionlab.runner import api, execute
 from frictionlab.runner.yaml_text import yaml_text
 
@@ -310,7 +310,7 @@ def test_a_run_prints_what_to_cite_for_it_and_computes_nothing_anew_for_that(fri
     said = frictionlab("run", "study.yaml", "-o", "out", "--cite")
 
     assert said.code == 0
-    assert [entry.key for entry in references(said.out)] == [
+    assert [entry.key for entry in read_bibtex(said.out)] == [
         *("frictionlab", "dahl1976", "amontons1699", "coulomb1785", "sulollari"),
     ]
     assert len(json.loads(Path("out/provenance.json").read_text())["runs"]) == 1
@@ -319,7 +319,7 @@ def test_a_run_prints_what_to_cite_for_it_and_computes_nothing_anew_for_that(fri
 def test_publications_that_several_studies_draw_on_are_cited_once(frictionlab: Any) -> None:
     study("set/one.yaml")
     study("set/two.yaml", tolerance=1e-6, source="Dahl (1976)")
-    keys = [entry.key for entry in references(frictionlab("run", "set", "--cite").out)]
+    keys = [entry.key for entry in read_bibtex(frictionlab("run", "set", "--cite").out)]
 
     assert len(keys) == len(set(keys)) == 5
 

@@ -10,7 +10,13 @@ from typing import Any
 import pytest
 
 from frictionlab import registry
-from frictionlab.registry.bibliography import bibliography, named_in, publications, references, remark
+from frictionlab.registry.bibliography import (
+    bibliography,
+    publications,
+    publications_named,
+    read_bibtex,
+    unpublished_source,
+)
 from frictionlab.registry.law_file import read_law_file
 from frictionlab.registry.records import law_record
 
@@ -52,7 +58,7 @@ def test_every_year_in_a_docstring_belongs_to_a_publication_that_has_an_entry(ki
     assert CITED.findall(text) == []
 
 
-ENTRIES = [*bibliography(), *(entry for law in FOLDERS for entry in references(law.bibtex))]
+ENTRIES = [*bibliography(), *(entry for law in FOLDERS for entry in read_bibtex(law.bibtex))]
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.key)
@@ -79,7 +85,7 @@ def test_the_bibliography_holds_nothing_that_nobody_names() -> None:
 
 
 def test_a_text_names_a_publication_by_its_authors_and_year() -> None:
-    found = named_in(
+    found = publications_named(
         "after Bo &\n  Pavelescu (1982), as Dupont et al. (2002) do; not Kindahl (1968)", bibliography()
     )
 
@@ -87,7 +93,7 @@ def test_a_text_names_a_publication_by_its_authors_and_year() -> None:
 
 
 def test_entries_are_read_as_people_write_them() -> None:
-    braced, quoted, bare = references(
+    braced, quoted, bare = read_bibtex(
         "Of mine:\n@Article{ruina1983, author = {Ruina, Andy}, title = {Slip {I}n}, year = 1983}\n"
         '@book{a:b, author="de la Cruz, A. and {The {B} group}", title="X" , year={2001},}\n@misc{only}'
     )
@@ -108,7 +114,7 @@ def test_entries_are_read_as_people_write_them() -> None:
 )
 def test_a_broken_entry_says_where_it_breaks(broken: str) -> None:
     with pytest.raises(ValueError, match="BibTeX"):
-        references(broken)
+        read_bibtex(broken)
 
 
 def test_what_a_law_brings_goes_before_our_own_of_the_same_name() -> None:
@@ -118,7 +124,7 @@ def test_what_a_law_brings_goes_before_our_own_of_the_same_name() -> None:
 
 
 def test_words_alone_become_an_entry_that_tex_can_read() -> None:
-    (entry,) = references(remark("law my_law", r"Me & mine, 50% @home {1} \x_2").bibtex)
+    (entry,) = read_bibtex(unpublished_source("law my_law", r"Me & mine, 50% @home {1} \x_2").bibtex)
 
     assert entry.key == "law-my_law"
     assert entry.fields["note"] == r"Me \& mine, 50\% at home 1 x\_2"
@@ -126,7 +132,7 @@ def test_words_alone_become_an_entry_that_tex_can_read() -> None:
 
 def test_entries_that_are_no_text_are_refused_as_such() -> None:
     with pytest.raises(ValueError, match="must be one text"):
-        references(("@misc{a}",))  # type: ignore[arg-type]
+        read_bibtex(("@misc{a}",))  # type: ignore[arg-type]
 
 
 def test_a_law_lists_its_publications_in_full() -> None:

@@ -57,7 +57,7 @@ def brings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Brings]:
 
 def _forget() -> None:
     importlib.invalidate_caches()
-    registry._doors.cache_clear()
+    registry._entry_points.cache_clear()
     registry._load.cache_clear()
 
 

@@ -18,7 +18,7 @@ from pages import Page, complaints
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.columns import _IN_SI, _NAMES
-from frictionlab.registry.bibliography import references
+from frictionlab.registry.bibliography import read_bibtex
 from frictionlab.report import bibtex, figures, tables, write_index, write_report
 from frictionlab.report.markup import html, symbol_html
 from frictionlab.report.page import report, wall
@@ -414,14 +414,14 @@ def test_what_gave_no_number_is_not_cited(ran: Runner) -> None:
     saved.table.loc[saved.table["kind"] == "dahl", ["mean_friction", "status"]] = [float("nan"), "refused"]
 
     assert [each.what for each in sources(saved) if each.what.startswith("law")] == ["law coulomb"]
-    assert {each.key for each in references(bibtex([saved]))} == {
+    assert {each.key for each in read_bibtex(bibtex([saved]))} == {
         *("frictionlab", "amontons1699", "coulomb1785", "sulollari"),
     }
 
 
 def test_sources_in_words_alone_are_cited_in_these_words(ran: Runner) -> None:
     text = bibtex([ran("one", source="My own & unpublished @ home"), ran("two", source="Yours")])
-    entries = {each.key: each for each in references(text)}
+    entries = {each.key: each for each in read_bibtex(text)}
 
     assert entries["the-study"].fields["note"] == r"My own \& unpublished at home"
     assert entries["the-study-2"].fields["note"] == "Yours"

@@ -28,7 +28,7 @@ from frictionlab.columns import RESULTS, TEXT
 from frictionlab.results.summary import summary
 from frictionlab.results.table import headings, inputs, records
 from frictionlab.runner import accumulate, api, folder
-from frictionlab.runner.chunks import Task, chunks, curves
+from frictionlab.runner.chunks import Task, chunk_by_curve, chunks
 from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.progress import Meter
 from frictionlab.runner.solve import solve
@@ -179,7 +179,7 @@ def test_chunks_hold_neighbours_of_one_curve_in_rising_belt_speed() -> None:
 
     assert sorted(row for piece in pieces for row in piece.rows) == list(range(800))
     assert all(64 <= len(piece.rows) <= 250 for piece in pieces)
-    assert [len(curve) for curve in curves(cases)] == [400, 400]
+    assert [len(curve) for curve in chunk_by_curve(cases)] == [400, 400]
     for piece in pieces:
         assert len({scene.frequency for scene in piece.scenes}) == 1
         speeds = [scene.belt_speed for scene in piece.scenes]

@@ -21,7 +21,7 @@ from strategies import BRISTLE_LAWS, sizes
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.charts.curves import family_of
-from frictionlab.charts.figures import draw
+from frictionlab.charts.figures import draw_figures
 from frictionlab.columns import SCALED, symbol, word
 from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.laws.memory import BristleLaw
@@ -251,7 +251,7 @@ def test_figures_of_a_swept_stiffness_are_drawn(tmp_path: Path) -> None:
     sweep = {"laws.dahl.contact_stiffness": [4, 40], "scene.belt_speed": [1, 2, 3]}
     table = fl.run(study(laws[0], sweep=sweep, methods=["mdsm"]) | {"laws": laws}).table
 
-    assert draw(table, "soft and stiff", tmp_path)
+    assert draw_figures(table, "soft and stiff", tmp_path)
     assert symbol("law.contact_stiffness") == "$K_t$"
 
 

@@ -18,10 +18,10 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.lugre import LuGre
 from frictionlab.testing import CHECKS, LawFailed, check_law
-from frictionlab.testing.check import check
+from frictionlab.testing.check import make_check
 from frictionlab.testing.example import Given
-from frictionlab.testing.running import run
-from frictionlab.testing.strategies import fullest_laws, laws, numbers
+from frictionlab.testing.running import run_check
+from frictionlab.testing.strategies import fullest_laws, loaded_laws, numbers
 
 QUICK = [each.name for each in CHECKS if each.patience == 1.0]
 """The checks that compile nothing."""
@@ -89,12 +89,12 @@ def test_a_law_names_its_own_expected_failures() -> None:
 
 
 def test_a_check_that_ran_nothing_has_failed() -> None:
-    @check("never")
+    @make_check("never")
     def never(one: Given) -> None:
         """What never comes up."""
         one.law(lambda law: False)
 
-    assert run(never, Coulomb, 5, 10.0).counterexample == "the check ran no example: nothing was tested"
+    assert run_check(never, Coulomb, 5, 10.0).counterexample == "the check ran no example: nothing was tested"
 
 
 class Endless(Coulomb):
@@ -117,26 +117,26 @@ def test_a_law_that_never_answers_is_told_within_the_time_limit_and_asked_no_mor
 def test_laws_are_drawn_with_every_parameter_they_may_be_given(law: type[FrictionLaw]) -> None:
     seen: set[str] = set()
 
-    @check("drawn")
+    @make_check("drawn")
     def drawn(one: Given) -> None:
         """What is given."""
         made = one.draw("law", fullest_laws(law))
         seen.update(name for name, value in made if value is not None)
 
-    run(drawn, law, 60, 60.0)
+    run_check(drawn, law, 60, 60.0)
     assert seen == set(law.model_fields)
 
 
 def test_numbers_keep_within_their_limits() -> None:
     for low, high in ((0.0, math.inf), (1.0, math.inf), (0.0, 1.0), (-math.inf, math.inf), (-math.inf, 2.0)):
 
-        @check("numbers")
+        @make_check("numbers")
         def drawn(one: Given, low: float = low, high: float = high) -> None:
             """Numbers."""
             assert low <= one.draw("number", numbers(low, high)) <= high
 
-        assert run(drawn, Coulomb, 50, 60.0).result == "passed"
-    assert isinstance(laws(Coulomb), st.SearchStrategy)
+        assert run_check(drawn, Coulomb, 50, 60.0).result == "passed"
+    assert isinstance(loaded_laws(Coulomb), st.SearchStrategy)
 
 
 def test_the_command_prints_a_table_records_or_markdown(
@@ -157,7 +157,7 @@ def test_the_command_prints_a_table_records_or_markdown(
 
 
 def test_the_command_ends_with_3_where_a_check_fails(monkeypatch: Any) -> None:
-    @check("never")
+    @make_check("never")
     def never(one: Given) -> None:
         """What never comes up."""
         one.law(lambda law: False)

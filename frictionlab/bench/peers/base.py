@@ -12,18 +12,18 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats, Record
 from frictionlab.scene.scene import Scene
 
-CLOSED = 1.0
+CLOSURE = 1.0
 """Gap of a closed period in tolerances, as the change of velocity that so much mean friction makes in a period."""
-NOISE = 8
+NOISE_PERIODS = 8
 """Periods in a row that come no nearer: the rest is the integrator's own error."""
-MOST_PERIODS = 5000
+LONGEST_TRANSIENT = 5000
 
 
-class Closing:
+class ClosureTest:
     """Whether a motion has closed: its gap from period to period against what is asked, or against its own noise."""
 
     def __init__(self, tolerance: float, normal_load: float, period: float) -> None:
-        self._enough = CLOSED * tolerance * normal_load * period
+        self._enough = CLOSURE * tolerance * normal_load * period
         self._least, self._since = math.inf, 0
 
     def done(self, gap: float) -> bool:
@@ -32,7 +32,7 @@ class Closing:
             raise ArithmeticError("the state is not finite")
         self._since = 0 if gap < self._least else self._since + 1
         self._least = min(gap, self._least)
-        return gap <= self._enough or self._since >= NOISE
+        return gap <= self._enough or self._since >= NOISE_PERIODS
 
 
 class Peer(Record, ABC):

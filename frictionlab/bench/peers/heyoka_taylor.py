@@ -11,8 +11,8 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from frictionlab.bench.peers.base import MOST_PERIODS, Closing, Peer
-from frictionlab.bench.peers.line import MOST_LEGS, Line, Place, means, nudged
+from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest, Peer
+from frictionlab.bench.peers.line import MOST_EVENTS, LineMotion, MotionState, first_step, means
 from frictionlab.bench.peers.scipy_steps import start
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
@@ -54,17 +54,17 @@ def _line(mass: Mass, limit: float, tolerance: float) -> _Line:
     return _Line(mass, limit, tolerance)
 
 
-class _Line(Line):
+class _Line(LineMotion):
     """One integrator for slip, turned round by its own event as long as it does not end in stick; one for stick."""
 
     def __init__(self, mass: Mass, limit: float, tolerance: float) -> None:
         super().__init__(mass, limit)
         self._slip, self._stick = _slip(mass, limit, tolerance), _stick(mass, limit)
 
-    def one_period(self, place: Place) -> tuple[Place, float]:
+    def one_period(self, place: MotionState) -> tuple[MotionState, float]:
         """Stretches of slip between stretches of stick."""
         impulse, side = 0.0, self.side(place)
-        for _ in range(MOST_LEGS):
+        for _ in range(MOST_EVENTS):
             if side == 0.0:
                 end = self._held(place)
                 impulse += self.held_impulse(place, end)
@@ -75,11 +75,11 @@ class _Line(Line):
             place = end
             if self.up(place):
                 return place, impulse
-        raise ArithmeticError(f"more than {MOST_LEGS} legs in one period")
+        raise ArithmeticError(f"more than {MOST_EVENTS} legs in one period")
 
-    def _slid(self, side: float, start: Place) -> tuple[Place, float]:
+    def _slid(self, side: float, start: MotionState) -> tuple[MotionState, float]:
         """Slip, reversals included, until it ends in stick; the impulse too."""
-        place = nudged(self, side, start)
+        place = first_step(self, side, start)
         slip = self._slip
         slip.time, slip.state[:], slip.pars[:] = place.t, (place.x, place.v, 0.0), (self.belt_speed, side)
         if place is not start:
@@ -87,16 +87,16 @@ class _Line(Line):
         slip.propagate_until(self.period)
         x, v, rubbed = slip.state.tolist()
         stopped = slip.time < self.period
-        end = Place(slip.time, x, self.belt_speed if stopped else v)
+        end = MotionState(slip.time, x, self.belt_speed if stopped else v)
         return end, self.limit * (rubbed + side * (place.t - start.t))
 
-    def _held(self, place: Place) -> Place:
+    def _held(self, place: MotionState) -> MotionState:
         stick = self._stick
         stick.time, stick.state[0], stick.pars[0] = place.t, place.x, self.belt_speed
         stick.reset_cooldowns()
         stick.propagate_until(self.period)
         end = stick.time
-        return Place(end, place.x + self.belt_speed * (end - place.t), self.belt_speed)
+        return MotionState(end, place.x + self.belt_speed * (end - place.t), self.belt_speed)
 
 
 def _slip(mass: Mass, limit: float, tolerance: float) -> Any:
@@ -151,15 +151,15 @@ def _plane(mass: Mass, friction: float, speeds: Floats, tolerance: float, lanes:
     period = 2.0 * math.pi / mass.frequency
     state = np.repeat(np.array([*start(mass), 0.0])[:, None], lanes, axis=1)
     integrator.state[:] = state
-    closing = Closing(tolerance, mass.normal_load, period)
-    for count in range(1, MOST_PERIODS + 1):
+    closing = ClosureTest(tolerance, mass.normal_load, period)
+    for count in range(1, LONGEST_TRANSIENT + 1):
         integrator.propagate_until(count * period)
         end = integrator.state.copy()
         gap = np.sqrt(((end[:4] - state[:4]) ** 2).sum(axis=0)).max()
         rubbed, state = end[4] - state[4], end
         if closing.done(float(gap)):
             return (-rubbed / period)[: len(speeds)]
-    raise ArithmeticError(f"the motion has not closed after {MOST_PERIODS} periods")
+    raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
 
 
 @lru_cache(maxsize=16)

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from frictionlab.bench.peers.base import MOST_PERIODS, Closing, Peer
+from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest, Peer
 from frictionlab.bench.peers.scipy_steps import start
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
@@ -20,8 +20,8 @@ from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
 
-resistance = by_dimension(on_the_line, in_the_plane)
-MOST_STEPS = 10_000_000
+compiled_resistance = by_dimension(on_the_line, in_the_plane)
+MOST_LSODA_STEPS = 10_000_000
 """Per period: the default of 10,000 is too few for stiff bristles."""
 
 
@@ -56,17 +56,19 @@ def _settled(system: _System, mass: Mass, belt_speed: float, reach: float, toler
     state = np.array([x1, v1, x2, v2, 0.0, 0.0, 0.0] if system.planar else [x1, v1, 0.0, 0.0])
     places = slice(0, 4) if system.planar else slice(0, 2)
     period = 2.0 * math.pi / mass.frequency
-    closing, times = Closing(tolerance, mass.normal_load, period), np.array([0.0, period])
+    closing, times = ClosureTest(tolerance, mass.normal_load, period), np.array([0.0, period])
     data = np.array([*_real(mass), belt_speed, reach])
-    for _ in range(MOST_PERIODS):
-        found, fine = lsoda(system.address, state, times, data, max(tolerance, 3e-14), tolerance, MOST_STEPS)
+    for _ in range(LONGEST_TRANSIENT):
+        found, fine = lsoda(
+            system.address, state, times, data, max(tolerance, 3e-14), tolerance, MOST_LSODA_STEPS
+        )
         if not fine:
             raise ArithmeticError("numbalsoda gave up")
         gap, rubbed = float(np.linalg.norm((found[-1] - state)[places])), float(found[-1, -1])
         state = np.append(found[-1, :-1], 0.0)
         if closing.done(gap):
             return -rubbed / period
-    raise ArithmeticError(f"the motion has not closed after {MOST_PERIODS} periods")
+    raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
 
 
 def _real(mass: Mass) -> list[float]:
@@ -112,7 +114,7 @@ def _system(law: FrictionLaw, planar: bool) -> _System:
 @njit
 def _on_the_line(law: Any, t: float, state: Floats, rate: Floats, data: Floats) -> None:
     turn, slip = data[5] * t, state[1] - data[10]
-    dz, rub = resistance(law, slip, state[2] * data[11])
+    dz, rub = compiled_resistance(law, slip, state[2] * data[11])
     load = data[6] * math.sin(turn) + data[7] * math.cos(turn)
     rate[0], rate[1] = state[1], load - data[0] * state[1] - data[1] * state[0] - data[4] * rub
     rate[2], rate[3] = dz / data[11], rub
@@ -123,7 +125,7 @@ def _in_the_plane(law: Any, t: float, state: Floats, rate: Floats, data: Floats)
     turn = data[5] * t
     sine, cosine = math.sin(turn), math.cos(turn)
     slip = complex(state[1] - data[10], state[3])
-    dz, rub = resistance(law, slip, complex(state[4], state[5]) * data[11])
+    dz, rub = compiled_resistance(law, slip, complex(state[4], state[5]) * data[11])
     load, across = data[6] * sine + data[7] * cosine, data[8] * sine + data[9] * cosine
     rate[0], rate[1] = state[1], load - data[0] * state[1] - data[1] * state[0] - data[4] * rub.real
     rate[2], rate[3] = state[3], across - data[2] * state[3] - data[3] * state[2] - data[4] * rub.imag

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from frictionlab.bench.peers.base import MOST_PERIODS, Closing, Peer
+from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest, Peer
 from frictionlab.bench.peers.bristle_motion import BristleMotion
 from frictionlab.bench.peers.scipy_steps import start
 from frictionlab.laws.base import FrictionLaw
@@ -16,9 +16,9 @@ from frictionlab.laws.memory import BristleLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
-MOST_CALLS = 5_000_000
+MOST_BRISTLE_CALLS = 5_000_000
 """Of the equations of motion per scene."""
-MOST_STEPS = 1_000_000
+MOST_ODEINT_STEPS = 1_000_000
 """Per period: odeint's own default of 500 is too few for stiff bristles."""
 
 
@@ -44,22 +44,22 @@ class ScipyBristle(Peer):
 
 
 def _settled(scene: Scene, law: FrictionLaw, solver: str, tolerance: float) -> float:
-    motion = BristleMotion(scene, law, MOST_CALLS)
+    motion = BristleMotion(scene, law, MOST_BRISTLE_CALLS)
     x1, v1, x2, v2 = start(motion.mass)
     state = np.array([x1, v1, x2, v2, 0.0, 0.0, 0.0] if motion.planar else [x1, v1, 0.0, 0.0])
     places = slice(0, 4) if motion.planar else slice(0, 2)
-    sizes = scales(motion, law, scene)
-    closing = Closing(tolerance, motion.mass.normal_load, motion.period)
-    for _ in range(MOST_PERIODS):
+    sizes = absolute_scales(motion, law, scene)
+    closing = ClosureTest(tolerance, motion.mass.normal_load, motion.period)
+    for _ in range(LONGEST_TRANSIENT):
         end = one_period(motion, state, solver, max(tolerance, 3e-14), tolerance * sizes)
         gap, rubbed = float(np.linalg.norm((end - state)[places])), float(end[-1])
         state = np.append(end[:-1], 0.0)
         if closing.done(gap):
             return -rubbed / motion.period
-    raise ArithmeticError(f"the motion has not closed after {MOST_PERIODS} periods")
+    raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
 
 
-def scales(motion: BristleMotion, law: FrictionLaw, scene: Scene) -> Floats:
+def absolute_scales(motion: BristleMotion, law: FrictionLaw, scene: Scene) -> Floats:
     """What atol is told in: one, but for deflections, whose own scale may be far smaller."""
     ready: Any = law.under_load(motion.mass.normal_load)
     reach = min(1.0, ready.sliding_friction(0.0) / ready.bristle_stiffness)
@@ -82,7 +82,7 @@ def one_period(motion: BristleMotion, state: Floats, solver: str, rtol: float, a
 def _odeint(motion: BristleMotion, state: Floats, rtol: float, atol: Floats) -> Floats:
     from scipy.integrate import odeint
 
-    settings: dict[str, Any] = {"rtol": rtol, "atol": atol, "mxstep": MOST_STEPS}
+    settings: dict[str, Any] = {"rtol": rtol, "atol": atol, "mxstep": MOST_ODEINT_STEPS}
     with warnings.catch_warnings(action="ignore"):  # its message says the same
         found, told = odeint(motion, state, [0.0, motion.period], tfirst=True, full_output=True, **settings)
     if told["message"] != "Integration successful.":

@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from frictionlab.bench.peers.base import Peer
-from frictionlab.bench.peers.line import Legs, Place, means, nudged
+from frictionlab.bench.peers.line import EventMotion, MotionState, first_step, means
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
@@ -42,16 +42,16 @@ class ScipyEvents(Peer):
         return means(legs, scenes, tolerance)
 
 
-class _Legs(Legs):
+class _Legs(EventMotion):
     """Legs by solve_ivp."""
 
     solver: str
     tolerance: float
 
-    def slide(self, side: float, place: Place, until: float) -> Place:
+    def slide(self, side: float, place: MotionState, until: float) -> MotionState:
         from scipy.integrate import solve_ivp
 
-        place = nudged(self, side, place)
+        place = first_step(self, side, place)
         settings = {"method": self.solver, "rtol": max(self.tolerance, 3e-14), "atol": self.tolerance}
         found = solve_ivp(
             self._rates(side),
@@ -63,7 +63,7 @@ class _Legs(Legs):
         if found.status < 0:
             raise ArithmeticError(f"solve_ivp: {found.message}")
         x, v = found.y[:, -1]
-        return Place(float(found.t[-1]), float(x), self.belt_speed if found.status == 1 else float(v))
+        return MotionState(float(found.t[-1]), float(x), self.belt_speed if found.status == 1 else float(v))
 
     def _rates(self, side: float) -> Callable[[float, Floats], list[float]]:
         damping, rub = self.mass.damping, side * self.limit
@@ -76,12 +76,12 @@ class _Legs(Legs):
         slip.terminal, slip.direction = True, -side  # type: ignore[attr-defined]  # how solve_ivp is told
         return slip
 
-    def hold(self, place: Place, until: float) -> Place:
+    def hold(self, place: MotionState, until: float) -> MotionState:
         """Stick needs no integrator: the spring is drawn out evenly, and the force to hold it is known."""
         from scipy.optimize import brentq
 
-        def at(t: float) -> Place:
-            return Place(t, place.x + self.belt_speed * (t - place.t), self.belt_speed)
+        def at(t: float) -> MotionState:
+            return MotionState(t, place.x + self.belt_speed * (t - place.t), self.belt_speed)
 
         def room(t: float) -> float:
             return self.limit - abs(self.net(at(t)))

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from frictionlab.bench.peers.base import MOST_PERIODS, Closing, Peer
+from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest, Peer
 from frictionlab.bench.peers.line import free_orbit
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
@@ -44,8 +44,8 @@ def _settled(scene: Scene, friction: float, solver: str, tolerance: float) -> fl
     period, rates = 2.0 * math.pi / mass.frequency, Rates(mass, friction, scene.belt_speed)
     state = np.array([*start(mass), 0.0])
     settings: dict[str, Any] = {"method": solver, "rtol": max(tolerance, 3e-14), "atol": tolerance}
-    closing = Closing(tolerance, mass.normal_load, period)
-    for _ in range(MOST_PERIODS):
+    closing = ClosureTest(tolerance, mass.normal_load, period)
+    for _ in range(LONGEST_TRANSIENT):
         found = solve_ivp(rates, (0.0, period), state, t_eval=[period], **settings)
         if found.status < 0:
             raise ArithmeticError(f"solve_ivp: {found.message}")
@@ -54,7 +54,7 @@ def _settled(scene: Scene, friction: float, solver: str, tolerance: float) -> fl
         state = np.append(end[:4], 0.0)
         if closing.done(gap):
             return -rubbed / period
-    raise ArithmeticError(f"the motion has not closed after {MOST_PERIODS} periods")
+    raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
 
 
 def start(mass: Mass) -> tuple[float, float, float, float]:

@@ -12,8 +12,8 @@ from frictionlab.dynamics.contact import resistance
 from frictionlab.faults import CannotCompile
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.testing.check import check
-from frictionlab.testing.contact import Memory, Response, response
+from frictionlab.testing.check import make_check
+from frictionlab.testing.contact import ContactMemory, Response, response
 from frictionlab.testing.example import Given
 
 
@@ -40,7 +40,7 @@ def with_memory(law: Any, v: Any, memory: Any, out: Any) -> None:
     out[0] = law.friction(v[0], memory, rates)
 
 
-def machine_response(one: Given, law: FrictionLaw, v: Any, memory: Memory) -> tuple[Response, Any]:
+def machine_response(one: Given, law: FrictionLaw, v: Any, memory: ContactMemory) -> tuple[Response, Any]:
     """What the compiled law answers, and its deflection after the path ``v``."""
     kernel = without_memory
     if isinstance(law, BristleLaw):
@@ -56,7 +56,7 @@ def machine_response(one: Given, law: FrictionLaw, v: Any, memory: Memory) -> tu
     return Response(tuple(answer[1 : 1 + len(memory)]), answer[0]), answer[-1]
 
 
-@check("compiled_on_the_line", patience=10.0, share=0.5)
+@make_check("compiled_on_the_line", patience=10.0, share=0.5)
 def compiled_on_the_line(one: Given) -> None:
     """Compiled by numba and run by Python a law answers the same to rounding, along a line."""
     law = one.law()
@@ -64,7 +64,7 @@ def compiled_on_the_line(one: Given) -> None:
     _agree(one, law, v, one.memory(law))
 
 
-@check(
+@make_check(
     "compiled_in_the_plane", patience=10.0, share=0.5, seldom="no parameters drawn have a form in the plane"
 )
 def compiled_in_the_plane(one: Given) -> None:
@@ -74,7 +74,7 @@ def compiled_in_the_plane(one: Given) -> None:
     _agree(one, law, v, one.memory(law, planar=True))
 
 
-def _agree(one: Given, law: FrictionLaw, v: Any, memory: Memory) -> None:
+def _agree(one: Given, law: FrictionLaw, v: Any, memory: ContactMemory) -> None:
     got, slid = machine_response(one, law, v, memory)
     one.require_same(law, (v, memory), got, response(law, v, memory), "compiled and interpreted")
     in_one_direction = isinstance(v, complex) and getattr(law, "planar", "") != "vectorial"

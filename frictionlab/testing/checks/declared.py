@@ -10,20 +10,20 @@ from hypothesis import strategies as st
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.testing.check import check, for_laws_of
+from frictionlab.testing.check import for_laws_of, make_check
 from frictionlab.testing.contact import (
-    Memory,
+    ContactMemory,
+    deflection_scale,
     dot,
+    has_direction,
+    memory_after_slip,
     no_plane,
-    noise,
     response,
-    size_of,
-    slid,
-    stored,
-    turns_with_slip,
+    rounding_noise,
+    stored_work,
 )
 from frictionlab.testing.example import Given
-from frictionlab.testing.strategies import sizes, speeds, turns
+from frictionlab.testing.strategies import directions, sizes, speeds
 
 WITH_MEMORY = for_laws_of(BristleLaw, MemoryLaw, without="without memory")
 BRISTLES = for_laws_of(BristleLaw, without="of laws with one bristle deflection")
@@ -32,7 +32,7 @@ SLOW_TO_QUICK = tuple(10.0**exponent for exponent in range(-6, 16))
 """Speeds at which work may be drawn out of a law that is not passive, far above those drawn."""
 
 
-@check(
+@make_check(
     "constant_sliding_friction",
     declares="constant_sliding_friction",
     seldom="constant_sliding_friction() is false for all parameters drawn",
@@ -45,7 +45,7 @@ def constant_sliding_friction(one: Given) -> None:
     one.require(abs(quick - slow) <= 1e-12 * abs(slow), "sliding friction differs", got=quick, expected=slow)
 
 
-@check("steepest_fall")
+@make_check("steepest_fall")
 def steepest_fall(one: Given) -> None:
     """Sliding friction falls nowhere steeper with speed than declared, from rest to the quickest slip drawn."""
     law = one.law(lambda law: law.steepest_fall() < math.inf)
@@ -59,11 +59,16 @@ def steepest_fall(one: Given) -> None:
         )
 
 
-@check("monotone", declares="monotone", skips=SLIDING, seldom="monotone() is false for all parameters drawn")
+@make_check(
+    "monotone", declares="monotone", skips=SLIDING, seldom="monotone() is false for all parameters drawn"
+)
 def monotone(one: Given) -> None:
     """Where friction is declared monotone, more slip never meets less friction, rest included."""
     law = one.law_near_the_edge(lambda law: law.monotone())
-    v, w = one.planar_slip(), one.draw("other slip velocity", st.builds(lambda s, t: s * t, speeds, turns))
+    v, w = (
+        one.planar_slip(),
+        one.draw("other slip velocity", st.builds(lambda s, t: s * t, speeds, directions)),
+    )
     a, b = law.sliding_vector(v), law.sliding_vector(w)
     scale = (abs(a) + abs(b)) * (abs(v) + abs(w))
     one.require(
@@ -75,7 +80,7 @@ def monotone(one: Given) -> None:
     one.require(fall == 0.0, "monotone friction falls nowhere, yet its steepest fall is declared", got=fall)
 
 
-@check("static_friction", skips=SLIDING)
+@make_check("static_friction", skips=SLIDING)
 def static_friction(one: Given) -> None:
     """Rest holds at least what slip that has only just begun meets."""
     law = one.law()
@@ -83,7 +88,7 @@ def static_friction(one: Given) -> None:
     one.require(held >= first * (1.0 - 1e-12), "rest holds less than slip", rest=held, slip=first)
 
 
-@check("invariant_set", skips=WITH_MEMORY, seldom="no parameters drawn have a bounded set")
+@make_check("invariant_set", skips=WITH_MEMORY, seldom="no parameters drawn have a bounded set")
 def invariant_set(one: Given) -> None:
     """No slip leads a memory out of its set, and from just outside every slip leads back or leaves it."""
     law = one.law(_bounded)
@@ -98,7 +103,7 @@ def invariant_set(one: Given) -> None:
             out <= 1e-11 * abs(v), "the deflection grows beyond its largest", z=side * radius, rate=out
         )
     if not law.no_vector_form():
-        turn, slip = one.draw("turn", turns), one.planar_slip()
+        turn, slip = one.draw("turn", directions), one.planar_slip()
         out = dot(law.rate(slip, radius * turn), turn)
         one.require(out <= 1e-11 * abs(slip), "the deflection grows beyond its largest", rate=out)
 
@@ -121,11 +126,11 @@ def _stays_within(one: Given, law: MemoryLaw, v: float) -> None:
         memory = inside or memory
 
 
-def _moved(memory: Memory, rates: Memory, step: float) -> Memory:
+def _moved(memory: ContactMemory, rates: ContactMemory, step: float) -> ContactMemory:
     return tuple(each + step * slope for each, slope in zip(memory, rates, strict=True))
 
 
-@check("held_at_rest", skips=BRISTLES)
+@make_check("held_at_rest", skips=BRISTLES)
 def held_at_rest(one: Given) -> None:
     """A contact at rest keeps its deflection: one that creeps there has a smoothing width in it."""
     law = one.law()
@@ -135,7 +140,7 @@ def held_at_rest(one: Given) -> None:
     one.require(rate == 0.0, "the deflection moves at rest", rate=rate)
 
 
-@check("not_smoothed", skips=SLIDING)
+@make_check("not_smoothed", skips=SLIDING)
 def not_smoothed(one: Given) -> None:
     """Friction does not vanish with slip: a law of dry friction has no width about rest, a method may have one."""
     law = one.law()
@@ -143,7 +148,7 @@ def not_smoothed(one: Given) -> None:
     one.require(slow >= 0.5 * quicker, "friction vanishes with slip", at_1e_12=slow, at_1e_9=quicker)
 
 
-@check(
+@make_check(
     "passivity", declares="passive", skips=WITH_MEMORY, seldom="passive() is false for all parameters drawn"
 )
 def passivity(one: Given) -> None:
@@ -152,8 +157,8 @@ def passivity(one: Given) -> None:
     planar = not no_plane(law) and one.draw("in the plane", st.booleans())
     v = one.planar_slip() if planar else one.slip()
     memories = [one.memory(law, planar)]
-    if not planar or turns_with_slip(law):
-        memories += [slid(law, v, share) for share in (1.0, 0.7, 0.3, -0.5)]
+    if not planar or has_direction(law):
+        memories += [memory_after_slip(law, v, share) for share in (1.0, 0.7, 0.3, -0.5)]
     for slip, memory in product((v, *(speed * v / abs(v) for speed in SLOW_TO_QUICK)), memories):
         lost, room = _lost(law, slip, memory)
         what = f"at slip speed {abs(slip):g} friction gives work that was never stored"
@@ -163,7 +168,7 @@ def passivity(one: Given) -> None:
 def _lost(law: BristleLaw | MemoryLaw, v: complex, memory: tuple[complex, ...]) -> tuple[float, float]:
     """The work lost per time and unit load, and how much of it is rounding."""
     rates, friction = response(law, v, memory)
-    work, own = dot(friction, v), noise(law, v, memory)
+    work, own = dot(friction, v), rounding_noise(law, v, memory)
     kept, room = 0.0, 1e-9 * abs(work) + 20.0 * own.friction * abs(v)
     for k, rate in enumerate(rates):
         slope, doubt = _slope_of_stored(law, memory, k)
@@ -176,16 +181,16 @@ def _slope_of_stored(
     law: BristleLaw | MemoryLaw, memory: tuple[complex, ...], k: int
 ) -> tuple[complex, float]:
     """The gradient of the stored work with respect to one memory, and what rounding of the whole leaves of it."""
-    step = 1e-4 * (abs(memory[k]) or (size_of(law) if isinstance(law, BristleLaw) else 1.0))
+    step = 1e-4 * (abs(memory[k]) or (deflection_scale(law) if isinstance(law, BristleLaw) else 1.0))
     ways = (1.0, 1j) if isinstance(memory[k], complex) else (1.0,)
     slope = 0.0 * memory[k]
     for way in ways:
         ahead, behind = ((*memory[:k], memory[k] + s * step * way, *memory[k + 1 :]) for s in (1, -1))
-        slope += way * (stored(law, ahead) - stored(law, behind)) / (2.0 * step)
-    return slope, 1e-15 * stored(law, memory) / step
+        slope += way * (stored_work(law, ahead) - stored_work(law, behind)) / (2.0 * step)
+    return slope, 1e-15 * stored_work(law, memory) / step
 
 
-@check("not_passive", skips=WITH_MEMORY, share=0.2, seldom="passive() is true for all parameters drawn")
+@make_check("not_passive", skips=WITH_MEMORY, share=0.2, seldom="passive() is true for all parameters drawn")
 def not_passive(one: Given) -> None:
     """Where a law is declared not passive, some slip gives work that was never stored."""
     law = one.law(lambda law: not law.passive())
@@ -204,12 +209,12 @@ def not_passive(one: Given) -> None:
 def _charged(law: BristleLaw | MemoryLaw) -> list[tuple[float, ...]]:
     """Memories that slow slip brings, whole and in part."""
     if isinstance(law, BristleLaw):
-        return [(share * size_of(law),) for share in (1.0, 0.7, 0.3, -0.5, -1.0)]
+        return [(share * deflection_scale(law),) for share in (1.0, 0.7, 0.3, -0.5, -1.0)]
     slow = [[law.steady(10.0**exponent, k) for k in range(law.count())] for exponent in (-6, -3, 0)]
     return [tuple(memory) for memory in slow]
 
 
-@check(
+@make_check(
     "rate_independence",
     declares="rate_independent",
     skips=WITH_MEMORY,
@@ -227,7 +232,7 @@ def rate_independence(one: Given) -> None:
     one.require_same(law, (v, memory), got, response(law, v, memory), "slip so many times faster")
 
 
-@check(
+@make_check(
     "largest_rate",
     declares="largest_rate",
     skips=WITH_MEMORY,
@@ -238,9 +243,9 @@ def largest_rate(one: Given) -> None:
     law = one.law(lambda law: 0.0 < law.largest_rate(1.0) < math.inf)
     v = one.slip()
     declared, smooth = law.largest_rate(abs(v)), False
-    for memory in (one.memory(law), *(slid(law, v, share) for share in (0.95, 0.8, 0.5))):
+    for memory in (one.memory(law), *(memory_after_slip(law, v, share) for share in (0.95, 0.8, 0.5))):
         for k, each in enumerate(memory):
-            size = size_of(law) if isinstance(law, BristleLaw) else abs(each) or 1.0
+            size = deflection_scale(law) if isinstance(law, BristleLaw) else abs(each) or 1.0
             change, ends, corner = _change_of_rate(law, v, memory, k, 1e-6 * size)
             if corner:
                 continue
@@ -257,7 +262,7 @@ def largest_rate(one: Given) -> None:
 
 
 def _change_of_rate(
-    law: FrictionLaw, v: float, memory: Memory, k: int, step: float
+    law: FrictionLaw, v: float, memory: ContactMemory, k: int, step: float
 ) -> tuple[float, float, bool]:
     """How fast the rate of a memory changes with it, the size of the rates, whether there is a corner."""
     behind, here, ahead = (
@@ -267,7 +272,7 @@ def _change_of_rate(
     return abs(ahead - behind) / (2.0 * step), abs(ahead), corner
 
 
-@check("damps_across", skips=BRISTLES, seldom="damps_across() is false for all parameters drawn")
+@make_check("damps_across", skips=BRISTLES, seldom="damps_across() is false for all parameters drawn")
 def damps_across(one: Given) -> None:
     """Where declared, a small motion across the slip only loses energy to friction."""
     law = one.planar_law()
@@ -285,7 +290,7 @@ def damps_across(one: Given) -> None:
 def _lost_across(law: BristleLaw, v: float, z: float, way: tuple[float, float]) -> tuple[float, float]:
     """Work lost per time by a small slip and deflection across (shares of v and of the law's size), and its terms."""
     slip = complex(v, 1e-5 * way[0] * v)
-    across = 1e-5 * way[1] * size_of(law)
+    across = 1e-5 * way[1] * deflection_scale(law)
     rates, friction = response(law, slip, (complex(z, across),))
     spring = law.friction(0j, complex(0.0, across), 0j).imag
     taken, stored = friction.imag * slip.imag, spring * rates[0].imag

@@ -14,9 +14,9 @@ from frictionlab.methods.march.method import March
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.scene.scene import Drive, Scene, Slip
-from frictionlab.testing.check import check
+from frictionlab.testing.check import make_check
 from frictionlab.testing.checks.declared import WITH_MEMORY
-from frictionlab.testing.contact import size_of
+from frictionlab.testing.contact import deflection_scale
 from frictionlab.testing.example import Given
 from frictionlab.testing.strategies import sizes
 
@@ -35,7 +35,7 @@ def as_stiff(law: FrictionLaw, presliding: float) -> FrictionLaw:
 
 def _deflection(law: FrictionLaw) -> float:
     if isinstance(law, BristleLaw):
-        return size_of(law)
+        return deflection_scale(law)
     assert isinstance(law, MemoryLaw)
     steady = max(abs(law.steady(1.0, k)) for k in range(law.count()))
     return steady or 1.0
@@ -51,11 +51,11 @@ def _settles(law: FrictionLaw) -> bool:
         return False
     if not isinstance(law, BristleLaw) or not law.exact_path():
         return True
-    size = size_of(law)
+    size = deflection_scale(law)
     return abs(law.deflected(-size, 30.0 * size) - size) <= 0.01 * size
 
 
-@check(
+@make_check(
     "coulomb_limit_of_prescribed_slip",
     declares="constant_sliding_friction",
     patience=10.0,
@@ -77,7 +77,7 @@ def coulomb_limit_of_prescribed_slip(one: Given) -> None:
     one.require(near, "ten times the stiffness must leave a tenth of the gap", gaps=tuple(gaps))
 
 
-@check(
+@make_check(
     "coulomb_limit_of_a_body",
     declares="constant_sliding_friction",
     patience=10.0,
@@ -99,7 +99,7 @@ def coulomb_limit_of_a_body(one: Given) -> None:
     )
 
 
-@check(
+@make_check(
     "two_methods", patience=10.0, share=0.02, seldom="no parameters drawn give a state that both methods find"
 )
 def two_methods(one: Given) -> None:

@@ -10,18 +10,18 @@ from hypothesis import strategies as st
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.testing.check import check, for_laws_of
+from frictionlab.testing.check import for_laws_of, make_check
 from frictionlab.testing.checks.declared import BRISTLES, WITH_MEMORY
-from frictionlab.testing.contact import dot, response, size_of
+from frictionlab.testing.contact import deflection_scale, dot, response
 from frictionlab.testing.example import Given
-from frictionlab.testing.strategies import evenly, seldom, signs, sizes, speeds, turns
+from frictionlab.testing.strategies import directions, evenly, seldom, signs, sizes, speeds
 
 NO_EXACT_PATH = "exact_path() is false for all parameters drawn"
 STEPS = 400
 """Of the Runge-Kutta method, along a path of a few largest deflections."""
 
 
-@check("steady_sliding", skips=WITH_MEMORY)
+@make_check("steady_sliding", skips=WITH_MEMORY)
 def steady_sliding(one: Given) -> None:
     """Memory that has become steady gives the friction of ``sliding_friction``."""
     law, speed = one.law(), one.draw("speed", speeds)
@@ -56,7 +56,7 @@ def _steady_friction(one: Given, law: BristleLaw, speed: float) -> tuple[float, 
 
 def _slowed_to(one: Given, law: BristleLaw, speed: float, share: float) -> float:
     """The least deflection at which its rate is no more than a share of the slip."""
-    low, high = 0.0, 1.5 * size_of(law)
+    low, high = 0.0, 1.5 * deflection_scale(law)
     one.require(law.rate(speed, high) <= 1e-12 * speed, "the deflection grows without bound", z=high)
     for _ in range(200):
         middle = 0.5 * (low + high)
@@ -66,7 +66,7 @@ def _slowed_to(one: Given, law: BristleLaw, speed: float, share: float) -> float
     return high
 
 
-@check("exact_path", declares="exact_path", skips=BRISTLES, share=0.2, seldom=NO_EXACT_PATH)
+@make_check("exact_path", declares="exact_path", skips=BRISTLES, share=0.2, seldom=NO_EXACT_PATH)
 def exact_path(one: Given) -> None:
     """``deflected`` is what integrating the rate along a straight path gives."""
     law = one.law(lambda law: law.exact_path() and law.largest_rate(1.0) < math.inf)
@@ -85,8 +85,8 @@ def exact_path(one: Given) -> None:
 
 
 def _start_and_path(one: Given, law: BristleLaw, planar: bool) -> tuple[Any, Any]:
-    size = size_of(law)
-    way = one.draw("direction of the path", turns if planar else signs)
+    size = deflection_scale(law)
+    way = one.draw("direction of the path", directions if planar else signs)
     path = size * one.draw("path over deflection", sizes(1e-2, 5.0)) * way
     return one.memory(law, planar)[0], path
 
@@ -107,10 +107,10 @@ def _room(law: BristleLaw, path: Any) -> float:
     if law.yield_deflection() < math.inf:
         return 2.0 * abs(path) / STEPS
     step = min(1.0, law.largest_rate(1.0) * abs(path) / STEPS)
-    return (1e-9 + 10.0 * step**4) * size_of(law)
+    return (1e-9 + 10.0 * step**4) * deflection_scale(law)
 
 
-@check("path_splitting", declares="exact_path", skips=BRISTLES, seldom=NO_EXACT_PATH)
+@make_check("path_splitting", declares="exact_path", skips=BRISTLES, seldom=NO_EXACT_PATH)
 def path_splitting(one: Given) -> None:
     """One straight path and its two parts, one after the other, end at the same deflection."""
     law = one.law(lambda law: law.exact_path())
@@ -123,14 +123,14 @@ def path_splitting(one: Given) -> None:
     parts = law.deflected(law.deflected(start, share * path), (1.0 - share) * path)
     sharp = 1e-6 if law.largest_rate(1.0) == math.inf else 1e-10  # a root at the limit magnifies rounding
     one.require(
-        abs(whole - parts) <= sharp * size_of(law),
+        abs(whole - parts) <= sharp * deflection_scale(law),
         "two parts of a path differ from it",
         got=parts,
         expected=whole,
     )
 
 
-@check(
+@make_check(
     "saturation_path",
     declares="saturation_path",
     skips=BRISTLES,
@@ -143,8 +143,13 @@ def saturation_path(one: Given) -> None:
     path = max(law.saturation_path(z, side), 0.0) * (1.0 + 1e-9)
     assume(path > 0.0)
     end = law.deflected(z, side * path)
-    further = law.deflected(end, side * size_of(law) * one.draw("further", sizes(1e-3, 1e2)))
-    one.require(abs(further - end) <= 1e-6 * size_of(law), "the deflection still moves", at=end, then=further)
+    further = law.deflected(end, side * deflection_scale(law) * one.draw("further", sizes(1e-3, 1e2)))
+    one.require(
+        abs(further - end) <= 1e-6 * deflection_scale(law),
+        "the deflection changes further",
+        at=end,
+        then=further,
+    )
 
 
 def _follows(one: Given, law: BristleLaw, v: Any, z: Any, back: str = "") -> None:
@@ -155,7 +160,7 @@ def _follows(one: Given, law: BristleLaw, v: Any, z: Any, back: str = "") -> Non
     )
 
 
-@check(
+@make_check(
     "elastic_deflection",
     declares="elastic_deflection",
     skips=BRISTLES,
@@ -169,7 +174,7 @@ def elastic_deflection(one: Given) -> None:
         _follows(one, law, v, share * min(law.elastic_deflection(), 1e300))
 
 
-@check(
+@make_check(
     "elastic_unloading",
     declares="elastic_unloading",
     skips=BRISTLES,
@@ -180,7 +185,7 @@ def elastic_unloading(one: Given) -> None:
     law = one.law(lambda law: law.elastic_unloading())
     v = one.slip()
     for share in (one.draw("share", sizes(1e-6, 1.0)), 0.9, 1.0):
-        _follows(one, law, v, -math.copysign(share * size_of(law), v), back=" back")
+        _follows(one, law, v, -math.copysign(share * deflection_scale(law), v), back=" back")
 
 
 def _yield_surfaces(law: FrictionLaw) -> list[float]:
@@ -195,7 +200,7 @@ def _own_rate(law: Any, v: complex, memory: list[complex], k: int) -> Any:
     return law.rate(v, memory, k) if isinstance(law, MemoryLaw) else law.rate(v, memory[k])
 
 
-@check(
+@make_check(
     "yield_deflection",
     declares="yield_deflection",
     skips=for_laws_of(BristleLaw, MemoryLaw, without="of laws with deflections"),
@@ -204,7 +209,7 @@ def _own_rate(law: Any, v: complex, memory: list[complex], k: int) -> Any:
 def yield_deflection(one: Given) -> None:
     """Below the deflection of yield a bristle follows the slip; at it, it moves along a circle."""
     law = one.law(lambda law: any(radius < math.inf for radius in _yield_surfaces(law)))
-    v, turn = one.planar_slip(), one.draw("turn", turns)
+    v, turn = one.planar_slip(), one.draw("turn", directions)
     share = one.draw("share", seldom(st.just(0.999), evenly(0.0, 0.999)))
     surfaces = _yield_surfaces(law)
     inside = [share * min(radius, 1e300) * turn for radius in surfaces]

@@ -17,10 +17,10 @@ from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.registry.records import law_record
-from frictionlab.testing.check import check
-from frictionlab.testing.contact import Memory, Response, no_plane, response
+from frictionlab.testing.check import make_check
+from frictionlab.testing.contact import ContactMemory, Response, no_plane, response
 from frictionlab.testing.example import Given
-from frictionlab.testing.strategies import fullest_laws, laws, words
+from frictionlab.testing.strategies import fullest_laws, loaded_laws, words
 
 YEAR = re.compile(r"\(?\b1[5-9]\d\d\b|\b20\d\d\b")
 DECADES_OF_SPEED = (1e-4, 1e-2, 0.1, 0.5, 1.0, 3.0, 10.0, 1e2, 1e4)
@@ -39,7 +39,7 @@ def _leads_to(name: str, law: type[FrictionLaw]) -> bool:
         return False
 
 
-@check("loads_by_name", skips=not_registered, share=0.0)
+@make_check("loads_by_name", skips=not_registered, share=0.0)
 def loads_by_name(one: Given) -> None:
     """The law is found by its name, and can be listed."""
     one.require(
@@ -47,7 +47,7 @@ def loads_by_name(one: Given) -> None:
     )
 
 
-@check("documented", share=0.0)
+@make_check("documented", share=0.0)
 def documented(one: Given) -> None:
     """The docstring names a source with its year, and every parameter with its unit in brackets."""
     record = law_record("law", one.kind)
@@ -65,7 +65,7 @@ def documented(one: Given) -> None:
         )
 
 
-@check("frozen", share=0.1)
+@make_check("frozen", share=0.1)
 def frozen(one: Given) -> None:
     """A law cannot be changed once made, and no default of it can."""
     law = one.law()
@@ -81,7 +81,7 @@ def frozen(one: Given) -> None:
     hash(law)
 
 
-@check("unknown_parameters_refused", share=0.1)
+@make_check("unknown_parameters_refused", share=0.1)
 def unknown_parameters_refused(one: Given) -> None:
     """A parameter the law does not have is refused."""
     law = one.law()
@@ -91,7 +91,7 @@ def unknown_parameters_refused(one: Given) -> None:
     )
 
 
-@check("limits_kept", share=0.1)
+@make_check("limits_kept", share=0.1)
 def limits_kept(one: Given) -> None:
     """Words, truth values, NaN and infinity are no numbers of a law."""
     law = one.law()
@@ -103,7 +103,7 @@ def limits_kept(one: Given) -> None:
                 one.require(_refused(one.kind, changed), f"{name} takes {wrong!r}")
 
 
-@check("defaults_valid", share=0.1)
+@make_check("defaults_valid", share=0.1)
 def defaults_valid(one: Given) -> None:
     """What a parameter is where it is left out lies within the law's own limits."""
     given = one.law().model_dump(exclude_none=True)
@@ -127,7 +127,7 @@ def _refused(law: type[FrictionLaw], given: dict[str, Any]) -> bool:
     return False
 
 
-@check("answers")
+@make_check("answers")
 def answers(one: Given) -> None:
     """Every method answers with a finite number: a float on the line, a complex number in the plane."""
     law = one.law()
@@ -152,7 +152,7 @@ def _number(one: Given, kind: type, value: Any, whose: str) -> None:
     one.require(math.isfinite(abs(value)), f"{whose} must be finite", got=value)
 
 
-@check("extremes", share=0.3)
+@make_check("extremes", share=0.3)
 def extremes(one: Given) -> None:
     """At rest and at speeds of any size nothing divides by zero and nothing overflows."""
     law = one.law()
@@ -171,12 +171,12 @@ def _at_rest(law: FrictionLaw) -> tuple[float, ...]:
     return () if isinstance(law, SlidingLaw) else (0.0,)
 
 
-def _numbers_in_the_plane(one: Given, law: FrictionLaw, v: complex, memory: Memory) -> None:
+def _numbers_in_the_plane(one: Given, law: FrictionLaw, v: complex, memory: ContactMemory) -> None:
     got = response(law, v, memory if _scalars(law) else tuple(map(complex, memory)))
     _numbers(one, complex, got, float if _scalars(law) else complex)
 
 
-@check("repeatable", share=0.2)
+@make_check("repeatable", share=0.2)
 def repeatable(one: Given) -> None:
     """Asked the same again, later, a law answers the same: no chance, no clock, nothing kept between calls."""
     law = one.law()
@@ -191,14 +191,14 @@ def repeatable(one: Given) -> None:
     one.require(asked(law, v, memory) == first, "asked the same again the law answers otherwise")
 
 
-def _friction_alone(law: Any, v: float, memory: Memory, rates: Memory) -> Any:
+def _friction_alone(law: Any, v: float, memory: ContactMemory, rates: ContactMemory) -> Any:
     """Without asking for the rates first."""
     if isinstance(law, BristleLaw):
         return law.friction(v, memory[0], rates[0])
     return law.friction(v, np.array(memory), np.array(rates))
 
 
-@check("instances_apart", share=0.2)
+@make_check("instances_apart", share=0.2)
 def instances_apart(one: Given) -> None:
     """What one law is asked changes nothing for another of the same parameters."""
     law = one.law()
@@ -206,7 +206,7 @@ def instances_apart(one: Given) -> None:
     memory = one.memory(law)
     twin = type(law)(**law.model_dump(exclude_none=True))
     first = asked(law, v, memory)
-    asked(one.draw("other law", laws(one.kind)), -2.0 * v, tuple(0.5 * each for each in memory))
+    asked(one.draw("other law", loaded_laws(one.kind)), -2.0 * v, tuple(0.5 * each for each in memory))
     one.require(asked(twin, v, memory) == first, "a law of the same parameters answers otherwise")
 
 
@@ -217,7 +217,7 @@ def _all_mattered(one: Given) -> None:
         one.require(not idle, f"{name} changes no answer of the law")
 
 
-@check("parameters_matter", share=0.5, after=_all_mattered)
+@make_check("parameters_matter", share=0.5, after=_all_mattered)
 def parameters_matter(one: Given) -> None:
     """Every parameter changes what the law answers, for some values of the others."""
     law = one.draw("law", fullest_laws(one.kind))
@@ -253,7 +253,7 @@ def _changes(value: Any, words: Sequence[str]) -> Sequence[Any]:
     return words if value is not None else ()
 
 
-def _differ(law: FrictionLaw, other: FrictionLaw, v: float, memory: Memory) -> bool:
+def _differ(law: FrictionLaw, other: FrictionLaw, v: float, memory: ContactMemory) -> bool:
     return any(
         _apart(asked(law, times * v, memory), asked(other, times * v, memory)) for times in DECADES_OF_SPEED
     )
@@ -269,14 +269,14 @@ def _apart(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:
     )
 
 
-def _differ_in_the_plane(law: FrictionLaw, other: FrictionLaw, v: complex, memory: Memory) -> bool:
+def _differ_in_the_plane(law: FrictionLaw, other: FrictionLaw, v: complex, memory: ContactMemory) -> bool:
     if no_plane(law) or no_plane(other):
         return bool(no_plane(law)) != bool(no_plane(other))
     across = memory if _scalars(law) else tuple(0.6 * each - 0.5j * each for each in memory)
     return _apart(response(law, v, across), response(other, v, across))
 
 
-def asked(law: FrictionLaw, v: float, memory: Memory) -> tuple[Any, ...]:
+def asked(law: FrictionLaw, v: float, memory: ContactMemory) -> tuple[Any, ...]:
     """What a law says about one slip velocity, by every method that has an answer."""
     if isinstance(law, MemoryLaw):  # another law may remember more, or less
         memory = tuple(memory[k] if k < len(memory) else law.steady(v, k) for k in range(law.count()))

@@ -4,71 +4,74 @@ from __future__ import annotations
 
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.scene.dimensional import Units, scaled_law
-from frictionlab.testing.check import check
-from frictionlab.testing.contact import Response, mirrored, response, slid, turned, turns_with_slip
+from frictionlab.testing.check import make_check
+from frictionlab.testing.contact import Response, has_direction, memory_after_slip, reflect, response, rotate
 from frictionlab.testing.example import Given
-from frictionlab.testing.strategies import sizes, turns
+from frictionlab.testing.strategies import directions, sizes
 
-BEYOND = 1.5
+BEYOND_LIMIT = 1.5
 """Times what a memory can hold: it yields wholly, not only just."""
 
 
-@check("oddness")
+@make_check("oddness")
 def oddness(one: Given) -> None:
     """Slip and deflections turned round turn friction round, and change it in nothing else."""
     law = one.law(lambda law: getattr(law, "planar", "") != "rotated")
     v = one.slip()
-    back = -1.0 if turns_with_slip(law) else 1.0
-    for memory in (one.memory(law), slid(law, v, BEYOND)):
+    back = -1.0 if has_direction(law) else 1.0
+    for memory in (one.memory(law), memory_after_slip(law, v, BEYOND_LIMIT)):
         got = response(law, -v, tuple(back * each for each in memory))
         there = response(law, v, memory)
         should = Response(tuple(back * rate for rate in there.rates), -there.friction)
         one.require_same(law, (v, memory), got, should, "slip turned round")
 
 
-@check("rotation", seldom="no parameters drawn have a form in the plane that turns with the slip")
+@make_check("rotation", seldom="no parameters drawn have a form in the plane that turns with the slip")
 def rotation(one: Given) -> None:
     """In the plane everything turned by an angle gives friction turned by that angle (but for per-axis forms)."""
     law = one.planar_law(_isotropic)
     v = one.planar_slip()
-    turn = one.draw("turn", turns)
+    turn = one.draw("turn", directions)
     memories = [one.memory(law, planar=True)]
-    if turns_with_slip(law):
-        memories += [tuple(BEYOND * each for each in memories[0]), slid(law, v, BEYOND)]
+    if has_direction(law):
+        memories += [
+            tuple(BEYOND_LIMIT * each for each in memories[0]),
+            memory_after_slip(law, v, BEYOND_LIMIT),
+        ]
     for memory in memories:
         there = response(law, v, memory)
-        got = response(law, turn * v, turned(law, memory, turn))
-        should = Response(turned(law, there.rates, turn), turn * there.friction)
+        got = response(law, turn * v, rotate(law, memory, turn))
+        should = Response(rotate(law, there.rates, turn), turn * there.friction)
         one.require_same(law, (v, memory), got, should, "everything turned")
 
 
-@check("reflection", seldom="no parameters drawn have a form in the plane")
+@make_check("reflection", seldom="no parameters drawn have a form in the plane")
 def reflection(one: Given) -> None:
     """In the plane everything mirrored in the belt's line gives friction mirrored in it."""
     law = one.planar_law()
     v = one.planar_slip()
     memory = one.memory(law, planar=True)
     there = response(law, v, memory)
-    got = response(law, v.conjugate(), mirrored(law, memory))
-    should = Response(mirrored(law, there.rates), there.friction.conjugate())
+    got = response(law, v.conjugate(), reflect(law, memory))
+    should = Response(reflect(law, there.rates), there.friction.conjugate())
     one.require_same(law, (v, memory), got, should, "everything mirrored")
 
 
-@check("straight_planar_slide", seldom="no parameters drawn have a form in the plane")
+@make_check("straight_planar_slide", seldom="no parameters drawn have a form in the plane")
 def straight_planar_slide(one: Given) -> None:
     """Slip along a straight line in the plane is slip on the line, with nothing across."""
     law = one.planar_law()
     v = one.slip()
     v = abs(v) if getattr(law, "planar", "") == "rotated" else v
     memory = one.memory(law)
-    scalars = isinstance(law, MemoryLaw) and not turns_with_slip(law)
+    scalars = isinstance(law, MemoryLaw) and not has_direction(law)
     across = memory if scalars else tuple(map(complex, memory))
     got = response(law, complex(v, 0.0), across)
     one.require(isinstance(got.friction, complex), "friction in the plane must be complex", got=got.friction)
     one.require_same(law, (v, memory), got, response(law, v, memory), "slip along the line in the plane")
 
 
-@check("unit_scaling")
+@make_check("unit_scaling")
 def unit_scaling(one: Given) -> None:
     """In other units of length and time friction is the same, and memory moves at the same pace.
 
@@ -81,7 +84,7 @@ def unit_scaling(one: Given) -> None:
         one.draw("unit of length", sizes(1e-3, 1e3)), one.draw("unit of time", sizes(1e-3, 1e3)), 1.0
     )
     there, here = scaled_law(law, scales), response(law, v, memory)
-    if not isinstance(law, MemoryLaw) or turns_with_slip(law):
+    if not isinstance(law, MemoryLaw) or has_direction(law):
         other = response(there, v / scales.velocity, tuple(each / scales.length for each in memory))
         other = Response(tuple(rate * scales.velocity for rate in other.rates), other.friction)
     else:

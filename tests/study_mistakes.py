@@ -106,7 +106,7 @@ EDITS = [
     ("kind: coulomb, mu: 0.4", "kind: elasto-plastic, mu_kinetic: 0.4, stiffness: 40, breakaway_ratio: 1, label: coulomb",
      "14:77: laws[0].breakaway_ratio: must be < 1, got 1"),
     ("kind: coulomb, mu: 0.4", "kind: dahl, mu: 1e-300, presliding_length: 1e300, label: coulomb",
-     "14:5: laws[0]: these values leave no stiffness a number can hold: check their units"),
+     "14:5: laws[0]: these values give no finite stiffness > 0: check their units"),
     ("kind: coulomb, mu: 0.4", "kind: 3, mu: 0.4", "14:12: laws[0].kind: must be the name of a law, got 3"),
     ("kind: coulomb, mu: 0.4", "kind: [], mu: 0.4", "14:6: laws[0].kind: must be the name of a law, got a list"),
     ("kind: coulomb, mu: 0.4", "mu: 0.4", "14:5: laws[0].kind: required key is missing"),

@@ -1,4 +1,4 @@
-"""Names to laws and methods, through entry points: built-ins come in by the same door as plugins."""
+"""Laws and methods by name, through entry points: built-ins are registered in the same way as plugins."""
 
 from __future__ import annotations
 
@@ -58,9 +58,9 @@ def method_class(name: str) -> type[Method]:
 
 
 class Laws:
-    """The laws a study may name: those of its own files, and those installed.
+    """The laws a study may name: those of its law files and the installed ones.
 
-    homes: where those of the files come from; a law without one has been checked before.
+    homes: the origins of the laws of files; a law without one has been checked before.
     """
 
     def __init__(
@@ -71,15 +71,15 @@ class Laws:
         self._own, self._homes = own, homes
 
     def names(self) -> list[str]:
-        """The names of all of them, sorted."""
+        """All names, sorted."""
         return sorted({*law_names(), *self._own})
 
     def usable(self) -> list[str]:
-        """The names of those that are not broken."""
+        """The names of laws that are not broken."""
         return [name for name in self.names() if not self._wrong(name)]
 
     def broken(self) -> list[str]:
-        """What is wrong with each of those that are, and with those whose name one of ours has."""
+        """A message for every broken law and for every plugin with the name of a law of frictionlab."""
         wrong = [self._wrong(name) for name in self.names()]
         return [
             *filter(None, wrong),
@@ -102,7 +102,7 @@ class Laws:
         )
 
     def check(self, name: str, law: FrictionLaw) -> None:
-        """Raises BrokenPlugin where a law fails with the parameters it was given."""
+        """Raises BrokenPlugin where a law fails with its given parameters."""
         if from_outside(type(law)) and (wrong := fault_with_values(law)):
             home = self._homes.get(name) or home_of(_entry_points(LAWS)[name][0])
             raise home.broken(wrong)
@@ -110,7 +110,7 @@ class Laws:
 
 @cache
 def _entry_points(group: str) -> dict[str, tuple[EntryPoint, ...]]:
-    """The entry points of each name; the same one twice, as from two copies of a package, is one."""
+    """The entry points of each name; duplicates, as from two copies of a package, are merged."""
     found: dict[str, dict[str, EntryPoint]] = {}
     for door in metadata.entry_points(group=group):
         found.setdefault(door.name, {}).setdefault(door.value, door)
@@ -118,17 +118,17 @@ def _entry_points(group: str) -> dict[str, tuple[EntryPoint, ...]]:
 
 
 def _has_clash(doors: Sequence[EntryPoint]) -> bool:
-    """Whether one of ours has a name that others took too."""
+    """Whether a plugin has the name of a law of frictionlab."""
     return len(doors) > 1 and any(door.dist is not None and door.dist.name == OWN_PACKAGE for door in doors)
 
 
 def _clash_message(doors: Sequence[EntryPoint]) -> str:
-    return f"{describe_clash(doors)}\nfrictionlab's own is used; the others need another name"
+    return f"{describe_clash(doors)}\nthat of frictionlab is used; rename the others"
 
 
 @cache
 def _load(group: str, name: str) -> Any:
-    """The class of this name, or the BrokenPlugin that it is: a law that hangs is tried once."""
+    """The class of this name, or its BrokenPlugin: cached, so that a law that hangs is tried once."""
     try:
         return open_entry_point(_entry_points(group)[name], FrictionLaw if group == LAWS else Method)
     except BrokenPlugin as problem:
@@ -144,7 +144,7 @@ def _checked(law: type[FrictionLaw], home: Home) -> Any:
 
 
 def _usable(found: Any) -> Any:
-    """What was found, if it can be used. Raises BrokenPlugin, a new one every time."""
+    """The class, if it can be used. Raises a new BrokenPlugin otherwise."""
     if isinstance(found, BrokenPlugin):
         raise BrokenPlugin(*found.args) from found.__cause__
     return found

@@ -1,4 +1,4 @@
-"""The publications that laws, methods and studies name: entries of BibTeX, and which of them a text names.
+"""The publications that laws, methods and studies cite: BibTeX entries, and those that a text names.
 
 A text names a publication by its authors and year, as in "Dahl (1968)", "Bo & Pavelescu (1982)" or, of three and more
 authors, "Dupont et al. (2002)".
@@ -29,7 +29,7 @@ class Publication:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """How a text may name it; nothing for one without authors."""
+        """The citations by which a text may name it; none without authors."""
         given = self.fields.get("author", "")
         if not given:
             return ()
@@ -40,14 +40,14 @@ class Publication:
 
     @property
     def text(self) -> str:
-        """For reading: authors (year), title, where."""
+        """Authors (year), title, journal."""
         said = [*self.names[:1], self.fields.get("title", ""), self._home]
         doi = [f"doi:{self.fields['doi']}"] if "doi" in self.fields else []
         return ". ".join([*(_plain(each) for each in said if each), *doi])
 
     @property
     def _home(self) -> str:
-        """Journal volume, pages; or whatever is known of that."""
+        """Journal volume, pages, as far as known."""
         home = next((self.fields[name] for name in _HOMES if name in self.fields), "")
         number = self.fields.get("volume", self.fields.get("number", ""))
         volume = f"{home} {number}".strip()
@@ -67,12 +67,12 @@ def _plain(text: str) -> str:
 
 @cache
 def bibliography() -> tuple[Publication, ...]:
-    """The publications that frictionlab's own laws and methods draw on."""
+    """The publications cited by the laws and methods of frictionlab."""
     return read_bibtex(files("frictionlab.registry").joinpath("bibliography.bib").read_text(encoding="utf-8"))
 
 
 def publications(text: str, bibtex: str) -> list[Publication]:
-    """Those that a text names, and the entries that come with it, which go before our own of the same name."""
+    """The publications that a text names, and its own entries, which replace those of frictionlab's bibliography."""
     brought = read_bibtex(bibtex)
     taken = {name for each in brought for name in each.names}
     known = [*brought, *(each for each in bibliography() if taken.isdisjoint(each.names))]
@@ -81,7 +81,7 @@ def publications(text: str, bibtex: str) -> list[Publication]:
 
 
 def unpublished_source(key: str, words: str) -> Publication:
-    """An entry for a source that is told in words alone."""
+    """An entry for a source that is given as text only."""
     said = " ".join(re.sub(r"[\\{}]", "", words.replace("@", " at ")).split())
     note = re.sub(r"([&%$#_])", r"\\\1", said).replace("~", r"\~{}").replace("^", r"\^{}")
     name = "-".join(re.findall(r"\w+", key))
@@ -103,7 +103,7 @@ def _place(reference: Publication, words: str) -> int:
 
 
 def read_bibtex(bibtex: str) -> tuple[Publication, ...]:
-    """The entries of a text of BibTeX; what stands between them is comment. Raises ValueError for a broken one."""
+    """The entries of BibTeX text; text between them is comment. Raises ValueError for a broken entry."""
     if not isinstance(bibtex, str):
         raise ValueError(f"must be one text of BibTeX entries, not a {type(bibtex).__name__}")
     found, at = [], 0
@@ -132,7 +132,7 @@ def _fields(bibtex: str, begin: re.Match[str]) -> tuple[dict[str, str], int]:
 
 
 def _value(bibtex: str, at: int) -> tuple[str, int]:
-    """The words of a field, and where they end: in braces, in quotes or bare."""
+    """The value of a field, in braces, in quotes or bare, and where it ends."""
     bare = _BARE.match(bibtex, at)
     if bare:
         return bare[0], bare.end()

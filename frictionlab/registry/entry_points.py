@@ -1,4 +1,4 @@
-"""The door by which laws and methods come in, and every way in which what stands before it can be broken."""
+"""Loading of laws and methods from entry points, with a message for every way in which they can be broken."""
 
 from __future__ import annotations
 
@@ -24,37 +24,37 @@ OWN_PACKAGE = "frictionlab"
 
 
 class Home(NamedTuple):
-    """Where a law or method comes from, and what to do where it is broken, in words."""
+    """The origin of a law or method, and the remedy if it is broken, as sentences."""
 
     name: str
     remedy: str
 
     def broken(self, what: str, why: BaseException | None = None) -> BrokenPlugin:
-        """That it is broken, and how."""
+        """The error for a broken law or method."""
         problem = BrokenPlugin(f"{self.name}: {what}\n{self.remedy}")
         problem.__cause__ = why
         return problem
 
 
 def package(door: EntryPoint) -> str:
-    """The package that brings an entry point, with its version; nothing where that is not known."""
+    """Name and version of the package of an entry point; '' where it is not known."""
     return f"{door.dist.name} {door.dist.version}" if door.dist is not None else ""
 
 
 def home_of(door: EntryPoint) -> Home:
-    """The home of what is installed."""
+    """The origin of an installed law or method."""
     what = door.group.rpartition(".")[2].removesuffix("s")
     whose = f" of package {package(door)}" if package(door) else ""
-    name = door.dist.name if door.dist is not None else "the package that brings it"
-    return Home(f"{what} '{door.name}'{whose} ({door.value})", f"mend it, or: pip uninstall {name}")
+    name = door.dist.name if door.dist is not None else "its package"
+    return Home(f"{what} '{door.name}'{whose} ({door.value})", f"correct it, or: pip uninstall {name}")
 
 
 def open_entry_point(doors: Sequence[EntryPoint], kind: type[FrictionLaw] | type[Method]) -> Any:
     """The law or method behind the entry points of one name. Raises BrokenPlugin."""
     own = [door for door in doors if door.dist is not None and door.dist.name == OWN_PACKAGE]
-    door, *others = own or doors  # a stranger never takes the place of one of ours
+    door, *others = own or doors  # a plugin never replaces a law or method of frictionlab
     if others:
-        raise BrokenPlugin(f"{describe_clash(doors)}\nmend one of them, or uninstall it")
+        raise BrokenPlugin(f"{describe_clash(doors)}\nrename one of them, or uninstall it")
     home = home_of(door)
     loaded = _load(door, home)
     if not isinstance(loaded, type):
@@ -69,10 +69,10 @@ def _bases(kind: type) -> str:
 
 
 def describe_clash(doors: Sequence[EntryPoint]) -> str:
-    """That several packages bring something of one name."""
-    brought = " and ".join(f"{package(door) or 'a package'} ({door.value})" for door in doors)
+    """The message that several packages define the same name."""
+    owners = " and ".join(f"{package(door) or 'a package'} ({door.value})" for door in doors)
     what = doors[0].group.rpartition(".")[2].removesuffix("s")
-    return f"{what} '{doors[0].name}' is brought by {brought}"
+    return f"{what} '{doors[0].name}' is defined by {owners}"
 
 
 def _load(door: EntryPoint, home: Home) -> Any:
@@ -80,16 +80,16 @@ def _load(door: EntryPoint, home: Home) -> Any:
         return door.load()
     except ModuleNotFoundError as problem:
         if problem.name and f"{door.module}.".startswith(f"{problem.name}."):
-            raise home.broken(f"leads to nothing: there is no module '{problem.name}'", problem) from problem
+            raise home.broken(f"does not exist: there is no module '{problem.name}'", problem) from problem
         raise unloadable(home, problem) from problem
     except (Exception, SystemExit) as problem:
         if isinstance(problem, AttributeError) and _is_of_load(problem):
-            raise home.broken(f"leads to nothing: {problem}", problem) from problem
+            raise home.broken(f"does not exist: {problem}", problem) from problem
         raise unloadable(home, problem) from problem
 
 
 def _is_of_load(problem: AttributeError) -> bool:
-    """Whether the module is whole and only lacks what the entry point names."""
+    """Whether the module was imported and only lacks the name of the entry point."""
     frames = inspect.getinnerframes(problem.__traceback__) if problem.__traceback__ else []
     return bool(frames) and frames[-1].filename.endswith(
         ("importlib/metadata/__init__.py", "metadata\\__init__.py")
@@ -97,17 +97,17 @@ def _is_of_load(problem: AttributeError) -> bool:
 
 
 def unloadable(home: Home, problem: BaseException) -> BrokenPlugin:
-    """That a module cannot be run to its end."""
+    """The error for a module that cannot be imported."""
     files = outside_files(problem)
     if isinstance(problem, ModuleNotFoundError):
         what = f"needs '{problem.name}', which is not installed{innermost_line(problem, files) or ''}"
-        remedy = f"install that, or leave it out: pip install {str(problem.name).partition('.')[0]}"
+        remedy = f"install it, or remove the import: pip install {str(problem.name).partition('.')[0]}"
         return home._replace(remedy=remedy).broken(what, problem)
     return home.broken(f"cannot be loaded: {describe_error(problem, files)}", problem)
 
 
 def check_class(loaded: Any, home: Home) -> Any:
-    """The class, which is sound as far as a few questions show. Raises BrokenPlugin."""
+    """The class, after a few trial calls. Raises BrokenPlugin."""
     for wrong in _faults(loaded):
         raise home.broken(wrong)
     return loaded
@@ -137,7 +137,7 @@ def _names(method: Any) -> list[str]:
 
 
 def _signatures(law: type[FrictionLaw]) -> Iterator[str]:
-    """Methods that cannot be called as their interface says."""
+    """Methods that do not accept the arguments of their interface."""
     for name, interface in overridden_methods(law):
         given, wanted = inspect.getattr_static(law, name), _names(interface)
         if not inspect.isfunction(given):
@@ -151,21 +151,21 @@ def _signatures(law: type[FrictionLaw]) -> Iterator[str]:
 
 
 def _mutable(law: type[FrictionLaw]) -> Iterator[str]:
-    """What may change between calls, and would then change answers."""
+    """Attributes that may change between calls and so change results."""
     for name, field in law.model_fields.items():
         if field.default_factory is not None or isinstance(field.default, list | dict | set):
-            yield f"parameter '{name}' has a default that can change, a {_kind_of_default(field)}; {_FIXED}"
+            yield f"parameter '{name}' has a mutable default, a {_kind_of_default(field)}; {_FIXED}"
     own = [kind for kind in law.__mro__ if issubclass(kind, FrictionLaw) and from_outside(kind)]
     for kind in own:
         held = [name for name, value in vars(kind).items() if isinstance(value, list | dict | set)]
         for name in [name for name in held if not name.startswith(("_", "model_", "expected_failures"))]:
-            yield f"it keeps {name} = {vars(kind)[name]!r}, which can change; {_FIXED}"
+            yield f"its attribute {name} = {vars(kind)[name]!r} is mutable; {_FIXED}"
         for name in kind.__private_attributes__:
-            yield f"it keeps a state of its own, {name}; {_FIXED}"
+            yield f"it has a private state, {name}; {_FIXED}"
 
 
 def _kind_of_default(field: Any) -> str:
     return type(field.default).__name__ if field.default_factory is None else "factory"
 
 
-_FIXED = "a law is its parameters and nothing else: use numbers, or a tuple of them"
+_FIXED = "a law consists of its parameters only: use numbers, or a tuple of them"

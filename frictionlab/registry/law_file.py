@@ -1,4 +1,4 @@
-"""A law from one Python file: read, run as a module of its own, and its law classes by name."""
+"""Laws from one Python file: read, imported as a module, its law classes by name."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ LARGEST_LAW_FILE = 1_000_000
 
 
 class UnreadableLawFile(Exception):
-    """There is no file of Python text to read; the message says why."""
+    """A law file that cannot be read; the message says why."""
 
 
 def home_of_file(path: Path) -> Home:
-    """The home of what is wrong with a file as a whole."""
-    return Home(f"file {path}", "mend the file")
+    """The origin for errors in a file as a whole."""
+    return Home(f"file {path}", "correct the file")
 
 
 @dataclass(frozen=True)
@@ -36,17 +36,19 @@ class LawFile:
     laws: dict[str, type[FrictionLaw]] = field(compare=False)
 
     def home(self, name: str) -> Home:
-        """The home of one of its laws."""
-        return Home(f"law '{name}' (class {self.laws[name].__name__}) of file {self.path}", "mend the file")
+        """The origin of one of its laws."""
+        return Home(
+            f"law '{name}' (class {self.laws[name].__name__}) of file {self.path}", "correct the file"
+        )
 
     @property
     def code(self) -> str:
-        """SHA-256 of the text: another text is another law."""
+        """SHA-256 of the text."""
         return _sha256(self.text)
 
 
 def read_law_file(path: Path) -> LawFile:
-    """The laws of this file. Raises Unreadable, BrokenPlugin."""
+    """The laws of this file. Raises UnreadableLawFile, BrokenPlugin."""
     text = text_of(path)
     name = re.sub(r"\W", "_", path.stem)
     module = _module(f"{LAW_FILE}{name}_{_sha256(text)[:12]}", path, text)
@@ -61,7 +63,7 @@ def law_name(name: str) -> str:
 
 @cache
 def code_of(law: type[FrictionLaw]) -> str:
-    """SHA-256 of the Python files of the package that brings a law; nothing for a law of frictionlab itself."""
+    """SHA-256 of the Python files of the package of a law; '' for a law of frictionlab."""
     head, _, rest = law.__module__.partition(".")
     file = getattr(sys.modules.get(head), "__file__", None)
     if head == "frictionlab" or file is None:
@@ -75,7 +77,7 @@ def _sha256(text: str) -> str:
 
 
 def text_of(path: Path) -> str:
-    """What a file of laws holds. Raises Unreadable."""
+    """The text of a law file. Raises UnreadableLawFile."""
     if path.suffix != ".py":
         raise UnreadableLawFile("must be a Python file, *.py")
     if path.exists() and not path.is_file():
@@ -113,7 +115,7 @@ def _module(name: str, path: Path, text: str) -> ModuleType:
 
 
 def _laws(module: ModuleType, path: Path) -> dict[str, type[FrictionLaw]]:
-    """The laws defined in the module itself; those another one is derived from are for that alone."""
+    """The laws defined in the module itself, without the base classes of others among them."""
     own = [kind for kind in vars(module).values() if _is_law(kind) and kind.__module__ == module.__name__]
     bases = {base for kind in own for base in kind.__mro__[1:]}
     laws = {law_name(kind.__name__): kind for kind in own if kind not in bases}

@@ -1,4 +1,4 @@
-"""What is installed, laws and methods, as plain records for people and programs."""
+"""The installed laws and methods as plain records, for output as text or JSON."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 
 
 def law_record(name: str, law: type[FrictionLaw]) -> dict[str, Any]:
-    """A law under this name: what it is, its parameters, what it declares."""
+    """A law under this name: its description, parameters and declarations."""
     return {
         "name": name,
         "description": _text(law),
@@ -29,7 +29,7 @@ def law_record(name: str, law: type[FrictionLaw]) -> dict[str, Any]:
 
 
 def method_record(name: str) -> dict[str, Any]:
-    """A method: its name, what it is, what it accepts, its parameters. Raises KeyError, BrokenPlugin."""
+    """A method: its name, description, the cases it refuses, its parameters. Raises KeyError, BrokenPlugin."""
     method = registry.method_class(name)
     return {
         "name": name,
@@ -42,7 +42,7 @@ def method_record(name: str) -> dict[str, Any]:
 
 
 def _class(law: type[FrictionLaw]) -> str:
-    """Where a law is written: ``module.Class``, or ``file.py:Class`` where a study brings it along."""
+    """``module.Class`` of a law, or ``file.py:Class`` of a law from a file."""
     home = home_of_law(law)
     return f"{home}:{law.__qualname__}" if home.endswith(".py") else f"{home}.{law.__qualname__}"
 
@@ -56,7 +56,7 @@ def _sources(kind: type[FrictionLaw] | type[Method]) -> list[str]:
 
 
 def _declared(law: type[FrictionLaw]) -> dict[str, str]:
-    """The predicates a law declares for itself, each with the words of its docstring."""
+    """The predicates a law overrides, each with its docstring."""
     first: dict[str, Any] = {}
     for kind in reversed(law.__mro__):
         if issubclass(kind, FrictionLaw):
@@ -78,7 +78,7 @@ def _parameters(record: type[Record]) -> list[dict[str, Any]]:
 
 
 def _owner(record: type[Record], name: str) -> type[Record]:
-    """The class that brings a parameter in, and whose docstring tells of it."""
+    """The class that defines a parameter and documents it."""
     return next(kind for kind in record.__mro__ if name in inspect.get_annotations(kind))
 
 
@@ -115,26 +115,26 @@ def _parameter(name: str, field: Any, text: str) -> dict[str, Any]:
 
 
 def _rules(field: Any) -> list[Any]:
-    """What limits the values of a field; of one that may be left empty, what limits those that are given."""
+    """The limits on the values of a field, those inside an optional type included."""
     inside = [kind.__metadata__ for kind in get_args(field.annotation) if get_origin(kind) is Annotated]
     rules = [rule for metadata in [field.metadata, *inside] for rule in metadata]
     return [each for rule in rules for each in (rule, *getattr(rule, "metadata", ()))]
 
 
 def _each(field: Any) -> str:
-    """Of a field that holds several numbers, whose limits its limits are."""
+    """The prefix for a field that holds several numbers, to each of which its limits apply."""
     return "a list, each " if get_origin(field.annotation) is tuple else ""
 
 
 def _choices(field: Any) -> list[str]:
-    """The words a field that takes no number may hold."""
+    """The words that a text field accepts."""
     return (
         [str(word) for word in get_args(field.annotation)] if get_origin(field.annotation) is Literal else []
     )
 
 
 def _meaning(name: str, text: str) -> str:
-    """The docstring's own words on a parameter: from its name at the start of a line to a blank line."""
+    """The text on a parameter in a docstring: from its name at the start of a line to a blank line."""
     found = re.search(rf"^{re.escape(name)}\b(.*(?:\n(?!\s*$|\w+ \[).*)*)", text, re.MULTILINE)
     return " ".join(found[1].split()).lstrip(":, ") if found else ""
 

@@ -1,4 +1,4 @@
-"""A law from outside tried before it is used: a few calls, interpreted, under a time limit."""
+"""Trial calls of a law of another package before it is used: interpreted, under a time limit."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 
 LIMIT = 2.0
-"""Seconds that all calls of a trial may take; they need a millisecond."""
+"""Time limit [s] for all calls of a trial; they normally need a millisecond."""
 SAMPLES = (1.0, 0.5, 2.0, 10.0)
-"""Numbers for the parameters of a law that nobody has given any yet."""
+"""Trial values for the parameters of a law."""
 
 Fault = str
-"""What is wrong with a law, in words."""
+"""A sentence that says what is wrong with a law."""
 
 
 class _Progress(NamedTuple):
-    """What was being done when time was up."""
+    """The call in progress when the time limit was reached."""
 
     what: list[str]
 
 
 def fault_with_values(law: FrictionLaw) -> Fault | None:
-    """What the methods of a law with these parameters do wrong; None for nothing."""
+    """The first fault in the methods of a law with these parameters; None if there is none."""
     return _with_time_limit(lambda now: _first(_faults_of_methods(law, now)))
 
 
 def fault_with_samples(law: type[FrictionLaw]) -> Fault | None:
-    """What a law does wrong when it is built, and then asked, with parameters it accepts; None for nothing."""
+    """The first fault of a law when it is built and called with sample parameters; None if there is none."""
     return _with_time_limit(lambda now: _first(_faults_of_samples(law, now)))
 
 
 def _with_time_limit(work: Callable[[_Progress], Fault | None]) -> Fault | None:
-    """The answer of this work, or that it takes too long: the thread is left behind."""
+    """The fault that ``work`` finds, or that it exceeds the time limit; its thread is then abandoned."""
     now, found = _Progress([""]), []
     thread = threading.Thread(target=lambda: found.append(work(now)), daemon=True)
     thread.start()
@@ -70,7 +70,7 @@ def _faults_of_samples(law: type[FrictionLaw], now: _Progress) -> Iterator[Fault
 
 
 def _samples(law: type[FrictionLaw]) -> Iterator[dict[str, float]]:
-    """Parameters to build a law with: those it requires, then one that may be left out beside them."""
+    """Parameters to build a law with: the required ones, then each optional one beside them."""
     required = [name for name, field in law.model_fields.items() if field.is_required()]
     for number in SAMPLES:
         given = dict.fromkeys(required, number)
@@ -99,7 +99,7 @@ def _faults_of_methods(given: FrictionLaw, now: _Progress) -> Iterator[Fault]:
 
 
 def overridden_methods(law: type[FrictionLaw]) -> list[tuple[str, Any]]:
-    """The public methods of the interfaces that are written outside, with what the interface says of each."""
+    """The public methods of the interfaces that a law overrides, each with the method of the interface."""
     interfaces = [kind for kind in law.__mro__ if issubclass(kind, FrictionLaw) and not from_outside(kind)]
     said: dict[str, Any] = {}
     for kind in reversed(interfaces):
@@ -116,7 +116,7 @@ def _is_planar(law: FrictionLaw) -> bool:
 
 
 def _arguments(law: FrictionLaw, v: Any) -> dict[str, Any]:
-    """What methods are called with, by the names their interfaces give it."""
+    """Arguments for the methods, by the names in their interfaces."""
     told: dict[str, Any] = {
         "speed": 1.0,
         "normal_load": 1.0,
@@ -157,7 +157,7 @@ def _fault_of_call(law: FrictionLaw, name: str, interface: Any, arguments: dict[
 
 
 def _fault_of_error(law: FrictionLaw, what: str, call: Callable[[], object]) -> Fault | None:
-    """What a call raises that no numbers excuse: arithmetic may fail at some, and its points then say so."""
+    """The fault of a call that raises; arithmetic errors, which may depend on the numbers, are no fault."""
     try:
         call()
     except (ArithmeticError, ValueError):

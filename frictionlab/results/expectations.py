@@ -1,4 +1,4 @@
-"""What a study expects of its table, judged: passed or failed, and a sentence that says by how much."""
+"""Check of the expectations of a study: passed or failed, and a sentence that says by how much."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def _status(wanted: str, rows: pd.DataFrame) -> Verdict:
 
 
 def _shape(expectation: Expectation, curves: pd.DataFrame) -> Verdict:
-    """Every curve; the first that is of another shape, or that none can be read from, is told."""
+    """Check of the shape of every curve; the sentence names the first that differs or is unknown."""
     measure = expectation.measure or "area"
     verdicts = curves[_VERDICTS[measure]]
     others = curves[verdicts != expectation.shape]
@@ -151,7 +151,7 @@ def _difference(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
 
 
 def _inputs(rows: pd.DataFrame) -> list[str]:
-    """The columns that say what was asked, the method apart."""
+    """The input columns, without the method."""
     return [
         str(column)
         for column in rows.columns

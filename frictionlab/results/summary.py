@@ -49,7 +49,7 @@ _HEAD = ("law", "method", "curve", "points", "mean_friction", "largest error", "
 def _curve_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
     """One line per curve: everything equal but belt speed."""
     told = [name for name in given(table.columns) if name != belt_speed(table.columns)]
-    within = table.groupby("law")[told].nunique(dropna=False).max()  # the label tells laws apart
+    within = table.groupby("law")[told].nunique(dropna=False).max()  # the label distinguishes laws
     told = [name for name in told if within[name] > 1]
     keys = ["law", "method", *told]
     groups = table.groupby(keys, sort=False, dropna=False)
@@ -58,7 +58,7 @@ def _curve_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
 
 
 def _models(table: pd.DataFrame) -> dict[str, int]:
-    """Numbers for the models, whose sentences are too long for a line per curve; the same for those alike."""
+    """A number for each model, whose sentence is too long for a line per curve; equal models share a number."""
     found = table["model"].dropna().unique()
     numbers = {form: number for number, form in enumerate(dict.fromkeys(map(pattern, found)), 1)}
     return {model: numbers[pattern(model)] for model in found}

@@ -25,7 +25,7 @@ FINISHED = ("ok", "refused", "failed", "not_unique")
 
 
 class Heading(NamedTuple):
-    """What one row is about: a case, but for the method itself, whose import may take longer than a table."""
+    """The inputs of a row: a case without its method, whose import may take longer than a table."""
 
     law_label: str
     kind: str
@@ -46,7 +46,7 @@ def headings(study: Study) -> list[Heading]:
 
 
 class Inputs(NamedTuple):
-    """The columns that say what each row is about; scales: the units of its results, for scenes in SI units."""
+    """The input columns of each row; scales: the units of its results, for scenes in SI units."""
 
     columns: dict[str, list[Any]]
     size: int
@@ -60,7 +60,7 @@ def inputs(rows: Sequence[Heading | Case]) -> Inputs:
         "kind": [row.kind for row in rows],
         "method": [row.method_label for row in rows],
     }
-    # Rows share their scenes and laws: each is taken apart once.
+    # Rows share their scenes and laws: the values of each are read once.
     scenes = {id(row.scene): row.scene.values() for row in {id(row.scene): row for row in rows}.values()}
     laws = {id(row.given_law): row.given_law for row in rows}
     parameters = {key: _values(law) for key, law in laws.items()}
@@ -90,7 +90,7 @@ def _values(law: FrictionLaw) -> dict[str, Any]:
 
 
 def _cells(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Values as a table holds them: several numbers in cells of their own, ``mu[0]``, ``mu[1]``."""
+    """Values in cells: several numbers go to separate cells, ``mu[0]``, ``mu[1]``."""
     cells: dict[str, Any] = {}
     for name, value in values.items():
         several = (
@@ -186,7 +186,7 @@ def records(frame: pd.DataFrame) -> list[dict[str, Any]]:
 
 
 def _plain(value: Any) -> Any:
-    """JSON knows neither NaN nor infinity."""
+    """The value for JSON, which has neither NaN nor infinity."""
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 

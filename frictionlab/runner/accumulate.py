@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 SAVE_EVERY = 10.0
-"""Seconds of work that a crash may cost at most, give or take a chunk."""
+"""Most seconds of work that a crash may lose, apart from the chunks in progress."""
 
 
 class Accumulator:
@@ -82,7 +82,7 @@ class Accumulator:
         if time.monotonic() < self._next_save or self.computed == self._saved:
             return
         before = time.monotonic()
-        with suppress(SaveError):  # the end of the run tries again, and then says so
+        with suppress(SaveError):  # the end of the run tries again and reports the error
             self.save(self.table, self.orbits)
             self._saved = self.computed
         after = time.monotonic()
@@ -103,7 +103,7 @@ class Accumulator:
 
     @property
     def table(self) -> pd.DataFrame:
-        """The table as it stands."""
+        """The current table."""
         return self._results.frame(self._given)
 
     @property

@@ -118,7 +118,7 @@ def _solve(gathering: Accumulator, left: list[Chunk], executor: Executor | None)
 
 @contextmanager
 def _workers(executor: Executor | None) -> Iterator[Executor]:
-    """The caller's executor, or threads of our own that nobody waits for after an interrupt."""
+    """The caller's executor, or threads that are not waited for after an interrupt."""
     if executor is not None:
         yield executor
         return
@@ -202,7 +202,7 @@ def steady_state(
         orbit = piece.answers.orbit(0)
         if orbit is None:
             return None
-        from frictionlab.orbit.sample import sample  # brings numba: only where it is needed
+        from frictionlab.orbit.sample import sample  # imports numba: only where it is needed
 
         return sample(orbit, scene, n)
 

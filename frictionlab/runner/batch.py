@@ -59,7 +59,7 @@ def _all_read(files: Sequence[Path], overrides: Sequence[str], law_files: Sequen
 
 
 def check_folders(found: Sequence[Job], existing: Existing) -> None:
-    """Raises FolderError with every folder that cannot take its study."""
+    """Raises FolderError with every folder to which its study cannot be written."""
     problems = []
     for job in found:
         try:

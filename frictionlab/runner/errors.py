@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 class FolderError(Exception):
-    """The folder cannot take this run; the message says why and what to do. Nothing was written."""
+    """The run cannot be written to this folder; the message says why and gives a remedy. Nothing was written."""
 
 
 class SaveError(Exception):

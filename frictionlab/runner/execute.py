@@ -13,7 +13,7 @@ from frictionlab.runner.solve import solve
 TICK = 0.1
 """Seconds between two looks at what goes on."""
 GRACE = 3.0
-"""Seconds an interrupted run waits for chunks already being solved; a chunk of kernels takes far less."""
+"""Time [s] that an interrupted run waits for chunks in progress; most chunks need far less."""
 
 Take = Callable[[list[Part]], None]
 Solving = Future[list[Part]]

@@ -32,7 +32,7 @@ class Identity:
     """What a folder's results answer: the study, whole and as a digest of what determines its numbers.
 
     file: the name of the file it came from, for the record. code: SHA-256 by law, of those from outside.
-    law_texts: the files of laws it brings along, by their names in the folder.
+    law_texts: its law files, by their names in the folder.
     """
 
     study: dict[str, Any]
@@ -103,7 +103,7 @@ class RunFolder:
         """The copies of laws that the run in this folder kept."""
         try:
             names = self._provenance().get("plugins", [])
-        except FolderError:  # without an account nothing here is known to be ours
+        except FolderError:  # without provenance.json the folder may not be a run
             names = []
         return [self.path / LAW_COPIES / Path(str(name)).name for name in names]
 
@@ -141,7 +141,7 @@ class RunFolder:
         return "\n".join(lines + self._edited())
 
     def _edited(self) -> list[str]:
-        """The laws from outside whose code is no longer what it was."""
+        """The plugin laws whose code has changed."""
         there = self._provenance().get("code", {})
         laws = [law for law, code in self.identity.code.items() if there.get(law, code) != code]
         return [f"  the code of law '{law}' was edited since" for law in laws]
@@ -163,7 +163,7 @@ class RunFolder:
             raise FolderError(f"{path} cannot be read ({problem}); {REMEDY}") from problem
 
     def open(self, existing: Existing) -> None:
-        """Make the folder; ``replace`` takes away the results it holds. Raises FolderError, SaveError."""
+        """Create the folder; ``replace`` removes the results in it. Raises FolderError, SaveError."""
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             kept = self.identity.law_texts
@@ -193,7 +193,7 @@ class RunFolder:
         text = json.dumps(provenance, indent=2) + "\n"
         for name, law in self.identity.law_texts.items():
             _write_copy(self.path / name, law)
-        # The account first: a study.yaml without one is taken for a person's own.
+        # provenance.json first: a study.yaml without it is treated as a user's own file.
         _write(self._account, lambda path: path.write_text(text, encoding="utf-8"))
         _write(self._study, lambda path: path.write_text(self.identity.text, encoding="utf-8"))
 
@@ -232,7 +232,7 @@ def _brief(line: str, others: Sequence[str]) -> str:
     if len(line.strip()) <= SHOWN:
         return line.strip()
     start = line.rfind(" ", 0, max(0, _equal(line, others) - SHOWN // 2)) + 1
-    if line[:start].endswith(": "):  # a value alone says little
+    if line[:start].endswith(": "):  # a value without its key is unclear
         start = line.rfind(" ", 0, start - 1) + 1
     begins = f"{line.split(':')[0].strip()}: ... " if start else ""
     return f"{begins}{line[start : start + SHOWN].strip()}{' ...' if len(line) > start + SHOWN else ''}"

@@ -1,4 +1,4 @@
-"""What a study will take: curves and points per law and method, refusals, models, cost. Nothing computed."""
+"""The plan of a study: curves and points per law and method, refusals, models, cost. Nothing is computed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from frictionlab.study import Case, Study
 
 @dataclass(frozen=True)
 class Planned:
-    """What one law and one method will be asked. seconds: expected kernel time on one core, once compiled."""
+    """The points of one law and one method. seconds: expected kernel time on one core, once compiled."""
 
     law: str
     kind: str
@@ -56,7 +56,7 @@ def _planned(cases: Sequence[Case], tolerance: float) -> Planned:
 
 
 def _model(case: Case) -> str:
-    """What will produce the number, and why; the method's own name where it has no choice to make."""
+    """The model that will compute the number, and why; the name of a method that makes no choice."""
     auto: Any = registry.method_class("auto")
     if not isinstance(case.method, auto):
         return case.method.name

@@ -1,4 +1,4 @@
-"""Progress of runs that take more than a moment: one updating line on a terminal, plain lines elsewhere."""
+"""Progress of long runs: one updating line on a terminal, separate lines elsewhere."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Progress = Callable[[int, int], None]
 """Called now and then with the number of points done and of all points."""
 
 QUIET = 2.0
-"""Seconds a run may take without a word."""
+"""Time [s] before a run prints its progress."""
 
 COMPILING = ", compiling kernels (once per machine)"
 

@@ -1,4 +1,4 @@
-"""A run as its folder tells it: the study, the table, the account of what ran. Nothing is computed."""
+"""A saved run: its study, table and provenance, read from its folder. Nothing is computed."""
 
 from __future__ import annotations
 

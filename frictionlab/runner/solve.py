@@ -45,7 +45,7 @@ def answer(chunk: Chunk) -> list[Piece]:
 
 
 def _solved(chunk: Chunk, places: list[int]) -> list[Piece]:
-    """Where arithmetic breaks down the piece is halved: a bad point must not take its neighbours along."""
+    """Solve a piece; on an arithmetic error halve it, so that a point that fails does not affect its neighbours."""
     if not places:
         return []
     scenes = [chunk.scenes[place] for place in places]
@@ -70,7 +70,7 @@ def _numerical(problem: Exception) -> bool:
 
 
 def _failed(size: int, problem: Exception) -> Answers:
-    """Answers of points whose method raised; what is not arithmetic is a defect of a law from outside, or ours."""
+    """Answers of points whose method raised; errors other than arithmetic are defects of a plugin law or of ours."""
     return replace(refused([_reason(problem)] * size), status=["failed"] * size)
 
 
@@ -128,7 +128,7 @@ def _orbits(chunk: Chunk, piece: Piece) -> dict[int, Samples]:
     """The orbits a study keeps, by row; empty where it keeps none."""
     if not chunk.task.samples:
         return {}
-    from frictionlab.orbit.sample import sample  # brings numba: only where it is needed
+    from frictionlab.orbit.sample import sample  # imports numba: only where it is needed
 
     found = {place: piece.answers.orbit(at) for at, place in enumerate(piece.places)}
     return {

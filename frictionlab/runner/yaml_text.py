@@ -68,6 +68,6 @@ def _scalar(value: Any) -> str:
 
 
 def _number(value: float) -> str:
-    """The shortest form that reads back the same; YAML 1.1 takes 1e-08 for a word without its point."""
+    """The shortest form that reads back the same; YAML 1.1 reads 1e-08 without a point as text."""
     mantissa, e, exponent = repr(value).partition("e")
     return f"{mantissa}{'' if '.' in mantissa else '.0'}{e}{exponent}"

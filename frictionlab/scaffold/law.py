@@ -1,4 +1,4 @@
-"""A first law to begin from: a package of its own, with a test and a study, that works as it is."""
+"""A template for a new law: a working package with a test and a study."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*")
 
 
 class BadName(ValueError):
-    """A name no law, module and package could have at once; the message says why."""
+    """A name that cannot be that of a law, a module and a package; the message says why."""
 
 
 def new_law(path: Path, memory: MemoryChoice) -> Path:
-    """Write the folder of a law of the name that the path ends in; where it is.
+    """Write the folder of a law, named by the last part of the path; returns the path.
 
-    memory: ``none`` for friction that slip alone sets, ``bristle`` for a contact that deflects.
-    Never replaces anything and makes no folder around it. Raises BadName, FolderError, SaveError.
+    memory: ``none`` for friction determined by the slip velocity alone, ``bristle`` for a contact that deflects.
+    Existing files and folders are never replaced, parent folders not created. Raises BadName, FolderError, SaveError.
     """
     name = path.name
     check_name(name)
@@ -44,7 +44,7 @@ def check_name(name: str) -> None:
     """Raises BadName for what cannot be a law, a module and a class as well."""
     if not _NAME.fullmatch(name):
         told = law_name(name)
-        hint = f"; how about '{told}'?" if told != name and _NAME.fullmatch(told) else ""
+        hint = f"; did you mean '{told}'?" if told != name and _NAME.fullmatch(told) else ""
         raise BadName(
             f"'{name}' cannot name a law: use small letters, digits and hyphens, such as my-law{hint}"
         )

@@ -1,4 +1,4 @@
-"""The laws and methods a study chooses, each under a label of its own."""
+"""The laws and methods of a study, each under a unique label."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from frictionlab.study.validation import build_record
 
 
 def items(given: Any, path: Path, example: str, notes: Notes) -> list[Any]:
-    """The items of a list that may not be empty."""
+    """The items of a list that must not be empty."""
     if not isinstance(given, list):
         notes.add(path, f"must be a list such as {example}, got {value_text(given)}")
         return []
@@ -27,7 +27,7 @@ def law_choice(given: Any, path: Path, laws: registry.Laws, notes: Notes) -> Law
         notes.add(path, f"must be a mapping such as {{kind: coulomb, mu: 0.4}}, got {value_text(given)}")
         return None
     if given.get("kind") not in laws.names() and notes.below(("plugins",)):
-        return None  # a file that cannot be read may have brought it
+        return None  # an unreadable law file may define it
     kind = _kind(given, path, _name_reader("law", laws.names(), notes), notes)
     label = _label(given, kind, path, notes)
     if kind is None or notes.mapping(given, path) is None:
@@ -58,15 +58,15 @@ def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:
 
 
 def label_of(given: Any) -> str | None:
-    """The label an item asks for, right or wrong in all else."""
+    """The label of an item, whatever other mistakes the item has."""
     label = given.get("label", given.get("kind")) if isinstance(given, dict) else given
     return label if isinstance(label, str) else None
 
 
 def certain_labels(given: Any, installed: Iterable[str]) -> tuple[str, ...] | None:
-    """The labels of a list of laws or methods; None where a mistake makes them a matter of guessing.
+    """The labels of a list of laws or methods; None where a mistake leaves them uncertain.
 
-    What refers to a label is then left unchecked: one mistake should not look like many.
+    References to labels are then not checked, so that one mistake is not reported as many.
     """
     names = list(installed)
     labels = [label_of(item) for item in given] if isinstance(given, list) else []
@@ -77,13 +77,13 @@ def certain_labels(given: Any, installed: Iterable[str]) -> tuple[str, ...] | No
 
 
 def certain_law_labels(given: Any, laws: registry.Laws) -> tuple[str, ...] | None:
-    """The labels of a list of laws; None where they are a matter of guessing."""
+    """The labels of a list of laws; None where a mistake leaves them uncertain."""
     mappings = isinstance(given, list) and all(isinstance(item, dict) for item in given)
     return certain_labels(given, laws.names()) if mappings else None
 
 
 def may_become_a_label(label: str, given: Any, laws: registry.Laws) -> bool:
-    """Whether a label that no law has may be one once other mistakes in the laws are mended."""
+    """Whether an unknown label may become known when other mistakes in the laws are corrected."""
     if not isinstance(given, list) or not given or not all(isinstance(item, dict) for item in given):
         return True
     labels = [label_of(item) for item in given if "label" in item or "kind" in item]
@@ -93,7 +93,7 @@ def may_become_a_label(label: str, given: Any, laws: registry.Laws) -> bool:
 
 
 def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:
-    """Note every item whose label an earlier one has."""
+    """Note every item with the same label as an earlier one."""
     first: dict[str, int] = {}
     for index, item in enumerate(given):
         label = label_of(item)
@@ -113,7 +113,7 @@ def _name_reader(what: str, installed: Iterable[str], notes: Notes) -> Callable[
         if isinstance(given, str):
             hint = did_you_mean(given, names)
             remedy = (
-                "; install the package that brings it, or list its file under plugins"
+                "; install the package that provides it, or list its file under plugins"
                 if what == "law"
                 else ""
             )

@@ -1,4 +1,4 @@
-"""The ``expect`` lines of a study, read and checked against what its table will hold."""
+"""Reading of the ``expect`` lines of a study and their check against the columns of its table."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _COMPARISONS = ("equals", "below", "above")
 
 @dataclass(frozen=True)
 class Table:
-    """What the table of a study will hold: text inputs with their values, number inputs, result columns, sweeps.
+    """The columns of the table of a study: text inputs with their values, number inputs, results, swept inputs.
 
-    The values of a text column are None where they are not known for certain; belt_speed: what this scene
-    calls it, also where mistakes leave open which numbers it holds.
+    The values of a text column are None where mistakes leave them uncertain; belt_speed: the column of the belt
+    speed, nondimensional or in SI units.
     """
 
     texts: Mapping[str, tuple[str, ...] | None]
@@ -33,7 +33,7 @@ class Table:
 
 
 def expectations(given: Any, table: Table, notes: Notes) -> tuple[Expectation, ...]:
-    """Every expectation; those with mistakes are noted and left out."""
+    """Every expectation without a mistake; mistakes are noted."""
     if not isinstance(given, list):
         notes.add(("expect",), f"must be a list, got {value_text(given)}")
         return ()
@@ -55,7 +55,7 @@ def _expectation(given: Any, path: Path, table: Table, notes: Notes) -> Expectat
 
 
 def _where(given: Any, path: Path, table: Table, notes: Notes) -> dict[str, str | float]:
-    """Which rows: input columns and their values."""
+    """The input columns and values that select rows."""
     where: dict[str, str | float] = {}
     for key, value in (notes.mapping(given, path) or {}).items():
         if key in table.texts:
@@ -77,7 +77,7 @@ def _known_text(value: Any, path: Path, known: tuple[str, ...] | None, notes: No
 
 
 def _claim(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
-    """What is claimed of the rows: a number, a status, a difference of two methods, or the shape of a curve."""
+    """The claim about the rows: a number, a status, a difference of two methods, or the shape of a curve."""
     if "status" in given:
         return _status(given, path, notes)
     if "max_difference" in given:
@@ -107,7 +107,7 @@ def _difference(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
 
 
 def _shape(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
-    """A verdict on whole curves, which no belt speed can pick."""
+    """A verdict on whole curves, which a belt speed cannot select."""
     _only(given, ("shape", "measure"), path, notes)
     where = given.get("where")
     for key in where if isinstance(where, dict) else ():

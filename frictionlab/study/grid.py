@@ -1,4 +1,4 @@
-"""Sweeps put to work: which values can be swept, and whether every point of the grid can be built."""
+"""Sweeps: the values that can be swept, and a check that every point of the grid can be built."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def _law_target(tree: dict[str, Any], key: str, laws: registry.Laws, notes: Note
 
 
 def _alias_given(within: dict[str, Any], key: str) -> str | None:
-    """Another name of what ``key`` names, where a part of a study gives it by that."""
+    """An alternative to ``key``, such as amplitude for unbalance, if the study gives that one."""
     group = next((names for names in _GROUPS if key in names), ())
     return None if key in within else next((name for name in group if name in within), None)
 
@@ -141,7 +141,7 @@ def _sweepable(tree: dict[str, Any], laws: registry.Laws) -> list[str]:
 
 
 def _at(tree: Any, path: Path) -> Any:
-    """What the tree holds at this path, None for nothing; where it ends early, the value it ends in."""
+    """The value at this path, None if there is none; if the tree ends before the path does, its last value."""
     for step in path:
         if isinstance(tree, list) and isinstance(step, int):
             tree = tree[step]
@@ -153,7 +153,7 @@ def _at(tree: Any, path: Path) -> Any:
 
 
 def _check_values(values: Iterable[float], target: _Target, path: Path, notes: Notes) -> None:
-    """Every value alone, so that a mistake points at it and not at a point of the grid."""
+    """Check each value by itself, so that a mistake refers to the value and not to a point of the grid."""
     for index, value in enumerate(values):
         if what := wrong_value(target.record, target.key, value):
             notes.add((*path, index), what)
@@ -162,7 +162,7 @@ def _check_values(values: Iterable[float], target: _Target, path: Path, notes: N
 def _stand_in(
     tree: dict[str, Any], target: _Target, values: tuple[float, ...], stand_ins: dict[Path, Path], key: str
 ) -> None:
-    """A swept value need not be given a second time: its first value completes the scene or law."""
+    """Complete a scene or law with the first of the swept values, which need not be given a second time."""
     within = _at(tree, target.parent)
     if isinstance(within, dict) and target.key not in within:
         good = [value for value in values if wrong_value(target.record, target.key, value) is None]
@@ -171,7 +171,7 @@ def _stand_in(
 
 
 def note_impossible_points(study: Study, notes: Notes) -> None:
-    """Build the whole grid and note what cannot be built, or is too large to be."""
+    """Build the whole grid and note points that cannot be built, or a grid that is too large."""
     size = grid_size(study)
     if size > LARGEST_GRID:
         notes.add(("sweep",), f"the grid has {size} points, more than {LARGEST_GRID}")
@@ -180,9 +180,7 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
     for index, choice in enumerate(study.laws if not notes.all else ()):
         _build(lambda law=choice: study.laws_in_scenes(law), study.sweep, f"laws.{choice.label}.", notes)  # type: ignore[misc]
         if not notes.all and not all(map(_has_a_stiffness, study.laws_in_scenes(choice))):
-            notes.on_key(
-                ("laws", index), "these values leave no stiffness a number can hold: check their units"
-            )
+            notes.on_key(("laws", index), "these values give no finite stiffness > 0: check their units")
 
 
 def _has_a_stiffness(law: FrictionLaw) -> bool:
@@ -204,7 +202,7 @@ def grid_size(study: Study) -> int:
 
 
 def _build(build: Callable[[], Any], sweep: Mapping[str, Any], prefix: str, notes: Notes) -> None:
-    """Values that are right one by one may still not go together."""
+    """Note values that are right one by one but invalid together."""
     try:
         build()
     except (ValidationError, OverflowError) as problem:
@@ -234,7 +232,7 @@ def sweep_values(given: Any, path: Path, notes: Notes) -> tuple[float, ...]:
 
 def _list_values(given: list[Any], path: Path, notes: Notes) -> tuple[float, ...]:
     if not given:
-        notes.add(path, "the list is empty: there is nothing to run")
+        notes.add(path, "the list is empty; give at least one value")
     values = [notes.number(item, (*path, index)) for index, item in enumerate(given)]
     seen: dict[float, int] = {}
     for index, value in enumerate(values):

@@ -1,4 +1,4 @@
-"""The files of laws a study brings along: its ``plugins`` and those of ``--law``."""
+"""The law files of a study: those under ``plugins`` and those of ``--law``."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ KEY = "plugins"
 
 
 class StudyLaws(NamedTuple):
-    """The files of laws that come with a study, and every law it may name. codes: SHA-256 of those known before."""
+    """The law files of a study and every law it may name. codes: SHA-256 of laws whose code is not at hand."""
 
     files: tuple[LawFile, ...]
     laws: registry.Laws
     codes: Mapping[str, str] = MappingProxyType({})
 
     def code(self, kinds: Iterable[str]) -> dict[str, str]:
-        """SHA-256 of the code of every law of these that is no part of frictionlab."""
+        """SHA-256 of the code of those of these laws that are not frictionlab's own."""
         return {kind: code for kind in kinds if (code := self._code(kind))}
 
     def _code(self, kind: str) -> str:
@@ -48,7 +48,7 @@ LawReader = Callable[[dict[str, Any], FilePath, Notes], StudyLaws]
 
 
 def add_law_files(source: Source, files: Iterable[FilePath]) -> None:
-    """Put the files of ``--law`` behind the study's own; their paths are relative to where the command runs."""
+    """Append the files of ``--law`` to those of the study; their paths are relative to the current directory."""
     for file in files:
         listed = source.tree.setdefault(KEY, [])
         if isinstance(listed, list):
@@ -83,22 +83,22 @@ def _read(name: str, path: Path, folder: FilePath, notes: Notes) -> LawFile | No
 
 
 def laws_of(files: Sequence[LawFile]) -> registry.Laws:
-    """The laws that files bring, beside those installed. Raises BrokenPlugin where two have one name."""
+    """The installed laws and those of these files. Raises BrokenPlugin where two have the same name."""
     own: dict[str, type[FrictionLaw]] = {}
     homes = {name: file.home(name) for file in files for name in file.laws}
     for file in files:
         for name, law in file.laws.items():
             if name in registry.law_names():
-                raise file.home(name).broken("an installed law has that name; rename the class")
+                raise file.home(name).broken("an installed law has the same name; rename the class")
             if name in own:
                 other = next(each.path for each in files if name in each.laws)
-                raise file.home(name).broken(f"{other} has one of that name; rename one of the classes")
+                raise file.home(name).broken(f"{other} has a law of the same name; rename one of the classes")
             own[name] = law
     return registry.Laws(own, homes)
 
 
 def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:
-    """The laws installed and those of these files. Raises StudyError for what is no file of text, BrokenPlugin."""
+    """The installed laws and those of these files. Raises StudyError for an unreadable file, BrokenPlugin."""
     files = []
     for path in paths:
         try:
@@ -109,21 +109,21 @@ def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:
 
 
 class LawText(NamedTuple):
-    """What a law says of itself."""
+    """The docstring and the BibTeX entries of a law."""
 
     docstring: str
     bibtex: str
 
 
 class SavedLaw(FrictionLaw):
-    """A law by its name and parameters alone: enough to tell of a run, not to repeat it."""
+    """The name and parameters of a law of a saved run: enough for a report, not for computing."""
 
     def sliding_friction(self, speed: float) -> float:
-        raise NotImplementedError(f"the law of a saved run cannot be asked for friction (at {speed})")
+        raise NotImplementedError(f"the law of a saved run has no friction to compute (at {speed})")
 
 
 def saved_law_reader(codes: Mapping[str, str]) -> LawReader:
-    """A reader of a saved study. codes: SHA-256 of its laws from outside, by kind, as its account has them."""
+    """A reader of the laws of a saved study. codes: SHA-256 of plugin laws by kind, from its provenance."""
 
     def bring(tree: dict[str, Any], folder: FilePath, notes: Notes) -> StudyLaws:
         files = tuple(_saved_file(folder / name) for name, _ in listed_files(tree, notes))
@@ -139,12 +139,12 @@ def saved_law_reader(codes: Mapping[str, str]) -> LawReader:
 def _saved_file(path: FilePath) -> LawFile:
     try:
         return LawFile(path, text_of(path), {})
-    except UnreadableLawFile:  # a report of the run needs no law
+    except UnreadableLawFile:  # a report needs no law
         return LawFile(path, "", {})
 
 
 def _stand_in(kind: str, given: list[dict[str, Any]], told: LawText) -> type[FrictionLaw]:
-    """A record of all the parameters that any law of this kind has in the study."""
+    """A law class with every parameter that a law of this kind has in the study."""
     values = {key: value for law in given if law["kind"] == kind for key, value in law.items()}
     fields: dict[str, Any] = {
         key: ((float | None) if isinstance(value, int | float) else Any, None)
@@ -157,7 +157,7 @@ def _stand_in(kind: str, given: list[dict[str, Any]], told: LawText) -> type[Fri
 
 
 def _law_text(kind: str, files: tuple[LawFile, ...]) -> LawText:
-    """What the law says of itself in the copy of its file; else what one of its name says that is installed."""
+    """Docstring and BibTeX of a law, from the copy of its file, else from an installed law of the same name."""
     own = [node for file in files for node in _classes(file) if law_name(node.name) == kind]
     if own:
         return LawText(ast.get_docstring(own[0]) or "", _bibtex(own[0]))
@@ -168,7 +168,7 @@ def _law_text(kind: str, files: tuple[LawFile, ...]) -> LawText:
 
 
 def _bibtex(law: ast.ClassDef) -> str:
-    """What the class assigns to ``bibtex``, where that is plain text."""
+    """The value of ``bibtex`` in a class, if it is plain text."""
     for node in law.body:
         if isinstance(node, ast.Assign | ast.AnnAssign) and isinstance(node.value, ast.Constant):
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]

@@ -1,4 +1,4 @@
-"""A mistake in a study: found by its path, located in the file or command line, shown with a caret."""
+"""Mistakes in a study: noted by path, located in the file or command line, printed with a caret."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class TextPosition(NamedTuple):
 
 @dataclass(frozen=True)
 class Note:
-    """A mistake as it is found: by path, not yet located.
+    """A mistake by its path, not yet located.
 
-    on_key: the mistake is the key itself, not its value. place: given where the path alone does not tell it.
+    on_key: the mistake is the key itself, not its value. place: its position, where the path does not determine it.
     """
 
     path: Path
@@ -36,7 +36,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Mistake:
-    """A located mistake. origin: the file, or the ``--set`` that is at fault; place: None for the latter."""
+    """A located mistake. origin: the file or the ``--set`` that has it; place: None for the latter."""
 
     origin: str
     place: TextPosition | None
@@ -46,7 +46,7 @@ class Mistake:
     line: str = ""
 
     def __str__(self) -> str:
-        """Where, what, the source line with a caret, and what was perhaps meant."""
+        """Position, mistake, source line with a caret, and a suggestion."""
         where = f"{self.origin}:{self.place.line}:{self.place.column}" if self.place else self.origin
         shown = [": ".join(part for part in (where, self.path, self.what) if part)]
         if self.place:
@@ -64,7 +64,7 @@ class StudyError(Exception):
         super().__init__(self.mistakes)
 
     def __str__(self) -> str:
-        """Every mistake as the command line prints it."""
+        """Every mistake, as printed by the command line."""
         return "\n".join(map(str, self.mistakes))
 
 
@@ -77,7 +77,7 @@ def _with_caret(line: str, column: int) -> list[str]:
 
 
 def dotted(path: Path) -> str:
-    """A path as people write it: ``laws[0].mu``."""
+    """A path as text: ``laws[0].mu``."""
     text = ""
     for step in path:
         text += f"[{step}]" if isinstance(step, int) else f".{step}"
@@ -85,7 +85,7 @@ def dotted(path: Path) -> str:
 
 
 def closest(name: str, among: Iterable[str]) -> str | None:
-    """The name most like this one, if any is close; else the one it begins, as a name without its unit does."""
+    """The most similar name, if any is close; else the only name that begins with this one and a unit."""
     names = list(among)
     found = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1, cutoff=0.6)
     begun = [n for n in names if n.lower().startswith(f"{name.lower()}_")]
@@ -99,7 +99,7 @@ def did_you_mean(name: str, among: Iterable[str]) -> str:
 
 
 def number_text(value: float) -> str:
-    """A number as a study would write it: 5, 0.1, 1e-08, .nan."""
+    """A number in the notation of a study: 5, 0.1, 1e-08, .nan."""
     if value != value:
         return ".nan"
     if value in (float("inf"), float("-inf")):
@@ -110,7 +110,7 @@ def number_text(value: float) -> str:
 
 
 def value_text(value: Any) -> str:
-    """What was given, in words, for ``got ...``; with advice where a text is nearly a number."""
+    """The text for a value in ``got ...``; with advice where a text is almost a number."""
     if value is None:
         return "null"
     if isinstance(value, bool):
@@ -139,7 +139,7 @@ def _advice(text: str) -> str:
 
 
 class Notes:
-    """Collects mistakes; a second one at the same path is left out, for the first one is what to mend."""
+    """The mistakes of a study; of several at the same path only the first is kept."""
 
     def __init__(self, notes: Iterable[Note] = ()) -> None:
         self.all: list[Note] = list(notes)
@@ -153,7 +153,7 @@ class Notes:
             self.all.append(Note(path, what, hint))
 
     def unknown_key(self, path: Path, allowed: Iterable[str]) -> None:
-        """A key nobody knows."""
+        """An unknown key."""
         if path not in self._misspelt:
             self._misspelt.add(path)
             names = list(allowed)

@@ -13,7 +13,7 @@ _RANGE = ("start", "stop", "num", "spacing")
 
 
 def apply_overrides(source: Source, overrides: Iterable[str]) -> None:
-    """Put every override into the source's values; what cannot be is noted there."""
+    """Apply every override to the values of a source; overrides that cannot be applied are noted."""
     for text in overrides:
         _Override(source, text).apply()
 
@@ -40,7 +40,7 @@ class _Override:
         return None if path is None else self._put(path, value)
 
     def _refuse(self, path: Path, what: str, hint: str = "") -> None:
-        # A path of its own, so that this note is never taken for one about the study's value.
+        # A path of its own keeps this note apart from notes on the value of the study.
         key: Path = ("", self._origin)
         self._source.origins[key] = self._origin
         self._source.refused[key] = path
@@ -61,7 +61,7 @@ class _Override:
         return tuple(steps)
 
     def _sweep(self, rest: str) -> Path:
-        """A swept path is one key, points and all; the parts of a range are keys below it."""
+        """A swept path is a single key that contains points; the parts of a range are keys below it."""
         key, _, part = rest.rpartition(".")
         return ("sweep", key, part) if part in _RANGE and key in self._under("sweep") else ("sweep", rest)
 
@@ -94,7 +94,7 @@ class _Override:
         self._source.origins[path] = self._origin
 
     def _stepped(self, at: Any, path: Path, step: str | int) -> Any:
-        """One step down; a mapping the study does not have yet is made."""
+        """The value one step down; a mapping that the study lacks is added."""
         if isinstance(at, dict) and isinstance(step, str):
             if step not in at:
                 at[step] = {}
@@ -106,7 +106,7 @@ class _Override:
         return self._refuse(path, what)
 
     def _forget(self, path: Path) -> None:
-        """What was written there in the file counts no more, nor do the mistakes in it."""
+        """Remove the positions and the mistakes of the value that was replaced."""
         source = self._source
         for places in (source.keys, source.values):
             for known in [known for known in places if known[: len(path)] == path]:
@@ -115,7 +115,7 @@ class _Override:
 
 
 def _label(item: Any) -> str:
-    """The label of a law or method as the file has it, checked or not."""
+    """The label of a law or method as written in the file."""
     if isinstance(item, dict):
         return str(item.get("label", item.get("kind", "")))
     return str(item)

@@ -1,4 +1,4 @@
-"""From a study file (or a mapping of the same shape) to a frozen Study, or to every mistake in it at once."""
+"""Reading of a study file (or a mapping of the same shape) to a Study, or to all of its mistakes at once."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def load_study(
 
 
 def read_back(path: FilePath, codes: Mapping[str, str]) -> Study:
-    """The study that a run kept, its laws from outside as records without physics. codes: their SHA-256, by kind.
+    """The study that a run saved; laws of other packages become records without physics. codes: their SHA-256.
 
     Raises StudyError with every mistake.
     """
@@ -72,7 +72,7 @@ def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name:
 
 
 def study_of(source: Source) -> Study:
-    """The study of values read before, such as a part of a larger file. Raises StudyError with every mistake."""
+    """The study of values already read, such as a part of a larger file. Raises StudyError with every mistake."""
     return _study(source, ())
 
 
@@ -89,7 +89,7 @@ def _study(
 
 
 class _StudyReader:
-    """One pass over a study's values, in an order in which each step knows what it needs."""
+    """One pass over the values of a study: laws before sweeps, sweeps before the scene, the table last."""
 
     def __init__(self, source: Source, notes: Notes, bring: Callable[[dict[str, Any]], StudyLaws]) -> None:
         self._source, self._notes, self._bring = source, notes, bring
@@ -183,7 +183,7 @@ class _StudyReader:
         return expectations(given, self._table(scene), self._notes)
 
     def _table(self, scene: Scene | None) -> Table:
-        """What ``where`` may name; where the scene or a law has mistakes, whatever one could hold."""
+        """The columns that ``where`` may name; all possible ones where the scene or a law has mistakes."""
         paths = list(scene.values()) if scene is not None else number_paths(Scene)
         laws = certain_law_labels(self._tree.get("laws"), self._known)
         methods = certain_labels(self._tree.get("methods", list(DEFAULT_METHODS)), registry.method_names())
@@ -204,7 +204,7 @@ class _StudyReader:
 
 
 def _plain(value: Any) -> Any:
-    """A Python value as YAML would have given it."""
+    """A Python value in the types that YAML text gives."""
     if isinstance(value, Mapping):
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, (np.ndarray, np.generic)):

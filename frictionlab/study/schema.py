@@ -1,4 +1,4 @@
-"""The JSON Schema of a study file, put together from what is installed."""
+"""The JSON Schema of a study file, built from the installed laws and methods."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from frictionlab.study.study import SCHEMA
 INSTALLED_LAWS = registry.Laws()
 _NUMBER = {"type": "number"}
 _TEXT = {"type": "string"}
-# A bound behind a validator of our own keeps pydantic's name for it.
+# Behind a validator defined here a bound keeps pydantic's name.
 _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
 
 
 def schema(laws: registry.Laws = INSTALLED_LAWS) -> dict[str, Any]:
-    """JSON Schema (draft 2020-12) of a study; what depends on several keys at once is left to ``check``."""
+    """JSON Schema (draft 2020-12) of a study; rules on several keys at once are left to ``check``."""
     definitions: dict[str, Any] = {}
     scene = _record(Scene, definitions)
     properties = {
@@ -54,7 +54,7 @@ def _closed_object(properties: dict[str, Any], required: list[str]) -> dict[str,
 
 
 def _record(record: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:
-    """The schema of a record; the records inside it join the definitions."""
+    """The schema of a record; those of the records inside it are added to the definitions."""
     made: dict[str, Any] = _study_schema(record.model_json_schema(ref_template="#/$defs/{model}"))
     definitions.update(made.pop("$defs", {}))
     return made
@@ -86,7 +86,7 @@ def _methods(definitions: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def _kind(name: str, record: dict[str, Any]) -> dict[str, Any]:
-    """A law or method: its own keys, its registered name and a label."""
+    """A law or method: its parameters, its registered name and a label."""
     own = {"kind": {"const": name}, "label": _TEXT}
     closed = _closed_object({**own, **record.get("properties", {})}, ["kind"])
     return {"title": name, "description": record.get("description", ""), **closed}
@@ -127,7 +127,7 @@ def _expectations() -> list[dict[str, Any]]:
 
 
 def _shape(shared: dict[str, Any], measure: str) -> dict[str, Any]:
-    """A verdict on curves by one measure, which for area may be left out."""
+    """A verdict on curves by one measure; ``measure`` is optional for area."""
     required = ["shape"] if measure == "area" else ["shape", "measure"]
     own = {"shape": {"enum": list(columns.SHAPES[measure])}, "measure": {"const": measure}}
     return _closed_object({**shared, **own}, required)

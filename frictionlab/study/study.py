@@ -1,4 +1,4 @@
-"""A study as it will be run: frozen, complete, with every default filled in."""
+"""The record of a study: frozen, complete, with every default filled in."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ class LawChoice:
     law_class: type[FrictionLaw] = field(compare=False, repr=False)
 
     def law(self, values: Mapping[str, float] | None = None) -> FrictionLaw:
-        """The law, with these values in place of its own."""
+        """The law, with some parameters replaced by these values."""
         return self.law_class.model_validate(self.parameters | dict(values or {}))
 
     def resolved(self) -> dict[str, Any]:
-        """As a study file would say it."""
+        """The entry of a study file."""
         label = {} if self.label == self.kind else {"label": self.label}
         return {"kind": self.kind, **_natural(self.parameters), **label}
 
 
 @dataclass(frozen=True)
 class MethodChoice:
-    """A method of the study under its label; its class is imported only when ``method`` is asked for."""
+    """A method of the study under its label; its class is imported when ``method`` is first used."""
 
     label: str
     name: str
@@ -57,7 +57,7 @@ class MethodChoice:
         return registry.method_class(self.name).model_validate(self.parameters)
 
     def resolved(self) -> str | dict[str, Any]:
-        """As a study file would say it: its name alone where that is all."""
+        """The entry of a study file: the name alone if it has neither parameters nor a label."""
         if self.label == self.name and not self.parameters:
             return self.name
         label = {} if self.label == self.name else {"label": self.label}
@@ -66,9 +66,9 @@ class MethodChoice:
 
 @dataclass(frozen=True)
 class Expectation:
-    """What a study claims of its own table; exactly one of the six comparisons is set.
+    """A claim of a study about its table; exactly one of the six comparisons is set.
 
-    where: input column -> value, rows it speaks of. equals (needs within), below, above: of ``column``.
+    where: input column -> value, selects the rows. equals (needs within), below, above: of ``column``.
     status: of those rows. max_difference: two method labels whose mean_friction differs by under ``below``.
     shape: of the curves those rows make, by ``measure``.
     """
@@ -86,7 +86,7 @@ class Expectation:
     because: str = ""
 
     def resolved(self) -> dict[str, Any]:
-        """As a study file would say it."""
+        """The entry of a study file."""
         said = {
             name: _natural(value) for name, value in vars(self).items() if value is not None and value != ""
         }
@@ -97,9 +97,9 @@ class Expectation:
 
 @dataclass(frozen=True)
 class Case:
-    """One row to be: a scene, a law and a method, complete in itself and free of any order.
+    """One row of the table: a scene, a law and a method, independent of every other row.
 
-    given_law: in SI units where the scene is.
+    given_law: in SI units if the scene is.
     """
 
     law_label: str
@@ -111,18 +111,18 @@ class Case:
 
     @property
     def law(self) -> FrictionLaw:
-        """The law as methods take it, in the scene's lengths and times and per unit of its normal load."""
+        """The law as methods receive it: in the scene's lengths and times, per unit of its normal load."""
         si = self.scene.dimensional
         return _in_scene(self.given_law, None if si is None else si.scales, self.scene.normal_load)
 
 
 @dataclass(frozen=True)
 class Study:
-    """Scenes, laws and methods, their full grid, and what is expected of the table.
+    """Scenes, laws and methods, their full grid, and the expectations of the table.
 
-    scene: the one where nothing is swept. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values.
+    scene: the scene without sweeps. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values.
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
-    plugins: the files of laws it brings along. code: SHA-256 of every law that is no part of frictionlab, by kind.
+    plugins: its law files. code: SHA-256 of every law that is not frictionlab's own, by kind.
     """
 
     scene: Scene
@@ -163,7 +163,7 @@ class Study:
         return tuple(choice.law(point) for point in self.law_points(choice))
 
     def laws_in_scenes(self, choice: LawChoice) -> set[FrictionLaw]:
-        """All that becomes of the law in the scales and under the normal loads of the scenes."""
+        """The different laws that result in the scales and under the normal loads of the scenes."""
         laws = self.laws_of(choice)
         units = {
             (None if scene.dimensional is None else scene.dimensional.scales, scene.normal_load)
@@ -172,11 +172,11 @@ class Study:
         return {_in_scene(law, scales, load) for law in laws for scales, load in units}
 
     def law_points(self, choice: LawChoice) -> Iterator[dict[str, float]]:
-        """The swept parameters of each of this law's records."""
+        """The swept parameters of this law, one mapping per combination."""
         return _grid(self.sweep, f"laws.{choice.label}.")
 
     def resolved(self) -> dict[str, Any]:
-        """The whole study as plain values that load back to an equal study, from beside its ``law_texts``."""
+        """The study as plain values; with its ``law_texts`` beside it they load to an equal study."""
         words = {"title": self.title, "source": self.source}
         told: dict[str, Any] = {"schema": SCHEMA, **{key: text for key, text in words.items() if text}}
         told["scene"] = _natural(self.scene.given())
@@ -222,14 +222,14 @@ class Study:
 
 
 def _in_scene(law: FrictionLaw, scales: Units | None, normal_load: float | None) -> FrictionLaw:
-    """A law as given, in these scales and per unit of this normal load."""
-    assert normal_load is not None  # no valid scene is without
+    """A law converted to these scales and to unit normal load."""
+    assert normal_load is not None  # every valid scene has one
     scaled = law if scales is None else scaled_law(law, scales)
     return scaled.under_load(normal_load)
 
 
 def with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
-    """A copy of nested values with these, by dotted path, put in."""
+    """A copy of nested values with some replaced, by dotted path."""
     new = dict(tree)
     for path, value in values.items():
         head, _, rest = path.partition(".")
@@ -244,7 +244,7 @@ def _grid(sweep: Mapping[str, tuple[float, ...]], prefix: str) -> Iterator[dict[
 
 
 def _owner(path: str) -> str:
-    """``scene.`` or ``laws.<label>.``: whose value a sweep varies (a label may itself hold points)."""
+    """The part that a sweep varies: ``scene.`` or ``laws.<label>.`` (a label may contain points)."""
     return "scene." if path.startswith("scene.") else f"{path.rpartition('.')[0]}."
 
 

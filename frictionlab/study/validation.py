@@ -1,4 +1,4 @@
-"""A mapping of a study checked against a record (scene, law, method), every mistake in our own words."""
+"""Check of a mapping of a study against a record (scene, law, method), with a sentence for every mistake."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from frictionlab.study.mistakes import Notes, Path, closest, did_you_mean, numbe
 
 RecordT = TypeVar("RecordT", bound=BaseModel)
 
-# Each round mends what it found so that the next can see what was hidden behind it; a deep study needs four.
+# Each round corrects the mistakes it finds, so that the next finds those they hid; a deep study needs four rounds.
 _ROUNDS = 10
 
 
@@ -45,7 +45,7 @@ def _alternatives(annotation: Any) -> list[Any]:
 
 
 def wrong_value(record: type[BaseModel], key: str, value: Any) -> str | None:
-    """What is wrong with a value for one field, taken alone; None where it is right."""
+    """The mistake in a value for one field, by itself; None if there is none."""
     try:
         _field(record, key).validate_python(value)
     except ValidationError as problem:
@@ -61,12 +61,12 @@ def _field(record: type[BaseModel], key: str) -> TypeAdapter[Any]:
 
 
 def valid_number(record: type[BaseModel], key: str) -> float:
-    """A number that this number field takes: 1, or 0.5 for shares."""
+    """A number that this field accepts: 1, or 0.5 for shares."""
     return 1.0 if wrong_value(record, key, 1.0) is None else 0.5
 
 
 def record_at(record: type[BaseModel], path: Path) -> type[BaseModel] | None:
-    """The record that a path through nested records leads to, or None where it leads nowhere."""
+    """The record at the end of a path through nested records; None if there is none."""
     found: type[BaseModel] | None = record
     for key in path:
         found = nested(found, str(key)) if found and key in found.model_fields else None
@@ -74,7 +74,7 @@ def record_at(record: type[BaseModel], path: Path) -> type[BaseModel] | None:
 
 
 def build_record(record: type[RecordT], tree: Any, path: Path, notes: Notes) -> RecordT | None:
-    """The record of this mapping; None, with every mistake noted, where it cannot be made."""
+    """The record of this mapping; None, with every mistake noted, if it cannot be built."""
     if notes.mapping(tree, path) is None:
         return None
     made = _Check(record, copy.deepcopy(tree), path, notes).built()
@@ -83,7 +83,7 @@ def build_record(record: type[RecordT], tree: Any, path: Path, notes: Notes) -> 
 
 
 class _Check:
-    """One mapping on its way to a record: found mistakes are noted, then mended to look behind them."""
+    """The check of one mapping: mistakes are noted, then corrected to find the mistakes they hide."""
 
     def __init__(self, record: type[BaseModel], tree: dict[str, Any], path: Path, notes: Notes) -> None:
         self._record, self._tree, self._path, self._notes = record, tree, path, notes
@@ -121,7 +121,7 @@ class _Check:
                 self._drop_nulls(tree[key], part, (*inside, key))
 
     def _mended(self, error: Any) -> bool:
-        """Note one error; say whether the tree was changed so that another round can tell more."""
+        """Note one error; whether the tree was corrected, so that another round may find more."""
         inside: Path = error["loc"]
         if error["type"] == "extra_forbidden":
             return self._unknown(inside)
@@ -142,7 +142,7 @@ class _Check:
         return self._filled(inside)
 
     def _rule(self, whole: Path, inside: Path, what: str) -> bool:
-        """A rule of a record about itself as a whole or one of its keys, such as one whose time has not come."""
+        """A rule of a record on itself or on one of its keys, such as a key that is not available yet."""
         required = what.startswith("required")
         self._note(inside, what.replace("required", "required key is missing", 1) if required else what)
         if required:
@@ -150,7 +150,7 @@ class _Check:
         return self._replaced(inside) if inside == whole else self._dropped(inside)
 
     def _said(self, inside: Path, message: str) -> list[tuple[Path, str]]:
-        """The paths a record's own message speaks of, written ``path: what; path: what``."""
+        """The paths and messages in the message of a record, written ``path: what; path: what``."""
         said = []
         for piece in message.split("; "):
             found = re.fullmatch(r"([\w.]+): (.*)", piece, re.DOTALL)
@@ -167,7 +167,7 @@ class _Check:
         return inside[-1] in fields or (isinstance(tree, dict) and inside[-1] in tree)
 
     def _unknown(self, inside: Path) -> bool:
-        """A key no record knows; read on as if its nearest likeness had been meant."""
+        """An unknown key; the check continues as if the most similar key were given."""
         record, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
         allowed = list(record.model_fields) if record else []
         self._notes.unknown_key(self._path + inside, allowed)
@@ -185,7 +185,7 @@ class _Check:
         return tree
 
     def _filled(self, inside: Path) -> bool:
-        """Put in a number that the field takes, where it is a number field."""
+        """Insert a valid number, if the field holds a number."""
         record, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
         if not inside or record is None or not isinstance(tree, dict):
             return False
@@ -198,7 +198,7 @@ class _Check:
         return True
 
     def _replaced(self, inside: Path) -> bool:
-        """Put in a record of ones for one that cannot be used: other parts may ask only whether it is there."""
+        """Replace an invalid record by one of ones, since other rules depend on its presence."""
         parent, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
         part = nested(parent, str(inside[-1])) if inside and parent else None
         if part is None or not isinstance(tree, dict):
@@ -231,7 +231,7 @@ _BOUNDS |= {"less_than": ("<", "lt"), "less_than_equal": ("<=", "le")}
 
 
 def _value_mistake(error: Any) -> str:
-    """An error of a single value as a plain sentence."""
+    """An error in a single value as a sentence."""
     given = value_text(error["input"])
     if isinstance(error["input"], float) and not math.isfinite(error["input"]):
         return f"must be a finite number, got {given}"

@@ -1,4 +1,4 @@
-"""Where a study comes from: YAML text read to plain values, with the place of every key and value."""
+"""Reading of YAML text to plain values, with the position of every key and value."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ufffe\uffff
 
 @dataclass(frozen=True)
 class UnsupportedValue:
-    """A value no study has a use for, such as a date, in words."""
+    """The description of a value that no key of a study accepts, such as a date."""
 
     words: str
 
@@ -34,10 +34,10 @@ class UnsupportedValue:
 
 @dataclass
 class Source:
-    """A study's values with their places; notes: the mistakes of the YAML itself.
+    """The values of a study with their positions; notes: the mistakes of the YAML itself.
 
-    keys, values: path -> place. origins: path -> the ``--set`` that put the value there. refused: stand-in
-    path of a ``--set`` that could not be carried out -> the path it is about.
+    keys, values: path -> position. origins: path -> the ``--set`` that set the value. refused: substitute path of a
+    ``--set`` that could not be carried out -> the path it refers to.
     """
 
     name: str
@@ -62,7 +62,7 @@ class Source:
         return Mistake(origin, place, path, note.what, note.hint, line)
 
     def _where(self, note: Note) -> tuple[str, TextPosition | None]:
-        """The path's own place, or that of the nearest thing around it which the study does have."""
+        """The position of the path, or of the innermost part around it that the study has."""
         for length in range(len(note.path), -1, -1):
             path = note.path[:length]
             if path in self.origins:
@@ -74,12 +74,12 @@ class Source:
 
 
 def read_file(path: FilePath) -> Source:
-    """The YAML file of this path. Raises StudyError for what is no readable YAML text."""
+    """The values of a YAML file. Raises StudyError for a file that is not readable YAML text."""
     return read_text(_text_of(path), str(path))
 
 
 def read_text(text: str, name: str) -> Source:
-    """YAML text as a source. Raises StudyError where it is not YAML or empty."""
+    """The values of YAML text. Raises StudyError where it is empty or not YAML."""
     source = Source(name, text)
     node = _compose(source)
     if node is None:
@@ -114,7 +114,7 @@ def _unreadable(source: Source, what: str, place: TextPosition | None = None) ->
 
 
 def _compose(source: Source) -> Node | None:
-    """The YAML node of the text; nodes, not values, because they know their places and keep double keys."""
+    """The YAML node of the text; unlike values, nodes have positions and keep repeated keys."""
     if odd := _CONTROL.search(source.text):
         before = source.text[: odd.start()].split("\n")
         place = TextPosition(len(before), len(before[-1]) + 1)
@@ -130,7 +130,7 @@ def _compose(source: Source) -> Node | None:
     except RecursionError:
         raise _unreadable(source, "not a study: nested too deeply") from None
     except (YAMLError, ValueError, AttributeError, TypeError, LookupError, AssertionError) as problem:
-        # The parser answers some broken texts with its own accidents.
+        # For some broken texts the parser raises errors of its own code.
         raise _unreadable(source, f"not YAML: {str(problem).splitlines()[0] or 'unreadable'}") from None
 
 
@@ -143,7 +143,7 @@ class _NodeReader:
         self._count = 0
 
     def value(self, node: Node, path: Path) -> Any:
-        """The node as a plain value; its place and those of all below are entered."""
+        """The node as a plain value; its position and those below it are recorded."""
         place = TextPosition(node.start_mark.line + 1, node.start_mark.column + 1)
         self._source.values.setdefault(path, place)
         self._count += 1
@@ -177,7 +177,7 @@ class _NodeReader:
             self._source.keys[below] = place
             read[name] = self.value(item, below)
             if isinstance(item, (MappingNode, SequenceNode)) or read[name] is None:
-                # What is wrong with a whole mapping or list, or with nothing, is best shown at its key.
+                # A mistake in a whole mapping or list, or in an empty value, is shown at its key.
                 self._source.values[below] = place
         return read
 

@@ -85,7 +85,7 @@ BROKEN = {
     "missing dependency": (
         {HEAD: f"import not_there.at_all\n{HEAD}"},
         "needs 'not_there', which is not installed\n  {file}:1: import not_there.at_all\n"
-        "install that, or leave it out: pip install not_there",
+        "install it, or remove the import: pip install not_there",
     ),
     "error at import": (
         {HEAD: f"{HEAD}LIMIT = 1 / 0\n\n\n"},
@@ -129,15 +129,15 @@ BROKEN = {
     ),
     "mutable default": (
         {MU: f"{MU}    table: list[float] = [1.0]\n"},
-        "parameter 'table' has a default that can change, a list; a law is its parameters and nothing else",
+        "parameter 'table' has a mutable default, a list; a law consists of its parameters only",
     ),
     "mutable attribute": (
         {MU: f"{MU}    seen: ClassVar[list[float]] = []\n"},
-        "it keeps seen = [], which can change; a law is its",
+        "its attribute seen = [] is mutable; a law consists of its",
     ),
     "private state": (
         {MU: f"{MU}    _last: float = 0.0\n"},
-        "it keeps a state of its own, _last; a law is its parameters",
+        "it has a private state, _last; a law consists of its parameters",
     ),
     "raises on construction": (
         {f"    {DEF}": f"    def model_post_init(self, _):\n        raise KeyError('mu')\n\n    {DEF}"},
@@ -172,7 +172,7 @@ def test_a_broken_law_is_told_with_its_package_and_the_remedy_and_others_go_on(
     assert "some " not in said.out
     assert said.err.startswith("law 'some' of package somebodys 1.2 (some_law:Good): ")
     assert told in said.err
-    assert "pip install not_there" in said.err or "mend it, or: pip uninstall somebodys" in said.err
+    assert "pip install not_there" in said.err or "correct it, or: pip uninstall somebodys" in said.err
     assert "Traceback" not in said.err
 
     assert cli.main(["run", study("some")]) == 4
@@ -186,9 +186,9 @@ def test_a_broken_law_is_told_with_its_package_and_the_remedy_and_others_go_on(
 @pytest.mark.parametrize(
     ("value", "words"),
     [
-        ("nowhere:Good", "leads to nothing: there is no module 'nowhere'"),
-        ("some_law.deeper:Good", "leads to nothing: there is no module 'some_law.deeper'"),
-        ("some_law:Bad", "leads to nothing: module 'some_law' has no attribute 'Bad'"),
+        ("nowhere:Good", "does not exist: there is no module 'nowhere'"),
+        ("some_law.deeper:Good", "does not exist: there is no module 'some_law.deeper'"),
+        ("some_law:Bad", "does not exist: module 'some_law' has no attribute 'Bad'"),
     ],
 )
 def test_an_entry_point_to_nothing_says_what_is_missing(
@@ -250,7 +250,7 @@ def test_an_edited_package_is_noticed_and_a_removed_one_leaves_the_report(
     _forget()
     assert cli.main(["report", "out"]) == 0
     assert cli.main(["run", "some.yaml", "-o", "out"]) == 2
-    assert "install the package that brings it, or list its file under plugins" in capsys.readouterr().err
+    assert "install the package that provides it, or list its file under plugins" in capsys.readouterr().err
 
 
 def test_two_packages_that_bring_one_name_are_both_told(
@@ -261,10 +261,10 @@ def test_two_packages_that_bring_one_name_are_both_told(
 
     assert cli.main(["run", study("some")]) == 4
     said = capsys.readouterr().err
-    assert "law 'some' is brought by " in said
+    assert "law 'some' is defined by " in said
     assert "somebodys 1.2 (some_law:Good)" in said
     assert "anothers 1.2 (some_law:Other)" in said
-    assert "mend one of them, or uninstall it" in said
+    assert "rename one of them, or uninstall it" in said
 
 
 def test_nobody_takes_the_place_of_a_law_of_frictionlab(
@@ -279,7 +279,7 @@ def test_nobody_takes_the_place_of_a_law_of_frictionlab(
     said = capsys.readouterr()
     assert "coulomb" in said.out
     assert "somebodys 1.2 (some_law:Good)" in said.err
-    assert "frictionlab's own is used; the others need another name" in said.err
+    assert "that of frictionlab is used; rename the others" in said.err
 
 
 def test_a_law_that_numba_cannot_compile_fails_its_points_with_the_authors_line(

@@ -92,8 +92,8 @@ def refused(name: str, capsys: pytest.CaptureFixture[str]) -> str:
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("SoftRubber", "use small letters, digits and hyphens, such as my-law; how about 'soft-rubber'?"),
-        ("soft_rubber", "how about 'soft-rubber'?"),
+        ("SoftRubber", "use small letters, digits and hyphens, such as my-law; did you mean 'soft-rubber'?"),
+        ("soft_rubber", "did you mean 'soft-rubber'?"),
         ("9lives", "'9lives' cannot name a law: use small letters, digits and hyphens, such as my-law"),
         ("a-b", "'a-b' cannot name a law: give every part of it two letters or more"),
         ("coulomb", "a law 'coulomb' is installed already; choose another name"),

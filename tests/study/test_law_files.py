@@ -248,21 +248,21 @@ def test_a_law_nobody_brings_is_told_with_what_there_is_and_what_to_do() -> None
     assert "laws[0].kind: unknown law 'my-lwa'; installed: " in mistake
     assert "coulomb, dahl, " in mistake
     assert "my-law" in mistake
-    assert mistake.endswith("install the package that brings it, or list its file under plugins")
+    assert mistake.endswith("install the package that provides it, or list its file under plugins")
 
 
 def test_a_name_is_given_once(capsys: pytest.CaptureFixture[str]) -> None:
     taken = study(law=LAW.replace("MyLaw", "Coulomb"))
     assert cli.main(["run", str(taken)]) == 4
     assert (
-        "law 'coulomb' (class Coulomb) of file laws/my_law.py: an installed law has that name; rename the class"
+        "law 'coulomb' (class Coulomb) of file laws/my_law.py: an installed law has the same name; rename the class"
         in (capsys.readouterr().err)
     )
 
     twice = study(plugins=["laws/my_law.py", "second.py"])
     Path("second.py").write_text(f"{LAW}# another\n")
     with pytest.raises(
-        registry.BrokenPlugin, match=r"of file second\.py: laws/my_law\.py has one of that name"
+        registry.BrokenPlugin, match=r"of file second\.py: laws/my_law\.py has a law of the same name"
     ):
         load_study(twice)
 

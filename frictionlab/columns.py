@@ -47,6 +47,17 @@ RESULTS: dict[str, str] = {
 }
 """The columns after the inputs, in the order of the table, with one line each."""
 
+FROM_ORBITS: tuple[str, ...] = (
+    *("velocity_amplitude", "velocity_harmonic", "velocity_phase"),
+    *("transverse_velocity_amplitude", "transverse_velocity_harmonic", "transverse_velocity_phase"),
+    *("stick_fraction", "reversals", "force_reversals"),
+    *("energy_input", "energy_viscous", "energy_friction", "energy_contact"),
+)
+"""The result columns that are read from orbits."""
+
+DERIVED: tuple[str, ...] = ("normalized_friction", "velocity_ratio", "friction_to_drive", "presliding_ratio")
+"""Those that follow from a point's inputs and its mean friction."""
+
 
 class InSI(NamedTuple):
     """A result column in SI units: the nondimensional column, the scale that multiplies it, and its meaning."""

@@ -54,9 +54,14 @@ class Fake(Method):
         mean = np.array([law.sliding_friction(abs(v)) * math.tanh(v) / 3.0 for v in speeds])
         mean[[speed in self.nothing_at for speed in speeds]] = np.nan
         n = len(scenes)
-        columns = {"mean_friction": mean, "error": np.full(n, tolerance)}
         return Answers(
-            ["ok"] * n, [""] * n, ["fake"] * n, ["estimated"] * n, columns, lambda i: _orbit(speeds[i])
+            status=["ok"] * n,
+            reason=[""] * n,
+            model=["fake"] * n,
+            error_kind=["estimated"] * n,
+            mean=mean,
+            error=np.full(n, tolerance),
+            orbit=lambda i: _orbit(speeds[i]),
         )
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:

@@ -43,12 +43,13 @@ GROUPS = [pytest.param(group.name, marks=slow if group.deep else ()) for group i
 
 
 def changes() -> list[dict[str, str]]:
-    """The rows whose path of computation was changed: key, reason, status."""
+    """The rows whose path of computation was changed: key, reason, status, columns."""
     if not golden_files.CHANGES.exists():
         return []
     with golden_files.CHANGES.open(newline="") as file:
         return [
-            {"status": "", **{name: text or "" for name, text in row.items()}} for row in csv.DictReader(file)
+            {"status": "", "columns": "", **{name: text or "" for name, text in row.items()}}
+            for row in csv.DictReader(file)
         ]
 
 
@@ -56,8 +57,16 @@ CHANGES = changes()
 
 
 def change_of(key: str) -> dict[str, str] | None:
-    """The first change that names this row."""
-    return next((change for change in CHANGES if fnmatchcase(key, change["key"])), None)
+    """The first change that names this row and not only columns of it."""
+    return next(
+        (change for change in CHANGES if fnmatchcase(key, change["key"]) and not change["columns"]), None
+    )
+
+
+def without_moved(key: str, row: dict[str, Any]) -> dict[str, Any]:
+    """A row without the columns that a change names."""
+    named = [change["columns"].split() for change in CHANGES if fnmatchcase(key, change["key"])]
+    return {name: cell for name, cell in row.items() if not any(name in columns for columns in named)}
 
 
 def apart(old: float, new: float, slack: float) -> bool:
@@ -156,10 +165,12 @@ def compared(old: golden_files.Rows, new: golden_files.Rows) -> list[str]:
         change = change_of(key)
         if "status" not in old[key] and changed_points(key):
             found += curve_disagrees(key, old[key], new[key])
-        elif change is not None and "status" in old[key]:
-            found += disagrees(key, old[key], new[key], change["status"])
+            continue
+        before, now = without_moved(key, old[key]), without_moved(key, new[key])
+        if change is not None and "status" in before:
+            found += disagrees(key, before, now, change["status"])
         else:
-            found += different(key, old[key], new[key])
+            found += different(key, before, now)
     return sorted(found)
 
 

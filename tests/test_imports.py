@@ -25,7 +25,7 @@ ARROWS = {
     "faults": ["laws"],
     "compile": ["faults", "laws"],
     "scene": ["quantities"],
-    "orbit": ["compile", "quantities", "scene"],
+    "orbit": ["columns", "compile", "quantities", "scene"],
     "numerics": ["compile", "quantities"],
     "dynamics": ["compile", "laws", "quantities", "scene"],
     "theory": ["laws", "quantities", "scene"],
@@ -47,7 +47,7 @@ ARROWS = {
     ],
     "methods.march": [
         *("compile", "dynamics", "laws", "numerics", "orbit", "quantities", "scene", "theory"),
-        *("methods.base", "methods.periodic", "methods.refusals", "methods.shooting"),
+        *("methods.base", "methods.periodic", "methods.prescribed", "methods.refusals", "methods.shooting"),
     ],
     "methods.reduced": [
         *("compile", "dynamics", "laws", "numerics", "orbit", "quantities", "scene", "theory"),
@@ -69,7 +69,7 @@ ARROWS = {
     "scaffold": ["registry", "runner"],
     "bench": [
         *("charts", "columns", "compile", "laws", "quantities", "runner", "scene", "study"),
-        *("methods.base", "methods.exact", "methods.periodic", "methods.shooting"),
+        "methods.base",
     ],
     "testing": [
         *("compile", "dynamics", "faults", "laws", "registry", "scene"),

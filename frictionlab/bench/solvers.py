@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frictionlab.bench.cores import core
 from frictionlab.bench.peers.base import Peer
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
 from frictionlab.runner.chunks import Chunk, Task
-from frictionlab.runner.solve import answer
+from frictionlab.runner.solve import FROM_METHODS, answer, number_columns
 from frictionlab.scene.scene import Scene
 
 
@@ -44,9 +43,8 @@ def solve_points(
         for at, place in enumerate(piece.places):
             found.status[place] = piece.answers.status[at]
             found.reason[place] = piece.answers.reason[at]
-        for name, column in (("mean_friction", found.means), ("error", found.errors)):
-            if name in piece.answers.columns:
-                column[piece.places] = piece.answers.columns[name]
+        found.means[piece.places] = piece.answers.mean.real
+        found.errors[piece.places] = piece.answers.error
     return found
 
 
@@ -63,15 +61,15 @@ def _peer_answers(peer: Peer, scenes: Sequence[Scene], law: FrictionLaw, toleran
     return SolverAnswers(status, reasons, means, np.full(n, np.nan))
 
 
-def whole_task(
+def mean_task(
     solver: Method | Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
 ) -> Callable[[], object]:
-    """All that a solver does for a curve: every column of a method's answer."""
+    """The mean friction and its error: all that is found before another column is asked for."""
     return lambda: solver.solve(scenes, law, tolerance)
 
 
-def mean_task(
-    solver: Method | Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
-) -> Callable[[], object] | None:
-    """The mean friction and its error alone, where a method can give them without the rest."""
-    return None if isinstance(solver, Peer) else core(solver, scenes, law, tolerance)
+def whole_task(
+    method: Method, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
+) -> Callable[[], object]:
+    """Every column of a method's answers."""
+    return lambda: number_columns(method.solve(scenes, law, tolerance), scenes, FROM_METHODS)

@@ -53,7 +53,7 @@ class Auto(Method):
         assert rung is not None, why
         answers = rung.solve(scenes, law, tolerance)
         status, reason = list(answers.status), list(answers.reason)
-        for i, error in enumerate(answers.columns["error"]):
+        for i, error in enumerate(answers.error):
             if status[i] == "ok" and not error <= tolerance:
                 status[i] = "failed"
                 reason[i] = (

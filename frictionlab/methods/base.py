@@ -7,28 +7,46 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.orbit.record import Orbit
+from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats, Record
 from frictionlab.scene.scene import Scene
 
 Status = Literal["ok", "refused", "failed", "not_unique", "killed"]
 
 
+def no_orbit(i: int) -> None:
+    """Of answers without orbits."""
+
+
 @dataclass(frozen=True)
 class Answers:
     """What a method found on n scenes that differ in belt speed alone, one entry per scene.
 
-    columns: table column -> n floats, NaN where the column does not apply. orbit(i): the orbit of scene i, made
-    when asked for; None without one.
+    mean: friction coefficient, NaN without one; x1 + i x2 where friction has two directions. error: bound on that of
+    its x1. period: of the response, in drive periods. mean_low, mean_high, window: where the state is not unique.
+    seconds: kernel time. An array left out is empty for every scene.
+    floquet(): largest modulus of the multipliers of each, found when asked for. orbit(i): the orbit of scene i, made
+    when asked for; None without one. orbits(): all of them, where a method makes them together at less cost.
     """
 
     status: list[Status]
     reason: list[str]
     model: list[str]
     error_kind: list[str]
-    columns: dict[str, Floats]
-    orbit: Callable[[int], Orbit | None] = field(repr=False)
+    mean: Floats | NDArray[np.complex128]
+    error: Floats
+    period: Floats | None = None
+    floquet: Callable[[], Floats] | None = field(default=None, repr=False)
+    mean_low: Floats | None = None
+    mean_high: Floats | None = None
+    window: Floats | None = None
+    seconds: Floats | None = None
+    orbit: Callable[[int], Orbit | None] = field(default=no_orbit, repr=False)
+    orbits: Callable[[], Orbits] | None = field(default=None, repr=False)
 
 
 class Method(Record, ABC):
@@ -55,5 +73,5 @@ class Method(Record, ABC):
 
 def refused(reasons: Sequence[str]) -> Answers:
     """The answers of a method that cannot do these scenes."""
-    n = len(reasons)
-    return Answers(["refused"] * n, list(reasons), [""] * n, [""] * n, {}, lambda i: None)
+    n, nothing = len(reasons), np.full(len(reasons), np.nan)
+    return Answers(["refused"] * n, list(reasons), [""] * n, [""] * n, nothing, nothing)

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.decorators import inner
+from frictionlab.columns import FROM_ORBITS
+from frictionlab.compile.cache import compiled
+from frictionlab.compile.decorators import inner, njit
 from frictionlab.orbit.panels import NODES, WEIGHTS, differentiate_panel, interpolate, zero_between
+from frictionlab.orbit.record import Orbit, Orbits
+from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
+from frictionlab.scene.scene import Scene
 
 READ = (
     "mean_friction",
@@ -32,6 +38,86 @@ READ = (
 )
 """The columns that ``read`` returns, in this order. The mean positions serve to check the mean balance:
 <x1> = N mean_friction, omega_r^2 <x2> = N mean_friction_transverse."""
+SUMMED = np.array(["energy" in name or "reversals" in name for name in READ])
+"""Of these, sums and counts over the whole of what is read; all else is a mean, a phase or an extreme."""
+
+
+def read_columns(
+    scenes: Sequence[Scene], orbit: Callable[[int], Orbit | None], orbits: Callable[[], Orbits] | None = None
+) -> dict[str, Floats]:
+    """Every column of ``FROM_ORBITS`` for scenes that differ in belt speed alone; NaN where one does not apply.
+
+    orbit: makes that of one scene, None where it has none. orbits: makes all of them at once, where that is cheaper.
+    """
+    if orbits is not None:
+        found = _read_together(scenes, orbits())
+    else:
+        found = np.array([_read_one(scene, orbit(i)) for i, scene in enumerate(scenes)])
+    found[:, _not_there(scenes[0])] = np.nan
+    return {name: found[:, READ.index(name)].copy() for name in FROM_ORBITS}
+
+
+def _not_there(scene: Scene) -> list[bool]:
+    """Which numbers a scene has no place for: across the belt on a line, and of loads and dashpots without a mass."""
+    given = scene.degrees_of_freedom == 0
+    planar = scene.transverse_slip is not None if given else scene.degrees_of_freedom == 2
+    without = ("energy_input", "energy_viscous") if given else ()
+    return [name in without or (not planar and "transverse" in name) for name in READ]
+
+
+def _mass(scene: Scene) -> Mass:
+    """Of a prescribed slip its load and frequency are all there is."""
+    if scene.degrees_of_freedom:
+        return scene.mass()
+    motion = scene.motion()
+    return Mass(0.0, 1.0, 0.0, 1.0, motion.normal_load, motion.frequency, 0j, 0j)
+
+
+def _read_together(scenes: Sequence[Scene], found: Orbits) -> Floats:
+    out, speeds = np.full((len(scenes), len(READ)), np.nan), np.array([scene.belt_speed for scene in scenes])
+    parts = found.tau, found.x, found.v, found.friction, found.stick, found.ends
+    compiled(read_each)(*parts, _mass(scenes[0]), speeds, out)
+    return out
+
+
+def _read_one(scene: Scene, orbit: Orbit | None) -> Floats:
+    """Of so many periods; of what is summed up or counted, the share of one."""
+    if orbit is None:
+        return np.full(len(READ), np.nan)
+    mass = _mass(scene)
+    if scene.undriven:
+        length = float(orbit.tau[-1, -1] - orbit.tau[0, 0]) / orbit.periods
+        mass = mass._replace(frequency=2.0 * math.pi / length)
+    stick = np.zeros(len(orbit.tau), np.bool_) if orbit.stick is None else orbit.stick
+    out, ends = np.full((1, len(READ)), np.nan), np.array([len(orbit.tau)])
+    parts = orbit.tau, orbit.x, orbit.v, orbit.friction, stick, ends
+    compiled(read_each)(*parts, mass, np.array([scene.belt_speed]), out)
+    if orbit.stick is None:
+        out[0, READ.index("stick_fraction")] = np.nan
+    return np.where(SUMMED, out[0] / orbit.periods, out[0])
+
+
+@njit
+def read_each(
+    tau: Any, x: Any, v: Any, friction: Any, stick: Any, ends: Any, mass: Mass, belt_speeds: Any, out: Any
+) -> None:
+    """Row i of ``out``: everything of ``READ`` from the orbit of belt speed i; left as it is where there is none."""
+    first = 0
+    for i in range(belt_speeds.size):
+        end = ends[i]
+        if end > first:
+            row = read(
+                tau[first:end],
+                x[first:end],
+                v[first:end],
+                friction[first:end],
+                stick[first:end],
+                mass,
+                belt_speeds[i],
+            )
+            for column in range(row.size):
+                out[i, column] = row[column]
+        first = end
 
 
 class Sums(NamedTuple):
@@ -68,22 +154,28 @@ def read(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_s
     out[14] = sums.viscous
     out[15] = sums.by_friction * mass.normal_load
     out[16] = out[15] - belt_speed * sums.friction.real * mass.normal_load
-    _component(friction, 1.0, part)
+    _along(friction, part)
     out[12] = _sign_changes(part, 0.0, stick, False)
-    _component(v, 1.0, part)
+    _along(v, part)
     out[11] = _sign_changes(part, belt_speed, stick, True)
     out[4] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
-    _component(v, -1j, part)
+    _across(v, part)
     out[7] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
     return out
 
 
 @inner
-def _component(values: Any, direction: complex, out: Any) -> None:
-    """The real part of direction*values: direction 1 for x1, -1j for x2."""
+def _along(values: Any, out: Any) -> None:
     for panel in range(values.shape[0]):
         for node in range(values.shape[1]):
-            out[panel, node] = (direction * values[panel, node]).real
+            out[panel, node] = values[panel, node].real
+
+
+@inner
+def _across(values: Any, out: Any) -> None:
+    for panel in range(values.shape[0]):
+        for node in range(values.shape[1]):
+            out[panel, node] = values[panel, node].imag
 
 
 @inner
@@ -100,8 +192,9 @@ def _integrals(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass) 
             angle = mass.frequency * tau[panel, node]
             turn = complex(math.cos(angle), math.sin(angle))
             velocity, rub = v[panel, node], friction[panel, node]
-            position += weight * x[panel, node]
-            rubbed += weight * rub
+            # Each direction by itself: of the one across the belt nothing may be known.
+            position += complex(weight * x[panel, node].real, weight * x[panel, node].imag)
+            rubbed += complex(weight * rub.real, weight * rub.imag)
             harmonic_1 += weight * velocity.real * turn.conjugate()
             harmonic_2 += weight * velocity.imag * turn.conjugate()
             load_1, load_2 = (mass.force * turn).imag, (mass.transverse_force * turn).imag

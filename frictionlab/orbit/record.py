@@ -1,4 +1,4 @@
-"""The record of one period of a steady state."""
+"""One period of a steady state in smooth pieces, and many of them one after another."""
 
 from __future__ import annotations
 
@@ -15,11 +15,34 @@ class Orbit:
     """One period of a steady state in smooth pieces, each sampled at the same Gauss-Lobatto nodes.
 
     tau [panels, nodes] increases; x, v, friction [panels, nodes] are complex (x1 + i x2), friction being the
-    coefficient along the slip velocity (what resists); stick [panels] marks pieces at rest on the belt.
+    coefficient along the slip velocity (what resists), NaN in a direction of which nothing is known; stick [panels]
+    marks pieces at rest on the belt, None where the method cannot tell rest. periods: how many it holds, more than
+    one where the steps of a method keep the motion from repeating so soon.
     """
 
     tau: Floats
     x: NDArray[np.complex128]
     v: NDArray[np.complex128]
     friction: NDArray[np.complex128]
+    stick: NDArray[np.bool_] | None
+    periods: int = 1
+
+
+@dataclass(frozen=True)
+class Orbits:
+    """Orbits one after another, their panels in one array each; those of orbit k end before panel ends[k]."""
+
+    tau: Floats
+    x: NDArray[np.complex128]
+    v: NDArray[np.complex128]
+    friction: NDArray[np.complex128]
     stick: NDArray[np.bool_]
+    ends: NDArray[np.int64]
+
+    def one(self, k: int) -> Orbit | None:
+        """Orbit k; None where it has no panels."""
+        panels = slice(self.ends[k - 1] if k else 0, self.ends[k])
+        if panels.start == panels.stop:
+            return None
+        parts = self.tau[panels], self.x[panels], self.v[panels], self.friction[panels]
+        return Orbit(*parts, self.stick[panels])

@@ -33,3 +33,17 @@ def track_of(room: int) -> Track:
         np.zeros(room, np.bool_),
         np.zeros(1, np.int64),
     )
+
+
+@inner
+def grown(track: Track, room: int) -> Track:
+    """The same track with more room."""
+    larger = track_of(room)
+    for panel in range(track.filled[0]):
+        larger.stick[panel] = track.stick[panel]
+        for node in range(NODES.size):
+            larger.tau[panel, node], larger.x[panel, node] = track.tau[panel, node], track.x[panel, node]
+            larger.v[panel, node] = track.v[panel, node]
+            larger.friction[panel, node] = track.friction[panel, node]
+    larger.filled[0] = track.filled[0]
+    return larger

@@ -31,7 +31,7 @@ class Samples(NamedTuple):
 
 def sample(orbit: Orbit, scene: Scene, n: int) -> Samples:
     """The orbit at n equally spaced times tau = 0 ... its period (end not included)."""
-    times: Floats = orbit.tau[0, 0] + np.arange(n, dtype=np.float64) * (np.ptp(orbit.tau) / n)
+    times: Floats = orbit.tau[0, 0] + np.arange(n, dtype=np.float64) * (np.ptp(orbit.tau) / orbit.periods / n)
     panels = np.clip(np.searchsorted(orbit.tau[:, 0], times, side="right") - 1, 0, len(orbit.tau) - 1)
     start, end = orbit.tau[panels, 0], orbit.tau[panels, -1]
     weights = interpolation_weights((2.0 * times - start - end) / (end - start))

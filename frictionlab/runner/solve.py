@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sized
+import time
+from collections.abc import Collection, Sequence, Sized
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from frictionlab.columns import DERIVED, FROM_ORBITS, RESULTS, TEXT
 from frictionlab.faults import MARK, BrokenPlugin, CannotCompile, failing_law
 from frictionlab.methods.base import Answers, refused
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import derived_columns
 from frictionlab.runner.chunks import Chunk
+from frictionlab.scene.scene import Scene
 
 if TYPE_CHECKING:
     from frictionlab.orbit.sample import Samples
@@ -88,11 +91,12 @@ def _reason(problem: Exception) -> str:
 
 def _believable(answers: Answers, size: int) -> Answers:
     """The answers, every ``ok`` without a number made ``failed``. Raises TypeError for a wrong count."""
-    lists: list[Sized] = [answers.status, answers.reason, answers.model, answers.error_kind]
-    counts = {len(part) for part in [*lists, *answers.columns.values()]}
+    lists: list[Sized | None] = [answers.status, answers.reason, answers.model, answers.error_kind]
+    lists += [answers.mean, answers.error, *(getattr(answers, name) for name in OWN)]
+    counts = {len(part) for part in lists if part is not None}
     if counts != {size}:
         raise TypeError(f"the method gave {sorted(counts)} answers for {size} points")
-    bad = ~(np.isfinite(_column(answers, "mean_friction")) & np.isfinite(_column(answers, "error")))
+    bad = ~(np.isfinite(answers.mean.real) & np.isfinite(answers.error))
     bad &= np.array(answers.status) == "ok"
     if not bad.any():
         return answers
@@ -104,16 +108,49 @@ def _believable(answers: Answers, size: int) -> Answers:
     return replace(answers, status=status, reason=reason)
 
 
-def _column(answers: Answers, name: str) -> Floats:
-    return answers.columns.get(name, np.full(len(answers.status), np.nan))
+FROM_METHODS = tuple(name for name in RESULTS if name not in TEXT and name not in DERIVED)
+"""The columns of numbers that hang on what a method found."""
+OWN = "period", "mean_low", "mean_high", "window", "seconds"
+"""The columns that answers hold as arrays, or leave out."""
+
+
+def number_columns(answers: Answers, scenes: Sequence[Scene], wanted: Collection[str]) -> dict[str, Floats]:
+    """Of these columns all that a method's answers give, whatever the method: the one place where they are read.
+
+    Orbits are made, and multipliers found, where one of the columns needs them.
+    """
+    nothing, start = np.full(len(scenes), np.nan), time.perf_counter()
+    found = {"mean_friction": answers.mean.real, "error": answers.error}
+    if _in_the_plane(scenes[0]):
+        found["mean_friction_transverse"] = np.where(np.isnan(answers.mean.real), np.nan, answers.mean.imag)
+    found |= {name: _given(getattr(answers, name), nothing) for name in OWN}
+    if "floquet" in wanted and answers.floquet is not None:
+        found["floquet"] = answers.floquet()
+    if any(name in wanted for name in FROM_ORBITS):
+        from frictionlab.orbit.read import read_columns  # brings numba: only where it is needed
+
+        found |= read_columns(scenes, answers.orbit, answers.orbits)
+    found["seconds"] = found["seconds"] + (time.perf_counter() - start) / len(scenes)
+    return {name: found.get(name, nothing) for name in wanted}
+
+
+def _given(numbers: Floats | None, nothing: Floats) -> Floats:
+    return nothing if numbers is None else numbers
+
+
+def _in_the_plane(scene: Scene) -> bool:
+    return scene.transverse_slip is not None or scene.degrees_of_freedom == 2
 
 
 def _part(chunk: Chunk, piece: Piece) -> Part:
     rows = [chunk.rows[place] for place in piece.places]
     try:
         scenes = [chunk.scenes[place] for place in piece.places]
-        derived = derived_columns(scenes, chunk.law, _column(piece.answers, "mean_friction"))
-        return Part(rows, text_columns(piece.answers), piece.answers.columns | derived, _orbits(chunk, piece))
+        numbers = number_columns(piece.answers, scenes, FROM_METHODS)
+        numbers |= derived_columns(scenes, chunk.law, numbers["mean_friction"])
+        return Part(rows, text_columns(piece.answers), numbers, _orbits(chunk, piece))
+    except BrokenPlugin:
+        raise
     except Exception as problem:
         return Part(rows, text_columns(_failed(len(rows), problem)), {}, {})
 

@@ -27,13 +27,13 @@ def count(scenes: int, seed: int) -> Counter[str]:
     for number in range(scenes):
         one, law = draw(rng)
         answers = Exact().solve([one], law, 1e-8)
-        status, error = answers.status[0], float(answers.columns["error"][0])
+        status, error = answers.status[0], float(answers.error[0])
         found[status] += 1
         if status == "ok":
             decade = next((d for d in (-12, -11, -10, -9, -8) if error <= 10.0**d), 0)
             found[f"ok, error <= 1e{decade}" if decade else "ok, error above 1e-8, said so"] += 1
             silent = not decade and not answers.reason[0]
-            if silent or not abs(answers.columns["mean_friction"][0]) <= law.mu * 1.001:
+            if silent or not abs(answers.mean[0].real) <= law.mu * 1.001:
                 found["WRONG"] += 1
                 print(number, one, law, answers.reason, error)
         elif status != "not_unique" or not answers.reason[0]:

@@ -22,6 +22,7 @@ from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
 from frictionlab.methods.reduced.mdsm import Mdsm
 from frictionlab.methods.shooting.method import Shooting
+from frictionlab.runner.solve import number_columns
 from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 from frictionlab.theory import friction_free_velocity
 
@@ -83,7 +84,7 @@ def count(kind: str, scenes: int, seed: int) -> Tally:
 
 def _compare(tally: Tally, scene: Scene, model: Method, truth: Method) -> None:
     answer, known = model.solve([scene], LAW, 1e-8), truth.solve([scene], LAW, 1e-9)
-    tally.seconds += answer.columns["seconds"][0]
+    tally.seconds += answer.seconds[0]
     if known.status[0] != "ok":
         tally.found[f"truth {known.status[0]}"] += 1
         return
@@ -92,12 +93,12 @@ def _compare(tally: Tally, scene: Scene, model: Method, truth: Method) -> None:
         decade = next(edge for edge in (0.1, 0.3, 0.5, 1.0, math.inf) if _ratio(scene) < edge)
         tally.found[f"  friction/load < {decade}: {answer.reason[0].split('within')[0]}"] += 1
         return
-    true = abs(float(answer.columns["mean_friction"][0] - known.columns["mean_friction"][0]))
-    error, own = float(answer.columns["error"][0]), float(known.columns["error"][0])
+    true = abs(float(answer.mean[0].real - known.mean[0].real))
+    error, own = float(answer.error[0]), float(known.error[0])
     if true > 1e-6:
         tally.ratios.append(error / true)
     if true > error + own:
-        stuck = known.columns["stick_fraction"][0]
+        stuck = number_columns(known, [scene], ["stick_fraction"])["stick_fraction"][0]
         tally.uncovered.append(f"true {true:.2e}, error {error:.2e}, in stick {stuck:.2f}: {scene.values()}")
 
 

@@ -444,9 +444,8 @@ def axes_cases() -> list[Case]:
 
 def told(answers: Answers) -> Answer:
     """The one answer of a method."""
-    columns = answers.columns
-    mean, error = float(columns["mean_friction"][0]), float(columns["error"][0])
-    return Answer(mean, error, answers.status[0], float(columns["seconds"][0]))
+    mean, error = float(answers.mean[0].real), float(answers.error[0])
+    return Answer(mean, error, answers.status[0], float(answers.seconds[0]))
 
 
 def as_it_is(scene: Scene, law: FrictionLaw, tolerance: float) -> Answer:
@@ -457,7 +456,7 @@ def as_it_is(scene: Scene, law: FrictionLaw, tolerance: float) -> Answer:
 def by_memory(scene: Scene, law: BristleLaw, tolerance: float) -> Answer:
     """The period map of a memory of any size, without a mass."""
     point = MemoryPoint(scene, as_memory(law, scene.transverse_slip is not None), tolerance)
-    return Answer(point.columns["mean_friction"], point.columns["error"], point.status, point.seconds)
+    return Answer(point.found.mean.real, point.found.error, point.status, point.seconds)
 
 
 LoopBy = Callable[[BristleLaw, Scene, float], Closed | Open]
@@ -476,7 +475,7 @@ def by_loop(loop: LoopBy) -> Way:
 
     def way(scene: Scene, law: BristleLaw, tolerance: float) -> Answer:
         point = Point(scene, law, tolerance)
-        return Answer(point.columns["mean_friction"], point.columns["error"], point.status, point.seconds)
+        return Answer(point.found.mean.real, point.found.error, point.status, point.seconds)
 
     return way
 

@@ -10,6 +10,7 @@ import math
 import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,6 @@ import numpy as np
 
 import frictionlab as fl
 from frictionlab import bench
-from frictionlab.bench.cores import core
 from frictionlab.bench.timing import time_task
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
@@ -54,12 +54,11 @@ def ratio_of(name: str, work: Callable[[ThreadPoolExecutor], object], repeats: i
 
 
 def kernel_tasks(scene: Scene, method: Method, high: float, tolerance: float) -> list[Callable[[], object]]:
-    """One kernel call per chunk of the curve."""
-    tasks = []
+    """Mean and error of one chunk of the curve each: nearly all of it kernels."""
+    tasks: list[Callable[[], object]] = []
     for chunk in np.array_split(np.linspace(0.5, high, POINTS), POINTS // CHUNK):
-        task = core(method, [scene.at(float(speed)) for speed in chunk], fl.Coulomb(mu=0.4), tolerance)
-        assert task is not None
-        tasks.append(task)
+        scenes = [scene.at(float(speed)) for speed in chunk]
+        tasks.append(partial(method.solve, scenes, fl.Coulomb(mu=0.4), tolerance))
     return tasks
 
 

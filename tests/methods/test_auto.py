@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from answered import with_columns
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
@@ -64,7 +65,7 @@ def test_the_lowest_rung_that_accepts_answers_the_whole_curve_and_model_says_why
     scenes = [make(v) for v in SPEEDS]
     assert Auto().refusal(scenes[0], LAW) is None
     assert type(Auto().choice(scenes[0], LAW)[0]) is rung
-    answers, direct = Auto().solve(scenes, LAW, 1e-9), rung().solve(scenes, LAW, 1e-9)
+    answers, direct = with_columns(Auto(), scenes, LAW, 1e-9), with_columns(rung(), scenes, LAW, 1e-9)
     assert answers.status == ["ok"] * len(SPEEDS)
     np.testing.assert_array_equal(answers.columns["mean_friction"], direct.columns["mean_friction"])
     for ours, theirs in zip(answers.model, direct.model, strict=True):
@@ -89,13 +90,13 @@ def test_the_ladder_starts_with_the_cheapest_rung_and_auto_costs_what_its_rung_c
 
 def test_an_answer_above_the_tolerance_has_failed_with_both_numbers_in_the_reason():
     scenes = [scene(v, 10.0) for v in (5.0, 20.0)]
-    answers, direct = Auto().solve(scenes, LAW, 1e-16), Shooting().solve(scenes, LAW, 1e-16)
+    answers, direct = with_columns(Auto(), scenes, LAW, 1e-16), with_columns(Shooting(), scenes, LAW, 1e-16)
     assert direct.status == ["ok", "ok"]
     assert answers.status == ["failed", "failed"]
     for reason, error in zip(answers.reason, direct.columns["error"], strict=True):
         assert error > 1e-16
         assert reason == f"shooting reaches an error of {error:.1e}, above the tolerance 1.0e-16"
-    within = Auto().solve(scenes, LAW, 1e-8)
+    within = with_columns(Auto(), scenes, LAW, 1e-8)
     assert within.status == ["ok", "ok"]
     assert within.reason == ["", ""]
 

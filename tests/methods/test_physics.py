@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 import pytest
+from answered import with_columns
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from strategies import MU, angles, scenes_in_the_plane, scenes_on_the_line, signs, sizes
@@ -64,11 +65,11 @@ class Answer:
 
 
 def exact(scene, law=LAW):
-    return Answer(Exact().solve([scene], law, 1e-11), 0)
+    return Answer(with_columns(Exact(), [scene], law, 1e-11), 0)
 
 
 def shooting(scene, law=LAW):
-    return Answer(Shooting().solve([scene], law, TIGHT), 0)
+    return Answer(with_columns(Shooting(), [scene], law, TIGHT), 0)
 
 
 def moved(scene, **changes):
@@ -126,7 +127,7 @@ def test_every_start_settles_to_the_same_steady_state(scene, start):
 @given(scene=scenes_on_the_line(), others=st.lists(ratios, min_size=1, max_size=4))
 def test_the_neighbours_a_curve_comes_from_do_not_change_a_point_on_the_line(scene, others):
     speeds = np.unique([scene.belt_speed, *(friction_free_velocity(scene) * ratio for ratio in others)])
-    curve = Exact().solve([moved(scene, belt_speed=float(v)) for v in speeds], LAW, 1e-11)
+    curve = with_columns(Exact(), [moved(scene, belt_speed=float(v)) for v in speeds], LAW, 1e-11)
     i, alone = int(np.flatnonzero(speeds == scene.belt_speed)[0]), exact(scene)
 
     assert curve.status == ["ok"] * len(speeds)
@@ -137,7 +138,7 @@ def test_the_neighbours_a_curve_comes_from_do_not_change_a_point_on_the_line(sce
 @given(scene=scenes_in_the_plane(), others=st.lists(st.floats(0.05, 1.5), min_size=1, max_size=4))
 def test_the_neighbours_a_curve_comes_from_do_not_change_a_point_in_the_plane(scene, others):
     speeds = np.unique([scene.belt_speed, *(scene.belt_speed * ratio for ratio in others)])
-    curve = Shooting().solve([moved(scene, belt_speed=float(v)) for v in speeds], LAW, TIGHT)
+    curve = with_columns(Shooting(), [moved(scene, belt_speed=float(v)) for v in speeds], LAW, TIGHT)
     i, alone = int(np.flatnonzero(speeds == scene.belt_speed)[0]), shooting(scene)
 
     assert curve.status == ["ok"] * len(speeds)
@@ -343,7 +344,7 @@ def sliding(belt_speed, ellipse):
 @given(ellipse=ellipses, ratios=st.lists(sizes(1e-3, 1e3), min_size=2, max_size=8, unique=True))
 def test_mean_friction_under_prescribed_slip_rises_with_belt_speed_up_to_the_coefficient(ellipse, ratios):
     speeds = np.unique(np.concatenate((-np.array(ratios), ratios))) * max(ellipse[:2])
-    answers = Exact().solve([sliding(float(v), ellipse) for v in speeds], LAW, 1e-9)
+    answers = with_columns(Exact(), [sliding(float(v), ellipse) for v in speeds], LAW, 1e-9)
     mean, error = answers.columns["mean_friction"], answers.columns["error"]
 
     assert set(answers.status) == {"ok"}
@@ -355,7 +356,7 @@ def test_mean_friction_under_prescribed_slip_rises_with_belt_speed_up_to_the_coe
 @given(amplitude=sizes(0.01, 100.0), ratio=st.floats(1.0, 100.0), side=signs)
 def test_a_belt_that_outruns_a_prescribed_slip_feels_full_friction(amplitude, ratio, side):
     slip = Slip(velocity_amplitude=amplitude, frequency=1.0)
-    answers = Exact().solve([Scene(belt_speed=side * ratio * amplitude, slip=slip)], LAW, 1e-11)
+    answers = with_columns(Exact(), [Scene(belt_speed=side * ratio * amplitude, slip=slip)], LAW, 1e-11)
 
     assert answers.columns["mean_friction"][0] == pytest.approx(side * MU, abs=answers.columns["error"][0])
 

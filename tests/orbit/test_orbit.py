@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from answered import with_columns
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from strategies import MU, scenes_in_the_plane, scenes_on_the_line
@@ -213,7 +214,7 @@ def test_the_samples_of_a_prescribed_slip_have_no_load():
         slip=Slip(velocity_amplitude=3.0, frequency=2.0, phase=20.0),
         transverse_slip=TransverseSlip(velocity_amplitude=1.0),
     )
-    at = sample(Exact().solve([scene], LAW, 1e-9).orbit(0), scene, 200)
+    at = sample(with_columns(Exact(), [scene], LAW, 1e-9).orbit(0), scene, 200)
     slip = at.v1 - 1.0 + 1j * at.v2
 
     assert not at.load.any()
@@ -247,7 +248,7 @@ def agree_with_samples(scene, answers):
 
 @given(scene=scenes_on_the_line(speed=(0.01, 1.2)))
 def test_columns_on_the_line_are_what_the_samples_of_the_orbit_say(scene):
-    answers = Exact().solve([scene], LAW, 1e-11)
+    answers = with_columns(Exact(), [scene], LAW, 1e-11)
 
     assert answers.status == ["ok"]
     agree_with_samples(scene, answers)
@@ -255,7 +256,7 @@ def test_columns_on_the_line_are_what_the_samples_of_the_orbit_say(scene):
 
 @given(scene=scenes_in_the_plane())
 def test_columns_in_the_plane_are_what_the_samples_of_the_orbit_say(scene):
-    answers = Shooting().solve([scene], LAW, 1e-9)
+    answers = with_columns(Shooting(), [scene], LAW, 1e-9)
 
     assert answers.status == ["ok"]
     agree_with_samples(scene, answers)
@@ -263,7 +264,7 @@ def test_columns_in_the_plane_are_what_the_samples_of_the_orbit_say(scene):
 
 @given(scene=scenes_in_the_plane(friction=(0.02, 0.3)))
 def test_the_orbit_in_the_plane_solves_the_equations_of_motion_in_every_piece(scene):
-    orbit, mass = Shooting().solve([scene], LAW, 1e-9).orbit(0), scene.mass()
+    orbit, mass = with_columns(Shooting(), [scene], LAW, 1e-9).orbit(0), scene.mass()
     assume(not orbit.stick.any())
     length = orbit.tau[:, -1:] - orbit.tau[:, :1]
     acceleration = (orbit.v @ DERIVATIVE.T) * 2.0 / length

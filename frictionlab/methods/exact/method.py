@@ -13,12 +13,11 @@ from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Answers, Method, Status
 from frictionlab.methods.exact import continuation as curve
-from frictionlab.methods.exact.orbit import make_orbit, read_orbits
+from frictionlab.methods.exact.orbit import make_orbits
 from frictionlab.methods.prescribed.bristle import along_one_line
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.refusals import suggest_shooting
-from frictionlab.orbit.read import READ
-from frictionlab.orbit.record import Orbit
+from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity
@@ -110,16 +109,30 @@ class _Curve:
         self.seconds = 0.0
 
     def answers(self) -> Answers:
-        """Solve, judge, read the orbits."""
+        """Solve and judge."""
         open_points = [i for i in range(len(self.scenes)) if not self._has_no_single_answer(i)]
         self._solve(np.array(open_points, dtype=np.int64))
         for i in open_points:
             self._judge(i)
-        read = self._read()
         if self.scenes[0].degrees_of_freedom == 2:
             self.model = [text + REDUCED if text else text for text in self.model]
+        mean = np.where(self.belt_speeds < 0.0, -1.0, 1.0) * self.rows[:, curve.MEAN]
+        low, high = self.bounds.T
         return Answers(
-            self.status, self.reason, self.model, self.error_kind, self._columns(read), self._orbit
+            status=self.status,
+            reason=self.reason,
+            model=self.model,
+            error_kind=self.error_kind,
+            mean=mean,
+            error=self.rows[:, curve.ERROR],
+            period=np.where(np.isfinite(mean), 1.0, np.nan),
+            floquet=self._floquet,
+            mean_low=low,
+            mean_high=high,
+            window=self.window,
+            seconds=np.full(len(mean), self.seconds / len(mean)),
+            orbit=lambda i: self._orbits([i]).one(0),
+            orbits=lambda: self._orbits(range(len(mean))),
         )
 
     def _has_no_single_answer(self, i: int) -> bool:
@@ -208,37 +221,6 @@ class _Curve:
         self.status[i], self.reason[i], self.error_kind[i] = "failed", reason, ""
         self.rows[i] = np.nan
 
-    def _read(self) -> Floats:
-        """What READ lists, of every orbit found."""
-        n = len(self.scenes)
-        out = np.full((n, len(READ)), np.nan)
-        shifts = np.array([self._shift(i) for i in range(n)])
-        states = np.ascontiguousarray(self.rows[:, [curve.STATE_X, curve.STATE_W]])
-        arguments = self.mass, self.coefficient, self.belt_speeds, states, self._legs(), shifts, out
-        self.seconds += timed(compiled(read_orbits), *arguments)[1]
-        return out
-
-    def _legs(self) -> np.ndarray:
-        return np.nan_to_num(self.rows[:, curve.LEGS]).astype(np.int64)
-
-    def _columns(self, read: Floats) -> dict[str, Floats]:
-        columns = {
-            name: read[:, k].copy() for k, name in enumerate(READ) if not name.startswith("mean_position")
-        }
-        side = np.where(self.belt_speeds < 0.0, -1.0, 1.0)
-        columns["mean_friction"] = side * self.rows[:, curve.MEAN]
-        columns["error"] = self.rows[:, curve.ERROR]
-        columns["floquet"] = self._floquet()
-        columns["mean_low"], columns["mean_high"], columns["window"] = *self.bounds.T, self.window
-        found = np.isfinite(self.rows[:, curve.MEAN])
-        columns["period"] = np.where(found, 1.0, np.nan)
-        columns["seconds"] = np.full(len(found), self.seconds / len(found))
-        if self.scenes[0].degrees_of_freedom == 1:
-            for name in columns:
-                if "transverse" in name:
-                    columns[name] = np.full(len(found), np.nan)
-        return columns
-
     def _floquet(self) -> Floats:
         """In the plane the multipliers of x2 count too; they are known only where friction turns them aside."""
         if self.scenes[0].degrees_of_freedom == 1:
@@ -246,15 +228,15 @@ class _Curve:
         # x2 obeys x2'' + (2 b2 wr + f/|w|) x2' + wr^2 x2 = 0 along the orbit: no closed form, and not computed.
         return np.full(len(self.scenes), np.nan)
 
-    def _orbit(self, i: int) -> Orbit | None:
-        legs = int(self._legs()[i])
-        if legs <= 0:
-            return None
-        state = self.rows[i, [curve.STATE_X, curve.STATE_W]]
-        arrays = compiled(make_orbit)(
-            self.mass, self.coefficient, self.belt_speeds[i], state, legs, self._shift(i)
-        )
-        return Orbit(*arrays)
+    def _orbits(self, places: Sequence[int]) -> Orbits:
+        """Of the scenes at these places; without panels where there is none."""
+        shifts = np.array([self._shift(i) for i in places])
+        rows, ends = self.rows[list(places)], np.zeros(len(places), np.int64)
+        states = np.ascontiguousarray(rows[:, [curve.STATE_X, curve.STATE_W]])
+        legs = np.nan_to_num(rows[:, curve.LEGS]).astype(np.int64)
+        speeds = self.belt_speeds[list(places)]
+        track = compiled(make_orbits)(self.mass, self.coefficient, speeds, states, legs, shifts, ends)
+        return Orbits(track.tau, track.x, track.v, track.friction, track.stick, ends)
 
 
 def _permanent_stick(spread: float) -> str:

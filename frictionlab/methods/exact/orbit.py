@@ -1,4 +1,4 @@
-"""One period of a Coulomb orbit as smooth panels, for whatever is read from an orbit."""
+"""One period of Coulomb orbits as smooth panels."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from frictionlab.methods.exact.legs import (
     stick_leg,
 )
 from frictionlab.orbit.panels import NODES
-from frictionlab.orbit.read import read
+from frictionlab.orbit.recorder import Track, grown, track_of
 from frictionlab.scene.body import Mass
 
 TAU, DURATION, X, W, MODE, FACTS = 0, 1, 2, 3, 4, 5
@@ -86,60 +86,56 @@ def sample_leg(body: Body, leg: Any, r: float) -> tuple[float, float, float]:
 
 
 @inner
-def orbit_panels(
-    body: Body, x: float, w: float, shift: float, legs: int, normal_load: float, side: float
-) -> Any:
-    """The orbit through the canonical state (x, w) from canonical time ``shift`` on, for one period.
-
-    side: -1.0 turns it round, for a belt that moves the other way. Returns tau, x, v, friction, stick of an Orbit.
-    """
+def legs_of(body: Body, x: float, w: float, shift: float, legs: int) -> Any:
+    """A period from canonical time 0: its legs, how many, and how many of them end by ``shift``."""
     table = np.empty((2 * legs + 8, FACTS))
     x, w, before = follow(body, x, w, 0.0, shift, table, 0)
     x, w, rows = follow(body, x, w, shift, body.period, table, before)
-    order = np.empty(rows, np.int64)
-    for row in range(rows):
-        order[row] = (row + before) % rows
-    panels, nodes = count_panels(body, table, rows), NODES.size
-    tau = np.empty((panels, nodes))
-    xs, vs = np.empty((panels, nodes), np.complex128), np.empty((panels, nodes), np.complex128)
-    friction, stick = np.empty((panels, nodes), np.complex128), np.empty(panels, np.bool_)
-    panel, now = 0, 0.0
-    for row in order:
-        leg, r = table[row], 0.0
+    return table, rows, before
+
+
+@inner
+def note_orbit(
+    body: Body, table: Any, rows: int, before: int, normal_load: float, side: float, track: Track
+) -> None:
+    """The panels of one period from the end of the first ``before`` legs on, on a track with room for them.
+
+    side: -1.0 turns it round, for a belt that moves the other way.
+    """
+    panel, now = track.filled[0], 0.0
+    for place in range(rows):
+        leg, r = table[(place + before) % rows], 0.0
         while r < leg[DURATION]:
             length = panel_length(body, r, leg[DURATION] - r)
-            for node in range(nodes):
+            for node in range(NODES.size):
                 part = 0.5 * (1.0 + NODES[node]) * length
                 a, b, force = sample_leg(body, leg, r + part)
-                tau[panel, node] = now + part
-                xs[panel, node], vs[panel, node] = complex(side * a, 0.0), complex(side * b, 0.0)
-                friction[panel, node] = complex(side * force / normal_load, 0.0)
-            stick[panel] = leg[MODE] == STICK
+                track.tau[panel, node] = now + part
+                track.x[panel, node], track.v[panel, node] = complex(side * a, 0.0), complex(side * b, 0.0)
+                track.friction[panel, node] = complex(side * force / normal_load, 0.0)
+            track.stick[panel] = leg[MODE] == STICK
             r, now, panel = r + length, now + length, panel + 1
-    return tau, xs, vs, friction, stick
+    track.filled[0] = panel
 
 
 @njit
-def read_orbits(
-    mass: Mass, coefficient: float, belt_speeds: Any, states: Any, legs: Any, shifts: Any, out: Any
-) -> None:
-    """Row i of ``out``: everything read from the orbit of belt speed i, whose canonical state is states[i]."""
+def make_orbits(
+    mass: Mass, coefficient: float, belt_speeds: Any, states: Any, legs: Any, shifts: Any, ends: Any
+) -> Track:
+    """The panels of every orbit, one orbit after another, that of belt speed i before panel ends[i].
+
+    states [n, 2]: canonical (x, w); shifts: canonical time of tau = 0; legs: of a period, 0 where there is no orbit.
+    """
+    room, track = 64, track_of(64)
     for i in range(belt_speeds.size):
-        if legs[i] <= 0:
-            continue
-        body = body_at(mass, coefficient, abs(belt_speeds[i]))
-        side = -1.0 if belt_speeds[i] < 0.0 else 1.0
-        tau, x, v, rub, stick = orbit_panels(
-            body, states[i, 0], states[i, 1], shifts[i], legs[i], mass.normal_load, side
-        )
-        row = read(tau, x, v, rub, stick, mass, belt_speeds[i])
-        for column in range(row.size):
-            out[i, column] = row[column]
-
-
-@njit
-def make_orbit(mass: Mass, coefficient: float, belt_speed: float, state: Any, legs: int, shift: float) -> Any:
-    """The panels of one orbit through the canonical state (x, w); shift: canonical time of tau = 0."""
-    body = body_at(mass, coefficient, abs(belt_speed))
-    side = -1.0 if belt_speed < 0.0 else 1.0
-    return orbit_panels(body, state[0], state[1], shift, legs, mass.normal_load, side)
+        if legs[i] > 0:
+            body = body_at(mass, coefficient, abs(belt_speeds[i]))
+            side = -1.0 if belt_speeds[i] < 0.0 else 1.0
+            table, rows, before = legs_of(body, states[i, 0], states[i, 1], shifts[i], legs[i])
+            needed = track.filled[0] + count_panels(body, table, rows)
+            if needed > room:
+                room = 2 * needed
+                track = grown(track, room)
+            note_orbit(body, table, rows, before, mass.normal_load, side, track)
+        ends[i] = track.filled[0]
+    return track

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Annotated, ClassVar, Literal
 
-import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
@@ -28,11 +28,12 @@ from frictionlab.methods.march.error import (
 from frictionlab.methods.march.laps import RESTING, STALLED, TOO_FAST, TOO_STIFF
 from frictionlab.methods.march.prescribed import solve_sampled
 from frictionlab.methods.march.prescribed_bristle import solve_rubbed
+from frictionlab.methods.march.rows import Row, answers_of
 from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
 from frictionlab.methods.march.stability import fewest_steps, friction_falls
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.refusals import suggest_shooting
-from frictionlab.orbit.read import READ
+from frictionlab.orbit.read import read_columns
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import resting_range, stays_at_rest
@@ -76,8 +77,6 @@ ORDERS = {
 """Of each stepper on smooth motion, by theta where it has one."""
 READABLE = 4096
 """Most steps per period of the run that the columns besides the mean are read from."""
-COLUMNS = [name for name in READ if not name.startswith("mean_position")]
-COLUMNS += ["error", "mean_low", "mean_high", "window", "period", "floquet", "seconds"]
 WATCHED = 300
 """Laps over which a motion that never repeats is averaged."""
 
@@ -235,14 +234,7 @@ class March(Method):
             assert isinstance(law, SlidingLaw)
             return solve_sampled(scenes, law, tolerance, plan)
         points = [_Point(scene, law, tolerance, plan) for scene in scenes]
-        return Answers(
-            [point.status for point in points],
-            [point.reason for point in points],
-            [point.model for point in points],
-            ["estimated" if point.status == "ok" else "" for point in points],
-            {name: np.array([point.columns[name] for point in points]) for name in COLUMNS},
-            lambda i: points[i].orbit,
-        )
+        return answers_of(points)
 
     def _plan(self, law: FrictionLaw) -> Plan:
         theta, stepper = self.theta or 0.5, self._stepper(law)
@@ -281,16 +273,16 @@ class _Point:
     def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float, plan: Plan) -> None:
         self.scene, self.law, self.plan = scene, law, plan
         self.walker = MarchRun(scene, law, plan.stepper)
-        self.columns = dict.fromkeys(COLUMNS, math.nan)
+        self.found = Row()
         self.status: Status = "failed"
         self.reason, self.model = "", ""
-        self.orbit: Orbit | None = None
+        self.orbit: Callable[[], Orbit | None] = nowhere
         if self._held() and scene.initial is None and not scene.undriven:
             assert isinstance(law, SlidingLaw)
             self._leave_open(resting_range(scene, law))
         else:
             self._judge(found(self.walker, plan, tolerance), tolerance)
-        self.columns["seconds"] = self.walker.seconds
+        self.seconds = self.walker.seconds
 
     def _held(self) -> bool:
         """Whether friction without memory can hold the mass on a belt at rest, wherever it stops."""
@@ -305,7 +297,7 @@ class _Point:
 
     def _range(self, low: float, high: float) -> None:
         self.status = "not_unique"
-        self.columns |= {"mean_low": low, "mean_high": high, "window": 1.0}
+        self.found = Row(low=low, high=high)
 
     def _judge(self, answer: Found, tolerance: float) -> None:
         last = answer.runs[-1]
@@ -371,7 +363,7 @@ class _Point:
             why = "the motion never repeats, whatever the step: "
         self.reason = why + told(reached)
         if one_motion(reached):
-            self.columns["period"] = float(reached[0].period)
+            self.found = replace(self.found, period=float(reached[0].period))
 
     def _lost_in_chatter(self, answer: Found) -> float:
         """All that the mean may be off by, where the belt is slower than the jumps that rk4 makes about rest."""
@@ -393,14 +385,9 @@ class _Point:
     def _accept(self, answer: Found, readable: MarchResult, tolerance: float) -> None:
         last = answer.runs[-1]
         self.status = "ok"
-        self._read(readable, last.stride if self.scene.undriven else 1)
-        across = answer.mean.imag if self.scene.degrees_of_freedom == 2 else math.nan
-        self.columns |= {
-            "mean_friction": answer.mean.real,
-            "mean_friction_transverse": across,
-            "error": max(answer.error, self._lost_in_chatter(answer)),
-            "period": self._period(answer, last),
-        }
+        self.orbit = partial(self._orbit, readable, last.stride if self.scene.undriven else 1)
+        error = max(answer.error, self._lost_in_chatter(answer))
+        self.found = Row(answer.mean, error, self._period(answer, last))
         if last.verdict == STALLED:
             self._remark(
                 f"the steps keep the motion from repeating: averaged over {self.walker.window} periods"
@@ -408,7 +395,7 @@ class _Point:
         if not (self.walker.converges or self._has_rivals() or self._moves_on()):
             start = "scene.initial" if self.scene.initial else "the default start"
             self._remark(f"the state reached from {start}; no other start was tried")
-        if not self.columns["error"] <= tolerance:
+        if not self.found.error <= tolerance:
             self._remark(f"the error is above the tolerance {tolerance:.1e}")
 
     def _moves_on(self) -> bool:
@@ -420,7 +407,8 @@ class _Point:
     def _period(self, answer: Found, last: MarchResult) -> float:
         if not self.scene.undriven:
             return 1.0
-        still = self.columns["velocity_amplitude"] <= 2.0 * last.pace.enough
+        swing = read_columns([self.scene], lambda i: self.orbit())["velocity_amplitude"][0]
+        still = swing <= 2.0 * last.pace.enough
         return math.nan if last.verdict == RESTING or still else answer.period / (2.0 * math.pi)
 
     def _readable(self, runs: Sequence[MarchResult]) -> MarchResult:
@@ -428,20 +416,15 @@ class _Point:
         fine = [run for run in runs if run.pace.steps <= READABLE] or [runs[0]]
         return runs[0] if self.plan.steps is not None else fine[-1]
 
-    def _read(self, run: MarchResult, own: int) -> None:
-        """The columns besides the mean, from a run whose response takes ``own`` laps.
-
-        Where its steps keep it from repeating so soon, they are averaged over more of them.
-        """
+    def _orbit(self, run: MarchResult, own: int) -> Orbit:
+        """The orbit of a run whose response takes ``own`` laps; more where steps keep it from repeating so soon."""
         steps = max(1, run.steps // run.laps)
         laps = max(1, min(LONGEST_PERIOD, LONGEST_PERIOD * READABLE // steps))
         laps = laps if run.verdict == STALLED else run.stride
         periods = max(1, laps // own)
-        self.orbit = self.walker.track(run, own)
-        whole = self.orbit if periods == 1 else self.walker.track(run, periods * own)
-        values = dict(zip(READ, self.walker.columns(whole, periods), strict=True))
-        flat = "transverse" if self.scene.degrees_of_freedom == 1 else "mean_position"
-        values |= {name: math.nan for name in values if flat in name}
-        if self.plan.stepper != "moreau":
-            values["stick_fraction"] = math.nan
-        self.columns |= {name: value for name, value in values.items() if name in self.columns}
+        orbit = replace(self.walker.track(run, periods * own), periods=periods)
+        return orbit if self.plan.stepper == "moreau" else replace(orbit, stick=None)
+
+
+def nowhere() -> None:
+    """The orbit of a point without one."""

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frictionlab.compile.cache import compiled, timed
 from frictionlab.compile.decorators import inner
@@ -19,17 +20,19 @@ from frictionlab.dynamics.contact import advance_bristle, project_to_yield, resi
 from frictionlab.laws.memory import PER_AXIS, VECTORIAL, BristleLaw
 from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.march.error import COARSEST, ROUNDING, Plan
+from frictionlab.methods.march.rows import Row, answers_of
 from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.numerics.richardson import REVERSING, SMOOTH, first_error, richardson
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
 from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
 
 MOST_STEPS, WORK = 1 << 20, 16_000_000
 """Steps per period, and in all, of one point."""
-PANELS = 128
-"""Of the record of an orbit."""
+PANELS = 1024
+"""Of the record of an orbit: friction has corners inside them."""
 REPEATED = 1e-13
 """Change of the deflection over a period, over the largest met, that counts as none."""
 
@@ -45,15 +48,13 @@ class Slipping(NamedTuple):
 
 
 class Rubbed(NamedTuple):
-    """Over the last period: mean coefficient, heat and work per unit load; reversals; how often bristles begin or end
-    to be bent back, z.v = 0; deflection at its end.
+    """Over the last period: mean coefficient; reversals; how often bristles begin or end to be bent back, z.v = 0;
+    deflection at its end.
 
     open: by how much the deflection still changes in all, over the largest met; each: friction of every step.
     """
 
     mean: complex
-    contact: float
-    taken: float
     reversals: int
     bends: int
     z: complex
@@ -123,11 +124,9 @@ def rubbed(law: Any, slipping: Slipping, z: Any) -> Rubbed:
     motion, n = slipping.motion, slipping.steps
     h = 2.0 * math.pi / (motion.frequency * n)
     each = np.empty(n, np.complex128)
-    period, last_gap, left, total, contact, taken, reversals = 0, 0.0, 1e300, 0.0 * z, 0.0, 0.0, 0
-    bends = 0
+    period, last_gap, left, total, reversals, bends = 0, 0.0, 1e300, 0.0 * z, 0, 0
     while period < slipping.most and left > REPEATED:
-        before, deepest, total, contact, taken, reversals = z, 1e-300, 0.0 * z, 0.0, 0.0, 0
-        bends = 0
+        before, deepest, total, reversals, bends = z, 1e-300, 0.0 * z, 0, 0
         slip = _velocity(motion, 0.0, z) - slipping.belt_speed
         for i in range(n):
             angle, bent = 2.0 * math.pi * i / n, (z * slip.conjugate()).real
@@ -139,10 +138,6 @@ def rubbed(law: Any, slipping: Slipping, z: Any) -> Rubbed:
             z, deepest = step.z, max(deepest, length(step.z))
             total = total + step.rub
             each[i] = step.rub + 0j
-            v = _velocity(motion, angle + math.pi / n, z)
-            w = v - slipping.belt_speed
-            contact += (step.rub * w.conjugate()).real
-            taken += (step.rub * v.conjugate()).real
             ahead = _velocity(motion, angle + 2.0 * math.pi / n, z) - slipping.belt_speed
             reversals += 1 if (ahead * slip.conjugate()).real < 0.0 else 0
             bends += 1 if (z * ahead.conjugate()).real * bent < 0.0 else 0
@@ -152,20 +147,12 @@ def rubbed(law: Any, slipping: Slipping, z: Any) -> Rubbed:
         left = gap / (1.0 - rate) if period > 0 else 1e300
         left = gap if gap <= REPEATED else left
         last_gap, period = gap, period + 1
-    return Rubbed(-total / n + 0j, contact * h, taken * h, reversals, bends, z + 0j, left, period, each)
+    return Rubbed(-total / n + 0j, reversals, bends, z + 0j, left, period, each)
 
 
 def solve_rubbed(scenes: Sequence[Scene], law: BristleLaw, tolerance: float, plan: Plan) -> Answers:
     """Answer scenes of prescribed slip."""
-    rows = [_Point(scene, law, tolerance, plan) for scene in scenes]
-    return Answers(
-        [row.status for row in rows],
-        [row.reason for row in rows],
-        [row.model for row in rows],
-        ["estimated" if row.status == "ok" else "" for row in rows],
-        {name: np.array([row.columns[name] for row in rows]) for name in rows[0].columns},
-        lambda i: rows[i].orbit(),
-    )
+    return answers_of([_Point(scene, law, tolerance, plan) for scene in scenes])
 
 
 class _Point:
@@ -179,7 +166,7 @@ class _Point:
         self.runs: list[Rubbed] = []
         self.mean, self.error = self._given() if plan.steps else self._halved(tolerance)
         self.model = f"prescribed slip, {plan.stepper}: {len(self.runs[0].each)} steps per period"
-        self.columns = self._row(self.runs[0])
+        self.found = Row(self.mean, self.error, 1.0)
         self._judge(tolerance)
 
     def _judge(self, tolerance: float) -> None:
@@ -196,13 +183,12 @@ class _Point:
         if apart > max(self.error, 1e-9) + changing:
             low, high = min(*others, self.mean.real), max(*others, self.mean.real)
             self._leave("not_unique", "the mean depends on the deflection at the start: bristles only bend")
-            self.columns |= {"mean_low": low, "mean_high": high, "window": 1.0}
+            self.found = Row(low=low, high=high)
         elif self.error > tolerance:
             self.reason = f"the error is above the tolerance {tolerance:.1e}"
 
     def _leave(self, status: Status, reason: str) -> None:
-        self.status, self.reason = status, reason
-        self.columns |= dict.fromkeys(self.columns, math.nan) | {"seconds": self.seconds}
+        self.status, self.reason, self.found = status, reason, Row()
 
     def _run(self, steps: int, start: complex) -> Rubbed:
         call = compiled(rubbed, self.law)
@@ -288,28 +274,6 @@ class _Point:
         yields = math.isfinite(self.law.yield_deflection()) and not self.straight
         return self._turns(run) + self._jumps(run) > 0 or yields
 
-    def _row(self, found: Rubbed) -> dict[str, float]:
-        planar, load = self.scene.transverse_slip is not None, self.motion.normal_load
-        along, across = abs(self.motion.velocity), abs(self.motion.transverse_velocity)
-        return {
-            "mean_friction": self.mean.real,
-            "error": self.error,
-            "mean_friction_transverse": self.mean.imag if planar else math.nan,
-            "velocity_amplitude": along,
-            "velocity_harmonic": along,
-            "transverse_velocity_amplitude": across if planar else math.nan,
-            "transverse_velocity_harmonic": across if planar else math.nan,
-            "stick_fraction": math.nan,
-            "reversals": float(self._along()),
-            "energy_friction": load * found.taken,
-            "energy_contact": load * found.contact,
-            "period": 1.0,
-            "mean_low": math.nan,
-            "mean_high": math.nan,
-            "window": math.nan,
-            "seconds": self.seconds,
-        }
-
     def orbit(self) -> Orbit | None:
         """The prescribed motion and the friction along it."""
         if self.status != "ok":
@@ -319,7 +283,23 @@ class _Point:
         phasors = self.motion.velocity, self.motion.transverse_velocity
         v = (phasors[0] * turn).imag + 1j * (phasors[1] * turn).imag
         x = -((phasors[0] * turn).real + 1j * (phasors[1] * turn).real) / self.motion.frequency
-        each = self.runs[0].each
-        middles = (np.arange(len(each)) + 0.5) * (2.0 * math.pi / len(each))
-        rub = np.interp(angle.ravel(), middles, each, period=2.0 * math.pi).reshape(angle.shape)
-        return Orbit(angle / self.motion.frequency, x, v, rub, np.zeros(PANELS, np.bool_))
+        rub = _between(self.runs[0].each, angle)
+        return Orbit(angle / self.motion.frequency, x, v, rub, None)
+
+
+def _between(each: NDArray[np.complex128], angle: Floats) -> NDArray[np.complex128]:
+    """Friction at these angles, from that of the middle of every step by the cubic through the nearest four.
+
+    The straight line between two would bend every loop inwards, and take of its area.
+    """
+    place = angle * (len(each) / (2.0 * math.pi)) - 0.5
+    below = np.floor(place).astype(np.int64)
+    s = place - below
+    weights = (
+        -s * (s - 1.0) * (s - 2.0) / 6.0,
+        (s * s - 1.0) * (s - 2.0) / 2.0,
+        -s * (s + 1.0) * (s - 2.0) / 2.0,
+        s * (s * s - 1.0) / 6.0,
+    )
+    parts = [weight * each[(below + k - 1) % len(each)] for k, weight in enumerate(weights)]
+    return np.asarray(sum(parts))

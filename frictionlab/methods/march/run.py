@@ -30,7 +30,6 @@ from frictionlab.methods.march.laps import (
 from frictionlab.methods.march.memory_adapter import march_memory_rk4
 from frictionlab.methods.march.stability import fastest_slip, fewest_steps, spring_of
 from frictionlab.methods.periodic.problem import along_the_belt
-from frictionlab.orbit.read import READ, read
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, Mass, in_the_plane, on_the_line
@@ -45,8 +44,6 @@ GRIDDED = "moreau", "rk4", "exponential"
 """Steppers that meet the load at half steps alone."""
 LONGEST_PERIOD = 8
 """Of a response that repeats only after several laps."""
-SUMMED = np.array(["energy" in name or "reversals" in name for name in READ])
-"""Of what is read from an orbit, sums and counts over the whole of it; all else is a mean, a phase or an extreme."""
 
 
 @dataclass(frozen=True)
@@ -214,15 +211,6 @@ class MarchRun:
         track, n = march.track, int(march.track.filled[0])
         tau = track.tau[:n] + _offsets(track.tau[:n])[:, None]
         return Orbit(tau, track.x[:n], track.v[:n], track.friction[:n], track.stick[:n])
-
-    def columns(self, orbit: Orbit, periods: int) -> Floats:
-        """What is read from so many periods of the response; of what is summed up or counted, the share of one."""
-        own = 2.0 * math.pi * periods / float(orbit.tau[-1, -1] - orbit.tau[0, 0])
-        mass = self.mass._replace(frequency=own) if self.scene.undriven else self.mass
-        parts = orbit.tau, orbit.x, orbit.v, orbit.friction, orbit.stick
-        values, seconds = timed(compiled(read), *parts, mass, self.scene.belt_speed)
-        self.seconds += seconds
-        return np.where(SUMMED, values / periods, values)
 
     def fastest(self, pace: Resolution) -> float:
         """The slip speed that steps of this pace can bear."""

@@ -14,9 +14,8 @@ from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.fixed_point import Goal, fixed_point
 from frictionlab.methods.periodic.monodromy import free_inverse, monodromy
 from frictionlab.methods.periodic.period_map import period_map, size_of
-from frictionlab.orbit.read import READ, read
-from frictionlab.orbit.recorder import Track, track_of
-from frictionlab.scene.body import Body, Mass
+from frictionlab.orbit.recorder import Track, grown, track_of
+from frictionlab.scene.body import Body
 
 
 @inner
@@ -100,50 +99,69 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, 
 
 
 @inner
-def record_orbit(law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, like: Any) -> Track:
-    """The closed orbit from z, piece by piece."""
-    room, residual = 128, np.empty(z.size)
-    track = track_of(room)
+def record_orbit(
+    law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, track: Track, like: Any
+) -> Track:
+    """The track with the closed orbit from z, piece by piece, after what it holds; on a larger one where needed."""
+    first, residual = track.filled[0], np.empty(z.size)
     period_map(law, body, belt_speed, z, residual, accuracy, track, like)
-    while track.filled[0] == room:
-        room *= 4
-        track = track_of(room)
+    while track.filled[0] == track.stick.size:
+        track = grown(track, 4 * track.stick.size)
+        track.filled[0] = first
         period_map(law, body, belt_speed, z, residual, accuracy, track, like)
-    n = track.filled[0]
-    return Track(track.tau[:n], track.x[:n], track.v[:n], track.friction[:n], track.stick[:n], track.filled)
+    return track
+
+
+class Wanted(NamedTuple):
+    """What of a curve: its orbits closed from a guess, or those of given states; recorded, and their monodromies.
+
+    One kernel for all: each entry of its own would be compiled for seconds.
+    """
+
+    closed: bool
+    orbits: bool
+    matrices: bool
+
+
+CLOSED, DIFFERENTIATED = Wanted(True, False, False), Wanted(True, False, True)
+RECORDED, MULTIPLIERS = Wanted(False, True, False), Wanted(False, False, True)
 
 
 class Curve(NamedTuple):
-    """States [n, size], results [n, 6] of ``solve_curve``, READ columns [n, 17], monodromies, whether the starts that
-    are quick to ask end there [n], the last orbit."""
+    """States [n, size], results [n, 6] of ``solve_curve``, monodromies [n or 0, size, size], whether the starts that
+    are quick to ask end there [n], the orbits one after another and the panels before which each ends [n]."""
 
     states: Any
     results: Any
-    columns: Any
     matrices: Any
     reached: Any
-    last: Track
+    orbits: Track
+    ends: Any
 
 
 @inner
 def answer_curve(
-    law: Any, body: Body, mass: Mass, belt_speeds: Any, guess: Any, goal: Goal, like: Any
+    law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, wanted: Wanted, like: Any
 ) -> Curve:
-    """Close the orbits of a curve and read them; guess [0 or 1, size] is a state to start from."""
-    states, results = solve_curve(law, body, belt_speeds, guess, goal, like)
+    """Close the orbits of a curve, record them, differentiate their maps: what is wanted of it.
+
+    guess: a state to start from [0 or 1, size]; where nothing is to be closed, the states of all orbits [n, size].
+    """
+    if wanted.closed:
+        states, results = solve_curve(law, body, belt_speeds, guess, goal, like)
+    else:
+        states, results = guess, np.ones((belt_speeds.size, 6))
     n, size = states.shape
     accuracy = max(0.1 * goal.tolerance * body.normal_load, 1e-13)
-    columns, matrices = np.full((n, len(READ)), np.nan), np.zeros((n, size, size))
-    ends_there = np.zeros(n, np.bool_)
-    track = track_of(0)
+    matrices, ends_there = np.zeros((n if wanted.matrices else 0, size, size)), np.zeros(n, np.bool_)
+    track, ends = track_of(128 if wanted.orbits else 0), np.zeros(n, np.int64)
     for i in range(n):
-        if results[i, 3] < 0.0:
-            continue
-        track = record_orbit(law, body, belt_speeds[i], states[i], accuracy, like)
-        row = read(track.tau, track.x, track.v, track.friction, track.stick, mass, belt_speeds[i])
-        for k in range(row.size):
-            columns[i, k] = row[k]
-        monodromy(Case(law, body, belt_speeds[i], like), states[i], 1.0, matrices[i])
-        if goal.asks:
-            ends_there[i] = reached(law, body, belt_speeds[i], states[i], like)
-    return Curve(states, results, columns, matrices, ends_there, track)
+        if results[i, 3] > 0.0:
+            if wanted.orbits:
+                track = record_orbit(law, body, belt_speeds[i], states[i], accuracy, track, like)
+            if wanted.matrices:
+                monodromy(Case(law, body, belt_speeds[i], like), states[i], 1.0, matrices[i])
+            if wanted.closed and goal.asks:
+                ends_there[i] = reached(law, body, belt_speeds[i], states[i], like)
+        ends[i] = track.filled[0]
+    return Curve(states, results, matrices, ends_there, track, ends)

@@ -12,8 +12,16 @@ from frictionlab.compile.cache import compiled, timed
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.methods.periodic.attraction import begin, iterate_until_periodic, settle
-from frictionlab.methods.periodic.continuation import Curve, answer_curve
+from frictionlab.methods.periodic.continuation import (
+    DIFFERENTIATED,
+    MULTIPLIERS,
+    RECORDED,
+    Curve,
+    Wanted,
+    answer_curve,
+)
 from frictionlab.methods.periodic.fixed_point import Goal
+from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
@@ -73,14 +81,47 @@ class PeriodicProblem:
         self.size = 2 * directions + remembered(law, directions)  # of a state
 
     def closed(
-        self, scenes: Sequence[Scene], state: Floats | None = None, periods: float = 1.0
+        self,
+        scenes: Sequence[Scene],
+        state: Floats | None = None,
+        periods: float = 1.0,
+        wanted: Wanted = DIFFERENTIATED,
     ) -> tuple[Curve, float]:
         """The orbits of these scenes, from a known state at the first where there is one; and kernel time [s]."""
-        belt_speeds = np.array([scene.belt_speed for scene in scenes])
         guess = np.empty((0, 0)) if state is None else state[None, :]
         goal = self.goal if state is None else self.goal._replace(asks=False)
+        return self._called(scenes, guess, goal, wanted, periods)
+
+    def _called(
+        self, scenes: Sequence[Scene], states: Floats, goal: Goal, wanted: Wanted, periods: float = 1.0
+    ) -> tuple[Curve, float]:
+        belt_speeds = np.array([scene.belt_speed for scene in scenes])
         body = self.body._replace(periods=float(periods))
-        return timed(compiled(answer_curve, self.law), body, self.mass, belt_speeds, guess, goal, self.like)
+        call = compiled(answer_curve, self.law)
+        return timed(call, body, belt_speeds, states, goal, wanted, self.like)
+
+    def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
+        """The closed orbits from these states, one for each scene; without panels where there is no state."""
+        places, known = self._known(states)
+        curve, _ = self._called([scenes[i] for i in places], known, self.goal, RECORDED)
+        ends, panels = np.zeros(len(scenes), np.int64), np.diff(curve.ends, prepend=0)
+        ends[places] = panels
+        n, track = int(panels.sum()), curve.orbits
+        parts = track.tau[:n], track.x[:n], track.v[:n], track.friction[:n], track.stick[:n]
+        return Orbits(*parts, np.cumsum(ends))
+
+    def multipliers(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Floats:
+        """The largest modulus of the Floquet multipliers of these orbits; NaN where there is no state."""
+        places, known = self._known(states)
+        found = np.full(len(scenes), np.nan)
+        if places:
+            curve, _ = self._called([scenes[i] for i in places], known, self.goal, MULTIPLIERS)
+            found[places] = np.abs(np.linalg.eigvals(curve.matrices)).max(axis=1)
+        return found
+
+    def _known(self, states: Sequence[Floats | None]) -> tuple[list[int], Floats]:
+        places = [i for i, state in enumerate(states) if state is not None]
+        return places, np.array([states[i] for i in places]).reshape(len(places), self.size)
 
     def settled(self, start: Initial) -> tuple[Floats, int]:
         """The state at which the mass stays put on a belt at rest, and in how many periods; -1 for never."""

@@ -15,7 +15,7 @@ from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.closed_loop_line import ONE_WAY, Along, line_loop
 from frictionlab.methods.prescribed.closed_loop_plane import plane_loop
 from frictionlab.methods.prescribed.loop import Closed, Loop, Open, Vectors
-from frictionlab.methods.prescribed.motion import Reading, prescribed_columns, undecided_columns
+from frictionlab.methods.prescribed.motion import Found
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -55,7 +55,7 @@ class BristlePoint:
         self.seconds = sum(loop.seconds for loop in self.loops)
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind = "", "", "estimated"
-        self.columns = self._answer()
+        self.found = self._answer()
 
     def _loops(self, one_line: bool, tolerance: float) -> list[Closed | Open]:
         """The loop in the plane, or along the belt, or those of both axes."""
@@ -68,12 +68,12 @@ class BristlePoint:
             return [line_loop(self.law, along, tolerance), line_loop(self.law, across, tolerance)]
         return [plane_loop(self.law, motion, self.belt_speed, tolerance)]
 
-    def _answer(self) -> dict[str, float]:
+    def _answer(self) -> Found:
         first = self.loops[0]
         if isinstance(first, Open):
             self.status = "failed" if math.isnan(first.low) else "not_unique"
             self.reason, self.error_kind = first.reason, ""
-            return undecided_columns(self.motion, first.low, first.high)
+            return Found(low=first.low, high=first.high)
         self.model = first.model
         mean, error = first.loop.mean, first.error
         if self.belt_speed == 0.0:
@@ -81,26 +81,20 @@ class BristlePoint:
             self.error_kind = "guaranteed"
         elif self._saturated(first):
             self.error_kind = "guaranteed"
-        found = self._reading(mean, error, first.loop)
-        return prescribed_columns(self.motion, self.planar, found)
+        if any(isinstance(other, Open) for other in self.loops[1:]):
+            mean = complex(mean.real, math.nan)
+        elif len(self.loops) > 1:
+            mean = complex(mean.real, 0.0)
+        return Found(mean, error)
 
     def _saturated(self, closed: Closed) -> bool:
         return closed.model == ONE_WAY and self.law.constant_sliding_friction()
 
-    def _reading(self, mean: complex, error: float, loop: Loop) -> Reading:
-        """The first loop's columns, with heat and friction across the belt from the second where axes go apart."""
-        heat, turns = loop.heat, 2.0 if abs(self.belt_speed) < abs(self.motion.velocity) else 0.0
-        for other in self.loops[1:]:
-            mean = complex(mean.real, math.nan if isinstance(other, Open) else 0.0)
-            heat = math.nan if isinstance(other, Open) else heat + other.loop.heat
-        heat = heat / self.motion.frequency
-        taken = heat - 2.0 * math.pi / self.motion.frequency * self.belt_speed * mean.real
-        return Reading(mean, error, heat, taken, turns, loop.force_reversals)
-
     def orbit(self) -> Orbit | None:
-        """One period of the prescribed motion, and the friction of the deflection along it."""
+        """One period of the prescribed motion, and the friction of the deflection along it; NaN across the belt where
+        the deflection there depends on its start."""
         loops = [closed.loop for closed in self.loops if isinstance(closed, Closed)]
-        if self.status != "ok" or len(loops) < len(self.loops):
+        if self.status != "ok":
             return None
         angle = _angles(loops)
         turn = np.exp(1j * angle)
@@ -115,6 +109,7 @@ class BristlePoint:
 
     def _friction(self, slip: Vectors, deflections: list[Floats]) -> Vectors:
         z, law = deflections[0], self.law
+        unknown = complex(0.0, math.nan if len(deflections) < len(self.loops) else 0.0)
         if len(deflections) == 2:
             pairs = zip(slip.real.flat, slip.imag.flat, z.flat, deflections[1].flat, strict=True)
             values = [
@@ -122,7 +117,7 @@ class BristlePoint:
             ]
         elif self._on_the_line():
             values = [
-                complex(on_the_line(law, v, one)[1]) for v, one in zip(slip.real.flat, z.flat, strict=True)
+                on_the_line(law, v, one)[1] + unknown for v, one in zip(slip.real.flat, z.flat, strict=True)
             ]
         else:
             values = [in_the_plane(law, v, complex(one))[1] for v, one in zip(slip.flat, z.flat, strict=True)]
@@ -130,7 +125,8 @@ class BristlePoint:
 
     def _on_the_line(self) -> bool:
         """Whether the one loop is that of a line."""
-        return not self.planar or (self.motion.transverse_velocity == 0 and self.law.form != ROTATED)
+        across = self.motion.transverse_velocity == 0 or self.law.form == PER_AXIS
+        return not self.planar or (across and self.law.form != ROTATED)
 
 
 def _angles(loops: list[Loop]) -> Floats:

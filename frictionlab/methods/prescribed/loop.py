@@ -38,21 +38,9 @@ class Loop(NamedTuple):
         return -self.total(self.friction) / (2.0 * math.pi)
 
     @property
-    def heat(self) -> float:
-        """The work of friction on the slip over a period, times frequency, per unit load."""
-        return self.total((self.friction * self.slip.conjugate()).real).real
-
-    @property
     def largest(self) -> float:
         """The largest coefficient met."""
         return float(np.abs(self.friction).max())
-
-    @property
-    def force_reversals(self) -> float:
-        """Sign changes of friction along x1 in a period."""
-        along = self.friction.real.ravel()
-        signs = np.sign(along[np.abs(along) > 1e-12 * self.largest])
-        return float((signs != np.roll(signs, 1)).sum())
 
     def deflection_at(self, angle: Floats) -> Any:
         """The deflection at angles of the period, by each panel's polynomial."""

@@ -10,14 +10,13 @@ from frictionlab.compile.cache import compiled, timed
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.periodic.attraction import begin, iterate_until_periodic
-from frictionlab.methods.periodic.continuation import Curve, answer_curve
+from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.problem import remembered
-from frictionlab.methods.prescribed.motion import Reading, prescribed_columns, undecided_columns
-from frictionlab.orbit.read import READ
+from frictionlab.methods.prescribed.motion import Found
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Body, Mass, Motion
+from frictionlab.scene.body import Body, Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
 
@@ -34,36 +33,33 @@ class MemoryPoint:
     def __init__(self, scene: Scene, law: MemoryLaw, tolerance: float) -> None:
         self.motion, self.belt_speed = scene.motion(), scene.belt_speed
         self.law = law.under_load(self.motion.normal_load)
-        self.planar = scene.transverse_slip is not None
         self.like: complex = 0.0 if scene.load_along_belt_only else 0j
         self.body = driven(self.motion, self.like)
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind, self.seconds = "", MODEL, "estimated", 0.0
         self.curve: Curve | None = None
         moves = self.belt_speed != 0.0 or self.motion.velocity != 0 or self.motion.transverse_velocity != 0
-        self.columns = self._answer(tolerance) if moves else self._left_open([], "nothing moves")
+        self.found = self._answer(tolerance) if moves else self._left_open([], "nothing moves")
 
-    def _answer(self, tolerance: float) -> dict[str, float]:
-        motion = self.motion
-        mass = Mass(0.0, 1.0, 0.0, 1.0, motion.normal_load, motion.frequency, 0j, 0j)
+    def _answer(self, tolerance: float) -> Found:
         directions = 2 if isinstance(self.like, complex) else 1
         guess = np.zeros((1, 2 * directions + remembered(self.law, directions)))
-        speeds, goal = np.array([self.belt_speed]), Goal(tolerance, False, True)
-        arguments: tuple[Any, ...] = self.body, mass, speeds, guess, goal, self.like
-        curve, self.seconds = timed(compiled(answer_curve, self.law), *arguments)
+        self.goal = Goal(tolerance, False, True)
+        curve = self._called(guess, DIFFERENTIATED)
         multiplier = float(np.abs(np.linalg.eigvals(curve.matrices[0])).max())
         if curve.results[0, 3] < 0.0 or not curve.reached[0] or multiplier > FORGETS:
             return self._followed(guess[0])
         self.curve = curve
-        row = dict(zip(READ, curve.columns[0], strict=True))
         mean, across, error = curve.results[0, :3]
-        heat, taken = row["energy_contact"] / motion.normal_load, row["energy_friction"] / motion.normal_load
-        turns = row["reversals"], row["force_reversals"]
-        return prescribed_columns(
-            motion, self.planar, Reading(complex(mean, across), error, heat, taken, *turns)
-        )
+        return Found(complex(mean, across), error)
 
-    def _followed(self, state: Floats) -> dict[str, float]:
+    def _called(self, states: Floats, wanted: Wanted) -> Curve:
+        arguments: tuple[Any, ...] = self.body, np.array([self.belt_speed]), states, self.goal, wanted
+        curve, seconds = timed(compiled(answer_curve, self.law), *arguments, self.like)
+        self.seconds += seconds
+        return curve
+
+    def _followed(self, state: Floats) -> Found:
         """Where the memory goes from rest, and from steady sliding in either direction."""
         means = []
         swing = abs(self.motion.velocity) + abs(self.motion.transverse_velocity) + abs(self.belt_speed)
@@ -79,19 +75,20 @@ class MemoryPoint:
             means.append(each[count - 1])
         return self._left_open(means, "the memory does not forget where it started")
 
-    def _left_open(self, means: list[float], reason: str) -> dict[str, float]:
+    def _left_open(self, means: list[float], reason: str) -> Found:
         self.status, self.error_kind = "not_unique", ""
         most = friction_at_rest(self.law)
         self.reason = f"{reason}: the mean depends on the start"
         low, high = (min(means), max(means)) if means else (-most, most)
-        return undecided_columns(self.motion, low, high)
+        return Found(low=low, high=high)
 
     def orbit(self) -> Orbit | None:
         """One period of the prescribed motion, and the friction along it."""
         if self.curve is None:
             return None
-        track = self.curve.last
-        return Orbit(track.tau, track.x, track.v, track.friction, track.stick)
+        found = self._called(self.curve.states, RECORDED)
+        track, end = found.orbits, found.ends[0]
+        return Orbit(*(part[:end] for part in (track.tau, track.x, track.v, track.friction, track.stick)))
 
 
 def driven(motion: Motion, like: complex) -> Body:

@@ -13,11 +13,7 @@ from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.prescribed.bristle import BristlePoint, saturates
 from frictionlab.methods.prescribed.memory import MemoryPoint
-from frictionlab.methods.prescribed.motion import (
-    Reading,
-    prescribed_columns,
-    undecided_columns,
-)
+from frictionlab.methods.prescribed.motion import Found
 from frictionlab.methods.prescribed.quadrature import (
     EPSILON,
     Integrals,
@@ -35,20 +31,27 @@ from frictionlab.theory import mean_prescribed_longitudinal
 def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer scenes of prescribed slip that differ in belt speed alone."""
     rows = [_point(scene, law, tolerance) for scene in scenes]
-    columns = {name: np.array([row.columns[name] for row in rows]) for name in rows[0].columns}
-    columns["seconds"] = np.array([row.seconds for row in rows])
     for row in rows:
-        if row.status == "ok" and row.columns["error"] > tolerance:
+        if row.status == "ok" and row.found.error > tolerance:
             row.reason = (
-                f"error {row.columns['error']:.1e} above the tolerance: rounding is all that is left in it"
+                f"error {row.found.error:.1e} above the tolerance: rounding is all that is left in it"
             )
+    found = [row.found for row in rows]
+    ok = np.array([row.status == "ok" for row in rows])
+    low = np.array([each.low for each in found])
     return Answers(
-        [row.status for row in rows],
-        [row.reason for row in rows],
-        [row.model for row in rows],
-        [row.error_kind for row in rows],
-        columns,
-        lambda i: rows[i].orbit(),
+        status=[row.status for row in rows],
+        reason=[row.reason for row in rows],
+        model=[row.model for row in rows],
+        error_kind=[row.error_kind for row in rows],
+        mean=np.array([each.mean for each in found]),
+        error=np.array([each.error for each in found]),
+        period=np.where(ok, 1.0, np.nan),
+        mean_low=low,
+        mean_high=np.array([each.high for each in found]),
+        window=np.where(np.isnan(low), np.nan, 1.0),
+        seconds=np.array([row.seconds for row in rows]),
+        orbit=lambda i: rows[i].orbit(),
     )
 
 
@@ -65,16 +68,15 @@ class _Point:
 
     def __init__(self, scene: Scene, law: FrictionLaw) -> None:
         self.motion, self.belt_speed, self.law = scene.motion(), scene.belt_speed, law
-        self.planar = scene.transverse_slip is not None
         self.along, self.across = self.motion.velocity, self.motion.transverse_velocity
         self.size = scene.slip.velocity_amplitude if scene.slip is not None else 0.0
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind = "", "", "guaranteed"
         start = time.perf_counter()
-        self.columns = self._answer()
+        self.found = self._answer()
         self.seconds = time.perf_counter() - start
 
-    def _answer(self) -> dict[str, float]:
+    def _answer(self) -> Found:
         if self.belt_speed == 0.0 and self.along == 0.0 and self.across == 0.0:
             return self._no_slip()
         edges = slip_edges(self.motion, self.belt_speed)
@@ -93,7 +95,7 @@ class _Point:
             error = 4.0 * abs(self._with_exact_turns(finer) - mean) + 64.0 * rounding
             self.model = "prescribed slip: Gauss-Lobatto quadrature, panels graded towards slow slip"
             self.error_kind = "estimated"
-        return self._row(mean, error, found)
+        return Found(mean, error)
 
     def _with_exact_turns(self, found: Integrals) -> complex:
         """The mean; along the belt, the share of friction at vanishing speed in closed form.
@@ -116,17 +118,12 @@ class _Point:
             1.0 - 4.0 / math.pi * math.asin(math.sqrt(0.5 * (size - speed) / size)), self.belt_speed
         )
 
-    def _no_slip(self) -> dict[str, float]:
+    def _no_slip(self) -> Found:
         self.status, self.error_kind = "not_unique", ""
         self.model = "closed form"
         self.reason = "nothing moves: friction at rest may be anything up to mu"
         most = belt_friction_at_rest(self.law)
-        return undecided_columns(self.motion, -most, most)
-
-    def _row(self, mean: complex, error: float, found: Integrals) -> dict[str, float]:
-        turns = 2.0 if abs(self.belt_speed) < abs(self.along) else 0.0
-        read = Reading(mean, error, found.contact, found.taken, turns, turns)
-        return prescribed_columns(self.motion, self.planar, read)
+        return Found(low=-most, high=most)
 
     def orbit(self) -> Orbit | None:
         """The prescribed motion and the friction along it."""

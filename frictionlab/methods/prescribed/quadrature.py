@@ -27,14 +27,10 @@ CLOSEST = 1e-16
 
 
 class Integrals(NamedTuple):
-    """Over one period: mean resisting coefficient (complex), heat in the contact and work taken, per unit load.
-
-    largest: the largest coefficient met, the scale of rounding. direction: the mean direction of slip.
-    """
+    """Over one period: mean resisting coefficient (complex), the largest met (the scale of rounding), and the mean
+    direction of slip."""
 
     mean: complex
-    contact: float
-    taken: float
     largest: float
     direction: complex
 
@@ -111,11 +107,8 @@ def _directions(slip: NDArray[np.complex128]) -> NDArray[np.complex128]:
 def integrals(motion: Motion, belt_speed: float, law: FrictionLaw, edges: Floats) -> Integrals:
     """Quadrature over one period with these panels."""
     angle, weights = nodes(edges)
-    v = velocity(motion, angle)
-    slip = v - belt_speed
+    slip = velocity(motion, angle) - belt_speed
     friction = sliding_vectors(law, slip)
     mean = complex((weights * friction).sum() / (2.0 * math.pi))
-    contact = float((weights * (friction * slip.conjugate()).real).sum()) / motion.frequency
-    taken = float((weights * (friction * v.conjugate()).real).sum()) / motion.frequency
     direction = complex((weights * _directions(slip)).sum() / (2.0 * math.pi))
-    return Integrals(mean, contact, taken, float(np.abs(friction).max()), direction)
+    return Integrals(mean, float(np.abs(friction).max()), direction)

@@ -19,11 +19,10 @@ from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Answers
 from frictionlab.methods.prescribed.bristle import BristlePoint
 from frictionlab.methods.reduced.amplitudes import Balance, balances
-from frictionlab.methods.reduced.common import ROUNDING, Harmonic, judged, motion_columns
+from frictionlab.methods.reduced.common import ROUNDING, Modelled, judged
 from frictionlab.methods.reduced.full_mean import full_mean
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene, Slip
 from frictionlab.theory import friction_free_velocity
 
@@ -67,14 +66,15 @@ def answer_bristle(scenes: Sequence[Scene], law: BristleLaw, tolerance: float) -
     start = time.perf_counter()
     law = law.under_load(scenes[0].mass().normal_load)
     points = [_point(scene, law) for scene in scenes]
-    columns = _columns(scenes, points, law)
-    columns["seconds"] = np.full(len(scenes), (time.perf_counter() - start) / len(scenes))
+    means = np.array([_mean(scene, point.balance) for scene, point in zip(scenes, points, strict=True)])
+    errors = np.array([_error(point, law) for point in points])
 
     def orbit(i: int) -> Orbit | None:
         balance = points[i].balance
-        return None if balance is None or points[i].reason else orbit_of_one_harmonic(scenes[i], law, balance)
+        return None if balance is None else orbit_of_one_harmonic(scenes[i], law, balance)
 
-    return judged(columns, [point.reason for point in points], TEXT, tolerance, orbit)
+    found = Modelled(means, errors, time.perf_counter() - start)
+    return judged(found, [point.reason for point in points], TEXT, tolerance, orbit)
 
 
 def _point(scene: Scene, law: BristleLaw) -> _Point:
@@ -89,7 +89,7 @@ def _point(scene: Scene, law: BristleLaw) -> _Point:
         return _unknown(balance, REMEMBERED)
     full = full_mean(scene.model_copy(update={"belt_speed": speed}), law)
     decay = math.exp(-math.pi * mass.damping / mass.frequency)
-    if full.floquet > max(STEADY, 0.5 * (1.0 + decay)):
+    if full.floquet() > max(STEADY, 0.5 * (1.0 + decay)):
         return _unknown(balance, UNSTEADY)
     return _Point(balance, full.mean, full.error, full.reason)
 
@@ -110,36 +110,9 @@ def _velocity(scene: Scene, balance: Balance) -> complex:
     return cmath.rect(balance.amplitude, cmath.phase(scene.mass().force) - balance.lag)
 
 
-def _columns(scenes: Sequence[Scene], points: Sequence[_Point], law: BristleLaw) -> dict[str, Floats]:
-    """Every column that one harmonic gives; NaN without one."""
-    mass, nothing = scenes[0].mass(), complex(math.nan, math.nan)
-    period, load = 2.0 * math.pi / mass.frequency, mass.normal_load
-    speeds = np.array([scene.belt_speed for scene in scenes])
-    rows = np.array([_numbers(point.balance) for point in points])
-    size, mean, sine, changes = rows.T
-    both = zip(scenes, points, strict=True)
-    velocity = np.array([_velocity(s, p.balance) if p.balance is not None else nothing for s, p in both])
-    viscous, rubbed = 0.5 * mass.damping * size**2 * period, 0.5 * load * sine * size * period
-    energies = {
-        "energy_input": viscous + rubbed,
-        "energy_viscous": viscous,
-        "energy_friction": rubbed,
-        "energy_contact": rubbed + np.abs(speeds) * load * mean * period,
-    }
-    columns = motion_columns(scenes[0], speeds, Harmonic(mean, velocity, energies, []))
-    columns["reversals"] = np.where(size > np.abs(speeds), 2.0, 0.0)
-    columns["force_reversals"] = changes
-    columns["mean_friction"] = np.copysign(1.0, speeds) * mean
-    columns["error"] = np.array([_error(point, law) for point in points])
-    return columns
-
-
-def _numbers(balance: Balance | None) -> list[float]:
-    """Velocity amplitude, mean friction coefficient, its damping part, and how often friction changes sign."""
-    if balance is None:
-        return [math.nan] * 4
-    friction = balance.friction
-    return [balance.amplitude, -friction.mean, friction.sine, friction.sign_changes]
+def _mean(scene: Scene, balance: Balance | None) -> float:
+    """Mean friction coefficient."""
+    return math.nan if balance is None else -math.copysign(1.0, scene.belt_speed) * balance.friction.mean
 
 
 def _error(point: _Point, law: BristleLaw) -> float:
@@ -160,4 +133,4 @@ def orbit_of_one_harmonic(scene: Scene, law: BristleLaw, balance: Balance) -> Or
     if orbit is None:
         return None
     mean = -math.copysign(1.0, scene.belt_speed) * balance.friction.mean
-    return replace(orbit, x=orbit.x + mass.normal_load * mean)
+    return replace(orbit, x=orbit.x + mass.normal_load * mean, stick=None)

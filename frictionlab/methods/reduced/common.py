@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,14 +40,20 @@ ROUNDING = 1e-10
 class Harmonic:
     """A model's motion at n belt speeds >= 0: Im(velocity exp(i Omega tau)), and the mean relative to mu.
 
-    energies: per period, by column name; empty for a model whose motion does not balance them.
     reasons: why the model has no answer at a belt speed; empty where it has.
     """
 
     mean: Floats
     velocity: NDArray[np.complex128]
-    energies: dict[str, Floats]
     reasons: list[str]
+
+
+class Modelled(NamedTuple):
+    """Mean and error of every point of a model, and the seconds of all."""
+
+    mean: Floats | NDArray[np.complex128]
+    error: Floats
+    seconds: float
 
 
 Model = Callable[[Scene, float, Floats], Harmonic]
@@ -94,20 +101,19 @@ def answer_line(
     low, high = bounds(Line(0.5 * mass.damping, mass.frequency, friction, free), np.abs(speeds))
     for i in np.flatnonzero(high - low > WIDEST).tolist():
         low[i], high[i] = _narrowed(scenes[i], law, low[i], high[i])
-    columns = motion_columns(scenes[0], speeds, found)
-    columns["mean_friction"] = mu * np.copysign(found.mean, speeds)
-    columns["error"] = mu * (np.maximum(high - found.mean, found.mean - low) + ROUNDING)
-    columns["seconds"] = np.full(len(scenes), (time.perf_counter() - start) / len(scenes))
+    mean = mu * np.copysign(found.mean, speeds)
+    error = mu * (np.maximum(high - found.mean, found.mean - low) + ROUNDING)
+    seconds = time.perf_counter() - start
     reasons = [
         point_refusal(scene, friction) or own or _too_wide(width, mu)
         for scene, own, width in zip(scenes, found.reasons, high - low, strict=True)
     ]
     text += REDUCED if scenes[0].degrees_of_freedom == 2 else ""
 
-    def orbit(i: int) -> Orbit | None:
-        return None if reasons[i] else _orbit(scenes[i], law, found, i)
+    def orbit(i: int) -> Orbit:
+        return _orbit(scenes[i], law, found, i)
 
-    return judged(columns, reasons, text, tolerance, orbit)
+    return judged(Modelled(mean, error, seconds), reasons, text, tolerance, orbit)
 
 
 def _narrowed(scene: Scene, law: SlidingLaw, low: float, high: float) -> tuple[float, float]:
@@ -122,24 +128,26 @@ def _narrowed(scene: Scene, law: SlidingLaw, low: float, high: float) -> tuple[f
 
 
 def judged(
-    columns: dict[str, Floats],
-    reasons: Sequence[str],
-    text: str,
-    tolerance: float,
-    orbit: Callable[[int], Orbit | None],
+    found: Modelled, reasons: Sequence[str], text: str, tolerance: float, orbit: Callable[[int], Orbit | None]
 ) -> Answers:
     """Answers with the points that have a reason refused, and errors above the tolerance said."""
     status: list[Status] = ["refused" if reason else "ok" for reason in reasons]
     against = np.array([bool(reason) for reason in reasons])
-    columns = {
-        name: np.where(against & (name != "seconds"), np.nan, values) for name, values in columns.items()
-    }
     said = [
         reason or (f"model error above the tolerance {tolerance:.1e}" if not error <= tolerance else "")
-        for reason, error in zip(reasons, columns["error"], strict=True)
+        for reason, error in zip(reasons, found.error, strict=True)
     ]
-    kinds = ["" if reason else "estimated" for reason in reasons]
-    return Answers(status, said, ["" if reason else text for reason in reasons], kinds, columns, orbit)
+    return Answers(
+        status=status,
+        reason=said,
+        model=["" if reason else text for reason in reasons],
+        error_kind=["" if reason else "estimated" for reason in reasons],
+        mean=np.where(against, np.nan, found.mean),
+        error=np.where(against, np.nan, found.error),
+        period=np.where(against, np.nan, 1.0),
+        seconds=np.full(len(reasons), found.seconds / len(reasons)),
+        orbit=lambda i: None if reasons[i] else orbit(i),
+    )
 
 
 def _too_wide(width: float, mu: float) -> str:
@@ -151,26 +159,9 @@ def _too_wide(width: float, mu: float) -> str:
     )
 
 
-def motion_columns(scene: Scene, speeds: Floats, found: Harmonic) -> dict[str, Floats]:
-    """Every column that one harmonic gives."""
-    force, size = scene.mass().force, np.abs(found.velocity)
-    turns = np.where(np.abs(speeds) < friction_free_velocity(scene), 2.0, 0.0)
-    nothing = np.zeros(len(speeds)) if scene.degrees_of_freedom == 2 else np.full(len(speeds), np.nan)
-    lead = np.full(len(speeds), np.nan)
-    if force != 0.0:
-        lead = np.where(size > 0.0, np.degrees(np.angle(found.velocity * np.conj(force))), np.nan)
-    return {
-        "mean_friction_transverse": nothing,
-        "velocity_amplitude": size,
-        "velocity_harmonic": size,
-        "velocity_phase": lead,
-        "transverse_velocity_amplitude": nothing,
-        "transverse_velocity_harmonic": nothing,
-        "reversals": turns,
-        "force_reversals": turns,
-        "period": np.ones(len(speeds)),
-        **found.energies,
-    }
+def model_orbit(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:
+    """A model's harmonic motion about a position and the friction along it; no model of one harmonic knows rest."""
+    return replace(orbit_of_slip(motion, belt_speed, law, position), stick=None)
 
 
 def _orbit(scene: Scene, law: FrictionLaw, found: Harmonic, i: int) -> Orbit:
@@ -178,4 +169,4 @@ def _orbit(scene: Scene, law: FrictionLaw, found: Harmonic, i: int) -> Orbit:
     mass = scene.mass()
     motion = Motion(mass.normal_load, mass.frequency, complex(found.velocity[i]), 0j)
     pulled = mass.normal_load * law.sliding_friction(1.0) * math.copysign(found.mean[i], scene.belt_speed)
-    return orbit_of_slip(motion, scene.belt_speed, law, complex(pulled, 0.0))
+    return model_orbit(motion, scene.belt_speed, law, complex(pulled, 0.0))

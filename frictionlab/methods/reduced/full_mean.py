@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 from frictionlab.laws.base import SlidingLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
+from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
 TOLERANCE = 1e-9
@@ -16,13 +18,14 @@ TOLERANCE = 1e-9
 
 
 class FullMean(NamedTuple):
-    """The mean along x1, its error and the steady state's largest Floquet multiplier, NaN where it is not known; and
-    the reason then.
+    """The mean along x1 and its error, NaN where it is not known, and the reason then.
+
+    floquet(): the largest Floquet multiplier of the steady state.
     """
 
     mean: float
     error: float
-    floquet: float
+    floquet: Callable[[], float]
     reason: str
 
 
@@ -31,8 +34,12 @@ def full_mean(scene: Scene, law: SlidingLaw | BristleLaw) -> FullMean:
     method = Exact() if Exact().refusal(scene, law) is None else Shooting()
     free = scene.model_copy(update={"initial": None, "dimensional": None})
     found = method.solve([free], law, TOLERANCE * law.sliding_friction(1.0))
-    mean, error, floquet = (float(found.columns[name][0]) for name in ("mean_friction", "error", "floquet"))
+    mean, error = float(found.mean[0].real), float(found.error[0])
     if found.status[0] == "ok":
-        return FullMean(mean, error, floquet, "")
+        return FullMean(mean, error, lambda: _first(found.floquet), "")
     unknown = "no useful bound on the model error: no one steady state is known"
-    return FullMean(math.nan, math.nan, math.nan, f"{unknown} ({found.reason[0]}); use shooting")
+    return FullMean(math.nan, math.nan, lambda: math.nan, f"{unknown} ({found.reason[0]}); use shooting")
+
+
+def _first(floquet: Callable[[], Floats] | None) -> float:
+    return math.nan if floquet is None else float(floquet()[0])

@@ -81,7 +81,7 @@ def one_harmonic(scene: Scene, friction: float, belt_speeds: Floats) -> Harmonic
     )  # Eq. 5, without the arcsine's cancellation near 1
     held_still = (belt_speeds == 0.0) & (one_harmonic_least_ratio(scene, friction) > 0.0)
     reasons = [AT_REST if still else "" for still in held_still]
-    return Harmonic(mean, velocity, _energies(scene, friction, belt_speeds, size, held, mean), reasons)
+    return Harmonic(mean, velocity, reasons)
 
 
 def _reversal(scene: Scene, friction: float, belt_speeds: Floats) -> Floats:
@@ -95,18 +95,3 @@ def _reversal(scene: Scene, friction: float, belt_speeds: Floats) -> Floats:
     size = np.ones(len(belt_speeds))
     angle = monotone_root(excess, 0.0 * size, widest * size, belt_speeds)
     return np.where(belt_speeds == 0.0, 0.5 * math.pi, angle)
-
-
-def _energies(
-    scene: Scene, friction: float, belt_speeds: Floats, size: Floats, held: Floats, mean: Floats
-) -> dict[str, Floats]:
-    """Per period; the balanced harmonic closes them."""
-    mass = scene.mass()
-    period = 2.0 * math.pi / mass.frequency
-    viscous, rubbed = 0.5 * mass.damping * size**2 * period, 0.5 * held * size * period
-    return {
-        "energy_input": viscous + rubbed,
-        "energy_viscous": viscous,
-        "energy_friction": rubbed,
-        "energy_contact": rubbed + belt_speeds * friction * mean * period,
-    }

@@ -13,8 +13,16 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.methods.base import Answers, Method
 from frictionlab.methods.prescribed.method import solve_prescribed
-from frictionlab.methods.prescribed.quadrature import EPSILON, integrals, orbit_of_slip, slip_edges
-from frictionlab.methods.reduced.common import ROUNDING, Harmonic, answer_line, judged, line_refusal
+from frictionlab.methods.prescribed.quadrature import EPSILON, integrals, slip_edges
+from frictionlab.methods.reduced.common import (
+    ROUNDING,
+    Harmonic,
+    Modelled,
+    answer_line,
+    judged,
+    line_refusal,
+    model_orbit,
+)
 from frictionlab.methods.reduced.full_mean import full_mean
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -86,12 +94,12 @@ def _plane_refusal(scene: Scene, law: SlidingLaw) -> str | None:
 
 
 def friction_free(scene: Scene, friction: float, belt_speeds: Floats) -> Harmonic:
-    """The linear response, whatever the friction; friction has no share in its energies, which are left out."""
+    """The linear response, whatever the friction."""
     free, motion = friction_free_velocity(scene), friction_free_motion(scene)
     ratio = belt_speeds / free if free else np.where(belt_speeds > 0.0, math.inf, 0.0)
     mean = mean_prescribed_longitudinal(np.minimum(ratio, 1.0))
     velocity = np.full(len(belt_speeds), motion.velocity)
-    return Harmonic(mean, velocity, {}, [""] * len(belt_speeds))
+    return Harmonic(mean, velocity, [""] * len(belt_speeds))
 
 
 def friction_free_motion(scene: Scene) -> Motion:
@@ -108,33 +116,25 @@ def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -
     motion = friction_free_motion(scenes[0])
     points = [_point(scene, law, motion) for scene in scenes]
     reasons = [reason for _, reason in points]
-    columns = {name: np.array([row[name] for row, _ in points]) for name in points[0][0]}
-    columns |= _harmonic_columns(scenes, motion)
-    columns["seconds"] = np.full(len(scenes), (time.perf_counter() - start) / len(scenes))
+    means, errors = np.array([row[0] for row, _ in points]), np.array([row[1] for row, _ in points])
 
-    def orbit(i: int) -> Orbit | None:
-        if reasons[i]:
-            return None
-        return orbit_of_slip(motion, scenes[i].belt_speed, law, _position(scenes[i], points[i][0]))
+    def orbit(i: int) -> Orbit:
+        return model_orbit(motion, scenes[i].belt_speed, law, _position(scenes[i], means[i]))
 
-    return judged(columns, reasons, PLANE, tolerance, orbit)
+    return judged(Modelled(means, errors, time.perf_counter() - start), reasons, PLANE, tolerance, orbit)
 
 
-def _point(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[dict[str, float], str]:
+def _point(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[tuple[complex, float], str]:
     """Mean friction and its error, and why they do not stand."""
     edges = slip_edges(motion, scene.belt_speed)
     found = integrals(motion, scene.belt_speed, law, edges)
     mean = 0j if scene.belt_speed == 0.0 else -found.mean
-    row = {
-        "mean_friction": mean.real,
-        "error": ROUNDING * found.largest,
-        "mean_friction_transverse": mean.imag if scene.degrees_of_freedom == 2 else math.nan,
-    }
+    rounding = ROUNDING * found.largest
     if scene.belt_speed == 0.0:
-        return row, _at_rest(scene, law)
+        return (mean, rounding), _at_rest(scene, law)
     assert isinstance(law, SlidingLaw)
     error, reason = _error(scene, law, mean.real)
-    return row | {"error": row["error"] + error}, reason
+    return (mean, rounding + error), reason
 
 
 def _error(scene: Scene, law: SlidingLaw, mean: float) -> tuple[float, str]:
@@ -154,34 +154,10 @@ def _at_rest(scene: Scene, law: FrictionLaw) -> str:
     return "the belt is at rest and friction can hold the loads for ever: the mass stays wherever it stops"
 
 
-def _harmonic_columns(scenes: Sequence[Scene], motion: Motion) -> dict[str, Floats]:
-    """What the friction-free motion gives at every belt speed."""
-    along, across, force = motion.velocity, motion.transverse_velocity, scenes[0].mass().force
-    planar = scenes[0].degrees_of_freedom == 2
-    turns = [2.0 if abs(scene.belt_speed) < abs(along) else 0.0 for scene in scenes]
-    same = {
-        "velocity_amplitude": abs(along),
-        "velocity_harmonic": abs(along),
-        "velocity_phase": _lead(along, force),
-        "transverse_velocity_amplitude": abs(across) if planar else math.nan,
-        "transverse_velocity_harmonic": abs(across) if planar else math.nan,
-        "transverse_velocity_phase": _lead(across, force) if planar else math.nan,
-        "period": 1.0,
-    }
-    columns = {name: np.full(len(scenes), value) for name, value in same.items()}
-    return columns | {"reversals": np.array(turns), "force_reversals": np.array(turns)}
-
-
-def _lead(velocity: complex, force: complex) -> float:
-    """Phase [degrees] by which a velocity leads the load along x1."""
-    return math.degrees(float(np.angle(velocity * force.conjugate()))) if velocity and force else math.nan
-
-
-def _position(scene: Scene, row: dict[str, float]) -> complex:
+def _position(scene: Scene, mean: complex) -> complex:
     """Where mean friction holds the springs."""
-    mass, across = scene.mass(), row["mean_friction_transverse"]
-    sideways = 0.0 if math.isnan(across) else mass.normal_load * across / mass.transverse_stiffness
-    return complex(mass.normal_load * row["mean_friction"], sideways)
+    mass = scene.mass()
+    return mass.normal_load * complex(mean.real, mean.imag / mass.transverse_stiffness)
 
 
 def _answer_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
@@ -191,13 +167,13 @@ def _answer_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: flo
         return answers
     mu, model = law.sliding_friction(1.0), list(answers.model)
     reason, kind = list(answers.reason), list(answers.error_kind)
-    columns = {name: values.copy() for name, values in answers.columns.items()}
+    mean, error = answers.mean.copy(), answers.error.copy()
     for i, scene in enumerate(scenes):
         closed = _closed_form(scene.motion(), scene.belt_speed) if answers.status[i] == "ok" else None
         if closed is not None:
-            columns["mean_friction"][i], model[i] = mu * closed[0], closed[1]
-            columns["error"][i], kind[i], reason[i] = 32.0 * EPSILON * mu, "guaranteed", ""
-    return replace(answers, columns=columns, model=model, error_kind=kind, reason=reason)
+            mean[i], model[i] = complex(mu * closed[0], mean[i].imag), closed[1]
+            error[i], kind[i], reason[i] = 32.0 * EPSILON * mu, "guaranteed", ""
+    return replace(answers, mean=mean, error=error, model=model, error_kind=kind, reason=reason)
 
 
 def _closed_form(motion: Motion, belt_speed: float) -> tuple[float, str] | None:

@@ -14,6 +14,7 @@ import cmath
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,6 @@ from frictionlab.methods.base import Answers
 from frictionlab.methods.periodic.problem import PeriodicProblem, along_the_belt
 from frictionlab.methods.shooting.attractors import multiplier
 from frictionlab.orbit.panels import NODES, interpolation_weights
-from frictionlab.orbit.read import READ
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
@@ -33,8 +33,6 @@ Solver = Callable[[Sequence[Scene], BristleLaw, float], Answers]
 
 APART = "shooting, two degrees of freedom, each by itself: friction by axis does not couple them"
 HELD = "across the belt the bristle holds the load elastically: its mean there depends on the start"
-ENERGIES = "energy_input", "energy_viscous", "energy_friction", "energy_contact"
-OF_THE_AXIS = "velocity_amplitude", "velocity_harmonic"
 
 
 class OneAxis(Scene):
@@ -49,16 +47,17 @@ class OneAxis(Scene):
 
 @dataclass(frozen=True)
 class Across:
-    """The motion across the belt, by the columns of a scene of one degree of freedom; empty where it is not known."""
+    """The motion across the belt, as one along a belt at rest: its mean, error and multiplier, NaN where not known.
 
-    columns: dict[str, float]
+    orbit(): one of the motions where the mean hangs on the start, None where there is none.
+    """
+
+    mean: float
+    error: float
+    floquet: Callable[[], float]
     orbit: Callable[[], Orbit | None]
     reason: str
     seconds: float
-
-    def column(self, name: str) -> float:
-        """A column of it, NaN where it is not known."""
-        return self.columns.get(name, math.nan)
 
 
 def axes_apart(scene: Scene, law: BristleLaw) -> bool:
@@ -78,18 +77,32 @@ def solve_apart(solve: Solver, scenes: Sequence[Scene], law: BristleLaw, toleran
         "; ".join(part for part in (reason, across.reason if status == "ok" else "") if part)
         for status, reason in zip(along.status, along.reason, strict=True)
     ]
-    columns = along.columns | {
-        name: np.where(ok, values, along.columns[name])
-        for name, values in _columns(scenes[0], along, across).items()
-    }
-    columns["seconds"] = along.columns["seconds"] + across.seconds / len(scenes)
     models = [f"{APART}; {model.partition('; ')[2]}" for model in along.model]
+    nothing = np.full(len(scenes), np.nan)
+
+    def floquet() -> Floats:
+        own = nothing if along.floquet is None else along.floquet()
+        return np.where(ok, np.maximum(own, across.floquet()), own)
+
+    @cache
+    def other() -> Orbit | None:
+        return across.orbit()
 
     def orbit(i: int) -> Orbit | None:
-        both = along.orbit(i), across.orbit()
-        return None if both[0] is None or both[1] is None else joined(both[0], both[1])
+        one = along.orbit(i)
+        return None if one is None else joined(one, other())
 
-    return replace(along, reason=reasons, model=models, columns=columns, orbit=orbit)
+    return replace(
+        along,
+        reason=reasons,
+        model=models,
+        mean=along.mean.real + np.complex128(complex(0.0, across.mean)),
+        error=np.where(ok, np.fmax(along.error, across.error), along.error),
+        floquet=floquet,
+        seconds=(nothing if along.seconds is None else along.seconds) + across.seconds / len(scenes),
+        orbit=orbit,
+        orbits=None,
+    )
 
 
 def _along(scene: Scene) -> Scene:
@@ -119,56 +132,47 @@ def _turned(scene: Scene) -> OneAxis:
 def _across(solve: Solver, scene: Scene, law: BristleLaw, tolerance: float) -> Across:
     turned = _turned(scene)
     found = solve([turned], law, tolerance)
-    seconds = float(found.columns["seconds"][0])
-    if found.status[0] == "ok" and found.columns["error"][0] <= tolerance:
-        columns = {name: float(values[0]) for name, values in found.columns.items()}
-        return Across(columns, lambda: found.orbit(0), "", seconds)
-    return _held(turned, law, tolerance) or Across(
-        {}, lambda: None, f"across the belt: {found.reason[0]}", seconds
+    seconds = math.nan if found.seconds is None else float(found.seconds[0])
+    if found.status[0] == "ok" and found.error[0] <= tolerance:
+        mean, error = float(found.mean[0].real), float(found.error[0])
+        return Across(mean, error, lambda: _first(found.floquet), lambda: found.orbit(0), "", seconds)
+    unknown = Across(
+        math.nan, math.nan, lambda: math.nan, lambda: None, f"across the belt: {found.reason[0]}", seconds
     )
+    return _held(turned, law, tolerance) or unknown
+
+
+def _first(floquet: Callable[[], Floats] | None) -> float:
+    return math.nan if floquet is None else float(floquet()[0])
 
 
 def _held(turned: OneAxis, law: BristleLaw, tolerance: float) -> Across | None:
     """The motion of a mass whose bristle only follows it, but for the mean that it is held at; None for any other."""
     if law.elastic_deflection() == 0.0 or turned.own.damping == 0.0:
         return None
-    curve, seconds = PeriodicProblem(turned, law, tolerance).closed([turned])
+    problem = PeriodicProblem(turned, law, tolerance)
+    curve, seconds = problem.closed([turned])
     if curve.results[0, 3] < 0.0 or not multiplier(curve) > 1.0 - 1e-6:
         return None
-    columns = dict(zip(READ, curve.columns[0].tolist(), strict=True))
-    track = curve.last
-    orbit = Orbit(track.tau, track.x, track.v, track.friction, track.stick)
     return Across(
-        columns | {"mean_friction": math.nan, "floquet": multiplier(curve)}, lambda: orbit, HELD, seconds
+        math.nan,
+        math.nan,
+        lambda: multiplier(curve),
+        lambda: problem.orbits([turned], [curve.states[0]]).one(0),
+        HELD,
+        seconds,
     )
-
-
-def _columns(scene: Scene, along: Answers, across: Across) -> dict[str, Floats]:
-    """The columns that both motions have a part in, and those of the motion across."""
-    one = np.ones(len(along.status))
-    found = {f"transverse_{name}": across.column(name) * one for name in OF_THE_AXIS}
-    found |= {name: along.columns[name] + across.column(name) for name in ENERGIES}
-    found["mean_friction_transverse"] = across.column("mean_friction") * one
-    found["transverse_velocity_phase"] = _lead(scene, across.column("velocity_phase")) * one
-    found["floquet"] = np.maximum(along.columns["floquet"], across.column("floquet"))
-    found["error"] = np.fmax(along.columns["error"], across.column("error"))
-    return found
-
-
-def _lead(scene: Scene, lead: float) -> float:
-    """Of the motion across, told against the load across, against the load along the belt [degrees]."""
-    mass = scene.mass()
-    if mass.force == 0 or math.isnan(lead):
-        return math.nan
-    turn = cmath.rect(1.0, math.radians(lead)) * mass.transverse_force * mass.force.conjugate()
-    return math.degrees(cmath.phase(turn))
 
 
 Complexes = NDArray[np.complex128]
 
 
-def joined(along: Orbit, across: Orbit) -> Orbit:
-    """Both motions on panels that reach over no edge of either's."""
+def joined(along: Orbit, across: Orbit | None) -> Orbit:
+    """Both motions on panels that reach over no edge of either's; NaN across the belt where that is unknown."""
+    if across is None:
+        unknown = np.complex128(complex(0.0, math.nan))
+        x, v, friction = (part.real + unknown for part in (along.x, along.v, along.friction))
+        return replace(along, x=x, v=v, friction=friction)
     end = along.tau[-1, -1]
     edges = np.unique(np.concatenate([along.tau[:, 0], across.tau[:, 0]]))
     edges = edges[(np.diff(edges, append=end) > 1e-12 * end)]

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.methods.base import Answers, Method, Status
 from frictionlab.methods.periodic.attraction import MOST_PERIODS
-from frictionlab.methods.periodic.continuation import Curve
+from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, along_the_belt
 from frictionlab.methods.prescribed.bristle import refusal_of_prescribed
 from frictionlab.methods.prescribed.method import solve_prescribed
@@ -21,11 +22,11 @@ from frictionlab.methods.shooting.attractors import attractors, closed_orbit, mu
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.saturated import saturates, solve_saturated
 from frictionlab.methods.shooting.undriven import solve_undriven
-from frictionlab.orbit.read import READ
-from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import resting_range, stays_at_rest
+
+NOTHING = complex(math.nan, math.nan)
 
 
 class Shooting(Method):
@@ -90,8 +91,10 @@ class Shooting(Method):
         found = Found.empty(scenes, closer)
         resting = [i for i, scene in enumerate(scenes) if stays_at_rest(scene, law)]
         moving = [i for i in range(len(scenes)) if i not in resting]
+        judged_by_multipliers = not closer.goal.contracts or _undamped(scenes[0])
+        wanted = DIFFERENTIATED if judged_by_multipliers else CLOSED
         if moving:
-            found.take(moving, scenes[0], *closer.closed([scenes[i] for i in moving]))
+            found.take(moving, scenes[0], *closer.closed([scenes[i] for i in moving], wanted=wanted))
         for i in moving if not closer.goal.contracts else ():
             if isinstance(law, BristleLaw) and found.holds_elastically(i, scenes[i], law):
                 found.leave_elastic(i, law)
@@ -108,30 +111,43 @@ class Shooting(Method):
                     f"started from scene.initial the mass still creeps after {MOST_PERIODS} periods"
                 )
             else:
-                found.take([i], scenes[i], *closer.closed([scenes[i]], settled[0]))
-                found.columns["error"][i] += 1e-11 * settled[1]  # of the steps on the way there
+                found.take([i], scenes[i], *closer.closed([scenes[i]], settled[0], wanted=wanted))
+                found.error[i] += 1e-11 * settled[1]  # of the steps on the way there
                 found.reason[i] = "the state reached from scene.initial; other starts come to rest elsewhere"
         found.judge(tolerance)
         return Answers(
-            found.status,
-            found.reason,
-            [_model(scenes[0], closer)] * len(scenes),
-            ["estimated" if status == "ok" else "" for status in found.status],
-            found.columns,
-            lambda i: _orbit(closer, scenes[i], found.states[i]),
+            status=found.status,
+            reason=found.reason,
+            model=[_model(scenes[0], closer)] * len(scenes),
+            error_kind=["estimated" if status == "ok" else "" for status in found.status],
+            mean=found.mean,
+            error=found.error,
+            period=found.period,
+            floquet=lambda: found.floquet(closer, scenes),
+            mean_low=found.low,
+            mean_high=found.high,
+            window=np.where(np.isnan(found.low), np.nan, 1.0),
+            seconds=found.seconds,
+            orbit=lambda i: closer.orbits([scenes[i]], [found.states[i]]).one(0),
+            orbits=lambda: closer.orbits(scenes, found.states),
         )
 
 
 @dataclass(frozen=True)
 class Found:
-    """What has been found so far of a curve's answers."""
+    """What has been found so far of a curve's answers; multipliers: NaN where nothing has asked for them."""
 
     status: list[Status]
     reason: list[str]
     states: list[Floats | None]
     reached: list[bool]
-    columns: dict[str, Floats]
-    planar: bool
+    mean: NDArray[np.complex128]
+    error: Floats
+    low: Floats
+    high: Floats
+    period: Floats
+    multipliers: Floats
+    seconds: Floats
     whole: (
         bool  # states have every degree of freedom: along the line, multipliers across the belt are left out
     )
@@ -140,17 +156,27 @@ class Found:
     def empty(cls, scenes: Sequence[Scene], closer: PeriodicProblem) -> Found:
         """Nothing found yet for these scenes."""
         n = len(scenes)
-        names = [name for name in READ if not name.startswith("mean_position")]
-        names += ["error", "mean_low", "mean_high", "window", "period", "floquet", "seconds"]
-        columns = {name: np.full(n, np.nan) for name in names}
-        planar = scenes[0].degrees_of_freedom == 2
-        whole = planar == isinstance(closer.like, complex)
-        return cls(["failed"] * n, [""] * n, [None] * n, [False] * n, columns, planar, whole)
+        whole = (scenes[0].degrees_of_freedom == 2) == isinstance(closer.like, complex)
+        error, low, high, period, multipliers, seconds = np.full((6, n), np.nan)
+        return cls(
+            status=["failed"] * n,
+            reason=[""] * n,
+            states=[None] * n,
+            reached=[False] * n,
+            mean=np.full(n, NOTHING),
+            error=error,
+            low=low,
+            high=high,
+            period=period,
+            multipliers=multipliers,
+            seconds=seconds,
+            whole=whole,
+        )
 
     def take(self, where: list[int], scene: Scene, curve: Curve, seconds: float) -> None:
         """Take in the closed orbits of the scenes at these places."""
-        self.columns["seconds"][where] = seconds / len(where)
-        multipliers = np.abs(np.linalg.eigvals(curve.matrices)).max(axis=1)
+        self.seconds[where] = seconds / len(where)
+        multipliers = _multipliers(curve)
         for row, i in enumerate(where):
             self.reached[i] = bool(curve.reached[row])
             maps, error = curve.results[row, 3], curve.results[row, 2]
@@ -163,17 +189,27 @@ class Found:
                 self._range(i, curve.results[row, 0], curve.results[row, 0])
             else:
                 self._put(i, curve, row)
-                self.columns["floquet"][i] = multipliers[row] if self.whole else np.nan
+                self.multipliers[i] = multipliers[row]
+
+    def floquet(self, closer: PeriodicProblem, scenes: Sequence[Scene]) -> Floats:
+        """The largest multipliers, where those of every degree of freedom are known; found where not known yet."""
+        if not self.whole:
+            return np.full(len(scenes), np.nan)
+        open_ones = [
+            state if math.isnan(known) else None
+            for state, known in zip(self.states, self.multipliers, strict=True)
+        ]
+        return np.fmax(self.multipliers, closer.multipliers(scenes, open_ones))
 
     def attracts(self, i: int) -> bool:
         """Whether no small disturbance leaves the answer, and both starts that are quick to ask end there."""
-        return self.status[i] == "ok" and self.reached[i] and not self.columns["floquet"][i] > 1.0 + 1e-6
+        return self.status[i] == "ok" and self.reached[i] and not self._known(i) > 1.0 + 1e-6
 
     def holds_elastically(self, i: int, scene: Scene, law: BristleLaw) -> bool:
         """Whether on a belt at rest the bristle only follows the mass: nothing then decides about its mean."""
         if scene.belt_speed != 0.0 or law.elastic_deflection() == 0.0:
             return False
-        return self.status[i] != "ok" or bool(self.columns["floquet"][i] > 1.0 - 1e-6)
+        return self.status[i] != "ok" or bool(self._known(i) > 1.0 - 1e-6)
 
     def leave_elastic(self, i: int, law: BristleLaw) -> None:
         """A bristle that never yields on a belt at rest: its mean deflection depends on the start."""
@@ -191,12 +227,12 @@ class Found:
             curve, _ = closer.closed([scene], self.states[i])
             known = closed_orbit(curve, curve.results[0, :1])
         reached, seconds = attractors(closer, scene, known)
-        self.columns["seconds"][i] += seconds
+        self.seconds[i] += seconds
         first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
         self._clear(i)
         if first.period == 1 and first.curve is not None and (unique or scene.initial is not None):
             self._put(i, first.curve, 0)
-            self.columns["floquet"][i] = self._largest(first.curve)
+            self.multipliers[i] = multiplier(first.curve)
             self.reason[i] = "" if unique else f"reached from scene.initial; {told(reached)}"
             return
         if closer.falls_slowly and all(one.curve is None for one in reached):
@@ -207,18 +243,18 @@ class Found:
         why = f"{lags} lags behind the slip" if closer.falls_slowly else "friction falls with speed"
         self.reason[i] = f"{why}: {told(reached)}"
         if unique and first.curve is not None:
-            self.columns["period"][i] = first.period
-            self.columns["floquet"][i] = self._largest(first.curve)
+            self.period[i] = first.period
+            self.multipliers[i] = multiplier(first.curve)
 
-    def _largest(self, curve: Curve) -> float:
-        """The largest Floquet multiplier, where those of every degree of freedom are known."""
-        return multiplier(curve) if self.whole else math.nan
+    def _known(self, i: int) -> float:
+        """The largest multiplier, where those of every degree of freedom are known."""
+        return float(self.multipliers[i]) if self.whole else math.nan
 
     def _clear(self, i: int) -> None:
         self.status[i], self.reason[i], self.states[i] = "failed", "", None
-        for name, column in self.columns.items():
-            if name != "seconds":
-                column[i] = np.nan
+        self.mean[i] = NOTHING
+        for numbers in (self.error, self.low, self.high, self.period, self.multipliers):
+            numbers[i] = np.nan
 
     def leave_open(self, i: int, highest: float) -> None:
         """A mass that can rest for ever on a belt at rest: where it rests depends on where it starts."""
@@ -230,22 +266,16 @@ class Found:
 
     def _range(self, i: int, low: float, high: float) -> None:
         self.status[i] = "not_unique"
-        self.columns["mean_low"][i], self.columns["mean_high"][i] = low, high
-        self.columns["window"][i] = 1.0
+        self.low[i], self.high[i] = low, high
 
     def _put(self, i: int, curve: Curve, row: int) -> None:
-        for name, value in zip(READ, curve.columns[row], strict=True):
-            if name in self.columns and (self.planar or "transverse" not in name):
-                self.columns[name][i] = value
         mean, across, error = curve.results[row, :3]
-        self.columns["mean_friction"][i] = mean
-        self.columns["mean_friction_transverse"][i] = across if self.planar else math.nan
-        self.columns["error"][i], self.columns["period"][i] = error, 1.0
+        self.mean[i], self.error[i], self.period[i] = complex(mean, across), error, 1.0
         self.status[i], self.states[i] = "ok", curve.states[row]
 
     def judge(self, tolerance: float) -> None:
         """Say where the error is above the tolerance."""
-        for i, error in enumerate(self.columns["error"]):
+        for i, error in enumerate(self.error):
             if self.status[i] == "ok" and not error <= tolerance:
                 said = f"the error is above the tolerance {tolerance:.1e}"
                 self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
@@ -291,8 +321,8 @@ def _model(scene: Scene, closer: PeriodicProblem) -> str:
     return f"{model}; mass and bristle solved for together (Rodas5P)"
 
 
-def _orbit(closer: PeriodicProblem, scene: Scene, state: Floats | None) -> Orbit | None:
-    if state is None:
-        return None
-    track = closer.closed([scene], state)[0].last
-    return Orbit(track.tau, track.x, track.v, track.friction, track.stick)
+def _multipliers(curve: Curve) -> Floats:
+    """The largest modulus of each orbit's; NaN where the maps were not differentiated."""
+    if not len(curve.matrices):
+        return np.full(len(curve.states), np.nan)
+    return np.asarray(np.abs(np.linalg.eigvals(curve.matrices)).max(axis=1))

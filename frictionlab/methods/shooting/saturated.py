@@ -19,6 +19,7 @@ import numpy as np
 from frictionlab.laws.base import Positive, SlidingLaw
 from frictionlab.laws.memory import ROTATED, BristleLaw
 from frictionlab.methods.base import Answers
+from frictionlab.orbit.read import read_columns
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
@@ -73,14 +74,19 @@ def solve_saturated(solve: Solver, scenes: Sequence[Scene], law: BristleLaw, tol
     mu = law.sliding_friction(1.0)
     free = [scene.model_copy(update={"initial": None, "dimensional": None}) for scene in scenes]
     found = solve(free, Saturated(mu=mu), tolerance)
-    way = found.columns["energy_contact"] / (scenes[0].mass().normal_load * mu)
-    columns = found.columns | {"floquet": np.maximum(found.columns["floquet"], _forgotten(law, way))}
+
+    def floquet() -> Floats:
+        heat = read_columns(free, found.orbit, found.orbits)["energy_contact"]
+        way = heat / (scenes[0].mass().normal_load * mu)
+        own = np.full(len(way), np.nan) if found.floquet is None else found.floquet()
+        return np.asarray(np.maximum(own, _forgotten(law, way)))
+
     reasons = [
         HELD if status == "not_unique" and scene.belt_speed == 0.0 else reason
         for status, reason, scene in zip(found.status, found.reason, scenes, strict=True)
     ]
     models = [f"{model}; {SATURATED}" for model in found.model]
-    return replace(found, reason=reasons, model=models, columns=columns)
+    return replace(found, reason=reasons, model=models, floquet=floquet)
 
 
 def _forgotten(law: BristleLaw, way: Floats) -> Floats:

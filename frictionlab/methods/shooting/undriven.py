@@ -25,10 +25,8 @@ from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.period_map import pack, size_of
 from frictionlab.methods.periodic.problem import PeriodicProblem
-from frictionlab.orbit.read import READ, read
 from frictionlab.orbit.record import Orbit
-from frictionlab.orbit.recorder import track_of
-from frictionlab.quantities import Floats
+from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.scene.body import Body, Mass, on_the_line
 from frictionlab.scene.scene import Scene
 
@@ -45,12 +43,11 @@ def followed(law: Any, body: Body, belt_speed: float, x: float, v: float, accura
 
 
 @inner
-def recorded(law: Any, body: Body, mass: Mass, belt_speed: float, x: float, v: float, accuracy: float) -> Any:
-    """What is read from the motion from x, v over the span of the body, and its record."""
+def recorded(law: Any, body: Body, belt_speed: float, x: float, v: float, accuracy: float) -> Track:
+    """The motion from x, v over the span of the body, piece by piece."""
     z = np.empty(size_of(law, x))
     pack(body, z, x, v)
-    track = record_orbit(law, body, belt_speed, z, accuracy, x)
-    return read(track.tau, track.x, track.v, track.friction, track.stick, mass, belt_speed), track
+    return record_orbit(law, body, belt_speed, z, accuracy, track_of(128), x)
 
 
 class Motion(NamedTuple):
@@ -71,9 +68,8 @@ class NotFound(Exception):
 
 def solve_undriven(scenes: Sequence[Scene], law: SlidingLaw, tolerance: float) -> Answers:
     """Answer undriven scenes, each by the state it reaches from its start."""
-    names = [name for name in READ if not name.startswith("mean_position") and "transverse" not in name]
-    names += ["error", "period", "floquet", "seconds"]
-    columns = {name: np.full(len(scenes), np.nan) for name in names}
+    numbers = np.full((5, len(scenes)), np.nan)
+    mean, error, period, multipliers, seconds = numbers
     status: list[Status] = ["failed"] * len(scenes)
     reason, model, kind = [""] * len(scenes), [""] * len(scenes), [""] * len(scenes)
     found: dict[int, tuple[_Follower, Motion]] = {}
@@ -86,15 +82,24 @@ def solve_undriven(scenes: Sequence[Scene], law: SlidingLaw, tolerance: float) -
             reason[i] = str(problem)
             continue
         finally:
-            columns["seconds"][i] = time.perf_counter() - begin
+            seconds[i] = time.perf_counter() - begin
         found[i] = follower, motion
         status[i], model[i], kind[i] = "ok", f"undriven: {motion.kind}", "estimated"
-        for name, value in follower.row(motion).items():
-            columns[name][i] = value
+        mean[i], error[i] = motion.mean, motion.error
+        period[i], multipliers[i] = motion.period / TURN, motion.multiplier
         if not motion.error <= tolerance:
             reason[i] = f"the error is above the tolerance {tolerance:.1e}"
     return Answers(
-        status, reason, model, kind, columns, lambda i: found[i][0].orbit(found[i][1]) if i in found else None
+        status=status,
+        reason=reason,
+        model=model,
+        error_kind=kind,
+        mean=mean,
+        error=error,
+        period=period,
+        floquet=lambda: multipliers,
+        seconds=seconds,
+        orbit=lambda i: found[i][0].orbit(found[i][1]) if i in found else None,
     )
 
 
@@ -312,29 +317,14 @@ class _Follower:
             at = new
         return image.y, at
 
-    # --- what is read ---
-
-    def row(self, motion: Motion) -> dict[str, float]:
-        """The columns of the motion; of one that stands still, over 2 pi."""
-        values, _ = self._recorded(motion)
-        row = {
-            name: float(value)
-            for name, value in zip(READ, values, strict=True)
-            if not name.startswith("mean_position") and "transverse" not in name
-        }
-        own = {"mean_friction": motion.mean, "error": motion.error}
-        return row | own | {"period": motion.period / TURN, "floquet": motion.multiplier}
-
     def orbit(self, motion: Motion) -> Orbit:
         """The orbit of the motion; of one that stands still, over 2 pi."""
-        _, track = self._recorded(motion)
-        return Orbit(track.tau, track.x, track.v, track.friction, track.stick)
-
-    def _recorded(self, motion: Motion) -> tuple[Floats, Any]:
         turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
         body = self._body._replace(periods=turns)
         speed, accuracy = self.scene.belt_speed, self._accuracy / FINER
-        return compiled(recorded, self.law)(body, self._mass, speed, motion.x, motion.v, accuracy)
+        track = compiled(recorded, self.law)(body, speed, motion.x, motion.v, accuracy)
+        parts = track.tau, track.x, track.v, track.friction, track.stick
+        return Orbit(*(part[: track.filled[0]] for part in parts))
 
 
 _NEAR = np.array([1.0 - 1e-6, 1.0, 1.0 + 1e-6])

@@ -116,9 +116,8 @@ def two_methods(one: Given) -> None:
     both = [i for i in range(3) if ours.status[i] == theirs.status[i] == "ok"]
     assume(both)
     for i in both:
-        (a, b), (of_a, of_b) = (
-            [found.columns[name][i] for found in (ours, theirs)] for name in ("mean_friction", "error")
-        )
+        a, b = (float(found.mean[i].real) for found in (ours, theirs))
+        of_a, of_b = ours.error[i], theirs.error[i]
         one.require(
             abs(a - b) <= of_a + of_b,
             f"at belt speed {curve[i].belt_speed:g} they differ by more than their errors {of_a:.1e}, {of_b:.1e}",
@@ -137,4 +136,4 @@ def _mean(one: Given, scene: Scene, law: FrictionLaw, tolerance: float) -> float
     answers = Shooting().solve([scene], law, tolerance)
     ok = answers.status[0] == "ok"
     one.require(ok, f"shooting finds no steady state of the stiff law: {answers.reason[0]}")
-    return float(answers.columns["mean_friction"][0])
+    return float(answers.mean[0].real)

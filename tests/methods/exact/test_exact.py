@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from answered import with_columns
 from brute_force import Numbers, follow, steps_per_period
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -50,7 +51,7 @@ def solve(scenes, tolerance=1e-11, law=LAW):
     """Answers, each scene accepted."""
     scenes = [scenes] if isinstance(scenes, Scene) else scenes
     assert all(Exact().refusal(one, law) is None for one in scenes)
-    return Exact().solve(scenes, law, tolerance)
+    return with_columns(Exact(), scenes, law, tolerance)
 
 
 def driven(load, frequency, damping, friction, belt_speed=0.0, **more):

@@ -8,6 +8,7 @@ import os
 import collocation
 import numpy as np
 import pytest
+from answered import with_columns
 from collocation import REFERENCE
 from hypothesis import given
 from hypothesis import strategies as st
@@ -58,7 +59,7 @@ def solve(scenes, law=LAW, tolerance=1e-4, **keys):
     scenes = [scenes] if isinstance(scenes, Scene) else scenes
     method = March(**keys)
     assert all(method.refusal(one, law) is None for one in scenes)
-    return method.solve(scenes, law, tolerance)
+    return with_columns(method, scenes, law, tolerance)
 
 
 def covered(answers, expected, known_to=1e-10):
@@ -78,7 +79,7 @@ def test_ten_points_of_every_figure_along_the_belt_agree_with_the_exact_method(f
     answers = solve(scenes, tolerance=3e-4)
     assert answers.status == ["ok"] * 10
     assert np.all(answers.columns["error"] <= 3e-4)
-    assert covered(answers, Exact().solve(scenes, LAW, 1e-11).columns["mean_friction"])
+    assert covered(answers, with_columns(Exact(), scenes, LAW, 1e-11).columns["mean_friction"])
 
 
 @pytest.mark.parametrize("path", PLANAR, ids=lambda path: path.stem)
@@ -102,7 +103,7 @@ def test_ten_points_of_every_figure_in_the_plane_agree_with_the_reference(path):
 
 @given(one=scenes_on_the_line(), theta=st.sampled_from([0.5, 1.0]))
 def test_the_error_of_moreau_covers_random_scenes_along_the_belt(one, theta):
-    expected = Exact().solve([one], LAW, 1e-9)
+    expected = with_columns(Exact(), [one], LAW, 1e-9)
     answers = solve(one, tolerance=1e-3, theta=theta)
     if answers.status == ["ok"] and expected.status == ["ok"]:
         assert covered(answers, expected.columns["mean_friction"], expected.columns["error"])
@@ -110,7 +111,7 @@ def test_the_error_of_moreau_covers_random_scenes_along_the_belt(one, theta):
 
 @given(one=scenes_in_the_plane())
 def test_the_error_of_moreau_covers_random_scenes_in_the_plane(one):
-    expected = Shooting().solve([one], LAW, 1e-8)
+    expected = with_columns(Shooting(), [one], LAW, 1e-8)
     answers = solve(one, tolerance=1e-3)
     if answers.status == ["ok"] and expected.status == ["ok"]:
         assert covered(answers, expected.columns["mean_friction"], expected.columns["error"])
@@ -121,7 +122,7 @@ def test_the_error_of_moreau_covers_random_scenes_in_the_plane(one):
 )
 def test_the_error_of_given_steps_covers(keys):
     scenes = [scene(v) for v in (0.5, 5.0, 20.0, 40.0, 45.0, 49.9, 55.0)]
-    assert covered(solve(scenes, **keys), Exact().solve(scenes, LAW, 1e-11).columns["mean_friction"])
+    assert covered(solve(scenes, **keys), with_columns(Exact(), scenes, LAW, 1e-11).columns["mean_friction"])
 
 
 @pytest.mark.parametrize("smoothing", ["tanh", "square_root", "arctan"])
@@ -130,7 +131,7 @@ def test_the_error_of_smoothed_friction_covers_its_bias(smoothing, width):
     scenes = [scene(v) for v in (2.0, 20.0, 40.0, 43.0, 49.5, 55.0)]
     answers = solve(scenes, stepper="smoothed", smoothing=smoothing, width=width)
     assert answers.status == ["ok"] * len(scenes)
-    assert covered(answers, Exact().solve(scenes, LAW, 1e-11).columns["mean_friction"])
+    assert covered(answers, with_columns(Exact(), scenes, LAW, 1e-11).columns["mean_friction"])
 
 
 def test_extrapolation_is_used_where_the_order_is_seen_and_told():
@@ -138,7 +139,7 @@ def test_extrapolation_is_used_where_the_order_is_seen_and_told():
     one = scene(26.5, normal_load=1.0, transverse=across)
     answers = solve(one, tolerance=1e-6)
     assert "extrapolated at order 2" in answers.model[0]
-    expected = Shooting().solve([one], LAW, 1e-10).columns["mean_friction"]
+    expected = with_columns(Shooting(), [one], LAW, 1e-10).columns["mean_friction"]
     assert covered(answers, expected)
     steps = int(answers.model[0].split(": ")[1].split(" ")[0])
     plain = solve(one, steps=steps, tolerance=1e-6).columns["mean_friction"]
@@ -153,7 +154,7 @@ def test_extrapolation_is_used_where_the_order_is_seen_and_told():
 )
 def test_the_other_columns_are_those_of_the_exact_method(keys):
     one = scene(20.0)
-    found, expected = solve(one, **keys).columns, Exact().solve([one], LAW, 1e-10).columns
+    found, expected = solve(one, **keys).columns, with_columns(Exact(), [one], LAW, 1e-10).columns
     for name in (
         "velocity_amplitude",
         "velocity_harmonic",
@@ -171,7 +172,7 @@ def test_the_other_columns_are_those_of_the_exact_method(keys):
 
 def test_the_share_of_stick_is_that_of_the_exact_method_and_empty_for_steppers_that_never_rest():
     one = scene(0.5, drive=Drive(amplitude=2.5, frequency=0.5))
-    expected = Exact().solve([one], LAW, 1e-10).columns["stick_fraction"]
+    expected = with_columns(Exact(), [one], LAW, 1e-10).columns["stick_fraction"]
     assert solve(one).columns["stick_fraction"] == pytest.approx(expected, abs=2e-3)
     assert np.isnan(solve(one, stepper="smoothed").columns["stick_fraction"][0])
 
@@ -198,7 +199,7 @@ def test_a_load_along_the_belt_alone_leaves_one_degree_of_freedom():
 )
 def test_chatter_of_steps_over_many_laps_is_read_as_one_drive_period(one, steps):
     answers = solve(one, stepper="rk4", steps=steps)
-    found, expected = answers.columns, Exact().solve([one], LAW, 1e-10).columns
+    found, expected = answers.columns, with_columns(Exact(), [one], LAW, 1e-10).columns
     assert found["period"][0] == 1.0
     orbit = answers.orbit(0)
     assert np.ptp(orbit.tau) * one.frequency / (2.0 * math.pi) == pytest.approx(1.0)
@@ -266,7 +267,7 @@ def test_two_level_friction_without_damping_has_the_period_of_its_closed_form(si
 def test_an_undriven_mass_on_a_belt_at_rest_stays_where_it_rests_from_the_default_start(stepper):
     one = Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=0.0)
     answers = solve(one, stepper=stepper)
-    assert answers.status == Shooting().solve([one], LAW, 1e-8).status == ["ok"]
+    assert answers.status == with_columns(Shooting(), [one], LAW, 1e-8).status == ["ok"]
     assert answers.columns["mean_friction"][0] == 0.0
     assert np.isnan(answers.columns["period"][0])
 
@@ -304,7 +305,7 @@ def test_prescribed_slip_in_the_plane_agrees_with_quadrature():
         slip=Slip(velocity_amplitude=1.0, frequency=1.0),
         transverse_slip=TransverseSlip(velocity_amplitude=0.8, phase=50.0),
     )
-    answers, expected = solve(one, tolerance=1e-8), Exact().solve([one], LAW, 1e-12)
+    answers, expected = solve(one, tolerance=1e-8), with_columns(Exact(), [one], LAW, 1e-12)
     assert covered(answers, expected.columns["mean_friction"])
     assert answers.columns["error"][0] <= 1e-8
     assert answers.orbit(0) is not None
@@ -352,7 +353,7 @@ def test_a_motion_that_never_repeats_shows_the_range_of_its_means():
 @pytest.mark.parametrize("start", [None, Initial(x=0.5)])
 def test_a_response_of_several_drive_periods_has_as_many_means_as_shooting_says(start):
     one = scene(0.3, damping_ratio=0.01, drive=Drive(amplitude=0.2, frequency=1.3), initial=start)
-    answers, expected = solve(one, FALLING, 1e-4), Shooting().solve([one], FALLING, 1e-8)
+    answers, expected = solve(one, FALLING, 1e-4), with_columns(Shooting(), [one], FALLING, 1e-8)
     assert answers.status == expected.status == ["not_unique"]
     for name in ("mean_low", "mean_high", "window", "period"):
         assert answers.columns[name] == pytest.approx(expected.columns[name], abs=1e-4), name
@@ -368,7 +369,7 @@ def test_falling_friction_has_one_answer_where_every_start_leads_to_it(speed, dr
     answers = solve(one, law, 1e-3)
     assert answers.status == ["ok"]
     assert answers.reason == [""]
-    assert covered(answers, Shooting().solve([one], law, 1e-9).columns["mean_friction"])
+    assert covered(answers, with_columns(Shooting(), [one], law, 1e-9).columns["mean_friction"])
 
 
 def test_laps_that_only_the_steps_tell_apart_are_one_period():
@@ -388,7 +389,7 @@ def test_laps_that_only_the_steps_tell_apart_are_one_period():
         assert answers.status == ["ok"]
         assert answers.columns["period"][0] == 1.0
         assert answers.columns["reversals"] == pytest.approx(2.0, abs=0.5)
-        assert covered(answers, Shooting().solve([one], law, 1e-7).columns["mean_friction"])
+        assert covered(answers, with_columns(Shooting(), [one], law, 1e-7).columns["mean_friction"])
 
 
 def test_where_two_states_attract_both_are_told_and_the_given_start_decides():
@@ -396,7 +397,7 @@ def test_where_two_states_attract_both_are_told_and_the_given_start_decides():
     quiet = {"damping_ratio": 0.01, "normal_load": 1.0, "drive": Drive(amplitude=0.05, frequency=3.0)}
     open_ = solve(scene(0.6, **quiet), law)
     sliding = scene(0.6, **quiet, initial=Initial(x=law.sliding_friction(0.6)))
-    given_, expected = solve(sliding, law), Shooting().solve([sliding], law, 1e-8)
+    given_, expected = solve(sliding, law), with_columns(Shooting(), [sliding], law, 1e-8)
     assert open_.status == ["not_unique"]
     assert open_.columns["window"][0] == 1.0
     assert "friction falls with speed: " in open_.reason[0]
@@ -504,7 +505,8 @@ def test_a_belt_slower_than_the_chatter_of_rk4_leaves_the_mean_anywhere():
     law, steps = Coulomb(mu=0.4), 100
     jump = 10.0 * 0.4 * 2.0 * math.pi / (4 * steps)  # what friction does to the velocity in the finest step
     slow, quick = (
-        March(stepper="rk4", steps=steps).solve(
+        with_columns(
+            March(stepper="rk4", steps=steps),
             [
                 Scene(
                     damping_ratio=0.1,

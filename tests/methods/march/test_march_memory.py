@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 import pytest
+from answered import with_columns
 from memory_laws import Ageing, elements
 
 from frictionlab.laws.jenkins import Jenkins
@@ -31,7 +32,7 @@ def driven(belt_speed, **changes):
 def solve(method, scene, law, tolerance):
     """Mean and error of an answer that is accepted and ok."""
     assert method.refusal(scene, law) is None
-    answers = method.solve([scene], law, tolerance)
+    answers = with_columns(method, [scene], law, tolerance)
     assert answers.status == ["ok"], answers.reason
     return float(answers.columns["mean_friction"][0]), float(answers.columns["error"][0])
 
@@ -67,7 +68,7 @@ def test_march_and_shooting_agree_about_an_age_where_slip_never_reverses(law):
 
 
 def test_where_slip_comes_to_rest_an_age_is_refused_by_march_and_left_to_shooting():
-    answers = March().solve([driven(5.0)], AGEING, 1e-3)
+    answers = with_columns(March(), [driven(5.0)], AGEING, 1e-3)
 
     assert answers.status == ["refused"]
     assert "comes to rest" in answers.reason[0]
@@ -89,7 +90,7 @@ def test_a_motion_faster_than_without_friction_takes_more_steps_by_itself():
     soft = elements(stiffness=(0.1, 0.35), reach=(4.0, 0.07))
     scene = driven(2.0, damping_ratio=0.1)
     fewest = fewest_steps(scene, soft)
-    given = March(steps=fewest).solve([scene], soft, 1e-2)
+    given = with_columns(March(steps=fewest), [scene], soft, 1e-2)
 
     assert given.status == ["refused"]
     assert "would do" in given.reason[0]

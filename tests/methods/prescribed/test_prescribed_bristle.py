@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from answered import with_columns
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from oracle import REFERENCE
@@ -60,7 +61,7 @@ def elasto_plastic(softness, **more):
 def answer(scene, law, tolerance=TOLERANCE):
     method = Exact() if Exact().refusal(scene, law) is None else Shooting()
     assert method.refusal(scene, law) is None
-    return method.solve([scene], law, tolerance)
+    return with_columns(method, [scene], law, tolerance)
 
 
 def mean(scene, law):
@@ -463,7 +464,7 @@ def test_coulombs_mean_is_the_gradient_of_the_mean_slip_speed(
         slip=Slip(velocity_amplitude=along, frequency=1.0),
         transverse_slip=TransverseSlip(velocity_amplitude=across, phase=phase),
     )
-    answers = Shooting().solve([scene], Coulomb(mu=0.4), 1e-9)
+    answers = with_columns(Shooting(), [scene], Coulomb(mu=0.4), 1e-9)
     means = answers.columns["mean_friction"][0], answers.columns["mean_friction_transverse"][0]
     assert abs(means[0] - 0.4 * gradient.real) <= 1e-7
     assert abs(means[1] - 0.4 * gradient.imag) <= 1e-7

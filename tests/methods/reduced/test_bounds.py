@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from answered import with_columns
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -79,7 +80,9 @@ def test_a_slow_drive_makes_the_free_oscillation_reverse_the_slip_once_more(rati
     )
     free = friction_free_velocity(one)
     speed = (0.7 if ratio == 0.1 else 0.5) * free
-    exact = Exact().solve([one.model_copy(update={"belt_speed": speed})], Coulomb(mu=0.4), 1e-9).columns
+    exact = with_columns(
+        Exact(), [one.model_copy(update={"belt_speed": speed})], Coulomb(mu=0.4), 1e-9
+    ).columns
     body = Line(0.05, 0.5, ratio, free)
     shares = np.linspace(0.01, 0.5, 2000)
     found = motions(body, shares)

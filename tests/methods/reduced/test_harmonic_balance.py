@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from answered import with_columns
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -50,7 +51,7 @@ def solve(scenes):
     """Answers, each scene accepted."""
     scenes = [scenes] if isinstance(scenes, Scene) else scenes
     assert all(HarmonicBalance().refusal(one, LAW) is None for one in scenes)
-    return HarmonicBalance().solve(scenes, LAW, 1e-8)
+    return with_columns(HarmonicBalance(), scenes, LAW, 1e-8)
 
 
 def balance(one, amplitude):
@@ -79,7 +80,7 @@ def test_the_amplitude_is_the_one_root_of_the_balance_found_by_bisection(
         middle = 0.5 * (low + high)
         low, high = (middle, high) if balance(one, middle) < 0.0 else (low, middle)
 
-    found = HarmonicBalance().solve([one], LAW, 1e-8)
+    found = with_columns(HarmonicBalance(), [one], LAW, 1e-8)
 
     assume(found.status[0] == "ok")
     assert found.columns["velocity_amplitude"][0] == pytest.approx(high, rel=1e-10)
@@ -144,8 +145,8 @@ def test_surfaces_of_both_models_merge_as_the_frequency_leaves_resonance(
     frequency: float, closed: float, balanced: float | None
 ) -> None:
     scenes = [scene(v, frequency) for v in np.arange(0.0, 61.0)]
-    true = Exact().solve(scenes, LAW, 1e-9).columns["mean_friction"]
-    free, one = Mdsm().solve(scenes, LAW, 1e-8), solve(scenes)
+    true = with_columns(Exact(), scenes, LAW, 1e-9).columns["mean_friction"]
+    free, one = with_columns(Mdsm(), scenes, LAW, 1e-8), solve(scenes)
 
     assert set(free.status) == set(one.status) == {"ok"}
     assert np.abs(free.columns["mean_friction"] - true).max() == pytest.approx(closed, abs=5e-5)
@@ -158,7 +159,7 @@ def test_surfaces_of_both_models_merge_as_the_frequency_leaves_resonance(
 def test_it_tends_to_the_closed_form_in_proportion_to_friction() -> None:
     def apart(load):
         one = scene(20.0, normal_load=load)
-        models = [method.solve([one], LAW, 1e-8) for method in (Mdsm(), HarmonicBalance())]
+        models = [with_columns(method, [one], LAW, 1e-8) for method in (Mdsm(), HarmonicBalance())]
         return abs(models[0].columns["mean_friction"][0] - models[1].columns["mean_friction"][0])
 
     differences = [apart(0.1 / 2**k) for k in range(4)]
@@ -172,13 +173,8 @@ def test_it_tends_to_the_closed_form_in_proportion_to_friction() -> None:
 def test_the_kink_is_at_v_lin(frequency: float) -> None:
     v_lin = friction_free_velocity(scene(0.0, frequency))
 
-    found = (
-        HarmonicBalance()
-        .solve(
-            [scene(v_lin * share, frequency, normal_load=1.0) for share in (1 - 1e-9, 1.0, 1.5)], LAW, 1e-8
-        )
-        .columns
-    )
+    scenes = [scene(v_lin * share, frequency, normal_load=1.0) for share in (1 - 1e-9, 1.0, 1.5)]
+    found = with_columns(HarmonicBalance(), scenes, LAW, 1e-8).columns
 
     assert found["mean_friction"][0] < 0.4
     np.testing.assert_array_equal(found["mean_friction"][1:], 0.4)
@@ -190,8 +186,9 @@ def test_means_are_odd_and_the_motion_is_the_same_for_a_belt_that_moves_back() -
     forth, back = solve([scene(v) for v in (5.0, 40.0, 60.0)]), solve([scene(-v) for v in (5.0, 40.0, 60.0)])
 
     np.testing.assert_array_equal(back.columns["mean_friction"], -forth.columns["mean_friction"])
-    for name in ("error", "velocity_amplitude", "velocity_phase", "energy_input", "energy_contact"):
-        np.testing.assert_array_equal(back.columns[name], forth.columns[name])
+    np.testing.assert_array_equal(back.columns["error"], forth.columns["error"])
+    for name in ("velocity_amplitude", "velocity_phase", "energy_input", "energy_contact"):
+        np.testing.assert_allclose(back.columns[name], forth.columns[name], rtol=1e-12, atol=1e-9)
 
 
 def test_energies_balance_and_columns_are_those_of_the_orbit() -> None:
@@ -246,9 +243,9 @@ def test_without_a_load_across_the_belt_the_plane_is_the_line() -> None:
 @given(frequencies, decades, st.floats(-3.0, 0.3).map(lambda e: 10.0**e), st.floats(0.01, 1.5))
 def test_errors_cover_the_exact_mean(frequency, damping, ratio, share) -> None:
     one = driven(frequency, damping, ratio, share)
-    true = Exact().solve([one], LAW, 1e-9).columns
+    true = with_columns(Exact(), [one], LAW, 1e-9).columns
     for method in (HarmonicBalance(), Mdsm()):
-        found = method.solve([one], LAW, 1e-8)
+        found = with_columns(method, [one], LAW, 1e-8)
         if found.status[0] == "ok":
             apart = abs(found.columns["mean_friction"][0] - true["mean_friction"][0])
             assert apart <= found.columns["error"][0] + true["error"][0]
@@ -259,7 +256,7 @@ def test_errors_cover_the_exact_mean(frequency, damping, ratio, share) -> None:
 
 @pytest.mark.parametrize("ratio", [0.7, 0.85])
 def test_a_belt_at_rest_needs_a_load_above_the_first_harmonic_of_friction(ratio: float) -> None:
-    found = HarmonicBalance().solve([driven(1.0, 0.1, ratio, 0.0)], LAW, 1e-8)
+    found = with_columns(HarmonicBalance(), [driven(1.0, 0.1, ratio, 0.0)], LAW, 1e-8)
 
     if ratio < math.pi / 4:
         assert (found.status[0], found.columns["mean_friction"][0]) == ("ok", 0.0)
@@ -270,7 +267,7 @@ def test_a_belt_at_rest_needs_a_load_above_the_first_harmonic_of_friction(ratio:
 
 
 def test_a_belt_at_rest_whose_load_never_beats_friction_is_refused() -> None:
-    found = HarmonicBalance().solve([driven(1.0, 0.1, 1.1, 0.0)], LAW, 1e-8)
+    found = with_columns(HarmonicBalance(), [driven(1.0, 0.1, 1.1, 0.0)], LAW, 1e-8)
 
     assert found.status[0] == "refused"
     assert "for ever" in found.reason[0]
@@ -278,7 +275,7 @@ def test_a_belt_at_rest_whose_load_never_beats_friction_is_refused() -> None:
 
 def test_friction_far_above_the_load_is_in_the_error() -> None:
     one = driven(1.0, 0.1, 3.0, 0.2)
-    found, true = HarmonicBalance().solve([one], LAW, 1e-8), Exact().solve([one], LAW, 1e-9)
+    found, true = with_columns(HarmonicBalance(), [one], LAW, 1e-8), with_columns(Exact(), [one], LAW, 1e-9)
     apart = abs(found.columns["mean_friction"][0] - true.columns["mean_friction"][0])
 
     assert found.status == ["ok"]
@@ -286,7 +283,9 @@ def test_friction_far_above_the_load_is_in_the_error() -> None:
 
 
 def test_an_undamped_mass_that_never_reverses_is_refused() -> None:
-    found = HarmonicBalance().solve([driven(2.0, 0.0, 0.1, 0.5), driven(2.0, 0.0, 0.1, 1.1)], LAW, 1e-8)
+    found = with_columns(
+        HarmonicBalance(), [driven(2.0, 0.0, 0.1, 0.5), driven(2.0, 0.0, 0.1, 1.1)], LAW, 1e-8
+    )
 
     assert found.status == ["ok", "refused"]
     assert "never dies" in found.reason[1]

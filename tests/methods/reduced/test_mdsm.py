@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from answered import with_columns
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
@@ -44,7 +45,7 @@ def solve(scenes, law=LAW):
     """Answers, each scene accepted."""
     scenes = [scenes] if isinstance(scenes, Scene) else scenes
     assert [Mdsm().refusal(one, law) for one in scenes] == [None] * len(scenes)
-    return Mdsm().solve(scenes, law, 1e-8)
+    return with_columns(Mdsm(), scenes, law, 1e-8)
 
 
 def read(file):
@@ -86,8 +87,8 @@ def test_the_closed_form_departs_from_the_exact_mean_as_far_as_known_and_says_so
 
 
 def test_the_reduction_is_not_always_overestimated() -> None:
-    found = Mdsm().solve([scene(v, 0.5) for v in np.arange(0.5, 7.0, 0.25)], LAW, 1e-8)
-    true = Exact().solve([scene(v, 0.5) for v in np.arange(0.5, 7.0, 0.25)], LAW, 1e-9)
+    found = with_columns(Mdsm(), [scene(v, 0.5) for v in np.arange(0.5, 7.0, 0.25)], LAW, 1e-8)
+    true = with_columns(Exact(), [scene(v, 0.5) for v in np.arange(0.5, 7.0, 0.25)], LAW, 1e-9)
 
     apart = found.columns["mean_friction"] - true.columns["mean_friction"]
     answered = np.array(found.status) == "ok"
@@ -105,7 +106,7 @@ def test_where_neighbours_bound_too_widely_the_full_mean_does(share: float) -> N
     body = Line(0.05, 0.5, 0.2, friction_free_velocity(one))
     low, high = bounds(body, np.array([one.belt_speed]))
 
-    found, true = solve(one), Exact().solve([one], LAW, 1e-9)
+    found, true = solve(one), with_columns(Exact(), [one], LAW, 1e-9)
     apart = abs(found.columns["mean_friction"][0] - true.columns["mean_friction"][0])
 
     assert high[0] - low[0] > 0.5
@@ -175,7 +176,7 @@ def test_strong_friction_in_the_plane_is_averaged_wrongly_and_the_error_says_so(
 def test_the_error_covers_friction_of_the_order_of_the_load(omega_r: float) -> None:
     scenes = [planar(v, 1.0, 20.0, omega_r) for v in (5.0, 15.0, 30.0)]
 
-    found, true = solve(scenes), Shooting().solve(scenes, LAW, 1e-8)
+    found, true = solve(scenes), with_columns(Shooting(), scenes, LAW, 1e-8)
     apart = np.abs(found.columns["mean_friction"] - true.columns["mean_friction"])
 
     assert found.status == true.status == ["ok"] * 3
@@ -188,7 +189,7 @@ def test_the_error_covers_a_high_harmonic_that_meets_a_stiff_direction_across_th
     drive = Drive(amplitude=0.154, frequency=0.305)
     one = scene(0.0127, normal_load=0.002475, damping_ratio=0.154, drive=drive, transverse=across)
 
-    found, true = solve(one), Shooting().solve([one], LAW, 1e-9)
+    found, true = solve(one), with_columns(Shooting(), [one], LAW, 1e-9)
     apart = abs(found.columns["mean_friction"][0] - true.columns["mean_friction"][0])
 
     assert apart > 1e-4
@@ -229,7 +230,7 @@ def test_errors_in_the_plane_cover_what_shooting_finds(frequency, ratio, share, 
     one = planar(0.0, 10.0**frequency, ratio * load / 0.4, 10.0**omega_r, phase=phase)
     one = one.model_copy(update={"belt_speed": share * friction_free_velocity(one)})
 
-    found, true = Mdsm().solve([one], LAW, 1e-8), Shooting().solve([one], LAW, 1e-8).columns
+    found, true = with_columns(Mdsm(), [one], LAW, 1e-8), with_columns(Shooting(), [one], LAW, 1e-8).columns
 
     if found.status[0] == "ok":
         apart = abs(found.columns["mean_friction"][0] - true["mean_friction"][0])
@@ -288,7 +289,7 @@ def test_friction_that_varies_with_speed_is_averaged_within_the_stated_error(
     speeds = (3.0, 24.0, 30.0)
     scenes = [planar(v, 1.5, 1.0, 2.0) if across else scene(v, 1.5) for v in speeds]
 
-    found, true = solve(scenes, law), Shooting().solve(scenes, law, 1e-8)
+    found, true = solve(scenes, law), with_columns(Shooting(), scenes, law, 1e-8)
     apart = np.abs(found.columns["mean_friction"] - true.columns["mean_friction"])
 
     assert found.status == true.status == ["ok"] * 3
@@ -319,7 +320,7 @@ def slipping(belt_speed, along=0.0, across=0.0, phase=0.0):
 def test_prescribed_slips_are_averaged_exactly(slip: tuple[float, ...], model: str) -> None:
     for speed in (-1.1, 0.02, 1.1, 2.0, 5.0):
         one = slipping(speed, *slip)
-        found, quadrature = solve(one), Exact().solve([one], LAW, 1e-8)
+        found, quadrature = solve(one), with_columns(Exact(), [one], LAW, 1e-8)
         error = found.columns["error"] + quadrature.columns["error"]
 
         assert model in found.model[0]
@@ -401,7 +402,7 @@ def test_scenes_outside_the_model_are_refused_with_the_reason(
     ],
 )
 def test_points_without_a_useful_bound_are_refused_with_the_reason(one: Scene, because: str) -> None:
-    found = Mdsm().solve([one], LAW, 1e-8)
+    found = with_columns(Mdsm(), [one], LAW, 1e-8)
 
     assert found.status == ["refused"]
     assert because in found.reason[0]
@@ -413,7 +414,7 @@ def test_points_without_a_useful_bound_are_refused_with_the_reason(one: Scene, b
 def test_friction_that_holds_the_mass_for_most_of_the_period_is_averaged_wrongly_and_the_error_says_so(
     one: Scene,
 ) -> None:
-    found, true = solve(one), Shooting().solve([one], LAW, 1e-8)
+    found, true = solve(one), with_columns(Shooting(), [one], LAW, 1e-8)
     apart = abs(found.columns["mean_friction"][0] - true.columns["mean_friction"][0])
 
     assert found.status == true.status == ["ok"]
@@ -422,7 +423,7 @@ def test_friction_that_holds_the_mass_for_most_of_the_period_is_averaged_wrongly
 
 
 def test_an_error_above_the_tolerance_is_said() -> None:
-    found = Mdsm().solve([scene(5.0), scene(70.0)], LAW, 1e-8)
+    found = with_columns(Mdsm(), [scene(5.0), scene(70.0)], LAW, 1e-8)
 
     assert found.status == ["ok", "ok"]
     assert "above the tolerance" in found.reason[0]

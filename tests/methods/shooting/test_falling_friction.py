@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from answered import with_columns
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
@@ -38,7 +39,7 @@ def chaotic(belt_speed=0.3):
 def solve(one, law, tolerance=1e-8):
     """The answers of one scene."""
     assert Shooting().refusal(one, law) is None
-    answers = Shooting().solve([one], law, tolerance)
+    answers = with_columns(Shooting(), [one], law, tolerance)
     return answers, {name: float(column[0]) for name, column in answers.columns.items()}
 
 
@@ -161,7 +162,7 @@ def test_a_curve_without_a_fall_is_that_of_coulomb_friction(transverse):
 def test_a_coefficient_at_rest_that_is_never_needed_changes_nothing():
     one = scene(20.0)
     _, row = solve(one, Coulomb(mu=0.4, mu_static=0.6))
-    exact = Exact().solve([one], Coulomb(mu=0.4), 1e-10).columns["mean_friction"][0]
+    exact = with_columns(Exact(), [one], Coulomb(mu=0.4), 1e-10).columns["mean_friction"][0]
 
     assert row["stick_fraction"] == 0.0
     assert row["mean_friction"] == pytest.approx(exact, abs=row["error"] + 1e-12)

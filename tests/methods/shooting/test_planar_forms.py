@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from answered import with_columns
 
 import frictionlab as fl
 from frictionlab.bench.peers.bristle_motion import BristleMotion
@@ -31,7 +32,7 @@ def scene(belt_speed: float, across: float = 8.0) -> fl.Scene:
 
 
 def solved(scene: fl.Scene, law: BristleLaw, tolerance: float = 1e-8) -> tuple[dict[str, float], fl.Orbit]:
-    answers = Shooting().solve([scene], law, tolerance)
+    answers = with_columns(Shooting(), [scene], law, tolerance)
     orbit = answers.orbit(0)
     assert answers.status == ["ok"]
     assert orbit is not None
@@ -84,7 +85,7 @@ def test_columns_of_both_axes_are_those_of_their_common_orbit() -> None:
 def test_a_mass_held_elastically_across_the_belt_has_a_mean_along_it() -> None:
     law = fl.Jenkins(mu=0.4, presliding_length=2.0, planar="per-axis")
     here = scene(2.0, across=0.5)
-    answers = Shooting().solve([here], law, 1e-8)
+    answers = with_columns(Shooting(), [here], law, 1e-8)
     assert answers.status == ["ok"]
     assert "elastically: its mean there depends on the start" in answers.reason[0]
     assert math.isnan(answers.columns["mean_friction_transverse"][0])
@@ -94,7 +95,7 @@ def test_a_mass_held_elastically_across_the_belt_has_a_mean_along_it() -> None:
     moved = mass.frequency * abs(mass.transverse_force / dynamic)
     assert answers.columns["transverse_velocity_amplitude"][0] == pytest.approx(moved, rel=1e-6)
     assert answers.columns["floquet"][0] == pytest.approx(1.0, abs=1e-6)
-    alone = Shooting().solve([here.model_copy(update={"transverse": None})], law, 1e-8)
+    alone = with_columns(Shooting(), [here.model_copy(update={"transverse": None})], law, 1e-8)
     assert answers.columns["mean_friction"][0] == alone.columns["mean_friction"][0]
 
 
@@ -153,7 +154,7 @@ def test_on_a_belt_at_rest_no_start_tells_where_bristles_along_the_slip_hold() -
     here = here.model_copy(
         update={"drive": fl.Drive(amplitude=0.2, frequency=1.3), "initial": fl.Initial(x=0.05)}
     )
-    answers = Shooting().solve([here], ALONG_SLIP, 1e-6)
+    answers = with_columns(Shooting(), [here], ALONG_SLIP, 1e-6)
     assert answers.status == ["not_unique"]
     assert "the mass stays wherever it stops" in answers.reason[0]
     assert "scene.initial" not in answers.reason[0]

@@ -8,6 +8,7 @@ import os
 import collocation
 import numpy as np
 import pytest
+from answered import with_columns
 from collocation import REFERENCE
 from hypothesis import given
 from hypothesis import strategies as st
@@ -51,7 +52,7 @@ def solve(scenes, tolerance=1e-10, law=LAW):
     """Answers, each scene accepted."""
     scenes = [scenes] if isinstance(scenes, Scene) else scenes
     assert all(Shooting().refusal(one, law) is None for one in scenes)
-    return Shooting().solve(scenes, law, tolerance)
+    return with_columns(Shooting(), scenes, law, tolerance)
 
 
 def of_reference(path, belt_speeds):
@@ -201,7 +202,7 @@ LINES = {path.stem: on_the_line(path, np.arange(0.5, 60.1, 0.5)[every(3)]) for p
 @pytest.mark.parametrize("name", LINES)
 def test_one_degree_of_freedom_is_that_of_the_exact_method(name):
     scenes = LINES[name]
-    ours, exact = solve(scenes, 1e-9), Exact().solve(scenes, LAW, 1e-12)
+    ours, exact = solve(scenes, 1e-9), with_columns(Exact(), scenes, LAW, 1e-12)
     error = ours.columns["error"]
     assert ours.status == ["ok"] * len(scenes)
     assert np.all(error <= 1e-9)
@@ -218,7 +219,7 @@ def test_the_plane_without_a_load_across_is_the_line(load):
     across = Transverse(natural_frequency=0.5, damping_ratio=0.1, load=load)
     speeds = (0.3, 5.0, 45.0, 49.9, 55.0)
     plane = solve([scene(v, transverse=across) for v in speeds])
-    line = Exact().solve([scene(v, transverse=None) for v in speeds], LAW, 1e-12)
+    line = with_columns(Exact(), [scene(v, transverse=None) for v in speeds], LAW, 1e-12)
     np.testing.assert_allclose(
         plane.columns["mean_friction"], line.columns["mean_friction"], rtol=0, atol=1e-9
     )
@@ -481,7 +482,7 @@ def test_what_it_cannot_do_is_refused_with_the_way_out():
 
 def test_a_prescribed_slip_is_answered_by_quadrature():
     one = Scene(belt_speed=1.0, slip=Slip(velocity_amplitude=2.0, frequency=2.0))
-    shot, exact = Shooting().solve([one], LAW, 1e-10), Exact().solve([one], LAW, 1e-10)
+    shot, exact = with_columns(Shooting(), [one], LAW, 1e-10), with_columns(Exact(), [one], LAW, 1e-10)
 
     assert shot.status == ["ok"]
     assert shot.columns["mean_friction"][0] == pytest.approx(exact.columns["mean_friction"][0], abs=1e-14)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from answered import with_columns
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
@@ -61,7 +62,7 @@ def compared(answers: Answers, expected: np.ndarray, accuracy: np.ndarray | floa
 @pytest.mark.parametrize("workload", ["W4a", "W4b", "W4c", "W4d"])
 def test_stiff_bristles_are_true_to_the_reference_at_every_tolerance(workload: str, tolerance: float) -> None:
     rows = W4[W4["workload"] == workload].sort_values("belt_speed")
-    answers = Shooting().solve(scenes(rows["belt_speed"]), law_of(rows.iloc[0]), tolerance)
+    answers = with_columns(Shooting(), scenes(rows["belt_speed"]), law_of(rows.iloc[0]), tolerance)
     compared(answers, rows["mean_friction"].to_numpy(), rows["accuracy"].to_numpy(), tolerance)
 
 
@@ -73,7 +74,7 @@ def test_falling_and_elasto_plastic_bristles_are_true_to_the_reference() -> None
         law = law_of(curve.iloc[0])
         if isinstance(law, fl.LuGre) and law.stribeck_speed == 1.0:
             curve = curve.iloc[-1:]  # falls too fast for one start to do: every point asks four
-        answers = Shooting().solve(scenes(curve["belt_speed"]), law, 1e-8)
+        answers = with_columns(Shooting(), scenes(curve["belt_speed"]), law, 1e-8)
         ok = np.array([status == "ok" for status in answers.status])
         low, high = answers.columns["mean_low"], answers.columns["mean_high"]
         mean, error, expected = (
@@ -99,7 +100,7 @@ def test_systems_on_bristles_agree_with_the_reference(
                 {"kind": kind, "presliding_length": length, "damping": math.sqrt(stiffness) / normal_load}
             )
         )
-        answers = Shooting().solve(scenes(rows["v_b"], normal_load, frequency), law, 1e-7)
+        answers = with_columns(Shooting(), scenes(rows["v_b"], normal_load, frequency), law, 1e-7)
         compared(answers, rows["mu_bar"].to_numpy(), SYSTEM_ACCURACY, 1e-7)
 
 
@@ -109,7 +110,7 @@ def test_no_stiffness_is_too_high_or_too_low() -> None:
     gaps = []
     for exponent in range(-8, 3):
         law = fl.Dahl(mu=0.4, presliding_length=10.0**exponent)
-        answers = Shooting().solve(scenes(speeds), law, 1e-7)
+        answers = with_columns(Shooting(), scenes(speeds), law, 1e-7)
         assert set(answers.status) == {"ok"}
         gaps.append(float(np.abs(answers.columns["mean_friction"] - coulomb).max()))
     assert gaps[0] < 2e-6
@@ -182,7 +183,7 @@ def balances(orbit: Orbit, scene: fl.Scene, mean: float) -> tuple[float, float]:
 )
 def test_mean_spring_force_and_energy_balance(law: BristleLaw) -> None:
     (scene,) = scenes([12.0])
-    answers = Shooting().solve([scene], law, 1e-10)
+    answers = with_columns(Shooting(), [scene], law, 1e-10)
     orbit = answers.orbit(0)
     assert orbit is not None
     mean, energy = balances(orbit, scene, float(answers.columns["mean_friction"][0]))
@@ -201,7 +202,7 @@ def test_jenkins_friction_is_odd_in_the_belt_speed_and_never_above_its_coefficie
 ) -> None:
     law = fl.Jenkins(mu=0.4, presliding_length=length)
     ahead, back = scenes(np.array([speed, -speed]), normal_load, frequency)
-    answers = [Shooting().solve([scene], law, 1e-6) for scene in (ahead, back)]
+    answers = [with_columns(Shooting(), [scene], law, 1e-6) for scene in (ahead, back)]
     assert answers[0].status == answers[1].status
     if answers[0].status == ["ok"]:
         means = [float(answer.columns["mean_friction"][0]) for answer in answers]
@@ -214,10 +215,10 @@ def test_a_bristle_that_never_yields_on_a_belt_at_rest_has_no_mean_of_its_own() 
     scene = fl.Scene(
         damping_ratio=0.1, normal_load=10.0, belt_speed=0.0, drive=fl.Drive(amplitude=1.0, frequency=0.5)
     )
-    answers = Shooting().solve([scene], fl.Jenkins(mu=0.4, presliding_length=1.0), 1e-7)
+    answers = with_columns(Shooting(), [scene], fl.Jenkins(mu=0.4, presliding_length=1.0), 1e-7)
     assert answers.status == ["not_unique"]
     assert (answers.columns["mean_low"][0], answers.columns["mean_high"][0]) == pytest.approx((-0.4, 0.4))
-    drifts = Shooting().solve([scene], fl.Dahl(mu=0.4, presliding_length=1.0), 1e-7)
+    drifts = with_columns(Shooting(), [scene], fl.Dahl(mu=0.4, presliding_length=1.0), 1e-7)
     assert drifts.status == ["ok"]
     assert abs(drifts.columns["mean_friction"][0]) <= drifts.columns["error"][0]
 
@@ -231,7 +232,7 @@ def test_a_steep_fall_on_stiff_bristles_responds_as_without_them() -> None:
         drive=fl.Drive(amplitude=0.2 * 1.3**2, frequency=1.3),
     )
     law = fl.LuGre(mu_kinetic=0.2, mu_static=0.4, stribeck_exponent=1.0, presliding_length=1e-3, damping=0.01)
-    answers = Shooting().solve([scene], law, 1e-7)
+    answers = with_columns(Shooting(), [scene], law, 1e-7)
     assert answers.status == ["not_unique"]
     assert math.isnan(answers.columns["mean_friction"][0])
     assert answers.columns["period"][0] == 4.0
@@ -249,7 +250,9 @@ def test_soft_damped_bristles_can_double_the_period() -> None:
         belt_speed=0.8575 * swing,
         drive=fl.Drive(amplitude=1.0, frequency=frequency),
     )
-    answers = Shooting().solve([scene], fl.LuGre(mu_kinetic=0.4, presliding_length=1.37, damping=0.074), 1e-7)
+    answers = with_columns(
+        Shooting(), [scene], fl.LuGre(mu_kinetic=0.4, presliding_length=1.37, damping=0.074), 1e-7
+    )
     assert answers.status == ["not_unique"]
     assert answers.columns["period"][0] == 2.0
     assert answers.columns["floquet"][0] < 1.0
@@ -258,7 +261,7 @@ def test_soft_damped_bristles_can_double_the_period() -> None:
 def test_a_motion_that_still_alternates_on_its_way_to_one_period_is_not_taken_for_two() -> None:
     """Close to doubling the multiplier is near -1: two periods ahead the motion looks the same long before it is."""
     law = fl.LuGre(mu_kinetic=0.4, presliding_length=10.0, contact_damping=2.0).under_load(10.0)
-    answers = Shooting().solve(scenes(np.array([11.0]), frequency=1.5), law, 1e-6)
+    answers = with_columns(Shooting(), scenes(np.array([11.0]), frequency=1.5), law, 1e-6)
     assert answers.status == ["ok"]
     assert answers.columns["period"][0] == 1.0
     assert answers.columns["floquet"][0] == pytest.approx(0.99372, abs=1e-5)
@@ -273,7 +276,7 @@ def test_errors_cover_along_whole_curves(workload: str) -> None:
     if workload in ("W4c", "W4d"):
         law = fl.Dahl(mu=0.4, presliding_length=kinds[workload])
     for tolerance in (1e-5, 1e-6, 1e-7):
-        answers = Shooting().solve(scenes(curve["belt_speed"].to_numpy()), law, tolerance)
+        answers = with_columns(Shooting(), scenes(curve["belt_speed"].to_numpy()), law, tolerance)
         compared(answers, curve["mean_friction"].to_numpy(), 1e-12, tolerance)
 
 
@@ -288,7 +291,7 @@ def test_the_layer_after_a_reversal_is_not_passed_in_one_step_that_seems_exact(t
     )
     law = fl.Dahl(mu=0.21570801037813447, presliding_length=0.028157999408187733, exponent=1.9345098511021104)
     compared(
-        Shooting().solve([scene], law, tolerance), 0.0745405342, 1e-10, tolerance
+        with_columns(Shooting(), [scene], law, tolerance), 0.0745405342, 1e-10, tolerance
     )  # scipy's LSODA at 1e-11
 
 
@@ -300,14 +303,14 @@ def test_a_soft_contact_slides_on_or_reverses_on_one_belt() -> None:
         belt_speed=40.52301704501663,  # 1.047 times the friction-free velocity amplitude
         drive=fl.Drive(unbalance=10.0, frequency=3.567),
     )
-    both = Shooting().solve(
-        [scene], fl.Dahl(mu=0.4, contact_stiffness=30.0).under_load(scene.normal_load), 1e-7
+    both = with_columns(
+        Shooting(), [scene], fl.Dahl(mu=0.4, contact_stiffness=30.0).under_load(scene.normal_load), 1e-7
     )
     assert both.status == ["not_unique"]
     assert both.columns["mean_high"][0] == pytest.approx(0.4, abs=1e-9)
     assert both.columns["mean_low"][0] == pytest.approx(0.30541, abs=2e-5)  # Runge-Kutta steps, 1500 a period
-    one = Shooting().solve(
-        [scene], fl.Dahl(mu=0.4, contact_stiffness=15.0).under_load(scene.normal_load), 1e-7
+    one = with_columns(
+        Shooting(), [scene], fl.Dahl(mu=0.4, contact_stiffness=15.0).under_load(scene.normal_load), 1e-7
     )
     assert one.status == ["ok"]
     assert one.columns["mean_friction"][0] == pytest.approx(0.4, abs=1e-9)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from answered import with_columns
 
 import frictionlab as fl
 from frictionlab.laws.memory import BristleLaw
@@ -53,7 +54,9 @@ def test_planar_bristles_are_true_to_the_reference(kind: str) -> None:
     assert len(rows) >= 6
     for (omega_r, _length), curve in rows.groupby(["omega_r", "presliding_length"]):
         curve = curve.sort_values("belt_speed")
-        answers = Shooting().solve(scenes(curve["belt_speed"], float(omega_r)), law_of(curve.iloc[0]), 1e-6)
+        answers = with_columns(
+            Shooting(), scenes(curve["belt_speed"], float(omega_r)), law_of(curve.iloc[0]), 1e-6
+        )
         assert set(answers.status) == {"ok"}
         error = answers.columns["error"]
         assert (error <= 1e-6).all()
@@ -67,7 +70,7 @@ def test_planar_systems_on_bristles_agree_with_the_reference() -> None:
     for (omega_r, kind, length), curve in rows.groupby(["omega_r", "law", "z_ss"]):
         curve = curve.iloc[::4]
         law = law_of(pd.Series({"kind": kind, "mu_kinetic": 0.4, "presliding_length": length}))
-        answers = Shooting().solve(scenes(curve["v_b"], float(omega_r)), law, 1e-6)
+        answers = with_columns(Shooting(), scenes(curve["v_b"], float(omega_r)), law, 1e-6)
         assert set(answers.status) == {"ok"}
         miss = np.abs(answers.columns["mean_friction"] - curve["mu_bar"])
         assert (miss <= answers.columns["error"] + 2e-7).all()
@@ -97,7 +100,7 @@ def test_an_orbit_is_found_where_the_steps_of_a_map_jump_by_as_much_as_is_asked(
         damping=2.3255240619590335e-06,
     )
     for tolerance in (1e-6, 1e-8):
-        answers = Shooting().solve([scene], law, tolerance)
+        answers = with_columns(Shooting(), [scene], law, tolerance)
         assert answers.status == ["ok"]
         assert answers.columns["error"][0] <= tolerance
         assert abs(answers.columns["mean_friction"][0] - 0.13038352) <= answers.columns["error"][0] + 1e-10
@@ -108,13 +111,15 @@ def test_planar_jenkins_friction_moves_on_its_circle_and_tends_to_coulombs() -> 
     gaps = []
     for length in (1.0, 1e-2, 1e-4):
         (answers,) = (
-            Shooting().solve(scenes([15.0], 0.5), fl.Jenkins(mu=0.4, presliding_length=length), 1e-7),
+            with_columns(Shooting(), scenes([15.0], 0.5), fl.Jenkins(mu=0.4, presliding_length=length), 1e-7),
         )
         assert answers.status == ["ok"]
         orbit = answers.orbit(0)
         assert orbit is not None
         assert np.abs(orbit.friction).max() <= 0.4 * (1 + 1e-6)
-        coulomb = Shooting().solve(scenes([15.0], 0.5), fl.Coulomb(mu=0.4), 1e-8).columns["mean_friction"][0]
+        coulomb = with_columns(Shooting(), scenes([15.0], 0.5), fl.Coulomb(mu=0.4), 1e-8).columns[
+            "mean_friction"
+        ][0]
         gaps.append(abs(answers.columns["mean_friction"][0] - coulomb))
     assert gaps[0] > 5e-3
     assert gaps[0] > 20 * gaps[1] > 400 * gaps[2] or gaps[2] < 1e-6
@@ -123,7 +128,7 @@ def test_planar_jenkins_friction_moves_on_its_circle_and_tends_to_coulombs() -> 
 @deep
 def test_without_a_load_across_the_belt_planar_bristles_are_those_of_the_line() -> None:
     law = fl.Dahl(mu=0.4, presliding_length=0.1)
-    planar = Shooting().solve(scenes([15.0], 0.5, across=0.0), law, 1e-8)
+    planar = with_columns(Shooting(), scenes([15.0], 0.5, across=0.0), law, 1e-8)
     line = [
         fl.Scene(
             damping_ratio=0.1,
@@ -132,7 +137,7 @@ def test_without_a_load_across_the_belt_planar_bristles_are_those_of_the_line() 
             drive=fl.Drive(unbalance=10.0, frequency=4.0),
         )
     ]
-    alone = Shooting().solve(line, law, 1e-8)
+    alone = with_columns(Shooting(), line, law, 1e-8)
     assert planar.columns["mean_friction"][0] == alone.columns["mean_friction"][0]
     assert "x2 dies out" in planar.model[0]
 
@@ -142,10 +147,12 @@ def test_the_three_planar_forms_are_three_laws() -> None:
     means = {}
     for form in ("vectorial", "per-axis", "rotated"):
         law = fl.Dahl(mu=0.4, presliding_length=3.0, planar=form)
-        answers = Shooting().solve(scenes([15.0], 0.5), law, 1e-6)
+        answers = with_columns(Shooting(), scenes([15.0], 0.5), law, 1e-6)
         assert answers.status == ["ok"]
         means[form] = float(answers.columns["mean_friction"][0])
-    coulomb = Shooting().solve(scenes([15.0], 0.5), fl.Coulomb(mu=0.4), 1e-8).columns["mean_friction"][0]
+    coulomb = with_columns(Shooting(), scenes([15.0], 0.5), fl.Coulomb(mu=0.4), 1e-8).columns[
+        "mean_friction"
+    ][0]
     assert abs(means["rotated"] - coulomb) <= 1e-6  # a deflection along slip that never reverses is saturated
     assert abs(means["per-axis"] - means["vectorial"]) > 1e-3
     assert abs(means["vectorial"] - coulomb) > 1e-3

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from answered import with_columns
 from hypothesis import example, given
 from hypothesis import strategies as st
 from strategies import sizes
@@ -25,7 +26,7 @@ def solve(law, belt_speed, tolerance=1e-8, **scene):
     values = {"damping_ratio": 0.0, "normal_load": 1.0, **scene}
     one = Scene(belt_speed=belt_speed, **values)
     assert Shooting().refusal(one, law) is None
-    answers = Shooting().solve([one], law, tolerance)
+    answers = with_columns(Shooting(), [one], law, tolerance)
     row = {name: float(column[0]) for name, column in answers.columns.items()}
     orbit = answers.orbit(0)
     deflection = float(orbit.x.real.max()) if orbit is not None else math.nan
@@ -45,7 +46,7 @@ def test_leines_block_has_its_published_period_and_deflection():
 
 def test_leines_block_deflects_as_far_as_published():
     values = {"damping_ratio": 0.0, "normal_load": 1.0}
-    orbit = Shooting().solve([Scene(belt_speed=0.2, **values)], LEINE, 1e-10).orbit(0)
+    orbit = with_columns(Shooting(), [Scene(belt_speed=0.2, **values)], LEINE, 1e-10).orbit(0)
     row = int(np.flatnonzero((orbit.v.real[:, 0] > 0.0) & (orbit.v.real[:, -1] <= 0.0))[0])
     half = 0.5 * (orbit.tau[row, -1] - orbit.tau[row, 0])
     nodes = (orbit.tau[row] - orbit.tau[row, 0]) / half - 1.0

@@ -1,0 +1,58 @@
+"""What a method finds, with the columns that a table would show of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+from frictionlab.runner.solve import FROM_METHODS, number_columns
+
+
+def with_columns(method, scenes, law, tolerance):
+    """The answers of a method, with ``columns``."""
+    return Answered(method.solve(scenes, law, tolerance), scenes)
+
+
+class Answered:
+    """Answers and their columns: all of them once one is asked for that must be read from an orbit."""
+
+    def __init__(self, answers, scenes):
+        self.answers, self.columns = answers, Columns(answers, scenes)
+
+    def __getattr__(self, name):
+        return getattr(self.answers, name)
+
+
+class Columns(Mapping):
+    """The columns by name."""
+
+    own = (
+        "mean_friction",
+        "mean_friction_transverse",
+        "error",
+        "period",
+        "mean_low",
+        "mean_high",
+        "window",
+        "seconds",
+    )
+
+    def __init__(self, answers, scenes):
+        self._given = answers, scenes
+
+    @cached_property
+    def _few(self):
+        return number_columns(*self._given, self.own)
+
+    @cached_property
+    def _all(self):
+        return number_columns(*self._given, FROM_METHODS)
+
+    def __getitem__(self, name):
+        return self._few[name] if name in self.own else self._all[name]
+
+    def __iter__(self):
+        return iter(FROM_METHODS)
+
+    def __len__(self):
+        return len(FROM_METHODS)

@@ -1,4 +1,4 @@
-"""What answers where a method refuses: shooting, or what that asks for where it refuses too."""
+"""The end of a refusal: the advice to use shooting, or the reason why shooting refuses as well."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from frictionlab.scene.scene import Scene
 
 
 def suggest_shooting(reason: str, scene: Scene, law: FrictionLaw) -> str:
-    """A refusal, with the way on."""
+    """A refusal with advice on what to use instead."""
     return f"{reason}; {Shooting().refusal(scene, law) or 'use shooting'}"

@@ -60,5 +60,5 @@ def _model(case: Case) -> str:
     auto: Any = registry.method_class("auto")
     if not isinstance(case.method, auto):
         return case.method.name
-    rung, why = auto.choice(case.method, case.scene, case.law)
-    return f"{rung.name} ({why})"
+    method, why = auto.choice(case.method, case.scene, case.law)
+    return f"{method.name} ({why})"

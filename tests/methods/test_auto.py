@@ -1,4 +1,4 @@
-"""Auto: the lowest rung that is right for a whole curve, said with its reason and held to the tolerance."""
+"""Auto: the cheapest method that applies to a whole curve, with the reason, held to the tolerance."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from answered import with_columns
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
-from frictionlab.methods.auto import LADDER, Auto
+from frictionlab.methods.auto import METHODS_BY_COST, Auto
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse
@@ -18,7 +18,7 @@ LAW = Coulomb(mu=0.4)
 
 
 class Remembers(FrictionLaw):
-    """A law that is not said to be without memory: no rung does it."""
+    """A law that is not said to be without memory: no method applies."""
 
     def sliding_friction(self, speed):
         return 0.4 / (1.0 + speed)
@@ -45,44 +45,44 @@ SCENES = {
     "prescribed": (
         lambda v: Scene(belt_speed=v, slip=Slip(velocity_amplitude=2.0, frequency=1.0)),
         Exact,
-        "lowest rung",
+        "cheapest method",
     ),
-    "line": (scene, Exact, "lowest rung"),
+    "line": (scene, Exact, "cheapest method"),
     "plane without a transverse load": (
         lambda v: scene(v, transverse=Transverse(natural_frequency=2.0, damping_ratio=0.1)),
         Exact,
-        "lowest rung",
+        "cheapest method",
     ),
-    "transverse load of zero": (lambda v: scene(v, 0.0), Exact, "lowest rung"),
+    "transverse load of zero": (lambda v: scene(v, 0.0), Exact, "cheapest method"),
     "transverse load": (lambda v: scene(v, 10.0), Shooting, "this scene has a transverse load"),
 }
 SPEEDS = (0.7, 20.0, 49.0, 70.0)
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_the_lowest_rung_that_accepts_answers_the_whole_curve_and_model_says_why(name):
-    make, rung, why = SCENES[name]
+def test_the_cheapest_method_that_applies_solves_the_whole_curve_and_model_says_why(name):
+    make, method, why = SCENES[name]
     scenes = [make(v) for v in SPEEDS]
     assert Auto().refusal(scenes[0], LAW) is None
-    assert type(Auto().choice(scenes[0], LAW)[0]) is rung
-    answers, direct = with_columns(Auto(), scenes, LAW, 1e-9), with_columns(rung(), scenes, LAW, 1e-9)
+    assert type(Auto().choice(scenes[0], LAW)[0]) is method
+    answers, direct = with_columns(Auto(), scenes, LAW, 1e-9), with_columns(method(), scenes, LAW, 1e-9)
     assert answers.status == ["ok"] * len(SPEEDS)
     np.testing.assert_array_equal(answers.columns["mean_friction"], direct.columns["mean_friction"])
     for ours, theirs in zip(answers.model, direct.model, strict=True):
         assert ours.startswith(theirs)
-        assert f"auto: {rung.name}, {why}" in ours or why in ours.partition("(auto:")[2]
+        assert f"auto: {method.name}, {why}" in ours or why in ours.partition("(auto:")[2]
     assert answers.orbit(0) is not None
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_one_rung_answers_all_of_a_curve_even_where_a_lower_one_would_do(name):
-    make, rung, _why = SCENES[name]
-    assert {type(Auto().choice(make(v), LAW)[0]) for v in (0.0, *SPEEDS)} == {rung}
+def test_one_method_solves_a_whole_curve_even_where_a_cheaper_one_would_do(name):
+    make, method, _why = SCENES[name]
+    assert {type(Auto().choice(make(v), LAW)[0]) for v in (0.0, *SPEEDS)} == {method}
 
 
-def test_the_ladder_starts_with_the_cheapest_rung_and_auto_costs_what_its_rung_costs():
+def test_methods_are_tried_by_cost_and_auto_costs_what_its_choice_costs():
     one = scene(5.0)
-    costs = [rung.cost(one, LAW, 1e-9) for rung in LADDER]
+    costs = [method.cost(one, LAW, 1e-9) for method in METHODS_BY_COST]
     assert costs == sorted(costs)
     assert Auto().cost(one, LAW, 1e-9) == costs[0]
     assert Auto().cost(scene(5.0, 10.0), LAW, 1e-9) == Shooting().cost(scene(5.0, 10.0), LAW, 1e-9)
@@ -101,11 +101,11 @@ def test_an_answer_above_the_tolerance_has_failed_with_both_numbers_in_the_reaso
     assert within.reason == ["", ""]
 
 
-def test_a_scene_no_rung_accepts_is_refused_with_every_reason():
+def test_a_scene_no_method_accepts_is_refused_with_every_reason():
     for one in (scene(5.0), scene(5.0, 10.0)):
         refusal = Auto().refusal(one, Remembers())
-        for rung in LADDER:
-            assert rung.refusal(one, Remembers()) in refusal
+        for method in METHODS_BY_COST:
+            assert method.refusal(one, Remembers()) in refusal
         assert Auto().cost(one, Remembers(), 1e-8) == 0.0
 
 
@@ -122,7 +122,7 @@ def test_a_scene_no_rung_accepts_is_refused_with_every_reason():
     ],
 )
 def test_what_exact_refuses_along_the_belt_is_answered_by_shooting(one, law):
-    rung, why = Auto().choice(one, law)
+    method, why = Auto().choice(one, law)
 
-    assert isinstance(rung, Shooting)
+    assert isinstance(method, Shooting)
     assert "exact needs" in why

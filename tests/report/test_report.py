@@ -389,7 +389,7 @@ def test_a_long_table_says_how_many_rows_it_leaves_to_the_file(
 
 def test_sources_are_those_of_the_study_its_laws_and_the_methods_at_work(ran: Runner) -> None:
     saved = ran(source="Smith (1999), Fig. 3", methods=["auto"], sweep={"scene.belt_speed": [60.0]})
-    saved.table["model"] = "closed form (auto: exact, lowest rung that can)"
+    saved.table["model"] = "closed form (auto: exact, cheapest method that applies)"
     cited = {each.what: each.words for each in sources(saved)}
 
     assert cited["the study"] == "Smith (1999), Fig. 3"

@@ -1,4 +1,4 @@
-"""Steady states of a mass under Coulomb friction along a curve in belt speed, each started from its neighbour's."""
+"""Steady states of a mass under Coulomb friction along a curve in belt speed, by continuation."""
 
 from __future__ import annotations
 
@@ -30,10 +30,13 @@ def solve_curve(mass: Mass, coefficient: float, belt_speeds: Any, out: Any) -> N
     for i in range(belt_speeds.size):
         body = body_at(mass, coefficient, belt_speeds[i])
         x_free, w_free = friction_free_start(body)
+        # Above V_lin slip never reverses and the motion is linear: no search. Without damping a free oscillation
+        # would remain.
         if belt_speeds[i] >= friction_free_speed(mass) and body.damping > 0.0:
             x, w = x_free, w_free
             write_reversal_free(body, coefficient, x, w, out[i])
         else:
+            # Start from the neighbour's state with the same velocity: w = x' - belt_speed.
             x, w = (x_free, w_free) if last == math.inf else (x, w + (last - belt_speeds[i]))
             fixed = fixed_point(body, x, w, MOST_MAPS)
             x, w = fixed.x, fixed.w
@@ -57,7 +60,7 @@ def friction_free_speed(mass: Mass) -> float:
 
 @inner
 def write_reversal_free(body: Body, coefficient: float, x: float, w: float, row: Any) -> None:
-    """The answer where slip never reverses: friction is constant, the motion linear."""
+    """The results where slip never reverses: friction is constant, the motion linear."""
     rate = body.damping if body.damping <= 1.0 else 1.0 / (body.damping + body.rate)
     row[MEAN], row[ERROR] = coefficient, 8.0 * EPSILON * coefficient
     row[FLOQUET] = math.exp(-rate * body.period)
@@ -67,7 +70,7 @@ def write_reversal_free(body: Body, coefficient: float, x: float, w: float, row:
 
 @inner
 def write_fixed(body: Body, fixed: Fixed, normal_load: float, row: Any) -> None:
-    """The answer of a fixed point of the return map."""
+    """The results at a fixed point of the return map."""
     unit = normal_load * body.period
     row[MEAN], row[ERROR] = -fixed.map.friction / unit, mean_error(body, fixed) / unit
     row[FLOQUET] = largest_multiplier(fixed.map)
@@ -77,7 +80,7 @@ def write_fixed(body: Body, fixed: Fixed, normal_load: float, row: Any) -> None:
 
 @njit
 def settle(mass: Mass, coefficient: float, belt_speed: float, start: Any, row: Any) -> int:
-    """Follow the motion from start = (x, w, canonical time) until a period changes nothing; -1 where it never does.
+    """Iterate the map from start = (x, w, canonical time) until a period changes nothing; -1 where it never does.
 
     Writes MEAN to ROUNDING (ERROR: rounding alone) and returns the number of periods.
     """

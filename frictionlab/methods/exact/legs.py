@@ -1,11 +1,11 @@
 """One mass on a moving belt under Coulomb friction: closed-form legs of slip and stick between events.
 
-The canonical scene: x'' + 2 damping x' + x + friction Sgn(w) = load sin(frequency tau), with the slip velocity
-w = x' - belt_speed and belt_speed >= 0. In slip of constant sign, x is the friction-free response plus a free
+The canonical scene: x'' + 2 damping x' + x + friction Sgn(w) = load sin(frequency tau), with the slip velocity w =
+x' - belt_speed and belt_speed >= 0. In slip of constant sign, x is the friction-free response plus a free
 oscillation about -friction*sign; in stick it moves with the belt. An event is the first zero of a function whose
-third derivative is bounded over the whole leg: every step goes at most to the first zero of the cubic that lies
-below the function, so it cannot pass an event, not even a grazing pair, and it closes in from the left with
-third order.
+third derivative is bounded over the whole leg: every step goes at most to the first zero of a cubic below the
+function. It therefore cannot pass an event, not even a grazing pair of zeros, and converges to the event from the
+left with third order.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ EPSILON = 2.0**-52
 TINY = 1e-300
 STICK = 0.0
 MOST_CREEPING = 1000
-"""Steps of rounding size before a leg is given up as NaN: there the motion is below the rounding of its position."""
+"""Most steps of rounding size in a leg; more give NaN: the motion is smaller than the rounding of its position."""
 
 
 class Body(NamedTuple):
     """The canonical scene and its friction-free response in_phase sin + quadrature cos.
 
     rate: |1 - damping^2|^(1/2); size: bound on the response; jolt: bound on its fourth derivative; resonant: 1.0
-    where the response grows from rest at tau = 0 instead (near undamped resonance the periodic one is useless).
+    where the response from rest at tau = 0 replaces it (near undamped resonance the periodic one is too large).
     """
 
     damping: float
@@ -46,7 +46,8 @@ class Body(NamedTuple):
 class Leg(NamedTuple):
     """The end of a leg: how long it lasted, the state there, the net force, the leg that follows.
 
-    straight, bent: the free motion's C + b S, S and C - b S through ``keep``; event: 1.0 if it ended in an event.
+    event: 1.0 if it ended in an event. keep, turn, damp: C + b S, S and C - b S of the free motion (``decay``), which
+    are the entries of its derivative by the state at the start.
     """
 
     duration: float
@@ -66,11 +67,14 @@ RESONANT = 1e-3
 @inner
 def canonical(damping: float, frequency: float, load: float, friction: float, belt_speed: float) -> Body:
     """The record of a canonical scene."""
+    # Written with (1 - a)(1 + a), which keeps the digits that 1 - a^2 loses near critical damping and resonance.
     rate = math.sqrt(abs((1.0 - damping) * (1.0 + damping)))
     stiffness = (1.0 - frequency) * (1.0 + frequency)
     viscous = 2.0 * damping * frequency
     square = stiffness * stiffness + viscous * viscous
     period = 2.0 * math.pi / frequency
+    # Near undamped resonance the periodic response is the small difference of large numbers: the growing response
+    # from rest is used instead, bounded over one period by the force times the time.
     if square < RESONANT * RESONANT:
         return Body(
             damping,
@@ -115,6 +119,8 @@ def _growing_response(body: Body, tau: float, sine: float, cosine: float) -> tup
     With lambda = -b + i rate and zeta = u' - conj(lambda) u, zeta' = lambda zeta + load sin(frequency tau); in real
     numbers, since complex ones take numba a second to compile.
     """
+    # The load is made of exp(i frequency tau) and its conjugate. One of them is nearly in resonance with lambda:
+    # its integral ("near") is written as free * tau * (exp(z) - 1)/z with small z, which loses no digits.
     b, both = body.damping, body.frequency + body.rate
     size = math.exp(-b * tau)
     free, free_i = size * math.cos(body.rate * tau), size * math.sin(body.rate * tau)
@@ -141,6 +147,7 @@ def _exponential_quotient(z: float, z_i: float) -> tuple[float, float]:
 @inner
 def decay(body: Body, r: float) -> tuple[float, float]:
     """exp(-b r) times cos and sin/rate of the free oscillation (cosh, sinh where overdamped), critical included."""
+    # Overdamped: cosh and sinh overflow where exp(-b r) underflows, so the slow exponential is taken out first.
     b, rate = body.damping, body.rate
     if b < 1.0:
         e = math.exp(-b * r)
@@ -154,15 +161,20 @@ def decay(body: Body, r: float) -> tuple[float, float]:
 
 @inner
 def first_zero(g: float, g1: float, g2: float, bound: float) -> float:
-    """A lower estimate, close from below, of the first positive zero of g + g1 r + g2 r^2/2 - bound r^3/6; g >= 0."""
+    """A lower bound, close to it, of the first positive zero of g + g1 r + g2 r^2/2 - bound r^3/6; g >= 0."""
+    # The cubic first bends upwards and then, for good, downwards. ``base`` is a place before its first zero from
+    # which on it only falls, ever faster; -1 if the first zero lies on the way down before that.
     discriminant = g2 * g2 + 2.0 * bound * g1
-    base = -1.0  # where the cubic is positive and has begun to fall ever faster
+    base = -1.0  # not known yet
     if g1 >= 0.0:
+        # It rises at first: base is its maximum, written for either sign of g2 without cancellation.
         root = math.sqrt(discriminant)
         base = (g2 + root) / bound if g2 >= 0.0 else 2.0 * g1 / (root - g2)
     elif g2 <= 0.0:
+        # It falls ever faster from the start.
         base = 0.0
     else:
+        # It falls to a local minimum (or an inflection) first: a zero before it is reached by Newton from 0.
         root = math.sqrt(max(discriminant, 0.0))
         bottom = -2.0 * g1 / (g2 + root) if discriminant > 0.0 else g2 / bound
         if g + bottom * (g1 + bottom * (0.5 * g2 - bottom * bound / 6.0)) > 0.0:
@@ -179,7 +191,7 @@ def _cubic(r: float, g: float, g1: float, g2: float, bound: float) -> float:
 
 @inner
 def _zero_of_the_convex_part(g: float, g1: float, g2: float, bound: float) -> float:
-    """Newton from 0: falls short at every step."""
+    """Newton's method from 0: the cubic is convex there, so that every step stays below the zero."""
     r = 0.0
     for _ in range(8):
         step = -_cubic(r, g, g1, g2, bound) / (g1 + r * (g2 - 0.5 * bound * r))
@@ -191,12 +203,13 @@ def _zero_of_the_convex_part(g: float, g1: float, g2: float, bound: float) -> fl
 
 @inner
 def _zero_beyond(base: float, g: float, g1: float, g2: float, bound: float) -> float:
-    """Beyond ``base`` the cubic falls ever faster: Newton from the right, then the chord, which falls short."""
+    """Beyond ``base`` the cubic is concave: Newton's method from above, then the chord, which ends below the zero."""
     height = max(_cubic(base, g, g1, g2, bound), 0.0)
     if height == 0.0:
         return base
     slope = max(-(g1 + base * (g2 - 0.5 * bound * base)), TINY)
     bend = max(bound * base - g2, TINY)
+    # Each of the three terms alone would bring the cubic to zero there: all together do so earlier.
     r = min(height / slope, math.sqrt(2.0 * height / bend), (6.0 * height / bound) ** (1.0 / 3.0))
     below = height
     for _ in range(6):
@@ -205,6 +218,7 @@ def _zero_beyond(base: float, g: float, g1: float, g2: float, bound: float) -> f
         if excess <= 1e-3 * height:
             break
         r = r - excess / (slope + r * (bend + 0.5 * bound * r))
+    # r is at or beyond the zero of a concave function: its chord from base crosses zero before the function does.
     return base + r * height / max(below, height)
 
 
@@ -213,6 +227,7 @@ def slip_leg(body: Body, tau: float, x: float, w: float, sign: float, left: floa
     """Slip of one sign from (x, w) at tau until it stops, for at most ``left``."""
     b, friction = body.damping, body.friction * sign
     load, load_rate, u, speed = load_and_response(body, tau)
+    # (y, z): the free oscillation, what is left of x and x' without the response and the static shift by friction.
     y0, z0 = x - u + friction, w + (body.belt_speed - speed)
     noise = slip_noise(body, y0, z0)
     y, z, r = y0, z0, 0.0
@@ -224,15 +239,20 @@ def slip_leg(body: Body, tau: float, x: float, w: float, sign: float, left: floa
         if r > 0.0:
             w = z + (speed - body.belt_speed)
         g = sign * w
+        # Zero to rounding and falling: slip ends here.
         if g <= noise and r > 0.0 and slope < 0.0:
             event = 1.0
             break
+        # The third derivative of w over the rest of the leg: the free oscillation never grows, so its present size
+        # bounds it; the response is bounded by jolt.
         third = -2.0 * b * free - z
         fourth = -2.0 * b * third - free
         bend = sign * (third + load_rate - 2.0 * b * forced - speed)
         bound = max(math.sqrt(third * third + fourth * fourth) + body.jolt, TINY)
         touches = g <= noise  # the zero the leg starts from, or a touch: look for the next one
         step = first_zero(0.0 if touches else g, max(slope, 0.0) if touches else slope, bend, bound)
+        # A step below the rounding of the time would not move: the slip is zero to rounding (an event if it falls),
+        # or it starts so flat that a few steps of rounding size must carry it away from zero.
         least = EPSILON * (tau + r + 1e-3 * body.period)
         if step < least:
             if slope < 0.0 and r > 0.0:
@@ -244,6 +264,7 @@ def slip_leg(body: Body, tau: float, x: float, w: float, sign: float, left: floa
                 y = math.nan
                 break
         r = min(r + step, left)
+        # Always from the start of the leg, so that rounding does not accumulate over its steps.
         load, load_rate, u, speed = load_and_response(body, tau + r)
         cosine, turn = decay(body, r)
         keep, damp = cosine + b * turn, cosine - b * turn
@@ -251,13 +272,14 @@ def slip_leg(body: Body, tau: float, x: float, w: float, sign: float, left: floa
     x = y + (u - friction)
     if event == 0.0:
         return Leg(r, x, z + (speed - body.belt_speed), 0.0, sign, 0.0, keep, turn, damp)
+    # At zero slip velocity the net force without friction decides between stick and slip to either side.
     net = load - 2.0 * b * body.belt_speed - x
     return Leg(r, x, 0.0, net, after_rest(body, net), 1.0, keep, turn, damp)
 
 
 @inner
 def slip_noise(body: Body, y: float, z: float) -> float:
-    """Rounding of a slip velocity."""
+    """Bound on the rounding error of a slip velocity."""
     return (
         4.0
         * EPSILON
@@ -267,7 +289,7 @@ def slip_noise(body: Body, y: float, z: float) -> float:
 
 @inner
 def after_rest(body: Body, net: float) -> float:
-    """What follows slip velocity zero under this net force: stick, or slip along the force."""
+    """The leg after slip velocity zero under this net force: stick, or slip along the force."""
     if abs(net) <= body.friction:
         return STICK
     return math.copysign(1.0, net)
@@ -288,11 +310,13 @@ def stick_leg(body: Body, tau: float, x: float, left: float) -> Leg:
         slope = body.load * body.frequency * cosine - body.belt_speed
         bend = -body.load * body.frequency**2 * sine
         step = left
+        # Friction can be exceeded to either side; the step goes to the first zero of the nearer cubic.
         for direction in (1.0, -1.0):
             margin, rise, curve = body.friction - direction * net, -direction * slope, -direction * bend
             if margin <= noise and (rise < 0.0 or (rise == 0.0 and curve < 0.0)):
                 event, side = 1.0, direction
                 break
+            # At the limit to rounding but moving away from it: look for the next zero.
             if margin <= noise:
                 margin, rise = 0.0, max(rise, 0.0)
             step = min(step, first_zero(margin, rise, curve, bound))

@@ -44,7 +44,9 @@ def follow(
 
 @inner
 def panel_length(body: Body, r: float, left: float) -> float:
-    """The next panel, r into a leg: short against drive and free motion, graded where an overdamped part decays."""
+    """Length of the next panel, r into a leg: short against drive and free motion, graded where a part decays."""
+    # Overdamped motion has a fast and a slow exponential: panels start at 1/fast and grow in proportion to r. Once
+    # the free motion has decayed (r * slow > 40) only the drive limits them.
     fast, slow = 1.0, body.damping
     if body.damping > 1.0:
         fast = body.damping + body.rate
@@ -55,7 +57,7 @@ def panel_length(body: Body, r: float, left: float) -> float:
 
 @inner
 def count_panels(body: Body, legs: Any, rows: int) -> int:
-    """How many panels the legs need; a leg of no duration needs none."""
+    """The number of panels of the legs; a leg of no duration has none."""
     panels = 0
     for row in range(rows):
         r = 0.0
@@ -87,7 +89,8 @@ def sample_leg(body: Body, leg: Any, r: float) -> tuple[float, float, float]:
 
 @inner
 def legs_of(body: Body, x: float, w: float, shift: float, legs: int) -> Any:
-    """A period from canonical time 0: its legs, how many, and how many of them end by ``shift``."""
+    """A period from canonical time 0: its legs, their number, and the number of those that end by ``shift``."""
+    # The state is known at canonical time 0, the orbit starts at ``shift``: the legs before it follow those after it.
     table = np.empty((2 * legs + 8, FACTS))
     x, w, before = follow(body, x, w, 0.0, shift, table, 0)
     x, w, rows = follow(body, x, w, shift, body.period, table, before)

@@ -1,8 +1,8 @@
 """The return map of a mass under Coulomb friction over one drive period, its derivative and its fixed point.
 
-State (x, w) at a whole number of periods, w = x' - belt_speed. In the energy norm sqrt(x^2 + w^2) two orbits of one
-scene never move apart (Leine & van de Wouw, 2008), so a step of the map itself never makes things worse: that
-is what Newton's method falls back to. Derivatives through events: saltation (Leine & Nijmeijer, 2004, ch. 7).
+State (x, w) at a whole number of periods, w = x' - belt_speed. In the energy norm sqrt(x^2 + w^2) the distance of
+two orbits of one scene never grows (Leine & van de Wouw, 2008), so an iteration of the map never increases the
+residual: Newton's method falls back to it. Derivatives through events: saltation (Leine & Nijmeijer, 2004, ch. 7).
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from frictionlab.methods.exact.legs import (
 )
 
 MOST_LEGS = 1_000_000
-"""A period of more legs is given up: motion lost in the rounding of its own position."""
+"""Most legs in a period; a period with more is not solved, since its motion is below the rounding of its position."""
 SHORTEST = 1e-6
 
 
 class Passage(NamedTuple):
-    """What a stretch of motion leads to.
+    """The end of a stretch of motion.
 
     xx .. ww: derivative of the end by the start; friction: integral of the friction force (it resists); by_x,
-    by_w: its derivative by the start; legs: how many; stick: time at rest on the belt.
+    by_w: its derivative by the start; legs: their number; stick: time at rest on the belt.
     """
 
     x: float
@@ -55,6 +55,7 @@ def passage(body: Body, x: float, w: float, start: float, end: float) -> Passage
     while tau < end and legs < MOST_LEGS:
         left = end - tau
         leg = stick_leg(body, tau, x, left) if mode == STICK else slip_leg(body, tau, x, w, mode, left)
+        # The derivative of the free motion. In stick keep is 1 and the rest 0: a change of x stays, one of w is gone.
         xx, wx = leg.keep * xx + leg.turn * wx, leg.damp * wx - leg.turn * xx
         xw, ww = leg.keep * xw + leg.turn * ww, leg.damp * ww - leg.turn * xw
         if mode == STICK:
@@ -62,6 +63,7 @@ def passage(body: Body, x: float, w: float, start: float, end: float) -> Passage
             by_x, by_w = by_x - leg.duration * xx, by_w - leg.duration * xw
             stick = stick + leg.duration
         else:
+            # The force of slip is constant: only the time of the event at its end depends on the state.
             friction = friction + mode * body.friction * leg.duration
             if leg.event != 0.0:
                 kept, jump = saltation(body, leg.net, mode, leg.following)
@@ -75,10 +77,13 @@ def passage(body: Body, x: float, w: float, start: float, end: float) -> Passage
 
 @inner
 def saltation(body: Body, net: float, before: float, after: float) -> tuple[float, float]:
-    """Where slip of sign ``before`` ends: the share of a velocity difference that is left, and the change of the
-    friction impulse per velocity difference."""
+    """Derivatives at the end of slip of sign ``before``: of the slip velocity after it by that before it, and of the
+    friction impulse by the slip velocity."""
+    # Stick: every velocity near zero becomes zero. Its friction balances the net force from the event on, so that a
+    # velocity difference is taken by friction in full.
     if after == STICK:
         return 0.0, 1.0
+    # Reversal: orbits that differ by dw arrive |dw/fall| apart, a time in which only one of them has reversed.
     fall = net - body.friction * before
     return (net - body.friction * after) / fall, body.friction * (after - before) / fall
 
@@ -92,7 +97,7 @@ def stuck_impulse(body: Body, tau: float, x: float, r: float) -> float:
 
 
 class Fixed(NamedTuple):
-    """A fixed point, the map from it, the residual of closing and the number of maps it took."""
+    """A fixed point, the map from it, its residual |map - state|, and the number of maps computed."""
 
     x: float
     w: float
@@ -103,10 +108,10 @@ class Fixed(NamedTuple):
 
 @inner
 def fixed_point(body: Body, x: float, w: float, most: int) -> Fixed:
-    """The periodic state near (x, w): Newton's method, with the map itself wherever Newton does not come closer.
+    """The periodic state near (x, w): damped Newton's method, with iterations of the map where it does not converge.
 
-    The residual falls along a Newton step wherever the map is smooth, so a step that is too long is shortened
-    before it is given up: onset of stick or of slip makes the map bend sharply.
+    Where the map is smooth the residual decreases along a Newton step, so a step that is too long is shortened first:
+    the onset of stick or of slip changes the derivative abruptly.
     """
     x_next, w_next, here, size, maps, stalled = x, w, unknown(x, w), math.inf, 0, 0
     share, picard = 1.0, True
@@ -114,6 +119,8 @@ def fixed_point(body: Body, x: float, w: float, most: int) -> Fixed:
         trial = passage(body, x_next, w_next, 0.0, body.period)
         trial_size = math.hypot(trial.x - x_next, trial.w - w_next)
         maps = maps + 1
+        # A Newton step counts if the residual falls in proportion to it. An iteration of the map always counts: it
+        # never increases the distance to the fixed point. Four in a row without gain near rounding end the search.
         if picard or trial_size < (1.0 - 0.25 * share) * size:
             stuck = picard and trial_size >= size and size < 1e3 * rounding(body, x, w)
             stalled = stalled + 1 if stuck else 0
@@ -126,6 +133,7 @@ def fixed_point(body: Body, x: float, w: float, most: int) -> Fixed:
         if size <= rounding(body, x, w) or maps >= most or stalled >= 4:
             return Fixed(x, w, here, size, maps)
         dx, dw = newton_step(here, x, w)
+        # Without a usable Newton step: one iteration of the map, or of many periods at once for a mass in stick.
         picard = share < SHORTEST or not abs(dx) + abs(dw) < math.inf
         x_next, w_next = x + share * dx, w + share * dw
         if picard:
@@ -134,13 +142,13 @@ def fixed_point(body: Body, x: float, w: float, most: int) -> Fixed:
 
 @inner
 def unknown(x: float, w: float) -> Passage:
-    """Before the first map."""
+    """A passage of no time: the state before the first map."""
     return Passage(x, w, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0, 0.0)
 
 
 @inner
 def newton_step(here: Passage, x: float, w: float) -> tuple[float, float]:
-    """Solve (I - M) step = map - state; infinite where the period leaves some direction as it was."""
+    """Solve (I - M) step = map - state; infinite where M has the eigenvalue 1."""
     a, b, c, d = 1.0 - here.xx, -here.xw, -here.wx, 1.0 - here.ww
     determinant = a * d - b * c
     if abs(determinant) < 1e-14:
@@ -151,7 +159,7 @@ def newton_step(here: Passage, x: float, w: float) -> tuple[float, float]:
 
 @inner
 def whole_periods_of_stick(body: Body, here: Passage) -> float:
-    """How far the belt carries a mass that stayed at rest all period until just before friction lets go."""
+    """Displacement of a mass that sticks for a whole period, over all whole periods until friction is exceeded."""
     if here.stick < body.period or body.belt_speed == 0.0:
         return 0.0
     carried = body.belt_speed * body.period
@@ -161,7 +169,7 @@ def whole_periods_of_stick(body: Body, here: Passage) -> float:
 
 @inner
 def scales(body: Body, x: float, w: float) -> tuple[float, float]:
-    """The sizes of the numbers whose rounding enters x and w over one period."""
+    """The magnitudes of the numbers whose rounding errors enter x and w over one period."""
     length = body.size + body.friction + abs(x)
     speed = body.frequency * body.size + body.belt_speed + abs(w)
     reach = min(body.period, 1.0)
@@ -170,15 +178,17 @@ def scales(body: Body, x: float, w: float) -> tuple[float, float]:
 
 @inner
 def rounding(body: Body, x: float, w: float) -> float:
-    """A residual of closing that is nothing but rounding."""
+    """A residual that rounding alone can explain."""
     sx, sw = scales(body, x, w)
     return 4.0 * EPSILON * (sx + sw)
 
 
 @inner
 def mean_error(body: Body, fixed: Fixed) -> float:
-    """Error of the friction impulse over one period, by the adjoint of the map: closing and rounding of the period
-    times what the steady state makes of them."""
+    """Error of the friction impulse over one period: residual and rounding of the map, times the sensitivity of the
+    steady state to them, from the adjoint of the map."""
+    # (of_x, of_w) = (by_x, by_w) (I - M)^-1: the change of the impulse when the map is perturbed in x or w and the
+    # fixed point moves accordingly.
     here = fixed.map
     a, b, c, d = 1.0 - here.xx, -here.xw, -here.wx, 1.0 - here.ww
     determinant = a * d - b * c
@@ -194,7 +204,7 @@ def mean_error(body: Body, fixed: Fixed) -> float:
 
 @inner
 def largest_multiplier(here: Passage) -> float:
-    """The largest modulus of the eigenvalues of the map's derivative."""
+    """The largest modulus of the eigenvalues of the derivative of the map."""
     half, determinant = 0.5 * (here.xx + here.ww), here.xx * here.ww - here.xw * here.wx
     square = half * half - determinant
     if square < 0.0:
@@ -204,6 +214,6 @@ def largest_multiplier(here: Passage) -> float:
 
 @inner
 def friction_free_start(body: Body) -> tuple[float, float]:
-    """The friction-free response at tau = 0, shifted by friction that never changes its side."""
+    """The steady state at tau = 0 if slip never reverses: the friction-free response shifted by constant friction."""
     _, _, u, speed = load_and_response(body, 0.0)
     return u + body.friction, speed - body.belt_speed

@@ -1,7 +1,7 @@
-"""The closed loop of a bristle law under slip along one line: two exact legs, or the deflection followed.
+"""The closed loop of a bristle law under slip along one line: by two exact legs, or by collocation.
 
-Both work with the slip velocity amplitude*(kappa + cos(psi)), kappa = |belt speed|/amplitude, which is minus the slip
-on a belt that runs forward.
+Both use the slip velocity amplitude*(kappa + cos(psi)), kappa = |belt speed|/amplitude, which is minus the slip on a
+belt that runs forward.
 
 Licence (tests/benchmarks/specialists.py): on 15 scenes without an exact path collocation of one number is 4 times
 faster in the median than of two, as in the plane (0.6 to 15 times), and 11 times faster than the period map of a
@@ -32,11 +32,11 @@ FOLLOWED = (
     "prescribed slip: deflection followed once around by Radau IIA collocation, closed by Newton's method"
 )
 SMOOTH = 1e-3
-"""Angle [rad] from which on slip that only touches rest is resolved by the steps alone: it has no kink there."""
-NOTHING_MOVES = "nothing moves: friction is that of the deflection at the start, anything up to its limit"
+"""Angle [rad] above which slip that only touches zero needs no finer panels: friction has no kink there."""
+NOTHING_MOVES = "no slip: friction is that of the initial deflection, any value up to the limit"
 ELASTIC = (
-    "the belt is at rest and the slip too short to move the contact beyond its elastic range: the deflection stays "
-    "about wherever it started"
+    "the belt is at rest and the slip stays within the elastic range of the contact: the mean deflection is that of "
+    "the start"
 )
 
 
@@ -54,18 +54,18 @@ class Along(NamedTuple):
 
     @property
     def side(self) -> float:
-        """1 where the belt runs forward."""
+        """1 for a belt that runs forward, else -1."""
         return -1.0 if self.belt_speed < 0.0 else 1.0
 
     @property
     def turn(self) -> float:
-        """Half of the angle for which slip runs with the oscillation against the belt; 0 where it never does."""
+        """Half of the angle during which slip is reversed; 0 where it never is."""
         speed, size = abs(self.belt_speed), self.size
         return 2.0 * math.asin(math.sqrt(0.5 * (size - speed) / size)) if size > speed else 0.0
 
 
 def line_loop(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
-    """The closed loop, or why there is none."""
+    """The closed loop, or the range of means and the reason where it is not unique."""
     if along.size == 0.0 and along.belt_speed == 0.0:
         most = abs(law.friction(0.0, natural_reach(law, 1.0), 0.0))
         return Open(-most, most, NOTHING_MOVES)
@@ -116,7 +116,7 @@ def _followed(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
 
 
 def _turned(along: Along, parts: tuple[Any, ...], points: Floats, shares: Floats) -> Loop:
-    """The loop at the angles and with the signs of the slip itself."""
+    """The loop at the phase and with the signs of the given slip."""
     start, width, slip, deflection, friction = parts
     shift = -0.5 * math.pi * along.side - cmath.phase(along.phasor)
     side = complex(-along.side, 0.0)

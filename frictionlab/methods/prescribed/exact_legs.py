@@ -1,8 +1,8 @@
-"""A bristle law whose deflection is known along a path, under slip along the belt: the loop of two legs.
+"""The closed loop of a bristle law with an exact path under slip along the belt: two legs between reversals.
 
 Slip of velocity speed*(kappa + cos(psi)), 0 <= kappa < 1, goes forward while |psi| < pi - phi and back for the rest,
-with cos(phi) = kappa. Along each leg the deflection is the law's own, exact at any stiffness; what is left is one
-equation for the deflection at the start of the forward leg, and quadrature.
+with cos(phi) = kappa. Along each leg the law gives the deflection exactly at any stiffness; there remain one equation
+for the deflection at the start of the forward leg, and quadrature.
 
 Licence (tests/benchmarks/specialists.py, 18 scenes): 3.7 times faster in the median than collocation of the same loop
 (2.4 to 67 times; kernels alone 5 to 430), and 57 times faster than the period map of a memory of any size (from 22).
@@ -23,18 +23,18 @@ from frictionlab.quantities import Floats
 POINTS: Floats = 0.5 * (NODES + 1.0)
 SHARES: Floats = 0.5 * WEIGHTS
 ROOM = 1200
-"""Panels of a leg; grading from the finest layer that numbers can tell takes a quarter of them."""
+"""Most panels of a leg; grading from the smallest angle that floating point resolves needs a quarter of them."""
 CLOSEST = 1e-15
 SOFT = 0.1
-"""Path, in units of the law's own length, below which a leg's deflection is summed up from its rate: the difference
-of two deflections would lose what decides the loop of a soft contact."""
+"""Path [``Legs.length``] below which the change of deflection over a leg is integrated from its rate: as a difference
+of two deflections it would lose the digits that determine the loop of a soft contact."""
 
 
 class Legs(NamedTuple):
-    """The two legs: half of the angle of the backward one, slip amplitude [length], speed [velocity].
+    """The two legs: half the angle of the backward one, slip amplitude [length], speed [velocity].
 
-    length: the path on which the law's deflection changes most quickly; reach: its largest deflection [length].
-    cuts: into how many parts panels are cut.
+    length: the path on which the deflection changes most rapidly; reach: its largest value [length]. cuts: number of
+    parts into which panels are divided.
     """
 
     turn: float
@@ -47,7 +47,7 @@ class Legs(NamedTuple):
 
 @inner
 def _less_sine(angle: float) -> float:
-    """angle - sin(angle), to rounding."""
+    """angle - sin(angle) to rounding, by its series where the difference would cancel."""
     if angle > 0.6:
         return angle - math.sin(angle)
     square = angle * angle
@@ -58,7 +58,10 @@ def _less_sine(angle: float) -> float:
 
 @inner
 def _path(legs: Legs, side: float, angle: float) -> float:
-    """Length of the slip of a leg (side: 1 forward, -1 back) up to this angle after its start."""
+    """Length of the slip of a leg (side: 1 forward, -1 back) up to this angle after its start.
+
+    Written with half angles: near a reversal the path is a small difference of large terms.
+    """
     half = math.sin(0.5 * angle)
     turned = 2.0 * math.sin(legs.turn) * half * half
     return legs.amplitude * (turned + side * math.cos(legs.turn) * _less_sine(angle))
@@ -71,7 +74,7 @@ def _velocity(legs: Legs, side: float, angle: float) -> float:
 
 @inner
 def _angle_of(legs: Legs, side: float, path: float, longest: float) -> float:
-    """The angle at which a leg has gone this far, by bisection in its logarithm."""
+    """The angle at which the slip of a leg has this length, by bisection in its logarithm."""
     low, high = -60.0, math.log(longest)
     for _ in range(80):
         middle = 0.5 * (low + high)
@@ -89,7 +92,7 @@ def _deflected(law: Any, z: float, side: float, path: float) -> float:
 
 @inner
 def _gained(law: Any, legs: Legs, z: float, side: float, path: float) -> float:
-    """What a leg adds to the deflection, to rounding of itself where the contact is soft."""
+    """The change of deflection over a leg, with full relative accuracy for soft contacts, too."""
     if path > SOFT * legs.length or path >= law.saturation_path(z, side):
         return _deflected(law, z, side, path) - z
     total = 0.0
@@ -101,14 +104,16 @@ def _gained(law: Any, legs: Legs, z: float, side: float, path: float) -> float:
 
 @inner
 def _opened(law: Any, legs: Legs, z: float, forward: float, back: float) -> float:
-    """What the two legs add to the deflection they start from; falls as that grows."""
+    """The change of deflection over both legs; it decreases as the deflection at the start increases."""
     up = _gained(law, legs, z, 1.0, forward)
     return up + _gained(law, legs, z + up, -1.0, back)
 
 
 @inner
 def _closed(law: Any, legs: Legs, forward: float, back: float) -> float:
-    """The deflection that the two legs leave as it was: regula falsi (Illinois), kept to a bracket."""
+    """The deflection at the start that both legs reproduce: regula falsi (Illinois) within a bracket."""
+    # The change over both legs decreases with the deflection: its zero is bracketed by the largest deflections. A
+    # contact that saturates returns exactly to one of them.
     low, high = -legs.reach, legs.reach
     at_low, at_high = _opened(law, legs, low, forward, back), _opened(law, legs, high, forward, back)
     if at_low <= 0.0:
@@ -118,6 +123,7 @@ def _closed(law: Any, legs: Legs, forward: float, back: float) -> float:
     side = 0
     for turn in range(300):
         z = (low * at_high - high * at_low) / (at_high - at_low)
+        # Every third step is a bisection, which bounds the number of steps.
         if turn % 3 == 2 or not low < z < high:
             z = 0.5 * (low + high)
         opened = _opened(law, legs, z, forward, back)
@@ -134,16 +140,19 @@ def _closed(law: Any, legs: Legs, forward: float, back: float) -> float:
 
 @inner
 def _edges(law: Any, legs: Legs, z: float, side: float, longest: float, edges: Any) -> int:
-    """Panel edges of a leg, graded away from its start and towards the place where friction saturates."""
+    """Panel edges of a leg, graded towards its start and towards the angle where friction saturates."""
+    # corner: the angle from which friction is constant; beyond the leg if there is none.
     corner = 2.0 * longest
     saturation = law.saturation_path(z, side)
     if saturation < _path(legs, side, longest):
         corner = _angle_of(legs, side, saturation, longest) if saturation > 0.0 else 0.0
+    # The layer after a reversal, in which the deflection changes sign, starts with a fifth of the shortest path.
     first = _angle_of(legs, side, 0.2 * legs.length, longest)
     first, at, n = max(first, CLOSEST), 0.0, 0
     edges[0] = 0.0
     while at < longest and n < ROOM - 3:
         step = min(0.5 * max(at, first), 0.3) / legs.cuts
+        # Panels double in size away from the start and halve towards the corner, which becomes an edge.
         gap = corner - at
         if gap > 0.0:
             step = min(step, max(0.5 * gap / legs.cuts, 1e-15 * longest))
@@ -159,7 +168,7 @@ def _edges(law: Any, legs: Legs, z: float, side: float, longest: float, edges: A
 
 @njit
 def follow(law: Any, legs: Legs) -> Any:
-    """The closed loop on its panels [panels], [panels, nodes].
+    """The closed loop on its panels, as arrays [panels] and [panels, nodes].
 
     Returns starts and widths of the panels (angles after the start of the forward leg), slip velocity, deflection
     and friction at their nodes.

@@ -1,9 +1,9 @@
-"""The friction of a bristle law over a periodic slip along a line, as kernels.
+"""Kernels for the friction of a bristle law over a periodic slip along a line.
 
-A period is cut into panels with Radau nodes, short where slip turns. Slip at the nodes is given; the deflection
-follows from node to node by the law's own exact path, or else panel by panel as the polynomial that meets the
-law's rate at every node (Radau IIA: ninth order, and stiff bristles do not limit the panels). Its start is the one
-from which it repeats.
+A period is divided into panels with Radau nodes, short near reversals of slip. Slip at the nodes is given. The
+deflection is computed from node to node by the exact path of the law, or else panel by panel by collocation: the
+polynomial whose derivative is the law's rate at every node (Radau IIA of order nine; stiff bristles do not limit the
+panels). Its start is the fixed point of the period.
 
 Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.5.
 """
@@ -22,36 +22,36 @@ from frictionlab.dynamics.radau_panel import STAGES
 from frictionlab.quantities import Floats
 
 NODES: Floats = 2.0 * radau_panel.NODES - 1.0
-"""Of Radau quadrature on [-1, 1], the right end included."""
+"""Nodes of Radau quadrature on [-1, 1], the right end included."""
 INTEGRAL: Floats = 2.0 * radau_panel.MATRIX
-"""From -1 to each node, of the polynomial through the nodes."""
+"""Integrals from -1 to each node of the polynomial through the nodes."""
 WEIGHTS: Floats = INTEGRAL[-1].copy()
 
 MOST_PANELS = 600
 MOST_CORRECTIONS = 25
 MOST_CLOSINGS = 60
 CLOSED = 1e-13
-"""What a deflection may miss its start by after a period, relative to the largest."""
+"""Largest change of deflection over a closed period, relative to the largest deflection."""
 FINEST = 1e-7
 """Shortest panel [rad]."""
 COARSEST = math.pi / 16.0
 SHARE = 0.1
-"""Path in a panel, of the largest deflection, while bristles of a law without an exact path yield."""
+"""Largest path in a panel while bristles without an exact path yield [largest deflections]."""
 SETTLING = 8.0
-"""Path after a turn, of the largest deflection, until they have."""
+"""Path after a reversal within which bristles yield [largest deflections]."""
 
 
 class Contact(NamedTuple):
-    """How to follow a law: ``exact`` (1 or 0) along its exact path, its largest deflection [scene length]."""
+    """Whether the exact path of the law is used (1 or 0), and its largest deflection [scene length]."""
 
     exact: float
     size: float
 
 
 class Harmonics(NamedTuple):
-    """Of a friction coefficient over the slip amplitude*sin(theta) - belt_speed: its mean and its parts along
-    sin(theta), in quadrature to the displacement, and along cos(theta); how often it changes sign; and by what share
-    a disturbance of the deflection shrinks in a period."""
+    """Friction coefficient over the slip amplitude*sin(theta) - belt_speed: its mean, its coefficients of sin(theta)
+    (in quadrature to the displacement) and cos(theta), the number of sign changes, and the multiplier of a
+    disturbance of the deflection over a period."""
 
     mean: float
     sine: float
@@ -62,7 +62,7 @@ class Harmonics(NamedTuple):
 
 @inner
 def _solved(matrix: Any, right: Any) -> None:
-    """``right`` [n, columns] becomes the solution of a small linear system; ``matrix`` is used up."""
+    """Gaussian elimination with row pivoting: ``right`` [n, columns] becomes the solution, ``matrix`` is changed."""
     n, columns = right.shape
     for k in range(n):
         best = k
@@ -95,14 +95,16 @@ def _swapped(matrix: Any, one: int, other: int, columns: int) -> None:
 
 @inner
 def _straight(law: Any, last: float, half: float, slip: Any, z: float, deflections: Any) -> float:
-    """The deflection at every node of a panel along the exact path; ``last`` is the slip before it."""
+    """The deflections at the nodes of a panel along the exact path; ``last`` is the slip before the panel."""
     before, gone, node = last, 0.0, -1.0
     for k in range(STAGES):
         now, path = slip[k], 0.0
         for j in range(STAGES):
             path = path + half * INTEGRAL[k, j] * slip[j]
         step, time = path - gone, half * (NODES[k] - node)
-        if before * now < 0.0:  # out and back; the shorter of both as if slip grew straight from its turn
+        # Slip reverses between two nodes: the path forth and the path back are applied one after the other. The one
+        # on the side of the smaller slip is computed as if slip were linear in time there, the other is the rest.
+        if before * now < 0.0:
             out = 0.5 * time * before * before / (before - now)
             if abs(now) < abs(before):
                 out = step - 0.5 * time * now * now / (now - before)
@@ -117,15 +119,16 @@ def _straight(law: Any, last: float, half: float, slip: Any, z: float, deflectio
 def _collocated(
     law: Any, half: float, slip: Any, z: float, size: float, work: Any, right: Any, found: Any
 ) -> float:
-    """The deflection at every node of a panel, its rate met at each of them."""
+    """The deflections at the nodes of a panel by collocation, with Newton's method."""
     small, at, node = 1e-7 * size, z, -1.0
-    for k in range(STAGES):  # a first guess from node to node, linearly implicit
+    for k in range(STAGES):  # first guess: linearly implicit Euler steps from node to node
         time = half * (NODES[k] - node)
         rate = law.rate(slip[k], at)
         slope = min((law.rate(slip[k], at + small) - rate) / small, 0.0)
         at = at + time * rate / (1.0 - time * slope)
         found[k], node = at, NODES[k]
     for _ in range(MOST_CORRECTIONS):
+        # Residual z + half * INTEGRAL rate(found) - found, and its Jacobian with difference quotients of the rate.
         for i in range(STAGES):
             right[i, 0] = z - found[i]
         for j in range(STAGES):
@@ -147,7 +150,7 @@ def _collocated(
 
 @inner
 def _period(law: Any, contact: Any, halves: Any, slip: Any, z: float, deflections: Any, count: int) -> float:
-    """The deflection at every node of ``count`` panels, begun at z; what it ends at."""
+    """The deflections at the nodes of ``count`` panels, starting from z; returns the deflection at the end."""
     work, right = np.empty((STAGES, STAGES)), np.empty((STAGES, 1))
     last = slip[count - 1, STAGES - 1]
     for p in range(count):
@@ -161,7 +164,9 @@ def _period(law: Any, contact: Any, halves: Any, slip: Any, z: float, deflection
 
 @inner
 def _closed(law: Any, contact: Any, halves: Any, slip: Any, deflections: Any, count: int) -> float:
-    """Deflections that repeat: their start; periods never cross, so that it is bracketed. Last is the multiplier."""
+    """Find periodic deflections by a bracketed secant method; returns the multiplier of a disturbance."""
+    # Solutions of a scalar equation never cross, so end - z has one sign below the fixed point and the other above
+    # it.
     size = contact.size
     low, high, z = -size, size, 0.0
     last, last_gap, slope = math.nan, math.nan, 0.0
@@ -176,6 +181,8 @@ def _closed(law: Any, contact: Any, halves: Any, slip: Any, deflections: Any, co
             low = max(low, z)
         else:
             high = min(high, z)
+        # The first two steps iterate the period; then secant steps, replaced by bisection where the slope has the
+        # wrong sign, where they leave the bracket, and every twelfth time against slow convergence.
         following = end
         if step > 1:
             following = z - gap / slope if slope < 0.0 else 0.5 * (low + high)
@@ -189,9 +196,9 @@ def _closed(law: Any, contact: Any, halves: Any, slip: Any, deflections: Any, co
 
 @inner
 def _edges(turn: float, reach: Any, least: float, size: float, corners: Any, edges: Any) -> int:
-    """Panel edges of one period from ``turn`` on, short near it and near pi - turn; their number.
+    """Panel edges of one period from ``turn`` on, short near it and near pi - turn; returns their number.
 
-    Until the path behind a turn is some ``size``, no panel is longer than a part of it.
+    Over a path of ``SETTLING * size`` after a reversal every panel covers at most ``SHARE * size``.
     """
     amplitude, belt_speed, frequency = reach
     reverses = amplitude > belt_speed
@@ -199,6 +206,7 @@ def _edges(turn: float, reach: Any, least: float, size: float, corners: Any, edg
     at, count = turn, 1
     edges[0] = turn
     while at < end and count < MOST_PANELS:
+        # Half the distance to the nearest reversal: panels grow and shrink in proportion to it.
         near = min(abs(at - turn), abs(at - there), abs(end - at))
         step = min(COARSEST, max(least, 0.5 * near))
         behind = turn if at < there else there
@@ -207,10 +215,11 @@ def _edges(turn: float, reach: Any, least: float, size: float, corners: Any, edg
             pace = abs(amplitude * math.sin(at) - belt_speed)
             step = min(step, max(0.2 * least, SHARE * size * frequency / max(pace, 1e-300)))
         following = at + step
+        # Corners of friction, the second reversal and the end become edges; a remainder below least/4 is merged.
         for stop in (corners[0], corners[1], there if reverses else end, end):
             if at < stop < following + 0.25 * least:
                 following = stop
-        # towards a reversal the panels shrink as they grew behind the last
+        # Towards a reversal panels shrink as they grew after the previous one.
         ahead = there if at < there else end
         if reverses and following < ahead:
             following = min(following, max(at + least, at + 0.34 * (ahead - at)))
@@ -223,7 +232,7 @@ def _edges(turn: float, reach: Any, least: float, size: float, corners: Any, edg
 
 @inner
 def _corner(law: Any, z: float, side: float, start: float, end: float, reach: Any) -> float:
-    """Where on a leg friction stops changing; nowhere (-inf) where it does not."""
+    """The angle on a leg from which friction is constant; -inf where there is none."""
     amplitude, belt_speed, frequency = reach
     wanted = law.saturation_path(z, side) * frequency
     if not 0.0 < wanted < math.inf:
@@ -241,7 +250,7 @@ def _corner(law: Any, z: float, side: float, start: float, end: float, reach: An
 
 @inner
 def _laid(edges: Any, count: int, reach: Any, halves: Any, slip: Any, angles: Any) -> None:
-    """Angles and slip at the nodes of the panels between these edges."""
+    """Write half widths, angles and slip at the nodes of the panels between these edges."""
     amplitude, belt_speed, frequency = reach
     for p in range(count - 1):
         half = 0.5 * (edges[p + 1] - edges[p])
@@ -256,6 +265,8 @@ def harmonic_friction(law: Any, contact: Any, amplitude: float, belt_speed: floa
     """Harmonics of friction over the slip amplitude*sin(theta) - belt_speed, belt_speed >= 0; see Harmonics."""
     reach = (amplitude, belt_speed, frequency)
     reverses = amplitude > belt_speed
+    # turn: the angle of the first reversal. least: the panel there, from the path amplitude*angle^2/2 of slip after a
+    # reversal and the largest deflection; without a reversal, from the width of the minimum of slip.
     turn, least = 0.5 * math.pi, COARSEST
     if reverses:
         turn = math.asin(belt_speed / amplitude)
@@ -271,6 +282,8 @@ def harmonic_friction(law: Any, contact: Any, amplitude: float, belt_speed: floa
     slip, angles, deflections = np.empty(shape), np.empty(shape), np.empty(shape)
     _laid(edges, count, reach, halves, slip, angles)
     multiplier = _closed(law, contact, halves, slip, deflections, count - 1)
+    # Friction of an exact path may have a corner where it saturates: with the deflections at both reversals known,
+    # the corners are located and become edges, and the period is computed once more.
     if reverses and contact.exact > 0.0:
         there, end = math.pi - turn, turn + 2.0 * math.pi
         back = 0.0

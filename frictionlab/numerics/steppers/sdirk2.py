@@ -4,8 +4,8 @@ R. Alexander, SIAM J. Numer. Anal. 14 (1977), 1006: gamma = 1 - 1/sqrt(2),
 
     Y1 = y + h gamma f(Y1),   Y2 = y + h (1 - gamma) f(Y1) + h gamma f(Y2),   y is Y2 at the end,
 
-with y = (x, x', z): mass and bristles together, x eliminated. Each stage is solved by Newton's method with the
-difference Jacobian of the rates; a step in which that fails is taken in two halves, and so on.
+with y = (x, x', z): mass and bristles together, x eliminated. Each stage is solved by Newton's method with a
+difference Jacobian of the rates; a step in which that fails is halved, repeatedly if necessary.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ GAMMA = 1.0 - math.sqrt(0.5)
 MOST_TRIALS = 30
 MOST_HALVINGS = 24
 CLOSE = 1e-10
-"""Relative size of the last change of Newton's method; it converges too fast for what is left to count."""
+"""Relative size of the last Newton step; convergence is quadratic, so the remaining error is negligible."""
 NUDGE = 1e-6
-"""Of a velocity or a deflection that matters, to tell derivatives by."""
+"""Relative step of the difference quotients."""
 
 
 class Taken(NamedTuple):
@@ -38,7 +38,7 @@ class Taken(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """V = v + g x''(tau, x + g V, V, Z), Z = z + g z'(V, Z); sizes of a velocity and a deflection that matter."""
+    """V = v + g x''(tau, x + g V, V, Z), Z = z + g z'(V, Z); quick, deep: scales of velocity and deflection."""
 
     tau: float
     g: float
@@ -50,7 +50,7 @@ class Stage(NamedTuple):
 
 
 class Met(NamedTuple):
-    """Where a stage ends."""
+    """The solution of a stage, and whether Newton's method converged."""
 
     v: Any
     z: Any
@@ -58,7 +58,7 @@ class Met(NamedTuple):
 
 
 class Gap(NamedTuple):
-    """By how much the equations of a stage are missed."""
+    """The residual of the equations of a stage."""
 
     v: Any
     z: Any
@@ -77,7 +77,7 @@ def stepper(rates: Any) -> Any:
 
     @inner
     def nudges(stage: Stage) -> tuple[float, float]:
-        """Small against the velocity that bends the bristles all the way within the stage, too."""
+        """Steps of the difference quotients; that of velocity is small against full deflection in the stage, too."""
         return NUDGE * min(stage.quick, stage.deep / stage.g), NUDGE * stage.deep
 
     def change_on_the_line(problem: Any, stage: Stage, z: float, at: Gap, v: float) -> Gap:
@@ -114,11 +114,12 @@ def stepper(rates: Any) -> Any:
 
     @inner
     def met(problem: Any, stage: Stage, v: Any, z: Any) -> Met:
-        """By Newton's method from a guess, each change cut until it helps."""
+        """Damped Newton's method from a guess: each step is halved until the residual decreases."""
         at = gap(problem, stage, v, z)
         missed = size(stage, at)
         for _ in range(MOST_TRIALS):
             way, part = change(problem, stage, z, at, v), 1.0
+            # A singular Jacobian gives an infinite or undefined step.
             if not size(stage, way) < 1e300:
                 return Met(v, z, False)
             ahead = gap(problem, stage, v + way.v, z + way.z)
@@ -132,12 +133,14 @@ def stepper(rates: Any) -> Any:
 
     @inner
     def tried(problem: Any, tau: float, start: Taken, h: float) -> tuple[Taken, bool]:
-        """One step, and whether both of its stages were found."""
+        """One step, and whether both of its stages converged."""
+        # Scales of this step: of velocity from body and slip, of deflection from what slip can do within the step.
         g, late = GAMMA * h, (1.0 - GAMMA) * h
         x, v, z = start.x, start.v, start.z
         quick = length(v) + length(v - problem.belt_speed) + length(x) * 1e-3 + 1e-9
         deep = min(problem.law.largest_deflection(), length(z) + h * quick)
         first = met(problem, Stage(tau + g, g, x, v, z, quick, deep), v, z)
+        # Stiffly accurate: the second stage is the state at the end of the step.
         a1, f1, r1 = rates(problem, tau + g, x + g * first.v, first.v, first.z)
         base = Stage(tau + h, g, x + late * first.v, v + late * a1, z + late * r1, quick, deep)
         last = met(problem, base, first.v, first.z)

@@ -42,6 +42,7 @@ from frictionlab.laws.base import FrictionLaw
 # counts from 1: of two entries kept by two processes one would run the other's code. A random start keeps them apart.
 FunctionIdentity._unique_ids = itertools.count(secrets.randbits(60))
 _typeof: Any = numba.typeof
+_config: Any = numba.config
 
 
 _one_at_a_time = threading.Lock()
@@ -51,8 +52,11 @@ _one_at_a_time = threading.Lock()
 def compiled(kernel: Any, law: FrictionLaw | None = None) -> Callable[..., Any]:
     """The disk-cached entry of a kernel; with a law, the kernel's first argument is already filled in.
 
-    Raises CannotCompile, when called, where numba cannot compile the law's methods.
+    Where numba is told to compile nothing, the kernel itself, and the law as it is. Raises CannotCompile, when
+    called, where numba cannot compile the law's methods.
     """
+    if _config.DISABLE_JIT:
+        return kernel if law is None else partial(kernel, law)
     numbers, structure = (law.numbers(), law.structure()) if law is not None else ({}, ())
     with _one_at_a_time:
         entry, numbers_type = _entry(
@@ -70,7 +74,8 @@ def timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
     """What a compiled entry returns, and the seconds it took, compilation left out."""
     entry: Any = call.args[0] if isinstance(call, partial) else call
     bound = call.args[2:] if isinstance(call, partial) else ()
-    with contextlib.suppress(NumbaError, UnsupportedBytecodeError):  # the call itself says what is wrong
+    # The call itself says what is wrong with a law; interpreted kernels have nothing to compile.
+    with contextlib.suppress(NumbaError, UnsupportedBytecodeError, AttributeError):
         entry.compile(tuple(_typeof(argument) for argument in (*bound, *arguments)))
     start = time.perf_counter()
     result = call(*arguments)

@@ -39,3 +39,17 @@ def inlined(function: Callable[..., Any]) -> Any:
 def fast(function: Callable[..., Any]) -> Any:
     """The same for inner arithmetic that never meets NaN or infinity on purpose."""
     return numba.njit(fastmath=True, **INNER)(function)
+
+
+def embedded(function: Callable[..., Any]) -> Any:
+    """``inner`` for what is at the heart of a stepper: it is copied into its callers, however many and long.
+
+    Left to itself, LLVM calls such a function once it has grown by a few products, and a planar map takes twice the
+    time: a body alone is some thirty numbers to be handed over.
+    """
+    return numba.njit(forceinline=True, **INNER)(function)
+
+
+def fast_embedded(function: Callable[..., Any]) -> Any:
+    """``fast``, copied into its callers."""
+    return numba.njit(fastmath=True, forceinline=True, **INNER)(function)

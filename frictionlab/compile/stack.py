@@ -11,6 +11,7 @@ from typing import Any
 import numba.core.cgutils
 import numba.core.types
 import numba.extending
+import numpy as np
 
 from frictionlab.compile.dispatch import law_of_numbers
 from frictionlab.laws.memory import MemoryLaw
@@ -18,6 +19,7 @@ from frictionlab.laws.memory import MemoryLaw
 _cgutils: Any = numba.core.cgutils  # internals of numba, untyped
 _types: Any = numba.core.types
 _extending: Any = numba.extending
+_config: Any = numba.config
 
 
 def count_known(numbers: Any) -> int | None:
@@ -31,7 +33,7 @@ def count_known(numbers: Any) -> int | None:
 
 def count_of(law: Any) -> int:
     """How many numbers a law remembers: a constant to the compiler for laws of few."""
-    return law.count()
+    return law.count() if isinstance(law, MemoryLaw) else 1
 
 
 def _count(law: Any) -> Any:
@@ -71,5 +73,10 @@ def _room(typing: Any, law: Any, each: Any, more: Any, item: Any) -> Any:
     return _types.CPointer(number)(law, each, more, item), codegen
 
 
-room: Any = _extending.intrinsic(prefer_literal=True)(_room)
+def _interpreted_room(law: Any, each: int, more: int, item: Any) -> Any:
+    """The same where Python runs the kernels."""
+    return np.zeros(each * count_of(law) + more, complex if isinstance(item, complex) else float)
+
+
+room: Any = _interpreted_room if _config.DISABLE_JIT else _extending.intrinsic(prefer_literal=True)(_room)
 """room(law, each, more, item): see ``_room``."""

@@ -26,17 +26,17 @@ def reference_acceleration(body: Body, sine: float, cosine: float) -> Any:
     return -(body.frequency**2) * (body.reference_sine * sine + body.reference_cosine * cosine)
 
 
-def slip_events(step: Any, rates: Any, slip: Any, turned: Any) -> Any:
+def slip_events(step: Any, rates: Any, slip: Any, slip_rate: Any) -> Any:
     """``stop`` and ``lowest`` for a stepper and the rates it is bound to (numba caches no kernel handed a function).
 
-    problem.side is the sign of the slip before it turns.
+    slip(problem, tau, u) and slip_rate(problem, tau, a) are of the deviation; problem.side is the sign of the slip
+    before it turns.
     """
 
     @inner
     def _fall(problem: Any, tau: float, taken: Any) -> float:
-        sine, cosine = turned(problem, tau)
         a, _rub = rates(problem, tau, taken.x, taken.v)
-        return problem.side * (a + reference_acceleration(problem.body, sine, cosine))
+        return problem.side * slip_rate(problem, tau, a)
 
     @inner
     def stop(problem: Any, tau: float, state: Any, low: float, high: float) -> Any:

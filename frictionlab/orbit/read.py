@@ -11,6 +11,15 @@ import numpy as np
 from frictionlab.columns import FROM_ORBITS
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import inner, njit
+from frictionlab.dynamics.motion import (
+    instant_at,
+    load,
+    mean_friction,
+    normal_load,
+    planar,
+    restoring_force,
+    slip,
+)
 from frictionlab.orbit.panels import NODES, WEIGHTS, differentiate_panel, interpolate, zero_between
 from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats
@@ -131,19 +140,21 @@ class Sums(NamedTuple):
     input: float
     viscous: float
     by_friction: float
+    contact: float
     stick: float
 
 
 @inner
 def read(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_speed: float) -> Any:
     """The columns ``READ`` of one period, given as arrays [panels, nodes] and stick [panels]."""
-    sums = _integrals(tau, x, v, friction, stick, mass)
+    slips = np.empty(tau.shape, np.complex128)
+    sums = _integrals(tau, x, v, friction, stick, mass, belt_speed, slips)
     period = sums.duration
     part = np.empty(tau.shape)
     out = np.empty(17)
-    out[0] = -sums.friction.real / period
+    out[0] = mean_friction(sums.friction.real, period)
     out[1] = sums.position.real / period
-    out[2] = -sums.friction.imag / period
+    out[2] = mean_friction(sums.friction.imag, period)
     out[3] = sums.position.imag / period
     out[5] = abs(sums.harmonic_1) * 2.0 / period
     out[6] = _lead(sums.harmonic_1, mass.force)
@@ -152,12 +163,13 @@ def read(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_s
     out[10] = sums.stick / period
     out[13] = sums.input
     out[14] = sums.viscous
-    out[15] = sums.by_friction * mass.normal_load
-    out[16] = out[15] - belt_speed * sums.friction.real * mass.normal_load
+    out[15] = sums.by_friction
+    out[16] = sums.contact
     _along(friction, part)
-    out[12] = _sign_changes(part, 0.0, stick, False)
+    out[12] = _sign_changes(part, stick, False)
+    _along(slips, part)
+    out[11] = _sign_changes(part, stick, True)
     _along(v, part)
-    out[11] = _sign_changes(part, belt_speed, stick, True)
     out[4] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
     _across(v, part)
     out[7] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
@@ -179,29 +191,42 @@ def _across(values: Any, out: Any) -> None:
 
 
 @inner
-def _integrals(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass) -> Sums:
+def _integrals(
+    tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_speed: float, slips: Any
+) -> Sums:
+    """What is summed up over the period; leaves the slip velocity of every node in ``slips``."""
+    body = planar(mass)
     duration, stuck = 0.0, 0.0
     position, rubbed, harmonic_1, harmonic_2 = 0j, 0j, 0j, 0j
-    put_in, viscous, taken = 0.0, 0.0, 0.0
+    put_in, viscous, taken, contact = 0.0, 0.0, 0.0, 0.0
     for panel in range(tau.shape[0]):
         half = 0.5 * (tau[panel, -1] - tau[panel, 0])
         duration += 2.0 * half
         stuck += 2.0 * half if stick[panel] else 0.0
         for node in range(tau.shape[1]):
-            weight = half * WEIGHTS[node]
-            angle = mass.frequency * tau[panel, node]
-            turn = complex(math.cos(angle), math.sin(angle))
+            weight, now = half * WEIGHTS[node], instant_at(body, tau[panel, node])
+            turn = complex(now.cosine, now.sine)
             velocity, rub = v[panel, node], friction[panel, node]
+            w = slip(body, belt_speed, now, velocity)
+            slips[panel, node] = w
             # Each direction by itself: of the one across the belt nothing may be known.
             position += complex(weight * x[panel, node].real, weight * x[panel, node].imag)
             rubbed += complex(weight * rub.real, weight * rub.imag)
             harmonic_1 += weight * velocity.real * turn.conjugate()
             harmonic_2 += weight * velocity.imag * turn.conjugate()
-            load_1, load_2 = (mass.force * turn).imag, (mass.transverse_force * turn).imag
-            put_in += weight * (load_1 * velocity.real + load_2 * velocity.imag)
-            viscous += weight * (mass.damping * velocity.real**2 + mass.transverse_damping * velocity.imag**2)
-            taken += weight * (rub.real * velocity.real + rub.imag * velocity.imag)
-    return Sums(duration, position, rubbed, harmonic_1, harmonic_2, put_in, viscous, taken, stuck)
+            # Powers: of the load, of the dashpots (springs give back what they take), and of friction, whose part in
+            # the contact is heat; the rest is the work on the belt.
+            pressed = weight * normal_load(body, now)
+            put_in += weight * _power(load(body, now), velocity)
+            viscous += weight * _power(restoring_force(body, 0.0 * velocity, velocity), velocity)
+            taken += pressed * _power(rub, velocity)
+            contact += pressed * _power(rub, w)
+    return Sums(duration, position, rubbed, harmonic_1, harmonic_2, put_in, viscous, taken, contact, stuck)
+
+
+@inner
+def _power(force: complex, velocity: complex) -> float:
+    return force.real * velocity.real + force.imag * velocity.imag
 
 
 @inner
@@ -231,13 +256,13 @@ def _highest(values: Any, sign: float, stick: Any) -> float:
 
 
 @inner
-def _sign_changes(values: Any, level: float, stick: Any, skip_stick: bool) -> int:
-    """Crossings of the level within the period, counted at interior nodes: at the ends of panels, which are events,
-    the value equals the level without crossing it."""
+def _sign_changes(values: Any, stick: Any, skip_stick: bool) -> int:
+    """Crossings of zero within the period, counted at interior nodes: at the ends of panels, which are events, the
+    value is zero without crossing it."""
     changes, first, last = 0, 0.0, 0.0
     for panel in range(values.shape[0]):
         for node in range(1, values.shape[1] - 1):
-            value = values[panel, node] - level
+            value = values[panel, node]
             if (skip_stick and stick[panel]) or value == 0.0:
                 continue
             first = value if first == 0.0 else first

@@ -47,3 +47,28 @@ def grown(track: Track, room: int) -> Track:
             larger.friction[panel, node] = track.friction[panel, node]
     larger.filled[0] = track.filled[0]
     return larger
+
+
+def panel_writer(state_at: Any) -> Any:
+    """``note_panel(track, tau, h, stick, *given)`` for a kernel function ``state_at(part, *given)`` of one motion.
+
+    It writes the panel that begins at tau and lasts h, if there is room for it; state_at gives position, velocity and
+    friction coefficient a while ``part`` after the beginning. (numba caches no kernel that is handed a function.)
+    """
+
+    @inner
+    def note_panel(track: Track, tau: float, h: float, stick: bool, *given: Any) -> None:
+        row = track.filled[0]
+        if row == track.stick.size:
+            return
+        for k in range(NODES.size):
+            part = 0.5 * h * (1.0 + NODES[k])
+            x, v, rub = state_at(part, *given)
+            track.tau[row, k] = tau + part
+            track.x[row, k] = x
+            track.v[row, k] = v
+            track.friction[row, k] = rub
+        track.stick[row] = stick
+        track.filled[0] = row + 1
+
+    return note_panel

@@ -23,10 +23,13 @@ class Body(NamedTuple):
     """The numbers of a free scene, for kernels that run on the line (``float``) and in the plane (``complex``).
 
     A constant that differs between x1 and x2 acts as mean*x + split*conj(x), x = x1 + i x2. The motion is the sum of
-    a harmonic reference, the friction-free response where that is bounded, and the deviation from it: ``force``
-    drives the deviation, besides friction. A sine/cosine pair stands for sine*sin(Omega tau) + cosine*cos(Omega tau).
-    A period map spans ``periods`` periods of the drive. Where ``prescribed``, the motion is the reference and
-    friction does not change it.
+    a harmonic reference, the friction-free response where that is bounded, and the deviation from it: ``balanced`` is
+    the force that the reference motion takes, all of the ``load`` but at undamped resonance. A sine/cosine pair
+    stands for sine*sin(Omega tau) + cosine*cos(Omega tau). A period map spans ``periods`` periods of the drive. Where
+    ``prescribed``, the motion is the reference and friction does not change it.
+
+    ``load`` and ``normal_load`` are the numbers of dynamics/motion.py, where they become functions of time; elsewhere
+    ``normal_load``, the mean, only measures accuracies and step sizes.
     """
 
     damping_mean: float
@@ -35,8 +38,10 @@ class Body(NamedTuple):
     stiffness_split: float
     normal_load: float
     frequency: float
-    force_sine: Any
-    force_cosine: Any
+    load_sine: Any
+    load_cosine: Any
+    balanced_sine: Any
+    balanced_cosine: Any
     reference_sine: Any
     reference_cosine: Any
     periods: float
@@ -46,9 +51,7 @@ class Body(NamedTuple):
 def on_the_line(mass: Mass, periods: float = 1.0) -> Body:
     """The body with motion along the belt alone."""
     reference = _friction_free(mass.damping, mass.stiffness, mass.frequency, mass.force)
-    rest = (
-        mass.force if reference == 0 else 0j
-    )  # the reference balances all of it, but for undamped resonance
+    taken = mass.force if reference != 0 else 0j
     return Body(
         damping_mean=mass.damping,
         damping_split=0.0,
@@ -56,8 +59,10 @@ def on_the_line(mass: Mass, periods: float = 1.0) -> Body:
         stiffness_split=0.0,
         normal_load=mass.normal_load,
         frequency=mass.frequency,
-        force_sine=rest.real,
-        force_cosine=rest.imag,
+        load_sine=mass.force.real,
+        load_cosine=mass.force.imag,
+        balanced_sine=taken.real,
+        balanced_cosine=taken.imag,
         reference_sine=reference.real,
         reference_cosine=reference.imag,
         periods=periods,
@@ -69,8 +74,9 @@ def in_the_plane(mass: Mass, periods: float = 1.0) -> Body:
     along = mass.damping, mass.stiffness, mass.frequency, mass.force
     across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
     reference, reference_2 = _friction_free(*along), _friction_free(*across)
-    rest = mass.force if reference == 0 else 0j
-    rest_2 = mass.transverse_force if reference_2 == 0 else 0j
+    force, force_2 = mass.force, mass.transverse_force
+    taken = force if reference != 0 else 0j
+    taken_2 = force_2 if reference_2 != 0 else 0j
     return Body(
         damping_mean=0.5 * (mass.damping + mass.transverse_damping),
         damping_split=0.5 * (mass.damping - mass.transverse_damping),
@@ -78,8 +84,10 @@ def in_the_plane(mass: Mass, periods: float = 1.0) -> Body:
         stiffness_split=0.5 * (mass.stiffness - mass.transverse_stiffness),
         normal_load=mass.normal_load,
         frequency=mass.frequency,
-        force_sine=complex(rest.real, rest_2.real),
-        force_cosine=complex(rest.imag, rest_2.imag),
+        load_sine=complex(force.real, force_2.real),
+        load_cosine=complex(force.imag, force_2.imag),
+        balanced_sine=complex(taken.real, taken_2.real),
+        balanced_cosine=complex(taken.imag, taken_2.imag),
         reference_sine=complex(reference.real, reference_2.real),
         reference_cosine=complex(reference.imag, reference_2.imag),
         periods=periods,

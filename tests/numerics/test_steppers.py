@@ -24,7 +24,6 @@ from frictionlab.methods.march.laps import (
     march_smoothed,
     restoring_force,
 )
-from frictionlab.methods.march.run import loaded
 from frictionlab.numerics.steppers import moreau
 from frictionlab.scene.body import Body, Mass, in_the_plane, on_the_line
 
@@ -57,7 +56,7 @@ def body_of(push: Push) -> Body:
         force=complex(push.load),
         transverse_force=1j * push.load,
     )
-    return loaded(in_the_plane(mass) if push.planar else on_the_line(mass), mass, not push.planar)
+    return in_the_plane(mass) if push.planar else on_the_line(mass)
 
 
 def alike() -> Body:
@@ -68,10 +67,8 @@ def alike() -> Body:
 
 def way_of(push: Push, steps: int, theta: float, **changes: Any) -> MarchSettings:
     """Once from tau = 0 to the end in equal steps."""
-    angle = np.arange(2 * steps + 1) * (END / (2 * steps))
-    loads = push.load * np.sin(angle) + (1j * push.load * np.cos(angle) if push.planar else 0.0)
     values = {
-        "belt_speed": push.belt_speed, "driven": True, "loads": loads, "span": END, "first": END / steps,
+        "belt_speed": push.belt_speed, "driven": True, "steps": steps, "span": END, "first": END / steps,
         "theta": theta, "width": 1.0, "shape": smoothing.TANH, "accuracy": 1e-12, "reach": END / steps,
         "enough": 0.0, "most": 1, "stride": 2, "rate": 0.0, "near": 0.0, "work": 10**9, "window": 50,
         "room": 0,
@@ -145,8 +142,7 @@ class Problem(NamedTuple):
 
     law: Any
     body: Body
-    belt_speed: float
-    loads: Any
+    grid: Any
     theta: float
 
 
@@ -154,15 +150,15 @@ _step = moreau.stepper(restoring_force)
 
 
 @inner
-def one_step(law, body, belt_speed, loads, theta, x, v, h):
+def one_step(law, body, grid, theta, x, v, h):
     """One step, for tests."""
-    return _step(Problem(law, body, belt_speed, loads, theta), 0, x, v, h)
+    return _step(Problem(law, body, grid, theta), 0, x, v, h)
 
 
 def step(body, belt_speed, load, theta, x, v, h, law=LAW):
     """One step of moreau under a constant load."""
-    loads = np.full(3, load)
-    return compiled(one_step, law)(body, belt_speed, loads, theta, x, v, h)
+    grid = np.array([[load, body.normal_load, belt_speed]] * 3)
+    return compiled(one_step, law)(body, grid, theta, x, v, h)
 
 
 planar = st.builds(

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
-from frictionlab.compile.decorators import inner
+from frictionlab.compile.decorators import embedded, inner
 from frictionlab.dynamics.contact import advance_bristle, project_to_yield, resistance
-from frictionlab.dynamics.motion import restoring_force
+from frictionlab.dynamics.motion import acceleration, acceleration_under, instant_at, slip
 from frictionlab.methods.march.laps import (
     Advance,
     Marcher,
@@ -18,28 +17,27 @@ from frictionlab.methods.march.laps import (
     note_straight,
 )
 from frictionlab.numerics.steppers import bristle_rk4, exponential, sdirk2
+from frictionlab.numerics.steppers.grid import BELT, LOAD, NORMAL_LOAD
 
 
-@inner
-def _rates(problem: Problem, load: Any, x: Any, v: Any, z: Any) -> Any:
-    """Acceleration, friction coefficient and rate of deflection under a load."""
-    rate, rub = resistance(problem.law, v - problem.belt_speed, z)
-    return load - restoring_force(problem.body, x, v) - problem.body.normal_load * rub, rub, rate
-
-
-@inner
+@embedded
 def _rates_of_the_grid(problem: Problem, j: int, x: Any, v: Any, z: Any) -> Any:
-    return _rates(problem, problem.loads[j], x, v, z)
+    """Acceleration, friction coefficient and rate of deflection at a half step."""
+    rate, rub = resistance(problem.law, v - problem.grid[j, BELT].real, z)
+    push, pressed = problem.grid[j, LOAD], problem.grid[j, NORMAL_LOAD].real
+    return acceleration_under(problem.body, push, pressed, x, v, rub), rub, rate
 
 
-@inner
+@embedded
 def _rates_at(problem: Problem, tau: float, x: Any, v: Any, z: Any) -> Any:
-    body, angle = problem.body, problem.body.frequency * tau
-    return _rates(problem, body.force_sine * math.sin(angle) + body.force_cosine * math.cos(angle), x, v, z)
+    """The same at any time."""
+    body, now = problem.body, instant_at(problem.body, tau)
+    rate, rub = resistance(problem.law, slip(body, problem.belt_speed, now, v), z)
+    return acceleration(body, now, x, v, rub), rub, rate
 
 
 _rk4_step = bristle_rk4.stepper(_rates_of_the_grid)
-_exponential_step = exponential.stepper(restoring_force, resistance, advance_bristle)
+_exponential_step = exponential.stepper(acceleration_under, resistance, advance_bristle)
 _sdirk2_step = sdirk2.stepper(_rates_at)
 
 
@@ -49,7 +47,7 @@ def _by_rk4(problem: Problem, node: Node, h: float) -> Advance:
     return Advance(taken.x, taken.v, taken.rubbed, False, 1.0, project_to_yield(problem.law, taken.z))
 
 
-@inner
+@embedded
 def _by_exponential(problem: Problem, node: Node, h: float) -> Advance:
     taken = _exponential_step(problem, node.k, node.x, node.v, node.z, h)
     return Advance(taken.x, taken.v, taken.rubbed, False, 1.0, taken.z)

@@ -12,14 +12,24 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.decorators import inner
+from frictionlab.compile.decorators import embedded, inner
 from frictionlab.compile.dispatch import length
 from frictionlab.dynamics import smoothing
-from frictionlab.dynamics.motion import restoring_force
-from frictionlab.dynamics.step_size import squared
+from frictionlab.dynamics.motion import (
+    acceleration,
+    acceleration_under,
+    belt_path,
+    belt_velocity,
+    instant_at,
+    load,
+    normal_load,
+    restoring_force,
+    slip,
+)
+from frictionlab.dynamics.step_size import growth_of, squared
 from frictionlab.numerics.steppers import dop853, moreau, rk4
-from frictionlab.orbit.panels import NODES
-from frictionlab.orbit.recorder import Track, track_of
+from frictionlab.numerics.steppers.grid import BELT, LOAD, NORMAL_LOAD
+from frictionlab.orbit.recorder import Track, panel_writer, track_of
 from frictionlab.scene.body import Body
 
 NOTHING = np.zeros(1)
@@ -31,7 +41,7 @@ class MarchSettings(NamedTuple):
 
     belt_speed: float
     driven: bool
-    loads: Any  # at every half step [2 steps + 1]; on the line float, in the plane complex
+    steps: int  # of equal length in a lap; 1 where the stepper meets the load wherever it likes, or there is none
     span: float  # a lap of a driven motion; undriven, the longest lap
     first: float  # step
     theta: float
@@ -58,7 +68,7 @@ class Problem(NamedTuple):
     law: Any
     body: Body
     belt_speed: float
-    loads: Any
+    grid: Any  # numerics/steppers/grid.py
     theta: float
     width: float
     shape: float
@@ -140,24 +150,25 @@ CLOSED, STALLED, LATE, LOST, RESTING, TIRED, TOO_FAST, TOO_STIFF = range(8)
 _moreau_step = moreau.stepper(restoring_force)
 
 
-@inner
+@embedded
 def _jumping_rates(problem: Problem, j: int, x: Any, v: Any) -> Any:
     """Acceleration and friction coefficient, friction along the slip wherever there is any."""
-    body, w = problem.body, v - problem.belt_speed
+    w = v - problem.grid[j, BELT].real
     rub = problem.law.sliding_vector(w) if length(w) > 0.0 else 0.0 * w
-    return problem.loads[j] - restoring_force(body, x, v) - body.normal_load * rub, rub
+    return acceleration_under(
+        problem.body, problem.grid[j, LOAD], problem.grid[j, NORMAL_LOAD].real, x, v, rub
+    ), rub
 
 
 _rk4_step = rk4.stepper(_jumping_rates)
 
 
-@inner
+@embedded
 def _smooth_rates(problem: Problem, tau: float, x: Any, v: Any) -> Any:
     """Acceleration and friction coefficient of smoothed friction."""
-    body, angle = problem.body, problem.body.frequency * tau
-    rub = smoothing.friction(problem, v - problem.belt_speed)
-    load = body.force_sine * math.sin(angle) + body.force_cosine * math.cos(angle)
-    return load - restoring_force(body, x, v) - body.normal_load * rub, rub
+    body, now = problem.body, instant_at(problem.body, tau)
+    rub = smoothing.friction(problem, slip(body, problem.belt_speed, now, v))
+    return acceleration(body, now, x, v, rub), rub
 
 
 _smooth_step = dop853.stepper(_smooth_rates)
@@ -177,18 +188,14 @@ def _by_rk4(problem: Problem, node: Node, h: float) -> Advance:
 
 @inner
 def _by_smoothed(problem: Problem, node: Node, h: float) -> Advance:
-    """A step whose error decides how long it may be (Hairer et al., 1993, II.10)."""
+    """A step whose error decides how long it may be."""
     a, f = _smooth_rates(problem, node.tau, node.x, node.v)
     taken = _smooth_step(problem, node.tau, dop853.State(node.x, node.v, a, f), h)
-    fifth = squared(problem.body, taken.x_error5, taken.v_error5)
-    third = squared(problem.body, taken.x_error3, taken.v_error3)
-    error = fifth / math.sqrt(fifth + 0.01 * third) / problem.accuracy if fifth > 0.0 else 0.0
-    growth = min(6.0, max(0.1 if error > 1.0 else 1.0, 0.9 / math.sqrt(math.sqrt(math.sqrt(error + 1e-300)))))
-    if not fifth < 1e300:
-        growth = 0.1
-    leap = length(taken.v - node.v)
-    if growth >= 1.0 and leap > 2.0 * length(node.v - problem.belt_speed) + 8.0 * problem.width:
-        growth = 0.5  # slip may have come and gone within the step: the error estimate can be blind to that
+    growth = growth_of(problem.body, taken, problem.accuracy)
+    before = slip(problem.body, problem.belt_speed, instant_at(problem.body, node.tau), node.v)
+    # Slip may have come and gone within the step: the error estimate can be blind to that.
+    if growth >= 1.0 and length(taken.v - node.v) > 2.0 * length(before) + 8.0 * problem.width:
+        growth = 0.5
     return Advance(taken.x, taken.v, taken.rubbed, False, growth, node.z)
 
 
@@ -196,35 +203,36 @@ def _by_smoothed(problem: Problem, node: Node, h: float) -> Advance:
 
 
 @inner
-def note_straight(problem: Problem, track: Track, node: Node, end: Advance, h: float) -> None:
-    """A step of which only the ends are known: velocity changes evenly, friction is its mean."""
-    row, rub = track.filled[0], end.rubbed / h
-    stray = end.x - node.x - 0.5 * h * (node.v + end.v)
-    for i in range(NODES.size):
-        part = 0.5 * (1.0 + NODES[i])
-        track.tau[row, i] = node.tau + part * h
-        track.x[row, i] = node.x + part * (h * (node.v + 0.5 * part * (end.v - node.v)) + stray)
-        track.v[row, i] = node.v + part * (end.v - node.v)
-        track.friction[row, i] = rub
-    track.stick[row] = end.stuck
-    track.filled[0] = row + 1
+def _straight(part: float, problem: Problem, node: Node, end: Advance, h: float) -> Any:
+    """A while into a step of which only the ends are known: velocity changes evenly, friction is its mean."""
+    share, stray = part / h, end.x - node.x - 0.5 * h * (node.v + end.v)
+    x = node.x + share * (h * (node.v + 0.5 * share * (end.v - node.v)) + stray)
+    return x, node.v + share * (end.v - node.v), end.rubbed / h
 
 
 @inner
-def _note_curved(problem: Problem, track: Track, node: Node, end: Advance, h: float) -> None:
-    """A step of high order, taken anew to every node of its panel."""
-    row = track.filled[0]
-    for i in range(NODES.size):
-        part = 0.5 * (1.0 + NODES[i]) * h
-        taken = _by_smoothed(problem, node, part)
-        track.tau[row, i] = node.tau + part
-        track.x[row, i] = taken.x
-        track.v[row, i] = taken.v
-        track.friction[row, i] = smoothing.friction(problem, taken.v - problem.belt_speed)
-    track.filled[0] = row + 1
+def _curved(part: float, problem: Problem, node: Node, end: Advance, h: float) -> Any:
+    """A while into a step of high order, which is taken anew to there."""
+    taken, now = _by_smoothed(problem, node, part), instant_at(problem.body, node.tau + part)
+    w = slip(problem.body, problem.belt_speed, now, taken.v)
+    return taken.x, taken.v, smoothing.friction(problem, w)
+
+
+note_straight, _note_curved = panel_writer(_straight), panel_writer(_curved)
 
 
 # --- laps ---------------------------------------------------------------------------------------------------------
+
+
+@inner
+def grid_of(body: Body, belt_speed: float, span: float, steps: int, x: Any) -> Any:
+    """What acts on a body at x at the half steps of a lap: found once, for laps are alike."""
+    grid = np.full((2 * steps + 1, 3), 0.0 * x)
+    for j in range(2 * steps + 1):
+        now = instant_at(body, j * (0.5 * span / steps))
+        grid[j, LOAD], grid[j, NORMAL_LOAD] = load(body, now), normal_load(body, now)
+        grid[j, BELT] = belt_velocity(body, belt_speed, now)
+    return grid
 
 
 class Marcher(NamedTuple):
@@ -283,7 +291,8 @@ def marcher(stepper: Marcher) -> Any:
         x, v, z = start.x, start.v, start.z
         end, tau, k, steps, turn, met = way.span, 0.0, 0, 0, 0.0, 0.0
         rubbed, stuck, dip, bend, crossings, peak, crossed = 0.0 * x, 0.0, 1e300, 1.0, 0, 0.0, False
-        w, resting, lingered = v - problem.belt_speed, 0, 0.0
+        body, belt_speed, resting, lingered = problem.body, problem.belt_speed, 0, 0.0
+        w = slip(body, belt_speed, instant_at(body, tau), v)
         speed, before, swing, mark = length(w), -1.0, length(v), 2.0 * math.pi
         marked, halted = rubbed, stuck
         while tau < end and steps < way.work:
@@ -299,25 +308,26 @@ def marcher(stepper: Marcher) -> Any:
                 last, step = True, falling_zero(problem, node, step)
                 taken = advance(problem, node, step)
             if way.room > 0 and track.filled[0] < way.room:
-                note(problem, track, node, taken, step)
+                note(track, tau, step, taken.stuck, problem, node, taken, step)
             x, v, z = taken.x, taken.v, taken.z
             rubbed = rubbed + taken.rubbed
             stuck += step if taken.stuck else 0.0
             k += 1 if way.driven else 0
             tau = end if last and not back else tau + step
-            ahead = v - problem.belt_speed
-            slip, turned = length(ahead), (w * ahead.conjugate()).real
-            if before >= speed < slip and turned > 0.0 and speed < dip:
-                dip, bend = speed, (before - 2.0 * speed + slip) / (step * step)
+            ahead = slip(body, belt_speed, instant_at(body, tau), v)
+            fresh, turned = length(ahead), (w * ahead.conjugate()).real
+            # A minimum of the slip speed between two nodes: what the steps may have missed of a reversal there.
+            if before >= speed < fresh and turned > 0.0 and speed < dip:
+                dip, bend = speed, (before - 2.0 * speed + fresh) / (step * step)
             crossings += 1 if turned < 0.0 and not crossed and resting <= SHORT else 0
             turn = max(turn, length(ahead - w) / step) if turned < 0.0 else turn
-            met = max(met, slip)
+            met = max(met, fresh)
             crossed = turned < 0.0
             before = speed if turned > 0.0 else -1.0
             peak = max(peak, length(taken.rubbed) / step)
-            lingered += step if slip < way.near else 0.0
-            speed, resting = slip, resting + 1 if slip == 0.0 else 0
-            w = ahead if slip > 0.0 else w
+            lingered += step if fresh < way.near else 0.0
+            speed, resting = fresh, resting + 1 if fresh == 0.0 else 0
+            w = ahead if fresh > 0.0 else w
             if back:
                 return Lap(
                     x, v - v.real, rubbed, stuck, tau, dip, bend, crossings, peak, lingered, h, steps, True,
@@ -335,7 +345,7 @@ def marcher(stepper: Marcher) -> Any:
                             z, turn, met,
                         )  # fmt: skip
                     marked, halted, mark, swing = rubbed, stuck, tau + 2.0 * math.pi, 0.0
-            if slip > way.fastest:
+            if fresh > way.fastest:
                 break
         done = way.driven and tau >= end
         return Lap(
@@ -345,7 +355,8 @@ def marcher(stepper: Marcher) -> Any:
     @inner_of  # type: ignore[untyped-decorator]
     def marched(law: Any, body: Body, way: MarchSettings, x: Any, v: Any) -> March:
         """From the state x, v lap by lap, until it repeats, stalls, or the laps are used up."""
-        problem = Problem(law, body, way.belt_speed, way.loads, way.theta, way.width, way.shape, way.accuracy)
+        grid = grid_of(body, way.belt_speed, way.span, way.steps, x)
+        problem = Problem(law, body, way.belt_speed, grid, way.theta, way.width, way.shape, way.accuracy)
         xs, vs = np.empty(way.most + 1, np.complex128), np.empty(way.most + 1, np.complex128)
         rubs = np.empty(way.most, np.complex128)
         stuck, duration, gaps = np.empty(way.most), np.empty(way.most), np.empty(way.most)
@@ -356,9 +367,8 @@ def marcher(stepper: Marcher) -> Any:
         one = Lap(x, v, 0.0 * x, 0.0, 0.0, 1e300, 1.0, 0, 0.0, 0.0, way.first, 0, True, way.z, 0.0, 0.0)
         carried = 0.0
         distance, good, steps, verdict, n = 1e300, 0, 0, LATE, 0
-        drift = (
-            abs(way.belt_speed) * way.span * (body.stiffness_mean + body.stiffness_split) / body.normal_load
-        )
+        carries = abs(belt_path(body, way.belt_speed, 0.0, way.span))
+        drift = carries * (body.stiffness_mean + body.stiffness_split) / body.normal_load
         while n < way.most and verdict == LATE:
             one = lap(problem, way, Node(0, 0.0, one.x + carried, one.v, one.z), one.step, track)
             carried = 0.0
@@ -384,12 +394,11 @@ def marcher(stepper: Marcher) -> Any:
                 good = good + 1 if distance <= way.enough else 0
                 if good > (0 if way.rate > 0.0 else 2 * way.stride) or gap == 0.0:
                     verdict = CLOSED
-                elif (
-                    way.driven and one.stuck > 0.999999 * way.span
-                ):  # carried by the belt: not before release
+                elif way.driven and one.stuck > 0.999999 * way.span:
+                    # Carried by the belt all the time: go on by many laps at once, but not beyond release.
                     many = math.floor((held(law) - one.peak) / drift) - 1.0
                     if way.stride == 1 and many > 1.0:
-                        carried = many * way.span * way.belt_speed
+                        carried = belt_path(body, way.belt_speed, 0.0, many * way.span)
                 elif _stalled(body, gaps, xs, vs, n, way):
                     verdict = STALLED
                 elif steps > way.work:

@@ -6,23 +6,25 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import restoring_force
+from frictionlab.dynamics.motion import acceleration_under
 from frictionlab.methods.march.bristle_adapter import nothing_held
 from frictionlab.methods.march.laps import Advance, Marcher, Node, Problem, marcher, note_straight
 from frictionlab.methods.periodic.maps.memory_state import memory_of, pulled
 from frictionlab.numerics.steppers import memory_rk4
+from frictionlab.numerics.steppers.grid import BELT, LOAD, NORMAL_LOAD
 
 
 @inner
 def _rates(problem: Problem, j: int, x: Any, v: Any, memory: Any, moving: Any) -> Any:
     """Acceleration and friction coefficient; a scalar that has left its set makes the motion not a number."""
-    law, body, w = problem.law, problem.body, v - problem.belt_speed
+    law, w = problem.law, v - problem.grid[j, BELT].real
     if law.turning == 0.0 and not law.within(memory):
         return math.nan * x, math.nan * x
     for k in range(memory.size):
         moving[k] = law.rate(w, memory, k)
     rub = law.friction(w, memory, moving)
-    return problem.loads[j] - restoring_force(body, x, v) - body.normal_load * rub, rub
+    push, pressed = problem.grid[j, LOAD], problem.grid[j, NORMAL_LOAD].real
+    return acceleration_under(problem.body, push, pressed, x, v, rub), rub
 
 
 _step = memory_rk4.stepper(_rates)

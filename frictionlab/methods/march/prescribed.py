@@ -15,6 +15,8 @@ import numpy as np
 
 from frictionlab.compile.cache import compiled, timed
 from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import interpreted
+from frictionlab.dynamics.motion import instant_at, mean_friction, slip
 from frictionlab.dynamics.smoothing import share
 from frictionlab.laws.base import SlidingLaw
 from frictionlab.methods.base import Answers, Status
@@ -53,6 +55,11 @@ def _at(motion: Motion, angle: float) -> complex:
 
 
 @inner
+def _slip(motion: Motion, belt_speed: float, angle: float) -> complex:
+    return slip(motion, belt_speed, instant_at(motion, angle / motion.frequency), _at(motion, angle))
+
+
+@inner
 def sampled(law: Any, motion: Motion, belt_speed: float, n: int, width: float, shape: float) -> Sampled:
     """The midpoint rule with n samples.
 
@@ -61,15 +68,15 @@ def sampled(law: Any, motion: Motion, belt_speed: float, n: int, width: float, s
     """
     total, bent = 0j, 0.0
     before, now = (
-        _friction(law, _at(motion, -3.0 * math.pi / n) - belt_speed, width, shape),
-        _friction(law, _at(motion, -math.pi / n) - belt_speed, width, shape),
+        _friction(law, _slip(motion, belt_speed, -3.0 * math.pi / n), width, shape),
+        _friction(law, _slip(motion, belt_speed, -math.pi / n), width, shape),
     )
     for i in range(n):
-        after = _friction(law, _at(motion, (2.0 * i + 1.0) * math.pi / n) - belt_speed, width, shape)
+        after = _friction(law, _slip(motion, belt_speed, (2.0 * i + 1.0) * math.pi / n), width, shape)
         bent += abs(after - 2.0 * now + before)
         before, now = now, after
         total += after
-    return Sampled(-total / n, 0.25 * bent / n)
+    return Sampled(mean_friction(total, n), 0.25 * bent / n)
 
 
 def solve_sampled(scenes: Sequence[Scene], law: SlidingLaw, tolerance: float, plan: Plan) -> Answers:
@@ -111,5 +118,5 @@ class _Point:
         orbit = orbit_of_slip(motion, speed, self.law, 0j)
         if self.width == 0.0:
             return orbit
-        smooth = [share.py_func(self.shape, abs(w) / self.width) for w in (orbit.v - speed).ravel()]
+        smooth = [interpreted(share)(self.shape, abs(w) / self.width) for w in (orbit.v - speed).ravel()]
         return replace(orbit, friction=np.reshape(smooth, orbit.v.shape) * orbit.friction)

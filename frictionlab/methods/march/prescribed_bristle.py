@@ -17,6 +17,7 @@ from frictionlab.compile.cache import compiled, timed
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
 from frictionlab.dynamics.contact import advance_bristle, project_to_yield, resistance
+from frictionlab.dynamics.motion import belt_path, instant_at, mean_friction, slip
 from frictionlab.laws.memory import PER_AXIS, VECTORIAL, BristleLaw
 from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.march.error import COARSEST, ROUNDING, Plan
@@ -84,6 +85,20 @@ def _place(motion: Motion, angle: float, like: Any) -> Any:
     return _wave(motion, complex(math.sin(angle), -math.cos(angle)), like) / motion.frequency
 
 
+@inner
+def _slip(slipping: Slipping, angle: float, like: Any) -> Any:
+    motion, now = slipping.motion, instant_at(slipping.motion, angle / slipping.motion.frequency)
+    return slip(motion, slipping.belt_speed, now, _velocity(motion, angle, like))
+
+
+@inner
+def _path(slipping: Slipping, start: float, end: float, like: Any) -> Any:
+    """The way slid from one angle to another."""
+    motion = slipping.motion
+    carried = belt_path(motion, slipping.belt_speed, start / motion.frequency, end / motion.frequency)
+    return _place(motion, end, like) - _place(motion, start, like) - carried
+
+
 class Bent(NamedTuple):
     """Deflection at the end of a step, and friction over it."""
 
@@ -95,9 +110,9 @@ class Bent(NamedTuple):
 def _by_rk4(law: Any, slipping: Slipping, angle: float, h: float, z: Any) -> Bent:
     """The classical Runge-Kutta method (W. Kutta, 1901)."""
     motion, half = slipping.motion, 0.5 * h
-    w1 = _velocity(motion, angle, z) - slipping.belt_speed
-    w2 = _velocity(motion, angle + half * motion.frequency, z) - slipping.belt_speed
-    w4 = _velocity(motion, angle + h * motion.frequency, z) - slipping.belt_speed
+    w1 = _slip(slipping, angle, z)
+    w2 = _slip(slipping, angle + half * motion.frequency, z)
+    w4 = _slip(slipping, angle + h * motion.frequency, z)
     r1, f1 = resistance(law, w1, z)
     r2, f2 = resistance(law, w2, z + half * r1)
     r3, f3 = resistance(law, w2, z + half * r2)
@@ -110,12 +125,11 @@ def _by_rk4(law: Any, slipping: Slipping, angle: float, h: float, z: Any) -> Ben
 def _exponentially(law: Any, slipping: Slipping, angle: float, h: float, z: Any) -> Bent:
     """Straight slip over as much path as there is; friction is that of the middle."""
     motion, half = slipping.motion, 0.5 * h
-    turned = half * motion.frequency
-    start, middle = _place(motion, angle, z), _place(motion, angle + turned, z)
-    end = _place(motion, angle + 2.0 * turned, z)
-    bent = advance_bristle(law, half, (middle - start) / half - slipping.belt_speed, z)
-    _, rub = resistance(law, _velocity(motion, angle + turned, z) - slipping.belt_speed, bent)
-    return Bent(advance_bristle(law, half, (end - middle) / half - slipping.belt_speed, bent), rub)
+    middle = angle + half * motion.frequency
+    bent = advance_bristle(law, half, _path(slipping, angle, middle, z) / half, z)
+    _, rub = resistance(law, _slip(slipping, middle, z), bent)
+    end = middle + half * motion.frequency
+    return Bent(advance_bristle(law, half, _path(slipping, middle, end, z) / half, bent), rub)
 
 
 @inner
@@ -127,9 +141,9 @@ def rubbed(law: Any, slipping: Slipping, z: Any) -> Rubbed:
     period, last_gap, left, total, reversals, bends = 0, 0.0, 1e300, 0.0 * z, 0, 0
     while period < slipping.most and left > REPEATED:
         before, deepest, total, reversals, bends = z, 1e-300, 0.0 * z, 0, 0
-        slip = _velocity(motion, 0.0, z) - slipping.belt_speed
+        last = _slip(slipping, 0.0, z)
         for i in range(n):
-            angle, bent = 2.0 * math.pi * i / n, (z * slip.conjugate()).real
+            angle, bent = 2.0 * math.pi * i / n, (z * last.conjugate()).real
             step = (
                 _by_rk4(law, slipping, angle, h, z)
                 if slipping.by_rk4
@@ -138,16 +152,16 @@ def rubbed(law: Any, slipping: Slipping, z: Any) -> Rubbed:
             z, deepest = step.z, max(deepest, length(step.z))
             total = total + step.rub
             each[i] = step.rub + 0j
-            ahead = _velocity(motion, angle + 2.0 * math.pi / n, z) - slipping.belt_speed
-            reversals += 1 if (ahead * slip.conjugate()).real < 0.0 else 0
+            ahead = _slip(slipping, angle + 2.0 * math.pi / n, z)
+            reversals += 1 if (ahead * last.conjugate()).real < 0.0 else 0
             bends += 1 if (z * ahead.conjugate()).real * bent < 0.0 else 0
-            slip = ahead
+            last = ahead
         gap = length(z - before) / deepest
         rate = min(gap / last_gap, 0.9999999) if last_gap > 0.0 else 0.0
         left = gap / (1.0 - rate) if period > 0 else 1e300
         left = gap if gap <= REPEATED else left
         last_gap, period = gap, period + 1
-    return Rubbed(-total / n + 0j, reversals, bends, z + 0j, left, period, each)
+    return Rubbed(mean_friction(total, n) + 0j, reversals, bends, z + 0j, left, period, each)
 
 
 def solve_rubbed(scenes: Sequence[Scene], law: BristleLaw, tolerance: float, plan: Plan) -> Answers:

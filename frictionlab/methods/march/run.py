@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.cache import compiled, timed
+from frictionlab.compile.dispatch import interpreted
+from frictionlab.dynamics.motion import mean_friction
 from frictionlab.dynamics.smoothing import ARCTAN, SQUARE_ROOT, TANH
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import PER_AXIS, BristleLaw, MemoryLaw
@@ -32,7 +34,7 @@ from frictionlab.methods.march.stability import fastest_slip, fewest_steps, spri
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Body, Mass, in_the_plane, on_the_line
+from frictionlab.scene.body import Mass, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.rest import friction_at_rest
 
@@ -118,10 +120,10 @@ class MarchRun:
             memory_stability.steps_through_rest(scene, law) if isinstance(law, MemoryLaw) else 0.0
         )
         straight = along_the_belt(scene, law) and not _starts_across(scene)
-        reference = on_the_line(self.mass) if straight else in_the_plane(self.mass)
         self.straight = straight
-        self.body = loaded(reference, self.mass, straight)
-        self._free = complex(reference.reference_cosine), complex(scene.frequency * reference.reference_sine)
+        self.body = on_the_line(self.mass) if straight else in_the_plane(self.mass)
+        sine, cosine = self.body.reference_sine, self.body.reference_cosine
+        self._free = complex(cosine), complex(scene.frequency * sine)
         self._fresh = memory_stability.first_memory(scene, law) if isinstance(law, MemoryLaw) else NOTHING
         self._spring = self._springs()
         self.start = self.place(scene.start if scene.undriven else scene.initial)
@@ -258,7 +260,7 @@ class MarchRun:
         return MarchSettings(
             belt_speed=self.scene.belt_speed,
             driven=driven,
-            loads=self._loads(pace.steps if driven and self.stepper in GRIDDED else 1),
+            steps=pace.steps if driven and self.stepper in GRIDDED else 1,
             span=self.lap if driven else self.lap * pace.most,
             first=1e-3 * reach if adaptive else h,
             theta=pace.theta,
@@ -298,18 +300,12 @@ class MarchRun:
         share = float(march.lingered / march.duration[-1])
         return min(1.0, share * (1.0 + near / belt_speed)) if belt_speed > 0.0 else 1.0
 
-    def _loads(self, steps: int) -> Any:
-        angle = np.arange(2 * steps + 1) * (math.pi / steps)
-        turn = np.exp(1j * angle)
-        along, across = (self.mass.force * turn).imag, (self.mass.transverse_force * turn).imag
-        return along if self.straight else along + 1j * across
-
     def _read(self, march: March, pace: Resolution, stride: int) -> MarchResult:
         laps = len(march.rubbed)
         window = min(self.window * stride if march.verdict == STALLED else stride, laps)
         time = float(march.duration[-window:].sum())
-        mean = -complex(march.rubbed[-window:].sum()) / time
-        each = -march.rubbed[-window:].real / march.duration[-window:]
+        mean = interpreted(mean_friction)(complex(march.rubbed[-window:].sum()), time)
+        each = interpreted(mean_friction)(march.rubbed[-window:].real, march.duration[-window:])
         low, high = float(each.min()), float(each.max())
         drift = self._apart(march, laps, laps - stride)
         stiff = march.crossings > 0 and pace.steps < self.through_rest
@@ -373,7 +369,7 @@ class MarchRun:
         speed = abs(self.scene.belt_speed)
         if self.bristles is None or speed == 0.0:
             return 0.0
-        mean = -march.rubbed[-1].real / float(march.duration[-1])
+        mean = interpreted(mean_friction)(march.rubbed[-1].real, float(march.duration[-1]))
         return abs(abs(mean) - self.bristles.sliding_friction(speed))
 
     def _apart(self, march: March, a: int, b: int) -> float:
@@ -387,19 +383,6 @@ class MarchRun:
 def _starts_across(scene: Scene) -> bool:
     initial = scene.initial
     return initial is not None and (initial.x2 != 0.0 or initial.velocity2 != 0.0)
-
-
-def loaded(body: Body, mass: Mass, straight: bool) -> Body:
-    """The body driven by the loads themselves: nothing is taken off as a known response."""
-    sine, cosine = mass.force.real, mass.force.imag
-    if straight:
-        force: tuple[Any, Any, Any] = sine, cosine, 0.0
-    else:
-        across = mass.transverse_force
-        force = complex(sine, across.real), complex(cosine, across.imag), 0j
-    return body._replace(
-        force_sine=force[0], force_cosine=force[1], reference_sine=force[2], reference_cosine=force[2]
-    )
 
 
 def _stride(march: March) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
-from frictionlab.dynamics.motion import span
+from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK
 from frictionlab.methods.periodic.period_map import period_map, size_of, start_of
 from frictionlab.numerics.linalg import norm, subtract
@@ -134,7 +134,7 @@ def iterate_until_periodic(
     residual = np.empty(states.shape[1])
     for n in range(means.size):
         image = period_map(law, body, belt_speed, states[n], residual, accuracy, track_of(0), like)
-        means[n] = -image.rubbed.real / span(body)
+        means[n] = mean_friction(image.rubbed.real, span(body))
         steps += image.steps
         for row in range(residual.size):
             states[n + 1, row] = states[n, row] + residual[row]

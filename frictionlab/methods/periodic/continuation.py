@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import span
+from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.attraction import reached
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.fixed_point import Goal, fixed_point
@@ -92,7 +92,8 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, 
             order = known + 1
         known = min(known + 1, MOST_KNOWN) if closed.maps > 0 else 0
         expected = closed.first if known > 1 else 1e300
-        results[i, 0], results[i, 1] = -closed.rubbed.real / period, -closed.rubbed.imag / period
+        mean = mean_friction(closed.rubbed, period)
+        results[i, 0], results[i, 1] = mean.real, mean.imag
         results[i, 2], results[i, 3] = closed.error, closed.maps
         results[i, 4], results[i, 5] = closed.stuck / period, closed.closest
     return states, results

@@ -14,7 +14,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
-from frictionlab.dynamics.motion import span
+from frictionlab.dynamics.motion import belt_path, span
 from frictionlab.methods.periodic.case import Case, image_of
 from frictionlab.methods.periodic.maps.sliding import Mapped
 from frictionlab.methods.periodic.monodromy import free_inverse, newton_inverse
@@ -311,7 +311,8 @@ first_accuracy = by_law(
 def _carried_by_the_belt(case: Case, search: Search, now: Progress) -> Progress:
     """The mass rests on the belt all the time: go on by as many periods at once as it surely does."""
     y, _u = unpack(case.body, search.z, case.like)
-    many = rest_of(case.law, case.body, case.belt_speed, y + span(case.body) * case.belt_speed)
+    way = belt_path(case.body, case.belt_speed, 0.0, span(case.body))
+    many = rest_of(case.law, case.body, case.belt_speed, y + way)
     for i in range(search.z.size):
         search.z[i] = search.z[i] + many * search.residual[i]
     image = image_of(case, search.z, search.residual, now.accuracy)

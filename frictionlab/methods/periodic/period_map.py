@@ -12,6 +12,7 @@ from typing import Any
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
+from frictionlab.dynamics.motion import belt_velocity, instant_at, span
 from frictionlab.methods.periodic.maps.bristle import bristle_map, coarsest, dimension, taken
 from frictionlab.methods.periodic.maps.deflection import deflection_map
 from frictionlab.methods.periodic.maps.memory import begun, coarsest_of_memory, follow, grain_of_memory
@@ -175,7 +176,9 @@ def _mapped_with_memory(
     spilled(work.memory, work.at, 3 * d, work.memory[0])
     closest, steps = follow(law, body, belt_speed, scales, accuracy, track, work, like)
     end_y = taken(work.at, 0, like)
-    end_u = taken(work.at, 1, like) + belt_speed - body.frequency * body.reference_sine
+    now = instant_at(body, span(body))
+    end_u = taken(work.at, 1, like) + belt_velocity(body, belt_speed, now)
+    end_u = end_u - body.frequency * body.reference_sine
     filled(work.memory, work.at, 3 * d, work.memory[0])
     kept(work.memory, law, scales, residual, 2 * d, work.memory[0])
     pack(body, residual, end_y - y, end_u - u)

@@ -18,6 +18,16 @@ import numpy as np
 
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import interpreted
+from frictionlab.dynamics.motion import (
+    Instant,
+    acceleration,
+    belt_velocity,
+    holding_force,
+    mean_friction,
+    normal_load,
+    slip,
+)
 from frictionlab.laws.base import SlidingLaw
 from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.periodic.continuation import record_orbit
@@ -34,6 +44,8 @@ PIECE = 1.0 / 32.0
 """Of 2 pi, the period of the free mass: how far the motion is followed between looks at it."""
 MOST_PIECES = 200_000
 TURN = 2.0 * math.pi
+ALWAYS = Instant(0.0, 0.0, 1.0)
+"""Nothing shakes the mass: what acts on it is the same at every instant."""
 
 
 @inner
@@ -120,6 +132,16 @@ class _Follower:
         return on_the_line(self._mass)
 
     @cached_property
+    def _speed(self) -> float:
+        """Of the belt."""
+        return interpreted(belt_velocity)(self._body, self.scene.belt_speed, ALWAYS)
+
+    @cached_property
+    def _pressed(self) -> float:
+        """The normal load."""
+        return interpreted(normal_load)(self._body, ALWAYS)
+
+    @cached_property
     def _kernel(self) -> Callable[..., Mapped]:
         return compiled(followed, self.law)
 
@@ -134,7 +156,7 @@ class _Follower:
 
     def motion(self) -> Motion:
         """The motion reached from the start. Raises NotFound."""
-        if self.scene.belt_speed == 0.0:
+        if self._speed == 0.0:
             return self._at_rest()
         x, v, peaks = self.scene.start.x, self.scene.start.velocity, 0
         for count in range(MOST_PIECES):
@@ -148,7 +170,7 @@ class _Follower:
                 return ended
             peaks += 1 if v > 0.0 >= image.u else 0
             # the belt carries what rests to where slip begins
-            x, v = (self._release, self.scene.belt_speed) if rests else (image.y, image.u)
+            x, v = (self._release, self._speed) if rests else (image.y, image.u)
         raise NotFound(f"no steady state within {MOST_PIECES * PIECE:.0f} periods of the free mass")
 
     def _follow(self, x: float, v: float, turns: float, accuracy: float) -> Mapped:
@@ -160,17 +182,16 @@ class _Follower:
 
     def _force(self, x: float, v: float) -> float:
         """Acceleration of a mass that slips."""
-        w = v - self.scene.belt_speed
-        mass = self._mass
+        w = interpreted(slip)(self._body, self.scene.belt_speed, ALWAYS, v)
         friction = math.copysign(self.law.sliding_friction(abs(w)), w)
-        return -mass.damping * v - mass.stiffness * x - mass.normal_load * friction
+        return interpreted(acceleration)(self._body, ALWAYS, x, v, friction)
 
     # --- the ends ---
 
     def _ended(self, x: float, v: float, peaks: int) -> Motion | None:
         """The steady motion that this one is sure to become; now and then, near a peak, the cycle next to it."""
         reach = math.hypot(x - self._deflection(), v)
-        if self._conserves() and reach <= abs(self.scene.belt_speed):
+        if self._conserves() and reach <= abs(self._speed):
             return self._free(x, v)
         if self._settles(x, v):
             return self._sliding()
@@ -183,7 +204,7 @@ class _Follower:
         return self._mass.damping == 0.0 and self.law.constant_sliding_friction()
 
     def _free(self, x: float, v: float) -> Motion:
-        mean = math.copysign(self.law.sliding_friction(1.0), self.scene.belt_speed)
+        mean = math.copysign(self.law.sliding_friction(1.0), self._speed)
         kind = "a free oscillation in slip, which without damping never dies"
         return Motion(x, v, TURN, mean, ROUNDING, 1.0, kind)
 
@@ -191,7 +212,7 @@ class _Follower:
         state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settled(self.scene.start)
         if periods < 0:
             raise NotFound("the mass still creeps towards rest when patience ends")
-        mean = state[0] / self._mass.normal_load
+        mean = state[0] / self._pressed
         error = 1e-11 * periods + ROUNDING
         return Motion(
             state[0], 0.0, math.nan, mean, error, math.nan, "at rest, where it stops from scene.initial"
@@ -199,10 +220,8 @@ class _Follower:
 
     def _deflection(self) -> float:
         """Of the spring in steady sliding."""
-        speed = self.scene.belt_speed
-        return math.copysign(
-            self._mass.normal_load * self.law.sliding_friction(abs(speed)) / self._mass.stiffness, speed
-        )
+        drag = self._pressed * self.law.sliding_friction(abs(self._speed))
+        return math.copysign(drag / self._mass.stiffness, self._speed)
 
     def _settles(self, x: float, v: float) -> bool:
         """Whether every motion with no more energy than this one loses it, down to steady sliding.
@@ -210,16 +229,16 @@ class _Follower:
         It does where friction falls by less than damping makes up for at every slip velocity within its reach.
         """
         reach = math.hypot(x - self._deflection(), v)
-        speed = abs(self.scene.belt_speed)
+        speed = abs(self._speed)
         if reach > speed:
             return False
         speeds = np.linspace(speed - reach, speed + reach, 129) if reach > 1e-6 * speed else speed * _NEAR
         friction = np.array([self.law.sliding_friction(float(each)) for each in speeds])
         slopes = np.diff(friction) / np.diff(speeds)
-        return bool((self._mass.normal_load * slopes).min() > -self._mass.damping + 1e-9)
+        return bool((self._pressed * slopes).min() > -self._mass.damping + 1e-9)
 
     def _sliding(self) -> Motion:
-        speed = self.scene.belt_speed
+        speed = self._speed
         mean = math.copysign(self.law.sliding_friction(abs(speed)), speed)
         return Motion(
             self._deflection(), 0.0, math.nan, mean, ROUNDING, math.nan, "steady sliding, which attracts"
@@ -228,13 +247,13 @@ class _Follower:
     @property
     def _release(self) -> float:
         """The deflection at which rest ends."""
-        mass, speed = self._mass, self.scene.belt_speed
-        limit = mass.normal_load * self.law.static_friction()
-        return (math.copysign(limit, speed) - mass.damping * speed) / mass.stiffness
+        unstretched, _rate, _bend = interpreted(holding_force)(self._body, self.scene.belt_speed, ALWAYS, 0.0)
+        limit = self._pressed * self.law.static_friction()
+        return (math.copysign(limit, self._speed) + unstretched) / self._mass.stiffness
 
     def _stick_slip(self) -> Motion | None:
         """From the end of rest to the next; None where the mass does not come to rest again."""
-        x, speed = self._release, self.scene.belt_speed
+        x, speed = self._release, self._speed
         if self._conserves() and self.law.monotone():
             return self._free(x, speed)
         if self._settles(x, speed):
@@ -250,7 +269,7 @@ class _Follower:
 
         A way that has gone around once without rest is caught within itself, and will not meet rest any more.
         """
-        speed, y, v, turns, peaks = self.scene.belt_speed, x, self.scene.belt_speed, 0.0, 0
+        speed, y, v, turns, peaks = self._speed, x, self._speed, 0.0, 0
         patience = 10.0 * (1.0 + self._mass.damping)  # for one damped too heavily to have peaks
         while peaks < 3 and turns < patience:
             image = self._follow(y, v, PIECE, accuracy)
@@ -258,7 +277,7 @@ class _Follower:
             if turns > PIECE and image.stuck > 0.0:
                 period = turns * TURN + (x - image.y) / speed
                 whole = self._follow(x, speed, period / TURN, accuracy)
-                return period, -whole.rubbed / period
+                return period, interpreted(mean_friction)(whole.rubbed, period)
             peaks += 1 if v > 0.0 >= image.u else 0
             y, v = image.y, image.u
         return None
@@ -284,7 +303,7 @@ class _Follower:
     def _slip_motion(self, x: float, slope: float) -> Motion:
         (fine, period), (rough, _) = self._next_peak(x, 1e-13), self._next_peak(x, self._accuracy)
         means = [
-            -self._follow(x, 0.0, period / TURN, accuracy).rubbed / period
+            interpreted(mean_friction)(self._follow(x, 0.0, period / TURN, accuracy).rubbed, period)
             for accuracy in (1e-13, self._accuracy)
         ]
         error = (

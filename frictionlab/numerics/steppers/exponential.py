@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
+from frictionlab.numerics.steppers.grid import BELT, LOAD, NORMAL_LOAD
 
 DECAY = 2.0
 """Largest step times frequency, or rate of decay, of a mass held by its springs and bristles."""
@@ -26,25 +27,28 @@ class Taken(NamedTuple):
     rubbed: Any
 
 
-def stepper(restoring_force: Any, resistance: Any, carried: Any) -> Any:
+def stepper(acceleration_under: Any, resistance: Any, carried: Any) -> Any:
     """``step(problem, k, x, v, z, h)``: from the kth step's start over h.
 
-    The problem has ``law``, ``body``, ``belt_speed`` and ``loads``, the load at every half step;
+    The problem has ``law``, ``body`` and ``grid``, what acts at every half step (grid.py);
+    acceleration_under(body, load, normal_load, x, v, friction) is the equation of motion,
     resistance(law, w, z) = (z', friction); carried(law, h, w, z) is the deflection after slip w that lasts h.
     """
 
     @inner
     def step(problem: Any, k: int, x: Any, v: Any, z: Any, h: float) -> Taken:
-        law, body, half = problem.law, problem.body, 0.5 * h
-        middle = x + half * v
-        bent = carried(law, half, v - problem.belt_speed, z)
-        push = problem.loads[2 * k + 1]
-        rub = resistance(law, v - problem.belt_speed, bent)[1]
-        early = v + half * (push - restoring_force(body, middle, v) - body.normal_load * rub)
-        rub = resistance(law, early - problem.belt_speed, bent)[1]
-        after = v + h * (push - restoring_force(body, middle, early) - body.normal_load * rub)
-        return Taken(
-            middle + half * after, after, carried(law, half, after - problem.belt_speed, bent), h * rub
-        )
+        law, body, grid, half = problem.law, problem.body, problem.grid, 0.5 * h
+        start, middle, end = grid[2 * k, BELT].real, grid[2 * k + 1, BELT].real, grid[2 * k + 2, BELT].real
+        push, pressed = grid[2 * k + 1, LOAD], grid[2 * k + 1, NORMAL_LOAD].real
+        # Drift: over either half the belt goes at the mean of its velocities at the ends.
+        there = x + half * v
+        bent = carried(law, half, v - 0.5 * (start + middle), z)
+        # Kick, by the explicit midpoint rule.
+        rub = resistance(law, v - middle, bent)[1]
+        early = v + half * acceleration_under(body, push, pressed, there, v, rub)
+        rub = resistance(law, early - middle, bent)[1]
+        after = v + h * acceleration_under(body, push, pressed, there, early, rub)
+        bent = carried(law, half, after - 0.5 * (middle + end), bent)
+        return Taken(there + half * after, after, bent, h * rub)
 
     return step

@@ -4,8 +4,8 @@ Over a step of length h the balance of momentum reads, along each axis,
 
     v1 - v0 = h (load - damping v_theta - stiffness x_theta) - P,   x1 = x0 + h v_theta,
 
-with v_theta = theta v1 + (1 - theta) v0, x_theta likewise, the load taken at that instant, and P the impulse of
-friction. Where the impulse that brings the slip to zero at the end of the step lies in the disk of radius
+with v_theta = theta v1 + (1 - theta) v0, x_theta likewise, load and normal load taken at that instant, and P the
+impulse of friction. Where the impulse that brings the slip to zero at the end of the step lies in the disk of radius
 h*normal_load*(static coefficient), it is taken: the mass sticks. Otherwise P lies on the disk of the sliding
 coefficient, along the slip w_theta and with the coefficient at that speed, both found with the step: nothing is
 lagged. (Directed by the slip at the end of the step, the scheme is of order one wherever friction turns, for
@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.numerics.steppers.grid import BELT, LOAD, NORMAL_LOAD
 
 MOST_TRIALS = 60
 TINY = 1e-300
@@ -122,7 +123,7 @@ def meet(contact: Contact, theta: float, before: Any, q: Any) -> Met:
 def stepper(restoring_force: Any) -> Any:
     """``step(problem, k, x, v, h)``: from the kth step's start over h.
 
-    The problem has ``law``, ``body``, ``belt_speed``, ``theta`` and ``loads``, the load at every half step;
+    The problem has ``law``, ``body``, ``theta`` and ``grid``, what acts at every half step (grid.py);
     restoring_force(body, x, v) is linear, and acts along each axis for itself.
     """
 
@@ -134,11 +135,13 @@ def stepper(restoring_force: Any) -> Any:
         mass_1 += late * late * (body.stiffness_mean + body.stiffness_split)
         mass_2 = 1.0 + late * (body.damping_mean - body.damping_split)
         mass_2 += late * late * (body.stiffness_mean - body.stiffness_split)
-        load = problem.loads[2 * k + int(2.0 * theta)]
-        pushed = v + h * (load - restoring_force(body, x + late * left * v, left * v))
-        contact = Contact(problem.law, h * body.normal_load, mass_1, mass_2)
-        w, impulse = meet(contact, theta, v - problem.belt_speed, pushed - mass_1 * problem.belt_speed)
-        after = w + problem.belt_speed
-        return Taken(x + late * after + h * left * v, after, impulse / body.normal_load, length(w) == 0.0)
+        grid, j = problem.grid, 2 * k + int(2.0 * theta)
+        pushed = v + h * (grid[j, LOAD] - restoring_force(body, x + late * left * v, left * v))
+        pressed, belt = grid[j, NORMAL_LOAD].real, grid[2 * k + 2, BELT].real
+        contact = Contact(problem.law, h * pressed, mass_1, mass_2)
+        # Written for the slip that ends the step: mass * w1 + P = what pushes, less what carries along with the belt.
+        w, impulse = meet(contact, theta, v - grid[2 * k, BELT].real, pushed - mass_1 * belt)
+        after = w + belt
+        return Taken(x + late * after + h * left * v, after, impulse / pressed, length(w) == 0.0)
 
     return step

@@ -26,7 +26,6 @@ from frictionlab.laws.lugre import LuGre
 from frictionlab.methods.march.bristle_adapter import march_bristle_rk4, march_exponential, march_sdirk2
 from frictionlab.methods.march.laps import MarchSettings
 from frictionlab.methods.march.method import March
-from frictionlab.methods.march.run import loaded
 from frictionlab.numerics.steppers.bristle_rk4 import DECAY
 from frictionlab.scene.body import Mass, on_the_line
 from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse, TransverseSlip
@@ -163,14 +162,12 @@ FREE = Mass(0.0, 0.0, 0.0, 0.0, 1e-12, 1.0, 0j, 0j)
 def stepped(stepper, mass, steps, h, law=STEADY, **start):
     """So many equal steps of a mass in one lap."""
     values = {"belt_speed": 0.0, "v": 0.0, "z": 0.0, **start}
-    loads = (mass.force * np.exp(0.5j * h * np.arange(2 * steps + 1))).imag
     way = MarchSettings(
-        belt_speed=values["belt_speed"], driven=True, loads=loads, span=h * steps, first=h, theta=0.5, width=1.0,
+        belt_speed=values["belt_speed"], driven=True, steps=steps, span=h * steps, first=h, theta=0.5, width=1.0,
         shape=0.0, accuracy=1.0, reach=h, enough=0.0, most=1, stride=2, rate=0.0, near=0.0, work=10**9, window=50,
         room=0, z=values["z"],
     )  # fmt: skip
-    body = loaded(on_the_line(mass), mass, True)
-    march = compiled(KERNELS[stepper], law)(body, way, 0.0, values["v"])
+    march = compiled(KERNELS[stepper], law)(on_the_line(mass), way, 0.0, values["v"])
     return np.array([march.x[-1].real, march.v[-1].real, march.z[-1, 0].real])
 
 

@@ -16,8 +16,21 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension
 from frictionlab.dynamics.contact import resistance
 from frictionlab.dynamics.events import dips, reference_acceleration
-from frictionlab.dynamics.motion import reference_velocity, restoring_force, span, turned
-from frictionlab.dynamics.step_size import longest_step
+from frictionlab.dynamics.motion import (
+    belt_acceleration,
+    belt_path,
+    deviation_acceleration,
+    deviation_slip,
+    deviation_slip_rate,
+    instant_near,
+    normal_load,
+    reference_velocity,
+    slip_at,
+    span,
+    turned,
+    unbalanced_rate,
+)
+from frictionlab.dynamics.step_size import growth_factor, longest_step
 from frictionlab.laws.memory import VECTORIAL
 from frictionlab.methods.periodic.maps.path import Carried, share_of_the_way
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
@@ -162,31 +175,18 @@ felt = by_dimension(_felt_on_the_line, _felt_in_the_plane)
 
 
 @inner
-def _slip(problem: Problem, tau: float, state: Any, like: Any) -> Any:
-    sine, cosine = turned(problem, tau)
-    u = taken(state, 1, like)
-    return u + reference_velocity(problem.body, sine, cosine) - problem.belt_speed
-
-
-@inner
 def _rates(problem: Problem, tau: float, state: Any, out: Any, like: Any) -> Any:
     """The rate of a state; returns its slip and the slip's rate."""
-    body = problem.body
-    sine, cosine = turned(problem, tau)
+    now = instant_near(problem, tau)
     y, u = taken(state, 0, like), taken(state, 1, like)
-    w = u + reference_velocity(body, sine, cosine) - problem.belt_speed
+    w = deviation_slip(problem, now, u)
     dz, rub = felt(problem, w, taken(state, 2, like))
-    a = (
-        body.force_sine * sine
-        + body.force_cosine * cosine
-        - restoring_force(body, y, u)
-        - body.normal_load * rub
-    )
+    a = deviation_acceleration(problem.body, now, y, u, rub)
     put(out, 0, u)
     put(out, 1, a)
     put(out, 2, dz)
     put(out, 3, rub)
-    return w, a + reference_acceleration(body, sine, cosine)
+    return w, deviation_slip_rate(problem, now, a)
 
 
 class Steps(NamedTuple):
@@ -230,7 +230,7 @@ def _differentiate(problem: Problem, tau: float, steps: Steps, work: Work, like:
     d = dimension(like)
     body = problem.body
     z = taken(work.at, 2, like)
-    w = away(problem, steps, z, _slip(problem, tau, work.at, like))
+    w = away(problem, steps, z, slip_at(problem, tau, taken(work.at, 1, like)))
     pair = np.empty(2 * d)
     for column in range(d):
         shift = steps.slip * unit(column, like)
@@ -245,28 +245,29 @@ def _differentiate(problem: Problem, tau: float, steps: Steps, work: Work, like:
         put(pair, 1, (ahead[1] - behind[1]) / (2.0 * steps.deflection))
         for row in range(d):
             work.by[d + row, column], work.by[3 * d + row, column] = pair[row], pair[d + row]
-    sine, cosine = turned(problem, tau)
-    put(pair, 0, reference_acceleration(body, sine, cosine) + 0.0 * like)
-    put(pair, 1, body.frequency * (body.force_sine * cosine - body.force_cosine * sine) + 0.0 * like)
+    now = instant_near(problem, tau)
+    carried = belt_acceleration(body, problem.belt_speed, now)
+    put(pair, 0, reference_acceleration(body, now.sine, now.cosine) - carried + 0.0 * like)
+    put(pair, 1, unbalanced_rate(body, now) + 0.0 * like)
     for row in range(d):
         by_slip, rub_by_slip = 0.0, 0.0
         for column in range(d):
             by_slip += work.by[row, column] * pair[column]
             rub_by_slip += work.by[2 * d + row, column] * pair[column]
         work.slope[row] = 0.0
-        work.slope[d + row] = pair[d + row] - body.normal_load * rub_by_slip
+        work.slope[d + row] = pair[d + row] - normal_load(body, now) * rub_by_slip
         work.slope[2 * d + row] = by_slip
         work.slope[3 * d + row] = rub_by_slip
 
 
 @inner
-def _factor(body: Body, h: float, work: Work) -> None:
+def _factor(body: Body, pressed: float, h: float, work: Work) -> None:
     """The matrix of a step for velocity and deflection; position and friction's integral follow from them."""
     d = work.drag.shape[1]
     for row in range(d):
         for column in range(d):
-            work.matrix[row, column] = body.normal_load * work.by[2 * d + row, column]
-            work.matrix[row, d + column] = body.normal_load * work.by[3 * d + row, column]
+            work.matrix[row, column] = pressed * work.by[2 * d + row, column]
+            work.matrix[row, d + column] = pressed * work.by[3 * d + row, column]
             work.matrix[d + row, column] = -work.by[row, column]
             work.matrix[d + row, d + column] = -work.by[d + row, column]
         diagonal = 1.0 / (GAMMA * h)
@@ -283,7 +284,7 @@ def _stepped(problem: Problem, tau: float, h: float, work: Work, like: Any) -> f
     body = problem.body
     d = work.drag.shape[1]
     n = 4 * d
-    _factor(body, h, work)
+    _factor(body, normal_load(body, instant_near(problem, tau)), h, work)
     for i in range(STAGES):
         for row in range(n):
             total = work.at[row]
@@ -325,8 +326,7 @@ def _stepped(problem: Problem, tau: float, h: float, work: Work, like: Any) -> f
 
 def _corner_on_the_line(problem: Problem, tau: float, state: Any, like: float) -> float:
     """Positive until slip reverses."""
-    sine, cosine = turned(problem, tau)
-    return problem.side * (state[1] + reference_velocity(problem.body, sine, cosine) - problem.belt_speed)
+    return problem.side * slip_at(problem, tau, state[1])
 
 
 def _corner_in_the_plane(problem: Problem, tau: float, state: Any, like: complex) -> float:
@@ -334,8 +334,7 @@ def _corner_in_the_plane(problem: Problem, tau: float, state: Any, like: complex
     z = taken(state, 2, like)
     if problem.side < 0.0 and problem.limit > 0.0:
         return problem.limit * (1.0 + 1e-12) - abs(z)  # past rounding: it has just left the circle
-    sine, cosine = turned(problem, tau)
-    w = taken(state, 1, like) + reference_velocity(problem.body, sine, cosine) - problem.belt_speed
+    w = slip_at(problem, tau, taken(state, 1, like))
     return problem.side * (z * w.conjugate()).real
 
 
@@ -445,7 +444,8 @@ circle = by_dimension(_circle_on_the_line, _circle_in_the_plane)
 def _relative_on_the_line(problem: Problem, tau: float, work: Work, like: float) -> float:
     sine, cosine = turned(problem, tau)
     body = problem.body
-    return work.at[0] + body.reference_sine * sine + body.reference_cosine * cosine - problem.belt_speed * tau
+    swung = work.at[0] + body.reference_sine * sine + body.reference_cosine * cosine
+    return swung - belt_path(body, problem.belt_speed, 0.0, tau)
 
 
 def _relative_in_the_plane(problem: Problem, tau: float, work: Work, like: complex) -> float:
@@ -492,16 +492,6 @@ def _note(track: Track, problem: Problem, tau: float, h: float, work: Work, like
 
 
 @inner
-def _growth(error: float, accuracy: float) -> float:
-    """By how much to change the step: below one, it is to be repeated."""
-    if not error < 1e300:
-        return 0.1
-    if error == 0.0:
-        return 6.0
-    return min(6.0, max(0.1 if error > accuracy else 1.0, 0.9 * (accuracy / error) ** 0.2))
-
-
-@inner
 def bristle_map(
     law: Any, body: Body, belt_speed: float, y: Any, u: Any, z: Any, accuracy: float, track: Track
 ) -> Carried:
@@ -540,7 +530,7 @@ def bristle_map(
                 h = min(h, longest(w0, rate0, ahead * max(length, covered), y))
             fresh = False
         h = min(h, reach, end - tau)
-        growth = _growth(_stepped(problem, tau, h, work, y), accuracy)
+        growth = growth_factor(_stepped(problem, tau, h, work, y) / accuracy, 5.0)
         steps += 1
         if steps > MOST_STEPS:
             return Carried(y, u, z, y, closest, -1)

@@ -12,8 +12,8 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.events import dips
-from frictionlab.dynamics.motion import reference_velocity, span, turned
-from frictionlab.dynamics.step_size import longest_step
+from frictionlab.dynamics.motion import instant_near, reference_velocity, span
+from frictionlab.dynamics.step_size import growth_factor, longest_step
 from frictionlab.methods.periodic.maps.bristle import COARSEST
 from frictionlab.methods.periodic.maps.linearization import linearize
 from frictionlab.methods.periodic.maps.memory_state import scales_of, swing_of
@@ -39,42 +39,25 @@ from frictionlab.methods.periodic.maps.rates import (
 )
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS, Mapped
 from frictionlab.methods.periodic.maps.step import step
-from frictionlab.orbit.panels import NODES
-from frictionlab.orbit.recorder import Track
+from frictionlab.orbit.recorder import Track, panel_writer
 from frictionlab.scene.body import Body
 
 
 @inner
-def _note(track: Track, flow: Flow, tau: float, h: float, work: Work, like: Any) -> None:
-    """Write the step of h to the track, node by node."""
-    row, body = track.filled[0], flow.body
-    if row == track.stick.size:
-        return
-    for k in range(NODES.size):
-        part = 0.5 * h * (1.0 + NODES[k])
-        if part > 0.0:
-            step(flow, tau, part, work, like)
-        else:
-            for place in range(MEMORY + count_of(flow.law)):
-                work.end[place] = work.start[place]
-        rates_at_end(flow, tau + part, work, like)
-        sine, cosine = turned(flow, tau + part)
-        track.tau[row, k] = tau + part
-        track.x[row, k] = work.end[Y] + body.reference_sine * sine + body.reference_cosine * cosine
-        track.v[row, k] = work.end[U] + reference_velocity(body, sine, cosine)
-        track.friction[row, k] = work.rates[IMPULSE]
-    track.stick[row] = False
-    track.filled[0] = row + 1
+def _while_into(part: float, flow: Flow, tau: float, work: Work, like: Any) -> Any:
+    """A while into a step; the step is taken anew to there."""
+    body, now = flow.body, instant_near(flow, tau + part)
+    if part > 0.0:
+        step(flow, tau, part, work, like)
+    else:
+        for place in range(MEMORY + count_of(flow.law)):
+            work.end[place] = work.start[place]
+    rates_at_end(flow, tau + part, work, like)
+    x = work.end[Y] + body.reference_sine * now.sine + body.reference_cosine * now.cosine
+    return x, work.end[U] + reference_velocity(body, now.sine, now.cosine), work.rates[IMPULSE]
 
 
-@inner
-def _growth(error: float, accuracy: float) -> float:
-    """By how much to change the step: below one, it is to be repeated."""
-    if not error < 1e300:
-        return 0.1
-    if error == 0.0:
-        return 6.0
-    return min(6.0, max(0.1 if error > accuracy else 1.0, 0.9 * (accuracy / error) ** 0.2))
+_note = panel_writer(_while_into)
 
 
 def _side_on_the_line(w: float, a: float) -> float:
@@ -149,7 +132,7 @@ def follow(flow: Flow, accuracy: float, track: Track, work: Work, like: Any) -> 
             linearize(flow, tau, 1e-5 * length(w0) + least, work, like)
             fresh = False
         h = min(h, longest, end - tau)
-        growth = _growth(step(flow, tau, h, work, like), accuracy)
+        growth = growth_factor(step(flow, tau, h, work, like) / accuracy, 5.0)
         steps += 1
         if steps > MOST_STEPS:
             return closest, -1
@@ -176,7 +159,7 @@ def follow(flow: Flow, accuracy: float, track: Track, work: Work, like: Any) -> 
                 h = shorter
                 continue
         if track.stick.size > 0:
-            _note(track, flow, tau, h, work, like)
+            _note(track, tau, h, False, flow, tau, work, like)
             step(flow, tau, h, work, like)
             w1, a1 = rates_at_end(flow, tau + h, work, like)
         if ends:

@@ -7,7 +7,14 @@ from typing import Any
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
 from frictionlab.dynamics.events import reference_acceleration
-from frictionlab.dynamics.motion import reference_velocity, restoring_force, turned
+from frictionlab.dynamics.motion import (
+    belt_acceleration,
+    belt_jerk,
+    instant_near,
+    reference_velocity,
+    restoring_force,
+    unbalanced_rate,
+)
 from frictionlab.methods.periodic.maps.bristle import dimension, put, taken, unit
 from frictionlab.methods.periodic.maps.memory_rates import Problem, Work, begin_step, felt
 from frictionlab.methods.periodic.maps.memory_state import Scales, filled, parts, spilled, swing_of
@@ -101,9 +108,10 @@ def differentiate(problem: Problem, tau: float, scales: Scales, work: Work, like
     begin_step(problem.law, w, work, like)
     _by_slip(problem.law, w, swing_of(body) + abs(problem.belt_speed), work, like)
     _by_memory(problem.law, w, scales, work, like)
-    sine, cosine = turned(problem, tau)
-    turn = reference_acceleration(body, sine, cosine) + 0.0 * like
-    jerk = -(body.frequency**2) * reference_velocity(body, sine, cosine)
-    load = body.frequency * (body.force_sine * cosine - body.force_cosine * sine)
+    now = instant_near(problem, tau)
+    turn = reference_acceleration(body, now.sine, now.cosine) + 0.0 * like
+    turn = turn - belt_acceleration(body, problem.belt_speed, now)
+    jerk = -(body.frequency**2) * reference_velocity(body, now.sine, now.cosine)
+    jerk = jerk - belt_jerk(body, problem.belt_speed, now)
     put(work.slope, 0, -turn)
-    put(work.slope, 1, load + jerk + restoring_force(body, 0.0 * turn, turn))
+    put(work.slope, 1, unbalanced_rate(body, now) + jerk + restoring_force(body, 0.0 * turn, turn))

@@ -9,7 +9,7 @@ from frictionlab.compile.decorators import fast
 from frictionlab.compile.dispatch import by_dimension
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.events import reference_acceleration
-from frictionlab.dynamics.motion import turned
+from frictionlab.dynamics.motion import belt_acceleration, instant_near, slip_at, unbalanced_rate
 from frictionlab.methods.periodic.maps.bristle import dimension, unit
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
@@ -23,7 +23,6 @@ from frictionlab.methods.periodic.maps.rates import (
     friction_of,
     load_on,
     rate_in_mode,
-    slip_at,
 )
 from frictionlab.numerics.blocks import apply, block, from_columns, keep
 
@@ -104,10 +103,11 @@ def linearize(flow: Flow, tau: float, least: float, work: Work, like: Any) -> No
     for k in range(n):
         _by_deflection(flow, w, k, work, like)
     # in time the loads change, and the slip of a mass whose deviation stays as it is
-    sine, cosine = turned(flow, tau)
-    turn = reference_acceleration(body, sine, cosine) + 0.0 * like
-    load = body.frequency * (body.force_sine * cosine - body.force_cosine * sine)
+    now = instant_near(flow, tau)
+    turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
+    turn = turn + 0.0 * like
+    load, pressed = unbalanced_rate(body, now), load_on(body, now)
     friction = apply(block(work.jacobian, 3 * n, like), turn)
-    work.slope[Y], work.slope[U], work.slope[IMPULSE] = 0.0 * like, load - load_on(body) * friction, friction
+    work.slope[Y], work.slope[U], work.slope[IMPULSE] = 0.0 * like, load - pressed * friction, friction
     for k in range(n):
         work.slope[MEMORY + k] = apply(block(work.jacobian, 3 * k, like), turn)

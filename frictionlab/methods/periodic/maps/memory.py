@@ -12,8 +12,17 @@ from typing import Any
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import length
-from frictionlab.dynamics.motion import reference_velocity, span, turned
-from frictionlab.dynamics.step_size import longest_step
+from frictionlab.dynamics.motion import (
+    belt_velocity,
+    instant_at,
+    instant_near,
+    reference_velocity,
+    slip,
+    slip_at,
+    span,
+    turned,
+)
+from frictionlab.dynamics.step_size import growth_factor, longest_step
 from frictionlab.methods.periodic.maps.bristle import COARSEST, put, taken
 from frictionlab.methods.periodic.maps.events import (
     begun_to_yield,
@@ -69,28 +78,18 @@ def _note(
         sine, cosine = turned(problem, tau + part)
         track.tau[row, k] = tau + part
         track.x[row, k] = taken(values, 0, like) + body.reference_sine * sine + body.reference_cosine * cosine
-        track.v[row, k] = taken(values, 1, like) + problem.belt_speed
+        now = instant_near(problem, tau + part)
+        track.v[row, k] = taken(values, 1, like) + belt_velocity(body, problem.belt_speed, now)
         track.friction[row, k] = taken(work.rates, 2, like)
     track.stick[row] = False
     track.filled[0] = row + 1
 
 
 @inner
-def _growth(error: float, accuracy: float) -> float:
-    """By how much to change the step: below one, it is to be repeated."""
-    if not error < 1e300:
-        return 0.1
-    if error <= accuracy:
-        return 6.0 if error == 0.0 else min(6.0, max(1.0, 0.9 * (accuracy / error) ** 0.2))
-    return max(0.1, 0.9 * (accuracy / error) ** 0.2)
-
-
-@inner
 def _held(problem: Problem, tau: float, work: Work, like: Any) -> None:
     """Put a slip that is prescribed where it belongs."""
-    sine, cosine = turned(problem, tau)
     put(work.at, 0, 0.0 * like)
-    put(work.at, 1, reference_velocity(problem.body, sine, cosine) - problem.belt_speed + 0.0 * like)
+    put(work.at, 1, slip_at(problem, tau, 0.0 * like))
 
 
 @inner
@@ -141,7 +140,7 @@ def follow(
             if cornered and begun_to_yield(law, scales, work, like).yields:
                 h, error, tries = yield_point(problem, tau, h, scales, accuracy, work, like)
                 steps += tries
-            growth = _growth(error, accuracy)
+            growth = growth_factor(error / accuracy, 5.0)
         if steps > MOST_STEPS:
             return closest, -1
         if growth < 1.0:
@@ -192,4 +191,5 @@ def begun(body: Body, belt_speed: float, y: Any, u: Any, work: Work) -> None:
     """Put the beginning of a span into ``work.at``, but for the memory."""
     work.at[:] = 0.0
     put(work.at, 0, y)
-    put(work.at, 1, u + body.frequency * body.reference_sine - belt_speed)
+    now = instant_at(body, 0.0)
+    put(work.at, 1, slip(body, belt_speed, now, u + reference_velocity(body, now.sine, now.cosine)))

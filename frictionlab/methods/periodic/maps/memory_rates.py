@@ -13,8 +13,16 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
-from frictionlab.dynamics.events import reference_acceleration
-from frictionlab.dynamics.motion import reference_velocity, restoring_force, turned
+from frictionlab.dynamics.motion import (
+    Instant,
+    acceleration_under,
+    belt_velocity,
+    deviation_slip_rate,
+    instant_near,
+    normal_load,
+    reference_velocity,
+    unbalanced_load,
+)
 from frictionlab.methods.periodic.maps.bristle import dimension, put, taken
 from frictionlab.methods.periodic.maps.memory_state import filled, memory_of, parts, spilled
 from frictionlab.numerics.steppers.rodas5p import STAGES
@@ -211,22 +219,21 @@ def felt(law: Any, w: Any, work: Work) -> Any:
 
 
 @inner
-def pushed(body: Body) -> float:
+def pushed(body: Body, now: Instant) -> float:
     """The normal load by which friction moves the mass."""
-    return 0.0 if body.prescribed else body.normal_load
+    return 0.0 if body.prescribed else normal_load(body, now)
 
 
 @inner
 def rates(problem: Problem, tau: float, values: Any, work: Work, out: Any, like: Any) -> Any:
     """The rate of the values; returns the slip's."""
-    body = problem.body
-    sine, cosine = turned(problem, tau)
+    body, now = problem.body, instant_near(problem, tau)
     y, w = taken(values, 0, like), taken(values, 1, like)
-    u = w + problem.belt_speed - reference_velocity(body, sine, cosine)
+    u = w + belt_velocity(body, problem.belt_speed, now) - reference_velocity(body, now.sine, now.cosine)
     filled(work.memory, values, 3 * dimension(like), work.memory[0])
     rub = felt(problem.law, w, work)
-    a = body.force_sine * sine + body.force_cosine * cosine - restoring_force(body, y, u)
-    a = a - pushed(body) * rub + reference_acceleration(body, sine, cosine)
+    a = acceleration_under(body, unbalanced_load(body, now), pushed(body, now), y, u, rub)
+    a = deviation_slip_rate(problem, now, a)
     put(out, 0, u)
     put(out, 1, a)
     put(out, 2, rub)

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import inner
+from frictionlab.dynamics.motion import instant_near
 from frictionlab.methods.periodic.maps.memory_rates import Problem, Work, pushed, rates
 from frictionlab.methods.periodic.maps.memory_state import Scales, parts
 from frictionlab.numerics.steppers.rodas5p import (
@@ -18,11 +19,10 @@ from frictionlab.numerics.steppers.rodas5p import (
     factored,
     solved,
 )
-from frictionlab.scene.body import Body
 
 
 @inner
-def _factor(body: Body, h: float, work: Work) -> None:
+def _factor(pressed: float, h: float, work: Work) -> None:
     """The matrix of a step for slip and memory; position and friction's integral follow from them."""
     d = work.drag.shape[1]
     n = work.right.size
@@ -30,7 +30,7 @@ def _factor(body: Body, h: float, work: Work) -> None:
     diagonal = 1.0 / (GAMMA * h)
     for row in range(d):
         for column in range(n):
-            work.matrix[row, column] = pushed(body) * work.by[m + row, column]
+            work.matrix[row, column] = pressed * work.by[m + row, column]
         drag = work.drag[0, row] + GAMMA * h * work.drag[1, row]
         work.matrix[row, row] = work.matrix[row, row] + diagonal + drag
     for row in range(m):
@@ -45,7 +45,7 @@ def stepped(problem: Problem, tau: float, h: float, scales: Scales, work: Work, 
     """One step from ``work.at`` to ``work.end``; returns its error in the norm of energy, with friction's impulse."""
     body, d = problem.body, work.drag.shape[1]
     n, m = work.at.size, work.at.size - 3 * d
-    _factor(body, h, work)
+    _factor(pushed(body, instant_near(problem, tau)), h, work)
     for i in range(STAGES):
         for row in range(n):
             total = work.at[row]
@@ -85,7 +85,7 @@ def crossed(problem: Problem, tau: float, h: float, work: Work, like: Any) -> No
     """
     body, d = problem.body, work.drag.shape[1]
     m = work.at.size - 3 * d
-    _factor(body, h / GAMMA, work)
+    _factor(pushed(body, instant_near(problem, tau)), h / GAMMA, work)
     rates(problem, tau, work.at, work, work.rates, like)
     for row in range(d):
         work.right[row] = work.rates[d + row] - h * work.drag[1, row] * work.rates[row]

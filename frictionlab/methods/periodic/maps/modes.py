@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.motion import turned
+from frictionlab.dynamics.motion import instant_near
 from frictionlab.laws.memory import VECTORIAL
 from frictionlab.methods.periodic.maps.rates import (
     FOLLOWS,
@@ -138,8 +138,7 @@ def rates_at_end(flow: Flow, tau: float, work: Work, like: Any) -> Any:
     """Slip and its rate at ``work.end``, the time tau; leaves the memory there in ``work.memory``."""
     for row in range(MEMORY + count_of(flow.law)):
         work.stage[row] = work.end[row]
-    sine, cosine = turned(flow, tau)
-    return rates(flow, sine, cosine, work, like)
+    return rates(flow, instant_near(flow, tau), work, like)
 
 
 @inner

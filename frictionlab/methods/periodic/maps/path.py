@@ -11,14 +11,24 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from frictionlab.compile.decorators import fast, inner
-from frictionlab.dynamics.events import reference_acceleration, slip_events
-from frictionlab.dynamics.motion import reference_position, reference_velocity, restoring_force, span, turned
+from frictionlab.compile.decorators import fast, fast_embedded, inner
+from frictionlab.dynamics.events import slip_events
+from frictionlab.dynamics.motion import (
+    Instant,
+    belt_path,
+    deviation_acceleration,
+    deviation_slip,
+    instant_near,
+    reference_position,
+    reference_velocity,
+    slip_at,
+    slip_rate,
+    span,
+)
 from frictionlab.dynamics.step_size import growth_of, longest_step, wary_growth_of
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
 from frictionlab.numerics.steppers.dop853 import State, stepper
-from frictionlab.orbit.panels import NODES
-from frictionlab.orbit.recorder import Track
+from frictionlab.orbit.recorder import Track, panel_writer
 from frictionlab.scene.body import Body
 
 
@@ -86,46 +96,32 @@ def _leg(law: Any, body: Body, belt_speed: float, side: float, tau: float, y: fl
 
 
 @fast
-def slip(leg: Leg, tau: float, u: Any) -> Any:
-    """Slip velocity: of the mass against the belt."""
-    sine, cosine = turned(leg, tau)
-    return u + reference_velocity(leg.body, sine, cosine) - leg.belt_speed
-
-
-@fast
-def _way(leg: Leg, tau: float, y: float, sine: float, cosine: float) -> float:
+def _way(leg: Leg, now: Instant, y: float) -> float:
     """How far the leg has slid, in its direction."""
     body = leg.body
-    swung = body.reference_sine * sine + body.reference_cosine * cosine - leg.reference
-    return max(leg.side * ((y - leg.y) + swung - leg.belt_speed * (tau - leg.tau)), 0.0)
+    swung = body.reference_sine * now.sine + body.reference_cosine * now.cosine - leg.reference
+    carried = belt_path(body, leg.belt_speed, leg.tau, now.tau)
+    return max(leg.side * ((y - leg.y) + swung - carried), 0.0)
 
 
-@fast
+@fast_embedded
 def rates(leg: Leg, tau: float, y: float, u: float) -> Any:
     """Acceleration of the deviation, and the friction coefficient."""
-    body, side, law = leg.body, leg.side, leg.law
-    sine, cosine = turned(leg, tau)
-    w = side * max(side * (u + reference_velocity(body, sine, cosine) - leg.belt_speed), 0.0)
-    z = law.deflected(leg.z, side * _way(leg, tau, y, sine, cosine))
+    side, law, now = leg.side, leg.law, instant_near(leg, tau)
+    # Trial steps go beyond the end of the leg: there its law is continued as at rest, so that it stays smooth.
+    w = side * max(side * deviation_slip(leg, now, u), 0.0)
+    z = law.deflected(leg.z, side * _way(leg, now, y))
     rub = law.friction(w, z, law.rate(w, z))
-    force = body.force_sine * sine + body.force_cosine * cosine
-    return force - restoring_force(body, y, u) - body.normal_load * rub, rub
+    return deviation_acceleration(leg.body, now, y, u, rub), rub
 
 
 step = stepper(rates)
-stop, lowest = slip_events(step, rates, slip, turned)
-
-
-@inner
-def _slip_rate(leg: Leg, tau: float, a: float) -> float:
-    sine, cosine = turned(leg, tau)
-    return a + reference_acceleration(leg.body, sine, cosine)
+stop, lowest = slip_events(step, rates, slip_at, slip_rate)
 
 
 @inner
 def _slid(leg: Leg, tau: float, y: float) -> float:
-    sine, cosine = turned(leg, tau)
-    return _way(leg, tau, y, sine, cosine)
+    return _way(leg, instant_near(leg, tau), y)
 
 
 @inner
@@ -155,7 +151,7 @@ def _until_way(leg: Leg, tau: float, state: State, high: float, way: float) -> A
     for _ in range(60):
         beyond = _slid(leg, tau + h, taken.x) - way
         low, high = (low, h) if beyond > 0.0 else (h, high)
-        speed = leg.side * slip(leg, tau + h, taken.v)
+        speed = leg.side * slip_at(leg, tau + h, taken.v)
         trial = h - beyond / speed if speed > 0.0 else low
         if not low < trial < high:
             trial = 0.5 * (low + high)
@@ -168,31 +164,25 @@ def _until_way(leg: Leg, tau: float, state: State, high: float, way: float) -> A
 
 
 @inner
-def _note(track: Track, leg: Leg, tau: float, state: State, h: float) -> None:
-    row = track.filled[0]
-    if row == track.stick.size:
-        return
-    for k in range(NODES.size):
-        part = 0.5 * h * (1.0 + NODES[k])
-        taken = step(leg, tau, state, part)
-        sine, cosine = turned(leg, tau + part)
-        _a, rub = rates(leg, tau + part, taken.x, taken.v)
-        track.tau[row, k] = tau + part
-        track.x[row, k] = taken.x + leg.body.reference_sine * sine + leg.body.reference_cosine * cosine
-        track.v[row, k] = taken.v + reference_velocity(leg.body, sine, cosine)
-        track.friction[row, k] = rub
-    track.stick[row] = False
-    track.filled[0] = row + 1
+def _slipping(part: float, leg: Leg, tau: float, state: State) -> Any:
+    """A while into a step; the step is taken anew to there."""
+    body, taken, now = leg.body, step(leg, tau, state, part), instant_near(leg, tau + part)
+    _a, rub = rates(leg, tau + part, taken.x, taken.v)
+    x = taken.x + body.reference_sine * now.sine + body.reference_cosine * now.cosine
+    return x, taken.v + reference_velocity(body, now.sine, now.cosine), rub
+
+
+_note_slip = panel_writer(_slipping)
 
 
 @inner
 def _side(law: Any, body: Body, belt_speed: float, tau: float, y: float, u: float, z: float) -> float:
     """The direction in which slip goes on from here."""
     leg = _leg(law, body, belt_speed, 1.0, tau, y, z)
-    w = slip(leg, tau, u)
+    w = slip_at(leg, tau, u)
     if w == 0.0:
         a, _rub = rates(leg, tau, y, u)
-        w = _slip_rate(leg, tau, a)
+        w = slip_rate(leg, tau, a)
     return 1.0 if w >= 0.0 else -1.0
 
 
@@ -216,7 +206,7 @@ def path_map(
     corner = law.saturation_path(z, leg.side)
     while end - tau > 4e-15 * end:
         leg = _anchored(leg, tau)
-        w, rate = slip(leg, tau, state.v), _slip_rate(leg, tau, state.a)
+        w, rate = slip_at(leg, tau, state.v), slip_rate(leg, tau, state.a)
         closest = min(closest, abs(w))
         ahead = _longest(leg, way, share, w, rate) if corner > way or corner == math.inf else 1e300
         h = min(h, ahead, reach, end - tau)
@@ -228,7 +218,7 @@ def path_map(
         if growth < 1.0:
             h = h * growth
             continue
-        after, limit, turns = leg.side * slip(leg, tau + h, taken.v), h, False
+        after, limit, turns = leg.side * slip_at(leg, tau + h, taken.v), h, False
         if after <= 0.0 and leaving:
             if h * body.frequency > 1e-12:
                 h = 0.25 * h
@@ -236,9 +226,9 @@ def path_map(
             turns = True  # slip does not get away in this direction
         else:
             a, f = rates(leg, tau + h, taken.x, taken.v)
-            if after > 0.0 and not leaving and leg.side * rate < 0.0 < leg.side * _slip_rate(leg, tau + h, a):
+            if after > 0.0 and not leaving and leg.side * rate < 0.0 < leg.side * slip_rate(leg, tau + h, a):
                 limit = lowest(leg, tau, state, leg.side * rate, h)
-                after = leg.side * slip(leg, tau + limit, step(leg, tau, state, limit).v)
+                after = leg.side * slip_at(leg, tau + limit, step(leg, tau, state, limit).v)
             if after <= 0.0:
                 h, taken = stop(leg, tau, state, 0.0, limit)
                 turns = True
@@ -247,7 +237,7 @@ def path_map(
             h, taken = _until_way(leg, tau, state, h, corner)
             ended, turns = corner, False
         if track.stick.size > 0:
-            _note(track, leg, tau, state, h)
+            _note_slip(track, tau, h, False, leg, tau, state)
         rubbed = rubbed + taken.rubbed
         tau = tau + h if end - tau > h else end
         leaving, way = turns, ended

@@ -13,8 +13,14 @@ from typing import Any, NamedTuple
 from frictionlab.compile.decorators import fast, inlined, inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.stack import count_of, room
-from frictionlab.dynamics.events import reference_acceleration
-from frictionlab.dynamics.motion import reference_velocity, restoring_force, turned
+from frictionlab.dynamics.motion import (
+    Instant,
+    acceleration_under,
+    deviation_slip,
+    deviation_slip_rate,
+    normal_load,
+    unbalanced_load,
+)
 from frictionlab.laws.memory import PER_AXIS, VECTORIAL
 from frictionlab.scene.body import Body
 
@@ -202,30 +208,22 @@ def friction_in_mode(law: Any, work: Work, w: Any) -> Any:
 
 
 @fast
-def load_on(body: Body) -> float:
+def load_on(body: Body, now: Instant) -> float:
     """The normal load by which friction moves the mass: none where its motion is prescribed."""
-    return 0.0 if body.prescribed else body.normal_load
+    return 0.0 if body.prescribed else normal_load(body, now)
 
 
 @fast
-def slip_at(flow: Flow, tau: float, u: Any) -> Any:
-    """The slip velocity of a mass whose deviation moves at u."""
-    sine, cosine = turned(flow, tau)
-    return u + reference_velocity(flow.body, sine, cosine) - flow.belt_speed
-
-
-@fast
-def rates(flow: Flow, sine: float, cosine: float, work: Work, like: Any) -> Any:
+def rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
     """Fill ``work.rates`` at ``work.stage``; returns slip and its rate."""
     body, n = flow.body, count_of(flow.law)
     for k in range(n):
         work.memory[k] = work.stage[MEMORY + k]
     y, u = work.stage[Y], work.stage[U]
-    w = u + reference_velocity(body, sine, cosine) - flow.belt_speed
+    w = deviation_slip(flow, now, u)
     friction = friction_in_mode(flow.law, work, w)
-    force = body.force_sine * sine + body.force_cosine * cosine
-    a = force - restoring_force(body, y, u) - load_on(body) * friction
+    a = acceleration_under(body, unbalanced_load(body, now), load_on(body, now), y, u, friction)
     work.rates[Y], work.rates[U], work.rates[IMPULSE] = u, a, friction
     for k in range(n):
         work.rates[MEMORY + k] = work.moving[k]
-    return w, a + reference_acceleration(body, sine, cosine)
+    return w, deviation_slip_rate(flow, now, a)

@@ -17,19 +17,24 @@ from frictionlab.dynamics.events import dips, slip_events
 from frictionlab.dynamics.motion import (
     SlidingMotion,
     anchored,
+    belt_path,
+    belt_velocity,
+    holding_force,
+    instant_at,
+    instant_near,
+    normal_load,
     rates,
     reference_position,
     reference_velocity,
-    slip,
+    resting_friction,
+    slip_at,
     slip_rate,
     span,
-    turned,
 )
 from frictionlab.dynamics.step_size import growth_of, longest_step
-from frictionlab.methods.periodic.maps.stick import holding_force, holding_impulse, load_at_rest, stick_phase
+from frictionlab.methods.periodic.maps.stick import stick_phase
 from frictionlab.numerics.steppers.dop853 import State, stepper
-from frictionlab.orbit.panels import NODES
-from frictionlab.orbit.recorder import Track
+from frictionlab.orbit.recorder import Track, panel_writer
 from frictionlab.scene.body import Body
 
 
@@ -79,7 +84,7 @@ class Landing(NamedTuple):
 REPEAT, ACCEPT, REST, STILL = 0, 1, 2, 3
 
 
-stop, lowest = slip_events(step, rates, slip, turned)
+stop, lowest = slip_events(step, rates, slip_at, slip_rate)
 
 
 @inner
@@ -96,22 +101,22 @@ def _before_in_the_plane(
     problem: SlidingMotion, node: Node, accuracy: float, h: float, y: complex
 ) -> Landing:
     """How far the step may go towards rest; where rest is nearer than the accuracy, go there."""
-    body, w = problem.body, node.w
-    speed = node.speed
+    body, belt_speed, w = problem.body, problem.belt_speed, node.w
+    speed, now = node.speed, instant_near(problem, node.tau)
     closing = -(node.rate * w.conjugate()).real / speed
-    limit = body.normal_load * problem.law.sliding_friction(0.0)
+    pressed = normal_load(body, now)
+    limit = pressed * problem.law.sliding_friction(0.0)
     if speed < math.sqrt(accuracy * limit) or speed < 1e-2 * accuracy:
-        pull, belt = load_at_rest(body), complex(problem.belt_speed)
         x = y + reference_position(body, node.tau)
-        held, rate, _bend = holding_force(body, pull, node.tau, x, belt)
+        held, rate, _bend = holding_force(body, belt_speed, instant_at(body, node.tau), x)
         margin = limit - abs(held)
         sure = speed * speed < 0.1 * accuracy * margin and 10.0 * speed * abs(rate) < margin * abs(margin)
         if sure or speed <= 1e-2 * accuracy:
             wait = speed / (limit - (held * w.conjugate()).real / speed) if sure else 0.0
             end = node.tau + wait
             path = 0.5 * wait * w
-            rubbed = (w + holding_impulse(body, pull, node.tau, end, x, belt)) / body.normal_load
-            y = x + wait * belt + path - reference_position(body, end)
+            rubbed = w / pressed + resting_friction(body, belt_speed, node.tau, end, x)
+            y = x + belt_path(body, belt_speed, node.tau, end) + path - reference_position(body, end)
             return Landing(REST, wait, State(y, w, w, w), rubbed)
     h = min(h, 4.0 * speed / limit)  # slip turns towards the force at the rate limit/speed: stay stable
     return Landing(ACCEPT, min(h, 0.9 * speed / closing) if closing > 0.0 else h, node.state, y)
@@ -125,7 +130,7 @@ def _after_on_the_line(
 ) -> Landing:
     """Whether the slip velocity passed through zero, between the nodes included."""
     side, state, limit = problem.side, node.state, h
-    after = side * slip(problem, node.tau + h, taken.v)
+    after = side * slip_at(problem, node.tau + h, taken.v)
     if after <= 0.0 and leaving and after >= -1e-15 * (abs(taken.v) + abs(problem.belt_speed)):
         return Landing(STILL, h, _state(problem, node.tau + h, taken.x, taken.v), taken.rubbed)
     if after <= 0.0 and leaving:
@@ -133,7 +138,7 @@ def _after_on_the_line(
     a, f = rates(problem, node.tau + h, taken.x, taken.v)
     if after > 0.0 and not leaving and side * node.rate < 0.0 < side * slip_rate(problem, node.tau + h, a):
         limit = lowest(problem, node.tau, state, side * node.rate, h)
-        after = side * slip(problem, node.tau + limit, step(problem, node.tau, state, limit).v)
+        after = side * slip_at(problem, node.tau + limit, step(problem, node.tau, state, limit).v)
     if after <= 0.0:
         h, taken = stop(problem, node.tau, state, 0.0, limit)
         return Landing(REST, h, State(taken.x, taken.v, taken.v, taken.v), taken.rubbed)
@@ -144,7 +149,7 @@ def _after_in_the_plane(
     problem: SlidingMotion, node: Node, leaving: bool, taken: Any, h: float, y: complex
 ) -> Landing:
     """Whether the slip came close to rest between the nodes: then the step was too long."""
-    after = slip(problem, node.tau + h, taken.v)
+    after = slip_at(problem, node.tau + h, taken.v)
     a, f = rates(problem, node.tau + h, taken.x, taken.v)
     if dips(node.w, node.rate, after, slip_rate(problem, node.tau + h, a), h):
         return Landing(REPEAT, 0.5 * h, node.state, y)
@@ -158,61 +163,46 @@ _after = by_dimension(_after_on_the_line, _after_in_the_plane)
 
 
 @inner
-def _note_slip(track: Track, problem: SlidingMotion, node: Node, h: float) -> None:
-    row = track.filled[0]
-    if row == track.stick.size:
-        return
-    for k in range(NODES.size):
-        part = 0.5 * h * (1.0 + NODES[k])
-        taken = step(problem, node.tau, node.state, part)
-        tau = node.tau + part
-        sine, cosine = turned(problem, tau)
-        _a, f = rates(problem, tau, taken.x, taken.v)
-        track.tau[row, k] = tau
-        track.x[row, k] = (
-            taken.x + problem.body.reference_sine * sine + problem.body.reference_cosine * cosine
-        )
-        track.v[row, k] = taken.v + reference_velocity(problem.body, sine, cosine)
-        track.friction[row, k] = f
-    track.stick[row] = False
-    track.filled[0] = row + 1
+def _slipping(part: float, problem: SlidingMotion, node: Node) -> Any:
+    """A while into a step; the step is taken anew to there."""
+    body, tau = problem.body, node.tau + part
+    taken, now = step(problem, node.tau, node.state, part), instant_near(problem, tau)
+    _a, f = rates(problem, tau, taken.x, taken.v)
+    x = taken.x + body.reference_sine * now.sine + body.reference_cosine * now.cosine
+    return x, taken.v + reference_velocity(body, now.sine, now.cosine), f
 
 
 @inner
-def _note_stick(track: Track, problem: SlidingMotion, tau: float, end: float, x: Any) -> None:
-    row = track.filled[0]
-    if row == track.stick.size:
-        return
-    belt = problem.belt_speed + 0.0 * x
-    pull = load_at_rest(problem.body)
-    for k in range(NODES.size):
-        part = 0.5 * (end - tau) * (1.0 + NODES[k])
-        held, _rate, _bend = holding_force(problem.body, pull, tau + part, x + part * belt, belt)
-        track.tau[row, k] = tau + part
-        track.x[row, k] = x + part * belt
-        track.v[row, k] = belt
-        track.friction[row, k] = held / problem.body.normal_load
-    track.stick[row] = True
-    track.filled[0] = row + 1
+def _resting(part: float, problem: SlidingMotion, tau: float, x: Any) -> Any:
+    """A while into a time at rest that began at x."""
+    body, belt_speed = problem.body, problem.belt_speed
+    now = instant_at(body, tau + part)
+    x = x + belt_path(body, belt_speed, tau, tau + part)
+    held, _rate, _bend = holding_force(body, belt_speed, now, x)
+    return x, belt_velocity(body, belt_speed, now) + 0.0 * x, held / normal_load(body, now)
+
+
+class Hop(NamedTuple):
+    """The short while next to rest that is closed by momentum: slip changes evenly, friction is its mean."""
+
+    tau: float
+    lasts: float
+    x: Any
+    w: Any
+    change: Any
+    rub: Any
 
 
 @inner
-def _note_hop(
-    track: Track, problem: SlidingMotion, tau: float, end: float, x: Any, w: Any, change: Any, rub: Any
-) -> None:
-    """The short while next to rest that is closed by momentum: slip w changes evenly, friction is its mean."""
-    row = track.filled[0]
-    if row == track.stick.size:
-        return
-    for k in range(NODES.size):
-        share = 0.5 * (1.0 + NODES[k])
-        part = (end - tau) * share
-        track.tau[row, k] = tau + part
-        track.x[row, k] = x + part * (problem.belt_speed + w + 0.5 * share * change)
-        track.v[row, k] = problem.belt_speed + w + share * change
-        track.friction[row, k] = rub
-    track.stick[row] = False
-    track.filled[0] = row + 1
+def _hopping(part: float, problem: SlidingMotion, hop: Hop) -> Any:
+    body, belt_speed, share = problem.body, problem.belt_speed, part / hop.lasts
+    carried = belt_path(body, belt_speed, hop.tau, hop.tau + part)
+    x = hop.x + carried + part * (hop.w + 0.5 * share * hop.change)
+    v = belt_velocity(body, belt_speed, instant_at(body, hop.tau + part)) + hop.w + share * hop.change
+    return x, v, hop.rub
+
+
+_note_slip, _note_stick, _note_hop = panel_writer(_slipping), panel_writer(_resting), panel_writer(_hopping)
 
 
 @inner
@@ -228,7 +218,7 @@ def sliding_map(
     reach = longest_step(body, law.sliding_friction(0.0), accuracy)
     tau, h, steps = 0.0, 0.1 * reach, 0
     rubbed, stuck, closest, released = 0.0 * y, 0.0, 1e300, -1.0
-    w = slip(anchored(law, body, belt_speed, 1.0, 0.0), 0.0, u)
+    w = slip_at(anchored(law, body, belt_speed, 1.0, 0.0), 0.0, u)
     problem = anchored(law, body, belt_speed, 1.0 if w.real > 0.0 else -1.0, 0.0)
     resting, leaving = abs(w) <= 1e-2 * accuracy, False
     state = State(y, u, u, u)
@@ -244,30 +234,32 @@ def sliding_map(
             if room > 0:
                 x, slips = state.x + reference_position(body, tau), tau + rest.stuck
                 if rest.stuck > 0.0:
-                    _note_stick(track, problem, tau, slips, x)
+                    _note_stick(track, tau, rest.stuck, True, problem, tau, x)
                 if rest.tau > slips:
-                    rub = rest.pulled / (rest.tau - slips)
-                    x = x + rest.stuck * belt_speed
-                    _note_hop(track, problem, slips, rest.tau, x, 0.0 * rest.w, rest.w, rub)
+                    lasts = rest.tau - slips
+                    x = x + belt_path(body, belt_speed, tau, slips)
+                    hop = Hop(slips, lasts, x, 0.0 * rest.w, rest.w, rest.pulled / lasts)
+                    _note_hop(track, slips, lasts, False, problem, hop)
             if rest.stuck > 0.0 and rest.tau < end:
                 released = tau + rest.stuck
             tau, resting, leaving, closest = rest.tau, False, True, 0.0
             problem = anchored(law, body, belt_speed, rest.side, tau)
-            u = rest.w + belt_speed - reference_velocity(body, problem.sine, problem.cosine)
+            u = rest.w + belt_velocity(body, belt_speed, instant_at(body, tau))
+            u = u - reference_velocity(body, problem.sine, problem.cosine)
             state = State(rest.x - reference_position(body, tau), u, u, u)
             if tau < end:
                 state = _state(problem, tau, state.x, u)
             h = 0.1 * reach
             continue
         problem = anchored(law, body, belt_speed, problem.side, tau)
-        w = slip(problem, tau, state.v)
+        w = slip_at(problem, tau, state.v)
         node = Node(tau, state, w, length(w), slip_rate(problem, tau, state.a))
         closest = min(closest, node.speed)
         done = _before(problem, node, accuracy, min(h, reach, end - tau), state.x)
         if done.verdict == REST:
             if room > 0 and done.h > 0.0:
                 x, rub = state.x + reference_position(body, tau), done.rubbed / done.h
-                _note_hop(track, problem, tau, tau + done.h, x, node.w, -node.w, rub)
+                _note_hop(track, tau, done.h, False, problem, Hop(tau, done.h, x, node.w, -node.w, rub))
         else:
             h = done.h
             taken = step(problem, tau, state, h)
@@ -283,7 +275,7 @@ def sliding_map(
                 h = done.h
                 continue
             if room > 0:
-                _note_slip(track, problem, node, done.h)
+                _note_slip(track, tau, done.h, False, problem, node)
             h = h * growth
         resting, leaving = done.verdict == REST, done.verdict == STILL
         rubbed = rubbed + done.rubbed

@@ -17,7 +17,7 @@ from typing import Any
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.dispatch import by_dimension
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.motion import turned
+from frictionlab.dynamics.motion import instant_near
 from frictionlab.methods.periodic.maps.rates import IMPULSE, MEMORY, Flow, U, Work, Y, load_on, rates
 from frictionlab.numerics.blocks import add, apply, block, diagonal, inverse, keep, product, scale
 from frictionlab.numerics.steppers.rodas5p import COUPLINGS, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
@@ -45,7 +45,12 @@ def factor(flow: Flow, h: float, work: Work, like: Any) -> None:
         keep(work.factors, 2 * k + 1, moved, like)
     mean = diagonally + body.damping_mean + GAMMA * h * body.stiffness_mean
     mass = diagonal(mean, body.damping_split + GAMMA * h * body.stiffness_split, like)
-    keep(work.factors, 2 * n, inverse(add(mass, scale(load_on(body), by_slip, like), like), like), like)
+    keep(
+        work.factors,
+        2 * n,
+        inverse(add(mass, scale(load_on(body, instant_near(flow, flow.anchor)), by_slip, like), like), like),
+        like,
+    )
     keep(work.factors, 2 * n + 1, by_slip, like)
 
 
@@ -95,7 +100,11 @@ def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
         moved = apply(block(work.factors, 2 * k, like), work.rates[MEMORY + k])
         work.increments[first + MEMORY + k] = moved
         alone = alone + apply(block(work.jacobian, 3 * k + 2, like), moved)
-    right = work.rates[U] - GAMMA * h * _stretched(body, work.rates[Y]) - load_on(body) * alone
+    right = (
+        work.rates[U]
+        - GAMMA * h * _stretched(body, work.rates[Y])
+        - load_on(body, instant_near(flow, flow.anchor)) * alone
+    )
     u = apply(block(work.factors, 2 * n, like), right)
     friction = work.rates[IMPULSE] + alone + apply(block(work.factors, 2 * n + 1, like), u)
     work.increments[first + Y] = GAMMA * h * (work.rates[Y] + u)
@@ -138,12 +147,12 @@ def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
     """
     law, body, n = flow.law, flow.body, count_of(flow.law)
     factor(flow, h, work, like)
-    sine, cosine = turned(flow, tau)
+    now = instant_near(flow, tau)
     for i in range(STAGES):
         _argument(i, law, work)
         if 0 < i < SIMULTANEOUS:
-            sine, cosine = turned(flow, tau + TIMES[i] * h)
-        rates(flow, sine, cosine, work, like)
+            now = instant_near(flow, tau + TIMES[i] * h)
+        rates(flow, now, work, like)
         _right_side(i, law, h, work)
         _solve(i, flow, h, work, like)
     # the last increment is the difference to the embedded method of order 4, and ends the step

@@ -109,6 +109,23 @@ def given(names: Iterable[str]) -> list[str]:
     return in_si if belt_speed(columns) != BELT_SPEED else columns
 
 
+ALWAYS = "mean_friction", "error", "status", "reason"
+"""The result columns of every table, whatever is asked for."""
+OF_SHAPE = (
+    *("normalized_friction", "velocity_ratio", "velocity_amplitude"),
+    *("reversals", "stick_fraction", "friction_to_drive"),
+)
+"""The result columns that the measures of a curve's shape are read from, besides the mean and its error."""
+
+
+def selected(asked: Iterable[str] | None) -> frozenset[str]:
+    """The result columns of a table that is asked for these: with what every table has, each in both scales."""
+    if asked is None:
+        return frozenset([*RESULTS, *SI])
+    wanted = {*ALWAYS, *(SI[name].column if name in SI else name for name in asked)}
+    return frozenset([*wanted, *(name for name, made in SI.items() if made.column in wanted)])
+
+
 def results(names: Sequence[str]) -> list[str]:
     """The result columns of a table with these inputs."""
     return [*RESULTS, *SI] if belt_speed(names) != BELT_SPEED else [*RESULTS]

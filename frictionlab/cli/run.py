@@ -35,11 +35,17 @@ class RunOptions(NamedTuple):
     study: Path
     out: Path | None
     overrides: tuple[str, ...]
+    columns: str | None
     law_files: tuple[Path, ...]
     workers: int | None
     as_json: bool
     cite: bool
     force: bool
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """The overrides, with the columns as one of them."""
+        return self.overrides if self.columns is None else (*self.overrides, f"columns=[{self.columns}]")
 
     @property
     def existing(self) -> Literal["reuse", "replace"]:
@@ -52,6 +58,11 @@ class RunOptions(NamedTuple):
 @options.folder("runs/<study name>")
 @options.overrides
 @options.law_files
+@click.option(
+    "--columns",
+    metavar="A,B",
+    help="The result columns to find; inputs, mean_friction, error, status and reason always.",
+)
 @click.option(
     "-j", "workers", type=click.IntRange(min=1), metavar="N", help="Threads; all cores if left out."
 )
@@ -68,7 +79,7 @@ def command(**given: Any) -> int:
     asked = RunOptions(**given)
     if asked.as_json and asked.cite:
         raise click.UsageError("--json and --cite print different things; give one of them")
-    jobs = batch.jobs(asked.study, asked.out, asked.overrides, asked.law_files)
+    jobs = batch.jobs(asked.study, asked.out, asked.changes, asked.law_files)
     batch.check_folders(jobs, asked.existing)
     index = batch.index_folder(asked.study, asked.out)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -94,7 +105,7 @@ def _run(job: Job, asked: RunOptions) -> Run:
     meter = Meter(sys.stderr)
     pool = ThreadPoolExecutor(asked.workers or os.cpu_count())
     try:
-        result = api.run(job.study, job.out, asked.overrides, asked.existing, pool, meter)
+        result = api.run(job.study, job.out, asked.changes, asked.existing, pool, meter)
     except api.Interrupted as problem:
         raise CommandError(INTERRUPTED, _how_far(problem.run)) from problem
     except api.UnsavedError as problem:
@@ -130,7 +141,9 @@ def _show_failed(result: Run) -> None:
 
 
 def _draw(job: Job, result: Run) -> None:
-    if draw_figures(result.table, job.study.title or job.name, job.out):
+    from frictionlab.results.table import whole
+
+    if draw_figures(whole(result.table), job.study.title or job.name, job.out):
         print_message(f"figures in {job.out / 'figures'}")
 
 

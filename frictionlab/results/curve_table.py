@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from frictionlab import registry
-from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS, SCALED
+from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS, OF_SHAPE, SCALED
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.table import value_in
@@ -19,6 +19,7 @@ from frictionlab.shape.ends import Loads, Rows, end_of_reversal, start_friction
 from frictionlab.shape.shakedown import Shakedown, Value, shakedown_of_body, shakedown_of_slip
 from frictionlab.shape.verdict import Estimate, FrictionCurve, Shape, UnreadableCurve, reduction, shape_of
 
+NOT_ASKED_FOR = f"the table lacks columns that curves are read from: {', '.join(OF_SHAPE)}"
 TEXT = frozenset({"shape", "shape_by_initial", "reason"})
 INSTALLED_LAWS = registry.Laws()
 _NEEDED = [name if name != "belt_speed" else "scene.belt_speed" for name in Rows._fields]
@@ -35,6 +36,8 @@ def curve_table(table: pd.DataFrame, laws: registry.Laws = INSTALLED_LAWS) -> pd
         return pd.DataFrame(columns=[*keys, *CURVES])
     places = sorted((np.sort(found) for found in groups.values()), key=lambda found: int(found[0]))
     heads = table.loc[:, keys].iloc[[found[0] for found in places]].reset_index(drop=True)
+    if any(name not in table for name in OF_SHAPE):
+        return pd.concat([heads, _frame([{"reason": NOT_ASKED_FOR}] * len(heads))], axis=1)
     numbers = table.reindex(columns=_NEEDED).to_numpy(dtype=float)
     usable = (table["status"] == "ok").to_numpy() & (numbers[:, 0] > 0.0)
     inputs = [dict(zip(keys, row, strict=True)) for row in heads.itertuples(index=False, name=None)]

@@ -54,7 +54,8 @@ def si_scales(scene: Scene) -> dict[str, float]:
 
 def si_columns(found: Mapping[str, Floats], scales: Mapping[str, Floats]) -> dict[str, Floats]:
     """Results in SI units."""
-    return {name: found[made.column] * scales[made.scale] for name, made in SI.items()}
+    told = {name: made for name, made in SI.items() if made.column in found}
+    return {name: found[made.column] * scales[made.scale] for name, made in told.items()}
 
 
 def force_amplitude(scene: Scene) -> float:

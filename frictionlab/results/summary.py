@@ -11,6 +11,7 @@ import pandas as pd
 from frictionlab.columns import belt_speed, given
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
+from frictionlab.results.table import whole
 
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
 
@@ -31,12 +32,13 @@ MOST_REASONS = 10
 
 def summary(run: Run) -> str:
     """What a run found, for reading: curves, reasons, verdicts."""
+    table = whole(run.table)
     parts = [
         [run.study.title] if run.study.title else [],
-        [f"{_points(len(run.table))}: {statuses(run.table)}"],
-        ["", *columns([_HEAD, *_curve_lines(run.table)])],
-        _model_lines(run.table),
-        _reasons(run.table),
+        [f"{_points(len(table))}: {statuses(table)}"],
+        ["", *columns([_HEAD, *_curve_lines(table)])],
+        _model_lines(table),
+        _reasons(table),
         verdict_lines(run.verdicts),
         [f"table in {run.table_file}"] if run.table_file else [],
     ]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import RESULTS, SCALED, TEXT
+from frictionlab.columns import RESULTS, SCALED, SI, TEXT
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import si_columns, si_scales
@@ -117,15 +117,16 @@ def value_in(cells: Mapping[str, Any], name: str) -> Any:
 class Results:
     """The result columns of a run, filled as its parts come in; what has not come in is ``killed``."""
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, size: int, columns: frozenset[str]) -> None:
+        self._columns = columns
         self._words = {name: np.full(size, "", dtype=object) for name in TEXT}
         self._words["status"][:] = "killed"
         self._words["reason"][:] = "not finished"
-        names = [name for name in RESULTS if name not in TEXT]
+        names = [name for name in RESULTS if name not in TEXT and name in columns]
         self._numbers: dict[str, Floats] = {name: np.full(size, np.nan) for name in names}
 
     def put(self, part: Part) -> None:
-        """Fill the rows of a part. Raises KeyError for a column that is not in the contract."""
+        """Fill the rows of a part. Raises KeyError for a column that was not asked for."""
         for name, words in part.text.items():
             self._words[name][part.rows] = words
         for name, numbers in part.numbers.items():
@@ -133,10 +134,14 @@ class Results:
 
     def put_earlier(self, rows: list[int], earlier: pd.DataFrame) -> None:
         """Fill rows from as many rows of an earlier table of the same study."""
-        for name in TEXT:
+        for name in TEXT & self._columns:
             self._words[name][rows] = earlier[name].fillna("").to_numpy(dtype=object)
         for name, column in self._numbers.items():
             column[rows] = earlier[name].to_numpy(dtype=float)
+
+    def lacking(self, earlier: pd.DataFrame) -> bool:
+        """Whether an earlier table has not every column asked for."""
+        return any(name in RESULTS and name not in earlier for name in self._columns)
 
     def unfinished(self, reason: str) -> None:
         """Say why what has not come in has not."""
@@ -149,12 +154,21 @@ class Results:
 
     def frame(self, given: Inputs) -> pd.DataFrame:
         """The table: contract order, empty cells where a column does not apply."""
-        found = {name: self._words.get(name, self._numbers.get(name)) for name in RESULTS}
+        told = [name for name in RESULTS if name in self._columns]
+        found = {name: self._words.get(name, self._numbers.get(name)) for name in told}
         in_si = si_columns(self._numbers, given.scales) if given.scales is not None else {}
         frame = pd.DataFrame(given.columns | found | in_si)
         for name in frame.columns[[kind.kind == "O" for kind in frame.dtypes]]:
             frame[name] = _column_of_words_or_numbers(frame[name])
         return frame
+
+
+def whole(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with every result column, empty where it was not asked for."""
+    if all(name in table for name in RESULTS):
+        return table
+    given = [name for name in table.columns if name not in RESULTS and name not in SI]
+    return table.reindex(columns=[*given, *RESULTS, *(name for name in SI if name in table)])
 
 
 def _column_of_words_or_numbers(column: pd.Series) -> pd.Series:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
+from frictionlab.columns import selected
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.part import Part
 from frictionlab.results.table import Inputs, Results, finished_rows, orbit_rows
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from frictionlab.orbit.sample import Samples
 
 
+ALL = selected(None)
 SAVE_EVERY = 10.0
 """Most seconds of work that a crash may lose, apart from the chunks in progress."""
 
@@ -35,9 +37,10 @@ class Accumulator:
         folder: RunFolder | None = None,
         progress: Progress = silent,
         overrides: Sequence[str] = (),
+        columns: frozenset[str] = ALL,
     ) -> None:
         self._given = given
-        self._results = Results(given.size)
+        self._results = Results(given.size, columns)
         self._orbits: dict[int, Samples] = {}
         self._earlier_orbits: pd.DataFrame | None = None
         self._folder = folder
@@ -60,6 +63,8 @@ class Accumulator:
         if self._folder is None or earlier is None:
             return
         self._runs = self._folder.previous_runs()
+        if self._results.lacking(earlier):
+            return
         if samples:
             self._earlier_orbits = self._folder.earlier_orbits(existing)
             if not _has_samples(self._earlier_orbits, samples):

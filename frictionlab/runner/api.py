@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from math import isfinite
 from numbers import Real
 from os import PathLike
@@ -18,6 +18,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from frictionlab import __version__, registry
+from frictionlab.columns import RESULTS, SI, selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.results.curve_table import curve_table
@@ -35,6 +36,7 @@ from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.solve import answer, parts
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Case, Study, load_study, parse_study
+from frictionlab.study.mistakes import did_you_mean
 
 if TYPE_CHECKING:
     from frictionlab.orbit.sample import Samples
@@ -65,20 +67,24 @@ def run(
     existing: Existing = "reuse",
     executor: Executor | None = None,
     progress: Progress = silent,
+    columns: Sequence[str] | None = None,
 ) -> Run:
     """Solve every case of a study. Writes only with ``out``, the folder for results.
 
     overrides: ``path=value`` as for ``--set``; a ``Study`` holds its own already, they are for the record.
     existing: take over finished points of the same study in ``out``, or replace whatever results it holds.
     executor: any; threads of this process by default.
-    Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin.
+    columns: result columns, in place of those of the study; inputs, mean_friction, error, status and reason always.
+    Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin, ValueError for an unknown column.
     """
     ready = _loaded(study, overrides)
+    if columns is not None:
+        ready = replace(ready, columns=_result_columns(columns, ready.scene))
     folder = run_folder(ready, Path(out)) if out is not None else None
     if folder is not None:
         folder.check(existing)
-    gathering = Accumulator(inputs(headings(ready)), folder, progress, overrides)
-    task = Task(ready.tolerance, ready.keep_orbit or 0)
+    gathering = Accumulator(inputs(headings(ready)), folder, progress, overrides, ready.selected())
+    task = Task(ready.tolerance, ready.keep_orbit or 0, ready.selected())
     gathering.resume(existing, task.samples)
     left = [] if gathering.complete else chunks(ready.cases(), task, gathering.finished)
     if folder is not None:
@@ -163,21 +169,25 @@ def curve(
     belt_speed: ArrayLike,
     method: str | Method = "auto",
     tolerance: float = 1e-8,
+    columns: Sequence[str] | None = None,
 ) -> pd.DataFrame:
     """The result table of one law over belt speeds, in the order given.
 
     belt_speed [scene velocity; m/s for a scene given in SI units]: one-dimensional.
     tolerance [-]: absolute, on mean_friction.
+    columns: result columns, all by default; inputs, mean_friction, error, status and reason always.
     Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     speeds = np.atleast_1d(np.asarray(belt_speed, dtype=float))
     if speeds.ndim != 1 or not speeds.size or not np.isfinite(speeds).all():
         raise ValueError("belt_speed must be a list of finite numbers")
-    ready, kind, task = _method(method), _kind(_law(law)), Task(_checked(tolerance))
+    ready, kind = _method(method), _kind(_law(law))
+    wanted = selected(None if columns is None else _result_columns(columns, _scene(scene)))
+    task = Task(_checked(tolerance), columns=wanted)
     different, places = np.unique(speeds, return_inverse=True)  # a method is never given a belt speed twice
     scenes = [_scene(scene).at(float(speed)) for speed in different]
     cases = [Case(kind, kind, law, ready.name, ready, each) for each in scenes]
-    gathering = Accumulator(inputs(cases))
+    gathering = Accumulator(inputs(cases), columns=wanted)
     with _workers(None) as pool:
         collect(chunks(cases, task), pool, gathering.take, gathering.tick)
     return gathering.table.iloc[places].reset_index(drop=True)
@@ -213,9 +223,21 @@ def _in_si(part: Part, scene: Scene) -> dict[str, float]:
     """The columns in SI units; none where the scene is not given in them."""
     if scene.dimensional is None:
         return {}
-    found = defaultdict(lambda: np.full(1, np.nan), part.numbers)
+    found = {name: part.numbers.get(name, np.full(1, np.nan)) for name in RESULTS}
     scales = {name: np.array([scale]) for name, scale in si_scales(scene).items()}
     return {name: float(column[0]) for name, column in si_columns(found, scales).items()}
+
+
+def _result_columns(names: Sequence[str], scene: Scene) -> tuple[str, ...]:
+    """The names, each of a result column of such a scene."""
+    known = [*RESULTS, *(SI if scene.dimensional is not None else ())]
+    if isinstance(names, str):
+        raise ValueError(f"columns must be a list of names, not the text '{names}'")
+    for name in names:
+        if name not in known:
+            hint = did_you_mean(str(name), known)
+            raise ValueError(f"columns: no result column '{name}'{f'; {hint}' if hint else ''}")
+    return tuple(dict.fromkeys(names))
 
 
 def _method(method: str | Method) -> Method:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+from frictionlab.columns import selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.scene.scene import Scene
@@ -19,10 +20,12 @@ neighbour, more leave workers idle. Never made to depend on the number of worker
 
 @dataclass(frozen=True)
 class Task:
-    """What all points of a run share: tolerance on mean_friction [-], samples per kept orbit (0: none)."""
+    """What all points of a run share: tolerance on mean_friction [-], samples per kept orbit (0: none), and the
+    result columns asked for."""
 
     tolerance: float
     samples: int = 0
+    columns: frozenset[str] = selected(None)
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from frictionlab import __version__
 from frictionlab.columns import INPUTS, RESULTS, TEXT
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
+from frictionlab.results.table import whole
 from frictionlab.runner.errors import FolderError
 from frictionlab.study import Study, read_back
 from frictionlab.study.grid import grid_size
@@ -59,8 +60,8 @@ def read_saved(folder: Path) -> Saved:
     _check_is_a_run(folder)
     account = _account(folder)
     study = read_back(folder / "study.yaml", account["code"])
-    table = _table(folder)
-    saved = Saved(folder, study, table, _curves(folder), account)
+    table = _table(folder, study)
+    saved = Saved(folder, study, whole(table), _curves(folder), account)
     _check_belongs_together(saved)
     return saved
 
@@ -68,7 +69,7 @@ def read_saved(folder: Path) -> Saved:
 def saved_as(run: Run) -> Saved:
     """A run that was just written. Raises FolderError where somebody took its account away meanwhile."""
     assert run.folder is not None
-    return Saved(run.folder, run.study, run.table, _curves(run.folder), _account(run.folder))
+    return Saved(run.folder, run.study, whole(run.table), _curves(run.folder), _account(run.folder))
 
 
 def _check_is_a_run(folder: Path) -> None:
@@ -92,24 +93,25 @@ def _folder_hint(folder: Path) -> str:
     return f"it holds runs, give one of them: {named}"
 
 
-def _table(folder: Path) -> pd.DataFrame:
+def _table(folder: Path, study: Study) -> pd.DataFrame:
     file = folder / "results.parquet"
     try:
         table = pd.read_parquet(file)
     except Exception as problem:  # a damaged file makes pyarrow raise whatever it stumbles over
         reason = str(problem).partition("\n")[0]
         raise FolderError(f"{file} cannot be read ({reason}); {_remedy(folder)}") from problem
-    if wrong := _wrong(table):
+    if wrong := _wrong(table, study):
         raise FolderError(f"{file} is not a result table: {wrong}; {_remedy(folder)}")
     return table
 
 
-def _wrong(table: pd.DataFrame) -> str:
+def _wrong(table: pd.DataFrame, study: Study) -> str:
     """What keeps a table from being a result table; nothing for one that is."""
-    missing = [name for name in [*INPUTS, *RESULTS] if name not in table]
+    asked = study.selected() | INPUTS.keys()
+    missing = [name for name in [*INPUTS, *RESULTS] if name in asked and name not in table]
     if missing:
         return f"it has no column {missing[0]}"
-    words = [name for name in RESULTS if name not in TEXT and table[name].dtype.kind != "f"]
+    words = [name for name in RESULTS if name in table and name not in TEXT and table[name].dtype.kind != "f"]
     if words:
         return f"its column {words[0]} does not hold numbers"
     return "it is empty" if table.empty else ""

@@ -146,8 +146,11 @@ def _part(chunk: Chunk, piece: Piece) -> Part:
     rows = [chunk.rows[place] for place in piece.places]
     try:
         scenes = [chunk.scenes[place] for place in piece.places]
-        numbers = number_columns(piece.answers, scenes, FROM_METHODS)
-        numbers |= derived_columns(scenes, chunk.law, numbers["mean_friction"])
+        asked = chunk.task.columns
+        numbers = number_columns(piece.answers, scenes, [name for name in FROM_METHODS if name in asked])
+        if any(name in asked for name in DERIVED):
+            derived = derived_columns(scenes, chunk.law, numbers["mean_friction"])
+            numbers |= {name: column for name, column in derived.items() if name in asked}
         return Part(rows, text_columns(piece.answers), numbers, _orbits(chunk, piece))
     except BrokenPlugin:
         raise

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -138,14 +138,20 @@ def _comparison(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
 
 
 def _column(given: Any, path: Path, table: Table, notes: Notes) -> str | None:
-    if not isinstance(given, str) or given not in table.results:
-        hint = did_you_mean(given, table.results) if isinstance(given, str) else ""
+    name = result_column(given, path, table.results, notes)
+    if name in columns.TEXT:
+        notes.add(path, f"'{name}' holds text; only numbers can be compared")
+    return name
+
+
+def result_column(given: Any, path: Path, results: Sequence[str], notes: Notes) -> str | None:
+    """The name of one of these result columns; None, noted, where it is none."""
+    if not isinstance(given, str) or given not in results:
+        hint = did_you_mean(given, results) if isinstance(given, str) else ""
         in_si = given in columns.SI if isinstance(given, str) else False
         needed = " (this one needs a scene given in SI units: scene.dimensional)" if in_si else ""
         notes.add(path, f"must be a result column, got {value_text(given)}{needed}", "" if in_si else hint)
         return None
-    if given in columns.TEXT:
-        notes.add(path, f"'{given}' holds text; only numbers can be compared")
     return given
 
 

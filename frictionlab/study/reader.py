@@ -22,7 +22,7 @@ from frictionlab.study.choices import (
     method_choice,
     note_equal_labels,
 )
-from frictionlab.study.expectations import Table, expectations
+from frictionlab.study.expectations import Table, expectations, result_column
 from frictionlab.study.grid import Sweeps, note_impossible_points, read_sweeps
 from frictionlab.study.law_files import LawReader, StudyLaws, add_law_files, read_laws, saved_law_reader
 from frictionlab.study.mistakes import Notes, Path, StudyError, value_text
@@ -33,7 +33,7 @@ from frictionlab.study.yaml_source import Source, UnsupportedValue, plain_number
 
 STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
-    *("sweep", "expect", "keep"),
+    *("sweep", "expect", "keep", "columns"),
 )
 REQUIRED = ("schema", "scene", "laws")
 DEFAULT_TOLERANCE = 1e-8
@@ -111,6 +111,7 @@ class _StudyReader:
         )
         told = self._plain_values()
         told["expect"] = self._expect(scene)
+        told["columns"] = self._columns(scene)
         if self._notes.all or scene is None:
             return None
         told["code"] = brought.code(choice.kind for choice in laws)
@@ -177,6 +178,14 @@ class _StudyReader:
         if "orbit" in keep:
             told["keep_orbit"] = notes.whole_number(keep["orbit"], ("keep", "orbit"), 2)
         return told
+
+    def _columns(self, scene: Scene | None) -> tuple[str, ...] | None:
+        if "columns" not in self._tree:
+            return None
+        given = items(self._tree["columns"], ("columns",), "[floquet, stick_fraction]", self._notes)
+        known = self._table(scene).results
+        read = [result_column(name, ("columns", i), known, self._notes) for i, name in enumerate(given)]
+        return tuple(dict.fromkeys(name for name in read if name is not None))
 
     def _expect(self, scene: Scene | None) -> Any:
         given = self._tree.get("expect", [])

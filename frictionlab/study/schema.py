@@ -39,6 +39,7 @@ def schema(laws: registry.Laws = INSTALLED_LAWS) -> dict[str, Any]:
         "tolerance": {"type": "number", "exclusiveMinimum": 0, "default": reader.DEFAULT_TOLERANCE},
         "sweep": _sweep(),
         "expect": {"type": "array", "items": {"oneOf": _expectations()}},
+        "columns": {"type": "array", "minItems": 1, "items": {"enum": [*columns.RESULTS, *columns.SI]}},
         "keep": _closed_object({"orbit": {"type": "integer", "minimum": 2}}, []),
     }
     return {

@@ -11,7 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from frictionlab import registry
+from frictionlab import columns, registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.registry.law_file import LawFile
@@ -122,6 +122,7 @@ class Study:
 
     scene: the scene without sweeps. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values.
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
+    columns: result columns asked for, None for all.
     plugins: its law files. code: SHA-256 of every law that is not frictionlab's own, by kind.
     """
 
@@ -132,6 +133,7 @@ class Study:
     sweep: dict[str, tuple[float, ...]] = field(default_factory=dict)
     expect: tuple[Expectation, ...] = ()
     keep_orbit: int | None = None
+    columns: tuple[str, ...] | None = None
     title: str = ""
     source: str = ""
     plugins: tuple[LawFile, ...] = ()
@@ -189,9 +191,19 @@ class Study:
             told["sweep"] = {path: _natural(list(values)) for path, values in self.sweep.items()}
         if self.keep_orbit is not None:
             told["keep"] = {"orbit": self.keep_orbit}
+        if self.columns is not None:
+            told["columns"] = list(self.columns)
         if self.expect:
             told["expect"] = [expectation.resolved() for expectation in self.expect]
         return told
+
+    def selected(self) -> frozenset[str]:
+        """The result columns of its table: those asked for, those of every table and those that ``expect`` judges."""
+        if self.columns is None:
+            return columns.selected(None)
+        judged = [each.column for each in self.expect if each.column is not None]
+        of_shape = columns.OF_SHAPE if any(each.shape is not None for each in self.expect) else ()
+        return columns.selected([*self.columns, *judged, *of_shape])
 
     def law_texts(self) -> dict[str, str]:
         """The files of laws, by the names under which a run keeps copies of them."""

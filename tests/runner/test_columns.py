@@ -1,0 +1,225 @@
+"""The result columns asked for: only they are found, and each is what it is in the whole row."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import frictionlab as fl
+from frictionlab import cli
+from frictionlab.columns import ALWAYS, FROM_ORBITS, RESULTS, TEXT
+from frictionlab.methods.exact.method import _Curve
+from frictionlab.methods.periodic import continuation
+from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.runner.folder import FolderError
+from frictionlab.runner.yaml_text import yaml_text
+from frictionlab.study import StudyError, load_study, parse_study
+from frictionlab.study.schema import schema
+
+SPEEDS = [5.0, 20.0]
+LINE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
+ACROSS = {"natural_frequency": 4.0, "damping_ratio": 0.1, "load": {"unbalance": 10, "phase": 90}}
+PLANE = LINE | {"transverse": ACROSS}
+
+
+def study(**changes: Any) -> dict[str, Any]:
+    given = {
+        "schema": 1,
+        "scene": LINE,
+        "laws": [{"kind": "coulomb", "mu": 0.4}],
+        "methods": ["exact"],
+        "sweep": {"scene.belt_speed": SPEEDS},
+        "tolerance": 1e-7,
+    }
+    return given | changes
+
+
+def found(table: Any) -> list[str]:
+    """The result columns of a table."""
+    return [name for name in table.columns if name in RESULTS]
+
+
+def test_a_table_has_the_columns_asked_for_and_those_of_every_table() -> None:
+    by_key = fl.run(study(columns=["floquet", "reversals"])).table
+    by_argument = fl.run(study(), columns=["floquet", "reversals"]).table
+    curve = fl.curve(fl.Scene.model_validate(LINE), fl.Coulomb(mu=0.4), SPEEDS, columns=["floquet"])
+
+    wanted = [name for name in RESULTS if name in {*ALWAYS, "floquet", "reversals"}]
+    assert found(by_key) == found(by_argument) == wanted
+    assert found(curve) == [name for name in RESULTS if name in {*ALWAYS, "floquet"}]
+    np.testing.assert_array_equal(by_key["floquet"], curve["floquet"])
+
+
+@pytest.mark.parametrize(("scene", "method"), [(LINE, "exact"), (PLANE, "shooting")])
+def test_a_column_alone_is_the_one_of_the_whole_row(scene: dict[str, Any], method: str) -> None:
+    whole = fl.run(study(scene=scene, methods=[method])).table
+
+    for name in RESULTS:
+        alone = fl.run(study(scene=scene, methods=[method], columns=[name])).table
+        if name in TEXT:
+            assert alone[name].fillna("").tolist() == whole[name].fillna("").tolist()
+        elif name != "seconds":
+            np.testing.assert_array_equal(alone[name], whole[name], name)
+
+
+def calls(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """Counts the orbits and multipliers that are asked for from here on."""
+    counted: Counter[str] = Counter()
+
+    def watched(owner: type, name: str, about: str) -> None:
+        plain = getattr(owner, name)
+
+        def call(*given: Any, **named: Any) -> Any:
+            counted[about] += 1
+            return plain(*given, **named)
+
+        monkeypatch.setattr(owner, name, call)
+
+    watched(PeriodicProblem, "orbits", "orbits")
+    watched(PeriodicProblem, "multipliers", "multipliers")
+    watched(_Curve, "_orbits", "orbits")
+    plain = PeriodicProblem._called
+
+    def wanted(self: PeriodicProblem, *given: Any, **named: Any) -> Any:
+        asked = next(each for each in given if isinstance(each, continuation.Wanted))
+        counted["recorded"] += asked.orbits
+        counted["differentiated"] += asked.matrices
+        return plain(self, *given, **named)
+
+    monkeypatch.setattr(PeriodicProblem, "_called", wanted)
+    return counted
+
+
+@pytest.mark.parametrize(("scene", "method"), [(LINE, "exact"), (PLANE, "shooting")])
+def test_the_mean_alone_makes_no_orbit_and_no_multiplier(
+    scene: dict[str, Any], method: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counted = calls(monkeypatch)
+
+    fl.run(study(scene=scene, methods=[method], columns=["mean_friction", "mean_friction_transverse"]))
+    assert not +counted
+
+    fl.run(study(scene=scene, methods=[method], columns=["velocity_phase"]))
+    assert counted["orbits"] == 1
+    assert counted["multipliers"] == 0
+
+    fl.run(study(scene=PLANE, methods=["shooting"], columns=["floquet"]))
+    assert counted["orbits"] == 1
+    assert counted["multipliers"] == counted["differentiated"] == 1
+
+
+def test_what_a_study_expects_is_in_its_table() -> None:
+    expect = [
+        {"column": "stick_fraction", "below": 0.5},
+        {"shape": "concave", "where": {"law": "coulomb"}},
+    ]
+    speeds = {"scene.belt_speed": {"start": 1, "stop": 60, "num": 30}}
+    ready = parse_study(study(columns=["floquet"], expect=expect, sweep=speeds))
+
+    done = fl.run(ready)
+
+    assert {"stick_fraction", "velocity_ratio", "floquet"} <= set(found(done.table))
+    assert done.verdicts[0].passed
+    assert parse_study(ready.resolved()) == ready
+
+
+def test_curves_without_their_columns_say_so() -> None:
+    done = fl.run(study(columns=["floquet"]))
+
+    assert done.curves["shape"].isna().all()
+    assert "velocity_amplitude" in done.curves["reason"][0]
+
+
+def test_in_si_units_a_column_comes_in_both_scales() -> None:
+    si = {"mass_kg": 1.0, "stiffness_N_per_m": 100.0, "damping_N_s_per_m": 2.0, "length_m": 0.01}
+    scene = {"dimensional": si | {"normal_load_N": 10.0, "belt_speed_m_per_s": 0.1}}
+    scene["dimensional"]["drive"] = {"amplitude_N": 10.0, "frequency_rad_per_s": 10.0}
+    one = study(scene=scene, sweep={})
+
+    table = fl.run(one, columns=["energy_input_J"]).table
+
+    told = {"energy_input", "energy_input_J", "mean_friction_N", "error_N"}
+    assert told <= set(table.columns)
+    assert "energy_viscous_J" not in table
+    with pytest.raises(ValueError, match="no result column 'energy_input_J'"):
+        fl.run(study(), columns=["energy_input_J"])
+
+
+# --- mistakes -----------------------------------------------------------------------------------------------------
+
+
+def test_a_name_that_is_no_column_is_a_mistake_at_its_place(tmp_path: Path, capsys: Any) -> None:
+    file = tmp_path / "study.yaml"
+    file.write_text(yaml_text(study()) + "columns: [floquet, flouqet]\n")
+    line = len(file.read_text().splitlines())
+
+    with pytest.raises(StudyError) as caught:
+        load_study(file)
+
+    (mistake,) = caught.value.mistakes
+    assert (mistake.place.line, mistake.place.column) == (line, 20)
+    assert "must be a result column, got the text 'flouqet'" in str(mistake)
+    assert "did you mean 'floquet'?" in str(mistake)
+    assert cli.main(["run", str(file), "-o", str(tmp_path / "out")]) == 2
+    assert f"study.yaml:{line}:20: columns[1]" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("columns", "told"),
+    [([], "the list is empty"), ("floquet", "must be a list such as"), ([1], "must be a result column")],
+)
+def test_columns_are_a_list_of_names(columns: Any, told: str) -> None:
+    with pytest.raises(StudyError, match=told):
+        parse_study(study(columns=columns))
+
+
+def test_python_is_told_what_was_perhaps_meant() -> None:
+    with pytest.raises(ValueError, match="no result column 'flouqet'; did you mean 'floquet'"):
+        fl.run(study(), columns=["flouqet"])
+    with pytest.raises(ValueError, match="must be a list of names"):
+        fl.curve(fl.Scene.model_validate(LINE), fl.Coulomb(mu=0.4), SPEEDS, columns="floquet")
+
+
+def test_the_schema_knows_the_columns() -> None:
+    assert set(FROM_ORBITS) < set(schema()["properties"]["columns"]["items"]["enum"])
+
+
+# --- folders and the command --------------------------------------------------------------------------------------
+
+
+def test_a_folder_with_other_columns_is_used_where_it_has_those_asked_for(tmp_path: Path) -> None:
+    few = fl.run(study(columns=["floquet"]), tmp_path)
+    again = fl.run(study(columns=["floquet"]), tmp_path)
+    more = fl.run(study(columns=["floquet", "reversals"]), tmp_path)
+    fewer = fl.run(study(columns=["reversals"]), tmp_path)
+    every = fl.run(study(), tmp_path)
+
+    assert [done.computed for done in (few, again, more, fewer, every)] == [2, 0, 2, 0, 2]
+    assert more.table["reversals"].notna().all()
+    assert found(fewer.table) == [name for name in RESULTS if name in {*ALWAYS, "reversals"}]
+    assert found(every.table) == list(RESULTS)
+    with pytest.raises(FolderError, match="another study"):
+        fl.run(study(tolerance=1e-6), tmp_path)
+
+
+def test_the_command_finds_the_columns_of_its_option(tmp_path: Path, capsys: Any) -> None:
+    file, out = tmp_path / "study.yaml", tmp_path / "out"
+    file.write_text(yaml_text(study()))
+
+    code = cli.main(["run", str(file), "-o", str(out), "--columns", "floquet,reversals", "--json"])
+    records = json.loads(capsys.readouterr().out)
+
+    assert code == 0
+    assert [name for name in records[0] if name in RESULTS] == [
+        name for name in RESULTS if name in {*ALWAYS, "floquet", "reversals"}
+    ]
+    assert load_study(out / "study.yaml").columns == ("floquet", "reversals")
+    assert (out / "report.html").exists()
+    assert cli.main(["report", str(out)]) == 0
+    assert cli.main(["run", str(file), "-o", str(out), "--columns", "flouqet"]) == 2
+    assert "did you mean 'floquet'?" in capsys.readouterr().err

@@ -10,7 +10,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, Self
 
 from frictionlab.quantities import Dimension, Finite, NonNegative, PerSpeed, Positive, Record, Speed
 
@@ -37,10 +37,14 @@ class FrictionLaw(Record, ABC):
     The docstring of a law names its sources as in "Source: Dahl (1968)". ``bibtex`` holds their BibTeX entries as one
     string, except those already in frictionlab's bibliography; a source without an entry is cited as written.
     ``expected_failures`` maps each check of the conformance battery that the law must fail to the reason.
+    ``memory_kind`` says what friction depends on beside slip: nothing, the deflection of one bristle, or several
+    deflections or scalars. ``compliant``: whether one bristle has a stiffness and a presliding length.
     """
 
     bibtex: ClassVar[str] = ""
     expected_failures: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    memory_kind: ClassVar[Literal["none", "bristle", "deflections", "scalars"]] = "none"
+    compliant: ClassVar[bool] = False
 
     @abstractmethod
     def sliding_friction(self, speed: float) -> float:

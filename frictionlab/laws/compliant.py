@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 from pydantic import model_validator
 
@@ -29,6 +29,8 @@ class CompliantLaw(BristleLaw, ABC):
     presliding_length [scene length], > 0: friction coefficient in slow sliding over stiffness, or instead
     contact_stiffness [K_1], > 0: stiffness times normal load.
     """
+
+    compliant: ClassVar[bool] = True
 
     stiffness: Stiffness | None = None
     presliding_length: Length | None = None

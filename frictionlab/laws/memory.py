@@ -23,6 +23,8 @@ class BristleLaw(FrictionLaw, ABC):
     of direction); ``per-axis``: one law per axis (not isotropic: its yield set is a square).
     """
 
+    memory_kind: ClassVar[Literal["bristle"]] = "bristle"
+
     planar: Literal["vectorial", "rotated", "per-axis"] = "vectorial"
 
     @abstractmethod

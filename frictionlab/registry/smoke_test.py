@@ -12,7 +12,6 @@ from pydantic import ValidationError
 
 from frictionlab.faults import definition_line, describe_error, files_of, from_outside
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import BristleLaw, MemoryLaw
 
 LIMIT = 2.0
 """Time limit [s] for all calls of a trial; they normally need a millisecond."""
@@ -111,11 +110,11 @@ def overridden_methods(law: type[FrictionLaw]) -> list[tuple[str, Any]]:
     ]
 
 
-def _is_planar(law: FrictionLaw) -> bool:
-    return not isinstance(law, BristleLaw) or (law.planar == "vectorial" and not law.no_vector_form())
+def _is_planar(law: Any) -> bool:
+    return law.memory_kind != "bristle" or (law.planar == "vectorial" and not law.no_vector_form())
 
 
-def _arguments(law: FrictionLaw, v: Any) -> dict[str, Any]:
+def _arguments(law: Any, v: Any) -> dict[str, Any]:
     """Arguments for the methods, by the names in their interfaces."""
     told: dict[str, Any] = {
         "speed": 1.0,
@@ -126,9 +125,9 @@ def _arguments(law: FrictionLaw, v: Any) -> dict[str, Any]:
         "z": 0.0 * v,
         "k": 0,
     }
-    if isinstance(law, BristleLaw):
+    if law.memory_kind == "bristle":
         told["dz"] = 0.0 * v
-    if isinstance(law, MemoryLaw):
+    if law.memory_kind in ("deflections", "scalars"):
         still = 0.0 * v if law.memory_kind == "deflections" else 0.0
         told |= {"memory": [still] * law.count(), "rates": [still] * law.count()}
     return told

@@ -12,7 +12,7 @@ import pandas as pd
 
 from frictionlab import registry
 from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS, OF_SHAPE, SCALED
-from frictionlab.laws.memory import BristleLaw, MemoryLaw
+from frictionlab.laws.memory import BristleLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.table import value_in
 from frictionlab.shape.ends import Loads, Rows, end_of_reversal, start_friction
@@ -92,7 +92,7 @@ def _loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
 def _unknown_start(given: Mapping[str, Any], laws: registry.Laws) -> str:
     """Why the limit of friction at vanishing belt speed is not known; '' where it is."""
     law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
-    if law is None or not issubclass(law, MemoryLaw) or law.memory_kind != "deflections":
+    if law is None or law.memory_kind != "deflections":
         return ""
     return "the body may stick elastically to a slow belt: the start of the curve is known for one deflection only"
 
@@ -111,14 +111,15 @@ def _shakedown(
 
 def _bristle_law(given: Mapping[str, Any], laws: registry.Laws) -> BristleLaw | None:
     """The law of a row as methods received it, rebuilt from its inputs; None if it is no known bristle law."""
-    law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
-    if law is None or not issubclass(law, BristleLaw):
+    law: Any = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
+    if law is None or law.memory_kind != "bristle":
         return None
     written = {name: value_in(given, f"law.{name}") for name in law.model_fields}
     scaled = {name: value_in(given, f"{SCALED}{name}") for name in written}
     values = {name: value for name, value in written.items() if value is not None}
     values |= {name: value for name, value in scaled.items() if value is not None}
-    return law.model_validate(values).under_load(float(given["scene.normal_load"]))
+    bristles: BristleLaw = law.model_validate(values).under_load(float(given["scene.normal_load"]))
+    return bristles
 
 
 def _measures(rows: Rows, loads: Loads) -> dict[str, Any]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from frictionlab.columns import SI
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import BristleLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity
@@ -34,9 +34,9 @@ def derived_columns(scenes: Sequence[Scene], law: FrictionLaw, mean_friction: Fl
     }
 
 
-def _presliding(law: FrictionLaw) -> float:
+def _presliding(law: Any) -> float:
     """The presliding length [scene length]; NaN for a law without a finite one."""
-    length = law.presliding() if isinstance(law, BristleLaw) else math.nan
+    length = law.presliding() if law.memory_kind == "bristle" else math.nan
     return length if math.isfinite(length) else math.nan
 
 

@@ -11,8 +11,6 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from frictionlab import registry
-from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import label_of, may_become_a_label
@@ -183,12 +181,11 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
             notes.on_key(("laws", index), "these values give no finite stiffness > 0: check their units")
 
 
-def _has_a_stiffness(law: FrictionLaw) -> bool:
-    """Whether a law with bristles keeps a presliding length and a stiffness > 0, neither infinite."""
-    if not isinstance(law, CompliantLaw):
+def _has_a_stiffness(law: Any) -> bool:
+    """Whether a compliant law keeps a presliding length and a stiffness > 0, neither infinite."""
+    if not law.compliant:
         return True
-    stiffness = law.bristle_stiffness
-    return 0.0 < stiffness < math.inf and 0.0 < law.presliding() < math.inf
+    return 0.0 < law.bristle_stiffness < math.inf and 0.0 < law.presliding() < math.inf
 
 
 def grid_size(study: Study) -> int:

@@ -2,39 +2,38 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
 
 CREEP = 1e-9
 """Slip speed at which the friction of slow slip is evaluated."""
 
 
-def friction_at_rest(law: FrictionLaw) -> float:
+def friction_at_rest(law: Any) -> float:
     """The friction coefficient at the onset of slip."""
-    if isinstance(law, SlidingLaw):
-        return law.static_friction()
-    return law.sliding_friction(0.0) or law.sliding_friction(
-        CREEP
-    )  # a law that is zero at rest is evaluated in slow slip
+    if law.memory_kind == "none":
+        return float(law.static_friction())
+    at_rest: float = law.sliding_friction(0.0)
+    return at_rest or float(law.sliding_friction(CREEP))  # a law that is zero at rest: in slow slip
 
 
 def stays_at_rest(scene: Scene, law: FrictionLaw) -> bool:
     """Whether static friction balances the loads at all times on a belt at rest; bristles always deflect: False."""
-    if not isinstance(law, SlidingLaw):
-        return False
-    return scene.belt_speed == 0.0 and resting_range(scene, law) >= 0.0
+    return law.memory_kind == "none" and scene.belt_speed == 0.0 and resting_range(scene, law) >= 0.0
 
 
-def resting_range(scene: Scene, law: SlidingLaw) -> float:
+def resting_range(scene: Scene, law: FrictionLaw) -> float:
     """The largest mean friction coefficient of a mass at rest on a belt at rest; negative where rest is impossible.
 
     The spring force k and friction balance the load: |load - k| <= limit at all times, a convex set of k symmetric
     about zero; the mean is k1/normal_load.
     """
     mass = scene.mass()
-    limit = mass.normal_load * law.static_friction()
+    limit = mass.normal_load * friction_at_rest(law)
     angle = np.linspace(0.0, np.pi, 721)  # the other half of the ellipse of loads follows by symmetry
     turn = np.exp(1j * angle)
     load = (mass.force * turn).imag + 1j * (mass.transverse_force * turn).imag

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
 
 
@@ -13,7 +13,7 @@ def is_convergent(scene: Scene, law: FrictionLaw) -> bool:
     Without a load across the belt the motion across decays under every isotropic law, and only the damping along
     the belt matters. The theorem does not cover laws with memory.
     """
-    return isinstance(law, SlidingLaw) and (law.monotone() or falls_slowly(scene, law))
+    return law.memory_kind == "none" and (law.monotone() or falls_slowly(scene, law))
 
 
 def falls_slowly(scene: Scene, law: FrictionLaw) -> bool:

@@ -15,7 +15,7 @@ from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.compile.dispatch import by_dimension
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import BristleLaw, in_the_plane, on_the_line
+from frictionlab.laws.memory import in_the_plane, on_the_line
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
@@ -38,7 +38,7 @@ class Numbalsoda(Peer):
 
     def other_law(self, law: FrictionLaw) -> str | None:
         """Everything but bristle laws."""
-        return None if isinstance(law, BristleLaw) else "numbalsoda is set up for bristle laws"
+        return None if law.memory_kind == "bristle" else "numbalsoda is set up for bristle laws"
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Floats:
         """One scene after the other."""

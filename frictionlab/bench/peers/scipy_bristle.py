@@ -12,7 +12,6 @@ from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest, Peer
 from frictionlab.bench.peers.bristle_motion import BristleMotion
 from frictionlab.bench.peers.scipy_steps import start
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import BristleLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
@@ -36,7 +35,7 @@ class ScipyBristle(Peer):
 
     def other_law(self, law: FrictionLaw) -> str | None:
         """Everything but bristle laws."""
-        return None if isinstance(law, BristleLaw) else "scipy_bristle is set up for bristle laws"
+        return None if law.memory_kind == "bristle" else "scipy_bristle is set up for bristle laws"
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Floats:
         """One scene after the other."""

@@ -164,17 +164,21 @@ def work_for(z: Any) -> Work:
 
 @inner
 def _evaluate(law: Any, scale: Scale, z: Any, work: Work) -> None:
-    """Rates and frictions at the stages, and by differences the slopes of the rates."""
+    """Rates and frictions at the stages, and by differences the slopes of the rates.
+
+    Differences are taken towards more load: the rate of bristles that unload elastically jumps where they begin to.
+    """
     n, small = parts(z), 1e-7 * scale.reach
     for stage in range(STAGES):
         v, here = work.slip[stage], z + work.gain[stage]
         rate, friction = bound(law, v, scale.circle, here)
         work.rate[stage], work.friction[stage] = rate, friction
         for column in range(n):
-            nudge = made(small, 0.0, z) if column == 0 else made(0.0, small, z)
+            loads = -small if part(column, v) < 0.0 else small
+            nudge = made(loads, 0.0, z) if column == 0 else made(0.0, loads, z)
             moved, _ = bound(law, v, scale.circle, here + nudge)
             for row in range(n):
-                work.slope[stage, row, column] = part(row, moved - rate) / small
+                work.slope[stage, row, column] = part(row, moved - rate) / loads
 
 
 @inner

@@ -17,6 +17,7 @@ import numpy as np
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.dynamics.contact import resistance
 from frictionlab.dynamics.radau_panel import (
+    NODES,
     STAGES,
     WEIGHTS,
     Place,
@@ -155,31 +156,76 @@ def _turned(mode: float, radius: float, v: Any, z: Any) -> bool:
 
 
 @inner
-def _seen(mode: float, radius: float, z: Any, work: Any) -> bool:
-    """Whether that is so at any stage of a step."""
-    turned = False
+def _bend(slip: Slip, angle: float) -> complex:
+    """The slip's rate of change."""
+    turn = complex(math.cos(angle), math.sin(angle)) * slip.frequency
+    return complex((slip.along * turn).real, (slip.across * turn).real)
+
+
+@inner
+def _margin(mode: float, radius: float, v: Any, bend: complex, z: Any, rate: Any) -> Any:
+    """How far a deflection is from turning, and how fast that grows."""
+    load = v.real * z.real + v.imag * z.imag
+    if mode == 0.0 and radius > 0.0:
+        return radius * radius - (z.real * z.real + z.imag * z.imag), -2.0 * load
+    growth = v.real * rate.real + v.imag * rate.imag + bend.real * z.real + bend.imag * z.imag
+    return (-load, -growth) if mode == 0.0 else (load, growth)
+
+
+@inner
+def _dips(at: float, to: float, slope: float, slope_to: float) -> bool:
+    """Whether the cubic between two positive values that falls first and rises then is negative in between.
+
+    slope, slope_to: its change over the interval as each end tells it.
+    """
+    if not (at > 0.0 and to > 0.0 and slope < 0.0 and slope_to > 0.0):
+        return False
+    square = 3.0 * (to - at) - 2.0 * slope - slope_to
+    cube = slope + slope_to - 2.0 * (to - at)
+    lowest = -slope / (square + math.sqrt(max(square * square - 3.0 * cube * slope, 0.0)))
+    return at + lowest * (slope + lowest * (square + lowest * cube)) < 0.0
+
+
+@inner
+def _seen(
+    law: Any, slip: Slip, place: Place, scale: Scale, radius: float, span: Any, z: Any, work: Any
+) -> bool:
+    """Whether that is so at any stage of a step, or between two of them."""
+    turned, mode = False, scale.circle
+    v, before = slip_at(slip, place, span[0], z), 0.0
+    rate, _ = bound(law, v, mode, z)
+    margin, growth = _margin(mode, radius, v, _bend(slip, place.angle + span[0]), z, rate)
     for stage in range(STAGES):
-        turned = turned or _turned(mode, radius, work.slip[stage], z + work.gain[stage])
+        v, here, node = work.slip[stage], z + work.gain[stage], NODES[stage]
+        turned = turned or _turned(mode, radius, v, here)
+        bend = _bend(slip, place.angle + span[0] + node * span[1])
+        following, following_growth = _margin(mode, radius, v, bend, here, work.rate[stage])
+        time = (node - before) * span[1] / slip.frequency
+        turned = turned or _dips(margin, following, time * growth, time * following_growth)
+        margin, growth, before = following, following_growth, node
     return turned
 
 
 @inner
 def _until(
     law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: Any, work: Any, radius: float
-) -> float:
-    """The longest part of a step before it turns, by bisection."""
+) -> Any:
+    """The longest part of a step before it turns, by bisection, and whether it does turn there.
+
+    It does not where it ends because nothing solves a longer one.
+    """
     at, high = span
-    low = 0.0
+    low, turns = 0.0, True
     for _ in range(60):
         middle = 0.5 * (low + high)
         smooth = solve_panel(law, slip, place, scale, (at, middle), z, work)
-        if smooth and not _seen(scale.circle, radius, z, work):
+        if smooth and not _seen(law, slip, place, scale, radius, (at, middle), z, work):
             low = middle
         else:
-            high = middle
+            high, turns = middle, smooth
         if high - low <= 1e-16 * max(abs(at), high):
             break
-    return low
+    return low, turns
 
 
 @inner
@@ -200,8 +246,7 @@ def _jumped(law: Any, slip: Slip, v: Any, angle: float, z: Any, mode: float, car
     elastic, _ = bound(law, v, 0.0, z)
     breaking, _ = bound(law, v, -1.0, (1.0 + 1e-9) * z + 1e-9 * abs(z) / max(abs(v), 1e-300) * v)
     jump = breaking - elastic if mode == 0.0 else elastic - breaking
-    turn = complex(math.cos(angle), math.sin(angle)) * slip.frequency
-    bend = complex((slip.along * turn).real, (slip.across * turn).real)
+    bend = _bend(slip, angle)
     speed = v.real * v.real + v.imag * v.imag + z.real * bend.real + z.imag * bend.imag
     if abs(speed) <= 1e-9 * (v.real * v.real + v.imag * v.imag):
         return
@@ -269,10 +314,14 @@ def follow_period(law: Any, slip: Slip, stretches: Any, scale: Scale, accuracy: 
         step, now = min(min(step, longest), _allowed(stretch, at)), z + gained
         error, turns = _tried(law, slip, place, scale, (begin + at, step), now, work), False
         if radius >= 0.0 and idle < 3:
-            turns = _seen(scale.circle, radius, now, work[0]) or _seen(scale.circle, radius, now, work[1])
-            turns = turns or _seen(scale.circle, radius, now + work[1].gain[STAGES - 1], work[2])
+            first, half, middle = begin + at, 0.5 * step, now + work[1].gain[STAGES - 1]
+            turns = _seen(law, slip, place, scale, radius, (first, step), now, work[0])
+            turns = turns or _seen(law, slip, place, scale, radius, (first, half), now, work[1])
+            turns = turns or _seen(
+                law, slip, place, scale, radius, (first + half, step - half), middle, work[2]
+            )
             if turns:
-                step = _until(law, slip, place, scale, (begin + at, step), now, work[0], radius)
+                step, turns = _until(law, slip, place, scale, (first, step), now, work[0], radius)
                 if step <= SHORTEST:
                     scale = _switched(law, slip, place, begin + at, scale, radius, now, carry)
                     step, idle = 1e-3, idle + 1

@@ -80,7 +80,11 @@ def layer(law: BristleLaw, frequency: float, speed: Callable[[float], float]) ->
 
 
 def followed(law: BristleLaw, slip: Slip, stretches: Floats, accuracy: Accuracy, start: Any) -> Closed | Open:
-    """The closed loop, followed twice, the second time with steps fifty times more exact."""
+    """The closed loop, followed twice, the second time with steps fifty times more exact.
+
+    The error is twice what that changes, what may be left of the closing, and what a step of the second time may be
+    off by: two means can agree by chance.
+    """
     spent, per_step, z = 0.0, accuracy.per_step, start
     while True:
         means = []
@@ -102,6 +106,7 @@ def followed(law: BristleLaw, slip: Slip, stretches: Floats, accuracy: Accuracy,
             means.append(loop.mean)
         share = left / accuracy.scale.reach * accuracy.scale.friction
         error = 2.0 * abs(means[1] - means[0]) + 2.0 * share + 64.0 * EPSILON * loop.largest
+        error += per_step / STEP * accuracy.scale.friction
         if error <= accuracy.tolerance or per_step <= STEP * FINEST:
             return Closed(loop, error, "", spent)
         per_step = max(per_step / STEP, STEP * FINEST)

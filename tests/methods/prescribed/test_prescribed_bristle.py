@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 from answered import with_columns
+from event_split import planar_mean
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from oracle import REFERENCE
@@ -18,6 +19,7 @@ from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.prescribed.deflection_path import _dips
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.panels import WEIGHTS
 from frictionlab.orbit.sample import sample
@@ -436,6 +438,39 @@ def test_any_ellipse_at_any_stiffness_has_a_mean_within_the_coefficient_and_its_
     ratio, size, angle, softness
 ):
     assert abs(mean(slip(ratio, 1.0, size, angle), dahl(softness))) <= 1.0 + TOLERANCE
+
+
+def steep(length):
+    """On a Stribeck curve."""
+    return LuGre(mu_kinetic=1.0, mu_static=1.3, stribeck_speed=0.3, presliding_length=length)
+
+
+@pytest.mark.parametrize(
+    ("scene", "law"),
+    [
+        (slip(0.3, 1.0, 0.7, 60.0), elasto_plastic(0.5)),
+        (slip(0.0375, 1.0, 0.589, 60.0, 2.586), elasto_plastic(1.576, breakaway_ratio=0.2186)),
+        (slip(0.3, 1.0, 0.7, 60.0), Jenkins(mu=1.0, presliding_length=0.5)),
+        (slip(0.9, 1.0, 1.5, 90.0), dahl(0.3)),
+        (slip(0.3, 1.0, 0.7, 60.0), steep(0.3)),
+    ],
+    ids=lambda one: type(one).__name__,
+)
+def test_the_error_in_the_plane_covers_the_distance_to_steps_between_events(scene, law):
+    known, left = planar_mean(scene, law)
+
+    assert left < 1e-12
+    for tolerance in (1e-6, 1e-9):
+        found = answer(scene, law, tolerance).columns
+        assert abs(found["mean_friction"][0] - known) <= found["error"][0] + 1e-12
+
+
+def test_unloading_between_two_stages_of_a_step_is_seen():
+    parabola = [(t - 0.4) ** 2 - 1e-3 for t in (0.0, 1.0)]
+
+    assert _dips.py_func(*parabola, -0.8, 1.2)
+    assert not _dips.py_func(parabola[0] + 2e-3, parabola[1] + 2e-3, -0.8, 1.2)
+    assert not _dips.py_func(*parabola, 0.8, 1.2)
 
 
 @given(

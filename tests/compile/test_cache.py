@@ -306,7 +306,7 @@ def test_a_law_that_numba_cannot_compile_says_so_and_still_runs_interpreted():
     with pytest.raises(CannotCompile) as caught:
         run(1.0)
     assert "law Interpreted (test_cache) cannot be compiled by numba" in str(caught.value)
-    assert "In its methods use only float and complex arithmetic and the math module" in str(caught.value)
+    assert "In its methods use only float and complex arithmetic, the math module" in str(caught.value)
     assert friction_at.py_func(law, 1.0) == 0.4
 
 

@@ -22,12 +22,12 @@ from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity
 
-EVENTS = "closed-form legs of slip and stick between events, return map closed by Newton's method"
+EVENTS = "closed-form legs of slip and stick between events, fixed point of the return map by Newton's method"
 REDUCED = (
-    " (one degree of freedom: without a load across the belt x2 dies out for every isotropic sliding law)"
+    " (one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law)"
 )
 NO_DAMPING = (
-    "without damping and without slip reversal the free oscillation never dies: the friction is mu at every "
+    "without damping and without slip reversal the free oscillation does not decay: the friction is mu at every "
     "instant of every motion, but the motion depends on the start; give scene.initial"
 )
 UNBOUNDED = (
@@ -40,7 +40,7 @@ def _refusal_of_legs(scene: Scene, law: BristleLaw) -> str | None:
     if not law.exact_path():
         return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction)"
     if not along_one_line(scene, law):
-        return "exact works along one line: this slip goes across the belt too"
+        return "exact works along one line: this slip has a component across the belt"
     return None
 
 
@@ -51,9 +51,9 @@ def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
     if not law.constant_sliding_friction():
         return "exact needs friction that does not vary with speed (Coulomb)"
     if scene.degrees_of_freedom > 0 and not law.monotone():
-        return "exact needs friction at rest to be that of slip (no mu_static)"
+        return "exact needs static friction equal to sliding friction (no mu_static)"
     if scene.undriven:
-        return "exact needs a drive, whose period is the motion's"
+        return "exact needs a drive, whose period is that of the motion"
     if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
         return "exact works along one line: this scene has a transverse load"
     return None
@@ -205,17 +205,16 @@ class _Curve:
             self.model[i] = f"closed form: slip never reverses (belt speed >= V_lin = {v_lin:.6g})"
             self.error_kind[i] = "guaranteed"
         elif not row[curve.RESIDUAL] <= 1e3 * row[curve.ROUNDING]:
-            self._fail(i, f"the return map did not close: residual {row[curve.RESIDUAL]:.1e}")
+            self._fail(i, f"no fixed point of the return map found: residual {row[curve.RESIDUAL]:.1e}")
         elif self.mass.damping == 0.0 and not row[curve.FLOQUET] < 1.0 - 1e-9:
             self._fail(
-                i, f"no damping, and friction does not attract: largest multiplier {row[curve.FLOQUET]:.9f}"
+                i,
+                f"without damping the orbit is not attractive: largest multiplier {row[curve.FLOQUET]:.9f}",
             )
         elif not row[curve.ERROR] < math.inf:
-            self._fail(i, "the motion over one period is lost in the rounding of its own position")
+            self._fail(i, "the motion over one period is smaller than the rounding error of its position")
         elif row[curve.ERROR] > self.tolerance:
-            self.reason[i] = (
-                f"error {row[curve.ERROR]:.1e} above the tolerance: rounding is all that is left in it"
-            )
+            self.reason[i] = f"error {row[curve.ERROR]:.1e} above the tolerance: only rounding errors remain"
 
     def _fail(self, i: int, reason: str) -> None:
         self.status[i], self.reason[i], self.error_kind[i] = "failed", reason, ""
@@ -241,6 +240,6 @@ class _Curve:
 
 def _permanent_stick(spread: float) -> str:
     return (
-        "the belt does not move and the force never exceeds friction: the mass stays wherever it is left, "
+        "the belt is at rest and the load never exceeds friction: the mass stays where it starts, "
         f"with any mean friction within {spread:.6g} of zero; give scene.initial"
     )

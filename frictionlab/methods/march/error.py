@@ -264,8 +264,8 @@ def why_not(run: MarchResult) -> str:
     if run.verdict == TOO_STIFF:
         return f"comes to rest, where the law is too stiff for {run.pace.steps} explicit steps per period"
     if run.verdict == TIRED:
-        return f"does not repeat within {run.steps:.1g} steps ({run.laps} periods); give fewer or wider ones"
-    return f"is lost after {run.laps} periods: it grows without bound, or never returns; give shorter steps"
+        return f"is not periodic within {run.steps:.1g} steps ({run.laps} periods); give fewer or wider ones"
+    return f"is not finite after {run.laps} periods: it grows without bound, or never returns; give shorter steps"
 
 
 def _unsettled(runs: Sequence[MarchResult]) -> Found:

@@ -136,22 +136,20 @@ class March(Method):
             assert scene.normal_load is not None
             return self._refusal_with_memory(scene, law.under_load(scene.normal_load))
         if not isinstance(law, SlidingLaw):
-            return "march knows friction laws that are a SlidingLaw, a BristleLaw or a MemoryLaw"
+            return "march needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         if self._stepper(law) not in FOR_SLIDING:
-            return (
-                f"stepper {self.stepper} steps bristles, and this law has none; use moreau, rk4 or smoothed"
-            )
+            return f"stepper {self.stepper} needs a bristle law; use moreau, rk4 or smoothed"
         jumps = law.static_friction() > law.sliding_friction(0.0)
         if jumps and scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
             return suggest_shooting(
-                "static friction above that of slip: in the plane a step catches a mass that would slip past rest, "
-                "and no bound on what that does is known",
+                "static friction above sliding friction: in the plane a time step may stop a mass that passes rest, "
+                "and the error of that has no known bound",
                 scene,
                 law,
             )
         if self._stepper(law) != "moreau" and jumps:
             return (
-                f"stepper {self.stepper} never rests, and static friction above that of slip acts only at rest; "
+                f"stepper {self.stepper} has no stick, and static friction above sliding friction needs it; "
                 f"use stepper moreau"
             )
         return None
@@ -159,37 +157,37 @@ class March(Method):
     def _bristle_refusal(self, scene: Scene, law: BristleLaw) -> str | None:
         stepper = self._stepper(law)
         if stepper not in FOR_BRISTLES:
-            return f"stepper {stepper} knows no friction with memory; use exponential, rk4 or sdirk2"
+            return f"stepper {stepper} does not support friction with memory; use exponential, rk4 or sdirk2"
         if self.theta is not None:
-            return "theta is a key of stepper moreau, which knows no friction with memory; leave it out"
+            return (
+                "theta is a key of stepper moreau, which does not support friction with memory; leave it out"
+            )
         planar = law.planar == "vectorial" and not along_the_belt(scene, law)
         if planar and law.no_vector_form():
             return law.no_vector_form()
         if stepper == "rk4" and math.isinf(law.largest_rate(1.0)):
-            return "stepper rk4 needs a bound on how quickly bristles decay, and this law has none; use exponential"
+            return "stepper rk4 needs a bound on the decay rate of bristles, and this law has none; use exponential"
         if stepper == "sdirk2" and scene.degrees_of_freedom == 0:
-            return "under a prescribed slip there is nothing to solve for; use exponential, for any stiffness"
+            return "stepper sdirk2 is not needed under a prescribed slip; use exponential, for any stiffness"
         if stepper == "sdirk2" and math.isfinite(law.yield_deflection()):
-            return "stepper sdirk2 needs rates that do not jump, and those of this law do at yield; use exponential"
+            return (
+                "stepper sdirk2 needs continuous rates, and those of this law jump at yield; use exponential"
+            )
         return self._too_few(fewest_steps(scene, law, stepper), law, stepper)
 
     def _refusal_with_memory(self, scene: Scene, law: MemoryLaw) -> str | None:
         if self._stepper(law) not in FOR_MEMORY:
-            return f"stepper {self.stepper} knows no friction with several memories or scalars; use rk4"
+            return f"stepper {self.stepper} does not support laws with several memories or scalars; use rk4"
         if self.theta is not None:
-            return "theta is a key of stepper moreau, which knows no friction with memory; leave it out"
+            return (
+                "theta is a key of stepper moreau, which does not support friction with memory; leave it out"
+            )
         if scene.degrees_of_freedom == 0:
-            return (
-                "march steps a law with several memories or scalars under a driven mass alone; use shooting"
-            )
+            return "for a law with several memories or scalars march needs a driven mass; use shooting"
         if scene.undriven:
-            return (
-                "march steps a law with several memories or scalars under a driven mass alone: give a drive"
-            )
+            return "for a law with several memories or scalars march needs a driven mass: give a drive"
         if math.isinf(law.largest_rate(1.0)):
-            return (
-                "stepper rk4 needs a bound on how quickly memory decays, and this law has none; use shooting"
-            )
+            return "stepper rk4 needs a bound on the decay rate of the memory, and this law has none; use shooting"
         return self._too_few(memory_stability.fewest_steps(scene, law), law, "rk4")
 
     def _too_few(self, fewest: int, law: FrictionLaw, stepper: str) -> str | None:
@@ -199,7 +197,7 @@ class March(Method):
         if self.steps is None and 3 * FEWEST_LAPS * fewest > WORK:
             return (
                 f"stepper {stepper} is unstable on {_stiff(law)} below about {fewest:,} steps per period, too "
-                f"many to be doubled with {WORK:,} steps in all; give steps, or use {_others(law, 'exponential')}"
+                f"many to refine with {WORK:,} steps in all; give steps, or use {_others(law, 'exponential')}"
             )
         return None
 
@@ -250,15 +248,15 @@ class March(Method):
 
 
 def _unstable(steps: int, fewest: int, law: FrictionLaw, stepper: str) -> str:
-    """Why an explicit stepper cannot do with so many steps, and how many would do."""
+    """Why an explicit stepper is unstable with so many steps, and how many are enough."""
     return (
         f"stepper {stepper} is unstable on {_stiff(law)} with {steps:,} steps per period: about {fewest:,} "
-        f"would do; or use {_others(law, stepper)}"
+        f"are enough; or use {_others(law, stepper)}"
     )
 
 
 def _stiff(law: FrictionLaw) -> str:
-    return "memory this quick" if isinstance(law, MemoryLaw) else "bristles this stiff"
+    return "memory this fast" if isinstance(law, MemoryLaw) else "bristles this stiff"
 
 
 def _others(law: FrictionLaw, stepper: str) -> str:
@@ -291,7 +289,7 @@ class _Point:
     def _leave_open(self, highest: float) -> None:
         self._range(-highest, highest)
         self.reason = (
-            "the belt is at rest and friction can hold the loads for ever: the mass stays wherever it stops; "
+            "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range; "
             "give scene.initial to choose a start"
         )
 
@@ -309,7 +307,7 @@ class _Point:
             return
         if last.verdict == TOO_STIFF:
             self.status = "refused"
-            would_do = f"about {steps_needed(self.walker, last):.2g} would do; or use method shooting"
+            would_do = f"about {steps_needed(self.walker, last):.2g} are enough; or use method shooting"
             self.reason = f"the motion {why_not(last)}: {would_do}"
             return
         if not last.settled:
@@ -360,7 +358,7 @@ class _Point:
         self._range(min(one.low for one in reached), max(one.high for one in reached))
         why = "friction falls with speed: " if self._has_rivals() and self._falls() else ""
         if not why and reached[0].period == 0:
-            why = "the motion never repeats, whatever the step: "
+            why = "the motion is not periodic at any step: "
         self.reason = why + told(reached)
         if one_motion(reached):
             self.found = replace(self.found, period=float(reached[0].period))
@@ -390,7 +388,7 @@ class _Point:
         self.found = Row(answer.mean, error, self._period(answer, last))
         if last.verdict == STALLED:
             self._remark(
-                f"the steps keep the motion from repeating: averaged over {self.walker.window} periods"
+                f"rounding to time steps makes the motion aperiodic: averaged over {self.walker.window} periods"
             )
         if not (self.walker.converges or self._has_rivals() or self._moves_on()):
             start = "scene.initial" if self.scene.initial else "the default start"

@@ -196,7 +196,10 @@ class _Point:
         changing = 2.0 * self.law.sliding_friction(0.0) * max(other.open for other in starts)
         if apart > max(self.error, 1e-9) + changing:
             low, high = min(*others, self.mean.real), max(*others, self.mean.real)
-            self._leave("not_unique", "the mean depends on the deflection at the start: bristles only bend")
+            self._leave(
+                "not_unique",
+                "the mean depends on the start: slip stays within the elastic range",
+            )
             self.found = Row(low=low, high=high)
         elif self.error > tolerance:
             self.reason = f"the error is above the tolerance {tolerance:.1e}"

@@ -21,7 +21,7 @@ from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
-BY_SYMMETRY = "closed form: each half period of slip undoes the other"
+BY_SYMMETRY = "closed form: friction of the two half periods of slip cancels"
 ROUNDING = 2.0**-50
 
 

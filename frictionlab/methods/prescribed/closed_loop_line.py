@@ -29,7 +29,7 @@ EPSILON = 2.0**-52
 TWO_LEGS = "prescribed slip along a line: deflection exact along both legs, Gauss-Lobatto quadrature"
 ONE_WAY = "closed form: slip that never reverses saturates the deflection"
 FOLLOWED = (
-    "prescribed slip: deflection followed once around by Radau IIA collocation, closed by Newton's method"
+    "prescribed slip: deflection over one period by Radau IIA collocation, fixed point by Newton's method"
 )
 SMOOTH = 1e-3
 """Angle [rad] above which slip that only touches zero needs no finer panels: friction has no kink there."""

@@ -24,7 +24,7 @@ PERIODS = 100
 """For which a memory that does not forget is followed from each start."""
 FORGETS = 1.0 - 1e-6
 """Largest multiplier of a memory that forgets where it started."""
-MODEL = "prescribed slip: memory by Rodas5P, closed over a period"
+MODEL = "prescribed slip: memory by Rodas5P, periodic"
 
 
 class MemoryPoint:
@@ -39,7 +39,7 @@ class MemoryPoint:
         self.reason, self.model, self.error_kind, self.seconds = "", MODEL, "estimated", 0.0
         self.curve: Curve | None = None
         moves = self.belt_speed != 0.0 or self.motion.velocity != 0 or self.motion.transverse_velocity != 0
-        self.found = self._answer(tolerance) if moves else self._left_open([], "nothing moves")
+        self.found = self._answer(tolerance) if moves else self._left_open([], "no slip")
 
     def _answer(self, tolerance: float) -> Found:
         directions = 2 if isinstance(self.like, complex) else 1
@@ -73,7 +73,7 @@ class MemoryPoint:
             (_repeats, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
             self.seconds += seconds
             means.append(each[count - 1])
-        return self._left_open(means, "the memory does not forget where it started")
+        return self._left_open(means, "the memory does not converge from different starts")
 
     def _left_open(self, means: list[float], reason: str) -> Found:
         self.status, self.error_kind = "not_unique", ""

@@ -33,9 +33,7 @@ def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
     rows = [_point(scene, law, tolerance) for scene in scenes]
     for row in rows:
         if row.status == "ok" and row.found.error > tolerance:
-            row.reason = (
-                f"error {row.found.error:.1e} above the tolerance: rounding is all that is left in it"
-            )
+            row.reason = f"error {row.found.error:.1e} above the tolerance: only rounding errors remain"
     found = [row.found for row in rows]
     ok = np.array([row.status == "ok" for row in rows])
     low = np.array([each.low for each in found])
@@ -88,7 +86,7 @@ class _Point:
             self.model = "closed form: slip prescribed along the belt"
         elif self.belt_speed == 0.0:
             mean = 0j
-            self.model = "closed form: each half period of slip undoes the other"
+            self.model = "closed form: friction of the two half periods of slip cancels"
         else:
             finer = integrals(self.motion, self.belt_speed, self.law, halved(edges))
             mean = self._with_exact_turns(found)
@@ -121,7 +119,7 @@ class _Point:
     def _no_slip(self) -> Found:
         self.status, self.error_kind = "not_unique", ""
         self.model = "closed form"
-        self.reason = "nothing moves: friction at rest may be anything up to mu"
+        self.reason = "no slip: friction at rest is any value up to mu"
         most = belt_friction_at_rest(self.law)
         return Found(low=-most, high=most)
 

@@ -25,7 +25,7 @@ MOST_PERIODS = 80
 NOISE = 300.0
 """How many times what is aimed at may be left open where the noise of steps hides the rest: it is in the error."""
 FINEST, COARSEST, STEP = 2e-13, 1e-8, 50.0
-LOST = Open(math.nan, math.nan, "the deflection could not be followed over a period")
+LOST = Open(math.nan, math.nan, "the deflection could not be computed over a period")
 
 
 class Accuracy(NamedTuple):

@@ -33,8 +33,8 @@ STEADY = 0.98
 """Largest Floquet multiplier above which a motion of the drive's period is not called steady."""
 TOLERANCE = 1e-9
 """On the mean friction of the loop of one harmonic."""
-UNSTEADY = "the motion of one drive period is not stable, or hardly so: the mean may not be one; use shooting"
-REMEMBERED = "slip within the bristles' elastic reach: the mean depends on where it started; use shooting"
+UNSTEADY = "the motion of one drive period may be unstable: the mean may not be unique; use shooting"
+REMEMBERED = "slip within the elastic range of the bristles: the mean depends on the start; use shooting"
 
 
 class _Point(NamedTuple):
@@ -55,9 +55,9 @@ def bristle_refusal(name: str, scene: Scene, law: BristleLaw) -> str | None:
             f"{name} follows bristle friction along one line: this scene has two directions", scene, law
         )
     if not math.isfinite(law.under_load(scene.mass().normal_load).largest_deflection()):
-        return f"{name} needs a law that says how far its bristles can deflect; use shooting"
+        return f"{name} needs a law with a largest deflection; use shooting"
     if not math.isfinite(friction_free_velocity(scene)):
-        return f"{name} starts from the friction-free motion, and at undamped resonance it has no bound; use shooting"
+        return f"{name} starts from the friction-free motion, which is unbounded at undamped resonance; use shooting"
     return None
 
 
@@ -80,7 +80,7 @@ def answer_bristle(scenes: Sequence[Scene], law: BristleLaw, tolerance: float) -
 def _point(scene: Scene, law: BristleLaw) -> _Point:
     mass, speed = scene.mass(), abs(scene.belt_speed)
     if mass.damping == 0.0 and speed >= friction_free_velocity(scene):
-        return _unknown(None, "without damping and without slip reversal the free oscillation never dies")
+        return _unknown(None, "without damping and without slip reversal the free oscillation does not decay")
     found, near = balances(mass, speed, law)
     if len(found) + len(near) != 1:
         return _unknown(None, _ambiguous([balance.amplitude for balance in found], near))

@@ -28,7 +28,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity
 
 REDUCED = (
-    " (one degree of freedom: without a load across the belt x2 dies out for every isotropic sliding law)"
+    " (one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law)"
 )
 WIDEST = 0.25
 """Distance of bounds on the mean, relative to the friction coefficient, above which they are narrowed."""
@@ -71,9 +71,9 @@ def line_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
     if not law.constant_sliding_friction():
         return f"{name} needs friction that does not vary with speed (Coulomb)"
     if not law.monotone():
-        return f"{name} cannot bound its error where rest holds more than slip (mu_static above mu); use shooting"
+        return f"{name} has no error bound for mu_static above mu; use shooting"
     if not math.isfinite(friction_free_velocity(scene)):
-        return f"{name} starts from the friction-free motion, and at undamped resonance it has no bound; use exact"
+        return f"{name} starts from the friction-free motion, which is unbounded at undamped resonance; use exact"
     return None
 
 
@@ -81,9 +81,11 @@ def point_refusal(scene: Scene, friction: float) -> str:
     """Why there is no one steady state at this belt speed; empty where there is."""
     mass = scene.mass()
     if scene.belt_speed == 0.0 and abs(mass.force) <= friction:
-        return "the belt is at rest and friction can hold the load for ever: the mass stays wherever it stops"
+        return (
+            "the belt is at rest and static friction balances the load: the mass may rest anywhere in a range"
+        )
     if mass.damping == 0.0 and abs(scene.belt_speed) >= friction_free_velocity(scene):
-        return "without damping and without slip reversal the free oscillation never dies; use exact"
+        return "without damping and without slip reversal the free oscillation does not decay; use exact"
     return ""
 
 
@@ -154,7 +156,7 @@ def _too_wide(width: float, mu: float) -> str:
     if width <= WIDEST:
         return ""
     return (
-        f"no useful bound on the model error: stick or further reversals leave the mean anywhere within "
+        f"no useful bound on the model error: because of stick or further reversals the mean may lie anywhere within "
         f"{width * mu:.2g}; use exact"
     )
 

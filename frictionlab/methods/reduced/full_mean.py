@@ -37,7 +37,7 @@ def full_mean(scene: Scene, law: SlidingLaw | BristleLaw) -> FullMean:
     mean, error = float(found.mean[0].real), float(found.error[0])
     if found.status[0] == "ok":
         return FullMean(mean, error, lambda: _first(found.floquet), "")
-    unknown = "no useful bound on the model error: no one steady state is known"
+    unknown = "no useful bound on the model error: the steady state is not known"
     return FullMean(math.nan, math.nan, lambda: math.nan, f"{unknown} ({found.reason[0]}); use shooting")
 
 

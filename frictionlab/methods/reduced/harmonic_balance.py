@@ -21,7 +21,7 @@ from frictionlab.theory import friction_free_velocity, one_harmonic_least_ratio,
 
 TEXT = "one harmonic of x1' and of Coulomb friction balanced (Eqs. 5, 8, 9 in explicit form)"
 AT_REST = (
-    "with the belt at rest one harmonic slides only if the load exceeds 4/pi of mu*normal_load; use exact"
+    "on a belt at rest one harmonic gives sliding only if the load exceeds 4/pi of mu*normal_load; use exact"
 )
 
 
@@ -43,7 +43,7 @@ class HarmonicBalance(Method):
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb or bristle friction on one line under a drive that bounds the friction-free motion."""
         if scene.degrees_of_freedom == 0:
-            reason = "harmonic_balance seeks the motion of the mass, and a prescribed slip leaves it none"
+            reason = "harmonic_balance needs a mass: with a prescribed slip there is no motion to solve for"
             return suggest_shooting(reason, scene, law)
         if isinstance(law, BristleLaw):
             return bristle_refusal(self.name, scene, law)

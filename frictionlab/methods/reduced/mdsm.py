@@ -55,7 +55,7 @@ class Mdsm(Method):
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Friction with memory, no drive, no one steady state; what cannot be bounded is refused by ``solve``."""
         if not isinstance(law, SlidingLaw):
-            return "mdsm averages friction without memory (a sliding law)"
+            return "mdsm needs friction without memory (a sliding law)"
         if scene.degrees_of_freedom == 0:
             return None
         if scene.undriven:
@@ -89,7 +89,9 @@ def _plane_refusal(scene: Scene, law: SlidingLaw) -> str | None:
     if min(damping) == 0.0:
         return "mdsm needs damping in every driven direction: without it the motion depends on the start"
     if law.steepest_fall() * mass.normal_load >= min(damping):
-        return "mdsm needs friction that falls with speed by less than damping makes up for: else states may be many"
+        return (
+            "mdsm needs damping that outweighs the fall of friction: else the steady state may not be unique"
+        )
     return None
 
 
@@ -151,7 +153,7 @@ def _at_rest(scene: Scene, law: FrictionLaw) -> str:
     assert isinstance(law, SlidingLaw)
     if 0.5 * (forward + backward) > law.static_friction() * mass.normal_load:
         return ""
-    return "the belt is at rest and friction can hold the loads for ever: the mass stays wherever it stops"
+    return "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range"
 
 
 def _position(scene: Scene, mean: complex) -> complex:

@@ -31,8 +31,8 @@ from frictionlab.scene.scene import Drive, Initial, Scene, Transverse
 
 Solver = Callable[[Sequence[Scene], BristleLaw, float], Answers]
 
-APART = "shooting, two degrees of freedom, each by itself: friction by axis does not couple them"
-HELD = "across the belt the bristle holds the load elastically: its mean there depends on the start"
+APART = "shooting, two degrees of freedom solved separately: per-axis friction does not couple them"
+HELD = "across the belt the bristle is elastic under this load: the mean there depends on the start"
 
 
 class OneAxis(Scene):

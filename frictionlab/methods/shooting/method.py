@@ -55,11 +55,11 @@ class Shooting(Method):
         if isinstance(law, MemoryLaw):
             return _refusal_with_memory(scene)
         if not isinstance(law, SlidingLaw | BristleLaw):
-            return "shooting knows friction laws that are a SlidingLaw, a BristleLaw or a MemoryLaw"
+            return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         if isinstance(law, BristleLaw):
             return _refusal_with_a_bristle(scene, law)
         if scene.undriven and (scene.start.x2 != 0.0 or scene.start.velocity2 != 0.0):
-            return "undriven scenes are followed along the belt alone: leave initial.x2 and velocity2 at 0"
+            return "undriven scenes are solved along the belt only: leave initial.x2 and velocity2 at 0"
         return None
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
@@ -113,7 +113,9 @@ class Shooting(Method):
             else:
                 found.take([i], scenes[i], *closer.closed([scenes[i]], settled[0], wanted=wanted))
                 found.error[i] += 1e-11 * settled[1]  # of the steps on the way there
-                found.reason[i] = "the state reached from scene.initial; other starts come to rest elsewhere"
+                found.reason[i] = (
+                    "the state reached from scene.initial; other starts come to rest at other places"
+                )
         found.judge(tolerance)
         return Answers(
             status=found.status,
@@ -217,7 +219,7 @@ class Found:
         self._clear(i)
         self._range(i, -most, most)
         self.reason[i] = (
-            "the belt is at rest and the bristle holds the loads elastically: its mean depends on the start"
+            "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
         )
 
     def hold_to_other_starts(self, i: int, closer: PeriodicProblem, scene: Scene) -> None:
@@ -260,7 +262,7 @@ class Found:
         """A mass that can rest for ever on a belt at rest: where it rests depends on where it starts."""
         self._range(i, -highest, highest)
         self.reason[i] = (
-            "the belt is at rest and friction can hold the loads for ever: the mass stays wherever it stops; "
+            "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range; "
             "give scene.initial to choose a start"
         )
 
@@ -283,9 +285,7 @@ class Found:
 
 def _refusal_with_a_bristle(scene: Scene, law: BristleLaw) -> str | None:
     if scene.undriven:
-        return (
-            "shooting follows undriven scenes for friction without memory alone: use march, or give a drive"
-        )
+        return "for undriven scenes shooting needs friction without memory: use march, or give a drive"
     if not along_the_belt(scene, law) and law.planar == "vectorial" and law.no_vector_form():
         return law.no_vector_form()
     return None
@@ -293,7 +293,7 @@ def _refusal_with_a_bristle(scene: Scene, law: BristleLaw) -> str | None:
 
 def _refusal_with_memory(scene: Scene) -> str | None:
     if scene.undriven:
-        return "shooting follows undriven scenes for friction without memory alone: give a drive"
+        return "for undriven scenes shooting needs friction without memory: give a drive"
     return None
 
 
@@ -309,16 +309,16 @@ def _at_rest(curve: Curve, row: int) -> bool:
 def _model(scene: Scene, closer: PeriodicProblem) -> str:
     directions = "two degrees" if isinstance(closer.like, complex) else "one degree"
     if scene.degrees_of_freedom == 2 and directions == "one degree":
-        model = "shooting, one degree of freedom: with no load across the belt x2 dies out"
+        model = "shooting, one degree of freedom: without a load across the belt x2 decays"
     else:
         model = f"shooting, {directions} of freedom"
     if isinstance(closer.law, MemoryLaw):
-        return f"{model}; mass and memory solved for together (Rodas5P)"
+        return f"{model}; mass and memory solved together (Rodas5P)"
     if not isinstance(closer.law, BristleLaw):
         return model
     if directions == "one degree" and closer.law.exact_path():
-        return f"{model}; deflection as a function of the way slid"
-    return f"{model}; mass and bristle solved for together (Rodas5P)"
+        return f"{model}; deflection as a function of the slip path"
+    return f"{model}; mass and bristle solved together (Rodas5P)"
 
 
 def _multipliers(curve: Curve) -> Floats:

@@ -26,7 +26,7 @@ from frictionlab.scene.scene import Scene
 Solver = Callable[[Sequence[Scene], SlidingLaw, float], Answers]
 
 SATURATED = "the one deflection along the slip stays at its limit: friction is that of sliding"
-HELD = "the belt is at rest and friction can hold the loads for ever: the mass stays wherever it stops"
+HELD = "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range"
 SHORT = 1e-7
 """Share of the limit that a deflection lacks where its approach is told."""
 

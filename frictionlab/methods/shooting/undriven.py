@@ -177,7 +177,7 @@ class _Follower:
         body = self._body._replace(periods=turns)
         image: Mapped = self._kernel(body, self.scene.belt_speed, x, v, accuracy)
         if image.steps < 0:
-            raise NotFound("the motion takes more steps than are allowed")
+            raise NotFound("the motion needs more steps than the limit")
         return image
 
     def _force(self, x: float, v: float) -> float:
@@ -205,17 +205,23 @@ class _Follower:
 
     def _free(self, x: float, v: float) -> Motion:
         mean = math.copysign(self.law.sliding_friction(1.0), self._speed)
-        kind = "a free oscillation in slip, which without damping never dies"
+        kind = "a free oscillation in slip, which does not decay without damping"
         return Motion(x, v, TURN, mean, ROUNDING, 1.0, kind)
 
     def _at_rest(self) -> Motion:
         state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settled(self.scene.start)
         if periods < 0:
-            raise NotFound("the mass still creeps towards rest when patience ends")
+            raise NotFound("the mass still approaches rest after the largest number of periods")
         mean = state[0] / self._pressed
         error = 1e-11 * periods + ROUNDING
         return Motion(
-            state[0], 0.0, math.nan, mean, error, math.nan, "at rest, where it stops from scene.initial"
+            state[0],
+            0.0,
+            math.nan,
+            mean,
+            error,
+            math.nan,
+            "at rest, where the motion from scene.initial ends",
         )
 
     def _deflection(self) -> float:
@@ -262,7 +268,15 @@ class _Follower:
         if rough is None or fine is None:
             return None
         error = 2.0 * abs(fine[1] - rough[1]) + self._of_a_step
-        return Motion(x, speed, fine[0], fine[1], error, 0.0, "stick-slip, followed from release to release")
+        return Motion(
+            x,
+            speed,
+            fine[0],
+            fine[1],
+            error,
+            0.0,
+            "stick-slip, from the end of one stick phase to the next",
+        )
 
     def _cycle_from(self, x: float, accuracy: float) -> tuple[float, float] | None:
         """Period and mean friction from release at x to the next; None where the mass does not come to rest.

@@ -249,7 +249,7 @@ def test_the_exponential_stepper_asks_for_steps_that_hold_the_mass_on_its_bristl
     stiff, one = LuGre(mu_kinetic=0.4, presliding_length=5e-6), scene(5.0)
     held = math.sqrt(1.0 + 10.0 * 0.4 / 5e-6)
     fewest = math.ceil(2.0 * math.pi * held / 2.0)
-    assert "would do; or use stepper sdirk2" in March(steps=fewest).refusal(one, stiff)
+    assert "are enough; or use stepper sdirk2" in March(steps=fewest).refusal(one, stiff)
     assert March(steps=math.ceil(1.03 * fewest)).refusal(one, stiff) is None
     assert March(stepper="sdirk2", steps=64).refusal(one, stiff) is None
 
@@ -415,10 +415,14 @@ def test_undriven_bristles_on_a_falling_curve_stick_and_slip_like_dry_friction()
 @pytest.mark.parametrize(
     ("keys", "law", "said"),
     [
-        ({"stepper": "moreau"}, FALLING, "knows no friction with memory; use exponential, rk4 or sdirk2"),
+        (
+            {"stepper": "moreau"},
+            FALLING,
+            "does not support friction with memory; use exponential, rk4 or sdirk2",
+        ),
         ({"theta": 1}, FALLING, "theta is a key of stepper moreau"),
         ({"stepper": "rk4"}, Dahl(mu=0.4, stiffness=1.0, exponent=0.5), "needs a bound"),
-        ({"stepper": "sdirk2"}, Jenkins(mu=0.4, stiffness=1.0), "rates that do not jump"),
+        ({"stepper": "sdirk2"}, Jenkins(mu=0.4, stiffness=1.0), "continuous rates"),
         ({"stepper": "sdirk2"}, Coulomb(mu=0.4), "this law has none; use moreau, rk4 or smoothed"),
     ],
 )

@@ -223,7 +223,7 @@ def test_the_plane_without_a_load_across_is_the_line(load):
     np.testing.assert_allclose(
         plane.columns["mean_friction"], line.columns["mean_friction"], rtol=0, atol=1e-9
     )
-    assert all("x2 dies out" in model for model in plane.model)
+    assert all("x2 decays" in model for model in plane.model)
     for i in range(len(speeds)):
         orbit = plane.orbit(i)
         assert not orbit.x.imag.any()

@@ -139,7 +139,7 @@ def test_without_a_load_across_the_belt_planar_bristles_are_those_of_the_line() 
     ]
     alone = with_columns(Shooting(), line, law, 1e-8)
     assert planar.columns["mean_friction"][0] == alone.columns["mean_friction"][0]
-    assert "x2 dies out" in planar.model[0]
+    assert "x2 decays" in planar.model[0]
 
 
 @deep

@@ -37,7 +37,7 @@ ARROWS = {
         *("methods.base", "methods.periodic"),
     ],
     "methods.shooting": [
-        *("compile", "laws", "orbit", "quantities", "scene", "theory"),
+        *("compile", "dynamics", "laws", "orbit", "quantities", "scene", "theory"),
         *("methods.base", "methods.periodic", "methods.prescribed"),
     ],
     "methods.refusals": ["laws", "methods.shooting", "scene"],

@@ -89,7 +89,7 @@ def test_a_run_draws_its_figures_into_its_folder(frictionlab: Any) -> None:
 
 
 def test_a_run_writes_its_report_last_with_its_figures_inside(frictionlab: Any) -> None:
-    said = frictionlab("run", study(), "-o", "out")
+    said = frictionlab("run", study(columns=["mean_friction"]), "-o", "out")
 
     assert said.err.splitlines()[-1] == "report in out/report.html"
     assert Path("out/report.html").read_text().count('<img src="data:image/') == 1
@@ -99,7 +99,7 @@ def test_a_run_writes_its_report_last_with_its_figures_inside(frictionlab: Any) 
 def test_plot_and_report_make_again_what_a_run_made_and_compute_nothing(
     frictionlab: Any, monkeypatch: Any
 ) -> None:
-    frictionlab("run", study(), "-o", "out")
+    frictionlab("run", study(columns=["mean_friction"]), "-o", "out")
     files = ("report.html", "figures/mean_friction.svg", "figures/mean_friction.png")
     before = [(Path("out") / file).read_bytes() for file in files]
     monkeypatch.setattr(Fake, "solve", lambda *_: pytest.fail("computed"))

@@ -22,6 +22,8 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from functools import cache, partial
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
@@ -141,6 +143,23 @@ def _load(name: str, source: str, **given: Any) -> ModuleType:
     sys.modules[name] = module
     spec.loader.exec_module(module)
     return module
+
+
+class _NumbersOfOtherVersions(MetaPathFinder):
+    """Finds the numbers of laws in the cache folder.
+
+    An entry keeps machine code for all numbers it was ever called with, and numba asks for their modules when it
+    reads the entry: also for those that other versions of ``_numbers`` named.
+    """
+
+    def find_spec(self, fullname: str, path: Any, target: Any = None) -> ModuleSpec | None:
+        file = cache_folder() / f"{fullname}.py"
+        if not fullname.startswith("frictionlab_numbers_") or not file.exists():
+            return None
+        return importlib.util.spec_from_file_location(fullname, file)
+
+
+sys.meta_path.append(_NumbersOfOtherVersions())
 
 
 def _written(path: Path, source: str) -> Path | None:

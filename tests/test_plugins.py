@@ -66,4 +66,4 @@ def test_in_a_fresh_environment_a_plugin_is_listed_and_run_and_missed_when_it_is
         done = said("run", folder / "study.yaml", "-o", "again")
         assert done.returncode == 2
         assert all(f"unknown law '{name}'" in done.stderr for name in _laws(folder))
-        assert "install the package that brings it" in done.stderr
+        assert "install the package that provides it" in done.stderr

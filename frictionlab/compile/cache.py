@@ -184,12 +184,16 @@ def cache_folder() -> Path:
     return Path(base) / "frictionlab"
 
 
+# Read once: were these files edited while a process runs, an entry would be named by the new ones and refer to
+# numbers named by the old ones, and no other process could load it.
+_COMPILER = b"".join(file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py")))
+
+
 def _fingerprint(*roots: Any) -> str:
     """A hash of everything the roots can reach: code, constants, helpers in any file, and the compiler."""
     versions = (sys.version, platform.machine(), numba.__version__, llvmlite.__version__, np.__version__)
     digest = hashlib.sha256(repr(versions).encode())
-    for file in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(file.read_bytes())
+    digest.update(_COMPILER)
     for piece in _pieces(roots, set()):
         digest.update(piece.encode())
         digest.update(b"\0")

@@ -235,7 +235,7 @@ def test_rk4_refuses_stiff_bristles_and_names_the_steps_that_would_do():
     assert March(stepper="rk4", steps=named).refusal(one, stiff) is None
     h = 2.0 * math.pi / named
     assert h * stiff.largest_rate(50.0 + 5.0) <= DECAY
-    assert "too many to be doubled" in March(stepper="rk4").refusal(one, Dahl(mu=0.4, presliding_length=5e-6))
+    assert "too many to refine" in March(stepper="rk4").refusal(one, Dahl(mu=0.4, presliding_length=5e-6))
 
 
 def test_rk4_stops_where_slip_gets_too_fast_for_its_steps():
@@ -423,7 +423,7 @@ def test_undriven_bristles_on_a_falling_curve_stick_and_slip_like_dry_friction()
         ({"theta": 1}, FALLING, "theta is a key of stepper moreau"),
         ({"stepper": "rk4"}, Dahl(mu=0.4, stiffness=1.0, exponent=0.5), "needs a bound"),
         ({"stepper": "sdirk2"}, Jenkins(mu=0.4, stiffness=1.0), "continuous rates"),
-        ({"stepper": "sdirk2"}, Coulomb(mu=0.4), "this law has none; use moreau, rk4 or smoothed"),
+        ({"stepper": "sdirk2"}, Coulomb(mu=0.4), "needs a bristle law; use moreau, rk4 or smoothed"),
     ],
 )
 def test_a_stepper_of_another_kind_of_law_is_refused_with_what_to_use(keys, law, said):

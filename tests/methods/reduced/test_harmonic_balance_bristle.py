@@ -275,7 +275,7 @@ def test_slip_within_an_elastic_contact_is_refused_for_its_mean_depends_on_the_s
         damping_ratio=0.1, normal_load=10.0, belt_speed=0.0, drive=Drive(amplitude=0.3, frequency=2.0)
     )
 
-    assert "where it started" in refusal_of(one, Jenkins(mu=MU, presliding_length=1.0))
+    assert "depends on the start" in refusal_of(one, Jenkins(mu=MU, presliding_length=1.0))
 
 
 def test_friction_that_falls_too_fast_for_one_steady_state_is_refused() -> None:

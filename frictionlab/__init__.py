@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from importlib import import_module
-from importlib.metadata import version
 from typing import Any
 
-__version__ = version("frictionlab")
+__version__: str
 
 _HOMES = {
     "Auto": "frictionlab.methods.auto",
@@ -58,6 +57,10 @@ __all__ = ["__version__", *sorted(_HOMES)]
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first asked for: ``import frictionlab`` itself stays quick."""
+    if name == "__version__":
+        from importlib.metadata import version  # with email and zipfile, half of the time of an import
+
+        return version("frictionlab")
     if name not in _HOMES:
         raise AttributeError(f"module 'frictionlab' has no attribute {name!r}")
     return getattr(import_module(_HOMES[name]), name)

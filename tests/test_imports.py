@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -221,6 +222,9 @@ def test_nothing_below_the_study_touches_files(module: str) -> None:
 def test_importing_the_package_brings_in_nothing_heavy() -> None:
     assert list(_inside(HOUSE / "__init__.py")) == []
     assert _outside(HOUSE / "__init__.py") <= sys.stdlib_module_names
+    code = "import sys; before = {*sys.modules}; import frictionlab; print(*{*sys.modules} - before)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert {"importlib.metadata", "numpy", "scipy", "pydantic"}.isdisjoint(loaded.split())
 
 
 @pytest.mark.parametrize("name", frictionlab.__all__)

@@ -13,7 +13,7 @@ from frictionlab.bench.record import Bench, Workload
 from frictionlab.bench.references import read_references
 from frictionlab.study import Mistake, Study, StudyError
 from frictionlab.study.choices import items
-from frictionlab.study.mistakes import Notes, Path, value_text
+from frictionlab.study.mistakes import Notes, Path
 from frictionlab.study.reader import study_of
 from frictionlab.study.yaml_source import Source, read_file
 
@@ -61,11 +61,9 @@ class _Reading:
     def bench(self) -> Bench | None:
         if self._notes.mapping(self._tree, (), BENCH_KEYS) is None:
             return None
-        self._required()
+        self._notes.head(self._tree, ("schema", "scenes"), BENCH_SCHEMA)
         repeats = self._notes.whole_number(self._tree.get("repeats", REPEATS), ("repeats",), 1)
-        seconds = self._notes.number(self._tree.get("seconds", SECONDS), ("seconds",))
-        if seconds is not None and seconds <= 0.0:
-            self._notes.add(("seconds",), f"must be > 0, got {value_text(seconds)}")
+        seconds = self._notes.positive(self._tree.get("seconds", SECONDS), ("seconds",))
         title = self._notes.text(self._tree.get("title", ""), ("title",))
         defaults = Defaults(
             read_references(self._tree.get("references", []), ("references",), self._path, self._notes),
@@ -78,14 +76,6 @@ class _Reading:
         ]
         self._note_equal_names(found)
         return Bench(self._path.stem, title, tuple(found), repeats or 1, seconds or 1.0)
-
-    def _required(self) -> None:
-        for key in ("schema", "scenes"):
-            if key not in self._tree:
-                self._notes.add((key,), "required key is missing")
-        given = self._tree.get("schema", BENCH_SCHEMA)
-        if isinstance(given, bool) or given != BENCH_SCHEMA:
-            self._notes.add(("schema",), f"must be {BENCH_SCHEMA}, got {value_text(given)}")
 
     def _workloads(self, block: Any, index: int, defaults: Defaults) -> list[Workload]:
         path: Path = ("scenes", index)

@@ -13,7 +13,7 @@ import numpy as np
 from frictionlab.bench.record import ReferenceMeans, ReferenceSource, Workload
 from frictionlab.bench.solvers import solve_points
 from frictionlab.study.choices import items, method_choice
-from frictionlab.study.mistakes import Notes, Path, value_text
+from frictionlab.study.mistakes import Notes, Path
 
 REFERENCE_COLUMNS = ("belt_speed", "mean_friction")
 
@@ -35,7 +35,7 @@ def _trusted(item: Any, path: Path, file: FilePath, notes: Notes) -> ReferenceSo
     if "tolerance" not in item:
         notes.add((*path, "tolerance"), "required key is missing")
         return None
-    tolerance = _positive(item, "tolerance", path, notes)
+    tolerance = notes.positive(item["tolerance"], (*path, "tolerance"))
     told = {key: value for key, value in item.items() if key != "tolerance"}
     if told.get("kind") == "auto":
         notes.add((*path, "kind"), "auto only chooses: name a method it chooses from")
@@ -46,20 +46,13 @@ def _trusted(item: Any, path: Path, file: FilePath, notes: Notes) -> ReferenceSo
     return ReferenceSource(f"{choice.label} at {tolerance:g}", choice.name, choice.method, tolerance, {})
 
 
-def _positive(item: dict[str, Any], key: str, path: Path, notes: Notes) -> float | None:
-    value = notes.number(item[key], (*path, key))
-    if value is not None and value <= 0.0:
-        notes.add((*path, key), f"must be > 0, got {value_text(value)}")
-    return value
-
-
 def _values(item: dict[str, Any], path: Path, file: FilePath, notes: Notes) -> ReferenceSource | None:
     """``{values: FILE, error: x, label: TEXT}``; the path is relative to the list."""
     notes.mapping(item, path, ("values", "error", "label"))
     if "error" not in item:
         notes.add((*path, "error"), "required key is missing: how well the values are known")
         return None
-    error = _positive(item, "error", path, notes)
+    error = notes.positive(item["error"], (*path, "error"))
     name = notes.text(item["values"], (*path, "values"))
     label = notes.text(item.get("label", name), (*path, "label"))
     table = _table(file.parent / name, (*path, "values"), notes) if name else None

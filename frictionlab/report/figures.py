@@ -13,7 +13,8 @@ from frictionlab.charts.curves import Family, family_of
 from frictionlab.charts.figures import figure_columns
 from frictionlab.report.markup import symbol_html, unit_html, word_html
 from frictionlab.report.question import values_listed
-from frictionlab.report.tables import joined_values, points, setting
+from frictionlab.report.tables import joined_values, setting
+from frictionlab.results.words import counted
 from frictionlab.runner.saved import Saved
 
 LARGEST_SVG = 400_000
@@ -116,7 +117,7 @@ def _fixed(saved: Saved, family: Family) -> list[Markup]:
 def _missing(saved: Saved) -> list[Markup]:
     """How many points have no number, which the figures show as marks."""
     without = {status: count for status, count in saved.counts.items() if status != "ok"}
-    told = [f"{points(count)} {status.replace('_', ' ')}" for status, count in without.items()]
+    told = [f"{counted(count, 'point')} {status.replace('_', ' ')}" for status, count in without.items()]
     return [Markup("Without a number, and marked as such: {}").format(", ".join(told))] if told else []
 
 

@@ -18,15 +18,15 @@ from frictionlab.report.tables import (
     grid,
     joined_values,
     number,
-    points,
     setting,
     settings,
     size,
-    swept_inputs,
     value_range,
 )
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.summary import alike, pattern, statuses
+from frictionlab.results.table import swept_inputs
+from frictionlab.results.words import counted
 from frictionlab.runner.saved import Saved
 
 FEW_ROWS = 4
@@ -127,7 +127,7 @@ def _errors(curve: CurveRows, tolerance: float) -> list[Cell]:
         _speed(worst),
         size(float(error.median())),
         joined_values(curve.rows.loc[error.notna(), "error_kind"].dropna()),
-        points(above) if above else "none",
+        counted(above, "point") if above else "none",
     ]
 
 
@@ -141,7 +141,7 @@ def models_grid(table: pd.DataFrame) -> Grid:
     told = table[table["model"].notna()]
     groups = told.groupby([told["method"], told["model"].map(pattern)], sort=False)
     rows = [
-        [str(method), alike(rows["model"]), points(len(rows)), joined_values(rows["law"])]
+        [str(method), alike(rows["model"]), counted(len(rows), "point"), joined_values(rows["law"])]
         for (method, _), rows in groups
     ]
     return grid("What produced the numbers", ["method", "model, and why", "points", "laws"], rows, "models")
@@ -161,7 +161,7 @@ def trouble_grid(table: pd.DataFrame) -> Grid:
 def _trouble(status: str, rows: pd.DataFrame, swept: Sequence[str]) -> list[Cell]:
     shown = min(len(rows), MOST_EXAMPLES)
     told = Markup("; ").join(_example(rows.iloc[place], swept) for place in range(shown))
-    more = f"; and {points(len(rows) - shown)} more" if len(rows) > shown else ""
+    more = f"; and {counted(len(rows) - shown, 'point')} more" if len(rows) > shown else ""
     words = status.replace("_", " ") if status != "ok" else "ok, but"
     who = joined_values(rows["law"]), joined_values(rows["method"])
     return [words, str(len(rows)), alike(rows["reason"].fillna("")), *who, told + more]

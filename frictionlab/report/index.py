@@ -10,8 +10,9 @@ from urllib.parse import quote
 
 from frictionlab.report.figures import address
 from frictionlab.report.page import rendered, wall
-from frictionlab.report.tables import points, size
+from frictionlab.report.tables import size
 from frictionlab.results.summary import statuses
+from frictionlab.results.words import counted
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.saved import Saved
 
@@ -47,7 +48,7 @@ def index(folder: Path, runs: Sequence[Saved]) -> str:
     return rendered(
         "index.html",
         title=f"Studies in {folder.absolute().name}",
-        size=f"{len(runs)} studies, {points(sum(counts.values()))}",
+        size=f"{len(runs)} studies, {counted(sum(counts.values()), 'point')}",
         counts=dict(counts.most_common()),
         passed=sum(entry.passed for entry in entries),
         failed=sum(entry.failed for entry in entries),

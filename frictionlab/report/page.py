@@ -14,7 +14,9 @@ from frictionlab import __version__
 from frictionlab.report import findings, question
 from frictionlab.report.figures import pictures
 from frictionlab.report.sources import bibtex, published, sources
-from frictionlab.report.tables import Grid, grid, points, swept_inputs
+from frictionlab.report.tables import Grid, grid
+from frictionlab.results.table import swept_inputs
+from frictionlab.results.words import counted
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.saved import Saved
 from frictionlab.runner.yaml_text import yaml_text
@@ -64,7 +66,7 @@ def _head(saved: Saved) -> dict[str, Any]:
     verdicts = saved.verdicts
     passed = sum(verdict.passed for verdict in verdicts)
     return {
-        "size": points(len(saved.table)),
+        "size": counted(len(saved.table), "point"),
         "counts": saved.counts,
         "passed": passed,
         "failed": len(verdicts) - passed,
@@ -83,7 +85,7 @@ def wall(seconds: float) -> str:
 
 def _unfinished(saved: Saved) -> str:
     killed = saved.counts.get("killed", 0)
-    return f"{killed} of {points(len(saved.table))} were not reached" if killed else ""
+    return f"{killed} of {counted(len(saved.table), 'point')} were not reached" if killed else ""
 
 
 def _asked(saved: Saved) -> dict[str, Any]:
@@ -146,7 +148,7 @@ def _runs(runs: Sequence[dict[str, Any]]) -> Grid:
         [
             str(run.get("started", "")),
             wall(run["seconds"]),
-            points(int(run.get("computed", 0))),
+            counted(int(run.get("computed", 0)), "point"),
             " ".join(f"--set {each}" for each in run.get("overrides", [])),
         ]
         for run in runs

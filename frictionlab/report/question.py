@@ -12,6 +12,7 @@ from frictionlab.columns import symbol, word
 from frictionlab.report.markup import html, symbol_html
 from frictionlab.report.sources import law_text, method_text
 from frictionlab.report.tables import Cell, Grid, grid, number
+from frictionlab.results.words import in_words
 from frictionlab.scene.scene import Scene
 from frictionlab.study import LawChoice, Study
 
@@ -131,13 +132,9 @@ def _set(parameters: Mapping[str, Any]) -> Cell:
     """Parameters with their values."""
     given = {name: value for name, value in parameters.items() if value is not None}
     told = [
-        Markup("{} = {}").format(symbol_html(f"law.{name}"), _text(value)) for name, value in given.items()
+        Markup("{} = {}").format(symbol_html(f"law.{name}"), in_words(value)) for name, value in given.items()
     ]
     return Markup(", ").join(told)
-
-
-def _text(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def sweep_grid(study: Study) -> Grid:

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import pandas as pd
 from markupsafe import Markup, escape
 
-from frictionlab.columns import belt_speed, given
 from frictionlab.report.markup import symbol_html, unit_html
 
 Cell = str | Markup
@@ -57,13 +56,6 @@ def curve_rows(table: pd.DataFrame, told: Sequence[str]) -> list[CurveRows]:
     ]
 
 
-def swept_inputs(table: pd.DataFrame) -> list[str]:
-    """Inputs besides belt speed that take several values within one law."""
-    names = [name for name in given(table.columns) if name != belt_speed(table.columns)]
-    within = table.groupby("law", sort=False)
-    return [name for name in names if within[name].nunique(dropna=False).max() > 1]
-
-
 def settings(values: Mapping[str, Any]) -> Markup:
     """Inputs with their values, those that do not apply left out."""
     told = [setting(name, value) for name, value in values.items() if not pd.isna(value)]
@@ -95,11 +87,6 @@ def value_range(values: pd.Series) -> str:
     if found.empty:
         return ""
     return " … ".join(dict.fromkeys(f"{value:.6g}" for value in (found.min(), found.max())))
-
-
-def points(count: int) -> str:
-    """So many points, in words."""
-    return "1 point" if count == 1 else f"{count} points"
 
 
 def joined_values(words: Iterable[Cell]) -> Markup:

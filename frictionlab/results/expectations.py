@@ -8,6 +8,7 @@ import pandas as pd
 
 from frictionlab.columns import INPUTS, belt_speed
 from frictionlab.results.curve_table import curve_table
+from frictionlab.results.words import counted, in_words
 from frictionlab.study import Expectation
 
 # Numbers of a study are written in decimal and swept by formula: equal means equal to nine digits.
@@ -61,7 +62,7 @@ def _matching(where: dict[str, str | float], table: pd.DataFrame) -> pd.DataFram
 
 
 def _about(expectation: Expectation) -> str:
-    where = ", ".join(f"{column} {_text(value)}" for column, value in expectation.where.items())
+    where = ", ".join(f"{column} {in_words(value)}" for column, value in expectation.where.items())
     return " ".join(
         part
         for part in (
@@ -76,14 +77,14 @@ def _about(expectation: Expectation) -> str:
 def _claim(expectation: Expectation) -> str:
     if expectation.max_difference is not None:
         first, second = expectation.max_difference
-        return f"|{first} - {second}| of mean_friction below {_text(expectation.below)}"
+        return f"|{first} - {second}| of mean_friction below {in_words(expectation.below)}"
     if expectation.status is not None:
         return f"status {expectation.status}"
     if expectation.shape is not None:
         return f"{expectation.shape} by {_BY[expectation.measure or 'area']}"
-    within = f" within {_text(expectation.within)}" if expectation.within is not None else ""
+    within = f" within {in_words(expectation.within)}" if expectation.within is not None else ""
     name, value = _comparator(expectation)
-    return f"{expectation.column} {name} {_text(value)}{within}"
+    return f"{expectation.column} {name} {in_words(value)}{within}"
 
 
 def _comparator(expectation: Expectation) -> tuple[str, float]:
@@ -105,7 +106,7 @@ def _comparison(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
     excess = {"equals": (values - value).abs(), "below": values - value, "above": value - values}[name]
     worst = excess.idxmax()
     passed = excess[worst] <= within if name == "equals" else excess[worst] < within or excess[worst] < 0
-    return Verdict(bool(passed), f"{_text(values[worst])}{_largest_error(rows, 'row')}")
+    return Verdict(bool(passed), f"{in_words(values[worst])}{_largest_error(rows, 'row')}")
 
 
 def _status(wanted: str, rows: pd.DataFrame) -> Verdict:
@@ -130,7 +131,7 @@ def _shape(expectation: Expectation, curves: pd.DataFrame) -> Verdict:
 
 
 def _measured(row: pd.Series, name: str) -> str:
-    return f"{_text(float(row[name]))} +- {row[f'{name}_error']:.1g}"
+    return f"{in_words(float(row[name]))} +- {row[f'{name}_error']:.1g}"
 
 
 def _difference(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
@@ -147,7 +148,7 @@ def _difference(expectation: Expectation, rows: pd.DataFrame) -> Verdict:
     if missing:
         return Verdict(False, f"a mean is missing in {missing} of {len(pairs)} pairs of rows")
     worst = float(differences.max())
-    return Verdict(worst < expectation.below, f"{_text(worst)}{_largest_error(pairs, 'pair')}")
+    return Verdict(worst < expectation.below, f"{in_words(worst)}{_largest_error(pairs, 'pair')}")
 
 
 def _inputs(rows: pd.DataFrame) -> list[str]:
@@ -164,7 +165,7 @@ def _first(rows: pd.DataFrame) -> str:
     row = rows.iloc[0]
     reason = f": {row['reason']}" if isinstance(row["reason"], str) and row["reason"] else ""
     speed = belt_speed(rows)
-    scene = f" at belt speed {_text(row[speed])}" if speed in rows else ""
+    scene = f" at belt speed {in_words(row[speed])}" if speed in rows else ""
     return f"the row of {row['law']} by {row['method']}{scene}, {row['status']}{reason}"
 
 
@@ -174,8 +175,4 @@ def _largest_error(rows: pd.DataFrame, what: str) -> str:
 
 
 def _count(rows: pd.DataFrame) -> str:
-    return f"{len(rows)} row" if len(rows) == 1 else f"{len(rows)} rows"
-
-
-def _text(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return counted(len(rows), "row")

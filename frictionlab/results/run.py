@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pandas as pd
 
 from frictionlab.results.expectations import Verdict
+from frictionlab.results.table import status_counts
 from frictionlab.study import Study
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True)
@@ -38,4 +35,4 @@ class Run:
     @property
     def counts(self) -> dict[str, int]:
         """How many rows have each status."""
-        return {str(name): int(count) for name, count in self.table["status"].value_counts().items()}
+        return status_counts(self.table)

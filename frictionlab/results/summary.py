@@ -8,10 +8,10 @@ from typing import Any
 
 import pandas as pd
 
-from frictionlab.columns import belt_speed, given
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
-from frictionlab.results.table import whole
+from frictionlab.results.table import swept_inputs, whole
+from frictionlab.results.words import counted, in_words
 
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
 
@@ -35,7 +35,7 @@ def summary(run: Run) -> str:
     table = whole(run.table)
     parts = [
         [run.study.title] if run.study.title else [],
-        [f"{_points(len(table))}: {statuses(table)}"],
+        [f"{counted(len(table), 'point')}: {statuses(table)}"],
         ["", *columns([_HEAD, *_curve_lines(table)])],
         _model_lines(table),
         _reasons(table),
@@ -50,10 +50,7 @@ _HEAD = ("law", "method", "curve", "points", "mean_friction", "largest error", "
 
 def _curve_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
     """One line per curve: everything equal but belt speed."""
-    told = [name for name in given(table.columns) if name != belt_speed(table.columns)]
-    within = table.groupby("law")[told].nunique(dropna=False).max()  # the label distinguishes laws
-    told = [name for name in told if within[name] > 1]
-    keys = ["law", "method", *told]
+    keys = ["law", "method", *swept_inputs(table)]
     groups = table.groupby(keys, sort=False, dropna=False)
     models = _models(table)
     return [_curve_line(dict(zip(keys, key, strict=True)), rows, models) for key, rows in groups]
@@ -74,7 +71,7 @@ def _model_lines(table: pd.DataFrame) -> list[str]:
 
 def _curve_line(inputs: dict[str, Any], rows: pd.DataFrame, models: dict[str, int]) -> tuple[str, ...]:
     law, method = str(inputs.pop("law")), str(inputs.pop("method"))
-    where = ", ".join(f"{_brief(name)} {_short(x)}" for name, x in inputs.items() if x == x)
+    where = ", ".join(f"{_brief(name)} {in_words(x)}" for name, x in inputs.items() if x == x)
     found = rows["mean_friction"].dropna()
     span = dict.fromkeys(f"{value:.6g}" for value in (found.min(), found.max())) if len(found) else {}
     error = f"{rows['error'].max():.1e}" if rows["error"].notna().any() else ""
@@ -87,17 +84,9 @@ def _brief(name: str) -> str:
     return name.removeprefix("scene.").removeprefix("dimensional.")
 
 
-def _points(count: int) -> str:
-    return "1 point" if count == 1 else f"{count} points"
-
-
 def statuses(rows: pd.DataFrame) -> str:
     """How many rows have each status, in words."""
     return ", ".join(f"{count} {status}" for status, count in rows["status"].value_counts().items())
-
-
-def _short(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def columns(rows: Sequence[Sequence[str]]) -> list[str]:

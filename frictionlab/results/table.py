@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import RESULTS, SCALED, SI, TEXT
+from frictionlab.columns import RESULTS, SCALED, SI, TEXT, belt_speed, given
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import si_columns, si_scales
@@ -176,6 +176,18 @@ def _column_of_words_or_numbers(column: pd.Series) -> pd.Series:
     if all(value is None or isinstance(value, float | int) for value in column):
         return column.astype(float)
     return column.where(column != "", None).astype("str")
+
+
+def status_counts(table: pd.DataFrame) -> dict[str, int]:
+    """How many rows have each status, the most frequent first."""
+    return {str(name): int(count) for name, count in table["status"].value_counts().items()}
+
+
+def swept_inputs(table: pd.DataFrame) -> list[str]:
+    """Inputs besides belt speed that take several values within one law; its label distinguishes laws."""
+    names = [name for name in given(table.columns) if name != belt_speed(table.columns)]
+    within = table.groupby("law", sort=False)[names].nunique(dropna=False).max()
+    return [name for name in names if within[name] > 1]
 
 
 def finished_rows(given: Inputs, earlier: pd.DataFrame) -> tuple[list[int], pd.DataFrame]:

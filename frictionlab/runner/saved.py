@@ -13,7 +13,7 @@ from frictionlab import __version__
 from frictionlab.columns import INPUTS, RESULTS, TEXT
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
-from frictionlab.results.table import whole
+from frictionlab.results.table import status_counts, whole
 from frictionlab.runner.errors import FolderError
 from frictionlab.study import Study, read_back
 from frictionlab.study.grid import grid_size
@@ -47,7 +47,7 @@ class Saved:
     @property
     def counts(self) -> dict[str, int]:
         """How many rows have each status, the commonest first."""
-        return {str(name): int(count) for name, count in self.table["status"].value_counts().items()}
+        return status_counts(self.table)
 
     @property
     def seconds(self) -> float:

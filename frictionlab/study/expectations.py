@@ -159,10 +159,7 @@ def _positive(given: dict[str, Any], key: str, path: Path, notes: Notes) -> floa
     if key not in given:
         notes.add((*path, key), "required key is missing")
         return None
-    value = notes.number(given[key], (*path, key))
-    if value is not None and value <= 0:
-        notes.add((*path, key), f"must be > 0, got {value_text(given[key])}")
-    return value
+    return notes.positive(given[key], (*path, key))
 
 
 def _only(given: dict[str, Any], own: tuple[str, ...], path: Path, notes: Notes) -> None:

@@ -181,6 +181,15 @@ class Notes:
                 self.unknown_key((*path, key), names)
         return value
 
+    def head(self, tree: dict[str, Any], required: Iterable[str], schema: int) -> None:
+        """Note the required keys that a file lacks, and a schema that is not this one."""
+        for key in required:
+            if key not in tree:
+                self.add((key,), "required key is missing")
+        given = tree.get("schema", schema)
+        if isinstance(given, bool) or given != schema:
+            self.add(("schema",), f"must be {schema}, got {value_text(given)}")
+
     def number(self, value: Any, path: Path) -> float | None:
         """The value as a finite number; None, noted, if it is not one."""
         if isinstance(value, bool) or not isinstance(value, (int, float)):
@@ -190,6 +199,13 @@ class Notes:
         else:
             return float(value)
         return None
+
+    def positive(self, value: Any, path: Path) -> float | None:
+        """The value as a finite number; None where it is none, and noted, too, where it is not > 0."""
+        number = self.number(value, path)
+        if number is not None and number <= 0.0:
+            self.add(path, f"must be > 0, got {value_text(value)}")
+        return number
 
     def whole_number(self, value: Any, path: Path, least: int) -> int | None:
         """The value as a whole number of at least ``least``; None, noted, if it is not one."""

@@ -25,7 +25,7 @@ from frictionlab.study.choices import (
 from frictionlab.study.expectations import Table, expectations, result_column
 from frictionlab.study.grid import Sweeps, note_impossible_points, read_sweeps
 from frictionlab.study.law_files import LawReader, StudyLaws, add_law_files, read_laws, saved_law_reader
-from frictionlab.study.mistakes import Notes, Path, StudyError, value_text
+from frictionlab.study.mistakes import Notes, Path, StudyError
 from frictionlab.study.overrides import apply_overrides
 from frictionlab.study.study import SCHEMA, LawChoice, MethodChoice, Study
 from frictionlab.study.validation import build_record, number_paths
@@ -126,12 +126,7 @@ class _StudyReader:
                 self._notes.on_key((key,), "is a part of the scene: write scene: {dimensional: {...}}")
             elif key not in STUDY_KEYS:
                 self._notes.unknown_key((key,), STUDY_KEYS)
-        for key in REQUIRED:
-            if key not in self._tree:
-                self._notes.add((key,), "required key is missing")
-        given = self._tree.get("schema", SCHEMA)
-        if isinstance(given, bool) or given != SCHEMA:
-            self._notes.add(("schema",), f"must be {SCHEMA}, got {value_text(given)}")
+        self._notes.head(self._tree, REQUIRED, SCHEMA)
 
     def _sweep(self) -> Sweeps:
         found = read_sweeps(self._tree, self._known, self._notes)
@@ -171,9 +166,7 @@ class _StudyReader:
         tree, notes = self._tree, self._notes
         words = [key for key in ("title", "source") if key in tree]
         told: dict[str, Any] = {key: notes.text(tree[key], (key,)) for key in words}
-        told["tolerance"] = notes.number(tree.get("tolerance", DEFAULT_TOLERANCE), ("tolerance",))
-        if told["tolerance"] is not None and told["tolerance"] <= 0:
-            notes.add(("tolerance",), f"must be > 0, got {value_text(tree['tolerance'])}")
+        told["tolerance"] = notes.positive(tree.get("tolerance", DEFAULT_TOLERANCE), ("tolerance",))
         keep = notes.mapping(tree.get("keep", {}), ("keep",), ("orbit",)) or {}
         if "orbit" in keep:
             told["keep_orbit"] = notes.whole_number(keep["orbit"], ("keep", "orbit"), 2)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 from typing import ClassVar
+
+import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats, Record
@@ -33,6 +35,23 @@ class ClosureTest:
         self._since = 0 if gap < self._least else self._since + 1
         self._least = min(gap, self._least)
         return gap <= self._enough or self._since >= NOISE_PERIODS
+
+
+def closed_mean(
+    one_period: Callable[[Floats], Floats], state: Floats, places: slice, closing: ClosureTest, period: float
+) -> float:
+    """The mean friction of a motion, period by period until it closes.
+
+    state: its last number is the integral of the friction coefficient, from zero in each period; places: those of
+    positions and velocities. Raises ArithmeticError for one that does not close.
+    """
+    for _ in range(LONGEST_TRANSIENT):
+        end = one_period(state)
+        gap = float(np.linalg.norm((end - state)[places]))
+        if closing.done(gap):
+            return -float(end[-1]) / period
+        state = np.append(end[:-1], 0.0)
+    raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
 
 
 class Peer(Record, ABC):

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest, Peer
+from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
 from frictionlab.bench.peers.scipy_steps import start
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
@@ -58,17 +58,15 @@ def _settled(system: _System, mass: Mass, belt_speed: float, reach: float, toler
     period = 2.0 * math.pi / mass.frequency
     closing, times = ClosureTest(tolerance, mass.normal_load, period), np.array([0.0, period])
     data = np.array([*_real(mass), belt_speed, reach])
-    for _ in range(LONGEST_TRANSIENT):
-        found, fine = lsoda(
-            system.address, state, times, data, max(tolerance, 3e-14), tolerance, MOST_LSODA_STEPS
-        )
+
+    def one_period(start: Floats) -> Floats:
+        limits = max(tolerance, 3e-14), tolerance, MOST_LSODA_STEPS
+        found, fine = lsoda(system.address, start, times, data, *limits)
         if not fine:
             raise ArithmeticError("numbalsoda gave up")
-        gap, rubbed = float(np.linalg.norm((found[-1] - state)[places])), float(found[-1, -1])
-        state = np.append(found[-1, :-1], 0.0)
-        if closing.done(gap):
-            return -rubbed / period
-    raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
+        return found[-1]
+
+    return closed_mean(one_period, state, places, closing, period)
 
 
 def _real(mass: Mass) -> list[float]:

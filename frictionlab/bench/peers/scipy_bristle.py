@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest, Peer
+from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
 from frictionlab.bench.peers.bristle_motion import BristleMotion
 from frictionlab.bench.peers.scipy_steps import start
 from frictionlab.laws.base import FrictionLaw
@@ -49,13 +49,11 @@ def _settled(scene: Scene, law: FrictionLaw, solver: str, tolerance: float) -> f
     places = slice(0, 4) if motion.planar else slice(0, 2)
     sizes = absolute_scales(motion, law, scene)
     closing = ClosureTest(tolerance, motion.mass.normal_load, motion.period)
-    for _ in range(LONGEST_TRANSIENT):
-        end = one_period(motion, state, solver, max(tolerance, 3e-14), tolerance * sizes)
-        gap, rubbed = float(np.linalg.norm((end - state)[places])), float(end[-1])
-        state = np.append(end[:-1], 0.0)
-        if closing.done(gap):
-            return -rubbed / motion.period
-    raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
+
+    def next_state(state: Floats) -> Floats:
+        return one_period(motion, state, solver, max(tolerance, 3e-14), tolerance * sizes)
+
+    return closed_mean(next_state, state, places, closing, motion.period)
 
 
 def absolute_scales(motion: BristleMotion, law: FrictionLaw, scene: Scene) -> Floats:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest, Peer
+from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
 from frictionlab.bench.peers.line import free_orbit
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
@@ -44,17 +44,15 @@ def _settled(scene: Scene, friction: float, solver: str, tolerance: float) -> fl
     period, rates = 2.0 * math.pi / mass.frequency, Rates(mass, friction, scene.belt_speed)
     state = np.array([*start(mass), 0.0])
     settings: dict[str, Any] = {"method": solver, "rtol": max(tolerance, 3e-14), "atol": tolerance}
-    closing = ClosureTest(tolerance, mass.normal_load, period)
-    for _ in range(LONGEST_TRANSIENT):
-        found = solve_ivp(rates, (0.0, period), state, t_eval=[period], **settings)
+
+    def one_period(start: Floats) -> Floats:
+        found = solve_ivp(rates, (0.0, period), start, t_eval=[period], **settings)
         if found.status < 0:
             raise ArithmeticError(f"solve_ivp: {found.message}")
-        end = found.y[:, -1]
-        gap, rubbed = float(np.linalg.norm(end[:4] - state[:4])), float(end[4])
-        state = np.append(end[:4], 0.0)
-        if closing.done(gap):
-            return -rubbed / period
-    raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
+        return found.y[:, -1]
+
+    closing = ClosureTest(tolerance, mass.normal_load, period)
+    return closed_mean(one_period, state, slice(0, 4), closing, period)
 
 
 def start(mass: Mass) -> tuple[float, float, float, float]:

@@ -76,8 +76,8 @@ def main(count: int, seed: int, kinds: list[int]) -> int:
         mean, left = planar_mean(scene, law)
         told += 1
         for answers, tolerance in zip(found, TOLERANCES, strict=True):
-            off = abs(float(answers.columns["mean_friction"][0]) - mean)
-            error = float(answers.columns["error"][0])
+            off = abs(float(answers.mean[0].real) - mean)
+            error = float(answers.error[0])
             if not off <= error + KNOWN + 10.0 * left:
                 wrong += 1
                 print(

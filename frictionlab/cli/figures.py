@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 
-def draw_figures(table: DataFrame, title: str, folder: Path) -> list[Path]:
+def draw_into(table: DataFrame, title: str, folder: Path) -> list[Path]:
     """Draw the figures of a run into its folder; the files. Raises SaveError."""
     from frictionlab.charts.figures import draw_figures  # with matplotlib, which takes a second
     from frictionlab.runner.errors import SaveError

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from frictionlab.cli.figures import draw_figures
+from frictionlab.cli.figures import draw_into
 from frictionlab.cli.output import print_message, print_result
 
 
@@ -17,7 +17,7 @@ def command(run: Path) -> None:
     from frictionlab.runner.saved import read_saved
 
     saved = read_saved(run)
-    if files := draw_figures(saved.table, saved.title, run):
+    if files := draw_into(saved.table, saved.title, run):
         print_result("\n".join(map(str, files)))
     else:
         print_message(f"no figures: the study of {run} sweeps nothing")

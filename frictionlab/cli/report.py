@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from frictionlab.cli.figures import draw_figures
+from frictionlab.cli.figures import draw_into
 from frictionlab.cli.output import print_result
 
 
@@ -18,5 +18,5 @@ def command(run: Path) -> None:
     from frictionlab.runner.saved import read_saved
 
     saved = read_saved(run)
-    draw_figures(saved.table, saved.title, run)
+    draw_into(saved.table, saved.title, run)
     print_result(str(write_report(saved)))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import click
 
 from frictionlab.cli import options
-from frictionlab.cli.figures import draw_figures
+from frictionlab.cli.figures import draw_into
 from frictionlab.cli.output import (
     BROKEN_PLUGIN,
     FAILED,
@@ -143,7 +143,7 @@ def _show_failed(result: Run) -> None:
 def _draw(job: Job, result: Run) -> None:
     from frictionlab.results.table import whole
 
-    if draw_figures(whole(result.table), job.study.title or job.name, job.out):
+    if draw_into(whole(result.table), job.study.title or job.name, job.out):
         print_message(f"figures in {job.out / 'figures'}")
 
 

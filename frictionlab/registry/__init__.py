@@ -23,6 +23,7 @@ from frictionlab.registry.entry_points import (
 from frictionlab.registry.smoke_test import fault_with_values
 
 __all__ = [
+    "INSTALLED_LAWS",
     "LAWS",
     "METHODS",
     "BrokenPlugin",
@@ -106,6 +107,10 @@ class Laws:
         if from_outside(type(law)) and (wrong := fault_with_values(law)):
             home = self._homes.get(name) or home_of(_entry_points(LAWS)[name][0])
             raise home.broken(wrong)
+
+
+INSTALLED_LAWS = Laws()
+"""The installed laws alone, without those of files."""
 
 
 @cache

@@ -20,12 +20,11 @@ from frictionlab.shape.shakedown import Shakedown, Value, shakedown_of_body, sha
 from frictionlab.shape.verdict import Estimate, FrictionCurve, Shape, UnreadableCurve, reduction, shape_of
 
 NOT_ASKED_FOR = f"the table lacks columns that curves are read from: {', '.join(OF_SHAPE)}"
-TEXT = frozenset({"shape", "shape_by_initial", "reason"})
-INSTALLED_LAWS = registry.Laws()
+CURVE_TEXT = frozenset({"shape", "shape_by_initial", "reason"})
 _NEEDED = [name if name != "belt_speed" else "scene.belt_speed" for name in Rows._fields]
 
 
-def curve_table(table: pd.DataFrame, laws: registry.Laws = INSTALLED_LAWS) -> pd.DataFrame:
+def curve_table(table: pd.DataFrame, laws: registry.Laws = registry.INSTALLED_LAWS) -> pd.DataFrame:
     """One row per curve of a result table, in its order; no rows if no curve has two belt speeds.
 
     Points without a number are left out. A measure that cannot be determined is empty, with the reason.
@@ -59,7 +58,7 @@ def curve_inputs(columns: Iterable[str]) -> list[str]:
 
 def _frame(read: list[dict[str, Any]]) -> pd.DataFrame:
     columns = {name: [found.get(name) for found in read] for name in CURVES}
-    types = {name: "str" if name in TEXT else "float" for name in CURVES}
+    types = {name: "str" if name in CURVE_TEXT else "float" for name in CURVES}
     return pd.DataFrame(columns, dtype=object).astype(types)
 
 

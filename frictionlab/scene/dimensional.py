@@ -18,7 +18,7 @@ from frictionlab.quantities import Dimension, Finite, NonNegative, Positive, Rec
 
 STANDARD_GRAVITY = 9.81
 
-RecordT = TypeVar("RecordT", bound=Record)
+_RecordT = TypeVar("_RecordT", bound=Record)
 
 
 class Units(NamedTuple):
@@ -235,7 +235,7 @@ def _divide(value: float | tuple[float, ...], unit: float) -> float | tuple[floa
 
 
 @lru_cache(maxsize=4096)  # the rows of a curve share their law
-def scaled_law(law: RecordT, scales: Units) -> RecordT:
+def scaled_law(law: _RecordT, scales: Units) -> _RecordT:
     """A law given in SI units, converted to the lengths and times of a scene."""
     parameters = scaled_parameters(law, scales)
     return type(law).model_validate(law.model_dump(exclude_none=True) | parameters) if parameters else law

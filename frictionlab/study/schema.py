@@ -12,14 +12,13 @@ from frictionlab.study import reader
 from frictionlab.study.grid import LARGEST_GRID
 from frictionlab.study.study import SCHEMA
 
-INSTALLED_LAWS = registry.Laws()
 _NUMBER = {"type": "number"}
 _TEXT = {"type": "string"}
 # Behind a validator defined here a bound keeps pydantic's name.
 _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
 
 
-def schema(laws: registry.Laws = INSTALLED_LAWS) -> dict[str, Any]:
+def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of a study; rules on several keys at once are left to ``check``."""
     definitions: dict[str, Any] = {}
     scene = _record(Scene, definitions)

@@ -13,7 +13,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from frictionlab.study.mistakes import Notes, Path, closest, did_you_mean, number_text, value_text
 
-RecordT = TypeVar("RecordT", bound=BaseModel)
+_RecordT = TypeVar("_RecordT", bound=BaseModel)
 
 # Each round corrects the mistakes it finds, so that the next finds those they hid; a deep study needs four rounds.
 _ROUNDS = 10
@@ -73,7 +73,7 @@ def record_at(record: type[BaseModel], path: Path) -> type[BaseModel] | None:
     return found
 
 
-def build_record(record: type[RecordT], tree: Any, path: Path, notes: Notes) -> RecordT | None:
+def build_record(record: type[_RecordT], tree: Any, path: Path, notes: Notes) -> _RecordT | None:
     """The record of this mapping; None, with every mistake noted, if it cannot be built."""
     if notes.mapping(tree, path) is None:
         return None

@@ -1,4 +1,4 @@
-"""Rate and friction of one bristle, its exact advance along a slip path, its projection onto the yield surface."""
+"""Rate and friction of one bristle, its advance over a time step, its projection onto the yield surface."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ resistance = by_dimension(on_the_line, in_the_plane)
 
 
 NEARBY = 1e-6
-"""Share of a path or a deflection at which the rate at rest of the bristles is told."""
+"""Share of a path or a deflection at which the decay rate of undeflected bristles is evaluated."""
 
 
 @inner
 def _decay(law: Any, v: Any, z: Any) -> float:
-    """a of z' = v - a z: the rate at which slip v forgets the deflection z, as the law's own rate has it."""
+    """a of z' = v - a z: the decay rate of the deflection z under slip v, from the rate of the law."""
     lost = v - law.rate(v, z)
     return (lost * z.conjugate()).real / (z * z.conjugate()).real
 
 
 @inner
 def _after(law: Any, h: float, v: Any, at: Any, z: Any) -> Any:
-    """z after the time h, a taken as at the deflection ``at``."""
+    """z after the time h with a constant, that of the deflection ``at`` (an exponential step)."""
+    # For z = 0 the quotient that defines a is undefined: it is evaluated at a small deflection along the slip.
     if length(at) == 0.0:
         at = (NEARBY * min(h, law.largest_deflection() / length(v))) * v
     gone = h * _decay(law, v, at)
@@ -36,18 +37,20 @@ def _after(law: Any, h: float, v: Any, at: Any, z: Any) -> Any:
 
 @inner
 def _within(radius: float, z: Any) -> Any:
-    """The deflection, or the nearest one of that size."""
+    """The deflection, or the nearest one of magnitude ``radius``."""
     size = length(z)
     return (radius / size) * z if size > radius else z
 
 
 @inner
 def _moved(law: Any, h: float, v: Any, z: Any) -> Any:
-    """Of order two in h for any law; exact where a does not change with z."""
+    """The deflection after the time h: exact for laws with an exact path, else of order two in h."""
     if length(v) * h == 0.0:
         return z
     if law.exact_path():
         return law.deflected(z, h * v)
+    # Exponential midpoint rule: a half step gives the deflection at which a is evaluated for the whole step. Neither
+    # may leave the set of deflections that slip can reach.
     largest = max(law.largest_deflection(), length(z))
     middle = _within(largest, _after(law, 0.5 * h, v, z, z))
     return _within(largest, _after(law, h, v, middle, z))
@@ -66,12 +69,13 @@ def _carried_in_the_plane(law: Any, h: float, v: complex, z: complex) -> complex
 
 
 advance_bristle = by_dimension(_carried_on_the_line, _carried_in_the_plane)
-"""carried(law, h, v, z): the deflection after slip velocity v for the time h, in the form the law names."""
+"""advance_bristle(law, h, v, z): the deflection after slip velocity v for the time h, in the law's planar form."""
 
 
 @inner
 def _yielded(law: Any, z: Any) -> Any:
-    return _within((1.0 + 2e-15) * law.yield_deflection(), z)  # not inside by rounding: it would bend on
+    # 2e-15 outside the yield surface, so that rounding cannot make a yielded deflection elastic.
+    return _within((1.0 + 2e-15) * law.yield_deflection(), z)
 
 
 def _caught_on_the_line(law: Any, z: float) -> float:
@@ -85,4 +89,4 @@ def _caught_in_the_plane(law: Any, z: complex) -> complex:
 
 
 project_to_yield = by_dimension(_caught_on_the_line, _caught_in_the_plane)
-"""caught(law, z): the deflection, brought back to where the law yields if a step has left it beyond."""
+"""project_to_yield(law, z): the deflection, projected onto the yield surface if a step has left it outside."""

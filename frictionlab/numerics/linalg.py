@@ -10,6 +10,7 @@ from frictionlab.compile.decorators import inner
 
 @inner
 def norm(z: Any) -> float:
+    """The Euclidean norm."""
     total = 0.0
     for value in z:
         total += value * value
@@ -18,6 +19,7 @@ def norm(z: Any) -> float:
 
 @inner
 def multiply(matrix: Any, z: Any, out: Any) -> None:
+    """Write the product of a matrix and a vector to ``out``."""
     for row in range(z.size):
         total = 0.0
         for column in range(z.size):
@@ -34,6 +36,7 @@ def invert(matrix: Any, inverse: Any) -> bool:
         for column in range(n):
             inverse[row, column] = 1.0 if row == column else 0.0
     for pivot in range(n):
+        # Row pivoting: the largest element of the column, below 1e-9 only for a matrix singular to rounding.
         best = pivot
         for row in range(pivot + 1, n):
             if abs(work[row, pivot]) > abs(work[best, pivot]):
@@ -47,6 +50,7 @@ def invert(matrix: Any, inverse: Any) -> bool:
         for column in range(n):
             work[pivot, column] = work[pivot, column] * scale
             inverse[pivot, column] = inverse[pivot, column] * scale
+        # Eliminate the column in all other rows, above the pivot too: no back substitution is needed.
         for row in range(n):
             if row != pivot:
                 factor = work[row, pivot]
@@ -58,11 +62,13 @@ def invert(matrix: Any, inverse: Any) -> bool:
 
 @inner
 def subtract(z: Any, step: Any, out: Any) -> None:
+    """Write z - step to ``out``."""
     for i in range(z.size):
         out[i] = z[i] - step[i]
 
 
 @inner
 def copy(source: Any, out: Any) -> None:
+    """Write a vector to ``out``; a slice assignment would take seconds to compile."""
     for i in range(source.size):
         out[i] = source[i]

@@ -1,4 +1,4 @@
-"""What a sequence of values from halved steps, or halved smoothing widths, tells about its limit."""
+"""The limit of a sequence of values from halved steps or halved smoothing widths, with an error bound."""
 
 from __future__ import annotations
 
@@ -9,31 +9,30 @@ from typing import NamedTuple
 import numpy as np
 
 SURE = 0.25
-"""How far the observed ratio of two changes may be from the declared one for the order to count as seen."""
+"""Largest relative deviation of the observed ratio of two changes from that of the order."""
 FEWEST = 4
-"""Values needed to see an order twice."""
+"""Values needed to observe an order twice."""
 
 
 class Limit(NamedTuple):
-    """Where a sequence goes, a bound on how far that is from the truth, and the order that was relied on."""
+    """The limit of a sequence, a bound on its error, and the order used for extrapolation."""
 
     value: float
     error: float
-    order: int  # 0: none was seen
+    order: int  # 0: none was observed
 
 
 SMOOTH, STICKING, REVERSING = 0.2, 1.0, math.inf
-"""How much of Richardson's correction is doubtful at least: where all is smooth; where the mass sticks, which keeps
-the order but not the regularity of the error; where slip reverses inside a step, and errors are erratic."""
+"""Smallest share of Richardson's correction that is added to the error: for smooth motion; for stick, which keeps the
+order but not the regularity of the error; for reversals inside a step, where errors are irregular."""
 
 
 def richardson(values: Sequence[float], order: int, least: float) -> Limit:
     """The limit of values from steps halved each time, of a method of this order on smooth motion.
 
-    Where two ratios of changes in a row agree with the order, Richardson's extrapolation (1911), of which at least
-    the share ``least`` is in doubt. Otherwise the last value, which is as far off as order one allows: the largest
-    of the last three changes, each scaled to the last step as order one says - by a little more where no reversal
-    makes the changes erratic.
+    Where two consecutive ratios of changes agree with the order: Richardson's extrapolation (1911), with at least the
+    share ``least`` of the correction as error. Otherwise the last value with an error of order one: 1.5 times the
+    largest of the last three changes, each divided by 2 (without reversals 3) per halving since.
     """
     changes = np.diff(values)
     if len(values) >= FEWEST and least < math.inf and _seen(changes, order):
@@ -46,7 +45,7 @@ def richardson(values: Sequence[float], order: int, least: float) -> Limit:
 
 
 def _seen(changes: np.ndarray, order: int) -> bool:
-    """Whether the last three changes shrink as the order says."""
+    """Whether the last three changes decrease in the ratio of the order."""
     if (changes[-3:] == 0.0).any():
         return False
     ratios = changes[-3:-1] / changes[-2:]
@@ -54,7 +53,7 @@ def _seen(changes: np.ndarray, order: int) -> bool:
 
 
 def first_error(values: Sequence[float]) -> float:
-    """How far the first value is from the limit, by the ones of finer steps: order one leaves the rest below."""
+    """Bound on the distance of the first value to the limit, from the values of finer steps, at order one."""
     return 1.5 * max(abs(value - values[0]) for value in values[1:])
 
 

@@ -1,4 +1,4 @@
-"""How short explicit steps must be for a law with several memories or scalars."""
+"""Stability limit of explicit steps for a law with several memories or scalars."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
 AGE = 1.0
-"""Largest step times rate of decay of a scalar: none of the stages between then falls below zero."""
+"""Largest step times decay rate of a scalar, so that no stage of a step becomes negative."""
 SLOW = np.geomspace(1e-30, 1.0, 241)
-"""Speeds at which friction near rest is told, over that of the motion."""
+"""Speeds at which friction near rest is evaluated, over that of the motion."""
 
 
 def decay(law: MemoryLaw) -> float:
-    """Largest step times rate of decay of what the law remembers."""
+    """Largest stable step times decay rate of the memory."""
     return DECAY if law.memory_kind == "deflections" else AGE
 
 
@@ -29,7 +29,7 @@ def usual_slip(scene: Scene) -> float:
 
 
 def first_memory(scene: Scene, law: MemoryLaw) -> Floats:
-    """What is remembered to begin with: no deflection; scalars as in steady sliding as fast as the motion."""
+    """The memory at the start: no deflection; scalars as in steady sliding at the speed of the motion."""
     if law.memory_kind == "deflections":
         return np.zeros(law.count())
     return np.array([law.steady(usual_slip(scene), k) for k in range(law.count())])
@@ -43,7 +43,7 @@ def presliding_of(law: MemoryLaw) -> float:
 
 
 def springs_of(scene: Scene, law: MemoryLaw) -> Floats:
-    """The stiffness of each memory in the norm of energy; of a scalar, by what it does to friction."""
+    """The stiffness of each memory in the energy norm; of a scalar, from its effect on friction."""
     speed, load = usual_slip(scene), scene.mass().normal_load
     most = law.sliding_friction(speed)
     steady = np.array([law.steady(speed, k) for k in range(law.count())])
@@ -80,7 +80,7 @@ def _quickest_when_held(scene: Scene, law: MemoryLaw) -> float:
 
 
 def _spring(law: MemoryLaw) -> float:
-    """Friction coefficient per slip from rest that only deflects [1/scene length]."""
+    """Friction coefficient per slip from rest while the contact is elastic [1/scene length]."""
     if law.memory_kind == "scalars":
         return 0.0
     bent = 1e-6 * (presliding_of(law) or 1.0)
@@ -88,7 +88,7 @@ def _spring(law: MemoryLaw) -> float:
 
 
 def _dashpot(scene: Scene, law: MemoryLaw, speed: float) -> float:
-    """Friction coefficient per slip velocity, about this speed; per velocity from rest where it deflects."""
+    """Slope of friction over slip velocity at this speed; for deflections, friction from rest over the speed."""
     memory = first_memory(scene, law)
     if law.memory_kind == "deflections":
         return _at_once(law, speed, memory) / speed
@@ -96,13 +96,13 @@ def _dashpot(scene: Scene, law: MemoryLaw, speed: float) -> float:
 
 
 def _at_once(law: MemoryLaw, speed: float, memory: Floats) -> float:
-    """Friction at a speed, before the memory has changed."""
+    """Friction at a speed with this memory."""
     rates = np.array([law.rate(speed, memory, k) for k in range(law.count())])
     return float(law.friction(speed, memory, rates))
 
 
 def steps_through_rest(scene: Scene, law: MemoryLaw) -> float:
-    """Steps per period that rk4 needs where slip comes to rest: the law may resist slow slip by any slope there."""
+    """Steps per period that rk4 needs where slip comes to rest: the slope of friction may be steep there."""
     speeds, memory = usual_slip(scene) * SLOW, first_memory(scene, law)
     steepest = max(_at_once(law, float(speed), memory) / float(speed) for speed in speeds)
     return 2.0 * math.pi / scene.frequency * scene.mass().normal_load * steepest / DECAY

@@ -1,4 +1,4 @@
-"""How short the steps of an explicit stepper must be for a law with bristles not to explode."""
+"""Stability limit of explicit steps for a law with bristles."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity
 
 MARGIN = 1.02
-"""Of the steps a limit asks for, as many as are taken."""
+"""Steps used over the steps that a stability limit requires."""
 
 
 def spring_of(law: BristleLaw) -> float:
-    """Friction coefficient per deflection [1/scene length], by the law's own friction."""
+    """Friction coefficient per deflection [1/scene length], from the friction of the law."""
     depth = law.presliding()
     depth = depth if math.isfinite(depth) else 1e-6
     return float(law.friction(0.0, depth, 0.0)) / depth
 
 
 def dashpot_of(law: BristleLaw) -> float:
-    """Friction coefficient per slip velocity that the bristles follow [1/scene velocity]."""
+    """Friction coefficient per slip velocity while bristles follow the slip [1/scene velocity]."""
     return float(law.friction(1.0, 0.0, 1.0))
 
 
 def fastest_slip(law: BristleLaw | MemoryLaw, h: float, decay: float = bristle_rk4.DECAY) -> float:
-    """The slip speed at which what is remembered decays as quickly as steps of length h of rk4 can bear.
+    """The slip speed at which the memory decays at the largest rate for which rk4 steps of length h are stable.
 
     decay: the largest step times rate.
     """
@@ -49,14 +49,14 @@ def fastest_slip(law: BristleLaw | MemoryLaw, h: float, decay: float = bristle_r
 
 
 def friction_falls(law: FrictionLaw) -> bool:
-    """Whether steady sliding friction falls anywhere as the speed grows."""
+    """Whether steady sliding friction decreases with speed anywhere."""
     speeds = np.geomspace(1e-9, 1e9, 721)
     friction = [law.sliding_friction(speed) for speed in [0.0, *speeds.tolist()]]
     return bool((np.diff(friction) < -1e-12 * friction[0]).any())
 
 
 def fewest_steps(scene: Scene, law: BristleLaw, stepper: str) -> int:
-    """Steps per period that an explicit stepper needs; 1 where any number will do.
+    """Steps per period that an explicit stepper needs; 1 where any number is stable.
 
     For slip as fast as that of the friction-free motion on this belt, and for a mass held by its bristles.
     """

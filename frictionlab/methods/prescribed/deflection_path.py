@@ -1,8 +1,8 @@
-"""A deflection followed over one period of a prescribed slip, at any stiffness: collocation in steps that adapt.
+"""The deflection over one period of a prescribed slip, at any stiffness: collocation with adaptive steps.
 
-A step is taken whole and in two halves, and shortened until both agree on the deflection and on the friction's sum;
-so the steps find by themselves where the law's rate jumps. Towards slow slip they are graded, as what happens there
-may be too short for steps to notice.
+Each step is computed whole and in two halves, and shortened until both agree on the deflection and on the integral of
+friction; steps therefore become short where the rate of the law jumps. Towards slow slip they are graded, since the
+layers there may be too short to be detected by the error of a long step.
 
 Licence (tests/benchmarks/specialists.py): those of the closed loops on the line and in the plane, which this serves.
 """
@@ -36,11 +36,11 @@ FAILED = 1e9
 ROOM = 40000
 """Panels of a period."""
 SHORTEST = 1e-14
-"""Angle below which a step is taken as it is: a jump of the law's rate inside it moves nothing that counts."""
+"""Angle below which a step is accepted as it is: a jump of the rate inside it has a negligible effect."""
 
 
 class Stretch(NamedTuple):
-    """A part of the period without rest inside: the place it is told from, its begin from there, its length.
+    """A part of the period without rest inside: its reference place, its begin relative to that, its length.
 
     near_start, near_end: angle around either end within which steps need not shorten further.
     """
@@ -79,7 +79,7 @@ def _room(z: Any) -> Panels:
 
 @inner
 def _note(law: Any, slip: Slip, stretch: Stretch, span: Any, z: Any, work: Any, out: Panels, n: int) -> None:
-    """Write a panel down."""
+    """Write a panel to the output."""
     out.start[n], out.width[n] = stretch.place.angle + span[0], span[1]
     v = slip_at(slip, stretch.place, span[0], z)
     out.slip[n, 0], out.deflection[n, 0] = v, z
@@ -93,7 +93,7 @@ def _note(law: Any, slip: Slip, stretch: Stretch, span: Any, z: Any, work: Any, 
 
 @inner
 def _rubbed(span: Any, work: Any) -> Any:
-    """The friction's sum over a panel."""
+    """The integral of friction over a panel."""
     total = 0.0 * work.friction[0]
     for stage in range(STAGES):
         total = total + WEIGHTS[stage] * work.friction[stage]
@@ -116,7 +116,7 @@ def _times(first: Any, second: Any) -> None:
 
 @inner
 def _allowed(stretch: Stretch, at: float) -> float:
-    """The longest step from here."""
+    """The longest step from here, by the distance to both ends of the stretch."""
     left = stretch.length - at
     ahead = left if left <= 0.5 * stretch.near_end else max(left / 3.0, 0.5 * stretch.near_end)
     return min(min(math.pi / 8.0, ahead), min(0.5 * max(at, stretch.near_start), left))
@@ -124,7 +124,7 @@ def _allowed(stretch: Stretch, at: float) -> float:
 
 @inner
 def _tried(law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: Any, work: Any) -> float:
-    """What a step taken whole and in halves disagrees about: deflection, friction's sum; huge where it fails."""
+    """Difference of a whole step and its two halves in deflection and friction integral; ``FAILED`` if one fails."""
     whole, first, second = work
     at, step = span
     half = 0.5 * step
@@ -149,7 +149,7 @@ def _outward(v: Any, z: Any) -> bool:
 
 @inner
 def _turned(mode: float, radius: float, v: Any, z: Any) -> bool:
-    """Whether a deflection that follows the slip (mode 0) has begun to yield, or a yielding one to follow it."""
+    """Whether an elastic deflection (mode 0) has begun to yield, or a yielding one to unload."""
     if mode != 0.0:
         return not _outward(v, z)
     return _outward(v, z) and abs(z) > radius * (1.0 + 1e-14)
@@ -230,7 +230,7 @@ def _until(
 
 @inner
 def _pressed(z: Any, carry: Any) -> None:
-    """A deflection that begins to move along its circle forgets how far out it was."""
+    """At the onset of yield the radial part of the derivative vanishes: the deflection then stays on its circle."""
     n, size = carry.shape[0], abs(z)
     for column in range(n):
         along = 0.0
@@ -267,7 +267,7 @@ def _bounded(scale: Scale, circle: float) -> Scale:
 def _switched(
     law: Any, slip: Slip, place: Place, at: float, scale: Scale, radius: float, z: Any, carry: Any
 ) -> Scale:
-    """The other mode, and its mark on the derivative."""
+    """The scale with the other mode; the derivative is updated for the change of mode."""
     v = slip_at(slip, place, at, z)
     if radius == 0.0:
         _jumped(law, slip, v, place.angle + at, z, scale.circle, carry)
@@ -280,7 +280,7 @@ def _switched(
 
 @inner
 def _started(slip: Slip, stretches: Any, scale: Scale, z: Any, carry: Any) -> Scale:
-    """The mode in which a deflection that may follow the slip begins the period."""
+    """The mode, elastic or yielding, at the start of the period."""
     radius = scale.circle
     begin = Place(stretches[0, 0], complex(stretches[0, 1], stretches[0, 2]))
     outward = _outward(slip_at(slip, begin, stretches[0, 3] + 1e-9, z), z)

@@ -1,7 +1,7 @@
-"""The classical Runge-Kutta method of order 4 (W. Kutta, 1901) for x'' = f(tau, x, x'), blind to events.
+"""The classical Runge-Kutta method of order 4 (W. Kutta, 1901) for x'' = f(tau, x, x'), without event location.
 
-Where the rates jump inside a step it is of order one, and erratic: its weighted mean of four rates knows nothing of
-when the jump came.
+A step in which the rates jump is of order one, with irregular errors: the weighted mean of four rates does not depend
+on the time of the jump.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Taken(NamedTuple):
 def stepper(rates: Any) -> Any:
     """``step(problem, k, x, v, h)`` for a kernel function ``rates(problem, j, x, v)`` = (x'', friction).
 
-    j counts half steps; the kth step begins at j = 2 k. It never ends at rest: to it that is an instant.
+    j counts half steps; the kth step begins at j = 2 k. It has no stick phases: a step never ends at rest.
     """
 
     @inner

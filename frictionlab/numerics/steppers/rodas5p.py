@@ -64,7 +64,7 @@ COUPLINGS = np.array([[*row, *[0.0] * (STAGES - len(row))] for row in _COUPLINGS
 
 @inner
 def factored(matrix: Any, rows: Any) -> None:
-    """Replace a small matrix by its factors, with row pivots in ``rows`` (Gauss)."""
+    """Replace a small matrix by its LU factors, with row pivots in ``rows``."""
     n = rows.size
     for pivot in range(n):
         best = pivot

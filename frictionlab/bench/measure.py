@@ -1,4 +1,4 @@
-"""Every contender on every workload: what it costs and how far off it is."""
+"""Time and error of every method and peer on every workload."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A bench list as it will be measured: frozen, with every default filled in."""
+"""The record of a bench list: frozen, with every default filled in."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class UnknownCurve(Exception):
 
 @dataclass(frozen=True)
 class BenchSetting:
-    """How well a solver is asked to do: the quantity that is varied, its value, and the tolerance to ask for."""
+    """A setting of a solver: the quantity that is varied, its value, and the tolerance."""
 
     quantity: str
     value: float
@@ -41,13 +41,13 @@ class Contender:
 
     @property
     def side(self) -> Literal["method", "peer"]:
-        """Whose it is."""
+        """Whether it is a method of frictionlab or a peer."""
         return "peer" if isinstance(self.solvers[0][1], Peer) else "method"
 
 
 @dataclass(frozen=True)
 class ReferenceSource:
-    """What errors are measured against: a method at its finest, or values known from elsewhere.
+    """The source of reference values: a method at a small tolerance, or values from a file.
 
     kind: of the method; empty for values, which are by belt speed. tolerance: asked of the method, or the error of
     the values.
@@ -97,7 +97,7 @@ class Bench:
 
 @dataclass(frozen=True)
 class ReferenceMeans:
-    """A reference worked out: mean friction and its own error at each point, NaN where it has none."""
+    """Reference values: mean friction and its error at each point, NaN where there is none."""
 
     label: str
     kind: str

@@ -1,4 +1,4 @@
-"""What errors are measured against: never a method's own answers."""
+"""Reference values for errors: never the results of the method itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A method or a peer on a curve: its answers with their statuses, whatever happens, and the task to time."""
+"""Solving a curve by a method or a peer: results with status, failures included, and the tasks to time."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class SolverAnswers:
 def solve_points(
     solver: Method | Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
 ) -> SolverAnswers:
-    """The answers of a solver, refusals and failures included."""
+    """The results of a solver, refusals and failures included."""
     if isinstance(solver, Peer):
         return _peer_answers(solver, scenes, law, tolerance)
     n = len(scenes)

@@ -1,4 +1,4 @@
-"""A result table taken apart into curves: what runs along the axis, what tells neighbours apart."""
+"""The curves of a result table: the input along the axis, and the input that distinguishes curves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from frictionlab.columns import SCALED, belt_speed, given
 
-MOST_CURVES_IN_A_PICTURE = 12  # of several laws; more of them cannot be told apart
+MOST_CURVES_IN_A_PICTURE = 12  # of several laws; more cannot be distinguished
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
 SweptValue = tuple[str, float | None]  # a swept input and its value; None where a law has no such parameter
 
@@ -21,8 +21,8 @@ SweptValue = tuple[str, float | None]  # a swept input and its value; None where
 class CurveData:
     """The rows of one law and method whose inputs differ in the abscissa alone, sorted along it.
 
-    member: the setting that tells the curve from its neighbours, if any; panel: those that give it a picture
-    of its own. place: the numbers of its law, member and method among those of the table.
+    member: the swept value that distinguishes the curve within its picture, if any; panel: the values that select its
+    picture. place: the indices of its law, member and method among those of the table.
     """
 
     law: str
@@ -35,7 +35,7 @@ class CurveData:
 
 @dataclass(frozen=True)
 class Family:
-    """Every curve of a table, the input along the axis, and the input that tells neighbours apart."""
+    """Every curve of a table, the input along the axis, and the input that distinguishes curves of a picture."""
 
     abscissa: str
     member: str | None

@@ -1,4 +1,4 @@
-"""What a check is: a name, a sentence, the laws it is for, and a body that draws an example and judges it."""
+"""The record of a check: its name, a sentence, the laws it applies to, and a function that tests one example."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ BASES = (FrictionLaw, SlidingLaw, BristleLaw, MemoryLaw)
 
 @dataclass(frozen=True)
 class Check:
-    """One thing that holds for every law it is for.
+    """A property of every law to which the check applies.
 
-    name: of a few words with underscores, as ``expected_failures`` takes it. about: what holds, in a sentence.
-    skips: why a law needs no such check, or ''. share: of the examples asked for, below one where examples are dear;
-    0 for what is looked at once. seldom: what it means where no parameters drawn let the check run. declares: the
-    method by which a law says that it is for it; one that leaves it as its base has it needs no check. after: judges
-    what all examples noted. patience: how many times the time limit it may take.
+    name: a few words with underscores, as used in ``expected_failures``. about: the property, in a sentence.
+    skips: why a law does not need the check, or ''. share: fraction of the examples to run, below one where examples
+    are slow; 0 for a single one. seldom: the reason to skip if no drawn parameters let the check run. declares: the
+    method by which a law declares the property; a law that does not override it needs no check. after: tests what all
+    examples noted. patience: factor on the time limit.
     """
 
     name: str
@@ -37,14 +37,14 @@ class Check:
     patience: float = 1.0
 
     def needless(self, law: type[FrictionLaw]) -> str:
-        """Why this law needs no such check, or ''."""
+        """Why this law does not need the check, or ''."""
         if reason := self.skips(law):
             return reason
         return self.seldom if self.declares and _owner(law, self.declares) in BASES else ""
 
 
 def _owner(law: type[FrictionLaw], method: str) -> type:
-    """The class that a law has a method from."""
+    """The class that defines a method of a law."""
     return next(kind for kind in law.__mro__ if method in vars(kind))
 
 
@@ -54,7 +54,7 @@ def for_every_law(law: type[FrictionLaw]) -> str:
 
 
 def for_laws_of(*kinds: Any, without: str) -> Skips:
-    """For laws of these kinds; ``without`` is why the others need it not."""
+    """For laws of these classes; ``without`` is the reason to skip others."""
     return lambda law: "" if issubclass(law, kinds) else without
 
 

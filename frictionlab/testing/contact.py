@@ -1,4 +1,4 @@
-"""A law asked as one contact: slip and memory in, rates and friction out, whatever kind of memory it has."""
+"""One interface to laws with any kind of memory: slip velocity and memory in, rates and friction out."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ContactMemory = tuple[Any, ...]
 
 
 class Response(NamedTuple):
-    """How a contact answers a slip velocity: rates of its memory and the friction coefficient along the slip."""
+    """The response of a contact to a slip velocity: rates of its memory and the friction coefficient."""
 
     rates: ContactMemory
     friction: Any
@@ -33,14 +33,14 @@ def response(law: FrictionLaw, v: Any, memory: ContactMemory) -> Response:
 
 
 def deflection_scale(law: BristleLaw) -> float:
-    """The largest deflection, or else one of the law's size [scene length]."""
+    """The largest deflection, else the presliding length, else 1 [scene length]."""
     return next(
         (size for size in (law.largest_deflection(), law.presliding()) if 0.0 < size < float("inf")), 1.0
     )
 
 
 def memory_after_slip(law: FrictionLaw, v: Any, share: float) -> ContactMemory:
-    """A share of the deflections that long slip at velocity ``v`` brings; of scalars, those of steady sliding."""
+    """A share of the deflections of steady sliding at velocity ``v``; scalars as in steady sliding."""
     if isinstance(law, BristleLaw):
         return (share * deflection_scale(law) * (v / abs(v)),)
     if isinstance(law, MemoryLaw):
@@ -50,21 +50,21 @@ def memory_after_slip(law: FrictionLaw, v: Any, share: float) -> ContactMemory:
 
 
 def stored_work(law: FrictionLaw, memory: ContactMemory) -> float:
-    """The work per unit normal load that the memory can give back [scene length]."""
+    """The recoverable work in the memory per unit normal load [scene length]."""
     if isinstance(law, BristleLaw):
         return law.stored(memory[0])
     return law.stored(np.array(memory)) if isinstance(law, MemoryLaw) else 0.0
 
 
 def rotate(law: FrictionLaw, memory: ContactMemory, turn: complex) -> ContactMemory:
-    """The memory after everything was turned: deflections turn too, scalars and a deflection along slip do not."""
+    """The memory after a rotation of the plane: deflections rotate, scalars and a deflection along slip do not."""
     if not has_direction(law):
         return memory
     return tuple(turn * each for each in memory)
 
 
 def reflect(law: FrictionLaw, memory: ContactMemory) -> ContactMemory:
-    """The memory reflected in the belt's line."""
+    """The memory after a reflection about the direction of the belt."""
     return tuple(each.conjugate() for each in memory) if has_direction(law) else memory
 
 
@@ -86,7 +86,7 @@ def dot(a: Any, b: Any) -> float:
 
 
 def rounding_noise(law: FrictionLaw, v: Any, memory: ContactMemory, step: float = 1e-13) -> Response:
-    """How much the response moves with its arguments' own rounding: what no comparison can ask less of."""
+    """The change of the response under rounding of its arguments: the smallest tolerance of a comparison."""
     base = response(law, v, memory)
     rates, friction = [0.0] * len(memory), 0.0
     shifts = (1.0 + step, 1.0 - step, cmath.exp(1j * step))

@@ -1,4 +1,4 @@
-"""What a battery found: one line per check, as a table for people, records for programs and Markdown to publish."""
+"""The results of a battery, one per check: as a text table, as records and as a Markdown table."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ Result = Literal["passed", "failed", "skipped", "expected failure"]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one check.
+    """The result of one check.
 
-    examples: how many it ran. reason: of a skip, or why a failure was expected. counterexample: of a failure, the
-    smallest found: what is wrong, and the numbers it was seen with. seconds: with compiling.
+    examples: how many were run. reason: of a skip or of an expected failure. counterexample: the smallest one of a
+    failure: what is wrong, with its numbers. seconds: compilation included.
     """
 
     check: str
@@ -26,7 +26,7 @@ class Outcome:
 
     @property
     def good(self) -> bool:
-        """Whether nothing here needs mending."""
+        """Whether it did not fail, expected failures apart."""
         return self.result != "failed"
 
     @property
@@ -61,7 +61,7 @@ class Report:
         return {outcome.check: outcome for outcome in self.outcomes}[check]
 
     def count(self, result: Result) -> int:
-        """How many checks ended so."""
+        """The number of checks with this result."""
         return sum(outcome.result == result for outcome in self.outcomes)
 
     def records(self) -> list[dict[str, Any]]:
@@ -69,7 +69,7 @@ class Report:
         return [{"law": self.law, **asdict(outcome)} for outcome in self.outcomes]
 
     def summary(self, name: str = "") -> str:
-        """One line: how many checks ended how, and how many examples they took."""
+        """One line: the number of checks with each result, and of examples."""
         ends: Sequence[Result] = "passed", "failed", "skipped", "expected failure"
         counts = [f"{self.count(end)} {end}" for end in ends if self.count(end)]
         seconds = sum(outcome.seconds for outcome in self.outcomes)
@@ -99,7 +99,7 @@ class LawFailed(AssertionError):
 
 
 def heading(name: str) -> str:
-    """What stands above the lines of a law's outcomes."""
+    """The heading above the outcomes of a law."""
     return f"\n{name}\n{'check':32}  {'result':16}  {'ran':>5}"
 
 

@@ -1,4 +1,4 @@
-"""Running a check: examples drawn and counted, the smallest counterexample kept, no answer waited for too long."""
+"""Running a check on drawn examples under a time limit, with the smallest counterexample of a failure."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from frictionlab.testing.strategies import quietly
 
 
 class TimeLimitExceeded(BaseException):
-    """No answer within the time limit; no ``except Exception`` of a law can swallow it."""
+    """Raised at the time limit; not an Exception, so that a law cannot catch it by ``except Exception``."""
 
 
 class ExampleCount:
-    """What the examples of one check came to."""
+    """The number of examples of a check, the last one, and their notes."""
 
     def __init__(self) -> None:
         self.examples = 0
@@ -37,7 +37,7 @@ class ExampleCount:
 
 
 def run_check(check: Check, law: type[FrictionLaw], examples: int, seconds: float) -> Outcome:
-    """One check of one law. A check that ran nothing has failed, unless what it is about never comes up."""
+    """Run one check of one law. Without any example it has failed, unless ``seldom`` gives a reason."""
     if reason := check.needless(law):
         return Outcome(check.name, "skipped", 0, reason)
     counted, start = ExampleCount(), time.perf_counter()
@@ -55,7 +55,7 @@ def run_check(check: Check, law: type[FrictionLaw], examples: int, seconds: floa
 def _problem(
     check: Check, law: type[FrictionLaw], counted: ExampleCount, examples: int, seconds: float
 ) -> str | None:
-    """What is wrong, with the smallest counterexample; None where nothing is."""
+    """The failure with its smallest counterexample; None if there is none."""
     try:
         with time_limit(seconds), warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -76,7 +76,7 @@ def _problem(
 def _examples(
     check: Check, law: type[FrictionLaw], counted: ExampleCount, examples: int
 ) -> Callable[[], None]:
-    """The body on so many drawn examples; Hypothesis ends with the smallest one that fails."""
+    """The check on ``examples`` drawn examples; Hypothesis ends with the smallest failing one."""
 
     def body(data: Any) -> None:
         counted.last = one = Given(law, data.draw, counted.notes)
@@ -93,7 +93,7 @@ def _drawn_values(counted: ExampleCount) -> str:
 
 
 def _describe_failure(problem: Exception, law: type[FrictionLaw]) -> str:
-    """A violation's own words; of any other exception, the line of the law's file it came from too."""
+    """The message of a violation; of any other exception also the line of the law that raised it."""
     if isinstance(problem, AssertionError):
         return str(problem)
     files = {getattr(sys.modules.get(kind.__module__), "__file__", None) for kind in law.__mro__[:-1]}
@@ -102,7 +102,7 @@ def _describe_failure(problem: Exception, law: type[FrictionLaw]) -> str:
 
 @contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Raise TooLong in this thread where the block takes longer; compiled code is waited for."""
+    """Raise TimeLimitExceeded in this thread if the block takes longer; compiled code is not interrupted."""
     thread, done, turn = threading.get_ident(), threading.Event(), threading.Lock()
 
     def watch() -> None:

@@ -22,11 +22,11 @@ GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 TRIES = 50
 """Sets of parameters before these count as ones that cannot be given together."""
 MOST_PRESENCES = 256
-"""Of the ways to leave parameters out, how many are tried."""
+"""Largest number of combinations of optional parameters that are tried."""
 
 
 class NoParameters(AssertionError):
-    """Nothing was drawn that the law accepts."""
+    """The law accepts none of the drawn parameters."""
 
 
 def evenly(low: float, high: float) -> st.SearchStrategy[float]:

@@ -1,4 +1,4 @@
-"""What every peer is: another library's road to the mean friction, with no error of its own."""
+"""The base class of peers: computation of mean friction by another library, without an error bound."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from frictionlab.scene.scene import Scene
 CLOSURE = 1.0
 """Gap of a closed period in tolerances, as the change of velocity that so much mean friction makes in a period."""
 NOISE_PERIODS = 8
-"""Periods in a row that come no nearer: the rest is the integrator's own error."""
+"""Consecutive periods without a smaller gap: the rest is the error of the integrator."""
 LONGEST_TRANSIENT = 5000
 
 
@@ -55,7 +55,7 @@ def closed_mean(
 
 
 class Peer(Record, ABC):
-    """A library's road to steady states; its fields are the settings a bench list may give."""
+    """Steady states by another library; its fields are the settings a bench list may give."""
 
     name: ClassVar[str]
     package: ClassVar[str]

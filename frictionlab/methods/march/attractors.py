@@ -1,4 +1,4 @@
-"""Where other starts are marched to, for scenes in which no theorem makes the steady state unique."""
+"""Time stepping from other starts, for scenes in which no theorem makes the steady state unique."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from frictionlab.methods.shooting.attractors import starts
 NOISE = 1e-3
 """Spread of the means of a motion that does not repeat, over friction at rest, that passes for noise of the steps."""
 SHUT = 1e-7
-"""Distance from a closed orbit over normal load: chaos passes cycles that repel, and lingers near them."""
+"""Distance from a closed orbit over normal load: chaotic motion stays near repelling cycles for a while."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class Search:
 
     @property
     def _steps(self) -> float:
-        """What the steps may have done to a mean."""
+        """The error of a mean from the time steps."""
         if self.walker.stepper == "smoothed":  # no grid, and a bias that both runs share
             return 1e-5 * self.walker.at_rest
         beside = abs(self.like.mean.real - self.answer.mean.real)
@@ -93,12 +93,12 @@ class Search:
 
 
 def one_motion(reached: Sequence[Reached]) -> bool:
-    """Whether every start led to the same, and that repeats."""
+    """Whether every start reached the same periodic motion."""
     return reached[0].period > 0 and all(one is reached[0] for one in reached)
 
 
 def told(reached: Sequence[Reached]) -> str:
-    """What several starts reached, in words."""
+    """A sentence on the motions that several starts reached."""
     orbits = {id(one): one for one in reached if one.period > 0}
     parts = [_orbit_told(one) for one in orbits.values()]
     wild = [one.followed for one in reached if one.period == 0]

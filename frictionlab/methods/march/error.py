@@ -1,4 +1,4 @@
-"""The mean of one marched motion and its error, from runs at several steps or smoothing widths."""
+"""The mean of a motion by time stepping and its error, from runs at several steps or smoothing widths."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ FEWEST_LAPS = 10
 NONE = 1e200
 """A least slip speed above this stands for none."""
 ROUNDING = 1e-13
-"""What the sums of a period's impulses lose to rounding, in the mean coefficient."""
+"""Rounding error of the mean coefficient from summing the impulses of a period."""
 
 
 class Plan(NamedTuple):
-    """How a motion is to be marched: the numbers of a study, defaults filled in."""
+    """The parameters of a study for time stepping, defaults filled in."""
 
     stepper: str
     theta: float
@@ -38,7 +38,7 @@ class Plan(NamedTuple):
 
 @dataclass(frozen=True)
 class Found:
-    """A mean with its error, the period [time], and the runs behind them, the last of them the finest."""
+    """A mean with its error, the period [time], and the runs it was computed from, the finest last."""
 
     mean: complex
     error: float
@@ -58,7 +58,7 @@ def found(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
 
 
 def _by_given_steps(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
-    """The mean of so many steps; runs of twice and four times as many tell its error."""
+    """The mean at a given number of steps; its error from runs of twice and four times as many."""
     assert plan.steps is not None
     runs: list[MarchResult] = []
     for steps in (plan.steps, 2 * plan.steps, 4 * plan.steps):
@@ -159,7 +159,7 @@ def _next_run(
 
 
 def _expected(walker: MarchRun, runs: Sequence[MarchResult], steps: int) -> float:
-    """About what this many steps leave of an error in the mean; small enough at first to spoil nothing."""
+    """The expected error of the mean at this number of steps; small enough at first not to limit the result."""
     if len(runs) < 2:
         return 0.1 * walker.law.sliding_friction(1.0) / steps
     change = abs(runs[-1].mean.real - runs[-2].mean.real)
@@ -253,7 +253,7 @@ def restless(runs: Sequence[MarchResult], walker: MarchRun) -> bool:
 
 
 def why_not(run: MarchResult) -> str:
-    """Why a run has no steady state, in words that follow "the motion"."""
+    """Why a run has no steady state, as the continuation of "the motion"."""
     if run.verdict == LATE:
         return (
             f"still changes by {run.drift:.1e} a period after {run.laps} periods (at most {run.pace.most}); "

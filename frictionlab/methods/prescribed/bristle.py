@@ -1,4 +1,4 @@
-"""Bristle laws under a prescribed slip: the closed loop of the deflection, and what is read from it.
+"""Bristle laws under a prescribed slip: the periodic deflection, and the results computed from it.
 
 Licence of ``saturates`` (tests/benchmarks/specialists.py, 8 scenes): 5 times faster than following a deflection
 that stays at its limit (4 to 5.7 times), with the same 13 digits.
@@ -26,7 +26,7 @@ ROUNDING = 2.0**-50
 
 
 def refusal_of_prescribed(scene: Scene, law: BristleLaw) -> str | None:
-    """Why a prescribed slip cannot be answered for this law; None where it can."""
+    """Why a prescribed slip cannot be solved for this law; None where it can."""
     return law.no_vector_form() or None if _vectorial(scene, law) else None
 
 

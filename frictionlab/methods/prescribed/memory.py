@@ -1,4 +1,4 @@
-"""Laws with other memory than one bristle under a prescribed slip: their period map, without a mass to move."""
+"""Laws with several memories or scalars under a prescribed slip: fixed point of their period map."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from frictionlab.theory.rest import friction_at_rest
 PERIODS = 100
 """For which a memory that does not forget is followed from each start."""
 FORGETS = 1.0 - 1e-6
-"""Largest multiplier of a memory that forgets where it started."""
+"""Largest multiplier of a memory that converges from every start."""
 MODEL = "prescribed slip: memory by Rodas5P, periodic"
 
 

@@ -1,4 +1,4 @@
-"""Prescribed slip: the mean friction of a slip velocity that is given."""
+"""Mean friction under a prescribed slip velocity."""
 
 from __future__ import annotations
 

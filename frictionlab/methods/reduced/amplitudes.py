@@ -1,4 +1,4 @@
-"""Amplitudes at which one harmonic of motion and of bristle friction balance: all of them."""
+"""All amplitudes at which one harmonic of motion and of bristle friction balance."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 
 PER_DECADE = 30
-"""Amplitudes looked at in the decades below the largest; further below there are fewer."""
+"""Amplitudes evaluated per decade below the largest; fewer at smaller ones."""
 NEAR = 3
 DECADES = 9
 """Decades of amplitude looked at closely, and at all."""
 NEARLY = 0.2
-"""Force missing to a balance, relative to the load, that the harmonics left out may make up for."""
+"""Residual force, relative to the load, that the neglected harmonics may balance."""
 SHARPENED = 24
 """Steps towards the nearest approach of two neighbours that may hide a pair of balances."""
 
@@ -75,7 +75,7 @@ class _Reader:
         return Harmonics(*self._friction(self.contact, amplitude, speed, frequency))
 
     def pull(self, amplitude: float, friction: Harmonics) -> complex:
-        """The force the motion asks for."""
+        """The force that the motion requires."""
         return self.impedance * amplitude + self.mass.normal_load * complex(friction.sine, friction.cosine)
 
     def excess(self, amplitude: float) -> float:
@@ -89,7 +89,7 @@ class _Reader:
         return Balance(amplitude, friction, cmath.phase(self.pull(amplitude, friction)))
 
     def looked_at(self) -> Floats:
-        """Amplitudes that enclose every balance: on top friction can no longer make up for the mass."""
+        """Amplitudes that enclose every balance: above the largest, friction cannot balance inertia."""
         most = max(self._reach(), self.belt_speed, 1e-300)
         for _ in range(200):
             friction = self.friction(most)
@@ -114,7 +114,7 @@ def contact_of(law: BristleLaw) -> Contact:
 
 
 def _dips(reader: _Reader, amplitudes: Floats, excess: Floats) -> list[float]:
-    """The nearest approaches to balance between amplitudes, where two balances may hide."""
+    """The minima of the residual between amplitudes, where two balances may lie close together."""
     size, side = np.abs(excess), np.sign(excess)
     least = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])
     least &= (side[:-2] == side[1:-1]) & (side[1:-1] == side[2:])

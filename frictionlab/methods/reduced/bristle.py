@@ -28,9 +28,9 @@ from frictionlab.theory import friction_free_velocity
 
 TEXT = "one harmonic of x1' and of the bristles' friction balanced, friction averaged over the harmonic slip"
 FORGETS = 1.0 - 1e-6
-"""Share of a disturbed deflection left after a period above which it is not called forgotten."""
+"""Largest multiplier of a disturbance of the deflection over a period for a unique loop."""
 STEADY = 0.98
-"""Largest Floquet multiplier above which a motion of the drive's period is not called steady."""
+"""Largest Floquet multiplier of a motion of one drive period that counts as stable."""
 TOLERANCE = 1e-9
 """On the mean friction of the loop of one harmonic."""
 UNSTEADY = "the motion of one drive period may be unstable: the mean may not be unique; use shooting"
@@ -47,7 +47,7 @@ class _Point(NamedTuple):
 
 
 def bristle_refusal(name: str, scene: Scene, law: BristleLaw) -> str | None:
-    """Why one harmonic cannot do this scene with a law of this kind, at any belt speed."""
+    """Why one harmonic does not apply to this scene and law at any belt speed; None if it does."""
     if scene.undriven:
         return f"{name} needs a drive: it starts from the driven motion"
     if scene.degrees_of_freedom == 2:
@@ -116,7 +116,7 @@ def _mean(scene: Scene, balance: Balance | None) -> float:
 
 
 def _error(point: _Point, law: BristleLaw) -> float:
-    """What the other harmonics change of the mean, and what that may be off by."""
+    """The change of the mean by the other harmonics, and its error."""
     if point.balance is None:
         return math.nan
     change = abs(point.mean + point.balance.friction.mean)

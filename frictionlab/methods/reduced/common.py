@@ -1,4 +1,4 @@
-"""What reduced models of Coulomb friction along a line share: the scenes they take, their model error, their answers.
+"""Code of all reduced models of Coulomb friction along a line: accepted scenes, model error, results.
 
 A reduced model gives the motion as one harmonic. What it leaves out is found by bounding the mean friction of the
 full problem independently of any stepping, from motions that reverse twice (two_reversals.py).
@@ -78,7 +78,7 @@ def line_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
 
 
 def point_refusal(scene: Scene, friction: float) -> str:
-    """Why there is no one steady state at this belt speed; empty where there is."""
+    """Why the steady state at this belt speed is not unique; empty where it is."""
     mass = scene.mass()
     if scene.belt_speed == 0.0 and abs(mass.force) <= friction:
         return (
@@ -132,7 +132,7 @@ def _narrowed(scene: Scene, law: SlidingLaw, low: float, high: float) -> tuple[f
 def judged(
     found: Modelled, reasons: Sequence[str], text: str, tolerance: float, orbit: Callable[[int], Orbit | None]
 ) -> Answers:
-    """Answers with the points that have a reason refused, and errors above the tolerance said."""
+    """Results: points with a reason are refused, errors above the tolerance noted."""
     status: list[Status] = ["refused" if reason else "ok" for reason in reasons]
     against = np.array([bool(reason) for reason in reasons])
     said = [

@@ -127,7 +127,7 @@ def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -
 
 
 def _point(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[tuple[complex, float], str]:
-    """Mean friction and its error, and why they do not stand."""
+    """Mean friction and its error, or the reason why there is none."""
     edges = slip_edges(motion, scene.belt_speed)
     found = integrals(motion, scene.belt_speed, law, edges)
     mean = 0j if scene.belt_speed == 0.0 else -found.mean
@@ -140,7 +140,7 @@ def _point(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[tuple[comple
 
 
 def _error(scene: Scene, law: SlidingLaw, mean: float) -> tuple[float, str]:
-    """What friction does to the mean through the motion, and why that is not known."""
+    """The change of the mean because friction changes the motion, or the reason why it is not known."""
     full = full_mean(scene, law)
     return abs(full.mean - mean) + full.error, full.reason
 
@@ -157,7 +157,7 @@ def _at_rest(scene: Scene, law: FrictionLaw) -> str:
 
 
 def _position(scene: Scene, mean: complex) -> complex:
-    """Where mean friction holds the springs."""
+    """The mean position, at which the springs balance mean friction."""
     mass = scene.mass()
     return mass.normal_load * complex(mean.real, mean.imag / mass.transverse_stiffness)
 

@@ -1,4 +1,4 @@
-"""Whether every start reaches the same steady state, where no theorem says so."""
+"""Test of several starts for the same steady state, where no theorem guarantees it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from frictionlab.theory import friction_free_velocity
 from frictionlab.theory.rest import friction_at_rest
 
 STABLE = 1.0 - 1e-7
-"""Largest Floquet multiplier of an orbit that is said to attract."""
+"""Largest Floquet multiplier of an orbit that counts as attractive."""
 FEWEST, MOST = 200, 20_000
 """Periods a start is followed for."""
 
@@ -94,7 +94,7 @@ def attractors(
 
 
 def _patience(candidate: Attractor | None) -> int:
-    """How many periods bring every start to the candidate, were it to attract them all."""
+    """Periods after which every start is at the candidate, if that attracts them all."""
     if candidate is None or candidate.curve is None:
         return 5 * FEWEST
     rate = -math.log(max(multiplier(candidate.curve), 1e-3))
@@ -102,7 +102,7 @@ def _patience(candidate: Attractor | None) -> int:
 
 
 def _arrived(way: Transient, orbit: Attractor) -> bool:
-    """Whether a motion ended next to an orbit of one period that attracts it."""
+    """Whether a motion ended near an attractive orbit of one period."""
     if orbit.curve is None or not way.period == orbit.period == 1:
         return False
     state: Floats = orbit.curve.states[0]
@@ -141,7 +141,7 @@ def _same(one: Curve, other: Curve) -> bool:
 
 
 def told(reached: list[Attractor]) -> str:
-    """What several starts reached, in words."""
+    """A sentence on the steady states that several starts reached."""
     orbits = [one for one in reached if one.curve is not None]
     wild = [one for one in reached if one.curve is None]
     parts = [_orbit_told(one) for one in {(one.period, f"{one.mean:.6g}"): one for one in orbits}.values()]

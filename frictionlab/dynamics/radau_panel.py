@@ -244,8 +244,10 @@ def solve_panel(law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: 
             step = made(first, second, z)
             work.gain[stage] = work.gain[stage] + step
             change, size = max(change, abs(step)), max(size, abs(work.gain[stage]))
+        # A singular matrix gives an infinite or undefined correction.
         if not change < 1e300:
             return False
+        # Converged; after three iterations corrections of rounding size are accepted more readily.
         rounding = (4e-15 if turn < 3 else 5e-14) * scale.change
         if change <= max(1e-8 * size, rounding):
             _evaluate(law, scale, z, work)
@@ -280,7 +282,7 @@ def _carried(n: int, work: Work) -> None:
 
 @inner
 def crawl(law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: Any, work: Work) -> None:
-    """The same for a step too short to matter, across a jump of the law's rate that no iteration settles on."""
+    """An explicit Euler step in place of ``solve_panel``, for a negligibly short step across a jump of the rate."""
     n, width = parts(z), span[1] / slip.frequency
     rate, friction = bound(law, slip_at(slip, place, span[0], z), scale.circle, z)
     for stage in range(STAGES):

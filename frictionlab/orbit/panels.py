@@ -36,6 +36,7 @@ def interpolate(values: Any, at: float) -> float:
     above, below = 0.0, 0.0
     for node in range(values.size):
         gap = at - NODES[node]
+        # At a node the formula divides zero by zero.
         if gap == 0.0:
             return values[node]
         above += BARYCENTRIC[node] / gap * values[node]
@@ -49,6 +50,7 @@ def zero_between(values: Any, low: float, high: float) -> float:
     at_low, at_high = interpolate(values, low), interpolate(values, high)
     middle, side = high, 0
     for _ in range(40):
+        # Illinois: an end that stays twice in a row has its value halved, so that both ends converge.
         if at_high == at_low or high - low < 1e-9:
             break
         middle = (low * at_high - high * at_low) / (at_high - at_low)

@@ -31,6 +31,7 @@ def follow(
 ) -> tuple[float, float, int]:
     """Write every leg from ``start`` to ``end`` into the table ``legs``; return the end state and the row after."""
     tau, mode, row = start, starting_mode(body, start, x, w), first
+    # The same legs as in the return map, so that orbit and fixed point agree to rounding.
     while tau < end and row < legs.shape[0]:
         left = end - tau
         leg = stick_leg(body, tau, x, left) if mode == STICK else slip_leg(body, tau, x, w, mode, left)

@@ -313,6 +313,8 @@ def follow_period(law: Any, slip: Slip, stretches: Any, scale: Scale, accuracy: 
         stretch, begin = Stretch(place, here[3], here[4], here[5], here[6]), here[3]
         step, now = min(min(step, longest), _allowed(stretch, at)), z + gained
         error, turns = _tried(law, slip, place, scale, (begin + at, step), now, work), False
+        # The rate jumps where the contact begins to yield or to unload: the step is cut at the change of mode, so
+        # that panels are smooth. After three changes without progress the jump is left to the step control.
         if radius >= 0.0 and idle < 3:
             first, half, middle = begin + at, 0.5 * step, now + work[1].gain[STAGES - 1]
             turns = _seen(law, slip, place, scale, radius, (first, step), now, work[0])
@@ -327,15 +329,18 @@ def follow_period(law: Any, slip: Slip, stretches: Any, scale: Scale, accuracy: 
                     step, idle = 1e-3, idle + 1
                     continue
                 error = _tried(law, slip, place, scale, (begin + at, step), now, work)
+        # Too large an error: a shorter step, at least a tenth of it.
         if error > accuracy and step > SHORTEST:
             step = step * min(0.5, max(0.1, 0.8 * (accuracy / error) ** (1.0 / 7.0)))
             continue
+        # Newton's method fails even in the shortest step, as across a jump: explicit steps pass it.
         if error >= FAILED:
             crawl(law, slip, place, scale, (begin + at, 0.5 * step), now, work[1])
             middle = begin + at + 0.5 * step
             crawl(law, slip, place, scale, (middle, 0.5 * step), now + work[1].gain[STAGES - 1], work[2])
             error = accuracy
         idle = 0
+        # The two halves are more accurate than the whole step and become the panels.
         for half in range(2):
             piece = work[1 + half]
             _note(law, slip, stretch, (begin + at + 0.5 * half * step, 0.5 * step), z + gained, piece, out, n)

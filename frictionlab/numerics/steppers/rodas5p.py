@@ -71,6 +71,7 @@ def factored(matrix: Any, rows: Any) -> None:
         for row in range(pivot + 1, n):
             if abs(matrix[row, pivot]) > abs(matrix[best, pivot]):
                 best = row
+        # Rows are swapped in full, so the factors and the pivots recorded so far stay consistent.
         rows[pivot] = best
         if best != pivot:
             for column in range(n):
@@ -86,6 +87,7 @@ def factored(matrix: Any, rows: Any) -> None:
 def solved(matrix: Any, rows: Any, right: Any) -> None:
     """Solve with the factors, in place of the right-hand side."""
     n = rows.size
+    # The row swaps of the factorization, then forward and back substitution.
     for pivot in range(n):
         best = rows[pivot]
         if best != pivot:

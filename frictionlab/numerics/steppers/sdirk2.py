@@ -123,6 +123,7 @@ def stepper(rates: Any) -> Any:
             if not size(stage, way) < 1e300:
                 return Met(v, z, False)
             ahead = gap(problem, stage, v + way.v, z + way.z)
+            # Halve the Newton step until the residual decreases; at a thousandth it is taken as it is.
             while part > 1e-3 and not size(stage, ahead) < missed:
                 part = 0.5 * part
                 ahead = gap(problem, stage, v + part * way.v, z + part * way.z)
@@ -155,6 +156,7 @@ def stepper(rates: Any) -> Any:
         least = h * 0.5**MOST_HALVINGS
         while done < h * (1.0 - 1e-9):
             ahead, found = tried(problem, tau + done, state, part)
+            # A failed step is halved; the state is NaN if even 2^-24 of the step fails.
             if not found and part <= least:
                 return Taken(math.nan * x, math.nan * v, math.nan * z, math.nan * v)
             if not found:

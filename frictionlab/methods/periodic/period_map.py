@@ -12,9 +12,9 @@ from typing import Any
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
+from frictionlab.compile.stack import room
 from frictionlab.dynamics.motion import belt_velocity, instant_at, span
-from frictionlab.methods.periodic.maps.bristle import bristle_map, coarsest, dimension, taken
-from frictionlab.methods.periodic.maps.deflection import deflection_map
+from frictionlab.methods.periodic.maps.deflection import coarsest, deflection_map
 from frictionlab.methods.periodic.maps.memory import begun, coarsest_of_memory, follow, grain_of_memory
 from frictionlab.methods.periodic.maps.memory_rates import work_of
 from frictionlab.methods.periodic.maps.memory_state import (
@@ -28,9 +28,10 @@ from frictionlab.methods.periodic.maps.memory_state import (
     slid,
     spilled,
 )
-from frictionlab.methods.periodic.maps.path import path_map
+from frictionlab.methods.periodic.maps.path import Carried, path_map
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.maps.stick import periods_at_rest
+from frictionlab.numerics.vectors import dimension, taken
 from frictionlab.orbit.recorder import Track
 from frictionlab.scene.body import Body
 
@@ -119,7 +120,17 @@ def _store_in_the_plane(state: Any, unit: float, z: complex) -> None:
 store = by_dimension(_store_on_the_line, _store_in_the_plane)
 
 
-carried = by_law(bristle_map, bristle_map, path_map)
+@inner
+def _carried_by_steps(
+    law: Any, body: Body, belt_speed: float, y: Any, u: Any, z: Any, accuracy: float, track: Track
+) -> Carried:
+    memory = room(law, 1, 0, z)
+    memory[0] = z
+    image = deflection_map(law, body, belt_speed, y, u, memory, accuracy, track)
+    return Carried(image.y, image.u, memory[0], image.rubbed, image.closest, image.steps)
+
+
+carried = by_law(_carried_by_steps, _carried_by_steps, path_map)
 """The map of a bristle law: by the way slid on the line where that says all, else mass and deflection together."""
 
 

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
 from frictionlab.dynamics.events import dips
-from frictionlab.methods.periodic.maps.bristle import dimension, taken
 from frictionlab.methods.periodic.maps.memory_rates import BEYOND, YIELDS, Problem, Work
 from frictionlab.methods.periodic.maps.memory_state import Scales, filled, spilled
 from frictionlab.methods.periodic.maps.memory_step import stepped
+from frictionlab.numerics.vectors import dimension, taken
 
 ROUNDED = 1e-13
 """Of a reach: a smaller excess is rounding."""

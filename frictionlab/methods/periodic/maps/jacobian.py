@@ -15,9 +15,9 @@ from frictionlab.dynamics.motion import (
     restoring_force,
     unbalanced_rate,
 )
-from frictionlab.methods.periodic.maps.bristle import dimension, put, taken, unit
 from frictionlab.methods.periodic.maps.memory_rates import Problem, Work, begin_step, felt
 from frictionlab.methods.periodic.maps.memory_state import Scales, filled, parts, spilled, swing_of
+from frictionlab.numerics.vectors import dimension, put, taken, unit
 
 NUDGE = 1e-5
 """Of a slip velocity or a scalar, for a difference quotient."""

@@ -10,7 +10,6 @@ from frictionlab.compile.dispatch import by_dimension
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.events import reference_acceleration
 from frictionlab.dynamics.motion import belt_acceleration, instant_near, slip_at, unbalanced_rate
-from frictionlab.methods.periodic.maps.bristle import dimension, unit
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
@@ -25,6 +24,7 @@ from frictionlab.methods.periodic.maps.rates import (
     rate_in_mode,
 )
 from frictionlab.numerics.blocks import apply, block, from_columns, keep
+from frictionlab.numerics.vectors import dimension, unit
 
 NUDGE = 1e-5
 """Of a deflection in steady sliding, for a difference quotient."""

@@ -23,7 +23,7 @@ from frictionlab.dynamics.motion import (
     turned,
 )
 from frictionlab.dynamics.step_size import growth_factor, longest_step
-from frictionlab.methods.periodic.maps.bristle import COARSEST, put, taken
+from frictionlab.methods.periodic.maps.deflection import COARSEST
 from frictionlab.methods.periodic.maps.events import (
     begun_to_yield,
     located,
@@ -37,6 +37,7 @@ from frictionlab.methods.periodic.maps.memory_rates import Problem, Work, anchor
 from frictionlab.methods.periodic.maps.memory_state import Scales, scales_of, swing_of
 from frictionlab.methods.periodic.maps.memory_step import crossed, stepped
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
+from frictionlab.numerics.vectors import put, taken
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.recorder import Track
 from frictionlab.scene.body import Body

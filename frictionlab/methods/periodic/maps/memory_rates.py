@@ -23,9 +23,9 @@ from frictionlab.dynamics.motion import (
     reference_velocity,
     unbalanced_load,
 )
-from frictionlab.methods.periodic.maps.bristle import dimension, put, taken
 from frictionlab.methods.periodic.maps.memory_state import filled, memory_of, parts, spilled
 from frictionlab.numerics.steppers.rodas5p import STAGES
+from frictionlab.numerics.vectors import dimension, put, taken
 from frictionlab.scene.body import Body
 
 YIELDS = 1e-9

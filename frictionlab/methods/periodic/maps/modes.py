@@ -49,6 +49,30 @@ yield_radius = by_law(_yield_of_a_bristle, _yield_of_a_bristle, None, _yield_of_
 """yield_radius(law, k, w): of the k-th deflection's yield surface, 0 for none."""
 
 
+def _never_unloads(law: Any, w: Any) -> bool:
+    return False
+
+
+def _bristle_unloads_on_the_line(law: Any, w: float) -> bool:
+    """On the line the corner is where slip reverses: the law's own rate is kept up to there."""
+    return False
+
+
+def _bristle_unloads_in_the_plane(law: Any, w: complex) -> bool:
+    return law.elastic_unloading() and law.form == VECTORIAL
+
+
+_bristle_unloads = by_dimension(_bristle_unloads_on_the_line, _bristle_unloads_in_the_plane)
+
+
+def _a_bristle_unloads(law: Any, w: Any) -> bool:
+    return _bristle_unloads(law, w)
+
+
+unloads = by_law(_a_bristle_unloads, _a_bristle_unloads, None, _never_unloads)
+"""unloads(law, w): whether a deflection without a yield surface follows the slip wherever that makes it smaller."""
+
+
 def _along_on_the_line(z: float, w: float) -> float:
     return z * w
 
@@ -98,8 +122,8 @@ def _unloading_on_the_line(k: int, a: float, work: Work, w: float) -> Guard:
 
 
 def _unloading_in_the_plane(k: int, a: complex, work: Work, w: complex) -> Guard:
-    """Positive until slip has no part along a yielding deflection any more."""
-    z, share = work.memory[k], 1.0 / work.radius[k]
+    """Positive until slip begins to unload what gives way, or to load what follows it."""
+    z, share = work.memory[k], work.mode[k] / work.size[k]
     return Guard(k, share * along(z, w), share * (along(z, a) + along(work.moving[k], w)))
 
 
@@ -112,7 +136,7 @@ def guard_of(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
     if number == count_of(flow.law):
         return _reversal(flow, a, w)
     z, radius = work.memory[number], work.radius[number]
-    if work.mode[number] == YIELDS and radius > 0.0:
+    if work.mode[number] == YIELDS or (work.mode[number] == FOLLOWS and radius == 0.0):
         return _unloading(number, a, work, w)
     if work.mode[number] == FOLLOWS and radius > 0.0:
         far = size(z)
@@ -147,8 +171,8 @@ def begin(flow: Flow, a: Any, w: Any, work: Work) -> None:
     for k in range(count_of(flow.law)):
         radius, z = yield_radius(flow.law, k, w), work.start[MEMORY + k]
         work.radius[k], work.mode[k] = radius, SMOOTH
-        if radius > 0.0:
-            loaded = along(z, w) > 0.0 or (along(z, w) == 0.0 and along(z, a) > 0.0)
+        if radius > 0.0 or unloads(flow.law, w):
+            loaded = along(z, w) > 0.0 or (along(z, w) == 0.0 and along(z, a) >= 0.0)
             work.mode[k] = YIELDS if loaded and size(z) >= radius * (1.0 - 1e-13) else FOLLOWS
 
 

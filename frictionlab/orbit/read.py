@@ -168,12 +168,22 @@ def read(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_s
     _along(friction, part)
     out[12] = _sign_changes(part, stick, False)
     _along(slips, part)
+    _drop_rounding(part, v)
     out[11] = _sign_changes(part, stick, True)
     _along(v, part)
     out[4] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
     _across(v, part)
     out[7] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
     return out
+
+
+@inner
+def _drop_rounding(part: Any, v: Any) -> None:
+    """Set slip velocities to zero that are the rounding of the velocity they are a difference of."""
+    for panel in range(part.shape[0]):
+        for node in range(part.shape[1]):
+            if abs(part[panel, node]) <= 1e-15 * abs(v[panel, node].real):
+                part[panel, node] = 0.0
 
 
 @inner

@@ -35,7 +35,8 @@ def curve_table(table: pd.DataFrame, laws: registry.Laws = registry.INSTALLED_LA
         return pd.DataFrame(columns=[*keys, *CURVES])
     places = sorted((np.sort(found) for found in groups.values()), key=lambda found: int(found[0]))
     heads = table.loc[:, keys].iloc[[found[0] for found in places]].reset_index(drop=True)
-    if any(name not in table for name in OF_SHAPE):
+    # without velocity_ratio the end of reversal is still bracketed by the reversals counted
+    if any(name not in table for name in OF_SHAPE if name != "velocity_ratio"):
         return pd.concat([heads, _frame([{"reason": NOT_ASKED_FOR}] * len(heads))], axis=1)
     numbers = table.reindex(columns=_NEEDED).to_numpy(dtype=float)
     usable = (table["status"] == "ok").to_numpy() & (numbers[:, 0] > 0.0)

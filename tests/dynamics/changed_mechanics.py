@@ -58,12 +58,12 @@ CASES: dict[str, tuple[Any, Any, dict[str, Any]]] = {
     "shooting, elements": (Shooting(), ELEMENTS, STICKS),
     "moreau": (March(stepper="moreau", steps=100), COULOMB, STICKS),
     "moreau in the plane": (March(stepper="moreau", steps=50), COULOMB, PLANE),
-    "rk4": (March(stepper="rk4", steps=100), COULOMB, {**STICKS, "belt_speed": 3.0}),
+    "rk4": (March(stepper="rk4", steps=100), COULOMB, {**STICKS, "belt_speed": 2.9}),
     "smoothed": (March(stepper="smoothed", width=0.3), COULOMB, {**STICKS, "belt_speed": 6.0}),
     "rk4 of a bristle": (March(stepper="rk4", steps=100), DAHL, STICKS),
     "exponential": (March(stepper="exponential", steps=100), DAHL, STICKS),
     "sdirk2": (March(stepper="sdirk2", steps=50), DAHL, STICKS),
-    "rk4 of elements": (March(stepper="rk4", steps=400), ELEMENTS, STICKS),
+    "rk4 of elements": (March(stepper="rk4", steps=800), ELEMENTS, STICKS),
 }
 
 

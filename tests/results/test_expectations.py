@@ -151,10 +151,7 @@ def test_without_a_table_of_curves_it_is_made_from_the_table() -> None:
     verdict = judge(Expectation(where={"method": "exact"}, shape="convex"), TABLE)
 
     assert not verdict.passed
-    assert (
-        "no load drives the body" in verdict.sentence
-        or "slip reverses at none of the points" in verdict.sentence
-    )
+    assert "the table lacks columns that curves are read from" in verdict.sentence
 
 
 @pytest.mark.parametrize("table", [TABLE, TABLE.iloc[:3]])

@@ -41,12 +41,24 @@ def belt_friction_at_rest(law: FrictionLaw) -> float:
 
 def orbit_of_slip(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:
     """One period of a harmonic motion about a mean position, and the friction along it."""
-    edges = slip_edges(motion, belt_speed)
+    edges = np.concatenate((slip_edges(motion, belt_speed), _reversals(motion, belt_speed)))
     angle, _ = nodes(np.unique(np.concatenate(([0.0, 2.0 * math.pi], edges % (2.0 * math.pi)))))
     v, turn = velocity(motion, angle), np.exp(1j * angle)
     x = -((motion.velocity * turn).real + 1j * (motion.transverse_velocity * turn).real) / motion.frequency
-    friction = sliding_vectors(law, v - belt_speed)
+    slip = np.where(
+        np.abs(v - belt_speed) <= 1e-15 * np.abs(v), 0.0, v - belt_speed
+    )  # a rounding has no direction
+    friction = sliding_vectors(law, slip)
     return Orbit(angle / motion.frequency, position + x, v, friction, np.zeros(len(angle), np.bool_))
+
+
+def _reversals(motion: Motion, belt_speed: float) -> Floats:
+    """The angles at which a slip along the belt changes its sign: no panel passes one unseen."""
+    size = abs(motion.velocity)
+    if motion.transverse_velocity != 0.0 or not abs(belt_speed) < size:
+        return np.empty(0)
+    first = math.asin(belt_speed / size)
+    return np.array([first, math.pi - first]) - np.angle(motion.velocity)
 
 
 def slip_edges(motion: Motion, belt_speed: float) -> Floats:

@@ -173,13 +173,14 @@ def test_it_tends_to_the_closed_form_in_proportion_to_friction() -> None:
 def test_the_kink_is_at_v_lin(frequency: float) -> None:
     v_lin = friction_free_velocity(scene(0.0, frequency))
 
-    scenes = [scene(v_lin * share, frequency, normal_load=1.0) for share in (1 - 1e-9, 1.0, 1.5)]
+    scenes = [scene(v_lin * share, frequency, normal_load=1.0) for share in (1 - 1e-6, 1 - 1e-9, 1.0, 1.5)]
     found = with_columns(HarmonicBalance(), scenes, LAW, 1e-8).columns
 
-    assert found["mean_friction"][0] < 0.4
-    np.testing.assert_array_equal(found["mean_friction"][1:], 0.4)
-    np.testing.assert_allclose(found["velocity_amplitude"], v_lin, rtol=1e-8)
-    np.testing.assert_array_equal(found["reversals"], [2.0, 0.0, 0.0])
+    assert found["mean_friction"][0] < found["mean_friction"][1] < 0.4
+    np.testing.assert_array_equal(found["mean_friction"][2:], 0.4)
+    np.testing.assert_allclose(found["velocity_amplitude"][1:], v_lin, rtol=1e-8)
+    # the velocity exceeds the belt's by the square of the distance to V_lin: at 1e-9 less than rounding leaves
+    np.testing.assert_array_equal(found["reversals"][[0, 2, 3]], [2.0, 0.0, 0.0])
 
 
 def test_means_are_odd_and_the_motion_is_the_same_for_a_belt_that_moves_back() -> None:

@@ -60,6 +60,17 @@ def test_the_reference_reverses_breaks_away_and_slides_for_good_and_is_accurate(
     assert max(float(row["accuracy"]) for row in ROWS) <= 1e-10
 
 
+@pytest.mark.parametrize("name", ["body/1/constant/5", "body/3/constant/5", "body/3/constant/2"])
+def test_the_reference_of_constant_friction_is_maxwell_slip_along_a_line(name):
+    (row,) = (row for row in ROWS if row["name"] == name)
+    law = GeneralisedMaxwellSlip(**json.loads(row["law"]))
+    same = MaxwellSlip(mu=[law.mu_kinetic * alpha for alpha in law.alpha], stiffness=law.stiffness)
+
+    found = fl.steady_state(fl.Scene(**json.loads(row["scene"])), same, "shooting", tolerance=TOLERANCE)
+
+    assert abs(found.mean_friction - float(row["mean_friction"])) <= found.error <= TOLERANCE
+
+
 @pytest.mark.parametrize("attraction", [0.01, 1.0, 100.0])
 def test_along_a_line_and_with_constant_friction_it_is_maxwell_slip_whatever_the_attraction(attraction):
     law = GeneralisedMaxwellSlip(

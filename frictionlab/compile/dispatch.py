@@ -93,6 +93,8 @@ for _method in (
     "within",
     "largest_rate",
     "yield_deflection",
+    "remembers_stick",
+    "breakaway",
 ):
     _open_door(MemoryLaw, _method)
 

@@ -162,11 +162,12 @@ class MemoryLaw(FrictionLaw, ABC):
 
     def structure(self) -> tuple[str, ...]:
         """Selects kernels by the kind of memory and, where they are few, by the count of the numbers."""
+        kind = self.memory_kind, *(("stick",) if self.remembers_stick() else ())
         if self.count() > FEW:
-            return (self.memory_kind,)
+            return kind
         surfaces = (self.yield_deflection(k) for k in range(self.count()))
         yields = self.memory_kind == "deflections" and all(math.isfinite(radius) for radius in surfaces)
-        return self.memory_kind, *(("yield surfaces",) if yields else ()), f"{self.count()} numbers"
+        return *kind, *(("yield surfaces",) if yields else ()), f"{self.count()} numbers"
 
     def count(self) -> int:
         """The number of memories."""
@@ -186,6 +187,14 @@ class MemoryLaw(FrictionLaw, ABC):
         At it and with z.v > 0, ``rate`` moves it along the circle of that radius. Infinite for none, or where a law
         does not say: its corners are then searched for.
         """
+        return math.inf
+
+    def remembers_stick(self) -> bool:
+        """Whether each deflection remembers if it sticks (it follows the slip) or slips (it moves at ``rate``)."""
+        return False
+
+    def breakaway(self, v: Any, k: int) -> float:
+        """Deflection [scene length] at which the k-th, sticking and loaded by the slip ``v``, begins to slip."""
         return math.inf
 
     def within(self, memory: Any) -> bool:

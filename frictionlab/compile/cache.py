@@ -204,10 +204,11 @@ _FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "typing", "pydantic",
 
 
 def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
-    """Text that changes whenever what these values compute changes; each object is visited once."""
+    """Text that changes whenever what these values compute changes; each object is read once, then named."""
     for value in values:
         value = getattr(value, "py_func", value)
-        if id(value) in seen:
+        if id(value) in seen:  # which one stands here matters, too
+            yield f"{value.__module__ if hasattr(value, '__module__') else ''}.{value.__name__}"
             continue
         if isinstance(value, FunctionType | type | ModuleType):
             seen.add(id(value))

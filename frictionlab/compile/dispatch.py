@@ -92,6 +92,9 @@ for _method in (
     "stored",
     "within",
     "largest_rate",
+    "elastic_unloading",
+    "remembers_stick",
+    "breakaway",
     "yield_deflection",
     "remembers_stick",
     "breakaway",
@@ -122,23 +125,20 @@ def by_law(
     of_sliding: Any,
     of_bristle: Any,
     of_path: Any = None,
-    of_memory: Any = None,
-    of_vectors: Any = None,
-    of_yielding: Any = None,
+    of_deflections: Any = None,
+    of_scalars: Any = None,
 ) -> Any:
     """A kernel function with several bodies of one signature, chosen by the law its first argument is or holds.
 
     The first argument is a law, or a record with a law in the field ``law``.
 
-    of_path is for bristle laws on the line (no argument is complex) whose path is exact, of_memory for memory laws,
-    of_vectors for those whose memories are deflections in the plane, of_yielding for those whose memories are few
-    deflections that each have a yield surface; the choice is made when kernels are compiled, so that what a law does
-    not need is never compiled for it.
+    of_path is for bristle laws on the line (no argument is complex) whose path is exact, of_deflections for memory
+    laws, of_scalars for those whose memories have no direction; the choice is made when kernels are compiled, so that
+    what a law does not need is never compiled for it.
     """
-    memory = of_memory or of_sliding
-    choices = of_sliding, of_bristle, of_path or of_bristle, memory, of_vectors or memory
-    yielding = of_yielding or memory, of_yielding or of_vectors or memory
-    bodies = [getattr(body, "py_func", body) for body in (*choices, *yielding)]
+    deflections = of_deflections or of_sliding
+    choices = of_sliding, of_bristle, of_path or of_bristle, deflections, of_scalars or deflections
+    bodies = [getattr(body, "py_func", body) for body in choices]
 
     def chosen(*arguments: Any) -> Any:
         law, first = getattr(arguments[0], "law", arguments[0]), arguments[0]
@@ -166,9 +166,7 @@ def _numbers_in(first: Any) -> Any:
 
 def _which(law: type[FrictionLaw], structure: tuple[str, ...], planar: bool) -> int:
     if issubclass(law, MemoryLaw):
-        if "yield surfaces" in structure:
-            return 6 if planar else 5
-        return 4 if law.memory_kind == "deflections" and planar else 3
+        return 4 if law.memory_kind == "scalars" else 3
     if not issubclass(law, BristleLaw):
         return 0
     return 2 if "exact path" in structure and not planar else 1

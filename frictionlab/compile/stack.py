@@ -22,24 +22,21 @@ _extending: Any = numba.extending
 _config: Any = numba.config
 
 
-def count_known(numbers: Any) -> int | None:
-    """The count of a law as the compiler knows it, from numba's type of the law's numbers; None if there are many."""
+def count_known(numbers: Any) -> int:
+    """The count of a law as the compiler knows it, from numba's type of the law's numbers."""
     law, structure = law_of_numbers[numbers.instance_class]
     if not issubclass(law, MemoryLaw):
         return 1
-    counted = [int(word.split()[0]) for word in structure if word.endswith("numbers")]
-    return counted[0] if counted else None
+    return next(int(word.split()[0]) for word in structure if word.endswith("numbers"))
 
 
 def count_of(law: Any) -> int:
-    """How many numbers a law remembers: a constant to the compiler for laws of few."""
+    """How many numbers a law remembers: a constant to the compiler."""
     return law.count() if isinstance(law, MemoryLaw) else 1
 
 
 def _count(law: Any) -> Any:
     known = count_known(law)
-    if known is None:
-        return lambda law: law.count()
     return lambda law: known
 
 
@@ -57,10 +54,8 @@ def _room(typing: Any, law: Any, each: Any, more: Any, item: Any) -> Any:
     """
     if not isinstance(each, _types.IntegerLiteral) or not isinstance(more, _types.IntegerLiteral):
         return None
-    count = count_known(law)
-    if count is None:
-        return None
     number = _types.complex128 if isinstance(item, _types.Complex) else _types.float64
+    count = count_known(law)
 
     def codegen(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         value = context.get_value_type(number)

@@ -262,6 +262,13 @@ def reference_velocity(body: Body, sine: float, cosine: float) -> Any:
 
 
 @inner
+def swing_of(body: Body) -> float:
+    """The speed of the friction-free response; 1 where it has no bound."""
+    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine))
+    return swing if swing > 0.0 else 1.0
+
+
+@inner
 def balanced_load(body: Body, now: Instant) -> Any:
     """The force that the reference motion takes."""
     return body.balanced_sine * now.sine + body.balanced_cosine * now.cosine

@@ -131,10 +131,6 @@ def in_the_plane(law: Any, v: complex, z: complex) -> Any:
     return complex(rate, 0.0), law.friction(speed, z.real, rate) * direction
 
 
-FEW = 16
-"""Numbers remembered up to which kernels are compiled for their count."""
-
-
 class MemoryLaw(FrictionLaw, ABC):
     """A law whose memory is a fixed number of numbers, all of one kind.
 
@@ -161,13 +157,9 @@ class MemoryLaw(FrictionLaw, ABC):
         return 1.0 if self.memory_kind == "deflections" else 0.0
 
     def structure(self) -> tuple[str, ...]:
-        """Selects kernels by the kind of memory and, where they are few, by the count of the numbers."""
-        kind = self.memory_kind, *(("stick",) if self.remembers_stick() else ())
-        if self.count() > FEW:
-            return kind
-        surfaces = (self.yield_deflection(k) for k in range(self.count()))
-        yields = self.memory_kind == "deflections" and all(math.isfinite(radius) for radius in surfaces)
-        return *kind, *(("yield surfaces",) if yields else ()), f"{self.count()} numbers"
+        """Selects kernels by the kind of memory and by the count of the numbers."""
+        stick = ("stick",) if self.remembers_stick() else ()
+        return self.memory_kind, *stick, f"{self.count()} numbers"
 
     def count(self) -> int:
         """The number of memories."""
@@ -184,17 +176,24 @@ class MemoryLaw(FrictionLaw, ABC):
     def yield_deflection(self, k: int) -> float:
         """Deflection [scene length] below which the k-th moves with the slip, and which it never exceeds.
 
-        At it and with z.v > 0, ``rate`` moves it along the circle of that radius. Infinite for none, or where a law
-        does not say: its corners are then searched for.
+        At it and with z.v > 0, ``rate`` moves it along the circle of that radius. Infinite for none. A corner that a
+        law does not declare is met by short steps: that costs time, and may cost accuracy.
         """
         return math.inf
+
+    def elastic_unloading(self) -> bool:
+        """Whether each deflection follows the slip wherever z.v <= 0: friction may have a corner there."""
+        return False
 
     def remembers_stick(self) -> bool:
         """Whether each deflection remembers if it sticks (it follows the slip) or slips (it moves at ``rate``)."""
         return False
 
     def breakaway(self, v: Any, k: int) -> float:
-        """Deflection [scene length] at which the k-th, sticking and loaded by the slip ``v``, begins to slip."""
+        """Deflection [scene length] at which the k-th, sticking and loaded by slip at ``v``, begins to slip.
+
+        Slip of a deflection ends where the slip velocity reverses, in the plane where it begins to unload it.
+        """
         return math.inf
 
     def within(self, memory: Any) -> bool:

@@ -116,6 +116,18 @@ diagonal = by_dimension(_diagonal_on_the_line, _diagonal_in_the_plane)
 """diagonal(mean, split, like): x1 times mean + split, x2 times mean - split."""
 
 
+def _multiple_on_the_line(x: float, like: float) -> float:
+    return x
+
+
+def _multiple_in_the_plane(x: Any, like: complex) -> Block:
+    return complex(x.real, x.imag), complex(0.0, 0.0)
+
+
+multiple = by_dimension(_multiple_on_the_line, _multiple_in_the_plane)
+"""multiple(x, like): the map that multiplies by a number."""
+
+
 def _from_columns_on_the_line(first: float, second: float) -> float:
     return first
 

@@ -20,6 +20,7 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.continuation import body_at
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.exact.return_map import passage
+from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.period_map import period_map
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.panels import WEIGHTS
@@ -160,7 +161,7 @@ def test_two_motions_on_the_line_never_move_apart_in_energy(scene, one, other, e
 
 @njit
 def planar_map(law, body, belt_speed, z, residual, accuracy):
-    period_map(law, body, belt_speed, z, residual, accuracy, track_of(0), 0j)
+    period_map(Case(law, body, belt_speed, 0j), z, residual, accuracy, track_of(0))
 
 
 def planar_image(scene, z, accuracy=1e-11):

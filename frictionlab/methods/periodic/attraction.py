@@ -10,10 +10,10 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import mean_friction, span
+from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK
-from frictionlab.methods.periodic.period_map import period_map, size_of, start_of
+from frictionlab.methods.periodic.period_map import image_of, size_of, start_of
 from frictionlab.numerics.linalg import norm, subtract
-from frictionlab.orbit.recorder import track_of
 from frictionlab.scene.body import Body
 
 MOST_PERIODS = 5000
@@ -36,8 +36,9 @@ def sliding_on(body: Body, friction: float, like: Any) -> Any:
 def _arrives(law: Any, body: Body, belt_speed: float, start: Any, target: Any, like: Any) -> bool:
     """Whether a motion comes near to a closed orbit within some hundred periods."""
     residual, size, steps = np.empty(start.size), 1.0 + norm(target), 0
+    case = Case(law, body, belt_speed, like)
     for _ in range(PATIENCE):
-        image = period_map(law, body, belt_speed, start, residual, 1e-5 * body.normal_load, track_of(0), like)
+        image = image_of(case, start, residual, 1e-5 * body.normal_load)
         steps += image.steps
         if image.steps < 0 or steps > MUCH_WORK // 4:
             return False
@@ -92,7 +93,7 @@ def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
     start_of(law, body, z, x, v, 0.0 * x)
     period = span(body)
     for count in range(1, MOST_PERIODS):
-        image = period_map(law, body, 0.0, z, residual, accuracy, track_of(0), x)
+        image = image_of(Case(law, body, 0.0, x), z, residual, accuracy)
         for row in range(z.size):
             z[row] = z[row] + residual[row]
         if image.stuck >= period * (1.0 - 1e-12):
@@ -133,7 +134,7 @@ def iterate_until_periodic(
     alike = 1e-7 if accuracy <= 1e-8 * body.normal_load else 1e-5  # coarse maps wander on by their own error
     residual = np.empty(states.shape[1])
     for n in range(means.size):
-        image = period_map(law, body, belt_speed, states[n], residual, accuracy, track_of(0), like)
+        image = image_of(Case(law, body, belt_speed, like), states[n], residual, accuracy)
         means[n] = mean_friction(image.rubbed.real, span(body))
         steps += image.steps
         for row in range(residual.size):

@@ -1,13 +1,9 @@
-"""One period map as a record: the law, the body and the belt speed it belongs to."""
+"""One scene of a law as kernels see it: what a period map, its fixed point and its derivative belong to."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from frictionlab.compile.decorators import inner
-from frictionlab.methods.periodic.maps.sliding import Mapped
-from frictionlab.methods.periodic.period_map import period_map
-from frictionlab.orbit.recorder import track_of
 from frictionlab.scene.body import Body
 
 
@@ -18,9 +14,3 @@ class Case(NamedTuple):
     body: Body
     belt_speed: float
     like: Any
-
-
-@inner
-def image_of(case: Case, state: Any, residual: Any, accuracy: float) -> Mapped:
-    """The image of a state after one span of the body; leaves image - state in residual."""
-    return period_map(case.law, case.body, case.belt_speed, state, residual, accuracy, track_of(0), case.like)

@@ -105,11 +105,11 @@ def record_orbit(
 ) -> Track:
     """The track with the closed orbit from z, piece by piece, after what it holds; on a larger one where needed."""
     first, residual = track.filled[0], np.empty(z.size)
-    period_map(law, body, belt_speed, z, residual, accuracy, track, like)
+    period_map(Case(law, body, belt_speed, like), z, residual, accuracy, track)
     while track.filled[0] == track.stick.size:
         track = grown(track, 4 * track.stick.size)
         track.filled[0] = first
-        period_map(law, body, belt_speed, z, residual, accuracy, track, like)
+        period_map(Case(law, body, belt_speed, like), z, residual, accuracy, track)
     return track
 
 

@@ -15,10 +15,10 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import belt_path, span
-from frictionlab.methods.periodic.case import Case, image_of
+from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.sliding import Mapped
 from frictionlab.methods.periodic.monodromy import free_inverse, newton_inverse
-from frictionlab.methods.periodic.period_map import coarsest_of, grain_of, rest_of, unpack
+from frictionlab.methods.periodic.period_map import coarsest_of, grain_of, image_of, rest_of, unpack
 from frictionlab.numerics.linalg import copy, multiply, norm, subtract
 from frictionlab.scene.body import Body
 

@@ -10,7 +10,8 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import span
-from frictionlab.methods.periodic.case import Case, image_of
+from frictionlab.methods.periodic.case import Case
+from frictionlab.methods.periodic.period_map import image_of
 from frictionlab.numerics.linalg import invert, norm
 from frictionlab.numerics.vectors import dimension
 from frictionlab.scene.body import Body

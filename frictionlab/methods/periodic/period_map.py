@@ -1,8 +1,8 @@
 """One span of any law's motion as a map of state vectors, whichever map follows it.
 
-A state is a vector in the norm of energy: sqrt(stiffness)*y and u along x1, then along x2, then the deflection of a
-bristle times sqrt(normal_load*stiffness). In it no two orbits of a monotone law without memory move apart (Leine &
-van de Wouw, 2008), which turns a distance of states into a bound on the mean friction.
+A state is a vector in the norm of energy: sqrt(stiffness)*y and u along x1, then along x2, then what the law
+remembers: a deflection times sqrt(normal_load*stiffness). In it no two orbits of a monotone law without memory move
+apart (Leine & van de Wouw, 2008), which turns a distance of states into a bound on the mean friction.
 """
 
 from __future__ import annotations
@@ -12,27 +12,24 @@ from typing import Any
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
-from frictionlab.compile.stack import room
-from frictionlab.dynamics.motion import belt_velocity, instant_at, span
-from frictionlab.methods.periodic.maps.deflection import coarsest, deflection_map
-from frictionlab.methods.periodic.maps.memory import begun, coarsest_of_memory, follow, grain_of_memory
-from frictionlab.methods.periodic.maps.memory_rates import work_of
+from frictionlab.compile.stack import count_of
+from frictionlab.dynamics.motion import span
+from frictionlab.methods.periodic.case import Case
+from frictionlab.methods.periodic.maps.memory import coarsest, memory_map
 from frictionlab.methods.periodic.maps.memory_state import (
-    filled,
-    kept,
-    memory_of,
-    parts,
-    pulled,
-    recalled,
-    scales_of,
-    slid,
-    spilled,
+    coordinates,
+    cut_back,
+    measure,
+    pack_memory,
+    remember_sliding,
+    unpack_memory,
 )
-from frictionlab.methods.periodic.maps.path import Carried, path_map
+from frictionlab.methods.periodic.maps.path import path_map
+from frictionlab.methods.periodic.maps.rates import MEMORY, workspace
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.maps.stick import periods_at_rest
-from frictionlab.numerics.vectors import dimension, taken
-from frictionlab.orbit.recorder import Track
+from frictionlab.numerics.vectors import dimension
+from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.scene.body import Body
 
 
@@ -67,18 +64,14 @@ def _size_without_memory(law: Any, like: Any) -> int:
     return 2 * dimension(like)
 
 
-def _size_with_a_bristle(law: Any, like: Any) -> int:
-    return 3 * dimension(like)
-
-
 def _size_with_memory(law: Any, like: Any) -> int:
-    memory = memory_of(law, like)
-    return 2 * dimension(like) + memory.size * parts(memory[0])
+    return 2 * dimension(like) + coordinates(law, like)
 
 
-size_of = by_law(_size_without_memory, _size_with_a_bristle, None, _size_with_memory)
+size_of = by_law(_size_without_memory, _size_with_memory, None, _size_with_memory)
+"""size_of(law, like): how many numbers a state is."""
 
-coarsest_of = by_law(coarsest, coarsest, None, coarsest_of_memory)
+coarsest_of = coarsest
 """(law, body): the coarsest accuracy a map is made with, whatever is asked."""
 
 
@@ -86,149 +79,68 @@ def _no_grain(law: Any, body: Body, accuracy: float, like: Any) -> float:
     return 0.0
 
 
-grain_of = by_law(_no_grain, _no_grain, None, grain_of_memory)
+def _grain_of_memory(law: Any, body: Body, accuracy: float, like: Any) -> float:
+    """A yield within a step, or the sum of all steps' errors."""
+    work, most = workspace(law, like), 0.0
+    measure(law, body, work, like)
+    if law.turning > 0.0:
+        for k in range(count_of(law)):
+            most = max(most, work.unit[k])
+    return accuracy / body.normal_load * (2.0 * most + 10.0 / span(body))
+
+
+grain_of = by_law(_no_grain, _no_grain, None, _grain_of_memory)
 """What the steps of a map leave in the mean even if two maps agree."""
 
 
-@inner
-def bristle_unit(law: Any, body: Body) -> float:
-    """Square root of the contact's stiffness about the undeflected bristle: what a deflection is multiplied by."""
-    length = law.largest_deflection()
-    length = length if length < 1e300 else 1.0
-    return math.sqrt(body.normal_load * abs(law.friction(0.0, length, 0.0)) / length)
+# --- the map --------------------------------------------------------------------------------------------------------
 
 
-def _deflection_on_the_line(state: Any, unit: float, like: float) -> float:
-    return state[2] / unit
-
-
-def _deflection_in_the_plane(state: Any, unit: float, like: complex) -> complex:
-    return complex(state[4], state[5]) / unit
-
-
-deflection = by_dimension(_deflection_on_the_line, _deflection_in_the_plane)
-
-
-def _store_on_the_line(state: Any, unit: float, z: float) -> None:
-    state[2] = unit * z
-
-
-def _store_in_the_plane(state: Any, unit: float, z: complex) -> None:
-    state[4], state[5] = unit * z.real, unit * z.imag
-
-
-store = by_dimension(_store_on_the_line, _store_in_the_plane)
-
-
-@inner
-def _carried_by_steps(
-    law: Any, body: Body, belt_speed: float, y: Any, u: Any, z: Any, accuracy: float, track: Track
-) -> Carried:
-    memory = room(law, 1, 0, z)
-    memory[0] = z
-    image = deflection_map(law, body, belt_speed, y, u, memory, accuracy, track)
-    return Carried(image.y, image.u, memory[0], image.rubbed, image.closest, image.steps)
-
-
-carried = by_law(_carried_by_steps, _carried_by_steps, path_map)
-"""The map of a bristle law: by the way slid on the line where that says all, else mass and deflection together."""
-
-
-def _mapped_without_memory(
-    law: Any,
-    body: Body,
-    belt_speed: float,
-    state: Any,
-    residual: Any,
-    accuracy: float,
-    track: Track,
-    like: Any,
-) -> Mapped:
-    y, u = unpack(body, state, like)
-    image = sliding_map(law, body, belt_speed, y, u, accuracy, track)
-    pack(body, residual, image.y - y, image.u - u)
+def _without_memory(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
+    y, u = unpack(case.body, state, case.like)
+    image = sliding_map(case.law, case.body, case.belt_speed, y, u, accuracy, track)
+    pack(case.body, residual, image.y - y, image.u - u)
     return image
 
 
-def _mapped_with_a_bristle(
-    law: Any,
-    body: Body,
-    belt_speed: float,
-    state: Any,
-    residual: Any,
-    accuracy: float,
-    track: Track,
-    like: Any,
-) -> Mapped:
+def _with_memory(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
+    law, body, like = case.law, case.body, case.like
     y, u = unpack(body, state, like)
-    unit = bristle_unit(law, body)
-    z = deflection(state, unit, like)
-    image = carried(law, body, belt_speed, y, u, z, accuracy, track)
+    work = workspace(law, like)
+    measure(law, body, work, like)
+    unpack_memory(law, body, work, state, like)
+    cut_back(law, work)
+    image = memory_map(case, y, u, accuracy, work, track)
     pack(body, residual, image.y - y, image.u - u)
-    store(residual, unit, image.z - z)
+    pack_memory(law, body, work, residual, like)
+    for row in range(2 * dimension(like), residual.size):
+        residual[row] = residual[row] - state[row]
+    return image
+
+
+def _by_path(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
+    """Where the way slid says all of a bristle."""
+    law, body, like = case.law, case.body, case.like
+    y, u = unpack(body, state, like)
+    work = workspace(law, like)
+    measure(law, body, work, like)
+    unpack_memory(law, body, work, state, like)
+    z = work.start[MEMORY]
+    image = path_map(law, body, case.belt_speed, y, u, z, accuracy, track)
+    pack(body, residual, image.y - y, image.u - u)
+    residual[2] = work.unit[0] * (image.z - z)
     return Mapped(image.y, image.u, image.rubbed, 0.0, image.closest, -1.0, image.steps)
 
 
-def _mapped_with_memory(
-    law: Any,
-    body: Body,
-    belt_speed: float,
-    state: Any,
-    residual: Any,
-    accuracy: float,
-    track: Track,
-    like: Any,
-) -> Mapped:
-    y, u = unpack(body, state, like)
-    scales, work, d = scales_of(law, body, like), work_of(law, body, like), dimension(like)
-    begun(body, belt_speed, y, u, work)
-    recalled(work.memory, law, scales, state, 2 * d, work.memory[0])
-    pulled(law, work.memory, work.moving)
-    spilled(work.memory, work.at, 3 * d, work.memory[0])
-    closest, steps = follow(law, body, belt_speed, scales, accuracy, track, work, like)
-    end_y = taken(work.at, 0, like)
-    now = instant_at(body, span(body))
-    end_u = taken(work.at, 1, like) + belt_velocity(body, belt_speed, now)
-    end_u = end_u - body.frequency * body.reference_sine
-    filled(work.memory, work.at, 3 * d, work.memory[0])
-    kept(work.memory, law, scales, residual, 2 * d, work.memory[0])
-    pack(body, residual, end_y - y, end_u - u)
-    for row in range(2 * d, residual.size):
-        residual[row] = residual[row] - state[row]
-    return Mapped(end_y, end_u, taken(work.at, 2, like), 0.0, closest, -1.0, steps)
+period_map = by_law(_without_memory, _with_memory, _by_path, _with_memory)
+"""period_map(case, state, residual, accuracy, track): one span from a state, noted on a track with room; leaves
+image - state in residual."""
 
 
-def _mapped_with_deflections(
-    law: Any,
-    body: Body,
-    belt_speed: float,
-    state: Any,
-    residual: Any,
-    accuracy: float,
-    track: Track,
-    like: Any,
-) -> Mapped:
-    y, u = unpack(body, state, like)
-    scales, z, d = scales_of(law, body, like), memory_of(law, like), dimension(like)
-    recalled(z, law, scales, state, 2 * d, z[0])
-    pulled(law, z, memory_of(law, like))
-    image = deflection_map(law, body, belt_speed, y, u, z, accuracy, track)
-    kept(z, law, scales, residual, 2 * d, z[0])
-    pack(body, residual, image.y - y, image.u - u)
-    for row in range(2 * d, residual.size):
-        residual[row] = residual[row] - state[row]
-    return image
-
-
-period_map = by_law(
-    _mapped_without_memory,
-    _mapped_with_a_bristle,
-    None,
-    _mapped_with_memory,
-    None,
-    _mapped_with_deflections,
-)
-"""One span from a state, noted on a track with room; leaves image - state in residual."""
+@inner
+def image_of(case: Case, state: Any, residual: Any, accuracy: float) -> Mapped:
+    """The image of a state after one span of the body; leaves image - state in residual."""
+    return period_map(case, state, residual, accuracy, track_of(0))
 
 
 def _rest_without_memory(law: Any, body: Body, belt_speed: float, y: Any) -> float:
@@ -249,14 +161,18 @@ def _remember_nothing(law: Any, body: Body, state: Any, z: Any) -> None:
 
 
 def _remember_a_deflection(law: Any, body: Body, state: Any, z: Any) -> None:
-    store(state, bristle_unit(law, body), z)
+    work = workspace(law, z)
+    measure(law, body, work, z)
+    work.start[MEMORY] = z
+    pack_memory(law, body, work, state, z)
 
 
 def _remember_sliding(law: Any, body: Body, state: Any, z: Any) -> None:
     """The memory of steady sliding at slip velocity z."""
-    memory = memory_of(law, z)
-    slid(law, body, memory, z)
-    kept(memory, law, scales_of(law, body, z), state, 2 * dimension(z), memory[0])
+    work = workspace(law, z)
+    measure(law, body, work, z)
+    remember_sliding(law, body, work, z)
+    pack_memory(law, body, work, state, z)
 
 
 remember = by_law(_remember_nothing, _remember_a_deflection, None, _remember_sliding)

@@ -39,7 +39,7 @@ def steps(law: Any, body: Any, h: float, many: int, start: Any, jacobian: Any, l
     for turn in range(many):
         tau = START + turn * h
         flow = anchored(law, body, BELT_SPEED, -1.0, tau)
-        linearize(flow, tau, 1e-6, work, like)
+        linearize(flow, tau, work, like)
         step(flow, tau, h, work, like)
         for row in range(MEMORY + n):
             work.start[row] = work.end[row]

@@ -14,7 +14,8 @@ from memory_laws import Ageing, Elements, elements
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
-from frictionlab.methods.periodic.maps.memory_state import Scales, kept, recalled
+from frictionlab.compile.dispatch import interpreted
+from frictionlab.methods.periodic.maps.memory_state import scalar_coordinate, scalar_share
 
 DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
@@ -229,14 +230,9 @@ def test_the_error_covers_what_scipy_finds_of_elements_in_the_plane(law: Maxwell
 
 @pytest.mark.parametrize("share", [1e-30, 1e-3, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 40.0, 1e9])
 def test_an_age_of_any_size_is_kept_in_a_state_and_grows_no_faster_there_than_it_does(share: float) -> None:
-    law, like = Ageing(), 0.0
-    scales = Scales(np.array([2.0]), np.array([3.0]), np.array([True]))
-    write, read = kept.bodies[0], recalled.bodies[0]
-    state, memory = np.zeros(2), np.zeros(1)
+    coordinate, back = interpreted(scalar_coordinate), interpreted(scalar_share)
 
-    write(np.array([3.0 * share]), law, scales, state[:1], 0, like)
-    write(np.array([3.0 * share + 1e-3]), law, scales, state[1:], 0, like)
-    read(memory, law, scales, state, 0, like)
+    kept = coordinate(share, 1.0)
 
-    assert memory[0] == pytest.approx(3.0 * share, rel=1e-12)
-    assert 0.0 < state[1] - state[0] <= 2.0 * (1e-3 / 3.0) * 1.0001 or share < 1.0
+    assert back(kept, 1.0) == pytest.approx(share, rel=1e-12)
+    assert 0.0 < coordinate(share + 1e-3, 1.0) - kept <= 1e-3 * 1.0001 or share < 1.0

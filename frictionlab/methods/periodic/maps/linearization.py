@@ -1,33 +1,53 @@
-"""The blocks of a step: central difference quotients of a law's rates and friction, by slip and by deflection."""
+"""The blocks of a step: difference quotients of a law's rates and friction, by slip and by what it remembers.
+
+Of deflections they are central quotients on the scale of steady sliding. Friction of a scalar law is steep where it
+creeps: there a quotient by slip is taken on the scale of the slip itself, as far as rounding leaves it.
+"""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
-from frictionlab.compile.decorators import fast
-from frictionlab.compile.dispatch import by_dimension
+from frictionlab.compile.decorators import fast, inner
+from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.events import reference_acceleration
-from frictionlab.dynamics.motion import belt_acceleration, instant_near, slip_at, unbalanced_rate
+from frictionlab.dynamics.motion import (
+    Instant,
+    belt_acceleration,
+    belt_jerk,
+    instant_near,
+    reference_velocity,
+    restoring_force,
+    swing_of,
+    unbalanced_rate,
+)
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
+    SMOOTH,
     YIELDS,
     Flow,
     U,
     Work,
     Y,
+    as_memory,
     friction_in_mode,
     friction_of,
     load_on,
     rate_in_mode,
+    slip_held,
 )
-from frictionlab.numerics.blocks import apply, block, from_columns, keep
+from frictionlab.numerics.blocks import apply, block, from_columns, keep, multiple
 from frictionlab.numerics.vectors import dimension, unit
 
 NUDGE = 1e-5
-"""Of a deflection in steady sliding, for a difference quotient."""
+"""Of a deflection in steady sliding, of a scalar or of a creeping slip, for a difference quotient."""
+FINE = 1e-7
+"""Of a deflection that may have a corner near: its law has corners, and little else that bends."""
+LOST = 1e-9
+"""Of friction: a smaller difference is lost to rounding; of the motion's speed: a slip too slow to matter."""
 
 
 def _away_on_the_line(flow: Flow, least: float, work: Work, w: float) -> float:
@@ -49,10 +69,20 @@ def _away_in_the_plane(flow: Flow, least: float, work: Work, w: complex) -> comp
 _away = by_dimension(_away_on_the_line, _away_in_the_plane)
 
 
+@inner
+def _keep_by_slip(work: Work, n: int, like: Any) -> None:
+    """Make the blocks of the columns: by each direction of slip, the rates of all numbers, then friction."""
+    for k in range(n):
+        keep(work.jacobian, 3 * k, from_columns(work.columns[k], work.columns[n + 1 + k]), like)
+    keep(work.jacobian, 3 * n, from_columns(work.columns[n], work.columns[2 * n + 1]), like)
+
+
 @fast
-def _by_slip(flow: Flow, w: Any, least: float, work: Work, like: Any) -> None:
-    """B of every deflection and G."""
-    n, share = count_of(flow.law), 0.5 / least
+def _deflections_by_slip(flow: Flow, w: Any, work: Work, like: Any) -> Any:
+    n, least = count_of(flow.law), _least(flow, w)
+    # a quotient across the reversal of slip, or across the unloading of what yields, would mix both sides
+    w = _away(flow, 2.0 * least, work, w)
+    share = 0.5 / least
     for column in range(dimension(like)):
         shift, first = least * unit(column, like), (n + 1) * column
         ahead = friction_in_mode(flow.law, work, w + shift)
@@ -62,14 +92,68 @@ def _by_slip(flow: Flow, w: Any, least: float, work: Work, like: Any) -> None:
         for k in range(n):
             work.columns[first + k] = share * (work.columns[2 * n + 2 + k] - work.moving[k])
         work.columns[first + n] = share * (ahead - behind)
-    for k in range(n):
-        keep(work.jacobian, 3 * k, from_columns(work.columns[k], work.columns[n + 1 + k]), like)
-    keep(work.jacobian, 3 * n, from_columns(work.columns[n], work.columns[2 * n + 1]), like)
+    _keep_by_slip(work, n, like)
+    return w
+
+
+@inner
+def _least(flow: Flow, w: Any) -> float:
+    """By how much a slip is moved for a quotient."""
+    return NUDGE * length(w) + LOST * (swing_of(flow.body) + abs(flow.belt_speed))
+
+
+def _beside_rest_on_the_line(least: float, w: float) -> float:
+    return max(w, least) if w >= 0.0 else min(w, -least)
+
+
+def _beside_rest_in_the_plane(least: float, w: complex) -> complex:
+    return w
+
+
+_beside_rest = by_dimension(_beside_rest_on_the_line, _beside_rest_in_the_plane)
+"""_beside_rest(least, w): a slip on the line at least so fast, on its own side."""
+
+
+@inner
+def _creep_by_slip(flow: Flow, w: Any, work: Work, column: int, like: Any) -> float:
+    """The quotient of friction by slip on the scale of the slip; returns by how much that was moved."""
+    n, swing = count_of(flow.law), swing_of(flow.body) + abs(flow.belt_speed)
+    least, shift = LOST * swing, max(NUDGE * length(w), 1e-30 * swing)
+    while True:
+        ahead = friction_in_mode(flow.law, work, w + shift * unit(column, like))
+        behind = friction_in_mode(flow.law, work, w - shift * unit(column, like))
+        work.columns[(n + 1) * column + n] = (ahead - behind) / (2.0 * shift)
+        # what rounding leaves of the difference is too little: move the slip by more
+        if shift >= least or length(ahead - behind) > LOST * (length(ahead) + length(behind)):
+            return shift
+        shift = min(1e3 * shift, least)
+
+
+@inner
+def _scalars_by_slip(flow: Flow, w: Any, work: Work, like: Any) -> Any:
+    n, least = count_of(flow.law), LOST * (swing_of(flow.body) + abs(flow.belt_speed))
+    for column in range(dimension(like)):
+        shift, there = _creep_by_slip(flow, w, work, column, like), w
+        # rates of scalars do not change with a slip as slow as creep: move it by what matters to them
+        if shift < least:
+            shift, there = least, _beside_rest(2.0 * least, w)
+        friction_in_mode(flow.law, work, there + shift * unit(column, like))
+        for k in range(n):
+            work.columns[2 * n + 2 + k] = work.moving[k] + 0.0 * like
+        friction_in_mode(flow.law, work, there - shift * unit(column, like))
+        for k in range(n):
+            difference = work.columns[2 * n + 2 + k] - work.moving[k]
+            work.columns[(n + 1) * column + k] = difference / (2.0 * shift)
+    _keep_by_slip(work, n, like)
+    return w
+
+
+_by_slip = by_law(_deflections_by_slip, _deflections_by_slip, None, _deflections_by_slip, _scalars_by_slip)
+"""_by_slip(flow, w, work, like): B of every number, and G; returns the slip at which to ask for the other blocks."""
 
 
 @fast
-def _by_deflection(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
-    """A and F of one deflection; the rates of the others are in ``work.moving`` and stay."""
+def _centrally(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
     law, z, moving = flow.law, work.memory[k], work.moving[k]
     nudge = NUDGE * work.size[k]
     share = 0.5 / nudge
@@ -90,20 +174,80 @@ def _by_deflection(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
     keep(work.jacobian, 3 * k + 2, from_columns(work.columns[1], work.columns[3]), like)
 
 
-@fast
-def linearize(flow: Flow, tau: float, least: float, work: Work, like: Any) -> None:
-    """Fill ``work.jacobian`` and the slopes in time at ``work.start``; least: by how much slip is moved."""
+@inner
+def _flatter(ahead: Any, here: Any, behind: Any, h: float) -> Any:
+    """The central quotient; where its two sides disagree there is a corner, and the flatter side counts."""
+    rise, fall = (ahead - here) / h, (here - behind) / h
+    if length(rise - fall) <= 0.1 * (length(rise) + length(fall)):
+        return 0.5 * (rise + fall)
+    return rise if length(rise) < length(fall) else fall
+
+
+@inner
+def _flatly(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
+    """Of a deflection by its own rate, which may have a corner that the law does not declare."""
+    law, z, moving = flow.law, work.memory[k], work.moving[k]
+    nudge = FINE * work.size[k]
+    friction = friction_of(law, work.memory, work.moving, w)
+    for column in range(dimension(like)):
+        shift = nudge * unit(column, like)
+        work.memory[k] = z + shift
+        ahead = rate_in_mode(law, work, k, w)
+        work.moving[k] = ahead
+        friction_ahead = friction_of(law, work.memory, work.moving, w)
+        work.memory[k] = z - shift
+        behind = rate_in_mode(law, work, k, w)
+        work.moving[k] = behind
+        friction_behind = friction_of(law, work.memory, work.moving, w)
+        work.memory[k], work.moving[k] = z, moving
+        work.columns[2 * column] = _flatter(ahead, moving, behind, nudge)
+        work.columns[2 * column + 1] = _flatter(friction_ahead, friction, friction_behind, nudge)
+    keep(work.jacobian, 3 * k + 1, from_columns(work.columns[0], work.columns[2]), like)
+    keep(work.jacobian, 3 * k + 2, from_columns(work.columns[1], work.columns[3]), like)
+
+
+@inner
+def _bristle(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
+    _centrally(flow, w, k, work, like)
+
+
+@inner
+def _deflection(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
+    if work.mode[k] == SMOOTH:
+        _flatly(flow, w, k, work, like)
+    else:
+        _centrally(flow, w, k, work, like)
+
+
+@inner
+def _scalar(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
+    """Of a number without direction, on the scale of what it is: it may range over decades."""
+    law, here, moving = flow.law, work.memory[k], work.moving[k]
+    least = 0.0 if work.positive[k] > 0.0 else LOST * work.size[k]
+    shift = max(NUDGE * abs(here), least)
+    friction = friction_of(law, work.memory, work.moving, w)
+    work.memory[k] = here + shift
+    ahead = rate_in_mode(law, work, k, w)
+    work.moving[k] = ahead
+    friction_ahead = friction_of(law, work.memory, work.moving, w)
+    work.memory[k] = here - shift
+    behind = rate_in_mode(law, work, k, w)
+    work.moving[k] = behind
+    friction_behind = friction_of(law, work.memory, work.moving, w)
+    work.memory[k], work.moving[k] = here, moving
+    keep(work.jacobian, 3 * k + 1, multiple(_flatter(ahead, moving, behind, shift), like), like)
+    by_scalar = _flatter(friction_ahead, friction, friction_behind, shift)
+    keep(work.jacobian, 3 * k + 2, multiple(by_scalar, like), like)
+
+
+_by_memory = by_law(_bristle, _bristle, None, _deflection, _scalar)
+"""_by_memory(flow, w, k, work, like): A and F of one number; the rates of all are in ``work.moving`` and stay."""
+
+
+@inner
+def _slope_of_deviation(flow: Flow, now: Instant, work: Work, like: Any) -> None:
+    """In time the loads change, and the slip of a mass whose deviation stays as it is."""
     body, n = flow.body, count_of(flow.law)
-    for k in range(n):
-        work.memory[k] = work.start[MEMORY + k]
-    w = _away(flow, 2.0 * least, work, slip_at(flow, tau, work.start[U]))
-    _by_slip(flow, w, least, work, like)
-    if n > 1:  # the rates of the others
-        friction_in_mode(flow.law, work, w)
-    for k in range(n):
-        _by_deflection(flow, w, k, work, like)
-    # in time the loads change, and the slip of a mass whose deviation stays as it is
-    now = instant_near(flow, tau)
     turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
     turn = turn + 0.0 * like
     load, pressed = unbalanced_rate(body, now), load_on(body, now)
@@ -111,3 +255,34 @@ def linearize(flow: Flow, tau: float, least: float, work: Work, like: Any) -> No
     work.slope[Y], work.slope[U], work.slope[IMPULSE] = 0.0 * like, load - pressed * friction, friction
     for k in range(n):
         work.slope[MEMORY + k] = apply(block(work.jacobian, 3 * k, like), turn)
+
+
+@inner
+def _slope_of_slip(flow: Flow, now: Instant, work: Work, like: Any) -> None:
+    """In time the loads change, and the deviation of a mass whose slip stays as it is."""
+    body = flow.body
+    turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
+    turn = turn + 0.0 * like
+    jerk = -(body.frequency**2) * reference_velocity(body, now.sine, now.cosine)
+    jerk = jerk - belt_jerk(body, flow.belt_speed, now)
+    work.slope[Y], work.slope[IMPULSE] = -turn, 0.0 * like
+    work.slope[U] = unbalanced_rate(body, now) + jerk + restoring_force(body, 0.0 * turn, turn)
+    for k in range(count_of(flow.law)):
+        work.slope[MEMORY + k] = 0.0 * like
+
+
+_slope = by_law(_slope_of_deviation, _slope_of_deviation, None, _slope_of_deviation, _slope_of_slip)
+"""_slope(flow, now, work, like): fill ``work.slope`` by the state that is held fixed."""
+
+
+@inner
+def linearize(flow: Flow, tau: float, work: Work, like: Any) -> None:
+    """Fill ``work.jacobian`` and the slopes in time at ``work.start``."""
+    n, now = count_of(flow.law), instant_near(flow, tau)
+    for k in range(n):
+        work.memory[k] = as_memory(flow.law, work.start[MEMORY + k])
+    w = _by_slip(flow, slip_held(flow, now, work.start[U]), work, like)
+    friction_in_mode(flow.law, work, w)  # the rates of all, which the quotients by one leave alone
+    for k in range(n):
+        _by_memory(flow, w, k, work, like)
+    _slope(flow, now, work, like)

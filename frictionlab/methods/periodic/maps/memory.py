@@ -1,196 +1,305 @@
-"""The period map of laws with other memory than one bristle: mass and memory together, on the line and in the plane.
+"""The period map of laws with memory, of one bristle or any: mass and memory together by Rodas5P.
 
-However stiff the contact, steps follow the motion (Rodas5P). Within a step what moves with the slip goes on to, and
-what yields too; where an element begins to yield or slip reverses, the step ends. Other corners of a law are met by
-steps that are repeated until they are short enough. Where the slip is prescribed, friction moves nothing: only the
-memory is followed.
+However stiff the contact, steps follow the motion. A step ends where a deflection meets or leaves its yield surface
+or begins to be unloaded and, on the line, where slip reverses; between such events everything is smooth. Scalars have
+no events: steps are as short as friction near rest is steep. Where the slip is prescribed, friction moves nothing and
+only the memory is followed.
 """
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import length
-from frictionlab.dynamics.motion import (
-    belt_velocity,
-    instant_at,
-    instant_near,
-    reference_velocity,
-    slip,
-    slip_at,
-    span,
-    turned,
-)
+from frictionlab.compile.dispatch import by_dimension, by_law, length
+from frictionlab.compile.stack import count_of
+from frictionlab.dynamics.events import dips
+from frictionlab.dynamics.motion import belt_path, instant_at, instant_near, span, swing_of
 from frictionlab.dynamics.step_size import growth_factor, longest_step
-from frictionlab.methods.periodic.maps.deflection import COARSEST
-from frictionlab.methods.periodic.maps.events import (
-    begun_to_yield,
-    located,
-    passed,
-    turning_point,
-    turns,
-    yield_point,
+from frictionlab.methods.periodic.case import Case
+from frictionlab.methods.periodic.maps.linearization import linearize
+from frictionlab.methods.periodic.maps.modes import (
+    OPEN,
+    begin,
+    change,
+    hidden,
+    locate,
+    lowest,
+    note_guards,
+    rates_at_end,
+    restore,
 )
-from frictionlab.methods.periodic.maps.jacobian import differentiate
-from frictionlab.methods.periodic.maps.memory_rates import Problem, Work, anchored, rates, settled
-from frictionlab.methods.periodic.maps.memory_state import Scales, scales_of, swing_of
-from frictionlab.methods.periodic.maps.memory_step import crossed, stepped
-from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
-from frictionlab.numerics.vectors import put, taken
-from frictionlab.orbit.panels import NODES
-from frictionlab.orbit.recorder import Track
+from frictionlab.methods.periodic.maps.rates import (
+    IMPULSE,
+    MEMORY,
+    SMOOTH,
+    Flow,
+    U,
+    Work,
+    Y,
+    anchored,
+    deviation_held,
+    held_velocity,
+    velocity_held,
+)
+from frictionlab.methods.periodic.maps.sliding import MOST_STEPS, Mapped
+from frictionlab.methods.periodic.maps.step import step
+from frictionlab.orbit.recorder import Track, panel_writer
 from frictionlab.scene.body import Body
 
-JUMP = 2
-"""Repetitions of a step after which a rate is taken to jump within it, if errors fall slower than smooth ones."""
-MOST_REJECTED = 8
-"""The same however errors fall."""
-MEANT = 1e4
-"""Times the accuracy: an error beyond which a step says nothing about where slip reverses."""
+COARSEST = 1e-4
+"""Of a step, per unit of friction impulse in a radian: what is coarser jumps over reversals."""
 
 
-@inner
-def usual_friction(law: Any, body: Body) -> float:
-    """The coefficient of steady sliding as fast as the friction-free motion."""
+def _at_rest(law: Any, body: Body) -> float:
+    return law.sliding_friction(0.0)
+
+
+def _in_motion(law: Any, body: Body) -> float:
     return law.sliding_friction(swing_of(body))
 
 
+usual_friction = by_law(_at_rest, _at_rest, None, _in_motion)
+"""usual_friction(law, body): the coefficient of steady sliding that accuracies are measured by."""
+
+
 @inner
-def coarsest_of_memory(law: Any, body: Body) -> float:
+def coarsest(law: Any, body: Body) -> float:
     """The coarsest accuracy a map is made with, whatever is asked: two coarser maps are one and the same."""
     return COARSEST * body.normal_load * usual_friction(law, body) / body.frequency
 
 
-@inner
-def _note(
-    track: Track, problem: Problem, tau: float, h: float, scales: Scales, work: Work, like: Any
-) -> None:
-    row = track.filled[0]
-    if row == track.stick.size:
-        return
-    body = problem.body
-    for k in range(NODES.size):
-        part = 0.5 * h * (1.0 + NODES[k])
-        if part > 0.0:
-            stepped(problem, tau, part, scales, work, like)
-        values = work.end if part > 0.0 else work.at
-        rates(problem, tau + part, values, work, work.rates, like)
-        sine, cosine = turned(problem, tau + part)
-        track.tau[row, k] = tau + part
-        track.x[row, k] = taken(values, 0, like) + body.reference_sine * sine + body.reference_cosine * cosine
-        now = instant_near(problem, tau + part)
-        track.v[row, k] = taken(values, 1, like) + belt_velocity(body, problem.belt_speed, now)
-        track.friction[row, k] = taken(work.rates, 2, like)
-    track.stick[row] = False
-    track.filled[0] = row + 1
+LAYER = 40.0
+"""Bristle lengths slid since a reversal after which its layer is over."""
 
 
 @inner
-def _held(problem: Problem, tau: float, work: Work, like: Any) -> None:
-    """Put a slip that is prescribed where it belongs."""
-    put(work.at, 0, 0.0 * like)
-    put(work.at, 1, slip_at(problem, tau, 0.0 * like))
+def _while_into(part: float, flow: Flow, tau: float, work: Work, like: Any) -> Any:
+    """A while into a step; the step is taken anew to there."""
+    body, now = flow.body, instant_near(flow, tau + part)
+    if part > 0.0:
+        step(flow, tau, part, work, like)
+    else:
+        for place in range(MEMORY + count_of(flow.law)):
+            work.end[place] = work.start[place]
+    rates_at_end(flow, tau + part, work, like)
+    x = work.end[Y] + body.reference_sine * now.sine + body.reference_cosine * now.cosine
+    return x, velocity_held(flow, now, work.end[U]), work.rates[IMPULSE]
 
 
-@inner
-def follow(
-    law: Any,
-    body: Body,
-    belt_speed: float,
-    scales: Scales,
-    accuracy: float,
-    track: Track,
-    work: Work,
-    like: Any,
-) -> Any:
-    """One span of the motion from ``work.at``, and back into it; returns the smallest slip speed and the steps.
+_note = panel_writer(_while_into)
 
-    accuracy is each step's, in the norm of energy; steps are -1 where it gave up. On a track with room every piece of
-    the way is noted.
+
+def _side_on_the_line(w: float, a: float) -> float:
+    """The direction in which slip goes on."""
+    return 1.0 if w > 0.0 or (w == 0.0 and a >= 0.0) else -1.0
+
+
+def _side_in_the_plane(w: complex, a: complex) -> float:
+    return 1.0
+
+
+_side = by_dimension(_side_on_the_line, _side_in_the_plane)
+
+
+def _guarded_on_the_line(node: Any, w: float, a: float, h: float, like: float) -> bool:
+    """On the line the guard of slip sees to it."""
+    return False
+
+
+def _dips_on_the_line(node: Any, w: float, a: float, h: float, like: float) -> bool:
+    ends = complex(node.w, 0.0), complex(node.a, 0.0), complex(w, 0.0), complex(a, 0.0)
+    return node.w * w > 0.0 and dips(ends[0], ends[1], ends[2], ends[3], h)
+
+
+def _dips_in_the_plane(node: Any, w: complex, a: complex, h: float, like: complex) -> bool:
+    return dips(node.w, node.a, w, a, h)
+
+
+_guarded = by_dimension(_guarded_on_the_line, _dips_in_the_plane)
+_unguarded = by_dimension(_dips_on_the_line, _dips_in_the_plane)
+
+
+def _deflections_dip(law: Any, node: Any, w: Any, a: Any, h: float, like: Any) -> bool:
+    return _guarded(node, w, a, h, like)
+
+
+def _scalars_dip(law: Any, node: Any, w: Any, a: Any, h: float, like: Any) -> bool:
+    return _unguarded(node, w, a, h, like)
+
+
+_dip = by_law(_deflections_dip, _deflections_dip, None, _deflections_dip, _scalars_dip)
+"""Whether slip comes much closer to rest within a step from a node than at its ends."""
+
+
+def _position_on_the_line(flow: Flow, y: float) -> float:
+    """Of the mass against the belt, at the anchor."""
+    body = flow.body
+    swung = body.reference_sine * flow.sine + body.reference_cosine * flow.cosine
+    return y + swung - belt_path(body, flow.belt_speed, 0.0, flow.anchor)
+
+
+def _position_in_the_plane(flow: Flow, y: complex) -> float:
+    """Only on the line does a reversal begin a layer."""
+    return 0.0
+
+
+_position = by_dimension(_position_on_the_line, _position_in_the_plane)
+
+
+def _layer_on_the_line(work: Work, covered: float, share: float, a: float, w: float) -> float:
+    """The longest step that adds no more than this share to the way since a reversal, or to the bristle's length.
+
+    Behind a reversal a bristle bends over in a short layer, which an L-stable step might pass unseen.
     """
-    end = span(body)
-    accuracy = min(accuracy, coarsest_of_memory(law, body))
-    reach = longest_step(body, usual_friction(law, body), accuracy)
-    tau, h, steps, rejected, closest = 0.0, 0.1 * reach, 0, 0, 1e300
-    beyond, usual, fresh = 0.0, 0.1 * reach, True
-    missed, tried = 0.0, 1.0
-    problem = anchored(law, body, belt_speed, 0.0)
-    if body.prescribed:
-        _held(problem, 0.0, work, like)
-    rate0 = rates(problem, 0.0, work.at, work, work.rates, like)
-    while end - tau > 4e-15 * end:
-        w0 = taken(work.at, 1, like)
-        if fresh:
-            closest = min(closest, length(w0))
-            problem = anchored(law, body, belt_speed, tau)
-            differentiate(problem, tau, scales, work, like)
-            fresh = False
-        if beyond > 0.0:
-            h, growth = min(beyond, end - tau), usual / beyond
-            crossed(problem, tau, h, work, like)
-            beyond = 0.0
-        else:
-            h = min(h, reach, end - tau)
-            error = stepped(problem, tau, h, scales, work, like)
-            steps += 1
-            cornered = law.turning > 0.0 and error < MEANT * accuracy
-            if cornered and turns(work, 1e-3 * accuracy, like):
-                h, error, tries = turning_point(problem, tau, h, scales, accuracy, work, like)
-                steps += tries
-            if cornered and begun_to_yield(law, scales, work, like).yields:
-                h, error, tries = yield_point(problem, tau, h, scales, accuracy, work, like)
-                steps += tries
-            growth = growth_factor(error / accuracy, 5.0)
+    size = work.size[0]
+    if work.mode[0] != SMOOTH or covered >= LAYER * size:
+        return OPEN
+    ahead = share * max(size, covered)
+    return 2.0 * ahead / (abs(w) + math.sqrt(w * w + 2.0 * abs(a) * ahead) + 1e-300)
+
+
+def _layer_in_the_plane(work: Work, covered: float, share: float, a: complex, w: complex) -> float:
+    return OPEN
+
+
+_layer = by_dimension(_layer_on_the_line, _layer_in_the_plane)
+
+
+@inner
+def _at_start(flow: Flow, work: Work, like: Any) -> Any:
+    """Slip and its rate where the step starts."""
+    for row in range(MEMORY + count_of(flow.law)):
+        work.end[row] = work.start[row]
+    return rates_at_end(flow, flow.anchor, work, like)
+
+
+@inner
+def _flow_of(case: Case, work: Work) -> Flow:
+    """The flow at tau = 0 with the modes and the side that the state in ``work.start`` has."""
+    flow = anchored(case.law, case.body, case.belt_speed, 1.0, 0.0)
+    w, a = _at_start(flow, work, case.like)
+    begin(flow, a, w, work)
+    return anchored(case.law, case.body, case.belt_speed, _side(w, a), 0.0)
+
+
+class Node(NamedTuple):
+    """Where a step starts: slip and its rate, and whether an event has just been passed."""
+
+    tau: float
+    w: Any
+    a: Any
+    leaving: bool
+
+
+class Landing(NamedTuple):
+    """The step to take, whether it has to be tried first, and whether it ends at an event."""
+
+    h: float
+    repeats: bool
+    ends: bool
+
+
+@inner
+def _landing(flow: Flow, node: Node, h: float, accuracy: float, work: Work, like: Any) -> Landing:
+    """What becomes of a step of h that is accurate enough."""
+    w, a = rates_at_end(flow, node.tau + h, work, like)
+    guard = lowest(flow, w, a, work)
+    if guard.value <= 0.0:
+        # just behind an event a guard is zero to rounding: a step must first get away from it, or never does
+        stays = node.leaving and work.guards[2 * guard.number] <= -1e-3 * guard.value
+        if stays and h * flow.body.frequency > 1e-12:
+            return Landing(0.25 * h, True, False)
+        return Landing(locate(flow, node.tau, h, accuracy, work, like), False, True)
+    if node.leaving:
+        return Landing(h, False, False)
+    # between two ends without events a guard may have passed zero twice, or slip come close to rest
+    shorter = hidden(flow, h, w, a, work)
+    if shorter == h and min(length(node.w), length(w)) > 10.0 * accuracy:
+        shorter = 0.5 * h if _dip(flow.law, node, w, a, h, like) else h
+    return Landing(shorter, shorter < h, False)
+
+
+@inner
+def _depart(flow: Flow, leaving: bool, work: Work, like: Any) -> Node:
+    """Get ready for steps from ``work.start``, at the anchor of the flow."""
+    w, a = _at_start(flow, work, like)
+    note_guards(flow, w, a, work)
+    linearize(flow, flow.anchor, work, like)
+    return Node(flow.anchor, w, a, leaving)
+
+
+@inner
+def _arrive(flow: Flow, tau: float, ends: bool, work: Work, like: Any) -> float:
+    """Let the end of a step be the start of the next; returns the side of slip there."""
+    side = flow.side
+    if ends:
+        w, a = rates_at_end(flow, tau, work, like)
+        side = change(flow, w, a, work)
+    for row in range(MEMORY + count_of(flow.law)):
+        work.start[row] = work.end[row]
+    restore(flow, work)
+    if flow.body.prescribed:  # the reference is the motion: no error of a step adds up
+        work.start[Y] = 0.0 * like
+        work.start[U] = held_velocity(flow, instant_near(flow, tau), 0.0 * like)
+    return side
+
+
+@inner
+def follow(flow: Flow, friction: float, accuracy: float, track: Track, work: Work, like: Any) -> Any:
+    """One span of the motion from ``work.start``, and back into it; returns the smallest slip speed and the steps.
+
+    friction: the usual coefficient; accuracy: each step's, in the norm of energy. Steps are -1 where it gave up. On a
+    track with room every piece of the way is noted.
+    """
+    law, body, belt_speed, end = flow.law, flow.body, flow.belt_speed, span(flow.body)
+    longest = longest_step(body, friction, accuracy)
+    began, share = OPEN, min(1.0, 2.0 * (accuracy / (body.normal_load * friction)) ** 0.0625)
+    node, h, steps = _depart(flow, True, work, like), 0.1 * longest, 0
+    closest = length(node.w)
+    while end - node.tau > 4e-15 * end:
+        h = min(h, longest, end - node.tau)
+        growth = growth_factor(step(flow, node.tau, h, work, like) / accuracy, 5.0)
+        steps += 1
         if steps > MOST_STEPS:
             return closest, -1
         if growth < 1.0:
-            usual = h if rejected == 0 else usual
-            smooth = rejected > 0 and error <= missed * (h / tried) ** 3
-            rejected, missed, tried = rejected + 1, error, h
-            if law.turning == 0.0 or rejected < JUMP or (smooth and rejected < MOST_REJECTED):
-                h = h * growth
-                continue
-            h, beyond, tries = located(problem, tau, h, scales, accuracy, work, like)
-            steps, growth = steps + tries, 1.0
-            if h == 0.0:
-                rejected = 0
-                continue
-        rate1 = rates(problem, tau + h, work.end, work, work.rates, like)
-        w1 = taken(work.end, 1, like)
-        if min(length(w0), length(w1)) > 10.0 * accuracy and passed(w0, rate0, w1, rate1, h + 0.0 * like):
-            h, rejected, beyond = 0.5 * h, 0, 0.0
+            h = h * growth
             continue
+        # an event cuts a step short, but says nothing about how long the next may be
+        usual = h * growth
+        landing = _landing(flow, node, h, accuracy, work, like)
+        h = landing.h
+        if landing.repeats:
+            continue
+        tau = node.tau + h if end - node.tau > h else end
         if track.stick.size > 0:
-            for row in range(work.end.size):
-                work.kept[row] = work.end[row]
-            _note(track, problem, tau, h, scales, work, like)
-            for row in range(work.end.size):
-                work.end[row] = work.kept[row]
-        for row in range(work.at.size):
-            work.at[row] = work.end[row]
-        settled(work, like)
-        tau = tau + h if end - tau > h else end
-        if body.prescribed:
-            _held(problem, tau, work, like)
-        rate0, fresh, rejected = rate1, True, 0
-        h = h * growth
+            _note(track, node.tau, h, False, flow, node.tau, work, like)
+            step(flow, node.tau, h, work, like)
+        flow = anchored(law, body, belt_speed, _arrive(flow, tau, landing.ends, work, like), tau)
+        node = _depart(flow, landing.ends, work, like)
+        closest = min(closest, length(node.w))
+        # a reversal begins a layer, where steps grow with the way; none is known behind the start of the span
+        began = _position(flow, work.start[Y]) if landing.ends else began
+        h = min(usual, _layer(work, abs(_position(flow, work.start[Y]) - began), share, node.a, node.w))
     return closest, steps
 
 
 @inner
-def grain_of_memory(law: Any, body: Body, accuracy: float, like: Any) -> float:
-    """What the steps of a map, of this accuracy each, may leave in the mean: a yield within one, or their sum."""
-    most, scales = 0.0, scales_of(law, body, like)
-    for unit in scales.unit:
-        most = max(most, unit if law.turning > 0.0 else 0.0)
-    return accuracy / body.normal_load * (2.0 * most + 10.0 / span(body))
+def memory_map(case: Case, y: Any, u: Any, accuracy: float, work: Work, track: Track) -> Mapped:
+    """One span from the deviation (y, u) and the memory at ``work.start``, which becomes that at its end.
 
-
-@inner
-def begun(body: Body, belt_speed: float, y: Any, u: Any, work: Work) -> None:
-    """Put the beginning of a span into ``work.at``, but for the memory."""
-    work.at[:] = 0.0
-    put(work.at, 0, y)
-    now = instant_at(body, 0.0)
-    put(work.at, 1, slip(body, belt_speed, now, u + reference_velocity(body, now.sine, now.cosine)))
+    accuracy is each step's, in the norm of energy. On a track with room every piece of the way is noted.
+    """
+    law, body, like = case.law, case.body, case.like
+    usual = usual_friction(law, body)
+    start = anchored(law, body, case.belt_speed, 1.0, 0.0)
+    free = 0.0 if body.prescribed else 1.0  # the reference is the motion
+    work.start[Y] = free * y
+    work.start[U] = held_velocity(start, instant_at(body, 0.0), free * u)
+    work.start[IMPULSE] = 0.0 * like
+    accuracy = min(accuracy, coarsest(law, body))
+    closest, steps = follow(_flow_of(case, work), usual, accuracy, track, work, like)
+    end_u = deviation_held(start, instant_at(body, span(body)), work.start[U])
+    return Mapped(work.start[Y], end_u, work.start[IMPULSE], 0.0, closest, -1.0, steps)

@@ -1,19 +1,25 @@
-"""The memory of a law as kernels keep it: an array for the law, real numbers for a stepper, coordinates for a state.
+"""What a law remembers as coordinates of a state, and the scales that those are measured by.
 
-In the plane a deflection is complex to its law and two numbers to a stepper. In a state a deflection is measured by
-the square root of its stiffness, as energy is; a positive scalar by its logarithm as long as it is small, for it may
-range over decades, and by itself where it is large: what decays there then nears its orbit period by period.
+In a state a deflection is measured by the square root of its stiffness, as energy is; a positive scalar by its
+logarithm as long as it is small, for it may range over decades, and by itself where it is large: what decays there
+then nears its orbit period by period. A law whose deflections remember whether they stick has one more coordinate
+for each of them, zero for stick; it comes back exactly or not at all.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, length
+from frictionlab.compile.stack import count_of
+from frictionlab.dynamics.motion import swing_of
+from frictionlab.methods.periodic.maps.rates import FOLLOWS, MEMORY, YIELDS, Work, as_memory, remembers_stick
+from frictionlab.methods.periodic.maps.yield_surface import measure_yield
+from frictionlab.numerics.vectors import dimension, put, taken
 from frictionlab.scene.body import Body
 
 
@@ -21,140 +27,167 @@ def _numbers(law: Any, like: Any) -> Any:
     return np.zeros(law.count())
 
 
-def _vectors(law: Any, like: Any) -> Any:
+def _floats(law: Any, like: float) -> Any:
+    return np.zeros(law.count())
+
+
+def _vectors(law: Any, like: complex) -> Any:
     return np.zeros(law.count(), np.complex128)
 
 
-memory_of = by_law(_numbers, _numbers, None, _numbers, _vectors)
-"""An array for the memory of a law, at zero."""
+_by_direction = by_dimension(_floats, _vectors)
 
 
-def _parts_of_numbers(item: float) -> int:
-    return 1
+def _deflections(law: Any, like: Any) -> Any:
+    return _by_direction(law, like)
 
 
-def _parts_of_vectors(item: complex) -> int:
-    return 2
+memory_of = by_law(_deflections, _deflections, None, _deflections, _numbers)
+"""memory_of(law, like): an array for the memory of a law, at zero."""
 
 
-parts = by_dimension(_parts_of_numbers, _parts_of_vectors)
-"""How many real numbers one memory is."""
+# --- scales ---------------------------------------------------------------------------------------------------------
 
 
-def _filled_numbers(memory: Any, values: Any, at: int, item: float) -> None:
-    for k in range(memory.size):
-        memory[k] = values[at + k]
-
-
-def _filled_vectors(memory: Any, values: Any, at: int, item: complex) -> None:
-    for k in range(memory.size):
-        memory[k] = complex(values[at + 2 * k], values[at + 2 * k + 1])
-
-
-filled = by_dimension(_filled_numbers, _filled_vectors)
-"""Fill a memory from real numbers that begin at a place; the last argument is one of its items."""
-
-
-def _spilled_numbers(memory: Any, values: Any, at: int, item: float) -> None:
-    for k in range(memory.size):
-        values[at + k] = memory[k]
-
-
-def _spilled_vectors(memory: Any, values: Any, at: int, item: complex) -> None:
-    for k in range(memory.size):
-        values[at + 2 * k], values[at + 2 * k + 1] = memory[k].real, memory[k].imag
-
-
-spilled = by_dimension(_spilled_numbers, _spilled_vectors)
-"""The other way round."""
-
-
-class Scales(NamedTuple):
-    """Of each memory: what a state has it multiplied by, its size in steady sliding, whether it is never negative."""
-
-    unit: Any
-    size: Any
-    positive: Any
+def _measure_bristle(law: Any, body: Body, work: Work, like: Any) -> None:
+    """The stiffness of the contact about the undeflected bristle."""
+    size = law.largest_deflection()
+    size = size if size < 1e300 else 1.0
+    work.size[0] = size
+    work.unit[0] = math.sqrt(body.normal_load * abs(law.friction(0.0, size, 0.0)) / size)
 
 
 @inner
-def swing_of(body: Body) -> float:
-    """The speed of the friction-free motion; 1 where it has no bound."""
-    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine))
-    return swing if swing > 0.0 else 1.0
-
-
-@inner
-def scales_of(law: Any, body: Body, like: Any) -> Scales:
-    """Told by steady sliding as fast as the friction-free motion."""
-    v = swing_of(body) + 0.0 * like
-    memory, still = memory_of(law, like), memory_of(law, like)
-    n = memory.size
-    scales = Scales(np.ones(n), np.ones(n), np.zeros(n, np.bool_))
+def _effects(law: Any, body: Body, work: Work, like: Any) -> None:
+    """Sizes in steady sliding as fast as the friction-free motion; into units, the slope of friction by each."""
+    v, n = swing_of(body) + 0.0 * like, count_of(law)
     for k in range(n):
-        memory[k] = law.steady(v, k)
-        scales.size[k] = length(memory[k])
+        work.memory[k] = law.steady(v, k)
+        work.moving[k] = 0.0 * work.memory[k]
     most = law.sliding_friction(length(v))
     for k in range(n):
-        here = memory[k]
-        if scales.size[k] == 0.0:
-            scales.size[k] = 1.0
-        shift = 1e-3 * scales.size[k]
-        memory[k] = here + shift
-        ahead = law.friction(v, memory, still)
-        memory[k] = here - shift
-        slope = length(ahead - law.friction(v, memory, still)) / (2.0 * shift)
-        if law.turning > 0.0:
-            scales.unit[k] = math.sqrt(body.normal_load * max(slope, 1e-6 * most / scales.size[k]))
-        else:
-            effect = max(slope * scales.size[k], 1e-6 * most)
-            scales.unit[k] = body.normal_load * effect / body.frequency
-            memory[k] = -here
-            scales.positive[k] = not law.within(memory)
-        memory[k] = here
-    return scales
+        here = work.memory[k]
+        far = length(here)
+        work.size[k] = far if far > 0.0 else 1.0
+        shift = 1e-3 * work.size[k]
+        work.memory[k] = here + shift
+        ahead = law.friction(v, work.memory, work.moving)
+        work.memory[k] = here - shift
+        slope = length(ahead - law.friction(v, work.memory, work.moving)) / (2.0 * shift)
+        work.memory[k] = here
+        work.unit[k] = max(slope, 1e-6 * most / work.size[k])
 
 
-def _kept_numbers(memory: Any, law: Any, scales: Scales, state: Any, at: int, item: float) -> None:
-    for k in range(memory.size):
-        unit = scales.unit[k]
-        if law.turning > 0.0:
-            state[at + k] = unit * memory[k]
-        elif scales.positive[k]:
-            share = max(memory[k], 1e-300) / scales.size[k]
-            state[at + k] = unit * (math.log(share) if share < 1.0 else share - 1.0)
-        else:
-            state[at + k] = unit * memory[k] / scales.size[k]
+def _measure_deflections(law: Any, body: Body, work: Work, like: Any) -> None:
+    _effects(law, body, work, like)
+    for k in range(count_of(law)):
+        work.unit[k] = math.sqrt(body.normal_load * work.unit[k])
 
 
-def _kept_vectors(memory: Any, law: Any, scales: Scales, state: Any, at: int, item: complex) -> None:
-    for k in range(memory.size):
-        z = scales.unit[k] * memory[k]
-        state[at + 2 * k], state[at + 2 * k + 1] = z.real, z.imag
+def _measure_scalars(law: Any, body: Body, work: Work, like: Any) -> None:
+    _effects(law, body, work, like)
+    for k in range(count_of(law)):
+        work.unit[k] = body.normal_load * work.unit[k] * work.size[k] / body.frequency
+        here = work.memory[k]
+        work.memory[k] = -here
+        work.positive[k] = 0.0 if law.within(work.memory) else 1.0
+        work.memory[k] = here
 
 
-kept = by_dimension(_kept_numbers, _kept_vectors)
-"""kept(memory, law, scales, state, at, memory[0]): write a memory into a state, from a place on."""
+_measure_sizes = by_law(_measure_bristle, _measure_bristle, None, _measure_deflections, _measure_scalars)
 
 
-def _recalled_numbers(memory: Any, law: Any, scales: Scales, state: Any, at: int, item: float) -> None:
-    for k in range(memory.size):
-        value = state[at + k] / scales.unit[k]
-        if law.turning > 0.0:
-            memory[k] = value
-        elif scales.positive[k]:
-            memory[k] = scales.size[k] * (math.exp(value) if value < 0.0 else 1.0 + value)
-        else:
-            memory[k] = scales.size[k] * value
+@inner
+def measure(law: Any, body: Body, work: Work, like: Any) -> None:
+    """Fill of each number its size in steady sliding, its unit in the norm of energy and where it yields."""
+    _measure_sizes(law, body, work, like)
+    measure_yield(law, work, like)
 
 
-def _recalled_vectors(memory: Any, law: Any, scales: Scales, state: Any, at: int, item: complex) -> None:
-    for k in range(memory.size):
-        memory[k] = complex(state[at + 2 * k], state[at + 2 * k + 1]) / scales.unit[k]
+# --- into a state and out of it -------------------------------------------------------------------------------------
 
 
-recalled = by_dimension(_recalled_numbers, _recalled_vectors)
-"""The other way round."""
+def _coordinates_of_deflections(law: Any, like: Any) -> int:
+    return count_of(law) * (dimension(like) + (1 if remembers_stick(law) else 0))
+
+
+def _coordinates_of_scalars(law: Any, like: Any) -> int:
+    return count_of(law)
+
+
+coordinates = by_law(
+    _coordinates_of_deflections,
+    _coordinates_of_deflections,
+    None,
+    _coordinates_of_deflections,
+    _coordinates_of_scalars,
+)
+"""coordinates(law, like): how many numbers of a state hold the memory."""
+
+
+@inner
+def _unit_of_stick(body: Body) -> float:
+    """What a state has stick or slip multiplied by: no quotient shifts a state by half of that."""
+    return 1.0 + swing_of(body) + body.normal_load
+
+
+def _pack_deflections(law: Any, body: Body, work: Work, state: Any, like: Any) -> None:
+    d, n = dimension(like), count_of(law)
+    for k in range(n):
+        put(state, 2 + k, work.unit[k] * work.start[MEMORY + k])
+        if remembers_stick(law):
+            slips = 1.0 if work.mode[k] == YIELDS else 0.0
+            state[(2 + n) * d + k] = slips * _unit_of_stick(body)
+
+
+def _pack_scalars(law: Any, body: Body, work: Work, state: Any, like: Any) -> None:
+    first = 2 * dimension(like)
+    for k in range(count_of(law)):
+        value = as_memory(law, work.start[MEMORY + k])
+        state[first + k] = work.unit[k] * scalar_coordinate(value / work.size[k], work.positive[k])
+
+
+pack_memory = by_law(_pack_deflections, _pack_deflections, None, _pack_deflections, _pack_scalars)
+"""pack_memory(law, body, work, state, like): write the memory at ``work.start`` into a state."""
+
+
+@inner
+def scalar_coordinate(share: float, positive: float) -> float:
+    """Of a scalar, as a share of its usual size."""
+    if positive == 0.0:
+        return share
+    return math.log(max(share, 1e-300)) if share < 1.0 else share - 1.0
+
+
+@inner
+def scalar_share(coordinate: float, positive: float) -> float:
+    """The other way round."""
+    if positive == 0.0:
+        return coordinate
+    return math.exp(coordinate) if coordinate < 0.0 else 1.0 + coordinate
+
+
+def _unpack_deflections(law: Any, body: Body, work: Work, state: Any, like: Any) -> None:
+    d, n = dimension(like), count_of(law)
+    for k in range(n):
+        work.start[MEMORY + k] = taken(state, 2 + k, like) / work.unit[k]
+        if remembers_stick(law):
+            slips = state[(2 + n) * d + k] > 0.5 * _unit_of_stick(body)
+            work.mode[k] = YIELDS if slips else FOLLOWS
+
+
+def _unpack_scalars(law: Any, body: Body, work: Work, state: Any, like: Any) -> None:
+    first = 2 * dimension(like)
+    for k in range(count_of(law)):
+        share = scalar_share(state[first + k] / work.unit[k], work.positive[k])
+        work.start[MEMORY + k] = work.size[k] * share + 0.0 * like
+
+
+unpack_memory = by_law(_unpack_deflections, _unpack_deflections, None, _unpack_deflections, _unpack_scalars)
+"""unpack_memory(law, body, work, state, like): read the memory of a state into ``work.start``."""
+
+
+# --- the set of memories that slip leads to -------------------------------------------------------------------------
 
 
 @inner
@@ -165,8 +198,8 @@ def pulled(law: Any, memory: Any, alone: Any) -> None:
     """
     if law.turning == 0.0 or law.within(memory):
         return
-    for k in range(memory.size):
-        for j in range(memory.size):
+    for k in range(count_of(law)):
+        for j in range(count_of(law)):
             alone[j] = 0.0 * memory[j]
         low, high = 0.0, 2.0
         while high - low > 1e-15:
@@ -179,10 +212,27 @@ def pulled(law: Any, memory: Any, alone: Any) -> None:
         memory[k] = min(low, 1.0) * memory[k]
 
 
+def _leave(law: Any, work: Work) -> None:
+    """The state of a bristle, or of scalars, is what it is."""
+
+
+def _cut_back(law: Any, work: Work) -> None:
+    for k in range(count_of(law)):
+        work.memory[k] = work.start[MEMORY + k]
+    pulled(law, work.memory, work.moving)
+    for k in range(count_of(law)):
+        work.start[MEMORY + k] = work.memory[k]
+
+
+cut_back = by_law(_leave, _leave, None, _cut_back, _leave)
+"""cut_back(law, work): bring the deflections at ``work.start`` back into the set that slip leads to."""
+
+
 @inner
-def slid(law: Any, body: Body, memory: Any, slip: Any) -> None:
+def remember_sliding(law: Any, body: Body, work: Work, slip: Any) -> None:
     """The memory of steady sliding at a slip velocity; at rest no deflection, and scalars as in free motion."""
     v = slip if length(slip) > 0.0 else swing_of(body) + 0.0 * slip
     rests = length(slip) == 0.0 and law.turning > 0.0
-    for k in range(memory.size):
-        memory[k] = law.steady(v, k) * (0.0 if rests else 1.0)
+    for k in range(count_of(law)):
+        work.start[MEMORY + k] = law.steady(v, k) * (0.0 if rests else 1.0) + 0.0 * slip
+        work.mode[k] = FOLLOWS if rests else YIELDS

@@ -1,5 +1,7 @@
 """Modes of deflections and the guards at which they change: a yield surface is met or left, slip reverses.
 
+Most laws read the modes from the state; one that remembers stick carries them on.
+
 A guard is positive as long as a mode holds; it is measured as a velocity or a deflection in the norm of energy, and
 comes with its rate, so that where it passes zero is found by Newton's method. Guards are numbered: one for each
 deflection, and last, on the line, that of the slip itself, where a law's own rate may have a corner.
@@ -13,7 +15,7 @@ from typing import Any, NamedTuple
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.motion import instant_near
+from frictionlab.dynamics.motion import instant_near, swing_of
 from frictionlab.laws.memory import VECTORIAL
 from frictionlab.methods.periodic.maps.rates import (
     FOLLOWS,
@@ -24,6 +26,7 @@ from frictionlab.methods.periodic.maps.rates import (
     Work,
     on_circle,
     rates,
+    remembers_stick,
 )
 from frictionlab.methods.periodic.maps.step import step
 
@@ -35,41 +38,32 @@ CLOSE = 1e-3
 """Of the accuracy: how far beyond its zero a guard may be where a step ends at it."""
 
 
-def _yield_of_a_bristle(law: Any, k: int, w: Any) -> float:
-    radius = law.yield_deflection()
-    return radius if radius < math.inf and law.form == VECTORIAL else 0.0
-
-
-def _yield_of_memory(law: Any, k: int, w: Any) -> float:
-    radius = law.yield_deflection(k)
-    return radius if radius < math.inf else 0.0
-
-
-yield_radius = by_law(_yield_of_a_bristle, _yield_of_a_bristle, None, _yield_of_memory)
-"""yield_radius(law, k, w): of the k-th deflection's yield surface, 0 for none."""
-
-
-def _never_unloads(law: Any, w: Any) -> bool:
-    return False
-
-
-def _bristle_unloads_on_the_line(law: Any, w: float) -> bool:
+def _never_on_the_line(law: Any, w: float) -> bool:
     """On the line the corner is where slip reverses: the law's own rate is kept up to there."""
     return False
 
 
-def _bristle_unloads_in_the_plane(law: Any, w: complex) -> bool:
+def _a_bristle_in_the_plane(law: Any, w: complex) -> bool:
     return law.elastic_unloading() and law.form == VECTORIAL
 
 
-_bristle_unloads = by_dimension(_bristle_unloads_on_the_line, _bristle_unloads_in_the_plane)
+def _a_deflection_in_the_plane(law: Any, w: complex) -> bool:
+    return law.elastic_unloading()
+
+
+_bristle_unloads = by_dimension(_never_on_the_line, _a_bristle_in_the_plane)
+_deflection_unloads = by_dimension(_never_on_the_line, _a_deflection_in_the_plane)
 
 
 def _a_bristle_unloads(law: Any, w: Any) -> bool:
     return _bristle_unloads(law, w)
 
 
-unloads = by_law(_a_bristle_unloads, _a_bristle_unloads, None, _never_unloads)
+def _a_deflection_unloads(law: Any, w: Any) -> bool:
+    return _deflection_unloads(law, w)
+
+
+unloads = by_law(_a_bristle_unloads, _a_bristle_unloads, None, _a_deflection_unloads)
 """unloads(law, w): whether a deflection without a yield surface follows the slip wherever that makes it smaller."""
 
 
@@ -130,11 +124,34 @@ def _unloading_in_the_plane(k: int, a: complex, work: Work, w: complex) -> Guard
 _unloading = by_dimension(_unloading_on_the_line, _unloading_in_the_plane)
 
 
+def _no_breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
+    return Guard(number, OPEN, 0.0)
+
+
+def _breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
+    """Positive until a loaded deflection that sticks reaches where it begins to slip: it may depend on slip."""
+    z = work.memory[number]
+    far, loading = size(z), along(z, w)
+    if loading <= 0.0:
+        return Guard(number, OPEN, 0.0)
+    limit = flow.law.breakaway(w, number)
+    # the limit's own rate by a quotient in time, over a small part of the slip
+    ahead = 1e-6 * (size(w) + 1e-3 * swing_of(flow.body)) / (size(a) + 1e-300)
+    falls = (limit - flow.law.breakaway(w + ahead * a, number)) / ahead
+    unit = work.unit[number]
+    return Guard(number, unit * (limit * (1.0 + SLACK) - far), -unit * (loading / far + falls))
+
+
+breakaway = by_law(_no_breakaway, _no_breakaway, None, _breakaway, _no_breakaway)
+
+
 @inner
-def guard_of(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
+def _guard_of_deflections(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
     """One guard at ``work.memory``, which moves at ``work.moving``, slip w at the rate a."""
     if number == count_of(flow.law):
         return _reversal(flow, a, w)
+    if remembers_stick(flow.law) and work.mode[number] == FOLLOWS:
+        return breakaway(flow, number, w, a, work)
     z, radius = work.memory[number], work.radius[number]
     if work.mode[number] == YIELDS or (work.mode[number] == FOLLOWS and radius == 0.0):
         return _unloading(number, a, work, w)
@@ -144,6 +161,19 @@ def guard_of(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
         unit = work.unit[number]
         return Guard(number, unit * (radius * (1.0 + SLACK) - far), -unit * outward)
     return Guard(number, OPEN, 0.0)
+
+
+def _guard_of_a_contact(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
+    return _guard_of_deflections(flow, number, w, a, work)
+
+
+def _no_guard(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
+    """Friction by scalars is steepest where slip reverses, however far: no step should end just there."""
+    return Guard(number, OPEN, 0.0)
+
+
+guard_of = by_law(_guard_of_a_contact, _guard_of_a_contact, None, _guard_of_a_contact, _no_guard)
+"""guard_of(flow, number, w, a, work): one guard at ``work.memory``, which moves at ``work.moving``, slip w at a."""
 
 
 @inner
@@ -165,15 +195,42 @@ def rates_at_end(flow: Flow, tau: float, work: Work, like: Any) -> Any:
     return rates(flow, instant_near(flow, tau), work, like)
 
 
-@inner
-def begin(flow: Flow, a: Any, w: Any, work: Work) -> None:
-    """Set the modes at ``work.start``, and put on its yield surface what yields; slip w moves at the rate a."""
+def _begin_smoothly(flow: Flow, a: Any, w: Any, work: Work) -> None:
     for k in range(count_of(flow.law)):
-        radius, z = yield_radius(flow.law, k, w), work.start[MEMORY + k]
-        work.radius[k], work.mode[k] = radius, SMOOTH
+        work.mode[k] = SMOOTH
+
+
+@inner
+def _begin_by_state(flow: Flow, a: Any, w: Any, work: Work) -> None:
+    for k in range(count_of(flow.law)):
+        radius, z = work.radius[k], work.start[MEMORY + k]
+        work.mode[k] = SMOOTH
         if radius > 0.0 or unloads(flow.law, w):
             loaded = along(z, w) > 0.0 or (along(z, w) == 0.0 and along(z, a) >= 0.0)
             work.mode[k] = YIELDS if loaded and size(z) >= radius * (1.0 - 1e-13) else FOLLOWS
+
+
+@inner
+def _begin_by_memory(flow: Flow, a: Any, w: Any, work: Work) -> None:
+    """The modes are a part of the state; but what is unloaded has stopped slipping, what is beyond reach begun."""
+    for k in range(count_of(flow.law)):
+        z = work.start[MEMORY + k]
+        work.memory[k] = z
+        if work.mode[k] == YIELDS and along(z, w) < 0.0:
+            work.mode[k] = FOLLOWS
+        if work.mode[k] == FOLLOWS and breakaway(flow, k, w, a, work).value <= 0.0:
+            work.mode[k] = YIELDS
+
+
+def _begin_deflections(flow: Flow, a: Any, w: Any, work: Work) -> None:
+    if remembers_stick(flow.law):
+        _begin_by_memory(flow, a, w, work)
+    else:
+        _begin_by_state(flow, a, w, work)
+
+
+begin = by_law(_begin_deflections, _begin_deflections, None, _begin_deflections, _begin_smoothly)
+"""begin(flow, a, w, work): set the modes at ``work.start``; slip w moves at the rate a."""
 
 
 @inner

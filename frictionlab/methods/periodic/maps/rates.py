@@ -1,8 +1,10 @@
-"""The equation of motion of a mass and of what its friction remembers, a deflection or several.
+"""The equation of motion of a mass and of what its friction remembers: deflections or scalars, one or several.
 
-On the line every quantity is a float, in the plane a complex number. The mass moves by its deviation y from the
-harmonic reference and by u = y'; friction's impulse is integrated along. A deflection goes by its law's own rate, but
-for two kinds that have corners: one that follows the slip and one that yields are held so to the end of a step.
+On the line every quantity is a float, in the plane a complex number; a scalar is real in both. The mass moves by its
+deviation y from the harmonic reference and by u = y'; friction's impulse is integrated along. Beside scalars the slip
+w itself takes the place of u: such a contact may creep at 1e-26 of the belt speed where others stick, and as a
+difference of two velocities that would be lost. A deflection goes by its law's own rate, but for two kinds that have
+corners: one that follows the slip and one that yields are held so to the end of a step.
 """
 
 from __future__ import annotations
@@ -16,16 +18,19 @@ from frictionlab.compile.stack import count_of, room
 from frictionlab.dynamics.motion import (
     Instant,
     acceleration_under,
+    belt_velocity,
     deviation_slip,
     deviation_slip_rate,
     normal_load,
+    reference_velocity,
     unbalanced_load,
 )
 from frictionlab.laws.memory import PER_AXIS, VECTORIAL
 from frictionlab.scene.body import Body
 
 Y, U, IMPULSE, MEMORY = 0, 1, 2, 3
-"""Places of the mass: its deviation, the velocity of that, the integral of the friction coefficient; then memory."""
+"""Places of the mass: its deviation, the velocity of that (beside scalars: slip), the integral of the friction
+coefficient; then memory."""
 
 FOLLOWS, SMOOTH, YIELDS = -1.0, 0.0, 1.0
 """Modes of a deflection: it moves with the slip; by its law's rate; on its yield surface, or gives way before it."""
@@ -44,7 +49,7 @@ class Flow(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Room for one step; a state is the mass (Y, U, IMPULSE) and, from MEMORY on, n deflections."""
+    """Room for one step; a state is the mass (Y, U, IMPULSE) and, from MEMORY on, n numbers remembered."""
 
     start: Any  # where the step starts
     end: Any  # where it ends
@@ -55,15 +60,40 @@ class Work(NamedTuple):
     memory: Any  # [n] as the law sees it
     moving: Any  # [n] its rates
     jacobian: (
-        Any  # blocks, of each deflection: its rate by slip, by itself, friction by it; last friction by slip
+        Any  # blocks, of each number: its rate by slip, by itself, friction by it; last friction by slip
     )
     factors: Any  # blocks, of each: E, C of the elimination; last the inverse for the mass, friction by slip in all
     columns: Any  # [3 n + 2] of difference quotients
     guards: Any  # [2 (n + 1)] of the modes at the start, each with its rate
-    unit: Any  # [n] what a deflection is multiplied by in the norm of energy
-    size: Any  # [n] of a deflection in steady sliding
+    unit: Any  # [n] what a number is multiplied by in the norm of energy
+    size: Any  # [n] of a number in steady sliding
+    positive: Any  # [n] 1 for a scalar that is never negative, else 0
     radius: Any  # [n] of its yield surface, 0 for none
     mode: Any  # [n] FOLLOWS, SMOOTH or YIELDS
+
+
+def _like_slip(law: Any, like: Any) -> Any:
+    return like
+
+
+def _a_number(law: Any, like: Any) -> float:
+    return 0.0
+
+
+kind_of_memory = by_law(_like_slip, _like_slip, None, _like_slip, _a_number)
+"""kind_of_memory(law, like): a number of the kind that the law remembers; like: of the kind of a slip."""
+
+
+def _itself(law: Any, value: Any) -> Any:
+    return value
+
+
+def _real_part(law: Any, value: Any) -> float:
+    return value.real
+
+
+as_memory = by_law(_itself, _itself, None, _itself, _real_part)
+"""as_memory(law, value): a number of a state as the law sees it."""
 
 
 @inlined
@@ -76,14 +106,15 @@ def workspace(law: Any, like: Any) -> Work:
         rates=room(law, 1, 3, like),
         slope=room(law, 1, 3, like),
         increments=room(law, 8, 24, like),
-        memory=room(law, 1, 0, like),
-        moving=room(law, 1, 0, like),
+        memory=room(law, 1, 0, kind_of_memory(law, like)),
+        moving=room(law, 1, 0, kind_of_memory(law, like)),
         jacobian=room(law, 6, 2, like),
         factors=room(law, 4, 4, like),
         columns=room(law, 3, 5, like),
         guards=room(law, 2, 2, 0.0),
         unit=room(law, 1, 0, 0.0),
         size=room(law, 1, 0, 0.0),
+        positive=room(law, 1, 0, 0.0),
         radius=room(law, 1, 0, 0.0),
         mode=room(law, 1, 0, 0.0),
     )
@@ -96,7 +127,65 @@ def anchored(law: Any, body: Body, belt_speed: float, side: float, tau: float) -
     return Flow(law, body, belt_speed, side, tau, math.sin(angle), math.cos(angle))
 
 
-# --- what a law says of one of its deflections --------------------------------------------------------------------
+# --- the velocity that a state holds --------------------------------------------------------------------------------
+
+
+def _slip_of_deviation(flow: Flow, now: Instant, u: Any) -> Any:
+    return deviation_slip(flow, now, u)
+
+
+def _slip_itself(flow: Flow, now: Instant, w: Any) -> Any:
+    return w
+
+
+slip_held = by_law(_slip_of_deviation, _slip_of_deviation, None, _slip_of_deviation, _slip_itself)
+"""slip_held(flow, now, u): slip, from the velocity that a state holds."""
+
+
+def _deviation_itself(flow: Flow, now: Instant, u: Any) -> Any:
+    return u
+
+
+def _deviation_of_slip(flow: Flow, now: Instant, w: Any) -> Any:
+    v = w + belt_velocity(flow.body, flow.belt_speed, now)
+    return v - reference_velocity(flow.body, now.sine, now.cosine)
+
+
+deviation_held = by_law(_deviation_itself, _deviation_itself, None, _deviation_itself, _deviation_of_slip)
+"""deviation_held(flow, now, u): the velocity of the deviation, from the one that a state holds."""
+
+
+held_velocity = by_law(_deviation_itself, _deviation_itself, None, _deviation_itself, _slip_of_deviation)
+"""held_velocity(flow, now, u): the velocity that a state holds, from that of the deviation."""
+
+
+def _velocity_of_deviation(flow: Flow, now: Instant, u: Any) -> Any:
+    return u + reference_velocity(flow.body, now.sine, now.cosine)
+
+
+def _velocity_of_slip(flow: Flow, now: Instant, w: Any) -> Any:
+    return w + belt_velocity(flow.body, flow.belt_speed, now)
+
+
+velocity_held = by_law(
+    _velocity_of_deviation, _velocity_of_deviation, None, _velocity_of_deviation, _velocity_of_slip
+)
+"""velocity_held(flow, now, u): the velocity of the mass, from the one that a state holds."""
+
+
+def _rate_of_deviation(flow: Flow, now: Instant, a: Any) -> Any:
+    return a
+
+
+def _rate_of_slip(flow: Flow, now: Instant, a: Any) -> Any:
+    return deviation_slip_rate(flow, now, a)
+
+
+rate_held = by_law(_rate_of_deviation, _rate_of_deviation, None, _rate_of_deviation, _rate_of_slip)
+"""rate_held(flow, now, a): the rate of the velocity that a state holds, from the deviation's acceleration."""
+
+
+# --- what a law says of one of its numbers -------------------------------------------------------------------------
 
 
 def _rate_of_a_bristle_on_the_line(law: Any, memory: Any, k: int, w: float) -> float:
@@ -156,7 +245,19 @@ def _memory_friction(law: Any, memory: Any, moving: Any, w: Any) -> Any:
 
 
 friction_of = by_law(_bristle_friction, _bristle_friction, None, _memory_friction)
-"""friction_of(law, memory, moving, w): the friction coefficient at deflections that move at these rates."""
+"""friction_of(law, memory, moving, w): the friction coefficient at a memory that moves at these rates."""
+
+
+def _never(law: Any) -> bool:
+    return False
+
+
+def _remembers_stick(law: Any) -> bool:
+    return law.remembers_stick()
+
+
+remembers_stick = by_law(_never, _never, None, _remembers_stick, _never)
+"""remembers_stick(law): whether the modes of its deflections, to follow the slip or to give way, are a memory."""
 
 
 # --- rates --------------------------------------------------------------------------------------------------------
@@ -189,14 +290,27 @@ _yielding = by_dimension(_yielding_on_the_line, _yielding_in_the_plane)
 
 
 @fast
-def rate_in_mode(law: Any, work: Work, k: int, w: Any) -> Any:
-    """The rate of one of ``work.memory``, which is put on its yield surface first if it yields."""
+def _deflection_rate(law: Any, work: Work, k: int, w: Any) -> Any:
     if work.mode[k] < 0.0:  # difference quotients at a corner must not see what comes after
         return w
     if work.radius[k] > 0.0 and work.mode[k] > 0.0:
         work.memory[k] = on_circle(work.radius[k], work.memory[k])
         return _yielding(law, work.memory, k, w)
     return rate_of(law, work.memory, k, w)
+
+
+def _rate_of_a_deflection(law: Any, work: Work, k: int, w: Any) -> Any:
+    return _deflection_rate(law, work, k, w)
+
+
+def _rate_of_a_scalar(law: Any, work: Work, k: int, w: Any) -> float:
+    return law.rate(w, work.memory, k)
+
+
+rate_in_mode = by_law(
+    _rate_of_a_deflection, _rate_of_a_deflection, None, _rate_of_a_deflection, _rate_of_a_scalar
+)
+"""rate_in_mode(law, work, k, w): of one of ``work.memory``; what yields is put on its yield surface first."""
 
 
 @fast
@@ -218,12 +332,12 @@ def rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
     """Fill ``work.rates`` at ``work.stage``; returns slip and its rate."""
     body, n = flow.body, count_of(flow.law)
     for k in range(n):
-        work.memory[k] = work.stage[MEMORY + k]
-    y, u = work.stage[Y], work.stage[U]
-    w = deviation_slip(flow, now, u)
+        work.memory[k] = as_memory(flow.law, work.stage[MEMORY + k])
+    y, held = work.stage[Y], work.stage[U]
+    w, u = slip_held(flow, now, held), deviation_held(flow, now, held)
     friction = friction_in_mode(flow.law, work, w)
     a = acceleration_under(body, unbalanced_load(body, now), load_on(body, now), y, u, friction)
-    work.rates[Y], work.rates[U], work.rates[IMPULSE] = u, a, friction
+    work.rates[Y], work.rates[U], work.rates[IMPULSE] = u, rate_held(flow, now, a), friction
     for k in range(n):
-        work.rates[MEMORY + k] = work.moving[k]
+        work.rates[MEMORY + k] = work.moving[k] + 0.0 * like
     return w, deviation_slip_rate(flow, now, a)

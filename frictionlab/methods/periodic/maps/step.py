@@ -1,12 +1,12 @@
 """One step of a mass and what its friction remembers: Rodas5P, by elimination along an arrow.
 
-The rate of a deflection z_k depends on slip and on z_k alone. With the blocks A_k = dr_k/dz_k, B_k = dr_k/dw,
-F_k = dmu/dz_k, G = dmu/dw, each a number on the line and a pair in the plane, the equations of a stage
+The rate of a number z_k that a law remembers depends on slip and on z_k alone. With the blocks A_k = dr_k/dz_k,
+B_k = dr_k/dw, F_k = dmu/dz_k, G = dmu/dw, each a number on the line and a pair in the plane, the equations of a stage
 
     (1/(gamma h) - A_k) k_zk - B_k k_u = r_zk,    (1/(gamma h) + D + gamma h K + N G) k_u + N sum F_k k_zk = r_u
 
-are solved deflection by deflection: E_k = (1/(gamma h) - A_k)^-1 and C_k = E_k B_k give k_zk = E_k r_zk + C_k k_u,
-and what is left is one block for k_u. The cost grows with the number of deflections, not with its cube.
+are solved number by number: E_k = (1/(gamma h) - A_k)^-1 and C_k = E_k B_k give k_zk = E_k r_zk + C_k k_u,
+and what is left is one block for k_u. The cost grows with their count, not with its cube.
 """
 
 from __future__ import annotations
@@ -15,10 +15,20 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.compile.dispatch import by_dimension
+from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import instant_near
-from frictionlab.methods.periodic.maps.rates import IMPULSE, MEMORY, Flow, U, Work, Y, load_on, rates
+from frictionlab.methods.periodic.maps.rates import (
+    IMPULSE,
+    MEMORY,
+    Flow,
+    U,
+    Work,
+    Y,
+    as_memory,
+    load_on,
+    rates,
+)
 from frictionlab.numerics.blocks import add, apply, block, diagonal, inverse, keep, product, scale
 from frictionlab.numerics.steppers.rodas5p import COUPLINGS, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
 from frictionlab.scene.body import Body
@@ -139,28 +149,66 @@ _elastic = by_dimension(_elastic_on_the_line, _elastic_in_the_plane)
 """Twice the energy of the springs."""
 
 
+def _always(flow: Flow, work: Work) -> bool:
+    return True
+
+
+def _scalars_within(flow: Flow, work: Work) -> bool:
+    for k in range(count_of(flow.law)):
+        work.memory[k] = as_memory(flow.law, work.stage[MEMORY + k])
+    return flow.law.within(work.memory)
+
+
+_within = by_law(_always, _always, None, _always, _scalars_within)
+"""_within(flow, work): whether the law has a rate at ``work.stage``; the age of a contact is never negative."""
+
+
+def _unit_of_energy(flow: Flow, k: int, work: Work, like: Any) -> float:
+    return work.unit[k]
+
+
+def _unit_of_impulse(flow: Flow, k: int, work: Work, like: Any) -> float:
+    """What a scalar changes in friction, for a radian."""
+    effect = length(apply(block(work.jacobian, 3 * k + 2, like), 1.0 + 0.0 * like))
+    return effect * flow.body.normal_load / flow.body.frequency
+
+
+_unit = by_law(_unit_of_energy, _unit_of_energy, None, _unit_of_energy, _unit_of_impulse)
+"""_unit(flow, k, work, like): what the error of a number is multiplied by."""
+
+
+@inner
+def _error(flow: Flow, work: Work, like: Any) -> float:
+    """The difference to the embedded method of order 4 in the norm of energy, the impulse's too."""
+    n, body = count_of(flow.law), flow.body
+    last = (MEMORY + n) * (STAGES - 1)
+    error = _elastic(body, work.increments[last + Y]) + square(work.increments[last + U])
+    error += square(body.normal_load * work.increments[last + IMPULSE])
+    for k in range(n):
+        error += square(_unit(flow, k, work, like) * work.increments[last + MEMORY + k])
+    return math.sqrt(error)
+
+
 @inner
 def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
     """One step from ``work.start`` to ``work.end``; returns its error in the norm of energy, the impulse's too.
 
-    It starts at the anchor of the flow.
+    It starts at the anchor of the flow. The error is infinite where a scalar has left its set on the way.
     """
-    law, body, n = flow.law, flow.body, count_of(flow.law)
+    law, n = flow.law, count_of(flow.law)
     factor(flow, h, work, like)
     now = instant_near(flow, tau)
     for i in range(STAGES):
         _argument(i, law, work)
+        if not _within(flow, work):
+            return math.inf
         if 0 < i < SIMULTANEOUS:
             now = instant_near(flow, tau + TIMES[i] * h)
         rates(flow, now, work, like)
         _right_side(i, law, h, work)
         _solve(i, flow, h, work, like)
-    # the last increment is the difference to the embedded method of order 4, and ends the step
+    # the last increment is the difference to the embedded method, and ends the step
     last = (MEMORY + n) * (STAGES - 1)
     for row in range(MEMORY + n):
         work.end[row] = work.stage[row] + work.increments[last + row]
-    error = _elastic(body, work.increments[last + Y]) + square(work.increments[last + U])
-    error += square(body.normal_load * work.increments[last + IMPULSE])
-    for k in range(n):
-        error += square(work.unit[k] * work.increments[last + MEMORY + k])
-    return math.sqrt(error)
+    return _error(flow, work, like)

@@ -96,20 +96,25 @@ def test_one_element_of_constant_friction_is_jenkins_along_a_line():
     assert abs(found.mean_friction - same.mean_friction) <= found.error + same.error
 
 
-def test_quick_attraction_leaves_coulomb_friction_where_slip_turns_slowly_in_the_plane():
+@pytest.mark.parametrize("attraction", [1.0, 10.0])
+def test_while_every_element_slips_in_the_plane_the_mean_of_constant_friction_is_coulombs(attraction):
     slip, across = (
         fl.Slip(velocity_amplitude=10, frequency=1),
         fl.TransverseSlip(velocity_amplitude=10, phase=90),
     )
     scene = fl.Scene(belt_speed=1, slip=slip, transverse_slip=across)
-    coulomb = fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction
-    gaps = []
-    for attraction in (10.0, 100.0):
-        law = GeneralisedMaxwellSlip(share=[1], stiffness=[4], mu_kinetic=0.4, attraction=attraction)
-        gaps.append(abs(fl.steady_state(scene, law, tolerance=TOLERANCE).mean_friction - coulomb))
+    law = GeneralisedMaxwellSlip(
+        share=[0.5, 0.375, 0.125], stiffness=[1, 3, 10], mu_kinetic=0.4, attraction=attraction
+    )
 
-    assert gaps[0] < 0.01
-    assert 50.0 <= gaps[0] / gaps[1] <= 200.0  # what lags by an angle loses its square
+    found = fl.steady_state(scene, law, tolerance=TOLERANCE)
+    coulomb = fl.steady_state(scene, fl.Coulomb(mu=0.4), tolerance=TOLERANCE)
+
+    assert found.status == "ok", found.reason
+    assert found.mean_friction > 0.01
+    assert (
+        abs(found.mean_friction - coulomb.mean_friction) <= found.error + coulomb.error
+    )  # 0 = e - f/s in the mean
 
 
 @given(pairs=elements, v=vectors, z=vectors)

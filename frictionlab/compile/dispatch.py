@@ -96,6 +96,8 @@ for _method in (
     "remembers_stick",
     "breakaway",
     "yield_deflection",
+    "remembers_stick",
+    "breakaway",
 ):
     _open_door(MemoryLaw, _method)
 

@@ -196,6 +196,14 @@ class MemoryLaw(FrictionLaw, ABC):
         """
         return math.inf
 
+    def remembers_stick(self) -> bool:
+        """Whether each deflection remembers if it sticks (it follows the slip) or slips (it moves at ``rate``)."""
+        return False
+
+    def breakaway(self, v: Any, k: int) -> float:
+        """Deflection [scene length] at which the k-th, sticking and loaded by the slip ``v``, begins to slip."""
+        return math.inf
+
     def within(self, memory: Any) -> bool:
         """Whether the memory lies in the set that no slip history can leave."""
         return True

@@ -49,6 +49,7 @@ CHECKS: tuple[Check, ...] = (
     path.elastic_deflection,
     path.elastic_unloading,
     path.yield_deflection,
+    path.breakaway,
     compiled.compiled_on_the_line,
     compiled.compiled_in_the_plane,
     limits.coulomb_limit_of_prescribed_slip,

@@ -83,12 +83,20 @@ def fullest_laws(law: type[FrictionLaw]) -> st.SearchStrategy[FrictionLaw]:
 
 def _of_presences(law: type[FrictionLaw], presences: list[tuple[str, ...]]) -> st.SearchStrategy[FrictionLaw]:
     chosen = {name: values(field) for name, field in law.model_fields.items()}
+    lists = [name for name, field in law.model_fields.items() if get_args(_inside(field)[0])[-1:] == (...,)]
 
     def with_values(given: tuple[str, ...]) -> st.SearchStrategy[FrictionLaw]:
-        told = st.fixed_dictionaries({name: chosen[name] for name in given})
+        drawn = st.fixed_dictionaries({name: chosen[name] for name in given})
+        told = seldom(drawn, drawn.map(lambda told: _of_one_length(told, lists)))
         return told.filter(lambda told: _made(law, told) is not None).map(lambda told: law(**told))
 
     return st.sampled_from(presences).flatmap(with_values)
+
+
+def _of_one_length(told: dict[str, Any], lists: list[str]) -> dict[str, Any]:
+    """The values, every list as long as the shortest: laws of elements ask for as many values in each of theirs."""
+    shortest = min([len(told[name]) for name in lists if name in told], default=0)
+    return {name: value[:shortest] if name in lists else value for name, value in told.items()}
 
 
 def _made(law: type[FrictionLaw], told: dict[str, Any]) -> FrictionLaw | None:

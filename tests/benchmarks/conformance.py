@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 ROOT = Path(__file__).parents[2]
 BUILT_IN = ("coulomb", "stribeck", "dahl", "jenkins", "lugre", "elasto-plastic")
-PLUGINS = ("bouc-wen", "maxwell-slip", "rate-and-state")
+PLUGINS = ("bouc-wen", "generalised-maxwell-slip", "maxwell-slip", "rate-and-state")
 COMMAND = "import conftest, sys; from frictionlab.cli import main; sys.exit(main(sys.argv[1:]))"
 """conftest.py lets plugins be seen that are not installed."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Self
 
+from generalised_maxwell_slip import GeneralisedMaxwellSlip
 from memory_laws import Ageing, Elements
 from pydantic import Field, model_validator
 
@@ -75,6 +76,58 @@ class SecondYieldsEarly(Declared):
         return super().rate(v, [z / 0.9 for z in memory] if k > 0 else memory, k)
 
 
+class Sticking(GeneralisedMaxwellSlip):
+    """Elements that remember whether they stick."""
+
+
+class BreaksAwayLate(Sticking):
+    """Elements that stick for longer than they can hold."""
+
+    def breakaway(self, v: Any, k: int) -> float:
+        """A tenth further."""
+        return 1.1 * super().breakaway(v, k)
+
+
+class BreaksAwayAcross(Sticking):
+    """Elements that hold more across the belt."""
+
+    def breakaway(self, v: Any, k: int) -> float:
+        """Twice as much."""
+        return (1.0 + abs(v.imag) / (abs(v) or 1.0)) * super().breakaway(v, k)
+
+
+class HoldsNothingQuick(Sticking):
+    """Elements without a breakaway at high speed."""
+
+    def breakaway(self, v: Any, k: int) -> float:
+        """None beyond the speeds that are drawn."""
+        return super().breakaway(v, k) if abs(v) < 1e7 else 0.0
+
+
+class CreepsAtRest(Sticking):
+    """Elements that relax where nothing slips."""
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """Towards no deflection."""
+        return super().rate(v, memory, k) if v != 0.0 else -self.attraction * memory[k]
+
+
+class YieldsToo(Sticking):
+    """Elements with a yield surface where they break away."""
+
+    def yield_deflection(self, k: int) -> float:
+        """Breakaway at rest."""
+        return self.breakaway(0.0, k)
+
+
+class BreaksAwayUnasked(Springs):
+    """Sliders that break away, though nothing remembers it."""
+
+    def breakaway(self, v: Any, k: int) -> float:
+        """The reach."""
+        return self.reach[k]
+
+
 class StoresTwice(Springs):
     """Springs that hold less than told."""
 
@@ -128,6 +181,12 @@ CASES = (
     Case(BackwardsLost, Springs, "invariant_set"),
     Case(ElementsApart, Springs, "rotation"),
     Case(SecondYieldsEarly, Declared, "yield_deflection"),
+    Case(BreaksAwayLate, Sticking, "breakaway"),
+    Case(BreaksAwayAcross, Sticking, "breakaway"),
+    Case(HoldsNothingQuick, Sticking, "breakaway"),
+    Case(CreepsAtRest, Sticking, "breakaway"),
+    Case(YieldsToo, Sticking, "breakaway"),
+    Case(BreaksAwayUnasked, Sticking, "breakaway"),
     Case(StoresTwice, Springs, "passivity"),
     Case(Ageing, Renewed, "unit_scaling"),
     Case(SteadyTwice, Ageing, "steady_sliding"),

@@ -1,4 +1,4 @@
-"""Reads and writes the pinned numbers, and says where they were made; for make_golden.py and test_golden.py."""
+"""Reads and writes the pinned numbers, and says where they were made; for make_golden.py and tests/golden."""
 
 from __future__ import annotations
 

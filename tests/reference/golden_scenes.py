@@ -1,7 +1,7 @@
 """Studies whose every number is pinned: groups of scenes, laws and methods, each a study as a user writes it.
 
-``tests/reference/make_golden.py`` writes what they give to golden.csv and golden_curves.csv beside this file;
-``tests/test_golden.py`` compares. Only ``frictionlab.run`` and the names of the study file are used, so that moving
+``tests/reference/make_golden.py`` writes what they give to golden.csv and golden_curves.csv beside this file, and the
+tests of ``tests/golden`` compare. Only ``frictionlab.run`` and the names of the study file are used, so that moving
 modules changes nothing here. The laws of plugins/ must be installed or their folders open (conftest.py at the root).
 """
 
@@ -25,6 +25,21 @@ class Group:
     name: str
     study: dict[str, Any]
     deep: bool = False
+
+    @property
+    def family(self) -> str:
+        """What its laws remember, and the dimension: kernels are compiled for both."""
+        kinds = {law["kind"] for law in self.study["laws"]}
+        memory = next((MEMORIES[kind] for kind in MEMORIES if kind in kinds), "nothing")
+        return f"{memory}, {'plane' if 'transverse' in str(self.study['scene']) else 'line'}"
+
+
+MEMORIES = {
+    "maxwell-slip": "elements",
+    "rate-and-state": "ages",
+    **dict.fromkeys(("dahl", "lugre", "dupont", "elasto-plastic", "jenkins"), "bristles"),
+}
+"""What laws remember; those that are not here remember nothing."""
 
 
 def _group(

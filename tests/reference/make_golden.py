@@ -3,7 +3,7 @@
 Solves every group of golden_scenes.py and writes golden.csv, golden_curves.csv and golden_made_on.json beside itself,
 or into FOLDER. With --only, groups whose name matches PATTERN (of fnmatch) are solved anew and the other rows kept.
 Make the tables anew only for a change of behaviour that is meant; one of the path of computation alone is listed in
-golden_changes.csv (see tests/test_golden.py).
+golden_changes.csv (see tests/golden).
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.testing.check import for_laws_of, make_check
-from frictionlab.testing.checks.declared import BRISTLES, WITH_MEMORY
+from frictionlab.testing.checks.declared import BRISTLES, SLOW_TO_QUICK, WITH_MEMORY
 from frictionlab.testing.contact import deflection_scale, dot, response
 from frictionlab.testing.example import Given
 from frictionlab.testing.strategies import directions, evenly, seldom, signs, sizes, speeds
@@ -186,6 +186,41 @@ def elastic_unloading(one: Given) -> None:
     v = one.slip()
     for share in (one.draw("share", sizes(1e-6, 1.0)), 0.9, 1.0):
         _follows(one, law, v, -math.copysign(share * deflection_scale(law), v), back=" back")
+
+
+def _never_sticks(law: type[FrictionLaw]) -> str:
+    if not issubclass(law, MemoryLaw):
+        return "of laws with several deflections"
+    told = any(
+        getattr(law, name) is not getattr(MemoryLaw, name) for name in ("remembers_stick", "breakaway")
+    )
+    return "" if told else "no deflection remembers whether it sticks"
+
+
+@make_check("breakaway", skips=_never_sticks)
+def breakaway(one: Given) -> None:
+    """A deflection that remembers whether it sticks breaks away where it slips steadily, in every direction alike."""
+    law = one.law()
+    v, turn = one.slip(), one.draw("turn", directions)
+    if not law.remembers_stick():
+        for k in range(law.count()):
+            one.require(law.breakaway(v, k) == math.inf, "nothing sticks, yet something breaks away", k=k)
+        return
+    one.require(law.memory_kind == "deflections", "only deflections stick", kind=law.memory_kind)
+    memory, speed = one.memory(law), abs(v)
+    for k in range(law.count()):
+        at, away = law.breakaway(v, k), abs(law.steady(v, k))
+        one.require(abs(at - away) <= 1e-9 * at, f"deflection {k} slips elsewhere", breakaway=at, steady=away)
+        turned = law.breakaway(speed * turn, k)
+        one.require(abs(turned - at) <= 1e-9 * at, "breakaway differs by direction", got=turned, expected=at)
+        for other in (0.0, speed, *SLOW_TO_QUICK):
+            size = law.breakaway(other, k)
+            one.require(0.0 < size < math.inf, f"breakaway at speed {other:g}", got=size)
+        one.require(
+            law.yield_deflection(k) == math.inf, "what remembers that it slips has no yield surface", k=k
+        )
+        still = law.rate(0.0 * v, memory, k)
+        one.require(still == 0.0, f"deflection {k} moves at rest", rate=still)
 
 
 def _yield_surfaces(law: FrictionLaw) -> list[float]:

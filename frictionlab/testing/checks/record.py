@@ -249,7 +249,8 @@ def _changes(value: Any, words: Sequence[str]) -> Sequence[Any]:
     if isinstance(value, int):
         return value + 1, value - 1
     if isinstance(value, tuple):
-        return tuple(0.7 * each for each in value), tuple(1.4 * each for each in value)
+        first_alone = (1.4 * value[0], *value[1:]) if value else value  # where shares alone matter
+        return tuple(0.7 * each for each in value), tuple(1.4 * each for each in value), first_alone
     return words if value is not None else ()
 
 

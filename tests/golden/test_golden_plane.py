@@ -1,0 +1,5 @@
+"""Laws without memory, in the plane: every number is what it was."""
+
+from comparison import comparing
+
+test_every_number_is_what_it_was = comparing("nothing, plane")

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from frictionlab.compile.cache import compiled, timed
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.laws.memory import BristleLaw
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method, Status
 from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.orbit import make_orbits
@@ -35,7 +34,7 @@ UNBOUNDED = (
 )
 
 
-def _refusal_of_legs(scene: Scene, law: BristleLaw) -> str | None:
+def _refusal_of_legs(scene: Scene, law: Any) -> str | None:
     """Why a prescribed slip has no two legs along which the deflection is known."""
     if not law.exact_path():
         return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction)"
@@ -46,7 +45,7 @@ def _refusal_of_legs(scene: Scene, law: BristleLaw) -> str | None:
 
 def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
     """Why the motion between events is not known in closed form."""
-    if not isinstance(law, SlidingLaw):
+    if law.memory_kind != "none":
         return "exact needs friction without memory (Coulomb)"
     if not law.constant_sliding_friction():
         return "exact needs friction that does not vary with speed (Coulomb)"
@@ -73,10 +72,8 @@ class Exact(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
-        if isinstance(law, BristleLaw) and scene.degrees_of_freedom == 0:
-            reason = _refusal_of_legs(scene, law)
-        else:
-            reason = _refusal_of_flow(scene, law)
+        prescribed = scene.degrees_of_freedom == 0 and law.memory_kind == "bristle"
+        reason = (_refusal_of_legs if prescribed else _refusal_of_flow)(scene, law)
         return suggest_shooting(reason, scene, law) if reason else None
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

@@ -26,10 +26,26 @@ PATIENCE = 300
 
 
 @inner
-def sliding_on(body: Body, friction: float, like: Any) -> Any:
+def state_of_sliding(body: Body, friction: float, like: Any) -> Any:
     """Position and velocity at tau = 0 of the friction-free orbit, shifted by a constant friction; no deflection."""
     shift = body.normal_load * friction / (body.stiffness_mean + body.stiffness_split)
     return body.reference_cosine + shift + 0.0 * like, body.frequency * body.reference_sine, 0.0 * like
+
+
+def _no_memory(law: Any, belt_speed: float) -> float:
+    return 0.0
+
+
+def _deflection_of_sliding(law: Any, belt_speed: float) -> float:
+    return math.copysign(1.0, belt_speed) * law.largest_deflection()
+
+
+def _velocity_of_sliding(law: Any, belt_speed: float) -> float:
+    return belt_speed
+
+
+memory_of_sliding = by_law(_no_memory, _deflection_of_sliding, None, _velocity_of_sliding)
+"""memory_of_sliding(law, belt_speed): what ``start_of`` is given, with the other sign, for a mass that slides on."""
 
 
 @inner
@@ -54,32 +70,22 @@ def _reached_without_memory(law: Any, body: Body, belt_speed: float, target: Any
     return False
 
 
-def _reached_with_a_bristle(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+def _reached_with_memory(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
     """Whether the mass ends on this orbit, set off at rest on the belt and sliding as if it never reversed.
 
     The second is an orbit of its own where the belt is faster than any vibration and sliding friction constant.
     """
-    start, forward = np.empty(target.size), math.copysign(1.0, belt_speed)
+    start = np.empty(target.size)
     start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
     if not _arrives(law, body, belt_speed, start, target, like):
         return False
-    x, v, z = sliding_on(body, forward * law.sliding_friction(abs(belt_speed)), like)
-    start_of(law, body, start, x, v, z - forward * law.largest_deflection())
+    friction = math.copysign(1.0, belt_speed) * law.sliding_friction(abs(belt_speed))
+    x, v, z = state_of_sliding(body, friction, like)
+    start_of(law, body, start, x, v, z - memory_of_sliding(law, belt_speed))
     return _arrives(law, body, belt_speed, start, target, like)
 
 
-def _reached_with_memory(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
-    """The same two starts, with the memory of a contact at rest, and of sliding on."""
-    start, forward = np.empty(target.size), math.copysign(1.0, belt_speed)
-    start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
-    if not _arrives(law, body, belt_speed, start, target, like):
-        return False
-    x, v, z = sliding_on(body, forward * law.sliding_friction(abs(belt_speed)), like)
-    start_of(law, body, start, x, v, z - belt_speed)
-    return _arrives(law, body, belt_speed, start, target, like)
-
-
-reached = by_law(_reached_without_memory, _reached_with_a_bristle, None, _reached_with_memory)
+reached = by_law(_reached_without_memory, _reached_with_memory, None, _reached_with_memory)
 
 
 @inner

@@ -9,9 +9,15 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionlab.compile.cache import compiled, timed
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.methods.periodic.attraction import begin, iterate_until_periodic, settle
+from frictionlab.compile.dispatch import interpreted
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.periodic.attraction import (
+    begin,
+    iterate_until_periodic,
+    memory_of_sliding,
+    settle,
+    state_of_sliding,
+)
 from frictionlab.methods.periodic.continuation import (
     DIFFERENTIATED,
     MULTIPLIERS,
@@ -31,9 +37,9 @@ from frictionlab.theory.uniqueness import falls_slowly, is_convergent
 def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
     """Whether the motion is on a line: nothing pushes across the belt, and what moves across it dies out.
 
-    A bristle law damps motion across the slip up to some speed: here the largest that the loads could drive.
+    A law damps motion across the slip up to some speed: here the largest that the loads could drive.
     """
-    if scene.degrees_of_freedom < 2 or not isinstance(law, BristleLaw):
+    if scene.degrees_of_freedom < 2:
         return scene.load_along_belt_only
     mass = scene.mass()
     swing = abs(mass.force) / mass.damping if mass.damping > 0.0 else math.inf  # at resonance
@@ -42,9 +48,12 @@ def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
 
 def remembered(law: FrictionLaw, directions: int) -> int:
     """How many numbers a law remembers in so many directions."""
-    if isinstance(law, MemoryLaw):
-        return law.count() * (directions if law.memory_kind == "deflections" else 1)
-    return directions if isinstance(law, BristleLaw) else 0
+    return law.count() * (1 if law.memory_kind == "scalars" else directions)
+
+
+def map_kind(law: FrictionLaw, planar: bool) -> str:
+    """Which period map serves a law: that of an exact path along a line, else that of its kind of memory."""
+    return "exact path" if "exact path" in law.structure() and not planar else law.memory_kind
 
 
 class Transient(NamedTuple):
@@ -56,6 +65,8 @@ class Transient(NamedTuple):
     seconds: float
 
 
+ROUGH = {"none": 1e-9, "bristle": 1e-6, "deflections": 1e-7, "scalars": 1e-7}
+"""Accuracy of the maps that follow a transient, by what the law remembers: with memory they are of lower order."""
 FINEST = 1e-15
 """No orbit is asked to be closed to less: rounding moves the mean more, and steps would go on for ever."""
 
@@ -69,7 +80,7 @@ class PeriodicProblem:
     def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float) -> None:
         self.mass, self.law = scene.mass(), law
         self.falls_slowly = falls_slowly(scene, law)
-        asks = not isinstance(law, SlidingLaw) and self.falls_slowly
+        asks = law.count() > 0 and self.falls_slowly
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), asks)
         self.body: Body
         self.like: complex  # a number of the kind of its positions
@@ -133,13 +144,7 @@ class PeriodicProblem:
         at = self._shaken(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
         state = np.empty(self.size)
         compiled(begin, self.law)(self.body, at, state)
-        return self._followed(belt_speed, state, most, self._rough())
-
-    def _rough(self) -> float:
-        """Accuracy of the maps that follow a motion: with memory of lower order, with one bristle smooth."""
-        if isinstance(self.law, SlidingLaw):
-            return 1e-9
-        return 1e-6 if isinstance(self.law, BristleLaw) else 1e-7
+        return self._followed(belt_speed, state, most, ROUGH[self.law.memory_kind])
 
     def means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
         """The one-period means of an orbit of so many periods, from its state."""
@@ -154,14 +159,11 @@ class PeriodicProblem:
 
     def _shaken(self, belt_speed: float) -> tuple[complex, complex, complex]:
         """On the friction-free orbit; with memory, remembering and shifted as in sliding that never reverses."""
-        x, v = self.body.reference_cosine, self.body.frequency * self.body.reference_sine
-        if isinstance(self.law, SlidingLaw):
-            return x, v, 0.0 * self.like
-        forward = math.copysign(1.0, belt_speed)
-        stiffness = self.body.stiffness_mean + self.body.stiffness_split
-        shift = forward * self.mass.normal_load * self.law.sliding_friction(abs(belt_speed)) / stiffness
-        behind = forward * self.law.largest_deflection() if isinstance(self.law, BristleLaw) else belt_speed
-        return x + shift, v, 0.0 * self.like - behind
+        remembers = self.law.count() > 0
+        friction = self.law.sliding_friction(abs(belt_speed)) if remembers else 0.0
+        friction = math.copysign(friction, belt_speed)
+        x, v, z = interpreted(state_of_sliding)(self.body, friction, self.like)
+        return x, v, z - memory_of_sliding(self.law, belt_speed)
 
     def _at(self, start: Initial) -> tuple[complex, complex]:
         x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)

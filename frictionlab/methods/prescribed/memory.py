@@ -13,7 +13,7 @@ from frictionlab.methods.periodic.attraction import begin, iterate_until_periodi
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.problem import remembered
-from frictionlab.methods.prescribed.motion import Found
+from frictionlab.methods.prescribed.motion import PrescribedMean
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, Motion
@@ -41,7 +41,7 @@ class MemoryPoint:
         moves = self.belt_speed != 0.0 or self.motion.velocity != 0 or self.motion.transverse_velocity != 0
         self.found = self._answer(tolerance) if moves else self._left_open([], "no slip")
 
-    def _answer(self, tolerance: float) -> Found:
+    def _answer(self, tolerance: float) -> PrescribedMean:
         directions = 2 if isinstance(self.like, complex) else 1
         guess = np.zeros((1, 2 * directions + remembered(self.law, directions)))
         self.goal = Goal(tolerance, False, True)
@@ -51,7 +51,7 @@ class MemoryPoint:
             return self._followed(guess[0])
         self.curve = curve
         mean, across, error = curve.results[0, :3]
-        return Found(complex(mean, across), error)
+        return PrescribedMean(complex(mean, across), error)
 
     def _called(self, states: Floats, wanted: Wanted) -> Curve:
         arguments: tuple[Any, ...] = self.body, np.array([self.belt_speed]), states, self.goal, wanted
@@ -59,7 +59,7 @@ class MemoryPoint:
         self.seconds += seconds
         return curve
 
-    def _followed(self, state: Floats) -> Found:
+    def _followed(self, state: Floats) -> PrescribedMean:
         """Where the memory goes from rest, and from steady sliding in either direction."""
         means = []
         swing = abs(self.motion.velocity) + abs(self.motion.transverse_velocity) + abs(self.belt_speed)
@@ -75,12 +75,12 @@ class MemoryPoint:
             means.append(each[count - 1])
         return self._left_open(means, "the memory does not converge from different starts")
 
-    def _left_open(self, means: list[float], reason: str) -> Found:
+    def _left_open(self, means: list[float], reason: str) -> PrescribedMean:
         self.status, self.error_kind = "not_unique", ""
         most = friction_at_rest(self.law)
         self.reason = f"{reason}: the mean depends on the start"
         low, high = (min(means), max(means)) if means else (-most, most)
-        return Found(low=low, high=high)
+        return PrescribedMean(low=low, high=high)
 
     def orbit(self) -> Orbit | None:
         """One period of the prescribed motion, and the friction along it."""

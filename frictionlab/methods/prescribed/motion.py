@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Found:
+class PrescribedMean:
     """What a law makes of a prescribed slip: mean friction (x1 + i x2), and the error of its x1.
 
     low, high: of a slip that leaves the mean open between two numbers. Whatever is not known is NaN.

@@ -12,10 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.methods.prescribed.motion import (
-    slow_passages,
-)
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.prescribed.motion import slow_passages
 from frictionlab.orbit.panels import NODES, WEIGHTS
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -33,10 +31,6 @@ class Integrals(NamedTuple):
     mean: complex
     largest: float
     direction: complex
-
-
-def belt_friction_at_rest(law: FrictionLaw) -> float:
-    return law.static_friction() if isinstance(law, SlidingLaw) else law.sliding_friction(0.0)
 
 
 def orbit_of_slip(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:

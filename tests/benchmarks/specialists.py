@@ -486,7 +486,7 @@ def along(scene: Scene) -> closed_loop_line.Along:
 
 def followed_on_the_line(law: BristleLaw, scene: Scene, tolerance: float) -> Closed | Open:
     """By collocation, whether or not a path is exact."""
-    return closed_loop_line._followed(law, along(scene), tolerance)
+    return closed_loop_line._collocated(law, along(scene), tolerance)
 
 
 def followed_in_the_plane(law: BristleLaw, scene: Scene, tolerance: float) -> Closed | Open:

@@ -168,7 +168,9 @@ class _Curve:
         w = side * (initial.velocity - self.belt_speeds[i])
         start = np.array([side * initial.x, w, self._shift(i)])
         row = np.full(9, np.nan)
-        periods = compiled(curve.settle)(self.mass, self.coefficient, abs(self.belt_speeds[i]), start, row)
+        periods = compiled(curve.iterate_until_fixed)(
+            self.mass, self.coefficient, abs(self.belt_speeds[i]), start, row
+        )
         if periods < 0:
             return False
         # The adjoint of a map that leaves some direction as it was does not exist: only rounding is left to say.
@@ -191,7 +193,7 @@ class _Curve:
         """Both directions of the belt share one solution: the mean is exactly odd."""
         speeds, back = np.unique(np.abs(self.belt_speeds[places]), return_inverse=True)
         rows = np.full((len(speeds), 9), np.nan)
-        _, self.seconds = timed(compiled(curve.solve_curve), self.mass, self.coefficient, speeds, rows)
+        _, self.seconds = timed(compiled(curve.continue_in_speed), self.mass, self.coefficient, speeds, rows)
         rows[speeds == 0.0, curve.MEAN] = 0.0  # the orbit is its own mirror image half a period later
         self.rows[places] = rows[back]
 
@@ -226,12 +228,11 @@ class _Curve:
 
     def _orbits(self, places: Sequence[int]) -> Orbits:
         """Of the scenes at these places; without panels where there is none."""
-        shifts = np.array([self._shift(i) for i in places])
         rows, ends = self.rows[list(places)], np.zeros(len(places), np.int64)
-        states = np.ascontiguousarray(rows[:, [curve.STATE_X, curve.STATE_W]])
-        legs = np.nan_to_num(rows[:, curve.LEGS]).astype(np.int64)
+        shifts, legs = [self._shift(i) for i in places], np.nan_to_num(rows[:, curve.LEGS])
+        states = np.column_stack([rows[:, curve.STATE_X], rows[:, curve.STATE_W], legs, shifts])
         speeds = self.belt_speeds[list(places)]
-        track = compiled(make_orbits)(self.mass, self.coefficient, speeds, states, legs, shifts, ends)
+        track = compiled(make_orbits)(self.mass, self.coefficient, speeds, states, ends)
         return Orbits(track.tau, track.x, track.v, track.friction, track.stick, ends)
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frictionlab.dynamics.motion import SLIP_ROUNDING
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.prescribed.motion import slow_passages
 from frictionlab.orbit.panels import NODES, WEIGHTS
@@ -39,9 +40,7 @@ def orbit_of_slip(motion: Motion, belt_speed: float, law: FrictionLaw, position:
     angle, _ = nodes(np.unique(np.concatenate(([0.0, 2.0 * math.pi], edges % (2.0 * math.pi)))))
     v, turn = velocity(motion, angle), np.exp(1j * angle)
     x = -((motion.velocity * turn).real + 1j * (motion.transverse_velocity * turn).real) / motion.frequency
-    slip = np.where(
-        np.abs(v - belt_speed) <= 1e-15 * np.abs(v), 0.0, v - belt_speed
-    )  # a rounding has no direction
+    slip = np.where(np.abs(v - belt_speed) <= SLIP_ROUNDING * np.abs(v), 0.0, v - belt_speed)
     friction = sliding_vectors(law, slip)
     return Orbit(angle / motion.frequency, position + x, v, friction, np.zeros(len(angle), np.bool_))
 

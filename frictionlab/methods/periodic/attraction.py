@@ -10,10 +10,10 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import mean_friction, span
+from frictionlab.methods.periodic.case import Case, case_of, image_of
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK
-from frictionlab.methods.periodic.period_map import period_map, size_of, start_of
+from frictionlab.methods.periodic.period_map import size_of, start_of
 from frictionlab.numerics.linalg import norm, subtract
-from frictionlab.orbit.recorder import track_of
 from frictionlab.scene.body import Body
 
 MOST_PERIODS = 5000
@@ -49,12 +49,13 @@ memory_of_sliding = by_law(_no_memory, _deflection_of_sliding, None, _velocity_o
 
 
 @inner
-def _arrives(law: Any, body: Body, belt_speed: float, start: Any, target: Any, like: Any) -> bool:
+def _arrives(case: Case, start: Any, target: Any) -> bool:
     """Whether a motion comes near to a closed orbit within some hundred periods."""
     residual, size, steps = np.empty(start.size), 1.0 + norm(target), 0
     for _ in range(PATIENCE):
-        image = period_map(law, body, belt_speed, start, residual, 1e-5 * body.normal_load, track_of(0), like)
+        image = image_of(case, start, residual, 1e-5 * case.body.normal_load)
         steps += image.steps
+        # A motion that takes this long is no cheap one: the starts are then followed to their ends instead.
         if image.steps < 0 or steps > MUCH_WORK // 4:
             return False
         for row in range(start.size):
@@ -65,24 +66,25 @@ def _arrives(law: Any, body: Body, belt_speed: float, start: Any, target: Any, l
     return False
 
 
-def _reached_without_memory(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+def _reached_without_memory(case: Case, target: Any) -> bool:
     """Where it is not sure that all motions end there, four starts are followed to their ends instead."""
     return False
 
 
-def _reached_with_memory(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+def _reached_with_memory(case: Case, target: Any) -> bool:
     """Whether the mass ends on this orbit, set off at rest on the belt and sliding as if it never reversed.
 
     The second is an orbit of its own where the belt is faster than any vibration and sliding friction constant.
     """
+    law, body, belt_speed, like = case
     start = np.empty(target.size)
     start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
-    if not _arrives(law, body, belt_speed, start, target, like):
+    if not _arrives(case, start, target):
         return False
     friction = math.copysign(1.0, belt_speed) * law.sliding_friction(abs(belt_speed))
     x, v, z = state_of_sliding(body, friction, like)
     start_of(law, body, start, x, v, z - memory_of_sliding(law, belt_speed))
-    return _arrives(law, body, belt_speed, start, target, like)
+    return _arrives(case, start, target)
 
 
 reached = by_law(_reached_without_memory, _reached_with_memory, None, _reached_with_memory)
@@ -94,13 +96,14 @@ def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
 
     Periods: -1 where after many periods the mass still creeps.
     """
+    case, period = case_of(law, body, 0.0), span(body)
     z, residual = np.empty(size_of(law, x)), np.empty(size_of(law, x))
-    start_of(law, body, z, x, v, 0.0 * x)
-    period = span(body)
+    start_of(law, body, z, x, v, case.like)
     for count in range(1, MOST_PERIODS):
-        image = period_map(law, body, 0.0, z, residual, accuracy, track_of(0), x)
+        image = image_of(case, z, residual, accuracy)
         for row in range(z.size):
             z[row] = z[row] + residual[row]
+        # Stuck for the whole of a period: the next ones repeat it.
         if image.stuck >= period * (1.0 - 1e-12):
             return z, count
     return z, -1
@@ -128,26 +131,28 @@ def begin(law: Any, body: Body, start: Any, state: Any) -> None:
 
 @inner
 def iterate_until_periodic(
-    law: Any, body: Body, belt_speed: float, accuracy: float, means: Any, states: Any, like: Any
+    law: Any, body: Body, belt_speed: float, accuracy: float, means: Any, states: Any
 ) -> Any:
     """Follow the motion from ``states[0]``, period by period, until it repeats.
 
     Fills the one-period means [n] and the states [n + 1, size]; returns after how many periods it repeats (0 where
     it has not after n), and how many it was followed.
     """
-    steps = 0
-    alike = 1e-7 if accuracy <= 1e-8 * body.normal_load else 1e-5  # coarse maps wander on by their own error
+    case, steps = case_of(law, body, belt_speed), 0
+    # Coarse maps wander on by their own error: what they repeat is less exact.
+    alike = 1e-7 if accuracy <= 1e-8 * body.normal_load else 1e-5
     residual = np.empty(states.shape[1])
     for n in range(means.size):
-        image = period_map(law, body, belt_speed, states[n], residual, accuracy, track_of(0), like)
+        image = image_of(case, states[n], residual, accuracy)
         means[n] = mean_friction(image.rubbed.real, span(body))
         steps += image.steps
         for row in range(residual.size):
             states[n + 1, row] = states[n, row] + residual[row]
         nearest = 1e300
         for k in range(1, min(LONGEST_PERIOD, n // 2) + 1):
+            # Two states in a row must repeat: one alone may pass near an old one by chance.
             repeats = max(_apart(states, n + 1, n + 1 - k), _apart(states, n, n - k)) < alike
-            # a spiral into an orbit of fewer periods looks like a longer one while it is still far out
+            # A spiral into an orbit of fewer periods looks like a longer one while it is still far out.
             if repeats and nearest > 1e-4:
                 return k, n + 1
             nearest = min(nearest, _apart(states, n + 1, n + 1 - k))

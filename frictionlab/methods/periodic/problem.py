@@ -109,7 +109,7 @@ class PeriodicProblem:
         belt_speeds = np.array([scene.belt_speed for scene in scenes])
         body = self.body._replace(periods=float(periods))
         call = compiled(answer_curve, self.law)
-        return timed(call, body, belt_speeds, states, goal, wanted, self.like)
+        return timed(call, body, belt_speeds, states, goal, wanted)
 
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
         """The closed orbits from these states, one for each scene; without panels where there is no state."""
@@ -153,7 +153,7 @@ class PeriodicProblem:
     def _followed(self, belt_speed: float, state: Floats, most: int, relative: float) -> Transient:
         means, states = np.empty(most), np.empty((most + 1, self.size))
         states[0] = state
-        arguments = self.body, belt_speed, relative * self.mass.normal_load, means, states, self.like
+        arguments = self.body, belt_speed, relative * self.mass.normal_load, means, states
         (period, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
         return Transient(period, means[:count], states[count], seconds)
 

@@ -55,7 +55,7 @@ class MemoryPoint:
 
     def _called(self, states: Floats, wanted: Wanted) -> Curve:
         arguments: tuple[Any, ...] = self.body, np.array([self.belt_speed]), states, self.goal, wanted
-        curve, seconds = timed(compiled(answer_curve, self.law), *arguments, self.like)
+        curve, seconds = timed(compiled(answer_curve, self.law), *arguments)
         self.seconds += seconds
         return curve
 
@@ -69,7 +69,7 @@ class MemoryPoint:
             each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(state)))
             states[0] = state
             accuracy = 1e-6 * self.motion.normal_load
-            arguments: tuple[Any, ...] = self.body, self.belt_speed, accuracy, each, states, self.like
+            arguments: tuple[Any, ...] = self.body, self.belt_speed, accuracy, each, states
             (_repeats, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
             self.seconds += seconds
             means.append(each[count - 1])

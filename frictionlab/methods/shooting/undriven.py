@@ -30,6 +30,7 @@ from frictionlab.dynamics.motion import (
 )
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.periodic.case import case_of
 from frictionlab.methods.periodic.continuation import record_orbit
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
@@ -60,7 +61,7 @@ def record_flow(law: Any, body: Body, belt_speed: float, x: float, v: float, acc
     """The motion from x, v over the span of the body, piece by piece."""
     z = np.empty(size_of(law, x))
     pack(body, z, x, v)
-    return record_orbit(law, body, belt_speed, z, accuracy, track_of(128), x)
+    return record_orbit(case_of(law, body, belt_speed), z, accuracy, track_of(128))
 
 
 class PeriodicMotion(NamedTuple):

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import inner, njit
-from frictionlab.methods.exact.legs import EPSILON, Oscillator, canonical
+from frictionlab.methods.exact.legs import Oscillator, canonical
 from frictionlab.methods.exact.return_map import (
     Fixed,
     friction_free_start,
@@ -16,6 +16,7 @@ from frictionlab.methods.exact.return_map import (
     periodic_state,
     rounding,
 )
+from frictionlab.quantities import EPSILON
 from frictionlab.scene.body import Mass
 
 MEAN, ERROR, FLOQUET, STATE_X, STATE_W, LEGS, RESIDUAL, ROUNDING, FOUND = range(9)

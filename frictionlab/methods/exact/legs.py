@@ -14,8 +14,8 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
+from frictionlab.quantities import EPSILON
 
-EPSILON = 2.0**-52
 TINY = 1e-300
 STICK = 0.0
 MOST_CREEPING = 1000

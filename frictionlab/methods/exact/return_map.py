@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 from frictionlab.compile.decorators import inner
 from frictionlab.methods.exact.legs import (
-    EPSILON,
     STICK,
     Oscillator,
     load_and_response,
@@ -20,6 +19,7 @@ from frictionlab.methods.exact.legs import (
     starting_mode,
     stick_leg,
 )
+from frictionlab.quantities import EPSILON
 
 MOST_LEGS = 1_000_000
 """Most legs in a period; a period with more is not solved, since its motion is below the rounding of its position."""

@@ -123,7 +123,7 @@ def _apart(states: Any, a: int, b: int) -> float:
 
 
 @inner
-def begin(law: Any, body: Body, start: Any, state: Any) -> None:
+def write_start(law: Any, body: Body, start: Any, state: Any) -> None:
     """Fill the state of a start (x, v, deflection); see ``start_of``."""
     x, v, deflection = start
     start_of(law, body, state, x, v, deflection)

@@ -12,11 +12,11 @@ from frictionlab.compile.cache import compiled, timed
 from frictionlab.compile.dispatch import interpreted
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import (
-    begin,
     iterate_until_periodic,
     memory_of_sliding,
     settle,
     state_of_sliding,
+    write_start,
 )
 from frictionlab.methods.periodic.continuation import (
     DIFFERENTIATED,
@@ -143,7 +143,7 @@ class PeriodicProblem:
         """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
         at = self._shaken(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
         state = np.empty(self.size)
-        compiled(begin, self.law)(self.body, at, state)
+        compiled(write_start, self.law)(self.body, at, state)
         return self._followed(belt_speed, state, most, ROUGH[self.law.memory_kind])
 
     def means(self, belt_speed: float, state: Floats, periods: int) -> Floats:

@@ -12,7 +12,7 @@ from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.closed_loop_line import ONE_WAY, Along, line_loop
 from frictionlab.methods.prescribed.closed_loop_plane import plane_loop
 from frictionlab.methods.prescribed.loop import Closed, Loop, Open, Vectors
-from frictionlab.methods.prescribed.motion import PrescribedMean
+from frictionlab.methods.prescribed.motion import PrescribedMean, displacement, velocity
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -80,15 +80,9 @@ class BristlePoint:
         if self.status != "ok":
             return None
         angle = _angles(loops)
-        turn = np.exp(1j * angle)
-        motion = self.motion
-        v = (motion.velocity * turn).imag + 1j * (motion.transverse_velocity * turn).imag
-        x = (
-            -((motion.velocity * turn).real + 1j * (motion.transverse_velocity * turn).real)
-            / motion.frequency
-        )
+        x, v = displacement(self.motion, angle), velocity(self.motion, angle)
         friction = self._friction(v - self.belt_speed, [loop.deflection_at(angle) for loop in loops])
-        return Orbit(angle / motion.frequency, x, v, friction, np.zeros(len(angle), np.bool_))
+        return Orbit(angle / self.motion.frequency, x, v, friction, np.zeros(len(angle), np.bool_))
 
     def _friction(self, slip: Vectors, deflections: list[Floats]) -> Vectors:
         z, law = deflections[0], self.law

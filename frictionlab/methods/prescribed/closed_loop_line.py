@@ -28,9 +28,8 @@ from frictionlab.methods.prescribed.periodic_deflection import (
     layer,
     natural_reach,
 )
-from frictionlab.quantities import Floats
+from frictionlab.quantities import EPSILON, Floats
 
-EPSILON = 2.0**-52
 TWO_LEGS = "prescribed slip along a line: deflection exact along both legs, Gauss-Lobatto quadrature"
 ONE_WAY = "closed form: slip that never reverses saturates the deflection"
 COLLOCATED = (
@@ -72,12 +71,10 @@ class Along(NamedTuple):
 def line_loop(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
     """The closed loop, or the range of means and the reason where it is not unique."""
     if along.size == 0.0 and along.belt_speed == 0.0:
-        most = abs(law.friction(0.0, natural_reach(law, 1.0), 0.0))
-        return Open(-most, most, NOTHING_MOVES)
+        return Open.up_to(law, natural_reach(law, 1.0), NOTHING_MOVES)
     room = law.elastic_deflection() - along.size / along.frequency
     if along.belt_speed == 0.0 and room > 0.0:
-        most = abs(law.friction(0.0, room, 0.0))
-        return Open(-most, most, ELASTIC)
+        return Open.up_to(law, room, ELASTIC)
     if not law.exact_path():
         return _collocated(law, along, tolerance)
     return _legs(law, along) if along.turn > 0.0 else _one_way(law, along)

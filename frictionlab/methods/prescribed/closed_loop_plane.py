@@ -15,7 +15,7 @@ from frictionlab.dynamics.radau_panel import Oscillation
 from frictionlab.laws.memory import ROTATED, BristleLaw
 from frictionlab.methods.prescribed.closed_loop_line import COLLOCATED, ELASTIC, NOTHING_MOVES
 from frictionlab.methods.prescribed.loop import Closed, Loop, Open, Vectors
-from frictionlab.methods.prescribed.motion import slow_passages
+from frictionlab.methods.prescribed.motion import between_passages, slow_passages
 from frictionlab.methods.prescribed.periodic_deflection import (
     Accuracy,
     closed_deflection,
@@ -35,13 +35,11 @@ def plane_loop(law: BristleLaw, motion: Motion, belt_speed: float, tolerance: fl
     rotated = law.form == ROTATED
     slip = Oscillation(motion.velocity, motion.transverse_velocity, motion.frequency, 1.0 if rotated else 0.0)
     if slip.along == 0 and slip.across == 0 and belt_speed == 0.0:
-        most = abs(law.friction(0.0, natural_reach(law, 1.0), 0.0))
-        return Open(-most, most, NOTHING_MOVES)
+        return Open.up_to(law, natural_reach(law, 1.0), NOTHING_MOVES)
     if belt_speed == 0.0 and not rotated:
         room = _room(slip, law.elastic_deflection())
         if room > 0.0:
-            most = abs(law.friction(0.0, room, 0.0))
-            return Open(-most, most, ELASTIC)
+            return Open.up_to(law, room, ELASTIC)
     accuracy = Accuracy.of(law, slip, belt_speed, tolerance, -1.0 if rotated else _circle(law))
     start = accuracy.scale.reach if rotated else 0j
     found = closed_deflection(law, slip, _stretches(law, slip, belt_speed), accuracy, start)
@@ -114,10 +112,8 @@ def _room(slip: Oscillation, radius: float) -> float:
 def _stretches(law: BristleLaw, slip: Oscillation, belt_speed: float) -> Floats:
     """From one slow passage to the next."""
     passages = slow_passages(slip.along, slip.across, belt_speed)
-    places = sorted((angle % (2.0 * math.pi), depth) for angle, depth in passages) or [(0.0, FAR)]
-    following = [*places[1:], (places[0][0] + 2.0 * math.pi, places[0][1])]
     rows = []
-    for (here, depth), (there, next_depth) in zip(places, following, strict=True):
+    for (here, depth), (there, next_depth) in between_passages(passages, FAR):
         if there > here:
             half = 0.5 * (there - here)
             near = max(depth, min(_layer(law, slip, belt_speed, here), 1e-3), CLOSEST)

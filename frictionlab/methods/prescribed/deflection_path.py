@@ -279,6 +279,23 @@ def _saltation(bristle: Bristle, v: Any, angle: float, z: Any, carry: Any) -> No
 
 
 @inner
+def _attempt(bristle: Bristle, radius: float, place: Place, span: Any, z: Any, work: Any) -> Any:
+    """The step to take, its error, whether the mode ends with it, and whether it was cut for that.
+
+    The rate jumps where the contact begins to yield or to unload: a step is cut at the change of mode, so that panels
+    are smooth. Negative radius: the modes are not looked at.
+    """
+    first, step = span
+    error = _step_error(bristle, place, span, z, work)
+    if radius < 0.0:
+        return step, error, False, False
+    step, ends, cut = _mode_end(bristle, radius, place, span, z, work)
+    if cut and step > SHORTEST:
+        error = _step_error(bristle, place, (first, step), z, work)
+    return step, error, ends, cut
+
+
+@inner
 def _in_mode(bristle: Bristle, circle: float) -> Bristle:
     """The bristle with its mode, as ``circle`` of its scale."""
     scale = bristle.scale
@@ -300,7 +317,9 @@ def _other_mode(bristle: Bristle, radius: float, place: Place, at: float, z: Any
 
 @inner
 def _first_mode(bristle: Bristle, radius: float, stretches: Any, z: Any, carry: Any) -> Bristle:
-    """The bristle in its mode, elastic or yielding, at the start of the period."""
+    """The bristle in its mode, elastic or yielding, at the start of the period; negative radius: it has no modes."""
+    if radius < 0.0:
+        return bristle
     begin = Place(stretches[0, 0], complex(stretches[0, 1], stretches[0, 2]))
     outward = _outward(slip_at(bristle.slip, begin, stretches[0, 3] + 1e-9, z), z)
     if not outward or abs(z) < radius * (1.0 - 1e-12):
@@ -355,23 +374,19 @@ def follow_period(law: Any, slip: Oscillation, stretches: Any, scale: Scale, acc
     work = (work_for(z), work_for(z), work_for(z))
     step, row, at, idle = 0.1, 0, 0.0, 0
     longest = math.pi / 8.0 if radius < 0.0 else math.pi / 48.0
-    if radius >= 0.0:
-        bristle = _first_mode(bristle, radius, stretches, z, carry)
+    bristle = _first_mode(bristle, radius, stretches, z, carry)
     while row < stretches.shape[0] and out.filled[0] + 2 < ROOM:
         stretch, now = _stretch_of(stretches[row]), z + gained
         place, first = stretch.place, stretch.begin + at
-        step, ends, cut = min(min(step, longest), _allowed(stretch, at)), False, False
-        error = _step_error(bristle, place, (first, step), now, work)
-        # The rate jumps where the contact begins to yield or to unload: the step is cut at the change of mode, so
-        # that panels are smooth. After three changes without progress the jump is left to the step control.
-        if radius >= 0.0 and idle < 3:
-            step, ends, cut = _mode_end(bristle, radius, place, (first, step), now, work)
+        step = min(min(step, longest), _allowed(stretch, at))
+        # After three changes of mode without progress the jump of the rate is left to the step control.
+        step, error, ends, cut = _attempt(
+            bristle, radius if idle < 3 else -1.0, place, (first, step), now, work
+        )
         if cut and step <= SHORTEST:
             bristle = _other_mode(bristle, radius, place, first, now, carry)
             step, idle = 1e-3, idle + 1
             continue
-        if cut:
-            error = _step_error(bristle, place, (first, step), now, work)
         # Too large an error: a shorter step, at least a tenth of it.
         if error > accuracy and step > SHORTEST:
             step = step * min(0.5, max(0.1, 0.8 * (accuracy / error) ** (1.0 / 7.0)))

@@ -9,7 +9,7 @@ import numpy as np
 from frictionlab.compile.cache import compiled, timed
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.periodic.attraction import begin, iterate_until_periodic
+from frictionlab.methods.periodic.attraction import iterate_until_periodic, write_start
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.problem import remembered
@@ -65,7 +65,7 @@ class MemoryPoint:
         swing = abs(self.motion.velocity) + abs(self.motion.transverse_velocity) + abs(self.belt_speed)
         for side in (0.0, 1.0, -1.0):
             start = 0.0 * self.like, 0.0 * self.like, side * swing + 0.0 * self.like
-            compiled(begin, self.law)(self.body, start, state)
+            compiled(write_start, self.law)(self.body, start, state)
             each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(state)))
             states[0] = state
             accuracy = 1e-6 * self.motion.normal_load

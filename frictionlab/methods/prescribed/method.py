@@ -19,7 +19,6 @@ from frictionlab.methods.prescribed.bristle import BristlePoint, along_one_line
 from frictionlab.methods.prescribed.memory import MemoryPoint
 from frictionlab.methods.prescribed.motion import PrescribedMean
 from frictionlab.methods.prescribed.quadrature import (
-    EPSILON,
     Integrals,
     halved,
     integrals,
@@ -27,6 +26,7 @@ from frictionlab.methods.prescribed.quadrature import (
     slip_edges,
 )
 from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import EPSILON
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import mean_prescribed_longitudinal
 from frictionlab.theory.rest import friction_at_rest

@@ -16,9 +16,8 @@ from frictionlab.dynamics.radau_panel import NODES, WEIGHTS, Oscillation, Scale
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.prescribed.deflection_path import follow_period
 from frictionlab.methods.prescribed.loop import Closed, Loop, Open
-from frictionlab.quantities import Floats
+from frictionlab.quantities import EPSILON, Floats
 
-EPSILON = 2.0**-52
 POINTS: Floats = np.concatenate(([0.0], NODES))
 SHARES: Floats = np.concatenate(([0.0], WEIGHTS))
 MOST_PERIODS = 80

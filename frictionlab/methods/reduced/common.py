@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.exact.method import REDUCED
 from frictionlab.methods.prescribed.quadrature import orbit_of_slip
 from frictionlab.methods.reduced.bounds import Line, bounds
 from frictionlab.methods.reduced.full_mean import full_mean
@@ -27,9 +28,6 @@ from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity
 
-REDUCED = (
-    " (one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law)"
-)
 WIDEST = 0.25
 """Distance of bounds on the mean, relative to the friction coefficient, above which they are narrowed."""
 ROUNDING = 1e-10

@@ -13,7 +13,7 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method
 from frictionlab.methods.prescribed.method import solve_prescribed
-from frictionlab.methods.prescribed.quadrature import EPSILON, integrals, slip_edges
+from frictionlab.methods.prescribed.quadrature import integrals, slip_edges
 from frictionlab.methods.reduced.common import (
     ROUNDING,
     Harmonic,
@@ -25,7 +25,7 @@ from frictionlab.methods.reduced.common import (
 )
 from frictionlab.methods.reduced.full_mean import full_mean
 from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import Floats
+from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import (

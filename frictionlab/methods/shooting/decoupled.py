@@ -31,7 +31,7 @@ from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Drive, Initial, Scene, Transverse
 
 APART = "shooting, two degrees of freedom solved separately: per-axis friction does not couple them"
-HELD = "across the belt the bristle is elastic under this load: the mean there depends on the start"
+HELD_ACROSS = "across the belt the bristle is elastic under this load: the mean there depends on the start"
 
 
 class OneAxis(Scene):
@@ -160,7 +160,7 @@ def _held(turned: OneAxis, law: FrictionLaw, tolerance: float) -> Across | None:
         math.nan,
         lambda: multiplier(curve),
         lambda: problem.orbits([turned], [curve.states[0]]).one(0),
-        HELD,
+        HELD_ACROSS,
         seconds,
     )
 

@@ -21,7 +21,7 @@ from frictionlab.theory.rest import resting_range, stays_at_rest
 
 Complexes = NDArray[np.complex128]
 
-NOTHING = complex(math.nan, math.nan)
+UNKNOWN = complex(math.nan, math.nan)
 SOLVED = {
     "none": "",
     "exact path": "; deflection as a function of the slip path",
@@ -30,10 +30,11 @@ SOLVED = {
     "scalars": "; mass and memory solved together (Rodas5P)",
 }
 """How the period map treats what the law remembers."""
-REMEMBERED = {"bristle": "deflection"}
 UNDAMPED = "without damping a free oscillation remains, and the state depends on the start"
-ELASTIC = "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
-AT_REST = (
+HELD_ELASTICALLY = (
+    "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
+)
+MAY_REST = (
     "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range; "
     "give scene.initial to choose a start"
 )
@@ -67,7 +68,7 @@ class SteadyStates:
         self.reason = [""] * n
         self.states: list[Floats | None] = [None] * n
         self.reached = [False] * n
-        self.mean: Complexes = np.full(n, NOTHING)
+        self.mean: Complexes = np.full(n, UNKNOWN)
         self.error, self.low, self.high, self.period, self.multipliers, self.seconds = np.full((6, n), np.nan)
         self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.like, complex)
         judged_by_multipliers = not problem.goal.contracts or _undamped(scenes[0])
@@ -97,7 +98,7 @@ class SteadyStates:
             law: Any = self.problem.law
             most = abs(law.friction(0.0, law.elastic_deflection(), 0.0))
             self._clear(i)
-            self._leave_open(i, ELASTIC, -most, most)
+            self._leave_open(i, HELD_ELASTICALLY, -most, most)
         elif not (self.problem.goal.asks and self._attracts(i)):
             self._compare_starts(i)
 
@@ -106,7 +107,7 @@ class SteadyStates:
         start = self.scenes[i].initial
         if start is None:
             highest = resting_range(self.scenes[i], self.problem.law)
-            self._leave_open(i, AT_REST, -highest, highest)
+            self._leave_open(i, MAY_REST, -highest, highest)
             return
         state, periods = self.problem.settled(start)
         if periods < 0:
@@ -181,7 +182,9 @@ class SteadyStates:
         if problem.falls_slowly and all(one.curve is None for one in reached):
             self.reason[i] = f"no steady state found: {describe(reached)}"
             return
-        lags = f"the {REMEMBERED.get(problem.law.memory_kind, 'memory')} lags behind the slip"
+        lags = (
+            f"the {'deflection' if problem.law.memory_kind == 'bristle' else 'memory'} lags behind the slip"
+        )
         why = lags if problem.falls_slowly else "friction falls with speed"
         low, high = min(one.low for one in reached), max(one.high for one in reached)
         self._leave_open(i, f"{why}: {describe(reached)}", low, high)
@@ -195,7 +198,7 @@ class SteadyStates:
 
     def _clear(self, i: int) -> None:
         self.status[i], self.reason[i], self.states[i] = "failed", "", None
-        self.mean[i] = NOTHING
+        self.mean[i] = UNKNOWN
         for numbers in (self.error, self.low, self.high, self.period, self.multipliers):
             numbers[i] = np.nan
 

@@ -47,6 +47,11 @@ def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
     return scene.load_along_belt_only and law.damps_across(abs(scene.belt_speed) + swing)
 
 
+def map_kind(law: FrictionLaw, planar: bool) -> str:
+    """Which period map serves a law: that of an exact path along a line, else that of its kind of memory."""
+    return "exact path" if "exact path" in law.structure() and not planar else law.memory_kind
+
+
 class Transient(NamedTuple):
     """A motion followed until it repeats: after how many periods (0: never), its one-period means, its end."""
 

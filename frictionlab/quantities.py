@@ -45,6 +45,10 @@ Floats = NDArray[np.float64]
 """An array of real numbers of any shape."""
 
 
+EPSILON = 2.0**-52
+"""Distance from one to the next floating-point number."""
+
+
 class Record(BaseModel):
     """A frozen record that refuses keys it does not know."""
 

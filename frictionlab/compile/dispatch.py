@@ -96,8 +96,6 @@ for _method in (
     "remembers_stick",
     "breakaway",
     "yield_deflection",
-    "remembers_stick",
-    "breakaway",
 ):
     _open_door(MemoryLaw, _method)
 

@@ -34,45 +34,57 @@ def slip_events(step: Any, rates: Any, slip: Any, slip_rate: Any) -> Any:
     """
 
     @inner
-    def _fall(problem: Any, tau: float, taken: Any) -> float:
-        a, _rub = rates(problem, tau, taken.x, taken.v)
+    def rise(problem: Any, tau: float, end: Any) -> float:
+        """Rate of the slip in its direction before the event."""
+        a, _rub = rates(problem, tau, end.x, end.v)
         return problem.side * slip_rate(problem, tau, a)
 
+    return _stop_at_zero(step, slip, rise), _slowest(step, rise)
+
+
+def _stop_at_zero(step: Any, slip: Any, rise: Any) -> Any:
     @inner
     def stop(problem: Any, tau: float, state: Any, low: float, high: float) -> Any:
         """The step at whose end slip is zero, between two with slip before and none after (safeguarded Newton)."""
         h = high
-        taken = step(problem, tau, state, h)
+        end = step(problem, tau, state, h)
         for _ in range(60):
-            w = problem.side * slip(problem, tau + h, taken.v)
+            w = problem.side * slip(problem, tau + h, end.v)
             low, high = (h, high) if w > 0.0 else (low, h)
-            slope = _fall(problem, tau + h, taken)
+            # A slip that grows there belongs to another zero: bisection keeps to the one that is bracketed.
+            slope = rise(problem, tau + h, end)
             trial = h - w / slope if slope < 0.0 else low
             if not low < trial < high:
                 trial = 0.5 * (low + high)
             done = abs(trial - h) <= 2e-15 * (tau + h)
             h = trial
-            taken = step(problem, tau, state, h)
+            end = step(problem, tau, state, h)
+            # The time has no more digits, though the slip may.
             if done or high - low <= 4e-16 * (tau + h):
                 break
-        return h, taken
+        return h, end
 
+    return stop
+
+
+def _slowest(step: Any, rise: Any) -> Any:
     @inner
     def lowest(problem: Any, tau: float, state: Any, before: float, h: float) -> float:
         """Step at which slip is slowest inside one whose slip falls first, at rate ``before``, and rises last."""
         low, high, middle = 0.0, h, h
         at_low, at_high = before, 0.0
         for _ in range(50):
-            taken = step(problem, tau, state, middle)
-            value = _fall(problem, tau + middle, taken)
+            end = step(problem, tau, state, middle)
+            value = rise(problem, tau + middle, end)
             if value > 0.0:
                 high, at_high = middle, value
             else:
                 low, at_low = middle, value
             if high - low < 1e-13 * h or value == 0.0:
                 break
+            # Regula falsi, kept a hundredth of the bracket away from its ends, where it would creep.
             linear = low - at_low * (high - low) / (at_high - at_low)
             middle = min(max(linear, low + 0.01 * (high - low)), high - 0.01 * (high - low))
         return middle
 
-    return stop, lowest
+    return lowest

@@ -134,6 +134,10 @@ def belt_path_integral(body: Any, belt_speed: float, start: float, end: float) -
 # --- the motion ---------------------------------------------------------------------------------------------------
 
 
+SLIP_ROUNDING = 1e-15
+"""A slip below this share of the velocity it is a difference of is rounding, and has no direction."""
+
+
 @fast
 def slip(body: Any, belt_speed: float, now: Instant, v: Any) -> Any:
     """Slip velocity: of the mass against the belt."""

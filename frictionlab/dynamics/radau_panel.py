@@ -38,7 +38,7 @@ NODES, MATRIX = _radau()
 WEIGHTS: Floats = MATRIX[-1].copy()
 
 
-class Slip(NamedTuple):
+class Oscillation(NamedTuple):
     """Prescribed oscillation, velocities Im(phasor exp(i angle)); rotated: 1 where its speed alone moves bristles."""
 
     along: complex
@@ -66,7 +66,15 @@ class Scale(NamedTuple):
     circle: float
 
 
-class Work(NamedTuple):
+class Bristle(NamedTuple):
+    """A bristle under a prescribed slip: its law, the slip, and what numbers are measured by."""
+
+    law: Any
+    slip: Oscillation
+    scale: Scale
+
+
+class PanelRoom(NamedTuple):
     """Room for one panel: stages' gains, slips, rates, frictions, and the linear system."""
 
     gain: Any
@@ -80,19 +88,19 @@ class Work(NamedTuple):
 
 
 @inner
-def slip_in_the_plane(slip: Slip, place: Place, angle: float) -> complex:
+def slip_in_the_plane(slip: Oscillation, place: Place, angle: float) -> complex:
     """The slip velocity this angle after a place, to rounding of the change since there."""
     turn = place.angle + 0.5 * angle
     swing = complex(math.cos(turn), math.sin(turn)) * (2.0 * math.sin(0.5 * angle))
     return place.slip + complex((slip.along * swing).real, (slip.across * swing).real)
 
 
-def _slip_on_the_line(slip: Slip, place: Place, angle: float, z: float) -> float:
+def _slip_on_the_line(slip: Oscillation, place: Place, angle: float, z: float) -> float:
     v = slip_in_the_plane(slip, place, angle)
     return math.sqrt(v.real * v.real + v.imag * v.imag) if slip.rotated > 0.0 else v.real
 
 
-def _slip_in_the_plane(slip: Slip, place: Place, angle: float, z: complex) -> complex:
+def _slip_in_the_plane(slip: Oscillation, place: Place, angle: float, z: complex) -> complex:
     return slip_in_the_plane(slip, place, angle)
 
 
@@ -145,12 +153,12 @@ deflection follows the slip, positive where it moves along a circle."""
 
 
 @inner
-def work_for(z: Any) -> Work:
+def work_for(z: Any) -> PanelRoom:
     """Room for panels of this kind of deflection."""
     n = parts(z)
     size = STAGES * n
     kind = np.full(STAGES, z)
-    return Work(
+    return PanelRoom(
         kind,
         kind.copy(),
         kind.copy(),
@@ -163,11 +171,12 @@ def work_for(z: Any) -> Work:
 
 
 @inner
-def _evaluate(law: Any, scale: Scale, z: Any, work: Work) -> None:
+def _evaluate(bristle: Bristle, z: Any, work: PanelRoom) -> None:
     """Rates and frictions at the stages, and by differences the slopes of the rates.
 
     Differences are taken towards more load: the rate of bristles that unload elastically jumps where they begin to.
     """
+    law, scale = bristle.law, bristle.scale
     n, small = parts(z), 1e-7 * scale.reach
     for stage in range(STAGES):
         v, here = work.slip[stage], z + work.gain[stage]
@@ -182,7 +191,7 @@ def _evaluate(law: Any, scale: Scale, z: Any, work: Work) -> None:
 
 
 @inner
-def _assemble(width: float, n: int, work: Work) -> None:
+def _assemble(width: float, n: int, work: PanelRoom) -> None:
     """identity - width * (integration matrix) x (slopes)."""
     for i in range(STAGES):
         for j in range(STAGES):
@@ -194,8 +203,8 @@ def _assemble(width: float, n: int, work: Work) -> None:
 
 
 @inner
-def _solve(matrix: Any, right: Any) -> None:
-    """Gaussian elimination with partial pivoting, in place."""
+def eliminate(matrix: Any, right: Any) -> None:
+    """Gaussian elimination with partial pivoting: ``right`` [n, columns] becomes the solution, in place."""
     n, columns = matrix.shape[0], right.shape[1]
     for k in range(n):
         pivot = k
@@ -223,20 +232,21 @@ def _solve(matrix: Any, right: Any) -> None:
 
 
 @inner
-def solve_panel(law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: Any, work: Work) -> bool:
+def solve_panel(bristle: Bristle, place: Place, span: Any, z: Any, work: PanelRoom) -> bool:
     """Fill ``work`` with the step over span = (angle after the place, width) from ``z``; False where it fails.
 
     ``carry`` becomes the derivative of the deflection at the end by that at the start.
     """
+    slip, scale = bristle.slip, bristle.scale
     n, width = parts(z), span[1] / slip.frequency
     for stage in range(STAGES):
         work.slip[stage] = slip_at(slip, place, span[0] + NODES[stage] * span[1], z)
         work.gain[stage] = 0.0 * z
     for turn in range(MOST_ITERATIONS):
-        _evaluate(law, scale, z, work)
+        _evaluate(bristle, z, work)
         _assemble(width, n, work)
         _residuals(width, n, work)
-        _solve(work.matrix, work.right)
+        eliminate(work.matrix, work.right)
         change, size = 0.0, 0.0
         for stage in range(STAGES):
             first = work.right[stage * n, 0]
@@ -250,14 +260,14 @@ def solve_panel(law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: 
         # Converged; after three iterations corrections of rounding size are accepted more readily.
         rounding = (4e-15 if turn < 3 else 5e-14) * scale.change
         if change <= max(1e-8 * size, rounding):
-            _evaluate(law, scale, z, work)
-            _carried(n, work)
+            _evaluate(bristle, z, work)
+            _derivative(n, work)
             return True
     return False
 
 
 @inner
-def _residuals(width: float, n: int, work: Work) -> None:
+def _residuals(width: float, n: int, work: PanelRoom) -> None:
     """The right sides: what the stages lack, and the effect of the start."""
     for i in range(STAGES):
         lack = -work.gain[i]
@@ -273,7 +283,8 @@ def _residuals(width: float, n: int, work: Work) -> None:
 
 
 @inner
-def _carried(n: int, work: Work) -> None:
+def _derivative(n: int, work: PanelRoom) -> None:
+    """``carry``, from the solution for the effect of the start on the last stage."""
     for row in range(n):
         for column in range(n):
             same = 1.0 if row == column else 0.0
@@ -281,10 +292,11 @@ def _carried(n: int, work: Work) -> None:
 
 
 @inner
-def crawl(law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: Any, work: Work) -> None:
+def euler_panel(bristle: Bristle, place: Place, span: Any, z: Any, work: PanelRoom) -> None:
     """An explicit Euler step in place of ``solve_panel``, for a negligibly short step across a jump of the rate."""
+    slip = bristle.slip
     n, width = parts(z), span[1] / slip.frequency
-    rate, friction = bound(law, slip_at(slip, place, span[0], z), scale.circle, z)
+    rate, friction = bound(bristle.law, slip_at(slip, place, span[0], z), bristle.scale.circle, z)
     for stage in range(STAGES):
         work.slip[stage] = slip_at(slip, place, span[0] + NODES[stage] * span[1], z)
         work.gain[stage] = NODES[stage] * width * rate

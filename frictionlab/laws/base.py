@@ -38,12 +38,13 @@ class FrictionLaw(Record, ABC):
     string, except those already in frictionlab's bibliography; a source without an entry is cited as written.
     ``expected_failures`` maps each check of the conformance battery that the law must fail to the reason.
     ``memory_kind`` says what friction depends on beside slip: nothing, the deflection of one bristle, or several
-    deflections or scalars. ``compliant``: whether one bristle has a stiffness and a presliding length.
+    deflections or scalars; no method solves a law that declares none of them. ``compliant``: whether one bristle has
+    a stiffness and a presliding length.
     """
 
     bibtex: ClassVar[str] = ""
     expected_failures: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    memory_kind: ClassVar[Literal["none", "bristle", "deflections", "scalars"]] = "none"
+    memory_kind: ClassVar[Literal["undeclared", "none", "bristle", "deflections", "scalars"]] = "undeclared"
     compliant: ClassVar[bool] = False
 
     @abstractmethod
@@ -61,6 +62,29 @@ class FrictionLaw(Record, ABC):
     def under_load(self, normal_load: float) -> Self:
         """The same law per unit of this normal load [scene force]: parameters of the contact become per unit load."""
         return self
+
+    def count(self) -> int:
+        """The number of memories."""
+        return 0
+
+    def elastic_deflection(self) -> float:
+        """Deflection [scene length] up to which it follows the slip in every direction: the contact is elastic."""
+        return 0.0
+
+    def planar_form(self) -> Literal["vectorial", "rotated", "per-axis"]:
+        """How the law of one direction extends to the plane; as a law of vectors where it does not say."""
+        return "vectorial"
+
+    def no_vector_form(self) -> str:
+        """Why ``vectorial`` has no meaning for this law, as a sentence; empty where it has one."""
+        return ""
+
+    def damps_across(self, speed: float) -> bool:
+        """Whether friction never does positive work on a motion across the slip, at slip speeds up to this.
+
+        Spring and contact across then only lose energy, and without a load across the belt x2 decays.
+        """
+        return self.planar_form() != "rotated"
 
     def constant_sliding_friction(self) -> bool:
         """Whether ``sliding_friction`` is the same number at every speed."""
@@ -100,6 +124,8 @@ class SlidingLaw(FrictionLaw, ABC):
 
     At rest friction is any vector up to the static coefficient; the method determines which one.
     """
+
+    memory_kind: ClassVar[Literal["none"]] = "none"
 
     def static_friction(self) -> float:
         """Friction coefficient [-] that slip must overcome to begin; not below ``sliding_friction(0)``."""

@@ -44,9 +44,13 @@ class BristleLaw(FrictionLaw, ABC):
         """Selects kernels that use ``deflected`` where the path is exact."""
         return ("exact path",) if self.exact_path() else ()
 
-    def no_vector_form(self) -> str:
-        """Why ``planar: vectorial`` has no meaning for this law, as a sentence; empty where it has one."""
-        return ""
+    def count(self) -> int:
+        """One."""
+        return 1
+
+    def planar_form(self) -> Literal["vectorial", "rotated", "per-axis"]:
+        """As the parameter ``planar`` says."""
+        return self.planar
 
     def largest_deflection(self) -> float:
         """Radius of the set of deflections [scene length] that no slip history leaves once inside."""
@@ -55,10 +59,6 @@ class BristleLaw(FrictionLaw, ABC):
     def presliding(self) -> float:
         """The presliding length [scene length]: the deflection in steady sliding at high speed."""
         return self.largest_deflection()
-
-    def elastic_deflection(self) -> float:
-        """Deflection [scene length] up to which z follows the slip in every direction: the contact is elastic."""
-        return 0.0
 
     def largest_rate(self, speed: float) -> float:
         """Largest modulus of d(rate)/dz [1/scene time] at this slip speed; it limits explicit steps."""
@@ -75,13 +75,6 @@ class BristleLaw(FrictionLaw, ABC):
     def stored(self, z: Any) -> float:
         """The recoverable work per unit normal load [scene length] of the bristle: that of a linear spring."""
         return 0.5 * float((z * self.friction(0.0 * z, z, 0.0 * z).conjugate()).real)
-
-    def damps_across(self, speed: float) -> bool:
-        """Whether friction never does positive work on a motion across the slip, at slip speeds up to this.
-
-        Spring and bristle across then only lose energy, and without a load across the belt x2 decays.
-        """
-        return self.planar != "rotated"
 
     def exact_path(self) -> bool:
         """Whether ``deflected`` is exact for slip along a straight line at whatever speed."""

@@ -12,6 +12,7 @@ from frictionlab.columns import FROM_ORBITS
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.dynamics.motion import (
+    SLIP_ROUNDING,
     instant_at,
     load,
     mean_friction,
@@ -84,8 +85,8 @@ def _mass(scene: Scene) -> Mass:
 
 def _read_together(scenes: Sequence[Scene], found: Orbits) -> Floats:
     out, speeds = np.full((len(scenes), len(READ)), np.nan), np.array([scene.belt_speed for scene in scenes])
-    parts = found.tau, found.x, found.v, found.friction, found.stick, found.ends
-    compiled(read_each)(*parts, _mass(scenes[0]), speeds, out)
+    panels = OrbitPanels(found.tau, found.x, found.v, found.friction, found.stick)
+    compiled(read_each)(panels, found.ends, _mass(scenes[0]), speeds, out)
     return out
 
 
@@ -99,31 +100,43 @@ def _read_one(scene: Scene, orbit: Orbit | None) -> Floats:
         mass = mass._replace(frequency=2.0 * math.pi / length)
     stick = np.zeros(len(orbit.tau), np.bool_) if orbit.stick is None else orbit.stick
     out, ends = np.full((1, len(READ)), np.nan), np.array([len(orbit.tau)])
-    parts = orbit.tau, orbit.x, orbit.v, orbit.friction, stick, ends
-    compiled(read_each)(*parts, mass, np.array([scene.belt_speed]), out)
+    panels = OrbitPanels(orbit.tau, orbit.x, orbit.v, orbit.friction, stick)
+    compiled(read_each)(panels, ends, mass, np.array([scene.belt_speed]), out)
     if orbit.stick is None:
         out[0, READ.index("stick_fraction")] = np.nan
     return np.where(SUMMED, out[0] / orbit.periods, out[0])
 
 
+class OrbitPanels(NamedTuple):
+    """Orbits as kernels read them: arrays [panels, nodes], and stick [panels]."""
+
+    tau: Any
+    x: Any
+    v: Any
+    friction: Any
+    stick: Any
+
+
+@inner
+def _cut(panels: OrbitPanels, first: int, end: int) -> OrbitPanels:
+    """The panels from the first to before the end."""
+    return OrbitPanels(
+        panels.tau[first:end],
+        panels.x[first:end],
+        panels.v[first:end],
+        panels.friction[first:end],
+        panels.stick[first:end],
+    )
+
+
 @njit
-def read_each(
-    tau: Any, x: Any, v: Any, friction: Any, stick: Any, ends: Any, mass: Mass, belt_speeds: Any, out: Any
-) -> None:
+def read_each(panels: OrbitPanels, ends: Any, mass: Mass, belt_speeds: Any, out: Any) -> None:
     """Row i of ``out``: everything of ``READ`` from the orbit of belt speed i; left as it is where there is none."""
     first = 0
     for i in range(belt_speeds.size):
         end = ends[i]
         if end > first:
-            row = read(
-                tau[first:end],
-                x[first:end],
-                v[first:end],
-                friction[first:end],
-                stick[first:end],
-                mass,
-                belt_speeds[i],
-            )
+            row = read(_cut(panels, first, end), mass, belt_speeds[i])
             for column in range(row.size):
                 out[i, column] = row[column]
         first = end
@@ -145,12 +158,13 @@ class Sums(NamedTuple):
 
 
 @inner
-def read(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_speed: float) -> Any:
-    """The columns ``READ`` of one period, given as arrays [panels, nodes] and stick [panels]."""
-    slips = np.empty(tau.shape, np.complex128)
-    sums = _integrals(tau, x, v, friction, stick, mass, belt_speed, slips)
+def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
+    """The columns ``READ`` of one period."""
+    v, stick = panels.v, panels.stick
+    slips = np.empty(v.shape, np.complex128)
+    sums = _integrals(panels, mass, belt_speed, slips)
     period = sums.duration
-    part = np.empty(tau.shape)
+    part = np.empty(v.shape)
     out = np.empty(17)
     out[0] = mean_friction(sums.friction.real, period)
     out[1] = sums.position.real / period
@@ -165,7 +179,8 @@ def read(tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_s
     out[14] = sums.viscous
     out[15] = sums.by_friction
     out[16] = sums.contact
-    _along(friction, part)
+    # Reversals of the friction force count in stick too, where the force changes its sign but the slip is zero.
+    _along(panels.friction, part)
     out[12] = _sign_changes(part, stick, False)
     _along(slips, part)
     _drop_rounding(part, v)
@@ -182,7 +197,7 @@ def _drop_rounding(part: Any, v: Any) -> None:
     """Set slip velocities to zero that are the rounding of the velocity they are a difference of."""
     for panel in range(part.shape[0]):
         for node in range(part.shape[1]):
-            if abs(part[panel, node]) <= 1e-15 * abs(v[panel, node].real):
+            if abs(part[panel, node]) <= SLIP_ROUNDING * abs(v[panel, node].real):
                 part[panel, node] = 0.0
 
 
@@ -201,22 +216,20 @@ def _across(values: Any, out: Any) -> None:
 
 
 @inner
-def _integrals(
-    tau: Any, x: Any, v: Any, friction: Any, stick: Any, mass: Mass, belt_speed: float, slips: Any
-) -> Sums:
+def _integrals(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
     """What is summed up over the period; leaves the slip velocity of every node in ``slips``."""
-    body = planar(mass)
+    body, tau, x = planar(mass), panels.tau, panels.x
     duration, stuck = 0.0, 0.0
     position, rubbed, harmonic_1, harmonic_2 = 0j, 0j, 0j, 0j
     put_in, viscous, taken, contact = 0.0, 0.0, 0.0, 0.0
     for panel in range(tau.shape[0]):
         half = 0.5 * (tau[panel, -1] - tau[panel, 0])
         duration += 2.0 * half
-        stuck += 2.0 * half if stick[panel] else 0.0
+        stuck += 2.0 * half if panels.stick[panel] else 0.0
         for node in range(tau.shape[1]):
             weight, now = half * WEIGHTS[node], instant_at(body, tau[panel, node])
             turn = complex(now.cosine, now.sine)
-            velocity, rub = v[panel, node], friction[panel, node]
+            velocity, rub = panels.v[panel, node], panels.friction[panel, node]
             w = slip(body, belt_speed, now, velocity)
             slips[panel, node] = w
             # Each direction by itself: of the one across the belt nothing may be known.

@@ -19,7 +19,6 @@ import statistics
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -53,7 +52,7 @@ from frictionlab.methods.prescribed.memory import MemoryPoint
 from frictionlab.methods.reduced.amplitudes import contact_of
 from frictionlab.methods.reduced.contact import harmonic_friction
 from frictionlab.methods.shooting import decoupled, saturated
-from frictionlab.methods.shooting import method as shooting
+from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity
@@ -487,7 +486,7 @@ def along(scene: Scene) -> closed_loop_line.Along:
 
 def followed_on_the_line(law: BristleLaw, scene: Scene, tolerance: float) -> Closed | Open:
     """By collocation, whether or not a path is exact."""
-    return closed_loop_line._followed(law, along(scene), tolerance)
+    return closed_loop_line._collocated(law, along(scene), tolerance)
 
 
 def followed_in_the_plane(law: BristleLaw, scene: Scene, tolerance: float) -> Closed | Open:
@@ -508,17 +507,6 @@ def by_harmonic_kernel(scene: Scene, law: BristleLaw, tolerance: float) -> Answe
 # --- driven scenes -------------------------------------------------------------------------------------------------
 
 
-@contextmanager
-def without(name: str) -> Iterator[None]:
-    """Shooting with one of its two reductions left out."""
-    kept = getattr(shooting, name)
-    setattr(shooting, name, lambda scene, law: False)
-    try:
-        yield
-    finally:
-        setattr(shooting, name, kept)
-
-
 def on_a_curve(way: Callable[[list[Scene], Any, float], Answers]) -> Way:
     """With three more belt speeds, of which each costs as much."""
 
@@ -527,16 +515,6 @@ def on_a_curve(way: Callable[[list[Scene], Any, float], Answers]) -> Way:
         return told(way(scenes, law, tolerance))
 
     return first
-
-
-def general_without(name: str) -> Way:
-    """The map in the plane, mass and bristle together."""
-
-    def way(scenes: list[Scene], law: FrictionLaw, tolerance: float) -> Answers:
-        with without(name):
-            return Shooting().solve(scenes, law, tolerance)
-
-    return on_a_curve(way)
 
 
 def fig8a(omega_r: float, belt_speed: float, normal_load: float = 1.0) -> Scene:
@@ -741,14 +719,14 @@ SOLVERS = {
     "saturated": Solver(
         (saturated,),
         saturated_cases,
-        {"special": on_a_curve(Shooting().solve), "plane map": general_without("saturates")},
+        {"special": on_a_curve(Shooting().solve), "plane map": on_a_curve(solve_driven)},
     ),
     "decoupled": Solver(
         (decoupled,),
         apart_cases,
         {
             "special": on_a_curve(Shooting().solve),
-            "plane map": general_without("axes_apart"),
+            "plane map": on_a_curve(solve_driven),
         },
     ),
     "march.prescribed": Solver(

@@ -245,3 +245,20 @@ def test_kernels_know_whole_numbers_as_such_and_truth_values_and_lists_as_number
     assert numbers == {"elements": 3, "hardens": 1.0, "lengths": (1.0, 2.0)}
     assert [type(numbers[name]) for name in ("elements", "hardens")] == [int, float]
     assert {type(each) for each in numbers["lengths"]} == {float}  # type: ignore[union-attr]
+
+
+def test_every_family_says_how_much_it_remembers_and_one_that_declares_no_memory_is_of_no_family() -> None:
+    laws = SilentSliding(), SilentBristles(), SilentMemory(), SilentAge()
+
+    assert Silent().memory_kind == "undeclared"
+    assert [law.memory_kind for law in laws] == ["none", "bristle", "deflections", "scalars"]
+    assert [law.count() for law in laws] == [0, 1, 1, 1]
+
+
+def test_a_law_that_says_nothing_of_the_plane_is_one_of_vectors_that_damps_across_and_never_elastic() -> None:
+    for law in (SilentSliding(), SilentBristles(), SilentMemory()):
+        assert law.planar_form() == "vectorial"
+        assert law.no_vector_form() == ""
+        assert law.damps_across(1.0)
+        assert law.elastic_deflection() == 0.0
+    assert not SilentBristles(planar="rotated").damps_across(1.0)

@@ -17,7 +17,7 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.panels import BARYCENTRIC, DERIVATIVE, NODES, PER_PANEL, WEIGHTS
-from frictionlab.orbit.read import READ, read
+from frictionlab.orbit.read import READ, OrbitPanels, read
 from frictionlab.orbit.record import Orbit
 from frictionlab.orbit.sample import sample
 from frictionlab.scene.body import Mass
@@ -27,13 +27,14 @@ LAW = Coulomb(mu=MU)
 
 
 @njit
-def columns_of(tau, x, v, friction, stick, mass, belt_speed):
-    return read(tau, x, v, friction, stick, mass, belt_speed)
+def columns_of(panels, mass, belt_speed):
+    return read(panels, mass, belt_speed)
 
 
 def read_from(orbit, mass, belt_speed):
     """READ by name."""
-    numbers = compiled(columns_of)(orbit.tau, orbit.x, orbit.v, orbit.friction, orbit.stick, mass, belt_speed)
+    panels = OrbitPanels(orbit.tau, orbit.x, orbit.v, orbit.friction, orbit.stick)
+    numbers = compiled(columns_of)(panels, mass, belt_speed)
     return dict(zip(READ, numbers, strict=True))
 
 

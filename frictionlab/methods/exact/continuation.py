@@ -6,16 +6,17 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import inner, njit
-from frictionlab.methods.exact.legs import EPSILON, Body, canonical
+from frictionlab.methods.exact.legs import Oscillator, canonical
 from frictionlab.methods.exact.return_map import (
     Fixed,
-    fixed_point,
     friction_free_start,
+    impulse_error,
     largest_multiplier,
-    mean_error,
     passage,
+    periodic_state,
     rounding,
 )
+from frictionlab.quantities import EPSILON
 from frictionlab.scene.body import Mass
 
 MEAN, ERROR, FLOQUET, STATE_X, STATE_W, LEGS, RESIDUAL, ROUNDING, FOUND = range(9)
@@ -24,7 +25,7 @@ MOST_PERIODS = 100_000
 
 
 @njit
-def solve_curve(mass: Mass, coefficient: float, belt_speeds: Any, out: Any) -> None:
+def continue_in_speed(mass: Mass, coefficient: float, belt_speeds: Any, out: Any) -> None:
     """Row i of ``out``: MEAN to FOUND for belt_speeds[i] >= 0, ascending; FOUND: 1 without slip reversal, else 2."""
     x, w, last = 0.0, 0.0, math.inf
     for i in range(belt_speeds.size):
@@ -38,14 +39,14 @@ def solve_curve(mass: Mass, coefficient: float, belt_speeds: Any, out: Any) -> N
         else:
             # Start from the neighbour's state with the same velocity: w = x' - belt_speed.
             x, w = (x_free, w_free) if last == math.inf else (x, w + (last - belt_speeds[i]))
-            fixed = fixed_point(body, x, w, MOST_MAPS)
+            fixed = periodic_state(body, x, w, MOST_MAPS)
             x, w = fixed.x, fixed.w
             write_fixed(body, fixed, mass.normal_load, out[i])
         last = belt_speeds[i]
 
 
 @inner
-def body_at(mass: Mass, coefficient: float, belt_speed: float) -> Body:
+def body_at(mass: Mass, coefficient: float, belt_speed: float) -> Oscillator:
     """The canonical scene at this belt speed (>= 0)."""
     friction = coefficient * mass.normal_load
     return canonical(0.5 * mass.damping, mass.frequency, abs(mass.force), friction, belt_speed)
@@ -59,7 +60,7 @@ def friction_free_speed(mass: Mass) -> float:
 
 
 @inner
-def write_reversal_free(body: Body, coefficient: float, x: float, w: float, row: Any) -> None:
+def write_reversal_free(body: Oscillator, coefficient: float, x: float, w: float, row: Any) -> None:
     """The results where slip never reverses: friction is constant, the motion linear."""
     rate = body.damping if body.damping <= 1.0 else 1.0 / (body.damping + body.rate)
     row[MEAN], row[ERROR] = coefficient, 8.0 * EPSILON * coefficient
@@ -69,17 +70,17 @@ def write_reversal_free(body: Body, coefficient: float, x: float, w: float, row:
 
 
 @inner
-def write_fixed(body: Body, fixed: Fixed, normal_load: float, row: Any) -> None:
+def write_fixed(body: Oscillator, fixed: Fixed, normal_load: float, row: Any) -> None:
     """The results at a fixed point of the return map."""
     unit = normal_load * body.period
-    row[MEAN], row[ERROR] = -fixed.map.friction / unit, mean_error(body, fixed) / unit
+    row[MEAN], row[ERROR] = -fixed.map.friction / unit, impulse_error(body, fixed) / unit
     row[FLOQUET] = largest_multiplier(fixed.map)
     row[STATE_X], row[STATE_W], row[LEGS] = fixed.x, fixed.w, fixed.map.legs
     row[RESIDUAL], row[ROUNDING], row[FOUND] = fixed.residual, rounding(body, fixed.x, fixed.w), 2.0
 
 
 @njit
-def settle(mass: Mass, coefficient: float, belt_speed: float, start: Any, row: Any) -> int:
+def iterate_until_fixed(mass: Mass, coefficient: float, belt_speed: float, start: Any, row: Any) -> int:
     """Iterate the map from start = (x, w, canonical time) until a period changes nothing; -1 where it never does.
 
     Writes MEAN to ROUNDING (ERROR: rounding alone) and returns the number of periods.

@@ -11,18 +11,18 @@ left with third order.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
+from frictionlab.quantities import EPSILON
 
-EPSILON = 2.0**-52
 TINY = 1e-300
 STICK = 0.0
 MOST_CREEPING = 1000
 """Most steps of rounding size in a leg; more give NaN: the motion is smaller than the rounding of its position."""
 
 
-class Body(NamedTuple):
+class Oscillator(NamedTuple):
     """The canonical scene and its friction-free response in_phase sin + quadrature cos.
 
     rate: |1 - damping^2|^(1/2); size: bound on the response; jolt: bound on its fourth derivative; resonant: 1.0
@@ -43,11 +43,11 @@ class Body(NamedTuple):
     resonant: float
 
 
-class Leg(NamedTuple):
+class LegEnd(NamedTuple):
     """The end of a leg: how long it lasted, the state there, the net force, the leg that follows.
 
-    event: 1.0 if it ended in an event. keep, turn, damp: C + b S, S and C - b S of the free motion (``decay``), which
-    are the entries of its derivative by the state at the start.
+    event: 1.0 if it ended in an event. keep, turn, damp: those of ``free_motion``, which are the entries of the
+    derivative by the state at the start.
     """
 
     duration: float
@@ -65,7 +65,9 @@ RESONANT = 1e-3
 
 
 @inner
-def canonical(damping: float, frequency: float, load: float, friction: float, belt_speed: float) -> Body:
+def canonical(
+    damping: float, frequency: float, load: float, friction: float, belt_speed: float
+) -> Oscillator:
     """The record of a canonical scene."""
     # Written with (1 - a)(1 + a), which keeps the digits that 1 - a^2 loses near critical damping and resonance.
     rate = math.sqrt(abs((1.0 - damping) * (1.0 + damping)))
@@ -76,7 +78,7 @@ def canonical(damping: float, frequency: float, load: float, friction: float, be
     # Near undamped resonance the periodic response is the small difference of large numbers: the growing response
     # from rest is used instead, bounded over one period by the force times the time.
     if square < RESONANT * RESONANT:
-        return Body(
+        return Oscillator(
             damping,
             rate,
             frequency,
@@ -93,13 +95,13 @@ def canonical(damping: float, frequency: float, load: float, friction: float, be
     size = load / math.sqrt(square)
     in_phase, quadrature = load * stiffness / square, -load * viscous / square
     jolt = size * frequency**4
-    return Body(
+    return Oscillator(
         damping, rate, frequency, period, load, friction, belt_speed, in_phase, quadrature, size, jolt, 0.0
     )
 
 
 @inner
-def load_and_response(body: Body, tau: float) -> tuple[float, float, float, float]:
+def load_and_response(body: Oscillator, tau: float) -> tuple[float, float, float, float]:
     """The load and its rate, the friction-free displacement and its velocity."""
     angle = body.frequency * tau
     sine, cosine = math.sin(angle), math.cos(angle)
@@ -113,7 +115,7 @@ def load_and_response(body: Body, tau: float) -> tuple[float, float, float, floa
 
 
 @inner
-def _growing_response(body: Body, tau: float, sine: float, cosine: float) -> tuple[float, float]:
+def _growing_response(body: Oscillator, tau: float, sine: float, cosine: float) -> tuple[float, float]:
     """The response from rest at tau = 0, without the cancellation of the periodic one near resonance.
 
     With lambda = -b + i rate and zeta = u' - conj(lambda) u, zeta' = lambda zeta + load sin(frequency tau); in real
@@ -145,18 +147,23 @@ def _exponential_quotient(z: float, z_i: float) -> tuple[float, float]:
 
 
 @inner
-def decay(body: Body, r: float) -> tuple[float, float]:
-    """exp(-b r) times cos and sin/rate of the free oscillation (cosh, sinh where overdamped), critical included."""
+def free_motion(body: Oscillator, r: float) -> tuple[float, float, float]:
+    """C + b S, S and C - b S, which lead from the state of the free motion to that a time r later.
+
+    C and S: exp(-b r) times cos and sin/rate (cosh and sinh where overdamped), critical damping included.
+    """
     # Overdamped: cosh and sinh overflow where exp(-b r) underflows, so the slow exponential is taken out first.
     b, rate = body.damping, body.rate
     if b < 1.0:
         e = math.exp(-b * r)
-        return e * math.cos(rate * r), e * math.sin(rate * r) / rate
-    slow = math.exp(-r / (b + rate))
-    if rate == 0.0:
-        return slow, slow * r
-    gone = math.expm1(-2.0 * rate * r)
-    return slow * (1.0 + 0.5 * gone), -slow * gone / (2.0 * rate)
+        c, s = e * math.cos(rate * r), e * math.sin(rate * r) / rate
+    else:
+        slow = math.exp(-r / (b + rate))
+        gone = math.expm1(-2.0 * rate * r)
+        c, s = slow, slow * r
+        if rate > 0.0:
+            c, s = slow * (1.0 + 0.5 * gone), -slow * gone / (2.0 * rate)
+    return c + b * s, s, c - b * s
 
 
 @inner
@@ -223,62 +230,71 @@ def _zero_beyond(base: float, g: float, g1: float, g2: float, bound: float) -> f
 
 
 @inner
-def slip_leg(body: Body, tau: float, x: float, w: float, sign: float, left: float) -> Leg:
+def _slip_cubic(
+    body: Oscillator, sign: float, y: float, z: float, response: Any
+) -> tuple[float, float, float]:
+    """Of the slip velocity, positive in its direction: its rate, the rate of that, a bound on the third derivative.
+
+    response: of ``load_and_response`` here.
+    """
+    load, load_rate, u, speed = response
+    b = body.damping
+    free = -2.0 * b * z - y
+    forced = load - 2.0 * b * speed - u
+    # The free oscillation never grows, so its present size bounds its third derivative over the rest of the leg;
+    # that of the response is bounded by jolt.
+    third = -2.0 * b * free - z
+    fourth = -2.0 * b * third - free
+    bend = sign * (third + load_rate - 2.0 * b * forced - speed)
+    bound = max(math.sqrt(third * third + fourth * fourth) + body.jolt, TINY)
+    return sign * (free + forced), bend, bound
+
+
+@inner
+def slip_leg(body: Oscillator, tau: float, x: float, w: float, sign: float, left: float) -> LegEnd:
     """Slip of one sign from (x, w) at tau until it stops, for at most ``left``."""
-    b, friction = body.damping, body.friction * sign
-    load, load_rate, u, speed = load_and_response(body, tau)
+    friction, response = body.friction * sign, load_and_response(body, tau)
+    load, _, u, speed = response
     # (y, z): the free oscillation, what is left of x and x' without the response and the static shift by friction.
     y0, z0 = x - u + friction, w + (body.belt_speed - speed)
     noise = slip_noise(body, y0, z0)
     y, z, r = y0, z0, 0.0
     keep, turn, damp, event, crept = 1.0, 0.0, 1.0, 0.0, 0
     while r < left:
-        free = -2.0 * b * z - y
-        forced = load - 2.0 * b * speed - u
-        slope = sign * (free + forced)
+        slope, bend, bound = _slip_cubic(body, sign, y, z, response)
         if r > 0.0:
             w = z + (speed - body.belt_speed)
-        g = sign * w
-        # Zero to rounding and falling: slip ends here.
-        if g <= noise and r > 0.0 and slope < 0.0:
-            event = 1.0
-            break
-        # The third derivative of w over the rest of the leg: the free oscillation never grows, so its present size
-        # bounds it; the response is bounded by jolt.
-        third = -2.0 * b * free - z
-        fourth = -2.0 * b * third - free
-        bend = sign * (third + load_rate - 2.0 * b * forced - speed)
-        bound = max(math.sqrt(third * third + fourth * fourth) + body.jolt, TINY)
+        g, falls, step = sign * w, slope < 0.0 and r > 0.0, 0.0
         touches = g <= noise  # the zero the leg starts from, or a touch: look for the next one
-        step = first_zero(0.0 if touches else g, max(slope, 0.0) if touches else slope, bend, bound)
-        # A step below the rounding of the time would not move: the slip is zero to rounding (an event if it falls),
-        # or it starts so flat that a few steps of rounding size must carry it away from zero.
+        if not (touches and falls):
+            step = first_zero(0.0 if touches else g, max(slope, 0.0) if touches else slope, bend, bound)
+        # A step below the rounding of the time would not move: the slip is zero to rounding, which ends it if it
+        # falls, or it starts so flat that a few steps of rounding size must carry it away from zero.
         least = EPSILON * (tau + r + 1e-3 * body.period)
         if step < least:
-            if slope < 0.0 and r > 0.0:
+            if falls:
                 event = 1.0
                 break
-            step = 8.0 * least
-            crept = crept + 1
+            step, crept = 8.0 * least, crept + 1
             if crept > MOST_CREEPING:
                 y = math.nan
                 break
         r = min(r + step, left)
         # Always from the start of the leg, so that rounding does not accumulate over its steps.
-        load, load_rate, u, speed = load_and_response(body, tau + r)
-        cosine, turn = decay(body, r)
-        keep, damp = cosine + b * turn, cosine - b * turn
+        response = load_and_response(body, tau + r)
+        load, _, u, speed = response
+        keep, turn, damp = free_motion(body, r)
         y, z = keep * y0 + turn * z0, damp * z0 - turn * y0
     x = y + (u - friction)
     if event == 0.0:
-        return Leg(r, x, z + (speed - body.belt_speed), 0.0, sign, 0.0, keep, turn, damp)
+        return LegEnd(r, x, z + (speed - body.belt_speed), 0.0, sign, 0.0, keep, turn, damp)
     # At zero slip velocity the net force without friction decides between stick and slip to either side.
-    net = load - 2.0 * b * body.belt_speed - x
-    return Leg(r, x, 0.0, net, after_rest(body, net), 1.0, keep, turn, damp)
+    net = load - 2.0 * body.damping * body.belt_speed - x
+    return LegEnd(r, x, 0.0, net, after_rest(body, net), 1.0, keep, turn, damp)
 
 
 @inner
-def slip_noise(body: Body, y: float, z: float) -> float:
+def slip_noise(body: Oscillator, y: float, z: float) -> float:
     """Bound on the rounding error of a slip velocity."""
     return (
         4.0
@@ -288,7 +304,7 @@ def slip_noise(body: Body, y: float, z: float) -> float:
 
 
 @inner
-def after_rest(body: Body, net: float) -> float:
+def after_rest(body: Oscillator, net: float) -> float:
     """The leg after slip velocity zero under this net force: stick, or slip along the force."""
     if abs(net) <= body.friction:
         return STICK
@@ -296,7 +312,7 @@ def after_rest(body: Body, net: float) -> float:
 
 
 @inner
-def stick_leg(body: Body, tau: float, x: float, left: float) -> Leg:
+def stick_leg(body: Oscillator, tau: float, x: float, left: float) -> LegEnd:
     """Rest on the belt from x at tau until the net force exceeds friction, for at most ``left``."""
     noise = 4.0 * EPSILON * (body.friction + body.load + abs(x) + 2.0 * body.damping * body.belt_speed)
     bound = max(body.load * body.frequency**3, TINY)
@@ -326,11 +342,11 @@ def stick_leg(body: Body, tau: float, x: float, left: float) -> Leg:
         crept = crept + 1 if step < least else crept
         r = left if crept > MOST_CREEPING else min(r + max(step, least), left)
     x = math.nan if crept > MOST_CREEPING else x + body.belt_speed * r
-    return Leg(r, x, 0.0, net, side * event, event, 1.0, 0.0, 0.0)
+    return LegEnd(r, x, 0.0, net, side * event, event, 1.0, 0.0, 0.0)
 
 
 @inner
-def starting_mode(body: Body, tau: float, x: float, w: float) -> float:
+def starting_mode(body: Oscillator, tau: float, x: float, w: float) -> float:
     """Slip of either sign, or stick, at an arbitrary state; a slip velocity of rounding size is zero."""
     load, _, u, _ = load_and_response(body, tau)
     if abs(w) > slip_noise(body, x - u, w):

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from frictionlab.compile.cache import compiled, timed
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.laws.memory import BristleLaw
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method, Status
 from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.orbit import make_orbits
@@ -35,7 +34,7 @@ UNBOUNDED = (
 )
 
 
-def _refusal_of_legs(scene: Scene, law: BristleLaw) -> str | None:
+def _refusal_of_legs(scene: Scene, law: Any) -> str | None:
     """Why a prescribed slip has no two legs along which the deflection is known."""
     if not law.exact_path():
         return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction)"
@@ -46,7 +45,7 @@ def _refusal_of_legs(scene: Scene, law: BristleLaw) -> str | None:
 
 def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
     """Why the motion between events is not known in closed form."""
-    if not isinstance(law, SlidingLaw):
+    if law.memory_kind != "none":
         return "exact needs friction without memory (Coulomb)"
     if not law.constant_sliding_friction():
         return "exact needs friction that does not vary with speed (Coulomb)"
@@ -73,10 +72,8 @@ class Exact(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
-        if isinstance(law, BristleLaw) and scene.degrees_of_freedom == 0:
-            reason = _refusal_of_legs(scene, law)
-        else:
-            reason = _refusal_of_flow(scene, law)
+        prescribed = scene.degrees_of_freedom == 0 and law.memory_kind == "bristle"
+        reason = (_refusal_of_legs if prescribed else _refusal_of_flow)(scene, law)
         return suggest_shooting(reason, scene, law) if reason else None
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
@@ -171,7 +168,9 @@ class _Curve:
         w = side * (initial.velocity - self.belt_speeds[i])
         start = np.array([side * initial.x, w, self._shift(i)])
         row = np.full(9, np.nan)
-        periods = compiled(curve.settle)(self.mass, self.coefficient, abs(self.belt_speeds[i]), start, row)
+        periods = compiled(curve.iterate_until_fixed)(
+            self.mass, self.coefficient, abs(self.belt_speeds[i]), start, row
+        )
         if periods < 0:
             return False
         # The adjoint of a map that leaves some direction as it was does not exist: only rounding is left to say.
@@ -194,7 +193,7 @@ class _Curve:
         """Both directions of the belt share one solution: the mean is exactly odd."""
         speeds, back = np.unique(np.abs(self.belt_speeds[places]), return_inverse=True)
         rows = np.full((len(speeds), 9), np.nan)
-        _, self.seconds = timed(compiled(curve.solve_curve), self.mass, self.coefficient, speeds, rows)
+        _, self.seconds = timed(compiled(curve.continue_in_speed), self.mass, self.coefficient, speeds, rows)
         rows[speeds == 0.0, curve.MEAN] = 0.0  # the orbit is its own mirror image half a period later
         self.rows[places] = rows[back]
 
@@ -229,12 +228,11 @@ class _Curve:
 
     def _orbits(self, places: Sequence[int]) -> Orbits:
         """Of the scenes at these places; without panels where there is none."""
-        shifts = np.array([self._shift(i) for i in places])
         rows, ends = self.rows[list(places)], np.zeros(len(places), np.int64)
-        states = np.ascontiguousarray(rows[:, [curve.STATE_X, curve.STATE_W]])
-        legs = np.nan_to_num(rows[:, curve.LEGS]).astype(np.int64)
+        shifts, legs = [self._shift(i) for i in places], np.nan_to_num(rows[:, curve.LEGS])
+        states = np.column_stack([rows[:, curve.STATE_X], rows[:, curve.STATE_W], legs, shifts])
         speeds = self.belt_speeds[list(places)]
-        track = compiled(make_orbits)(self.mass, self.coefficient, speeds, states, legs, shifts, ends)
+        track = compiled(make_orbits)(self.mass, self.coefficient, speeds, states, ends)
         return Orbits(track.tau, track.x, track.v, track.friction, track.stick, ends)
 
 

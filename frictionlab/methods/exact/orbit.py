@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,8 +11,8 @@ from frictionlab.compile.decorators import inner, njit
 from frictionlab.methods.exact.continuation import body_at
 from frictionlab.methods.exact.legs import (
     STICK,
-    Body,
-    decay,
+    Oscillator,
+    free_motion,
     load_and_response,
     slip_leg,
     starting_mode,
@@ -25,11 +25,18 @@ from frictionlab.scene.body import Mass
 TAU, DURATION, X, W, MODE, FACTS = 0, 1, 2, 3, 4, 5
 
 
+class LegTable(NamedTuple):
+    """The legs of a period [rows, FACTS]: how many there are, and how many of them end before the orbit starts."""
+
+    legs: Any
+    rows: int
+    before: int
+
+
 @inner
-def follow(
-    body: Body, x: float, w: float, start: float, end: float, legs: Any, first: int
-) -> tuple[float, float, int]:
-    """Write every leg from ``start`` to ``end`` into the table ``legs``; return the end state and the row after."""
+def tabulate_legs(body: Oscillator, state: Any, start: float, end: float, legs: Any, first: int) -> Any:
+    """Write every leg from ``start`` to ``end`` to rows from ``first`` on; return the end state and the row after."""
+    x, w = state
     tau, mode, row = start, starting_mode(body, start, x, w), first
     # The same legs as in the return map, so that orbit and fixed point agree to rounding.
     while tau < end and row < legs.shape[0]:
@@ -40,11 +47,11 @@ def follow(
         row = row + 1
         tau = tau + leg.duration if leg.event != 0.0 else end
         x, w, mode = leg.x, leg.w, leg.following
-    return x, w, row
+    return (x, w), row
 
 
 @inner
-def panel_length(body: Body, r: float, left: float) -> float:
+def panel_length(body: Oscillator, r: float, left: float) -> float:
     """Length of the next panel, r into a leg: short against drive and free motion, graded where a part decays."""
     # Overdamped motion has a fast and a slow exponential: panels start at 1/fast and grow in proportion to r. Once
     # the free motion has decayed (r * slow > 40) only the drive limits them.
@@ -57,7 +64,7 @@ def panel_length(body: Body, r: float, left: float) -> float:
 
 
 @inner
-def count_panels(body: Body, legs: Any, rows: int) -> int:
+def count_panels(body: Oscillator, legs: Any, rows: int) -> int:
     """The number of panels of the legs; a leg of no duration has none."""
     panels = 0
     for row in range(rows):
@@ -69,7 +76,7 @@ def count_panels(body: Body, legs: Any, rows: int) -> int:
 
 
 @inner
-def sample_leg(body: Body, leg: Any, r: float) -> tuple[float, float, float]:
+def sample_leg(body: Oscillator, leg: Any, r: float) -> tuple[float, float, float]:
     """Displacement, velocity and friction force a time r into a leg."""
     tau = leg[TAU] + r
     load, _, u, speed = load_and_response(body, tau)
@@ -79,36 +86,29 @@ def sample_leg(body: Body, leg: Any, r: float) -> tuple[float, float, float]:
     friction = body.friction * leg[MODE]
     _, _, u0, speed0 = load_and_response(body, leg[TAU])
     y, z = leg[X] - u0 + friction, leg[W] + (body.belt_speed - speed0)
-    cosine, turn = decay(body, r)
-    b = body.damping
-    return (
-        (cosine + b * turn) * y + turn * z + (u - friction),
-        (cosine - b * turn) * z - turn * y + speed,
-        friction,
-    )
+    keep, turn, damp = free_motion(body, r)
+    return keep * y + turn * z + (u - friction), damp * z - turn * y + speed, friction
 
 
 @inner
-def legs_of(body: Body, x: float, w: float, shift: float, legs: int) -> Any:
-    """A period from canonical time 0: its legs, their number, and the number of those that end by ``shift``."""
+def legs_of(body: Oscillator, x: float, w: float, shift: float, legs: int) -> LegTable:
+    """A period from canonical time 0, as legs; the orbit starts at ``shift``."""
     # The state is known at canonical time 0, the orbit starts at ``shift``: the legs before it follow those after it.
     table = np.empty((2 * legs + 8, FACTS))
-    x, w, before = follow(body, x, w, 0.0, shift, table, 0)
-    x, w, rows = follow(body, x, w, shift, body.period, table, before)
-    return table, rows, before
+    state, before = tabulate_legs(body, (x, w), 0.0, shift, table, 0)
+    state, rows = tabulate_legs(body, state, shift, body.period, table, before)
+    return LegTable(table, rows, before)
 
 
 @inner
-def note_orbit(
-    body: Body, table: Any, rows: int, before: int, normal_load: float, side: float, track: Track
-) -> None:
+def note_orbit(body: Oscillator, table: LegTable, normal_load: float, side: float, track: Track) -> None:
     """The panels of one period from the end of the first ``before`` legs on, on a track with room for them.
 
     side: -1.0 turns it round, for a belt that moves the other way.
     """
     panel, now = track.filled[0], 0.0
-    for place in range(rows):
-        leg, r = table[(place + before) % rows], 0.0
+    for place in range(table.rows):
+        leg, r = table.legs[(place + table.before) % table.rows], 0.0
         while r < leg[DURATION]:
             length = panel_length(body, r, leg[DURATION] - r)
             for node in range(NODES.size):
@@ -123,23 +123,22 @@ def note_orbit(
 
 
 @njit
-def make_orbits(
-    mass: Mass, coefficient: float, belt_speeds: Any, states: Any, legs: Any, shifts: Any, ends: Any
-) -> Track:
+def make_orbits(mass: Mass, coefficient: float, belt_speeds: Any, states: Any, ends: Any) -> Track:
     """The panels of every orbit, one orbit after another, that of belt speed i before panel ends[i].
 
-    states [n, 2]: canonical (x, w); shifts: canonical time of tau = 0; legs: of a period, 0 where there is no orbit.
+    states [n, 4]: canonical (x, w), the legs of a period, 0 where there is no orbit, canonical time of tau = 0.
     """
     room, track = 64, track_of(64)
     for i in range(belt_speeds.size):
-        if legs[i] > 0:
+        x, w, legs, shift = states[i, 0], states[i, 1], int(states[i, 2]), states[i, 3]
+        if legs > 0:
             body = body_at(mass, coefficient, abs(belt_speeds[i]))
             side = -1.0 if belt_speeds[i] < 0.0 else 1.0
-            table, rows, before = legs_of(body, states[i, 0], states[i, 1], shifts[i], legs[i])
-            needed = track.filled[0] + count_panels(body, table, rows)
+            table = legs_of(body, x, w, shift, legs)
+            needed = track.filled[0] + count_panels(body, table.legs, table.rows)
             if needed > room:
                 room = 2 * needed
                 track = grown(track, room)
-            note_orbit(body, table, rows, before, mass.normal_load, side, track)
+            note_orbit(body, table, mass.normal_load, side, track)
         ends[i] = track.filled[0]
     return track

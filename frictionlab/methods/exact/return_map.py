@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 from frictionlab.compile.decorators import inner
 from frictionlab.methods.exact.legs import (
-    EPSILON,
     STICK,
-    Body,
+    Oscillator,
     load_and_response,
     slip_leg,
     starting_mode,
     stick_leg,
 )
+from frictionlab.quantities import EPSILON
 
 MOST_LEGS = 1_000_000
 """Most legs in a period; a period with more is not solved, since its motion is below the rounding of its position."""
@@ -47,7 +47,7 @@ class Passage(NamedTuple):
 
 
 @inner
-def passage(body: Body, x: float, w: float, start: float, end: float) -> Passage:
+def passage(body: Oscillator, x: float, w: float, start: float, end: float) -> Passage:
     """Follow the motion from (x, w) at ``start`` to ``end``, both within one period."""
     tau, mode = start, starting_mode(body, start, x, w)
     xx, xw, wx, ww = 1.0, 0.0, 0.0, 1.0
@@ -76,7 +76,7 @@ def passage(body: Body, x: float, w: float, start: float, end: float) -> Passage
 
 
 @inner
-def saltation(body: Body, net: float, before: float, after: float) -> tuple[float, float]:
+def saltation(body: Oscillator, net: float, before: float, after: float) -> tuple[float, float]:
     """Derivatives at the end of slip of sign ``before``: of the slip velocity after it by that before it, and of the
     friction impulse by the slip velocity."""
     # Stick: every velocity near zero becomes zero. Its friction balances the net force from the event on, so that a
@@ -89,7 +89,7 @@ def saltation(body: Body, net: float, before: float, after: float) -> tuple[floa
 
 
 @inner
-def stuck_impulse(body: Body, tau: float, x: float, r: float) -> float:
+def stuck_impulse(body: Oscillator, tau: float, x: float, r: float) -> float:
     """Integral of the net force over a time r of stick that starts at tau."""
     half = 0.5 * body.frequency * r
     pushed = 2.0 * body.load / body.frequency * math.sin(half) * math.sin(body.frequency * tau + half)
@@ -107,7 +107,7 @@ class Fixed(NamedTuple):
 
 
 @inner
-def fixed_point(body: Body, x: float, w: float, most: int) -> Fixed:
+def periodic_state(body: Oscillator, x: float, w: float, most: int) -> Fixed:
     """The periodic state near (x, w): damped Newton's method, with iterations of the map where it does not converge.
 
     Where the map is smooth the residual decreases along a Newton step, so a step that is too long is shortened first:
@@ -132,7 +132,7 @@ def fixed_point(body: Body, x: float, w: float, most: int) -> Fixed:
             return Fixed(x, w, here, math.inf, maps)
         if size <= rounding(body, x, w) or maps >= most or stalled >= 4:
             return Fixed(x, w, here, size, maps)
-        dx, dw = newton_step(here, x, w)
+        dx, dw = newton_correction(here, x, w)
         # Without a usable Newton step: one iteration of the map, or of many periods at once for a mass in stick.
         picard = share < SHORTEST or not abs(dx) + abs(dw) < math.inf
         x_next, w_next = x + share * dx, w + share * dw
@@ -147,7 +147,7 @@ def unknown(x: float, w: float) -> Passage:
 
 
 @inner
-def newton_step(here: Passage, x: float, w: float) -> tuple[float, float]:
+def newton_correction(here: Passage, x: float, w: float) -> tuple[float, float]:
     """Solve (I - M) step = map - state; infinite where M has the eigenvalue 1."""
     a, b, c, d = 1.0 - here.xx, -here.xw, -here.wx, 1.0 - here.ww
     determinant = a * d - b * c
@@ -158,7 +158,7 @@ def newton_step(here: Passage, x: float, w: float) -> tuple[float, float]:
 
 
 @inner
-def whole_periods_of_stick(body: Body, here: Passage) -> float:
+def whole_periods_of_stick(body: Oscillator, here: Passage) -> float:
     """Displacement of a mass that sticks for a whole period, over all whole periods until friction is exceeded."""
     if here.stick < body.period or body.belt_speed == 0.0:
         return 0.0
@@ -168,7 +168,7 @@ def whole_periods_of_stick(body: Body, here: Passage) -> float:
 
 
 @inner
-def scales(body: Body, x: float, w: float) -> tuple[float, float]:
+def scales(body: Oscillator, x: float, w: float) -> tuple[float, float]:
     """The magnitudes of the numbers whose rounding errors enter x and w over one period."""
     length = body.size + body.friction + abs(x)
     speed = body.frequency * body.size + body.belt_speed + abs(w)
@@ -177,14 +177,14 @@ def scales(body: Body, x: float, w: float) -> tuple[float, float]:
 
 
 @inner
-def rounding(body: Body, x: float, w: float) -> float:
+def rounding(body: Oscillator, x: float, w: float) -> float:
     """A residual that rounding alone can explain."""
     sx, sw = scales(body, x, w)
     return 4.0 * EPSILON * (sx + sw)
 
 
 @inner
-def mean_error(body: Body, fixed: Fixed) -> float:
+def impulse_error(body: Oscillator, fixed: Fixed) -> float:
     """Error of the friction impulse over one period: residual and rounding of the map, times the sensitivity of the
     steady state to them, from the adjoint of the map."""
     # (of_x, of_w) = (by_x, by_w) (I - M)^-1: the change of the impulse when the map is perturbed in x or w and the
@@ -213,7 +213,7 @@ def largest_multiplier(here: Passage) -> float:
 
 
 @inner
-def friction_free_start(body: Body) -> tuple[float, float]:
+def friction_free_start(body: Oscillator) -> tuple[float, float]:
     """The steady state at tau = 0 if slip never reverses: the friction-free response shifted by constant friction."""
     _, _, u, speed = load_and_response(body, 0.0)
     return u + body.friction, speed - body.belt_speed

@@ -97,25 +97,6 @@ def one_motion(reached: Sequence[Reached]) -> bool:
     return reached[0].period > 0 and all(one is reached[0] for one in reached)
 
 
-def told(reached: Sequence[Reached]) -> str:
-    """A sentence on the motions that several starts reached."""
-    orbits = {id(one): one for one in reached if one.period > 0}
-    parts = [_orbit_told(one) for one in orbits.values()]
-    wild = [one.followed for one in reached if one.period == 0]
-    if wild:
-        parts.append(f"{len(wild)} of {len(reached)} starts do not repeat within {max(wild)} drive periods")
-    return "; ".join(parts)
-
-
-def _orbit_told(orbit: Reached) -> str:
-    if orbit.period == 1:
-        return f"an orbit of one drive period has a mean of {orbit.mean:.6g}"
-    return (
-        f"an orbit of {orbit.period} drive periods has means over one from {orbit.low:.6g} to {orbit.high:.6g}, "
-        f"{orbit.mean:.6g} over all"
-    )
-
-
 def first_reached(walker: MarchRun, answer: Found) -> Reached:
     """What the first start led to, by the finest run; undriven, the period of the response is a lap.
 

@@ -14,7 +14,7 @@ from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.methods.base import Answers, Method, Status
 from frictionlab.methods.march import memory_stability
-from frictionlab.methods.march.attractors import Reached, Search, first_reached, one_motion, told
+from frictionlab.methods.march.attractors import Reached, Search, first_reached, one_motion
 from frictionlab.methods.march.error import (
     FEWEST_LAPS,
     WORK,
@@ -33,6 +33,7 @@ from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
 from frictionlab.methods.march.stability import fewest_steps, friction_falls
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.methods.shooting.attractors import describe
 from frictionlab.orbit.read import read_columns
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
@@ -322,11 +323,13 @@ class _Point:
             )  # which lap's mean is meant makes so much of a difference
             self._accept(replace(answer, error=answer.error + told_apart), readable, tolerance)
         elif problem:
-            self.reason = f"{told(reached)}; {problem}"
+            self.reason = f"{describe(reached, 6)}; {problem}"
         else:
             self._leave_range(reached)
         if self.status == "ok" and not unique:
-            self._remark(f"reached from scene.initial; {'; '.join(filter(None, (told(reached), problem)))}")
+            self._remark(
+                f"reached from scene.initial; {'; '.join(filter(None, (describe(reached, 6), problem)))}"
+            )
 
     def _reached(self, answer: Found, readable: MarchResult) -> tuple[list[Reached], str]:
         """Where the starts lead; and why one leads nowhere, or ''."""
@@ -359,7 +362,7 @@ class _Point:
         why = "friction falls with speed: " if self._has_rivals() and self._falls() else ""
         if not why and reached[0].period == 0:
             why = "the motion is not periodic at any step: "
-        self.reason = why + told(reached)
+        self.reason = why + describe(reached, 6)
         if one_motion(reached):
             self.found = replace(self.found, period=float(reached[0].period))
 

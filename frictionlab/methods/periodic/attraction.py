@@ -10,7 +10,7 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import mean_friction, span
-from frictionlab.methods.periodic.case import Case
+from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK
 from frictionlab.methods.periodic.period_map import image_of, size_of, start_of
 from frictionlab.numerics.linalg import norm, subtract
@@ -26,20 +26,36 @@ PATIENCE = 300
 
 
 @inner
-def sliding_on(body: Body, friction: float, like: Any) -> Any:
+def state_of_sliding(body: Body, friction: float, like: Any) -> Any:
     """Position and velocity at tau = 0 of the friction-free orbit, shifted by a constant friction; no deflection."""
     shift = body.normal_load * friction / (body.stiffness_mean + body.stiffness_split)
     return body.reference_cosine + shift + 0.0 * like, body.frequency * body.reference_sine, 0.0 * like
 
 
+def _no_memory(law: Any, belt_speed: float) -> float:
+    return 0.0
+
+
+def _deflection_of_sliding(law: Any, belt_speed: float) -> float:
+    return math.copysign(1.0, belt_speed) * law.largest_deflection()
+
+
+def _velocity_of_sliding(law: Any, belt_speed: float) -> float:
+    return belt_speed
+
+
+memory_of_sliding = by_law(_no_memory, _deflection_of_sliding, None, _velocity_of_sliding)
+"""memory_of_sliding(law, belt_speed): what ``start_of`` is given, with the other sign, for a mass that slides on."""
+
+
 @inner
-def _arrives(law: Any, body: Body, belt_speed: float, start: Any, target: Any, like: Any) -> bool:
+def _arrives(case: Case, start: Any, target: Any) -> bool:
     """Whether a motion comes near to a closed orbit within some hundred periods."""
     residual, size, steps = np.empty(start.size), 1.0 + norm(target), 0
-    case = Case(law, body, belt_speed, like)
     for _ in range(PATIENCE):
-        image = image_of(case, start, residual, 1e-5 * body.normal_load)
+        image = image_of(case, start, residual, 1e-5 * case.body.normal_load)
         steps += image.steps
+        # A motion that takes this long is no cheap one: the starts are then followed to their ends instead.
         if image.steps < 0 or steps > MUCH_WORK // 4:
             return False
         for row in range(start.size):
@@ -50,37 +66,28 @@ def _arrives(law: Any, body: Body, belt_speed: float, start: Any, target: Any, l
     return False
 
 
-def _reached_without_memory(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+def _reached_without_memory(case: Case, target: Any) -> bool:
     """Where it is not sure that all motions end there, four starts are followed to their ends instead."""
     return False
 
 
-def _reached_with_a_bristle(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
+def _reached_with_memory(case: Case, target: Any) -> bool:
     """Whether the mass ends on this orbit, set off at rest on the belt and sliding as if it never reversed.
 
     The second is an orbit of its own where the belt is faster than any vibration and sliding friction constant.
     """
-    start, forward = np.empty(target.size), math.copysign(1.0, belt_speed)
+    law, body, belt_speed, like = case
+    start = np.empty(target.size)
     start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
-    if not _arrives(law, body, belt_speed, start, target, like):
+    if not _arrives(case, start, target):
         return False
-    x, v, z = sliding_on(body, forward * law.sliding_friction(abs(belt_speed)), like)
-    start_of(law, body, start, x, v, z - forward * law.largest_deflection())
-    return _arrives(law, body, belt_speed, start, target, like)
+    friction = math.copysign(1.0, belt_speed) * law.sliding_friction(abs(belt_speed))
+    x, v, z = state_of_sliding(body, friction, like)
+    start_of(law, body, start, x, v, z - memory_of_sliding(law, belt_speed))
+    return _arrives(case, start, target)
 
 
-def _reached_with_memory(law: Any, body: Body, belt_speed: float, target: Any, like: Any) -> bool:
-    """The same two starts, with the memory of a contact at rest, and of sliding on."""
-    start, forward = np.empty(target.size), math.copysign(1.0, belt_speed)
-    start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
-    if not _arrives(law, body, belt_speed, start, target, like):
-        return False
-    x, v, z = sliding_on(body, forward * law.sliding_friction(abs(belt_speed)), like)
-    start_of(law, body, start, x, v, z - belt_speed)
-    return _arrives(law, body, belt_speed, start, target, like)
-
-
-reached = by_law(_reached_without_memory, _reached_with_a_bristle, None, _reached_with_memory)
+reached = by_law(_reached_without_memory, _reached_with_memory, None, _reached_with_memory)
 
 
 @inner
@@ -89,13 +96,14 @@ def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
 
     Periods: -1 where after many periods the mass still creeps.
     """
+    case, period = case_of(law, body, 0.0), span(body)
     z, residual = np.empty(size_of(law, x)), np.empty(size_of(law, x))
-    start_of(law, body, z, x, v, 0.0 * x)
-    period = span(body)
+    start_of(law, body, z, x, v, case.like)
     for count in range(1, MOST_PERIODS):
-        image = image_of(Case(law, body, 0.0, x), z, residual, accuracy)
+        image = image_of(case, z, residual, accuracy)
         for row in range(z.size):
             z[row] = z[row] + residual[row]
+        # Stuck for the whole of a period: the next ones repeat it.
         if image.stuck >= period * (1.0 - 1e-12):
             return z, count
     return z, -1
@@ -115,7 +123,7 @@ def _apart(states: Any, a: int, b: int) -> float:
 
 
 @inner
-def begin(law: Any, body: Body, start: Any, state: Any) -> None:
+def write_start(law: Any, body: Body, start: Any, state: Any) -> None:
     """Fill the state of a start (x, v, deflection); see ``start_of``."""
     x, v, deflection = start
     start_of(law, body, state, x, v, deflection)
@@ -123,26 +131,28 @@ def begin(law: Any, body: Body, start: Any, state: Any) -> None:
 
 @inner
 def iterate_until_periodic(
-    law: Any, body: Body, belt_speed: float, accuracy: float, means: Any, states: Any, like: Any
+    law: Any, body: Body, belt_speed: float, accuracy: float, means: Any, states: Any
 ) -> Any:
     """Follow the motion from ``states[0]``, period by period, until it repeats.
 
     Fills the one-period means [n] and the states [n + 1, size]; returns after how many periods it repeats (0 where
     it has not after n), and how many it was followed.
     """
-    steps = 0
-    alike = 1e-7 if accuracy <= 1e-8 * body.normal_load else 1e-5  # coarse maps wander on by their own error
+    case, steps = case_of(law, body, belt_speed), 0
+    # Coarse maps wander on by their own error: what they repeat is less exact.
+    alike = 1e-7 if accuracy <= 1e-8 * body.normal_load else 1e-5
     residual = np.empty(states.shape[1])
     for n in range(means.size):
-        image = image_of(Case(law, body, belt_speed, like), states[n], residual, accuracy)
+        image = image_of(case, states[n], residual, accuracy)
         means[n] = mean_friction(image.rubbed.real, span(body))
         steps += image.steps
         for row in range(residual.size):
             states[n + 1, row] = states[n, row] + residual[row]
         nearest = 1e300
         for k in range(1, min(LONGEST_PERIOD, n // 2) + 1):
+            # Two states in a row must repeat: one alone may pass near an old one by chance.
             repeats = max(_apart(states, n + 1, n + 1 - k), _apart(states, n, n - k)) < alike
-            # a spiral into an orbit of fewer periods looks like a longer one while it is still far out
+            # A spiral into an orbit of fewer periods looks like a longer one while it is still far out.
             if repeats and nearest > 1e-4:
                 return k, n + 1
             nearest = min(nearest, _apart(states, n + 1, n + 1 - k))

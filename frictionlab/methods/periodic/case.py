@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from frictionlab.compile.decorators import inner
 from frictionlab.scene.body import Body
 
 
 class Case(NamedTuple):
-    """A law and a body on a belt; ``like`` is a number of the kind of its positions, float or complex."""
+    """A law and a body on a belt; ``like`` is a zero of the kind of its positions, float or complex."""
 
     law: Any
     body: Body
     belt_speed: float
     like: Any
+
+
+@inner
+def case_of(law: Any, body: Body, belt_speed: float) -> Case:
+    """The case of a body, whose own numbers tell whether it moves on a line or in the plane."""
+    return Case(law, body, belt_speed, body.reference_sine - body.reference_sine)

@@ -10,10 +10,11 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.attraction import reached
-from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.fixed_point import Goal, fixed_point
+from frictionlab.methods.periodic.case import Case, case_of
+from frictionlab.methods.periodic.fixed_point import FixedPoint, Goal, fixed_point
 from frictionlab.methods.periodic.monodromy import free_inverse, monodromy
 from frictionlab.methods.periodic.period_map import period_map, size_of
+from frictionlab.numerics.linalg import copy
 from frictionlab.orbit.recorder import Track, grown, track_of
 from frictionlab.scene.body import Body
 
@@ -65,51 +66,58 @@ def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) ->
 
 
 @inner
-def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, like: Any) -> Any:
+def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal) -> Any:
     """States [n, size] and results [n, 6]: mean friction, across, error, maps, share of stick, slowest slip."""
+    like = case_of(law, body, 0.0).like
     size, n = size_of(law, like), belt_speeds.size
     states, results = np.zeros((n, size)), np.empty((n, 6))
     z, work, inverse = np.empty(size), np.empty(size), np.empty((size, size))
-    period = span(body)
     known, order, expected = 0, 1, 1e300
     for i in range(n):
+        case = case_of(law, body, belt_speeds[i])
+        # From the states before it by extrapolation, with the last inverse; the first one from a harmonic motion.
         if known == 0:
             free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
             if i == 0 and guess.shape[0] > 0:
-                for row in range(size):
-                    z[row] = guess[0, row]
+                copy(guess[0], z)
         else:
             _extrapolated(states, belt_speeds, i, min(order, known), z)
-        closed = fixed_point(Case(law, body, belt_speeds[i], like), z, inverse, goal, expected)
+        closed = fixed_point(case, z, inverse, goal, expected)
+        # Neighbours mislead where the curve has a jump: once more without them.
         if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
             free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
-            closed = fixed_point(Case(law, body, belt_speeds[i], like), z, inverse, goal, 1e300)
-        for row in range(size):
-            states[i, row] = z[row]
+            closed = fixed_point(case, z, inverse, goal, 1e300)
+        copy(z, states[i])
+        _write_results(body, closed, results[i])
+        # The order that would have predicted this state best, and one more: orders are not known where none is tried.
         if closed.maps > 0 and known > 1:
             order = min(_best_order(states, belt_speeds, i, known, work) + 1, MOST_KNOWN)
         else:
             order = known + 1
         known = min(known + 1, MOST_KNOWN) if closed.maps > 0 else 0
         expected = closed.first if known > 1 else 1e300
-        mean = mean_friction(closed.rubbed, period)
-        results[i, 0], results[i, 1] = mean.real, mean.imag
-        results[i, 2], results[i, 3] = closed.error, closed.maps
-        results[i, 4], results[i, 5] = closed.stuck / period, closed.closest
     return states, results
 
 
 @inner
-def record_orbit(
-    law: Any, body: Body, belt_speed: float, z: Any, accuracy: float, track: Track, like: Any
-) -> Track:
+def _write_results(body: Body, closed: FixedPoint, row: Any) -> None:
+    period = span(body)
+    mean = mean_friction(closed.rubbed, period)
+    row[0], row[1] = mean.real, mean.imag
+    row[2], row[3] = closed.error, closed.maps
+    row[4], row[5] = closed.stuck / period, closed.closest
+
+
+@inner
+def record_orbit(case: Case, z: Any, accuracy: float, track: Track) -> Track:
     """The track with the closed orbit from z, piece by piece, after what it holds; on a larger one where needed."""
     first, residual = track.filled[0], np.empty(z.size)
-    period_map(Case(law, body, belt_speed, like), z, residual, accuracy, track)
+    period_map(case, z, residual, accuracy, track)
+    # How many pieces an orbit has is known once it is written: a full track may lack some.
     while track.filled[0] == track.stick.size:
         track = grown(track, 4 * track.stick.size)
         track.filled[0] = first
-        period_map(Case(law, body, belt_speed, like), z, residual, accuracy, track)
+        period_map(case, z, residual, accuracy, track)
     return track
 
 
@@ -141,15 +149,13 @@ class Curve(NamedTuple):
 
 
 @inner
-def answer_curve(
-    law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, wanted: Wanted, like: Any
-) -> Curve:
+def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, wanted: Wanted) -> Curve:
     """Close the orbits of a curve, record them, differentiate their maps: what is wanted of it.
 
     guess: a state to start from [0 or 1, size]; where nothing is to be closed, the states of all orbits [n, size].
     """
     if wanted.closed:
-        states, results = solve_curve(law, body, belt_speeds, guess, goal, like)
+        states, results = solve_curve(law, body, belt_speeds, guess, goal)
     else:
         states, results = guess, np.ones((belt_speeds.size, 6))
     n, size = states.shape
@@ -157,12 +163,14 @@ def answer_curve(
     matrices, ends_there = np.zeros((n if wanted.matrices else 0, size, size)), np.zeros(n, np.bool_)
     track, ends = track_of(128 if wanted.orbits else 0), np.zeros(n, np.int64)
     for i in range(n):
+        case = case_of(law, body, belt_speeds[i])
+        # An orbit that was not found has a negative count of maps.
         if results[i, 3] > 0.0:
             if wanted.orbits:
-                track = record_orbit(law, body, belt_speeds[i], states[i], accuracy, track, like)
+                track = record_orbit(case, states[i], accuracy, track)
             if wanted.matrices:
-                monodromy(Case(law, body, belt_speeds[i], like), states[i], 1.0, matrices[i])
+                monodromy(case, states[i], 1.0, matrices[i])
             if wanted.closed and goal.asks:
-                ends_there[i] = reached(law, body, belt_speeds[i], states[i], like)
+                ends_there[i] = reached(case, states[i])
         ends[i] = track.filled[0]
     return Curve(states, results, matrices, ends_there, track, ends)

@@ -62,7 +62,7 @@ class FixedPoint(NamedTuple):
     first: float  # residual of the guess
 
 
-class Search(NamedTuple):
+class Iterate(NamedTuple):
     """The state, the inverse of (monodromy - identity), the residual, and room for vectors, all [n]."""
 
     z: Any
@@ -101,7 +101,7 @@ def mean_error(body: Body, residual: Any, distance: float) -> float:
 
 
 @inner
-def mean_sensitivity(case: Case, search: Search, shift: Any, image: Mapped, accuracy: float) -> float:
+def mean_sensitivity(case: Case, search: Iterate, shift: Any, image: Mapped, accuracy: float) -> float:
     """By how much the mean changes where the state, whose map is the image, is shifted."""
     trial, residual = np.empty(search.z.size), np.empty(search.z.size)
     subtract(search.z, shift, trial)
@@ -133,7 +133,7 @@ def broyden(inverse: Any, step: Any, change: Any, work: Any) -> None:
 
 
 @inner
-def line_search(case: Case, search: Search, accuracy: float) -> int:
+def line_search(case: Case, search: Iterate, accuracy: float) -> int:
     """Move the state along the Newton step, halved until the residual falls; the maps it took, 8 for no fall."""
     n, z = search.z.size, search.z
     step, trial, fresh = np.empty(n), np.empty(n), np.empty(n)
@@ -151,7 +151,7 @@ def line_search(case: Case, search: Search, accuracy: float) -> int:
 
 
 @inner
-def newton_step(case: Case, search: Search, accuracy: float, of_quotients: float) -> Any:
+def newton_step(case: Case, search: Iterate, accuracy: float, of_quotients: float) -> Any:
     """A Newton step with a line search, or where it fails three repetitions of the map: the image, and maps taken."""
     z, residual = search.z, search.residual
     regular = newton_inverse(case, z, of_quotients, search.inverse)
@@ -169,7 +169,7 @@ def newton_step(case: Case, search: Search, accuracy: float, of_quotients: float
 
 
 @inner
-def quasi_newton_step(case: Case, search: Search, now: Progress) -> Progress:
+def quasi_newton_step(case: Case, search: Iterate, now: Progress) -> Progress:
     """One Broyden step, along ``search.step``; stalls counts those after which the residual has not fallen."""
     length = norm(search.residual)
     finer = max(now.finest, min(now.accuracy, 1e-4 * length))
@@ -189,7 +189,7 @@ def quasi_newton_step(case: Case, search: Search, now: Progress) -> Progress:
 
 
 def _recover_without_memory(
-    case: Case, search: Search, now: Progress, length: float, floor: float
+    case: Case, search: Iterate, now: Progress, length: float, floor: float
 ) -> Progress:
     """Ask for finer maps where what is left is their own error, else take a Newton step."""
     finest, newtons = now.finest, now.newtons
@@ -200,7 +200,7 @@ def _recover_without_memory(
     return Progress(image, now.accuracy, finest, now.maps + took, 1, now.checks, newtons + 1, -1.0)
 
 
-def _recover_with_memory(case: Case, search: Search, now: Progress, length: float, floor: float) -> Progress:
+def _recover_with_memory(case: Case, search: Iterate, now: Progress, length: float, floor: float) -> Progress:
     """Take a Newton step; after some of them what is open is no more than what the steps of a map jump about by."""
     image, took = newton_step(case, search, now.accuracy, now.accuracy)
     newtons = now.newtons + 1
@@ -211,7 +211,7 @@ def _recover_with_memory(case: Case, search: Search, now: Progress, length: floa
 # --- the two estimators of the error --------------------------------------------------------------------------------
 
 
-def _check_without_memory(case: Case, search: Search, goal: Goal, now: Progress, floor: float) -> Progress:
+def _check_without_memory(case: Case, search: Iterate, goal: Goal, now: Progress, floor: float) -> Progress:
     """End where a map much finer than those of the search leaves a residual whose bound is below the tolerance."""
     z, residual, work = search.z, search.residual, search.work
     subtract(z, search.step, search.trial)
@@ -244,7 +244,7 @@ def _check_without_memory(case: Case, search: Search, goal: Goal, now: Progress,
     )
 
 
-def _check_with_memory(case: Case, search: Search, goal: Goal, now: Progress, floor: float) -> Progress:
+def _check_with_memory(case: Case, search: Iterate, goal: Goal, now: Progress, floor: float) -> Progress:
     """End where two maps much finer than those of the search change the mean by less than the tolerance.
 
     One is taken from where the orbit was found, one from where the first says it is; what is left open in them is
@@ -308,7 +308,7 @@ first_accuracy = by_law(
 
 
 @inner
-def _carried_by_the_belt(case: Case, search: Search, now: Progress) -> Progress:
+def _carried_by_the_belt(case: Case, search: Iterate, now: Progress) -> Progress:
     """The mass rests on the belt all the time: go on by as many periods at once as it surely does."""
     y, _u = unpack(case.body, search.z, case.like)
     way = belt_path(case.body, case.belt_speed, 0.0, span(case.body))
@@ -326,7 +326,7 @@ def fixed_point(case: Case, z: Any, inverse: Any, goal: Goal, expected: float) -
     expected: the norm of the first residual; the maps are a little more accurate than the next one.
     """
     n, body, period = z.size, case.body, span(case.body)
-    search = Search(z, inverse, np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n))
+    search = Iterate(z, inverse, np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n))
     floor = 4e-15 * (1.0 + norm(z) + abs(case.belt_speed))
     finest, near = first_accuracy(case.law, body, goal.tolerance)
     finest = max(finest, floor)

@@ -9,9 +9,15 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionlab.compile.cache import compiled, timed
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.methods.periodic.attraction import begin, iterate_until_periodic, settle
+from frictionlab.compile.dispatch import interpreted
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.periodic.attraction import (
+    iterate_until_periodic,
+    memory_of_sliding,
+    settle,
+    state_of_sliding,
+    write_start,
+)
 from frictionlab.methods.periodic.continuation import (
     DIFFERENTIATED,
     MULTIPLIERS,
@@ -21,6 +27,7 @@ from frictionlab.methods.periodic.continuation import (
     answer_curve,
 )
 from frictionlab.methods.periodic.fixed_point import Goal
+from frictionlab.methods.periodic.period_map import size_of
 from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, in_the_plane, on_the_line
@@ -31,20 +38,18 @@ from frictionlab.theory.uniqueness import falls_slowly, is_convergent
 def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
     """Whether the motion is on a line: nothing pushes across the belt, and what moves across it dies out.
 
-    A bristle law damps motion across the slip up to some speed: here the largest that the loads could drive.
+    A law damps motion across the slip up to some speed: here the largest that the loads could drive.
     """
-    if scene.degrees_of_freedom < 2 or not isinstance(law, BristleLaw):
+    if scene.degrees_of_freedom < 2:
         return scene.load_along_belt_only
     mass = scene.mass()
     swing = abs(mass.force) / mass.damping if mass.damping > 0.0 else math.inf  # at resonance
     return scene.load_along_belt_only and law.damps_across(abs(scene.belt_speed) + swing)
 
 
-def remembered(law: FrictionLaw, directions: int) -> int:
-    """How many numbers a law remembers in so many directions."""
-    if isinstance(law, MemoryLaw):
-        return law.count() * (directions if law.memory_kind == "deflections" else 1)
-    return directions if isinstance(law, BristleLaw) else 0
+def map_kind(law: FrictionLaw, planar: bool) -> str:
+    """Which period map serves a law: that of an exact path along a line, else that of its kind of memory."""
+    return "exact path" if "exact path" in law.structure() and not planar else law.memory_kind
 
 
 class Transient(NamedTuple):
@@ -56,6 +61,8 @@ class Transient(NamedTuple):
     seconds: float
 
 
+ROUGH = {"none": 1e-9, "bristle": 1e-6, "deflections": 1e-7, "scalars": 1e-7}
+"""Accuracy of the maps that follow a transient, by what the law remembers: with memory they are of lower order."""
 FINEST = 1e-15
 """No orbit is asked to be closed to less: rounding moves the mean more, and steps would go on for ever."""
 
@@ -69,7 +76,7 @@ class PeriodicProblem:
     def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float) -> None:
         self.mass, self.law = scene.mass(), law
         self.falls_slowly = falls_slowly(scene, law)
-        asks = not isinstance(law, SlidingLaw) and self.falls_slowly
+        asks = law.count() > 0 and self.falls_slowly
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), asks)
         self.body: Body
         self.like: complex  # a number of the kind of its positions
@@ -77,8 +84,7 @@ class PeriodicProblem:
             self.body, self.like = on_the_line(self.mass), 0.0
         else:
             self.body, self.like = in_the_plane(self.mass), 0j
-        directions = 2 if isinstance(self.like, complex) else 1
-        self.size = 2 * directions + remembered(law, directions)  # of a state
+        self.size = interpreted(size_of)(law, self.like)  # of a state
 
     def closed(
         self,
@@ -98,7 +104,7 @@ class PeriodicProblem:
         belt_speeds = np.array([scene.belt_speed for scene in scenes])
         body = self.body._replace(periods=float(periods))
         call = compiled(answer_curve, self.law)
-        return timed(call, body, belt_speeds, states, goal, wanted, self.like)
+        return timed(call, body, belt_speeds, states, goal, wanted)
 
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
         """The closed orbits from these states, one for each scene; without panels where there is no state."""
@@ -132,14 +138,8 @@ class PeriodicProblem:
         """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
         at = self._shaken(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
         state = np.empty(self.size)
-        compiled(begin, self.law)(self.body, at, state)
-        return self._followed(belt_speed, state, most, self._rough())
-
-    def _rough(self) -> float:
-        """Accuracy of the maps that follow a motion: with memory of lower order, with one bristle smooth."""
-        if isinstance(self.law, SlidingLaw):
-            return 1e-9
-        return 1e-6 if isinstance(self.law, BristleLaw) else 1e-7
+        compiled(write_start, self.law)(self.body, at, state)
+        return self._followed(belt_speed, state, most, ROUGH[self.law.memory_kind])
 
     def means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
         """The one-period means of an orbit of so many periods, from its state."""
@@ -148,20 +148,17 @@ class PeriodicProblem:
     def _followed(self, belt_speed: float, state: Floats, most: int, relative: float) -> Transient:
         means, states = np.empty(most), np.empty((most + 1, self.size))
         states[0] = state
-        arguments = self.body, belt_speed, relative * self.mass.normal_load, means, states, self.like
+        arguments = self.body, belt_speed, relative * self.mass.normal_load, means, states
         (period, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
         return Transient(period, means[:count], states[count], seconds)
 
     def _shaken(self, belt_speed: float) -> tuple[complex, complex, complex]:
         """On the friction-free orbit; with memory, remembering and shifted as in sliding that never reverses."""
-        x, v = self.body.reference_cosine, self.body.frequency * self.body.reference_sine
-        if isinstance(self.law, SlidingLaw):
-            return x, v, 0.0 * self.like
-        forward = math.copysign(1.0, belt_speed)
-        stiffness = self.body.stiffness_mean + self.body.stiffness_split
-        shift = forward * self.mass.normal_load * self.law.sliding_friction(abs(belt_speed)) / stiffness
-        behind = forward * self.law.largest_deflection() if isinstance(self.law, BristleLaw) else belt_speed
-        return x + shift, v, 0.0 * self.like - behind
+        remembers = self.law.count() > 0
+        friction = self.law.sliding_friction(abs(belt_speed)) if remembers else 0.0
+        friction = math.copysign(friction, belt_speed)
+        x, v, z = interpreted(state_of_sliding)(self.body, friction, self.like)
+        return x, v, z - memory_of_sliding(self.law, belt_speed)
 
     def _at(self, start: Initial) -> tuple[complex, complex]:
         x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)

@@ -1,8 +1,4 @@
-"""Bristle laws under a prescribed slip: the periodic deflection, and the results computed from it.
-
-Licence of ``saturates`` (tests/benchmarks/specialists.py, 8 scenes): 5 times faster than following a deflection
-that stays at its limit (4 to 5.7 times), with the same 13 digits.
-"""
+"""Bristle laws under a prescribed slip: the periodic deflection, and the results computed from it."""
 
 from __future__ import annotations
 
@@ -10,12 +6,13 @@ import math
 
 import numpy as np
 
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import PER_AXIS, ROTATED, BristleLaw, in_the_plane, on_the_line
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.closed_loop_line import ONE_WAY, Along, line_loop
 from frictionlab.methods.prescribed.closed_loop_plane import plane_loop
 from frictionlab.methods.prescribed.loop import Closed, Loop, Open, Vectors
-from frictionlab.methods.prescribed.motion import Found
+from frictionlab.methods.prescribed.motion import PrescribedMean, displacement, velocity
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -25,23 +22,9 @@ BY_SYMMETRY = "closed form: friction of the two half periods of slip cancels"
 ROUNDING = 2.0**-50
 
 
-def refusal_of_prescribed(scene: Scene, law: BristleLaw) -> str | None:
-    """Why a prescribed slip cannot be solved for this law; None where it can."""
-    return law.no_vector_form() or None if _vectorial(scene, law) else None
-
-
-def along_one_line(scene: Scene, law: BristleLaw) -> bool:
+def along_one_line(scene: Scene, law: FrictionLaw) -> bool:
     """Whether the prescribed slip keeps to the belt's line, and the law with it."""
-    return scene.load_along_belt_only and (scene.transverse_slip is None or law.form != ROTATED)
-
-
-def saturates(scene: Scene, law: BristleLaw) -> bool:
-    """Whether the deflection along a slip that only turns ends at its limit: friction is then that of sliding."""
-    return law.form == ROTATED and law.constant_sliding_friction() and not along_one_line(scene, law)
-
-
-def _vectorial(scene: Scene, law: BristleLaw) -> bool:
-    return not along_one_line(scene, law) and law.planar == "vectorial"
+    return scene.load_along_belt_only and (scene.transverse_slip is None or law.planar_form() != "rotated")
 
 
 class BristlePoint:
@@ -68,12 +51,12 @@ class BristlePoint:
             return [line_loop(self.law, along, tolerance), line_loop(self.law, across, tolerance)]
         return [plane_loop(self.law, motion, self.belt_speed, tolerance)]
 
-    def _answer(self) -> Found:
+    def _answer(self) -> PrescribedMean:
         first = self.loops[0]
         if isinstance(first, Open):
             self.status = "failed" if math.isnan(first.low) else "not_unique"
             self.reason, self.error_kind = first.reason, ""
-            return Found(low=first.low, high=first.high)
+            return PrescribedMean(low=first.low, high=first.high)
         self.model = first.model
         mean, error = first.loop.mean, first.error
         if self.belt_speed == 0.0:
@@ -85,7 +68,7 @@ class BristlePoint:
             mean = complex(mean.real, math.nan)
         elif len(self.loops) > 1:
             mean = complex(mean.real, 0.0)
-        return Found(mean, error)
+        return PrescribedMean(mean, error)
 
     def _saturated(self, closed: Closed) -> bool:
         return closed.model == ONE_WAY and self.law.constant_sliding_friction()
@@ -97,15 +80,9 @@ class BristlePoint:
         if self.status != "ok":
             return None
         angle = _angles(loops)
-        turn = np.exp(1j * angle)
-        motion = self.motion
-        v = (motion.velocity * turn).imag + 1j * (motion.transverse_velocity * turn).imag
-        x = (
-            -((motion.velocity * turn).real + 1j * (motion.transverse_velocity * turn).real)
-            / motion.frequency
-        )
+        x, v = displacement(self.motion, angle), velocity(self.motion, angle)
         friction = self._friction(v - self.belt_speed, [loop.deflection_at(angle) for loop in loops])
-        return Orbit(angle / motion.frequency, x, v, friction, np.zeros(len(angle), np.bool_))
+        return Orbit(angle / self.motion.frequency, x, v, friction, np.zeros(len(angle), np.bool_))
 
     def _friction(self, slip: Vectors, deflections: list[Floats]) -> Vectors:
         z, law = deflections[0], self.law

@@ -17,18 +17,22 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.cache import compiled, timed
-from frictionlab.dynamics.radau_panel import Slip
+from frictionlab.dynamics.radau_panel import Oscillation
 from frictionlab.laws.memory import BristleLaw
-from frictionlab.methods.prescribed.exact_legs import POINTS, SHARES, Legs, follow
+from frictionlab.methods.prescribed.exact_legs import POINTS, SHARES, Legs, closed_legs
 from frictionlab.methods.prescribed.loop import Closed, Loop, Open
 from frictionlab.methods.prescribed.motion import slow_passages
-from frictionlab.methods.prescribed.periodic_deflection import Accuracy, followed, layer, natural_reach
-from frictionlab.quantities import Floats
+from frictionlab.methods.prescribed.periodic_deflection import (
+    Accuracy,
+    closed_deflection,
+    layer,
+    natural_reach,
+)
+from frictionlab.quantities import EPSILON, Floats
 
-EPSILON = 2.0**-52
 TWO_LEGS = "prescribed slip along a line: deflection exact along both legs, Gauss-Lobatto quadrature"
 ONE_WAY = "closed form: slip that never reverses saturates the deflection"
-FOLLOWED = (
+COLLOCATED = (
     "prescribed slip: deflection over one period by Radau IIA collocation, fixed point by Newton's method"
 )
 SMOOTH = 1e-3
@@ -67,21 +71,19 @@ class Along(NamedTuple):
 def line_loop(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
     """The closed loop, or the range of means and the reason where it is not unique."""
     if along.size == 0.0 and along.belt_speed == 0.0:
-        most = abs(law.friction(0.0, natural_reach(law, 1.0), 0.0))
-        return Open(-most, most, NOTHING_MOVES)
+        return Open.up_to(law, natural_reach(law, 1.0), NOTHING_MOVES)
     room = law.elastic_deflection() - along.size / along.frequency
     if along.belt_speed == 0.0 and room > 0.0:
-        most = abs(law.friction(0.0, room, 0.0))
-        return Open(-most, most, ELASTIC)
+        return Open.up_to(law, room, ELASTIC)
     if not law.exact_path():
-        return _followed(law, along, tolerance)
+        return _collocated(law, along, tolerance)
     return _legs(law, along) if along.turn > 0.0 else _one_way(law, along)
 
 
 def _legs(law: BristleLaw, along: Along) -> Closed:
     reach, fastest = law.largest_deflection(), law.largest_rate(1.0)
     length = min(reach, 1.0 / fastest) if 0.0 < fastest < math.inf else reach
-    kernel, loops, seconds = compiled(follow, law), [], 0.0
+    kernel, loops, seconds = compiled(closed_legs, law), [], 0.0
     for cuts in (1.0, 2.0):
         legs = Legs(along.turn, along.size / along.frequency, along.size, length, reach, cuts)
         (start, *rest), spent = timed(kernel, legs)
@@ -103,16 +105,16 @@ def _one_way(law: BristleLaw, along: Along) -> Closed:
     return Closed(loop, 16.0 * EPSILON * loop.largest, ONE_WAY, 0.0)
 
 
-def _followed(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
-    slip = Slip(1j * along.size, 0j, along.frequency, 0.0)
-    found = followed(
+def _collocated(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
+    slip = Oscillation(1j * along.size, 0j, along.frequency, 0.0)
+    found = closed_deflection(
         law, slip, _stretches(law, along), Accuracy.of(law, slip, along.belt_speed, tolerance), 0.0
     )
     if isinstance(found, Open):
         return found
     loop = found.loop
     parts = loop.start, loop.width, loop.slip, loop.deflection, loop.friction
-    return found._replace(loop=_turned(along, parts, loop.points, loop.shares), model=FOLLOWED)
+    return found._replace(loop=_turned(along, parts, loop.points, loop.shares), model=COLLOCATED)
 
 
 def _turned(along: Along, parts: tuple[Any, ...], points: Floats, shares: Floats) -> Loop:

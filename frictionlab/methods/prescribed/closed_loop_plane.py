@@ -11,12 +11,17 @@ import math
 
 import numpy as np
 
-from frictionlab.dynamics.radau_panel import Slip
+from frictionlab.dynamics.radau_panel import Oscillation
 from frictionlab.laws.memory import ROTATED, BristleLaw
-from frictionlab.methods.prescribed.closed_loop_line import ELASTIC, FOLLOWED, NOTHING_MOVES
+from frictionlab.methods.prescribed.closed_loop_line import COLLOCATED, ELASTIC, NOTHING_MOVES
 from frictionlab.methods.prescribed.loop import Closed, Loop, Open, Vectors
-from frictionlab.methods.prescribed.motion import slow_passages
-from frictionlab.methods.prescribed.periodic_deflection import Accuracy, followed, layer, natural_reach
+from frictionlab.methods.prescribed.motion import between_passages, slow_passages
+from frictionlab.methods.prescribed.periodic_deflection import (
+    Accuracy,
+    closed_deflection,
+    layer,
+    natural_reach,
+)
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Motion
 
@@ -28,24 +33,22 @@ CLOSEST = 1e-12
 def plane_loop(law: BristleLaw, motion: Motion, belt_speed: float, tolerance: float) -> Closed | Open:
     """The closed loop, or why there is none."""
     rotated = law.form == ROTATED
-    slip = Slip(motion.velocity, motion.transverse_velocity, motion.frequency, 1.0 if rotated else 0.0)
+    slip = Oscillation(motion.velocity, motion.transverse_velocity, motion.frequency, 1.0 if rotated else 0.0)
     if slip.along == 0 and slip.across == 0 and belt_speed == 0.0:
-        most = abs(law.friction(0.0, natural_reach(law, 1.0), 0.0))
-        return Open(-most, most, NOTHING_MOVES)
+        return Open.up_to(law, natural_reach(law, 1.0), NOTHING_MOVES)
     if belt_speed == 0.0 and not rotated:
         room = _room(slip, law.elastic_deflection())
         if room > 0.0:
-            most = abs(law.friction(0.0, room, 0.0))
-            return Open(-most, most, ELASTIC)
+            return Open.up_to(law, room, ELASTIC)
     accuracy = Accuracy.of(law, slip, belt_speed, tolerance, -1.0 if rotated else _circle(law))
     start = accuracy.scale.reach if rotated else 0j
-    found = followed(law, slip, _stretches(law, slip, belt_speed), accuracy, start)
+    found = closed_deflection(law, slip, _stretches(law, slip, belt_speed), accuracy, start)
     if isinstance(found, Open):
         return found
     if not rotated:
-        return found._replace(model=FOLLOWED)
+        return found._replace(model=COLLOCATED)
     loop, finer = (_turned(one, slip, belt_speed) for one in (found.loop, _halved(found.loop)))
-    return Closed(finer, found.error + 2.0 * abs(finer.mean - loop.mean), FOLLOWED, found.seconds)
+    return Closed(finer, found.error + 2.0 * abs(finer.mean - loop.mean), COLLOCATED, found.seconds)
 
 
 def _halved(loop: Loop) -> Loop:
@@ -73,20 +76,20 @@ def _circle(law: BristleLaw) -> float:
     return 0.0 if law.elastic_unloading() else -1.0
 
 
-def _turned(loop: Loop, slip: Slip, belt_speed: float) -> Loop:
+def _turned(loop: Loop, slip: Oscillation, belt_speed: float) -> Loop:
     """The loop with slips and frictions as vectors: friction of the speed alone acts along the slip."""
     v = _slip(slip, belt_speed, loop.start[:, None] + loop.width[:, None] * loop.points)
     direction = v / np.maximum(np.abs(v), 1e-300)
     return loop._replace(slip=v, friction=loop.friction * direction)
 
 
-def _slip(slip: Slip, belt_speed: float, angle: Floats) -> Vectors:
+def _slip(slip: Oscillation, belt_speed: float, angle: Floats) -> Vectors:
     turn = np.exp(1j * angle)
     v: Vectors = (slip.along * turn).imag - belt_speed + 1j * (slip.across * turn).imag
     return v
 
 
-def _room(slip: Slip, radius: float) -> float:
+def _room(slip: Oscillation, radius: float) -> float:
     """The largest x1 of a start whose deflection stays within the radius all the time; negative where there is none.
 
     Such starts are a convex set, symmetric about zero.
@@ -106,13 +109,11 @@ def _room(slip: Slip, radius: float) -> float:
     return best
 
 
-def _stretches(law: BristleLaw, slip: Slip, belt_speed: float) -> Floats:
+def _stretches(law: BristleLaw, slip: Oscillation, belt_speed: float) -> Floats:
     """From one slow passage to the next."""
     passages = slow_passages(slip.along, slip.across, belt_speed)
-    places = sorted((angle % (2.0 * math.pi), depth) for angle, depth in passages) or [(0.0, FAR)]
-    following = [*places[1:], (places[0][0] + 2.0 * math.pi, places[0][1])]
     rows = []
-    for (here, depth), (there, next_depth) in zip(places, following, strict=True):
+    for (here, depth), (there, next_depth) in between_passages(passages, FAR):
         if there > here:
             half = 0.5 * (there - here)
             near = max(depth, min(_layer(law, slip, belt_speed, here), 1e-3), CLOSEST)
@@ -125,12 +126,12 @@ def _stretches(law: BristleLaw, slip: Slip, belt_speed: float) -> Floats:
     return np.array(rows)
 
 
-def _at_passage(slip: Slip, belt_speed: float, angle: float, depth: float) -> complex:
+def _at_passage(slip: Oscillation, belt_speed: float, angle: float, depth: float) -> complex:
     """The slip where it is slowest; every slip near there is told as a difference from it, and so without noise."""
     return complex(_slip(slip, belt_speed, np.array([angle]))[0]) if depth > 1e-15 else 0j
 
 
-def _layer(law: BristleLaw, slip: Slip, belt_speed: float, here: float) -> float:
+def _layer(law: BristleLaw, slip: Oscillation, belt_speed: float, here: float) -> float:
     """A hundredth of the angle after a place within which the deflection begins to settle."""
     return 0.01 * layer(
         law, slip.frequency, lambda h: abs(complex(_slip(slip, belt_speed, np.array([here + h]))[0]))

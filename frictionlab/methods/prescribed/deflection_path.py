@@ -20,11 +20,12 @@ from frictionlab.dynamics.radau_panel import (
     NODES,
     STAGES,
     WEIGHTS,
+    Bristle,
+    Oscillation,
     Place,
     Scale,
-    Slip,
     bound,
-    crawl,
+    euler_panel,
     part,
     parts,
     slip_at,
@@ -52,9 +53,9 @@ class Stretch(NamedTuple):
     near_end: float
 
 
-class Panels(NamedTuple):
+class LoopPanels(NamedTuple):
     """Panels of a period: starts, widths [n]; slip velocity (as the law takes it), deflection and friction at
-    the start and the stages [n, 1 + stages].
+    the start and the stages [n, 1 + stages]; the number of panels written [1].
     """
 
     start: Any
@@ -62,37 +63,41 @@ class Panels(NamedTuple):
     slip: Any
     deflection: Any
     friction: Any
+    filled: Any
 
 
 @inner
-def _room(z: Any) -> Panels:
+def _panel_room(z: Any) -> LoopPanels:
     kind = np.full((1, STAGES + 1), z)
     shape = (ROOM, STAGES + 1)
-    return Panels(
+    return LoopPanels(
         np.empty(ROOM),
         np.empty(ROOM),
         np.empty(shape, kind.dtype),
         np.empty(shape, kind.dtype),
         np.empty(shape, kind.dtype),
+        np.zeros(1, np.int64),
     )
 
 
 @inner
-def _note(law: Any, slip: Slip, stretch: Stretch, span: Any, z: Any, work: Any, out: Panels, n: int) -> None:
-    """Write a panel to the output."""
-    out.start[n], out.width[n] = stretch.place.angle + span[0], span[1]
-    v = slip_at(slip, stretch.place, span[0], z)
+def _write_panel(bristle: Bristle, place: Place, span: Any, z: Any, work: Any, out: LoopPanels) -> None:
+    """Append a panel to the output."""
+    n = out.filled[0]
+    out.start[n], out.width[n] = place.angle + span[0], span[1]
+    v = slip_at(bristle.slip, place, span[0], z)
     out.slip[n, 0], out.deflection[n, 0] = v, z
-    _, friction = resistance(law, v, z)
+    _, friction = resistance(bristle.law, v, z)
     out.friction[n, 0] = friction
     for stage in range(STAGES):
         out.slip[n, stage + 1] = work.slip[stage]
         out.deflection[n, stage + 1] = z + work.gain[stage]
         out.friction[n, stage + 1] = work.friction[stage]
+    out.filled[0] = n + 1
 
 
 @inner
-def _rubbed(span: Any, work: Any) -> Any:
+def _impulse(span: Any, work: Any) -> Any:
     """The integral of friction over a panel."""
     total = 0.0 * work.friction[0]
     for stage in range(STAGES):
@@ -123,23 +128,23 @@ def _allowed(stretch: Stretch, at: float) -> float:
 
 
 @inner
-def _tried(law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: Any, work: Any) -> float:
+def _step_error(bristle: Bristle, place: Place, span: Any, z: Any, work: Any) -> float:
     """Difference of a whole step and its two halves in deflection and friction integral; ``FAILED`` if one fails."""
     whole, first, second = work
     at, step = span
     half = 0.5 * step
-    if not solve_panel(law, slip, place, scale, (at, step), z, whole):
+    if not solve_panel(bristle, place, (at, step), z, whole):
         return FAILED
-    if not solve_panel(law, slip, place, scale, (at, half), z, first):
+    if not solve_panel(bristle, place, (at, half), z, first):
         return FAILED
     middle = z + first.gain[STAGES - 1]
-    if not solve_panel(law, slip, place, scale, (at + half, step - half), middle, second):
+    if not solve_panel(bristle, place, (at + half, step - half), middle, second):
         return FAILED
     gain = first.gain[STAGES - 1] + second.gain[STAGES - 1]
-    error = abs(gain - whole.gain[STAGES - 1]) / scale.change
-    rubbed = _rubbed((at, half), first) + _rubbed((at + half, step - half), second)
-    size = max(scale.friction, abs(rubbed) / step)
-    return max(error, abs(rubbed - _rubbed((at, step), whole)) / size)
+    error = abs(gain - whole.gain[STAGES - 1]) / bristle.scale.change
+    impulse = _impulse((at, half), first) + _impulse((at + half, step - half), second)
+    size = max(bristle.scale.friction, abs(impulse) / step)
+    return max(error, abs(impulse - _impulse((at, step), whole)) / size)
 
 
 @inner
@@ -148,7 +153,7 @@ def _outward(v: Any, z: Any) -> bool:
 
 
 @inner
-def _turned(mode: float, radius: float, v: Any, z: Any) -> bool:
+def _mode_ends(mode: float, radius: float, v: Any, z: Any) -> bool:
     """Whether an elastic deflection (mode 0) has begun to yield, or a yielding one to unload."""
     if mode != 0.0:
         return not _outward(v, z)
@@ -156,14 +161,14 @@ def _turned(mode: float, radius: float, v: Any, z: Any) -> bool:
 
 
 @inner
-def _bend(slip: Slip, angle: float) -> complex:
+def _bend(slip: Oscillation, angle: float) -> complex:
     """The slip's rate of change."""
     turn = complex(math.cos(angle), math.sin(angle)) * slip.frequency
     return complex((slip.along * turn).real, (slip.across * turn).real)
 
 
 @inner
-def _margin(mode: float, radius: float, v: Any, bend: complex, z: Any, rate: Any) -> Any:
+def _mode_margin(mode: float, radius: float, v: Any, bend: complex, z: Any, rate: Any) -> Any:
     """How far a deflection is from turning, and how fast that grows."""
     load = v.real * z.real + v.imag * z.imag
     if mode == 0.0 and radius > 0.0:
@@ -187,49 +192,61 @@ def _dips(at: float, to: float, slope: float, slope_to: float) -> bool:
 
 
 @inner
-def _seen(
-    law: Any, slip: Slip, place: Place, scale: Scale, radius: float, span: Any, z: Any, work: Any
-) -> bool:
-    """Whether that is so at any stage of a step, or between two of them."""
-    turned, mode = False, scale.circle
+def _mode_ends_within(bristle: Bristle, radius: float, place: Place, span: Any, z: Any, work: Any) -> bool:
+    """Whether the mode ends at any stage of a step, or between two of them."""
+    slip, ended, mode = bristle.slip, False, bristle.scale.circle
     v, before = slip_at(slip, place, span[0], z), 0.0
-    rate, _ = bound(law, v, mode, z)
-    margin, growth = _margin(mode, radius, v, _bend(slip, place.angle + span[0]), z, rate)
+    rate, _ = bound(bristle.law, v, mode, z)
+    margin, growth = _mode_margin(mode, radius, v, _bend(slip, place.angle + span[0]), z, rate)
     for stage in range(STAGES):
         v, here, node = work.slip[stage], z + work.gain[stage], NODES[stage]
-        turned = turned or _turned(mode, radius, v, here)
+        ended = ended or _mode_ends(mode, radius, v, here)
         bend = _bend(slip, place.angle + span[0] + node * span[1])
-        following, following_growth = _margin(mode, radius, v, bend, here, work.rate[stage])
+        following, following_growth = _mode_margin(mode, radius, v, bend, here, work.rate[stage])
+        # A mode may end and begin again between two stages, which neither of them shows.
         time = (node - before) * span[1] / slip.frequency
-        turned = turned or _dips(margin, following, time * growth, time * following_growth)
+        ended = ended or _dips(margin, following, time * growth, time * following_growth)
         margin, growth, before = following, following_growth, node
-    return turned
+    return ended
 
 
 @inner
-def _until(
-    law: Any, slip: Slip, place: Place, scale: Scale, span: Any, z: Any, work: Any, radius: float
-) -> Any:
-    """The longest part of a step before it turns, by bisection, and whether it does turn there.
+def _longest_in_mode(bristle: Bristle, radius: float, place: Place, span: Any, z: Any, work: Any) -> Any:
+    """The longest part of a step before the mode ends, by bisection, and whether it does end there.
 
-    It does not where it ends because nothing solves a longer one.
+    It does not where the part ends because nothing solves a longer one.
     """
     at, high = span
-    low, turns = 0.0, True
+    low, ends = 0.0, True
     for _ in range(60):
         middle = 0.5 * (low + high)
-        smooth = solve_panel(law, slip, place, scale, (at, middle), z, work)
-        if smooth and not _seen(law, slip, place, scale, radius, (at, middle), z, work):
+        smooth = solve_panel(bristle, place, (at, middle), z, work)
+        if smooth and not _mode_ends_within(bristle, radius, place, (at, middle), z, work):
             low = middle
         else:
-            high, turns = middle, smooth
+            high, ends = middle, smooth
         if high - low <= 1e-16 * max(abs(at), high):
             break
-    return low, turns
+    return low, ends
 
 
 @inner
-def _pressed(z: Any, carry: Any) -> None:
+def _mode_end(bristle: Bristle, radius: float, place: Place, span: Any, z: Any, work: Any) -> Any:
+    """The part of a step after which the mode ends, and whether it ends inside the step at all."""
+    first, step = span
+    half, middle = 0.5 * step, z + work[1].gain[STAGES - 1]
+    # The whole step and its halves are all asked: each may miss an end that another shows.
+    ends = _mode_ends_within(bristle, radius, place, (first, step), z, work[0])
+    ends = ends or _mode_ends_within(bristle, radius, place, (first, half), z, work[1])
+    ends = ends or _mode_ends_within(bristle, radius, place, (first + half, step - half), middle, work[2])
+    if not ends:
+        return step, False, False
+    part, ends = _longest_in_mode(bristle, radius, place, (first, step), z, work[0])
+    return part, ends, True
+
+
+@inner
+def _drop_radial(z: Any, carry: Any) -> None:
     """At the onset of yield the radial part of the derivative vanishes: the deflection then stays on its circle."""
     n, size = carry.shape[0], abs(z)
     for column in range(n):
@@ -241,13 +258,16 @@ def _pressed(z: Any, carry: Any) -> None:
 
 
 @inner
-def _jumped(law: Any, slip: Slip, v: Any, angle: float, z: Any, mode: float, carry: Any) -> None:
+def _saltation(bristle: Bristle, v: Any, angle: float, z: Any, carry: Any) -> None:
     """What a jump of the rate where slip turns across the deflection does to the derivative (saltation)."""
-    elastic, _ = bound(law, v, 0.0, z)
-    breaking, _ = bound(law, v, -1.0, (1.0 + 1e-9) * z + 1e-9 * abs(z) / max(abs(v), 1e-300) * v)
-    jump = breaking - elastic if mode == 0.0 else elastic - breaking
-    bend = _bend(slip, angle)
+    elastic, _ = bound(bristle.law, v, 0.0, z)
+    # The rate of yield is that of a deflection a little further out: at z itself the law may still be elastic.
+    beyond = (1.0 + 1e-9) * z + 1e-9 * abs(z) / max(abs(v), 1e-300) * v
+    breaking, _ = bound(bristle.law, v, -1.0, beyond)
+    jump = breaking - elastic if bristle.scale.circle == 0.0 else elastic - breaking
+    bend = _bend(bristle.slip, angle)
     speed = v.real * v.real + v.imag * v.imag + z.real * bend.real + z.imag * bend.imag
+    # A grazing end: every neighbour turns at another time, and none has a derivative to correct.
     if abs(speed) <= 1e-9 * (v.real * v.real + v.imag * v.imag):
         return
     for column in range(carry.shape[0]):
@@ -259,99 +279,128 @@ def _jumped(law: Any, slip: Slip, v: Any, angle: float, z: Any, mode: float, car
 
 
 @inner
-def _bounded(scale: Scale, circle: float) -> Scale:
-    return Scale(scale.reach, scale.change, scale.friction, circle)
+def _attempt(bristle: Bristle, radius: float, place: Place, span: Any, z: Any, work: Any) -> Any:
+    """The step to take, its error, whether the mode ends with it, and whether it was cut for that.
+
+    The rate jumps where the contact begins to yield or to unload: a step is cut at the change of mode, so that panels
+    are smooth. Negative radius: the modes are not looked at.
+    """
+    first, step = span
+    error = _step_error(bristle, place, span, z, work)
+    if radius < 0.0:
+        return step, error, False, False
+    step, ends, cut = _mode_end(bristle, radius, place, span, z, work)
+    if cut and step > SHORTEST:
+        error = _step_error(bristle, place, (first, step), z, work)
+    return step, error, ends, cut
 
 
 @inner
-def _switched(
-    law: Any, slip: Slip, place: Place, at: float, scale: Scale, radius: float, z: Any, carry: Any
-) -> Scale:
-    """The scale with the other mode; the derivative is updated for the change of mode."""
-    v = slip_at(slip, place, at, z)
+def _in_mode(bristle: Bristle, circle: float) -> Bristle:
+    """The bristle with its mode, as ``circle`` of its scale."""
+    scale = bristle.scale
+    return Bristle(bristle.law, bristle.slip, Scale(scale.reach, scale.change, scale.friction, circle))
+
+
+@inner
+def _other_mode(bristle: Bristle, radius: float, place: Place, at: float, z: Any, carry: Any) -> Bristle:
+    """The bristle in its other mode; the derivative is updated for the change of mode."""
+    elastic = bristle.scale.circle == 0.0
     if radius == 0.0:
-        _jumped(law, slip, v, place.angle + at, z, scale.circle, carry)
-        return _bounded(scale, -1.0 if scale.circle == 0.0 else 0.0)
-    if scale.circle == 0.0:
-        _pressed(z, carry)
-        return _bounded(scale, radius)
-    return _bounded(scale, 0.0)
+        _saltation(bristle, slip_at(bristle.slip, place, at, z), place.angle + at, z, carry)
+        return _in_mode(bristle, -1.0 if elastic else 0.0)
+    if elastic:
+        _drop_radial(z, carry)
+        return _in_mode(bristle, radius)
+    return _in_mode(bristle, 0.0)
 
 
 @inner
-def _started(slip: Slip, stretches: Any, scale: Scale, z: Any, carry: Any) -> Scale:
-    """The mode, elastic or yielding, at the start of the period."""
-    radius = scale.circle
+def _first_mode(bristle: Bristle, radius: float, stretches: Any, z: Any, carry: Any) -> Bristle:
+    """The bristle in its mode, elastic or yielding, at the start of the period; negative radius: it has no modes."""
+    if radius < 0.0:
+        return bristle
     begin = Place(stretches[0, 0], complex(stretches[0, 1], stretches[0, 2]))
-    outward = _outward(slip_at(slip, begin, stretches[0, 3] + 1e-9, z), z)
+    outward = _outward(slip_at(bristle.slip, begin, stretches[0, 3] + 1e-9, z), z)
     if not outward or abs(z) < radius * (1.0 - 1e-12):
-        return _bounded(scale, 0.0)
+        return _in_mode(bristle, 0.0)
     if radius == 0.0:
-        return _bounded(scale, -1.0)
-    _pressed(z, carry)
-    return _bounded(scale, radius)
+        return _in_mode(bristle, -1.0)
+    _drop_radial(z, carry)
+    return _in_mode(bristle, radius)
+
+
+@inner
+def _stretch_of(row: Any) -> Stretch:
+    return Stretch(Place(row[0], complex(row[1], row[2])), row[3], row[4], row[5], row[6])
+
+
+@inner
+def _euler_halves(bristle: Bristle, place: Place, span: Any, z: Any, work: Any) -> None:
+    """Both halves of a step by explicit steps, where Newton's method fails even in the shortest one."""
+    first, half = span[0], 0.5 * span[1]
+    euler_panel(bristle, place, (first, half), z, work[1])
+    euler_panel(bristle, place, (first + half, half), z + work[1].gain[STAGES - 1], work[2])
+
+
+@inner
+def _write_halves(bristle: Bristle, place: Place, span: Any, state: Any, work: Any, out: LoopPanels) -> Any:
+    """Append the two halves of a step, which are more accurate than the whole; return what is gained at its end.
+
+    state: the deflection at the start of the period, and what it has gained, which keeps the digits of a soft
+    contact's small changes. work: of the whole and both halves, and the derivative so far, which is carried on.
+    """
+    z, gained = state
+    pieces, carry = work
+    first, half = span[0], 0.5 * span[1]
+    for k in range(2):
+        piece = pieces[1 + k]
+        _write_panel(bristle, place, (first + half * k, half), z + gained, piece, out)
+        gained = gained + piece.gain[STAGES - 1]
+        _times(piece.carry, carry)
+    return gained
 
 
 @njit
-def follow_period(law: Any, slip: Slip, stretches: Any, scale: Scale, accuracy: float, z: Any) -> Any:
+def follow_period(law: Any, slip: Oscillation, stretches: Any, scale: Scale, accuracy: float, z: Any) -> Any:
     """Follow the deflection once around from ``z``, over stretches [n, 7]: those of ``Stretch``.
 
     scale.circle: negative where the law's rate is all there is; 0 where it follows the slip as long as slip unloads
     it, and radius > 0 where it does so within that circle. Returns what the deflection gained, the derivative of
     the end by the start, and the panels; none where it got stuck.
     """
-    out, n, gained = _room(z), 0, 0.0 * z
+    bristle, radius = Bristle(law, slip, scale), scale.circle
+    out, gained, carry = _panel_room(z), 0.0 * z, np.eye(parts(z))
     work = (work_for(z), work_for(z), work_for(z))
-    carry = np.eye(parts(z))
-    radius, step, row, at, idle = scale.circle, 0.1, 0, 0.0, 0
+    step, row, at, idle = 0.1, 0, 0.0, 0
     longest = math.pi / 8.0 if radius < 0.0 else math.pi / 48.0
-    if radius >= 0.0:
-        scale = _started(slip, stretches, scale, z, carry)
-    while row < stretches.shape[0] and n + 2 < ROOM:
-        here = stretches[row]
-        place = Place(here[0], complex(here[1], here[2]))
-        stretch, begin = Stretch(place, here[3], here[4], here[5], here[6]), here[3]
-        step, now = min(min(step, longest), _allowed(stretch, at)), z + gained
-        error, turns = _tried(law, slip, place, scale, (begin + at, step), now, work), False
-        # The rate jumps where the contact begins to yield or to unload: the step is cut at the change of mode, so
-        # that panels are smooth. After three changes without progress the jump is left to the step control.
-        if radius >= 0.0 and idle < 3:
-            first, half, middle = begin + at, 0.5 * step, now + work[1].gain[STAGES - 1]
-            turns = _seen(law, slip, place, scale, radius, (first, step), now, work[0])
-            turns = turns or _seen(law, slip, place, scale, radius, (first, half), now, work[1])
-            turns = turns or _seen(
-                law, slip, place, scale, radius, (first + half, step - half), middle, work[2]
-            )
-            if turns:
-                step, turns = _until(law, slip, place, scale, (first, step), now, work[0], radius)
-                if step <= SHORTEST:
-                    scale = _switched(law, slip, place, begin + at, scale, radius, now, carry)
-                    step, idle = 1e-3, idle + 1
-                    continue
-                error = _tried(law, slip, place, scale, (begin + at, step), now, work)
+    bristle = _first_mode(bristle, radius, stretches, z, carry)
+    while row < stretches.shape[0] and out.filled[0] + 2 < ROOM:
+        stretch, now = _stretch_of(stretches[row]), z + gained
+        place, first = stretch.place, stretch.begin + at
+        step = min(min(step, longest), _allowed(stretch, at))
+        # After three changes of mode without progress the jump of the rate is left to the step control.
+        step, error, ends, cut = _attempt(
+            bristle, radius if idle < 3 else -1.0, place, (first, step), now, work
+        )
+        if cut and step <= SHORTEST:
+            bristle = _other_mode(bristle, radius, place, first, now, carry)
+            step, idle = 1e-3, idle + 1
+            continue
         # Too large an error: a shorter step, at least a tenth of it.
         if error > accuracy and step > SHORTEST:
             step = step * min(0.5, max(0.1, 0.8 * (accuracy / error) ** (1.0 / 7.0)))
             continue
         # Newton's method fails even in the shortest step, as across a jump: explicit steps pass it.
         if error >= FAILED:
-            crawl(law, slip, place, scale, (begin + at, 0.5 * step), now, work[1])
-            middle = begin + at + 0.5 * step
-            crawl(law, slip, place, scale, (middle, 0.5 * step), now + work[1].gain[STAGES - 1], work[2])
+            _euler_halves(bristle, place, (first, step), now, work)
             error = accuracy
-        idle = 0
-        # The two halves are more accurate than the whole step and become the panels.
-        for half in range(2):
-            piece = work[1 + half]
-            _note(law, slip, stretch, (begin + at + 0.5 * half * step, 0.5 * step), z + gained, piece, out, n)
-            gained = gained + piece.gain[STAGES - 1]
-            _times(piece.carry, carry)
-            n += 1
-        at += step
-        if turns:
-            scale = _switched(law, slip, place, begin + at, scale, radius, z + gained, carry)
+        gained = _write_halves(bristle, place, (first, step), (z, gained), (work, carry), out)
+        at, idle = at + step, 0
+        if ends:
+            bristle = _other_mode(bristle, radius, place, stretch.begin + at, z + gained, carry)
         if stretch.length - at <= 1e-15 * stretch.length:
             row, at = row + 1, 0.0
-        step = step * min(3.0, 0.8 * (accuracy / max(error, 1e-300)) ** (1.0 / 7.0)) if not turns else 1e-2
-    n = n if row == stretches.shape[0] else 0
+        step = step * min(3.0, 0.8 * (accuracy / max(error, 1e-300)) ** (1.0 / 7.0)) if not ends else 1e-2
+    n = out.filled[0] if row == stretches.shape[0] else 0
     return gained, carry, out.start[:n], out.width[:n], out.slip[:n], out.deflection[:n], out.friction[:n]

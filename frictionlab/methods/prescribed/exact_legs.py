@@ -167,7 +167,7 @@ def _edges(law: Any, legs: Legs, z: float, side: float, longest: float, edges: A
 
 
 @njit
-def follow(law: Any, legs: Legs) -> Any:
+def closed_legs(law: Any, legs: Legs) -> Any:
     """The closed loop on its panels, as arrays [panels] and [panels, nodes].
 
     Returns starts and widths of the panels (angles after the start of the forward leg), slip velocity, deflection

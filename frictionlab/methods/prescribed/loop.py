@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frictionlab.laws.memory import BristleLaw
 from frictionlab.quantities import Floats
 
 Vectors = NDArray[np.complex128]
@@ -72,3 +73,9 @@ class Open(NamedTuple):
     high: float
     reason: str
     seconds: float = 0.0
+
+    @classmethod
+    def up_to(cls, law: BristleLaw, deflection: float, reason: str) -> Open:
+        """The mean is the friction of a constant deflection, any up to this one."""
+        most = abs(law.friction(0.0, deflection, 0.0))
+        return cls(-most, most, reason)

@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 
 from frictionlab.compile.cache import compiled, timed
+from frictionlab.compile.dispatch import interpreted
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.periodic.attraction import begin, iterate_until_periodic
+from frictionlab.methods.periodic.attraction import iterate_until_periodic, write_start
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
-from frictionlab.methods.periodic.problem import remembered
-from frictionlab.methods.prescribed.motion import Found
+from frictionlab.methods.periodic.period_map import size_of
+from frictionlab.methods.prescribed.motion import PrescribedMean
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, Motion
@@ -41,9 +42,8 @@ class MemoryPoint:
         moves = self.belt_speed != 0.0 or self.motion.velocity != 0 or self.motion.transverse_velocity != 0
         self.found = self._answer(tolerance) if moves else self._left_open([], "no slip")
 
-    def _answer(self, tolerance: float) -> Found:
-        directions = 2 if isinstance(self.like, complex) else 1
-        guess = np.zeros((1, 2 * directions + remembered(self.law, directions)))
+    def _answer(self, tolerance: float) -> PrescribedMean:
+        guess = np.zeros((1, interpreted(size_of)(self.law, self.like)))
         self.goal = Goal(tolerance, False, True)
         curve = self._called(guess, DIFFERENTIATED)
         multiplier = float(np.abs(np.linalg.eigvals(curve.matrices[0])).max())
@@ -51,36 +51,36 @@ class MemoryPoint:
             return self._followed(guess[0])
         self.curve = curve
         mean, across, error = curve.results[0, :3]
-        return Found(complex(mean, across), error)
+        return PrescribedMean(complex(mean, across), error)
 
     def _called(self, states: Floats, wanted: Wanted) -> Curve:
         arguments: tuple[Any, ...] = self.body, np.array([self.belt_speed]), states, self.goal, wanted
-        curve, seconds = timed(compiled(answer_curve, self.law), *arguments, self.like)
+        curve, seconds = timed(compiled(answer_curve, self.law), *arguments)
         self.seconds += seconds
         return curve
 
-    def _followed(self, state: Floats) -> Found:
+    def _followed(self, state: Floats) -> PrescribedMean:
         """Where the memory goes from rest, and from steady sliding in either direction."""
         means = []
         swing = abs(self.motion.velocity) + abs(self.motion.transverse_velocity) + abs(self.belt_speed)
         for side in (0.0, 1.0, -1.0):
             start = 0.0 * self.like, 0.0 * self.like, side * swing + 0.0 * self.like
-            compiled(begin, self.law)(self.body, start, state)
+            compiled(write_start, self.law)(self.body, start, state)
             each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(state)))
             states[0] = state
             accuracy = 1e-6 * self.motion.normal_load
-            arguments: tuple[Any, ...] = self.body, self.belt_speed, accuracy, each, states, self.like
+            arguments: tuple[Any, ...] = self.body, self.belt_speed, accuracy, each, states
             (_repeats, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
             self.seconds += seconds
             means.append(each[count - 1])
         return self._left_open(means, "the memory does not converge from different starts")
 
-    def _left_open(self, means: list[float], reason: str) -> Found:
+    def _left_open(self, means: list[float], reason: str) -> PrescribedMean:
         self.status, self.error_kind = "not_unique", ""
         most = friction_at_rest(self.law)
         self.reason = f"{reason}: the mean depends on the start"
         low, high = (min(means), max(means)) if means else (-most, most)
-        return Found(low=low, high=high)
+        return PrescribedMean(low=low, high=high)
 
     def orbit(self) -> Orbit | None:
         """One period of the prescribed motion, and the friction along it."""

@@ -12,13 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.cache import compiled, timed
-from frictionlab.dynamics.radau_panel import NODES, WEIGHTS, Scale, Slip
+from frictionlab.dynamics.radau_panel import NODES, WEIGHTS, Oscillation, Scale
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.prescribed.deflection_path import follow_period
 from frictionlab.methods.prescribed.loop import Closed, Loop, Open
-from frictionlab.quantities import Floats
+from frictionlab.quantities import EPSILON, Floats
 
-EPSILON = 2.0**-52
 POINTS: Floats = np.concatenate(([0.0], NODES))
 SHARES: Floats = np.concatenate(([0.0], WEIGHTS))
 MOST_PERIODS = 80
@@ -37,7 +36,7 @@ class Accuracy(NamedTuple):
 
     @classmethod
     def of(
-        cls, law: BristleLaw, slip: Slip, belt_speed: float, tolerance: float, circle: float = -1.0
+        cls, law: BristleLaw, slip: Oscillation, belt_speed: float, tolerance: float, circle: float = -1.0
     ) -> Accuracy:
         """For this slip; what a soft contact changes in a period decides where it settles, so steps resolve that."""
         speed = abs(slip.along) + abs(slip.across) + abs(belt_speed)
@@ -79,7 +78,9 @@ def layer(law: BristleLaw, frequency: float, speed: Callable[[float], float]) ->
     return angle
 
 
-def followed(law: BristleLaw, slip: Slip, stretches: Floats, accuracy: Accuracy, start: Any) -> Closed | Open:
+def closed_deflection(
+    law: BristleLaw, slip: Oscillation, stretches: Floats, accuracy: Accuracy, start: Any
+) -> Closed | Open:
     """The closed loop, followed twice, the second time with steps fifty times more exact.
 
     The error is twice what that changes, what may be left of the closing, and what a step of the second time may be
@@ -116,7 +117,7 @@ class _Closing:
     """The search for a deflection that repeats."""
 
     def __init__(
-        self, law: BristleLaw, slip: Slip, stretches: Floats, scale: Scale, exactness: float
+        self, law: BristleLaw, slip: Oscillation, stretches: Floats, scale: Scale, exactness: float
     ) -> None:
         self.kernel = compiled(follow_period, law)
         self.given = slip, stretches, scale, exactness

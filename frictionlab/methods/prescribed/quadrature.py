@@ -12,16 +12,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.dynamics.motion import SLIP_ROUNDING
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.prescribed.motion import (
+    SlowPassage,
+    between_passages,
+    displacement,
     slow_passages,
+    velocity,
 )
 from frictionlab.orbit.panels import NODES, WEIGHTS
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Motion
 
-EPSILON = 2.0**-52
 CLOSEST = 1e-16
 """Angle [rad] at which the refinement towards a passage through rest ends: rounding of the angle itself."""
 
@@ -35,19 +39,12 @@ class Integrals(NamedTuple):
     direction: complex
 
 
-def belt_friction_at_rest(law: FrictionLaw) -> float:
-    return law.static_friction() if isinstance(law, SlidingLaw) else law.sliding_friction(0.0)
-
-
 def orbit_of_slip(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:
     """One period of a harmonic motion about a mean position, and the friction along it."""
     edges = np.concatenate((slip_edges(motion, belt_speed), _reversals(motion, belt_speed)))
     angle, _ = nodes(np.unique(np.concatenate(([0.0, 2.0 * math.pi], edges % (2.0 * math.pi)))))
-    v, turn = velocity(motion, angle), np.exp(1j * angle)
-    x = -((motion.velocity * turn).real + 1j * (motion.transverse_velocity * turn).real) / motion.frequency
-    slip = np.where(
-        np.abs(v - belt_speed) <= 1e-15 * np.abs(v), 0.0, v - belt_speed
-    )  # a rounding has no direction
+    v, x = velocity(motion, angle), displacement(motion, angle)
+    slip = np.where(np.abs(v - belt_speed) <= SLIP_ROUNDING * np.abs(v), 0.0, v - belt_speed)
     friction = sliding_vectors(law, slip)
     return Orbit(angle / motion.frequency, position + x, v, friction, np.zeros(len(angle), np.bool_))
 
@@ -66,12 +63,10 @@ def slip_edges(motion: Motion, belt_speed: float) -> Floats:
     return graded_circle(slow_passages(motion.velocity, motion.transverse_velocity, belt_speed))
 
 
-def graded_circle(passages: list[tuple[float, float]]) -> Floats:
+def graded_circle(passages: list[SlowPassage]) -> Floats:
     """Panel edges once around, from the first passage on, refined geometrically towards each."""
-    places = sorted((angle % (2.0 * math.pi), depth) for angle, depth in passages) or [(0.0, math.inf)]
-    following = [*places[1:], (places[0][0] + 2.0 * math.pi, places[0][1])]
     pieces = []
-    for (here, depth), (there, next_depth) in zip(places, following, strict=True):
+    for (here, depth), (there, next_depth) in between_passages(passages, math.inf):
         half = 0.5 * (there - here)
         pieces += [here + _graded(half, depth), (there - _graded(half, next_depth))[::-1]]
     return np.unique(np.concatenate(pieces))
@@ -95,12 +90,6 @@ def nodes(edges: Floats) -> tuple[Floats, Floats]:
     """Gauss-Lobatto nodes and weights of every panel."""
     half = 0.5 * np.diff(edges)[:, None]
     return edges[:-1, None] + half * (1.0 + NODES), half * WEIGHTS
-
-
-def velocity(motion: Motion, angle: Floats) -> NDArray[np.complex128]:
-    """x1' + i x2' at these angles of the period."""
-    turn = np.exp(1j * angle)
-    return (motion.velocity * turn).imag + 1j * (motion.transverse_velocity * turn).imag
 
 
 def sliding_vectors(law: FrictionLaw, slip: NDArray[np.complex128]) -> NDArray[np.complex128]:

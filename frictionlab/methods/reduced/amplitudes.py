@@ -10,7 +10,7 @@ import numpy as np
 
 from frictionlab.compile.cache import compiled
 from frictionlab.laws.memory import BristleLaw
-from frictionlab.methods.reduced.contact import Contact, Harmonics, harmonic_friction
+from frictionlab.methods.reduced.contact import HarmonicContact, Harmonics, harmonic_friction
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 
@@ -108,9 +108,9 @@ class _Reader:
         return (abs(self.mass.force) + friction) / abs(self.impedance)
 
 
-def contact_of(law: BristleLaw) -> Contact:
+def contact_of(law: BristleLaw) -> HarmonicContact:
     """How kernels follow a law."""
-    return Contact(float(law.exact_path()), law.largest_deflection())
+    return HarmonicContact(float(law.exact_path()), law.largest_deflection())
 
 
 def _dips(reader: _Reader, amplitudes: Floats, excess: Floats) -> list[float]:

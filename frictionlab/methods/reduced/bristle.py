@@ -18,6 +18,7 @@ import numpy as np
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Answers
 from frictionlab.methods.prescribed.bristle import BristlePoint
+from frictionlab.methods.prescribed.memory import FORGETS
 from frictionlab.methods.reduced.amplitudes import Balance, balances
 from frictionlab.methods.reduced.common import ROUNDING, Modelled, judged
 from frictionlab.methods.reduced.full_mean import full_mean
@@ -27,8 +28,6 @@ from frictionlab.scene.scene import Scene, Slip
 from frictionlab.theory import friction_free_velocity
 
 TEXT = "one harmonic of x1' and of the bristles' friction balanced, friction averaged over the harmonic slip"
-FORGETS = 1.0 - 1e-6
-"""Largest multiplier of a disturbance of the deflection over a period for a unique loop."""
 STEADY = 0.98
 """Largest Floquet multiplier of a motion of one drive period that counts as stable."""
 TOLERANCE = 1e-9

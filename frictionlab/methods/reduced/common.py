@@ -15,8 +15,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.exact.method import REDUCED
 from frictionlab.methods.prescribed.quadrature import orbit_of_slip
 from frictionlab.methods.reduced.bounds import Line, bounds
 from frictionlab.methods.reduced.full_mean import full_mean
@@ -27,9 +28,6 @@ from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity
 
-REDUCED = (
-    " (one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law)"
-)
 WIDEST = 0.25
 """Distance of bounds on the mean, relative to the friction coefficient, above which they are narrowed."""
 ROUNDING = 1e-10
@@ -66,7 +64,7 @@ def line_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
         return f"{name} needs a drive: it starts from the driven motion"
     if not scene.load_along_belt_only:
         return suggest_shooting(f"{name} works along one line: this scene has a transverse load", scene, law)
-    if not isinstance(law, SlidingLaw):
+    if law.memory_kind != "none":
         return f"{name} needs friction without memory (Coulomb)"
     if not law.constant_sliding_friction():
         return f"{name} needs friction that does not vary with speed (Coulomb)"
@@ -99,7 +97,6 @@ def answer_line(
     speeds = np.array([scene.belt_speed for scene in scenes])
     found = model(scenes[0], friction, np.abs(speeds))
     free = friction_free_velocity(scenes[0])
-    assert isinstance(law, SlidingLaw)
     low, high = bounds(Line(0.5 * mass.damping, mass.frequency, friction, free), np.abs(speeds))
     for i in np.flatnonzero(high - low > WIDEST).tolist():
         low[i], high[i] = _narrowed(scenes[i], law, low[i], high[i])
@@ -118,7 +115,7 @@ def answer_line(
     return judged(Modelled(mean, error, seconds), reasons, text, tolerance, orbit)
 
 
-def _narrowed(scene: Scene, law: SlidingLaw, low: float, high: float) -> tuple[float, float]:
+def _narrowed(scene: Scene, law: FrictionLaw, low: float, high: float) -> tuple[float, float]:
     """Bounds too far apart, narrowed to the mean of the full problem, where it is known."""
     if scene.damping_ratio == 0.0 or scene.belt_speed == 0.0:
         return low, high

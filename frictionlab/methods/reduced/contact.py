@@ -18,7 +18,7 @@ import numpy as np
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.dynamics import radau_panel
 from frictionlab.dynamics.contact import resistance
-from frictionlab.dynamics.radau_panel import STAGES
+from frictionlab.dynamics.radau_panel import STAGES, eliminate
 from frictionlab.quantities import Floats
 
 NODES: Floats = 2.0 * radau_panel.NODES - 1.0
@@ -41,11 +41,27 @@ SETTLING = 8.0
 """Path after a reversal within which bristles yield [largest deflections]."""
 
 
-class Contact(NamedTuple):
+class HarmonicContact(NamedTuple):
     """Whether the exact path of the law is used (1 or 0), and its largest deflection [scene length]."""
 
     exact: float
     size: float
+
+
+class LineBristle(NamedTuple):
+    """A law, whether its exact path is used (1 or 0), and its largest deflection [scene length]."""
+
+    law: Any
+    exact: float
+    size: float
+
+
+class SlipPanels(NamedTuple):
+    """Panels of a period: half widths [time], slip and angle at their nodes [panels, STAGES]."""
+
+    half: Any
+    slip: Any
+    angle: Any
 
 
 class Harmonics(NamedTuple):
@@ -58,39 +74,6 @@ class Harmonics(NamedTuple):
     cosine: float
     sign_changes: float
     multiplier: float
-
-
-@inner
-def _solved(matrix: Any, right: Any) -> None:
-    """Gaussian elimination with row pivoting: ``right`` [n, columns] becomes the solution, ``matrix`` is changed."""
-    n, columns = right.shape
-    for k in range(n):
-        best = k
-        for i in range(k + 1, n):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
-        _swapped(matrix, k, best, n)
-        _swapped(right, k, best, columns)
-        for i in range(k + 1, n):
-            share = matrix[i, k] / matrix[k, k]
-            if share != 0.0:
-                for j in range(k, n):
-                    matrix[i, j] = matrix[i, j] - share * matrix[k, j]
-                for j in range(columns):
-                    right[i, j] = right[i, j] - share * right[k, j]
-    for column in range(columns):
-        for k in range(n - 1, -1, -1):
-            for j in range(k + 1, n):
-                right[k, column] = right[k, column] - matrix[k, j] * right[j, column]
-            right[k, column] = right[k, column] / matrix[k, k]
-
-
-@inner
-def _swapped(matrix: Any, one: int, other: int, columns: int) -> None:
-    for j in range(columns):
-        kept = matrix[one, j]
-        matrix[one, j] = matrix[other, j]
-        matrix[other, j] = kept
 
 
 @inner
@@ -116,62 +99,65 @@ def _straight(law: Any, last: float, half: float, slip: Any, z: float, deflectio
 
 
 @inner
-def _collocated(
-    law: Any, half: float, slip: Any, z: float, size: float, work: Any, right: Any, found: Any
-) -> float:
-    """The deflections at the nodes of a panel by collocation, with Newton's method."""
-    small, at, node = 1e-7 * size, z, -1.0
-    for k in range(STAGES):  # first guess: linearly implicit Euler steps from node to node
+def _collocated(bristle: Any, half: float, slip: Any, z: float, room: Any, deflections: Any) -> float:
+    """The deflections at the nodes of a panel by collocation, with Newton's method; room: matrix and right side."""
+    law, (matrix, right) = bristle.law, room
+    # Differences are of this length: rounding of a deflection is far below it, and no law bends within it.
+    small, at, node = 1e-7 * bristle.size, z, -1.0
+    # First guess: linearly implicit Euler steps from node to node, which no stiffness makes unstable.
+    for k in range(STAGES):
         time = half * (NODES[k] - node)
         rate = law.rate(slip[k], at)
         slope = min((law.rate(slip[k], at + small) - rate) / small, 0.0)
         at = at + time * rate / (1.0 - time * slope)
-        found[k], node = at, NODES[k]
+        deflections[k], node = at, NODES[k]
     for _ in range(MOST_CORRECTIONS):
         # Residual z + half * INTEGRAL rate(found) - found, and its Jacobian with difference quotients of the rate.
         for i in range(STAGES):
-            right[i, 0] = z - found[i]
+            right[i, 0] = z - deflections[i]
         for j in range(STAGES):
-            rate = law.rate(slip[j], found[j])
-            slope = (law.rate(slip[j], found[j] + small) - rate) / small
+            rate = law.rate(slip[j], deflections[j])
+            slope = (law.rate(slip[j], deflections[j] + small) - rate) / small
             for i in range(STAGES):
                 right[i, 0] = right[i, 0] + half * INTEGRAL[i, j] * rate
-                work[i, j] = -half * INTEGRAL[i, j] * slope
-            work[j, j] = work[j, j] + 1.0
-        _solved(work, right)
-        moved = 0.0
+                matrix[i, j] = -half * INTEGRAL[i, j] * slope
+            matrix[j, j] = matrix[j, j] + 1.0
+        eliminate(matrix, right)
+        change = 0.0
         for i in range(STAGES):
-            found[i] = found[i] + right[i, 0]
-            moved = max(moved, abs(right[i, 0]))
-        if not moved > 1e-12 * size:
+            deflections[i] = deflections[i] + right[i, 0]
+            change = max(change, abs(right[i, 0]))
+        # Converged, or not a number: neither gets better by another correction.
+        if not change > 1e-12 * bristle.size:
             break
-    return found[STAGES - 1]
+    return deflections[STAGES - 1]
 
 
 @inner
-def _period(law: Any, contact: Any, halves: Any, slip: Any, z: float, deflections: Any, count: int) -> float:
+def _period(bristle: LineBristle, panels: SlipPanels, z: float, deflections: Any, count: int) -> float:
     """The deflections at the nodes of ``count`` panels, starting from z; returns the deflection at the end."""
-    work, right = np.empty((STAGES, STAGES)), np.empty((STAGES, 1))
-    last = slip[count - 1, STAGES - 1]
+    room = np.empty((STAGES, STAGES)), np.empty((STAGES, 1))
+    last = panels.slip[count - 1, STAGES - 1]
     for p in range(count):
-        if contact.exact > 0.0:
-            z = _straight(law, last, halves[p], slip[p], z, deflections[p])
+        half, slip = panels.half[p], panels.slip[p]
+        if bristle.exact > 0.0:
+            z = _straight(bristle.law, last, half, slip, z, deflections[p])
         else:
-            z = _collocated(law, halves[p], slip[p], z, contact.size, work, right, deflections[p])
-        last = slip[p, STAGES - 1]
+            z = _collocated(bristle, half, slip, z, room, deflections[p])
+        last = slip[STAGES - 1]
     return z
 
 
 @inner
-def _closed(law: Any, contact: Any, halves: Any, slip: Any, deflections: Any, count: int) -> float:
+def _closed(bristle: LineBristle, panels: SlipPanels, deflections: Any, count: int) -> float:
     """Find periodic deflections by a bracketed secant method; returns the multiplier of a disturbance."""
     # Solutions of a scalar equation never cross, so end - z has one sign below the fixed point and the other above
     # it.
-    size = contact.size
+    size = bristle.size
     low, high, z = -size, size, 0.0
     last, last_gap, slope = math.nan, math.nan, 0.0
     for step in range(MOST_CLOSINGS):
-        end = _period(law, contact, halves, slip, z, deflections, count)
+        end = _period(bristle, panels, z, deflections, count)
         gap = end - z
         if z != last and step > 0:
             slope = (gap - last_gap) / (z - last)
@@ -249,64 +235,89 @@ def _corner(law: Any, z: float, side: float, start: float, end: float, reach: An
 
 
 @inner
-def _laid(edges: Any, count: int, reach: Any, halves: Any, slip: Any, angles: Any) -> None:
+def _lay_panels(edges: Any, count: int, reach: Any, panels: SlipPanels) -> None:
     """Write half widths, angles and slip at the nodes of the panels between these edges."""
     amplitude, belt_speed, frequency = reach
     for p in range(count - 1):
         half = 0.5 * (edges[p + 1] - edges[p])
-        halves[p] = half / frequency
+        panels.half[p] = half / frequency
         for k in range(STAGES):
-            angles[p, k] = edges[p] + half * (1.0 + NODES[k])
-            slip[p, k] = amplitude * math.sin(angles[p, k]) - belt_speed
+            panels.angle[p, k] = edges[p] + half * (1.0 + NODES[k])
+            panels.slip[p, k] = amplitude * math.sin(panels.angle[p, k]) - belt_speed
+
+
+@inner
+def _first_panel(size: float, reach: Any) -> tuple[float, float]:
+    """The angle of the first reversal, or else of the largest slip speed, and the width of the panel there."""
+    amplitude, belt_speed, frequency = reach
+    if amplitude > belt_speed:
+        # From the path amplitude*angle^2/2 of slip after a reversal and the largest deflection.
+        turn = math.asin(belt_speed / amplitude)
+        pace = amplitude * math.cos(turn) / frequency
+        least = 0.25 * math.sqrt(2.0 * size / max(pace, 1e-300))
+        return turn, max(FINEST, min(least, 0.125 * (math.pi - 2.0 * turn), COARSEST))
+    # Without a reversal, from the width of the minimum of slip.
+    least = COARSEST
+    if amplitude > 0.0:
+        least = max(FINEST, min(COARSEST, math.sqrt(2.0 * (belt_speed / amplitude - 1.0))))
+    return 0.5 * math.pi, least
+
+
+@inner
+def _find_corners(law: Any, edges: Any, count: int, reach: Any, deflections: Any, corners: Any) -> float:
+    """Write the angles from which friction of an exact path is constant; return the deflection at the first reversal.
+
+    The deflection is known at both reversals: that at the first is the one at the end of the period.
+    """
+    turn = edges[0]
+    there, end, back = math.pi - turn, turn + 2.0 * math.pi, 0.0
+    for p in range(count - 1):
+        if edges[p + 1] == there:
+            back = deflections[p, STAGES - 1]
+    start = deflections[count - 2, STAGES - 1]
+    corners[0] = _corner(law, start, 1.0, turn, there, reach)
+    corners[1] = _corner(law, back, -1.0, there, end, reach)
+    return start
+
+
+@inner
+def _harmonics(law: Any, frequency: float, panels: SlipPanels, deflections: Any, count: int) -> Any:
+    """Mean, coefficients of sin(theta) and cos(theta), and sign changes of friction over these panels."""
+    mean, sine, cosine, changes, last = 0.0, 0.0, 0.0, 0.0, 0.0
+    for p in range(count):
+        for k in range(STAGES):
+            angle = panels.angle[p, k]
+            _, friction = resistance(law, panels.slip[p, k], deflections[p, k])
+            share = WEIGHTS[k] * panels.half[p] * frequency / (2.0 * math.pi)
+            mean = mean + share * friction
+            sine = sine + 2.0 * share * friction * math.sin(angle)
+            cosine = cosine + 2.0 * share * friction * math.cos(angle)
+            changes = changes + (1.0 if last * friction < 0.0 else 0.0)
+            last = friction if friction != 0.0 else last
+    # From the last node around to the first.
+    _, first = resistance(law, panels.slip[0, 0], deflections[0, 0])
+    return mean, sine, cosine, changes + (1.0 if last * first < 0.0 else 0.0)
 
 
 @njit
 def harmonic_friction(law: Any, contact: Any, amplitude: float, belt_speed: float, frequency: float) -> Any:
     """Harmonics of friction over the slip amplitude*sin(theta) - belt_speed, belt_speed >= 0; see Harmonics."""
-    reach = (amplitude, belt_speed, frequency)
-    reverses = amplitude > belt_speed
-    # turn: the angle of the first reversal. least: the panel there, from the path amplitude*angle^2/2 of slip after a
-    # reversal and the largest deflection; without a reversal, from the width of the minimum of slip.
-    turn, least = 0.5 * math.pi, COARSEST
-    if reverses:
-        turn = math.asin(belt_speed / amplitude)
-        pace = amplitude * math.cos(turn) / frequency
-        least = 0.25 * math.sqrt(2.0 * contact.size / max(pace, 1e-300))
-        least = max(FINEST, min(least, 0.125 * (math.pi - 2.0 * turn), COARSEST))
-    elif amplitude > 0.0:
-        least = max(FINEST, min(COARSEST, math.sqrt(2.0 * (belt_speed / amplitude - 1.0))))
+    bristle, reach = LineBristle(law, contact.exact, contact.size), (amplitude, belt_speed, frequency)
+    turn, least = _first_panel(contact.size, reach)
     yielding = contact.size if contact.exact == 0.0 else 0.0
     edges, corners = np.empty(MOST_PANELS + 1), np.array([-math.inf, -math.inf])
+    shape = (MOST_PANELS + 1, STAGES)
+    panels, deflections = SlipPanels(np.empty(shape[0]), np.empty(shape), np.empty(shape)), np.empty(shape)
     count = _edges(turn, reach, least, yielding, corners, edges)
-    halves, shape = np.empty(MOST_PANELS + 1), (MOST_PANELS + 1, STAGES)
-    slip, angles, deflections = np.empty(shape), np.empty(shape), np.empty(shape)
-    _laid(edges, count, reach, halves, slip, angles)
-    multiplier = _closed(law, contact, halves, slip, deflections, count - 1)
+    _lay_panels(edges, count, reach, panels)
+    multiplier = _closed(bristle, panels, deflections, count - 1)
     # Friction of an exact path may have a corner where it saturates: with the deflections at both reversals known,
     # the corners are located and become edges, and the period is computed once more.
-    if reverses and contact.exact > 0.0:
-        there, end = math.pi - turn, turn + 2.0 * math.pi
-        back = 0.0
-        for p in range(count - 1):
-            if edges[p + 1] == there:
-                back = deflections[p, STAGES - 1]
-        start = deflections[count - 2, STAGES - 1]
-        corners[0] = _corner(law, start, 1.0, turn, there, reach)
-        corners[1] = _corner(law, back, -1.0, there, end, reach)
+    if amplitude > belt_speed and contact.exact > 0.0:
+        start = _find_corners(law, edges, count, reach, deflections, corners)
         if max(corners[0], corners[1]) > -math.inf:
             count = _edges(turn, reach, least, yielding, corners, edges)
-            _laid(edges, count, reach, halves, slip, angles)
-            _period(law, contact, halves, slip, start, deflections, count - 1)
-    mean, sine, cosine, changes, last = 0.0, 0.0, 0.0, 0.0, 0.0
-    for p in range(count - 1):
-        for k in range(STAGES):
-            _, friction = resistance(law, slip[p, k], deflections[p, k])
-            share = WEIGHTS[k] * halves[p] * frequency / (2.0 * math.pi)
-            mean = mean + share * friction
-            sine = sine + 2.0 * share * friction * math.sin(angles[p, k])
-            cosine = cosine + 2.0 * share * friction * math.cos(angles[p, k])
-            changes = changes + (1.0 if last * friction < 0.0 else 0.0)
-            last = friction if friction != 0.0 else last
-    _, first = resistance(law, slip[0, 0], deflections[0, 0])
-    changes = changes + (1.0 if last * first < 0.0 else 0.0)
+            _lay_panels(edges, count, reach, panels)
+            _period(bristle, panels, start, deflections, count - 1)
+    mean, sine, cosine, changes = _harmonics(law, frequency, panels, deflections, count - 1)
     return mean, sine, cosine, changes, multiplier

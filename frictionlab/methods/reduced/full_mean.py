@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from frictionlab.laws.base import SlidingLaw
-from frictionlab.laws.memory import BristleLaw
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.quantities import Floats
@@ -29,7 +28,7 @@ class FullMean(NamedTuple):
     reason: str
 
 
-def full_mean(scene: Scene, law: SlidingLaw | BristleLaw) -> FullMean:
+def full_mean(scene: Scene, law: FrictionLaw) -> FullMean:
     """By the exact method where it takes the scene, else by shooting."""
     method = Exact() if Exact().refusal(scene, law) is None else Shooting()
     free = scene.model_copy(update={"initial": None, "dimensional": None})

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import ClassVar
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Answers, Method
 from frictionlab.methods.reduced.bristle import answer_bristle, bristle_refusal
 from frictionlab.methods.reduced.common import Harmonic, answer_line, line_refusal
@@ -45,24 +44,18 @@ class HarmonicBalance(Method):
         if scene.degrees_of_freedom == 0:
             reason = "harmonic_balance needs a mass: with a prescribed slip there is no motion to solve for"
             return suggest_shooting(reason, scene, law)
-        if isinstance(law, BristleLaw):
-            return bristle_refusal(self.name, scene, law)
-        return line_refusal(self.name, scene, law)
+        return _balance(law).refusal(self.name, scene, law)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
-        if isinstance(law, BristleLaw):
-            return answer_bristle(scenes, law, tolerance)
-        return answer_line(scenes, law, tolerance, TEXT, one_harmonic)
+        return _balance(law).answer(scenes, law, tolerance)
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Two root searches on whole arrays; slow drives need more samples to be sure of the reversals.
 
         With bristles a search for every amplitude that balances, and shooting.
         """
-        if isinstance(law, BristleLaw):
-            return 4e-2
-        return 5e-5 * max(1.0, 1.0 / scene.frequency)
+        return _balance(law).cost(scene)
 
 
 def one_harmonic(scene: Scene, friction: float, belt_speeds: Floats) -> Harmonic:
@@ -95,3 +88,23 @@ def _reversal(scene: Scene, friction: float, belt_speeds: Floats) -> Floats:
     size = np.ones(len(belt_speeds))
     angle = monotone_root(excess, 0.0 * size, widest * size, belt_speeds)
     return np.where(belt_speeds == 0.0, 0.5 * math.pi, angle)
+
+
+class _Balance(NamedTuple):
+    """One harmonic balanced for a kind of law."""
+
+    refusal: Callable[[str, Scene, Any], str | None]
+    answer: Callable[[Sequence[Scene], Any, float], Answers]
+    cost: Callable[[Scene], float]
+
+
+_OF_COULOMB = _Balance(
+    line_refusal,
+    lambda scenes, law, tolerance: answer_line(scenes, law, tolerance, TEXT, one_harmonic),
+    lambda scene: 5e-5 * max(1.0, 1.0 / scene.frequency),
+)
+_OF_BRISTLES = _Balance(bristle_refusal, answer_bristle, lambda _scene: 4e-2)
+
+
+def _balance(law: FrictionLaw) -> _Balance:
+    return _OF_BRISTLES if law.memory_kind == "bristle" else _OF_COULOMB

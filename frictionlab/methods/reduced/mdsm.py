@@ -10,10 +10,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method
 from frictionlab.methods.prescribed.method import solve_prescribed
-from frictionlab.methods.prescribed.quadrature import EPSILON, integrals, slip_edges
+from frictionlab.methods.prescribed.quadrature import integrals, slip_edges
 from frictionlab.methods.reduced.common import (
     ROUNDING,
     Harmonic,
@@ -25,7 +25,7 @@ from frictionlab.methods.reduced.common import (
 )
 from frictionlab.methods.reduced.full_mean import full_mean
 from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import Floats
+from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import (
@@ -34,6 +34,7 @@ from frictionlab.theory import (
     mean_prescribed_longitudinal,
     mean_prescribed_transverse,
 )
+from frictionlab.theory.rest import friction_at_rest
 
 ALONG = "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)"
 PLANE = "direct separation of motion: quadrature over the friction-free motion"
@@ -54,7 +55,7 @@ class Mdsm(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Friction with memory, no drive, no one steady state; what cannot be bounded is refused by ``solve``."""
-        if not isinstance(law, SlidingLaw):
+        if law.memory_kind != "none":
             return "mdsm needs friction without memory (a sliding law)"
         if scene.degrees_of_freedom == 0:
             return None
@@ -83,7 +84,7 @@ def _in_closed_form(scene: Scene, law: FrictionLaw) -> bool:
     return scene.load_along_belt_only and law.constant_sliding_friction()
 
 
-def _plane_refusal(scene: Scene, law: SlidingLaw) -> str | None:
+def _plane_refusal(scene: Scene, law: FrictionLaw) -> str | None:
     mass = scene.mass()
     damping = [mass.damping] if scene.load_along_belt_only else [mass.damping, mass.transverse_damping]
     if min(damping) == 0.0:
@@ -134,12 +135,11 @@ def _point(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[tuple[comple
     rounding = ROUNDING * found.largest
     if scene.belt_speed == 0.0:
         return (mean, rounding), _at_rest(scene, law)
-    assert isinstance(law, SlidingLaw)
     error, reason = _error(scene, law, mean.real)
     return (mean, rounding + error), reason
 
 
-def _error(scene: Scene, law: SlidingLaw, mean: float) -> tuple[float, str]:
+def _error(scene: Scene, law: FrictionLaw, mean: float) -> tuple[float, str]:
     """The change of the mean because friction changes the motion, or the reason why it is not known."""
     full = full_mean(scene, law)
     return abs(full.mean - mean) + full.error, full.reason
@@ -150,8 +150,7 @@ def _at_rest(scene: Scene, law: FrictionLaw) -> str:
     mass = scene.mass()
     forward = abs(mass.force + 1j * mass.transverse_force)
     backward = abs(mass.force.conjugate() + 1j * mass.transverse_force.conjugate())
-    assert isinstance(law, SlidingLaw)
-    if 0.5 * (forward + backward) > law.static_friction() * mass.normal_load:
+    if 0.5 * (forward + backward) > friction_at_rest(law) * mass.normal_load:
         return ""
     return "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range"
 

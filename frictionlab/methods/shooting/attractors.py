@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -77,17 +79,17 @@ def force_swing(scene: Scene) -> float:
 
 
 def attractors(
-    closer: PeriodicProblem, scene: Scene, candidate: Attractor | None
+    problem: PeriodicProblem, scene: Scene, candidate: Attractor | None
 ) -> tuple[list[Attractor], float]:
     """Where each of the starts leads; and kernel time [s]. The candidate is an orbit already known."""
     known = [candidate] if candidate is not None else []
     reached, seconds = [], 0.0
-    for start in starts(scene, closer.mass.normal_load * friction_at_rest(closer.law)):
-        way = closer.wandered(scene.belt_speed, start, _patience(candidate))
+    for start in starts(scene, problem.mass.normal_load * friction_at_rest(problem.law)):
+        way = problem.wandered(scene.belt_speed, start, _patience(candidate))
         seconds += way.seconds
         found = next((orbit for orbit in known if _arrived(way, orbit)), None)
         if found is None:
-            found, more = _closed(closer, scene, way)
+            found, more = _closed(problem, scene, way)
             known, seconds = [*known, found], seconds + more
         reached.append(found)
     return reached, seconds
@@ -109,14 +111,14 @@ def _arrived(way: Transient, orbit: Attractor) -> bool:
     return bool(np.abs(way.state - state).max() <= 1e-5 * max(1.0, float(np.abs(state).max())))
 
 
-def _closed(closer: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:
+def _closed(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:
     """The orbit at the end of a way, or the spread of what never repeats."""
     seconds = 0.0
     if way.period > 0:
-        curve, period, seconds = _shortest(closer, scene, way)
+        curve, period, seconds = _shortest(problem, scene, way)
         means = way.means[-period:]
         if period > 1 and curve.results[0, 3] > 0.0:
-            means = closer.means(scene.belt_speed, curve.states[0], period)
+            means = problem.means(scene.belt_speed, curve.states[0], period)
         orbit = closed_orbit(curve, means)
         if orbit is not None:
             return orbit, seconds
@@ -124,11 +126,11 @@ def _closed(closer: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attr
     return Attractor(len(way.means), 0, float(last.min()), float(last.max()), None), seconds
 
 
-def _shortest(closer: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Curve, int, float]:
+def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Curve, int, float]:
     """The orbit at the end of a way, and its periods: fewer than seen where the motion was still alternating."""
-    curve, seconds = closer.closed([scene], way.state, way.period)
+    curve, seconds = problem.closed([scene], way.state, way.period)
     for period in [each for each in range(1, way.period) if way.period % each == 0]:
-        shorter, more = closer.closed([scene], curve.states[0], period)
+        shorter, more = problem.closed([scene], curve.states[0], period)
         seconds += more
         if curve.results[0, 3] > 0.0 and shorter.results[0, 3] > 0.0 and _same(shorter, curve):
             return shorter, period, seconds
@@ -140,21 +142,35 @@ def _same(one: Curve, other: Curve) -> bool:
     return bool(np.abs(a - b).max() <= 1e-5 * max(1.0, float(np.abs(b).max())))
 
 
-def told(reached: list[Attractor]) -> str:
-    """A sentence on the steady states that several starts reached."""
-    orbits = [one for one in reached if one.curve is not None]
-    wild = [one for one in reached if one.curve is None]
-    parts = [_orbit_told(one) for one in {(one.period, f"{one.mean:.6g}"): one for one in orbits}.values()]
+class Destination(Protocol):
+    """Where a start led: after how many drive periods the motion repeats (0: never), and its mean over them."""
+
+    @property
+    def period(self) -> int: ...
+    @property
+    def mean(self) -> float: ...
+    @property
+    def low(self) -> float: ...
+    @property
+    def high(self) -> float: ...
+    @property
+    def followed(self) -> int: ...
+
+
+def describe(reached: Sequence[Destination], digits: int = 9) -> str:
+    """A sentence on the steady states that several starts reached, with so many digits of their means."""
+    orbits = {(one.period, f"{one.mean:.6g}"): one for one in reached if one.period > 0}
+    parts = [_describe_orbit(one, digits) for one in orbits.values()]
+    wild = [one.followed for one in reached if one.period == 0]
     if wild:
-        longest = max(one.followed for one in wild)
-        parts.append(f"{len(wild)} of {len(reached)} starts do not repeat within {longest} drive periods")
+        parts.append(f"{len(wild)} of {len(reached)} starts do not repeat within {max(wild)} drive periods")
     return "; ".join(parts)
 
 
-def _orbit_told(orbit: Attractor) -> str:
+def _describe_orbit(orbit: Destination, digits: int) -> str:
     if orbit.period == 1:
-        return f"an orbit of one drive period has a mean of {orbit.mean:.9g}"
+        return f"an orbit of one drive period has a mean of {orbit.mean:.{digits}g}"
     return (
         f"an orbit of {orbit.period} drive periods has means over one from {orbit.low:.6g} to {orbit.high:.6g}, "
-        f"{orbit.mean:.9g} over all"
+        f"{orbit.mean:.{digits}g} over all"
     )

@@ -19,20 +19,19 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.laws.memory import PER_AXIS, BristleLaw
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers
 from frictionlab.methods.periodic.problem import PeriodicProblem, along_the_belt
 from frictionlab.methods.shooting.attractors import multiplier
+from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.orbit.panels import NODES, interpolation_weights
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Drive, Initial, Scene, Transverse
 
-Solver = Callable[[Sequence[Scene], BristleLaw, float], Answers]
-
 APART = "shooting, two degrees of freedom solved separately: per-axis friction does not couple them"
-HELD = "across the belt the bristle is elastic under this load: the mean there depends on the start"
+HELD_ACROSS = "across the belt the bristle is elastic under this load: the mean there depends on the start"
 
 
 class OneAxis(Scene):
@@ -60,18 +59,20 @@ class Across:
     seconds: float
 
 
-def axes_apart(scene: Scene, law: BristleLaw) -> bool:
+def axes_apart(scene: Scene, law: FrictionLaw) -> bool:
     """Whether both axes move, and neither feels the other."""
-    return law.form == PER_AXIS and scene.degrees_of_freedom == 2 and not along_the_belt(scene, law)
+    return (
+        law.planar_form() == "per-axis" and scene.degrees_of_freedom == 2 and not along_the_belt(scene, law)
+    )
 
 
-def solve_apart(solve: Solver, scenes: Sequence[Scene], law: BristleLaw, tolerance: float) -> Answers:
+def solve_apart(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Every answer along the belt, with what there is to tell across it.
 
     A mean along the belt is known whatever happens across: there columns are left empty, with the reason.
     """
-    across = _across(solve, scenes[0], law, tolerance)
-    along = solve([_along(scene) for scene in scenes], law, tolerance)
+    across = _across(scenes[0], law, tolerance)
+    along = solve_driven([_along(scene) for scene in scenes], law, tolerance)
     ok = np.array([status == "ok" for status in along.status])
     reasons = [
         "; ".join(part for part in (reason, across.reason if status == "ok" else "") if part)
@@ -129,9 +130,9 @@ def _turned(scene: Scene) -> OneAxis:
     )
 
 
-def _across(solve: Solver, scene: Scene, law: BristleLaw, tolerance: float) -> Across:
+def _across(scene: Scene, law: FrictionLaw, tolerance: float) -> Across:
     turned = _turned(scene)
-    found = solve([turned], law, tolerance)
+    found = solve_driven([turned], law, tolerance)
     seconds = math.nan if found.seconds is None else float(found.seconds[0])
     if found.status[0] == "ok" and found.error[0] <= tolerance:
         mean, error = float(found.mean[0].real), float(found.error[0])
@@ -146,7 +147,7 @@ def _first(floquet: Callable[[], Floats] | None) -> float:
     return math.nan if floquet is None else float(floquet()[0])
 
 
-def _held(turned: OneAxis, law: BristleLaw, tolerance: float) -> Across | None:
+def _held(turned: OneAxis, law: FrictionLaw, tolerance: float) -> Across | None:
     """The motion of a mass whose bristle only follows it, but for the mean that it is held at; None for any other."""
     if law.elastic_deflection() == 0.0 or turned.own.damping == 0.0:
         return None
@@ -159,7 +160,7 @@ def _held(turned: OneAxis, law: BristleLaw, tolerance: float) -> Across | None:
         math.nan,
         lambda: multiplier(curve),
         lambda: problem.orbits([turned], [curve.states[0]]).one(0),
-        HELD,
+        HELD_ACROSS,
         seconds,
     )
 

@@ -28,8 +28,9 @@ from frictionlab.dynamics.motion import (
     normal_load,
     slip,
 )
-from frictionlab.laws.base import SlidingLaw
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.periodic.case import case_of
 from frictionlab.methods.periodic.continuation import record_orbit
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
@@ -39,6 +40,7 @@ from frictionlab.orbit.record import Orbit
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.scene.body import Body, Mass, on_the_line
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import friction_at_rest
 
 PIECE = 1.0 / 32.0
 """Of 2 pi, the period of the free mass: how far the motion is followed between looks at it."""
@@ -49,20 +51,20 @@ ALWAYS = Instant(0.0, 0.0, 1.0)
 
 
 @inner
-def followed(law: Any, body: Body, belt_speed: float, x: float, v: float, accuracy: float) -> Mapped:
+def flow(law: Any, body: Body, belt_speed: float, x: float, v: float, accuracy: float) -> Mapped:
     """The motion from x, v over the span of the body."""
     return sliding_map(law, body, belt_speed, x, v, accuracy, track_of(0))
 
 
 @inner
-def recorded(law: Any, body: Body, belt_speed: float, x: float, v: float, accuracy: float) -> Track:
+def record_flow(law: Any, body: Body, belt_speed: float, x: float, v: float, accuracy: float) -> Track:
     """The motion from x, v over the span of the body, piece by piece."""
     z = np.empty(size_of(law, x))
     pack(body, z, x, v)
-    return record_orbit(law, body, belt_speed, z, accuracy, track_of(128), x)
+    return record_orbit(case_of(law, body, belt_speed), z, accuracy, track_of(128))
 
 
-class Motion(NamedTuple):
+class PeriodicMotion(NamedTuple):
     """A periodic motion from x, v: its period, mean friction, error and largest multiplier, and what it is."""
 
     x: float
@@ -78,24 +80,24 @@ class NotFound(Exception):
     """No periodic motion; the message says why."""
 
 
-def solve_undriven(scenes: Sequence[Scene], law: SlidingLaw, tolerance: float) -> Answers:
+def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer undriven scenes, each by the state it reaches from its start."""
     numbers = np.full((5, len(scenes)), np.nan)
     mean, error, period, multipliers, seconds = numbers
     status: list[Status] = ["failed"] * len(scenes)
     reason, model, kind = [""] * len(scenes), [""] * len(scenes), [""] * len(scenes)
-    found: dict[int, tuple[_Follower, Motion]] = {}
+    found: dict[int, tuple[_Undriven, PeriodicMotion]] = {}
     for i, scene in enumerate(scenes):
-        follower = _Follower(scene, law, tolerance)
+        undriven = _Undriven(scene, law, tolerance)
         begin = time.perf_counter()
         try:
-            motion = follower.motion()
+            motion = undriven.motion()
         except NotFound as problem:
             reason[i] = str(problem)
             continue
         finally:
             seconds[i] = time.perf_counter() - begin
-        found[i] = follower, motion
+        found[i] = undriven, motion
         status[i], model[i], kind[i] = "ok", f"undriven: {motion.kind}", "estimated"
         mean[i], error[i] = motion.mean, motion.error
         period[i], multipliers[i] = motion.period / TURN, motion.multiplier
@@ -116,11 +118,11 @@ def solve_undriven(scenes: Sequence[Scene], law: SlidingLaw, tolerance: float) -
 
 
 @dataclass(frozen=True)
-class _Follower:
+class _Undriven:
     """An undriven scene and a law, followed through time."""
 
     scene: Scene
-    law: SlidingLaw
+    law: FrictionLaw
     tolerance: float
 
     @cached_property
@@ -143,7 +145,7 @@ class _Follower:
 
     @cached_property
     def _kernel(self) -> Callable[..., Mapped]:
-        return compiled(followed, self.law)
+        return compiled(flow, self.law)
 
     @property
     def _accuracy(self) -> float:
@@ -154,7 +156,7 @@ class _Follower:
         """What one step of the finer motion may cost the mean: two step sizes may agree by chance."""
         return self._accuracy / FINER / self._mass.normal_load + 1e-12
 
-    def motion(self) -> Motion:
+    def motion(self) -> PeriodicMotion:
         """The motion reached from the start. Raises NotFound."""
         if self._speed == 0.0:
             return self._at_rest()
@@ -188,7 +190,7 @@ class _Follower:
 
     # --- the ends ---
 
-    def _ended(self, x: float, v: float, peaks: int) -> Motion | None:
+    def _ended(self, x: float, v: float, peaks: int) -> PeriodicMotion | None:
         """The steady motion that this one is sure to become; now and then, near a peak, the cycle next to it."""
         reach = math.hypot(x - self._deflection(), v)
         if self._conserves() and reach <= abs(self._speed):
@@ -203,18 +205,18 @@ class _Follower:
         """Whether a slip that never reverses keeps the energy of the oscillation."""
         return self._mass.damping == 0.0 and self.law.constant_sliding_friction()
 
-    def _free(self, x: float, v: float) -> Motion:
+    def _free(self, x: float, v: float) -> PeriodicMotion:
         mean = math.copysign(self.law.sliding_friction(1.0), self._speed)
         kind = "a free oscillation in slip, which does not decay without damping"
-        return Motion(x, v, TURN, mean, ROUNDING, 1.0, kind)
+        return PeriodicMotion(x, v, TURN, mean, ROUNDING, 1.0, kind)
 
-    def _at_rest(self) -> Motion:
+    def _at_rest(self) -> PeriodicMotion:
         state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settled(self.scene.start)
         if periods < 0:
             raise NotFound("the mass still approaches rest after the largest number of periods")
         mean = state[0] / self._pressed
         error = 1e-11 * periods + ROUNDING
-        return Motion(
+        return PeriodicMotion(
             state[0],
             0.0,
             math.nan,
@@ -243,10 +245,10 @@ class _Follower:
         slopes = np.diff(friction) / np.diff(speeds)
         return bool((self._pressed * slopes).min() > -self._mass.damping + 1e-9)
 
-    def _sliding(self) -> Motion:
+    def _sliding(self) -> PeriodicMotion:
         speed = self._speed
         mean = math.copysign(self.law.sliding_friction(abs(speed)), speed)
-        return Motion(
+        return PeriodicMotion(
             self._deflection(), 0.0, math.nan, mean, ROUNDING, math.nan, "steady sliding, which attracts"
         )
 
@@ -254,10 +256,10 @@ class _Follower:
     def _release(self) -> float:
         """The deflection at which rest ends."""
         unstretched, _rate, _bend = interpreted(holding_force)(self._body, self.scene.belt_speed, ALWAYS, 0.0)
-        limit = self._pressed * self.law.static_friction()
+        limit = self._pressed * friction_at_rest(self.law)
         return (math.copysign(limit, self._speed) + unstretched) / self._mass.stiffness
 
-    def _stick_slip(self) -> Motion | None:
+    def _stick_slip(self) -> PeriodicMotion | None:
         """From the end of rest to the next; None where the mass does not come to rest again."""
         x, speed = self._release, self._speed
         if self._conserves() and self.law.monotone():
@@ -268,7 +270,7 @@ class _Follower:
         if rough is None or fine is None:
             return None
         error = 2.0 * abs(fine[1] - rough[1]) + self._of_a_step
-        return Motion(
+        return PeriodicMotion(
             x,
             speed,
             fine[0],
@@ -296,7 +298,7 @@ class _Follower:
             y, v = image.y, image.u
         return None
 
-    def _slip_cycle(self, x: float) -> Motion | None:
+    def _slip_cycle(self, x: float) -> PeriodicMotion | None:
         """A cycle that never rests, by Newton's method on the map from peak to peak; None where there is none."""
         for _ in range(12):
             step = 1e-5 * (1.0 + abs(x))
@@ -314,7 +316,7 @@ class _Follower:
             return None
         return self._slip_motion(x, slope)
 
-    def _slip_motion(self, x: float, slope: float) -> Motion:
+    def _slip_motion(self, x: float, slope: float) -> PeriodicMotion:
         (fine, period), (rough, _) = self._next_peak(x, 1e-13), self._next_peak(x, self._accuracy)
         means = [
             interpreted(mean_friction)(self._follow(x, 0.0, period / TURN, accuracy).rubbed, period)
@@ -323,7 +325,7 @@ class _Follower:
         error = (
             2.0 * abs(means[1] - means[0]) + 2.0 * abs(fine - rough) / (1.0 - abs(slope)) + self._of_a_step
         )
-        return Motion(x, 0.0, period, means[0], error, abs(slope), "a cycle of slip without rest")
+        return PeriodicMotion(x, 0.0, period, means[0], error, abs(slope), "a cycle of slip without rest")
 
     def _next_peak(self, x: float, accuracy: float) -> tuple[float, float]:
         """The next largest deflection after one at x, and the time it takes. Raises NotFound."""
@@ -350,12 +352,12 @@ class _Follower:
             at = new
         return image.y, at
 
-    def orbit(self, motion: Motion) -> Orbit:
+    def orbit(self, motion: PeriodicMotion) -> Orbit:
         """The orbit of the motion; of one that stands still, over 2 pi."""
         turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
         body = self._body._replace(periods=turns)
         speed, accuracy = self.scene.belt_speed, self._accuracy / FINER
-        track = compiled(recorded, self.law)(body, speed, motion.x, motion.v, accuracy)
+        track = compiled(record_flow, self.law)(body, speed, motion.x, motion.v, accuracy)
         parts = track.tau, track.x, track.v, track.friction, track.stick
         return Orbit(*(part[: track.filled[0]] for part in parts))
 

@@ -21,7 +21,7 @@ from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.continuation import body_at
 from frictionlab.methods.exact.legs import first_zero
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.exact.return_map import Fixed, mean_error, passage
+from frictionlab.methods.exact.return_map import Fixed, impulse_error, passage
 from frictionlab.orbit.panels import WEIGHTS, interpolation_weights
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
 from frictionlab.theory import (
@@ -257,7 +257,7 @@ def one_period_from(mass, coefficient, belt_speed, x, w):
     body = body_at(mass, coefficient, belt_speed)
     here = passage(body, x, w, 0.0, body.period)
     unit = mass.normal_load * body.period
-    return -here.friction / unit, mean_error(body, Fixed(x, w, here, 0.0, 1)) / unit
+    return -here.friction / unit, impulse_error(body, Fixed(x, w, here, 0.0, 1)) / unit
 
 
 @pytest.mark.parametrize(
@@ -265,7 +265,7 @@ def one_period_from(mass, coefficient, belt_speed, x, w):
 )
 def test_the_error_of_a_period_that_does_not_close_covers_its_mean_and_is_not_absurdly_wide(one):
     rows = np.zeros((1, 9))
-    compiled(curve.solve_curve)(one.mass(), 0.4, np.array([one.belt_speed]), rows)
+    compiled(curve.continue_in_speed)(one.mass(), 0.4, np.array([one.belt_speed]), rows)
     mean, x, w = rows[0, [curve.MEAN, curve.STATE_X, curve.STATE_W]]
     ratios = []
     for angle in np.arange(0.1, 6.0, 0.5):

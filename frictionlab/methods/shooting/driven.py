@@ -1,0 +1,238 @@
+"""The steady states of a driven mass along a curve in belt speed: closed orbits that every start must reach."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.periodic.attraction import MOST_PERIODS
+from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
+from frictionlab.methods.periodic.problem import PeriodicProblem, map_kind
+from frictionlab.methods.shooting.attractors import attractors, closed_orbit, describe, multiplier
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import resting_range, stays_at_rest
+
+Complexes = NDArray[np.complex128]
+
+UNKNOWN = complex(math.nan, math.nan)
+SOLVED = {
+    "none": "",
+    "exact path": "; deflection as a function of the slip path",
+    "bristle": "; mass and bristle solved together (Rodas5P)",
+    "deflections": "; mass and memory solved together (Rodas5P)",
+    "scalars": "; mass and memory solved together (Rodas5P)",
+}
+"""How the period map treats what the law remembers."""
+UNDAMPED = "without damping a free oscillation remains, and the state depends on the start"
+HELD_ELASTICALLY = (
+    "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
+)
+MAY_REST = (
+    "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range; "
+    "give scene.initial to choose a start"
+)
+
+
+def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+    """Answer driven scenes that differ in belt speed alone, by continuation."""
+    states = SteadyStates(scenes, PeriodicProblem(scenes[0], law, tolerance))
+    resting = [i for i, scene in enumerate(scenes) if stays_at_rest(scene, law)]
+    moving = [i for i in range(len(scenes)) if i not in resting]
+    states.close(moving)
+    for i in moving if not states.problem.goal.contracts else ():
+        states.check_attraction(i)
+    for i in resting:
+        states.settle(i)
+    states.judge(tolerance)
+    return states.answers()
+
+
+class SteadyStates:
+    """The steady states of a curve, as far as they are known.
+
+    multipliers: NaN where nothing has asked for them. whole: states have every degree of freedom; along the line
+    multipliers across the belt are left out.
+    """
+
+    def __init__(self, scenes: Sequence[Scene], problem: PeriodicProblem) -> None:
+        n = len(scenes)
+        self.scenes, self.problem = scenes, problem
+        self.status: list[Status] = ["failed"] * n
+        self.reason = [""] * n
+        self.states: list[Floats | None] = [None] * n
+        self.reached = [False] * n
+        self.mean: Complexes = np.full(n, UNKNOWN)
+        self.error, self.low, self.high, self.period, self.multipliers, self.seconds = np.full((6, n), np.nan)
+        self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.like, complex)
+        judged_by_multipliers = not problem.goal.contracts or _undamped(scenes[0])
+        self.wanted = DIFFERENTIATED if judged_by_multipliers else CLOSED
+
+    def close(self, where: list[int], state: Floats | None = None) -> None:
+        """Close the orbits of the scenes at these places, from a known state at the first where there is one."""
+        if not where:
+            return
+        curve, seconds = self.problem.closed([self.scenes[i] for i in where], state, wanted=self.wanted)
+        self.seconds[where] = seconds / len(where)
+        multipliers = _multipliers(curve)
+        for row, i in enumerate(where):
+            self.reached[i] = bool(curve.reached[row])
+            maps, error = curve.results[row, 3], curve.results[row, 2]
+            if maps < 0.0:
+                self.reason[i] = f"no steady state found in {-maps:.0f} period maps (error {error:.1e})"
+            elif _undamped(self.scenes[i]) and multipliers[row] > 1.0 - 1e-6 and not _at_rest(curve, row):
+                self._leave_open(i, UNDAMPED, curve.results[row, 0], curve.results[row, 0])
+            else:
+                self._put(i, curve, row)
+                self.multipliers[i] = multipliers[row]
+
+    def check_attraction(self, i: int) -> None:
+        """Keep an answer that no theorem makes unique only where starts far from it end there."""
+        if self._holds_elastically(i):
+            law: Any = self.problem.law
+            most = abs(law.friction(0.0, law.elastic_deflection(), 0.0))
+            self._clear(i)
+            self._leave_open(i, HELD_ELASTICALLY, -most, most)
+        elif not (self.problem.goal.asks and self._attracts(i)):
+            self._compare_starts(i)
+
+    def settle(self, i: int) -> None:
+        """The state in which a mass that friction can hold comes to rest from scene.initial; else a range."""
+        start = self.scenes[i].initial
+        if start is None:
+            highest = resting_range(self.scenes[i], self.problem.law)
+            self._leave_open(i, MAY_REST, -highest, highest)
+            return
+        state, periods = self.problem.settled(start)
+        if periods < 0:
+            self.reason[i] = f"started from scene.initial the mass still creeps after {MOST_PERIODS} periods"
+            return
+        self.close([i], state)
+        self.error[i] += 1e-11 * periods  # of the steps on the way there
+        self.reason[i] = "the state reached from scene.initial; other starts come to rest at other places"
+
+    def judge(self, tolerance: float) -> None:
+        """Say where the error is above the tolerance."""
+        for i, error in enumerate(self.error):
+            if self.status[i] == "ok" and not error <= tolerance:
+                said = f"the error is above the tolerance {tolerance:.1e}"
+                self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
+
+    def answers(self) -> Answers:
+        """As every method gives them."""
+        problem, scenes = self.problem, self.scenes
+        return Answers(
+            status=self.status,
+            reason=self.reason,
+            model=[_model(scenes[0], problem)] * len(scenes),
+            error_kind=["estimated" if status == "ok" else "" for status in self.status],
+            mean=self.mean,
+            error=self.error,
+            period=self.period,
+            floquet=self._floquet,
+            mean_low=self.low,
+            mean_high=self.high,
+            window=np.where(np.isnan(self.low), np.nan, 1.0),
+            seconds=self.seconds,
+            orbit=lambda i: problem.orbits([scenes[i]], [self.states[i]]).one(0),
+            orbits=lambda: problem.orbits(scenes, self.states),
+        )
+
+    def _floquet(self) -> Floats:
+        """The largest multipliers, where those of every degree of freedom are known; computed where not known yet."""
+        if not self.whole:
+            return np.full(len(self.scenes), np.nan)
+        unknown = [
+            state if math.isnan(known) else None
+            for state, known in zip(self.states, self.multipliers, strict=True)
+        ]
+        return np.fmax(self.multipliers, self.problem.multipliers(self.scenes, unknown))
+
+    def _attracts(self, i: int) -> bool:
+        """Whether no small disturbance leaves the answer, and both of the cheap starts end there."""
+        return self.status[i] == "ok" and self.reached[i] and not self._known(i) > 1.0 + 1e-6
+
+    def _holds_elastically(self, i: int) -> bool:
+        """Whether on a belt at rest the bristle only follows the mass: nothing then decides about its mean."""
+        if self.scenes[i].belt_speed != 0.0 or self.problem.law.elastic_deflection() == 0.0:
+            return False
+        return self.status[i] != "ok" or bool(self._known(i) > 1.0 - 1e-6)
+
+    def _compare_starts(self, i: int) -> None:
+        """Keep an answer only where every start reaches it; else the one reached from scene.initial, or none."""
+        problem, scene, known = self.problem, self.scenes[i], None
+        if self.states[i] is not None:
+            curve, _ = problem.closed([scene], self.states[i])
+            known = closed_orbit(curve, curve.results[0, :1])
+        reached, seconds = attractors(problem, scene, known)
+        self.seconds[i] += seconds
+        first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
+        self._clear(i)
+        if first.period == 1 and first.curve is not None and (unique or scene.initial is not None):
+            self._put(i, first.curve, 0)
+            self.multipliers[i] = multiplier(first.curve)
+            self.reason[i] = "" if unique else f"reached from scene.initial; {describe(reached)}"
+            return
+        if problem.falls_slowly and all(one.curve is None for one in reached):
+            self.reason[i] = f"no steady state found: {describe(reached)}"
+            return
+        lags = (
+            f"the {'deflection' if problem.law.memory_kind == 'bristle' else 'memory'} lags behind the slip"
+        )
+        why = lags if problem.falls_slowly else "friction falls with speed"
+        low, high = min(one.low for one in reached), max(one.high for one in reached)
+        self._leave_open(i, f"{why}: {describe(reached)}", low, high)
+        if unique and first.curve is not None:
+            self.period[i] = first.period
+            self.multipliers[i] = multiplier(first.curve)
+
+    def _known(self, i: int) -> float:
+        """The largest multiplier, where those of every degree of freedom are known."""
+        return float(self.multipliers[i]) if self.whole else math.nan
+
+    def _clear(self, i: int) -> None:
+        self.status[i], self.reason[i], self.states[i] = "failed", "", None
+        self.mean[i] = UNKNOWN
+        for numbers in (self.error, self.low, self.high, self.period, self.multipliers):
+            numbers[i] = np.nan
+
+    def _leave_open(self, i: int, reason: str, low: float, high: float) -> None:
+        """No one mean, but a range of them."""
+        self.status[i], self.reason[i] = "not_unique", reason
+        self.low[i], self.high[i] = low, high
+
+    def _put(self, i: int, curve: Curve, row: int) -> None:
+        mean, across, error = curve.results[row, :3]
+        self.mean[i], self.error[i], self.period[i] = complex(mean, across), error, 1.0
+        self.status[i], self.states[i] = "ok", curve.states[row]
+
+
+def _undamped(scene: Scene) -> bool:
+    mass = scene.mass()
+    return mass.damping == 0.0 or (scene.transverse is not None and mass.transverse_damping == 0.0)
+
+
+def _at_rest(curve: Curve, row: int) -> bool:
+    return bool(curve.results[row, 4] > 1.0 - 1e-9)
+
+
+def _model(scene: Scene, problem: PeriodicProblem) -> str:
+    planar = isinstance(problem.like, complex)
+    directions = "two degrees of freedom" if planar else "one degree of freedom"
+    decays = (
+        ": without a load across the belt x2 decays" if scene.degrees_of_freedom == 2 and not planar else ""
+    )
+    return f"shooting, {directions}{decays}{SOLVED[map_kind(problem.law, planar)]}"
+
+
+def _multipliers(curve: Curve) -> Floats:
+    """The largest modulus of each orbit's; NaN where the maps were not differentiated."""
+    if not len(curve.matrices):
+        return np.full(len(curve.states), np.nan)
+    return np.asarray(np.abs(np.linalg.eigvals(curve.matrices)).max(axis=1))

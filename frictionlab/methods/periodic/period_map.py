@@ -98,7 +98,7 @@ grain_of = by_law(_no_grain, _no_grain, None, _grain_of_memory)
 
 def _without_memory(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
     y, u = unpack(case.body, state, case.like)
-    image = sliding_map(case.law, case.body, case.belt_speed, y, u, accuracy, track)
+    image = sliding_map(case, y, u, accuracy, track)
     pack(case.body, residual, image.y - y, image.u - u)
     return image
 
@@ -126,7 +126,7 @@ def _by_path(case: Case, state: Any, residual: Any, accuracy: float, track: Trac
     measure(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     z = work.start[MEMORY]
-    image = path_map(law, body, case.belt_speed, y, u, z, accuracy, track)
+    image = path_map(case, y, u, z, accuracy, track)
     pack(body, residual, image.y - y, image.u - u)
     residual[2] = work.unit[0] * (image.z - z)
     return Mapped(image.y, image.u, image.rubbed, 0.0, image.closest, -1.0, image.steps)

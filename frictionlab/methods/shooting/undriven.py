@@ -53,7 +53,7 @@ ALWAYS = Instant(0.0, 0.0, 1.0)
 @inner
 def flow(law: Any, body: Body, belt_speed: float, x: float, v: float, accuracy: float) -> Mapped:
     """The motion from x, v over the span of the body."""
-    return sliding_map(law, body, belt_speed, x, v, accuracy, track_of(0))
+    return sliding_map(case_of(law, body, belt_speed), x, v, accuracy, track_of(0))
 
 
 @inner

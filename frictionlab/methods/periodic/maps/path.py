@@ -26,6 +26,7 @@ from frictionlab.dynamics.motion import (
     span,
 )
 from frictionlab.dynamics.step_size import growth_of, longest_step, wary_growth_of
+from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
 from frictionlab.numerics.steppers.dop853 import State, stepper
 from frictionlab.orbit.recorder import Track, panel_writer
@@ -78,12 +79,13 @@ def _anchored(leg: Leg, tau: float) -> Leg:
 
 
 @inner
-def _leg(law: Any, body: Body, belt_speed: float, side: float, tau: float, y: float, z: float) -> Leg:
+def _leg(case: Case, side: float, tau: float, y: float, z: float) -> Leg:
+    body = case.body
     angle = body.frequency * tau
     return Leg(
-        law,
+        case.law,
         body,
-        belt_speed,
+        case.belt_speed,
         side,
         tau,
         math.sin(angle),
@@ -176,9 +178,9 @@ _note_slip = panel_writer(_slipping)
 
 
 @inner
-def _side(law: Any, body: Body, belt_speed: float, tau: float, y: float, u: float, z: float) -> float:
+def _side(case: Case, tau: float, y: float, u: float, z: float) -> float:
     """The direction in which slip goes on from here."""
-    leg = _leg(law, body, belt_speed, 1.0, tau, y, z)
+    leg = _leg(case, 1.0, tau, y, z)
     w = slip_at(leg, tau, u)
     if w == 0.0:
         a, _rub = rates(leg, tau, y, u)
@@ -186,21 +188,50 @@ def _side(law: Any, body: Body, belt_speed: float, tau: float, y: float, u: floa
     return 1.0 if w >= 0.0 else -1.0
 
 
+REPEAT, ACCEPT, TURN = 0, 1, 2
+
+
+class Landing(NamedTuple):
+    """Whether a step is repeated with h, accepted, or ends where slip turns round; its length and its end."""
+
+    verdict: int
+    h: float
+    taken: Any
+
+
 @inner
-def path_map(
-    law: Any, body: Body, belt_speed: float, y: float, u: float, z: float, accuracy: float, track: Track
-) -> Carried:
+def _landing(leg: Leg, tau: float, state: State, taken: Any, h: float, leaving: bool) -> Landing:
+    """What becomes of an accurate step of h: whether slip turned round in it, between its ends included."""
+    body, after, limit = leg.body, leg.side * slip_at(leg, tau + h, taken.v), h
+    if after <= 0.0 and leaving:
+        # just behind a reversal slip is zero to rounding: a step must first get away from it, or slip never does
+        if h * body.frequency > 1e-12:
+            return Landing(REPEAT, 0.25 * h, taken)
+        return Landing(TURN, h, taken)
+    a, _rub = rates(leg, tau + h, taken.x, taken.v)
+    falls, rises = leg.side * slip_rate(leg, tau, state.a), leg.side * slip_rate(leg, tau + h, a)
+    if after > 0.0 and not leaving and falls < 0.0 < rises:
+        limit = lowest(leg, tau, state, falls, h)
+        after = leg.side * slip_at(leg, tau + limit, step(leg, tau, state, limit).v)
+    if after > 0.0:
+        return Landing(ACCEPT, h, taken)
+    h, taken = stop(leg, tau, state, 0.0, limit)
+    return Landing(TURN, h, taken)
+
+
+@inner
+def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: Track) -> Carried:
     """One span from the deviation (y, u) and deflection z at tau = 0; accuracy is each step's, in the energy norm.
 
     On a track with room every piece of the way is noted.
     """
-    end = span(body)
+    law, body, end = case.law, case.body, span(case.body)
     reach, share = (
         longest_step(body, law.sliding_friction(0.0), accuracy),
         share_of_the_way(law, body, accuracy),
     )
     tau, h, steps, rubbed, closest = 0.0, 0.1 * reach, 0, 0.0, 1e300
-    leg = _leg(law, body, belt_speed, _side(law, body, belt_speed, tau, y, u, z), tau, y, z)
+    leg = _leg(case, _side(case, tau, y, u, z), tau, y, z)
     a, f = rates(leg, tau, y, u)
     state, leaving, way = State(y, u, a, f), True, 0.0
     corner = law.saturation_path(z, leg.side)
@@ -208,6 +239,7 @@ def path_map(
         leg = _anchored(leg, tau)
         w, rate = slip_at(leg, tau, state.v), slip_rate(leg, tau, state.a)
         closest = min(closest, abs(w))
+        # in the layer behind a reversal steps grow with the way
         ahead = _longest(leg, way, share, w, rate) if corner > way or corner == math.inf else 1e300
         h = min(h, ahead, reach, end - tau)
         taken = step(leg, tau, state, h)
@@ -218,20 +250,13 @@ def path_map(
         if growth < 1.0:
             h = h * growth
             continue
-        after, limit, turns = leg.side * slip_at(leg, tau + h, taken.v), h, False
-        if after <= 0.0 and leaving:
-            if h * body.frequency > 1e-12:
-                h = 0.25 * h
-                continue
-            turns = True  # slip does not get away in this direction
-        else:
-            a, f = rates(leg, tau + h, taken.x, taken.v)
-            if after > 0.0 and not leaving and leg.side * rate < 0.0 < leg.side * slip_rate(leg, tau + h, a):
-                limit = lowest(leg, tau, state, leg.side * rate, h)
-                after = leg.side * slip_at(leg, tau + limit, step(leg, tau, state, limit).v)
-            if after <= 0.0:
-                h, taken = stop(leg, tau, state, 0.0, limit)
-                turns = True
+        landing = _landing(leg, tau, state, taken, h, leaving)
+        if landing.verdict == REPEAT:
+            h = landing.h
+            continue
+        turns = landing.verdict == TURN
+        h, taken = landing.h, landing.taken
+        # where friction saturates for good it has a corner
         ended = _slid(leg, tau + h, taken.x)
         if corner > way and corner < math.inf and ended > corner * (1.0 + 1e-14):
             h, taken = _until_way(leg, tau, state, h, corner)
@@ -243,7 +268,7 @@ def path_map(
         leaving, way = turns, ended
         if turns:
             z = law.deflected(leg.z, leg.side * ended)
-            leg = _leg(law, body, belt_speed, -leg.side, tau, taken.x, z)
+            leg = _leg(case, -leg.side, tau, taken.x, z)
             corner, way = law.saturation_path(z, leg.side), 0.0
         else:
             leg = _anchored(leg, tau)

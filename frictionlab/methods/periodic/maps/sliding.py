@@ -32,10 +32,10 @@ from frictionlab.dynamics.motion import (
     span,
 )
 from frictionlab.dynamics.step_size import growth_of, longest_step
-from frictionlab.methods.periodic.maps.stick import stick_phase
+from frictionlab.methods.periodic.case import Case
+from frictionlab.methods.periodic.maps.stick import StickPhase, stick_phase
 from frictionlab.numerics.steppers.dop853 import State, stepper
 from frictionlab.orbit.recorder import Track, panel_writer
-from frictionlab.scene.body import Body
 
 
 class Mapped(NamedTuple):
@@ -206,79 +206,99 @@ _note_slip, _note_stick, _note_hop = panel_writer(_slipping), panel_writer(_rest
 
 
 @inner
-def sliding_map(
-    law: Any, body: Body, belt_speed: float, y: Any, u: Any, accuracy: float, track: Track
-) -> Mapped:
+def _note_rest(track: Track, problem: SlidingMotion, tau: float, x: Any, rest: StickPhase) -> None:
+    """The time at rest from x on, and the short while after it that the balance of momentum closes."""
+    slips = tau + rest.stuck
+    if rest.stuck > 0.0:
+        _note_stick(track, tau, rest.stuck, True, problem, tau, x)
+    if rest.tau > slips:
+        lasts = rest.tau - slips
+        x = x + belt_path(problem.body, problem.belt_speed, tau, slips)
+        hop = Hop(slips, lasts, x, 0.0 * rest.w, rest.w, rest.pulled / lasts)
+        _note_hop(track, slips, lasts, False, problem, hop)
+
+
+@inner
+def _after_rest(problem: SlidingMotion, rest: StickPhase, end: float) -> State:
+    """The deviation with which slip begins."""
+    body, tau = problem.body, rest.tau
+    u = rest.w + belt_velocity(body, problem.belt_speed, instant_at(body, tau))
+    u = u - reference_velocity(body, problem.sine, problem.cosine)
+    y = rest.x - reference_position(body, tau)
+    return _state(problem, tau, y, u) if tau < end else State(y, u, u, u)
+
+
+class Attempt(NamedTuple):
+    """What became of a step, the length of the next one, and the steps tried."""
+
+    landing: Landing
+    next: float
+    steps: int
+
+
+@inner
+def _slide(
+    problem: SlidingMotion, node: Node, leaving: bool, accuracy: float, h: float, track: Track
+) -> Attempt:
+    """One step of slip from a node, of h at most; noted if it is taken."""
+    state, room = node.state, track.stick.size
+    done = _before(problem, node, accuracy, h, state.x)
+    if done.verdict == REST:
+        if room > 0 and done.h > 0.0:
+            x, rub = state.x + reference_position(problem.body, node.tau), done.rubbed / done.h
+            hop = Hop(node.tau, done.h, x, node.w, -node.w, rub)
+            _note_hop(track, node.tau, done.h, False, problem, hop)
+        return Attempt(done, h, 0)
+    taken = step(problem, node.tau, state, done.h)
+    growth = growth_of(problem.body, taken, accuracy)
+    if growth < 1.0:
+        return Attempt(Landing(REPEAT, done.h, state, taken.rubbed), done.h * growth, 1)
+    landing = _after(problem, node, leaving, taken, done.h, state.x)
+    if landing.verdict == REPEAT:
+        return Attempt(landing, landing.h, 1)
+    if room > 0:
+        _note_slip(track, node.tau, landing.h, False, problem, node)
+    return Attempt(landing, done.h * growth, 1)
+
+
+@inner
+def sliding_map(case: Case, y: Any, u: Any, accuracy: float, track: Track) -> Mapped:
     """One span from the deviation (y, u) at tau = 0; accuracy is each step's, in the norm of energy.
 
     On a track with room every piece of the way is noted.
     """
-    end = span(body)
-    room = track.stick.size
-    reach = longest_step(body, law.sliding_friction(0.0), accuracy)
-    tau, h, steps = 0.0, 0.1 * reach, 0
+    law, body, belt_speed, end = case.law, case.body, case.belt_speed, span(case.body)
+    longest = longest_step(body, law.sliding_friction(0.0), accuracy)
+    tau, h, steps = 0.0, 0.1 * longest, 0
     rubbed, stuck, closest, released = 0.0 * y, 0.0, 1e300, -1.0
     w = slip_at(anchored(law, body, belt_speed, 1.0, 0.0), 0.0, u)
     problem = anchored(law, body, belt_speed, 1.0 if w.real > 0.0 else -1.0, 0.0)
     resting, leaving = abs(w) <= 1e-2 * accuracy, False
-    state = State(y, u, u, u)
-    if not resting:
-        state = _state(problem, tau, y, u)
+    state = State(y, u, u, u) if resting else _state(problem, tau, y, u)
     while end - tau > 4e-15 * end:  # slip cannot get away from rest in less
         if resting:
-            rest = stick_phase(
-                law, body, belt_speed, tau, state.x + reference_position(body, tau), accuracy, end
-            )
-            rubbed = rubbed + rest.rubbed
-            stuck += rest.stuck
-            if room > 0:
-                x, slips = state.x + reference_position(body, tau), tau + rest.stuck
-                if rest.stuck > 0.0:
-                    _note_stick(track, tau, rest.stuck, True, problem, tau, x)
-                if rest.tau > slips:
-                    lasts = rest.tau - slips
-                    x = x + belt_path(body, belt_speed, tau, slips)
-                    hop = Hop(slips, lasts, x, 0.0 * rest.w, rest.w, rest.pulled / lasts)
-                    _note_hop(track, slips, lasts, False, problem, hop)
+            x = state.x + reference_position(body, tau)
+            rest = stick_phase(case, tau, x, accuracy, end)
+            if track.stick.size > 0:
+                _note_rest(track, problem, tau, x, rest)
+            rubbed, stuck = rubbed + rest.rubbed, stuck + rest.stuck
             if rest.stuck > 0.0 and rest.tau < end:
                 released = tau + rest.stuck
-            tau, resting, leaving, closest = rest.tau, False, True, 0.0
+            tau, resting, leaving, closest, h = rest.tau, False, True, 0.0, 0.1 * longest
             problem = anchored(law, body, belt_speed, rest.side, tau)
-            u = rest.w + belt_velocity(body, belt_speed, instant_at(body, tau))
-            u = u - reference_velocity(body, problem.sine, problem.cosine)
-            state = State(rest.x - reference_position(body, tau), u, u, u)
-            if tau < end:
-                state = _state(problem, tau, state.x, u)
-            h = 0.1 * reach
+            state = _after_rest(problem, rest, end)
             continue
+        # the sine and cosine of a step are expanded about its start
         problem = anchored(law, body, belt_speed, problem.side, tau)
         w = slip_at(problem, tau, state.v)
         node = Node(tau, state, w, length(w), slip_rate(problem, tau, state.a))
         closest = min(closest, node.speed)
-        done = _before(problem, node, accuracy, min(h, reach, end - tau), state.x)
-        if done.verdict == REST:
-            if room > 0 and done.h > 0.0:
-                x, rub = state.x + reference_position(body, tau), done.rubbed / done.h
-                _note_hop(track, tau, done.h, False, problem, Hop(tau, done.h, x, node.w, -node.w, rub))
-        else:
-            h = done.h
-            taken = step(problem, tau, state, h)
-            steps += 1
-            growth = growth_of(body, taken, accuracy)
-            if steps > MOST_STEPS:
-                return Mapped(state.x, state.v, rubbed, stuck, closest, released, -1)
-            if growth < 1.0:
-                h = h * growth
-                continue
-            done = _after(problem, node, leaving, taken, h, state.x)
-            if done.verdict == REPEAT:
-                h = done.h
-                continue
-            if room > 0:
-                _note_slip(track, tau, done.h, False, problem, node)
-            h = h * growth
-        resting, leaving = done.verdict == REST, done.verdict == STILL
-        rubbed = rubbed + done.rubbed
-        state = done.end
-        tau = tau + done.h if end - tau > done.h else end
+        done, h, tried = _slide(problem, node, leaving, accuracy, min(h, longest, end - tau), track)
+        steps += tried
+        if steps > MOST_STEPS:
+            return Mapped(state.x, state.v, rubbed, stuck, closest, released, -1)
+        if done.verdict != REPEAT:
+            resting, leaving = done.verdict == REST, done.verdict == STILL
+            rubbed, state = rubbed + done.rubbed, done.end
+            tau = tau + done.h if end - tau > done.h else end
     return Mapped(state.x, state.v, rubbed, stuck, closest, released, steps)

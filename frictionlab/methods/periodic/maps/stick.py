@@ -20,6 +20,7 @@ from frictionlab.dynamics.motion import (
     restoring_force,
     span,
 )
+from frictionlab.methods.periodic.case import Case
 from frictionlab.scene.body import Body
 
 
@@ -75,14 +76,14 @@ class Start(NamedTuple):
 
 
 def _start_on_the_line(
-    law: Any, body: Body, now: Instant, accuracy: float, rate: float, bend: float, held: float
+    case: Case, now: Instant, accuracy: float, rate: float, bend: float, held: float
 ) -> Start:
     """Nothing is singular on the line: the leg starts from rest."""
     return Start(0.0, 0.0, 0.0)
 
 
 def _start_in_the_plane(
-    law: Any, body: Body, now: Instant, accuracy: float, rate: complex, bend: complex, held: complex
+    case: Case, now: Instant, accuracy: float, rate: complex, bend: complex, held: complex
 ) -> Start:
     """Slip sets off along the held force; where that is at the limit of slip, it grows with the square of time.
 
@@ -90,15 +91,18 @@ def _start_in_the_plane(
     of motion; the series carries the step control beyond the singular instant. It takes friction as constant,
     and ends before a law that falls has fallen by more than the accuracy bears.
     """
+    law, body = case.law, case.body
     pressed = normal_load(body, now)
     limit = pressed * law.sliding_friction(0.0)
     excess = abs(held) - limit
     along = held / abs(held)
+    # beyond the limit friction leaves a net force at once: slip grows evenly
     if excess > 1e-6 * limit:
         t = min(1e-3, math.sqrt(0.01 * accuracy * excess) / (excess + abs(rate) + limit * body.frequency))
         while t > 1e-12 and t * abs(limit - pressed * law.sliding_friction(excess * t)) > 0.1 * accuracy:
             t *= 0.5
         return Start(t, along * excess * t, 0.5 * along * excess * t * t)
+    # at the limit the force must first grow: the series in time, turned so that the held force is real
     first = rate * along.conjugate()
     b2 = 0.5 * first.real
     if not b2 > 0.0:  # the force falls back below the limit at once: what slip there is stays below rounding
@@ -131,10 +135,9 @@ class StickPhase(NamedTuple):
 
 
 @inner
-def stick_phase(
-    law: Any, body: Body, belt_speed: float, tau: float, x: Any, accuracy: float, end: float
-) -> StickPhase:
+def stick_phase(case: Case, tau: float, x: Any, accuracy: float, end: float) -> StickPhase:
     """From rest at tau, x until slip begins, or until the end of the period."""
+    law, body, belt_speed = case.law, case.body, case.belt_speed
     now, holds = instant_at(body, tau), law.static_friction()
     limit, rise = normal_load(body, now) * holds, normal_load_rate(body, now) * holds
     held, rate, bend = holding_force(body, belt_speed, now, x)
@@ -151,7 +154,7 @@ def stick_phase(
         if tau >= end:
             return StickPhase(tau, x, 0.0 * x, 0.0, rubbed, stuck, 0.0 * x)
     side = 1.0 if held.real > 0.0 else -1.0
-    t, w, path = _start(law, body, now, accuracy, rate, bend, held)
+    t, w, path = _start(case, now, accuracy, rate, bend, held)
     # The balance of momentum over the start: what neither spring nor slip has taken of the impulse, friction has.
     pulled = resting_friction(body, belt_speed, tau, tau + t, x)
     pulled = pulled - (restoring_force(body, 0.0 * x, path) + w) / normal_load(body, now)

@@ -26,7 +26,7 @@ from frictionlab.cli.output import (
 )
 
 COMMANDS = ("bench", "check", "laws", "methods", "new", "plot", "report", "run", "schema")
-"""Each is the ``command`` of the module of its name."""
+"""Each is the function ``NAME_command`` of the module of its name."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -96,7 +96,8 @@ class CommandGroup(click.Group):
         """The command of a name; None where there is none."""
         if cmd_name not in COMMANDS:
             return None
-        command: click.Command = import_module(f"frictionlab.cli.{cmd_name}").command
+        module = import_module(f"frictionlab.cli.{cmd_name}")
+        command: click.Command = getattr(module, f"{cmd_name}_command")
         return command
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 @click.argument("bench_list", metavar="LIST", type=click.Path(path_type=Path))
 @options.folder("runs/bench-<list name>")
 @click.option("--only", multiple=True, metavar="NAME", help="Measure this curve alone; may be repeated.")
-def command(bench_list: Path, out: Path | None, only: tuple[str, ...]) -> None:
+def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...]) -> None:
     """Measure error against time per point of every method and peer in LIST; one chart and table per curve."""
     from frictionlab import bench
 

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 @options.overrides
 @options.law_files
 @options.as_json
-def command(study: Path, overrides: tuple[str, ...], law_files: tuple[Path, ...], as_json: bool) -> None:
+def check_command(
+    study: Path, overrides: tuple[str, ...], law_files: tuple[Path, ...], as_json: bool
+) -> None:
     """Check STUDY and tell what it will take: models, refusals, cost. Nothing is computed."""
     from frictionlab.runner import batch
     from frictionlab.runner.plan import plan

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     metavar="N",
     help="With test: examples per check, 100 if left out; fewer where they are dear.",
 )
-def command(names: tuple[str, ...], law_files: tuple[Path, ...], **given: Any) -> int:
+def laws_command(names: tuple[str, ...], law_files: tuple[Path, ...], **given: Any) -> int:
     """List the installed laws, tell all about the law NAME, or test NAME: put it through the conformance battery.
 
     With test and no NAME, the laws of --law, else every installed law. Broken laws are told on stderr, and the exit

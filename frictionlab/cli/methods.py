@@ -10,7 +10,7 @@ from frictionlab.cli.output import print_records, print_result
 
 @click.command("methods")
 @options.as_json
-def command(as_json: bool) -> None:
+def methods_command(as_json: bool) -> None:
     """List the installed methods and what they refuse."""
     from frictionlab import registry
     from frictionlab.registry.records import method_record, one_line_each

@@ -12,11 +12,11 @@ from frictionlab.cli.output import print_message, print_result
 
 
 @click.group("new")
-def command() -> None:
+def new_command() -> None:
     """Write a file to begin from."""
 
 
-@command.command("study")
+@new_command.command("study")
 @click.argument("path", type=click.Path(path_type=Path))
 def study(path: Path) -> None:
     """Write a commented study to the file PATH, which ``run`` takes as it is. Never replaces a file."""
@@ -27,7 +27,7 @@ def study(path: Path) -> None:
     print_message(f"change what it says, then: frictionlab run {shlex.quote(str(file))}")
 
 
-@command.command("law")
+@new_command.command("law")
 @click.argument("path", metavar="NAME", type=click.Path(path_type=Path))
 @click.option(
     "--memory",

@@ -12,7 +12,7 @@ from frictionlab.cli.output import print_message, print_result
 
 @click.command("plot")
 @click.argument("run", type=click.Path(path_type=Path))
-def command(run: Path) -> None:
+def plot_command(run: Path) -> None:
     """Draw the figures of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
     from frictionlab.runner.saved import read_saved
 

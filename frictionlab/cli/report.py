@@ -12,7 +12,7 @@ from frictionlab.cli.output import print_result
 
 @click.command("report")
 @click.argument("run", type=click.Path(path_type=Path))
-def command(run: Path) -> None:
+def report_command(run: Path) -> None:
     """Write the figures and the report.html of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
     from frictionlab.report import write_report
     from frictionlab.runner.saved import read_saved

@@ -69,7 +69,7 @@ class RunOptions(NamedTuple):
 @options.as_json
 @click.option("--cite", is_flag=True, help="Print the publications to cite, as BibTeX, instead of text.")
 @click.option("--force", is_flag=True, help="Replace the results of another study or version in DIR.")
-def command(**given: Any) -> int:
+def run_command(**given: Any) -> int:
     """Run STUDY, a file or a folder of studies, and write its table, figures and report to DIR.
 
     The same study into the same DIR takes over the points that are finished.

@@ -13,7 +13,7 @@ from frictionlab.cli.output import print_result
 
 @click.command("schema")
 @options.law_files
-def command(law_files: tuple[Path, ...]) -> None:
+def schema_command(law_files: tuple[Path, ...]) -> None:
     """Print the JSON Schema of a study file."""
     from frictionlab.study import laws_of_files
     from frictionlab.study.schema import schema

@@ -7,9 +7,9 @@ from typing import Any
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
-from frictionlab.laws.memory import PER_AXIS, VECTORIAL, in_the_plane, on_the_line
+from frictionlab.laws.memory import PER_AXIS, VECTORIAL, bristle_in_the_plane, bristle_on_the_line
 
-resistance = by_dimension(on_the_line, in_the_plane)
+resistance = by_dimension(bristle_on_the_line, bristle_in_the_plane)
 """(law, slip velocity, deflection) -> (rate of deflection, friction coefficient), interpreted and compiled."""
 
 

@@ -207,7 +207,7 @@ def resting_friction(body: Body, belt_speed: float, start: float, end: float, x:
 # --- the deviation from the friction-free response ----------------------------------------------------------------
 
 
-class SlidingMotion(NamedTuple):
+class Flow(NamedTuple):
     """A law and a body on a belt; the side of slip on the line; sine and cosine at the anchor time."""
 
     law: Any
@@ -246,10 +246,10 @@ def instant_near(problem: Any, tau: float) -> Instant:
 
 
 @inner
-def anchored(law: Any, body: Body, belt_speed: float, side: float, tau: float) -> SlidingMotion:
+def anchored(law: Any, body: Body, belt_speed: float, side: float, tau: float) -> Flow:
     """The problem with its anchor at this time."""
     angle = body.frequency * tau
-    return SlidingMotion(law, body, belt_speed, side, tau, math.sin(angle), math.cos(angle))
+    return Flow(law, body, belt_speed, side, tau, math.sin(angle), math.cos(angle))
 
 
 @inner
@@ -311,11 +311,11 @@ def deviation_slip_rate(problem: Any, now: Instant, a: Any) -> Any:
     return rate - belt_acceleration(problem.body, problem.belt_speed, now)
 
 
-def _friction_on_the_line(problem: SlidingMotion, w: float) -> Any:
+def _friction_on_the_line(problem: Flow, w: float) -> Any:
     return problem.side * problem.law.sliding_friction(max(problem.side * w, 0.0))
 
 
-def _friction_in_the_plane(problem: SlidingMotion, w: complex) -> Any:
+def _friction_in_the_plane(problem: Flow, w: complex) -> Any:
     return problem.law.sliding_vector(w)
 
 
@@ -323,7 +323,7 @@ _friction = by_dimension(_friction_on_the_line, _friction_in_the_plane)
 
 
 @fast_embedded
-def rates(problem: SlidingMotion, tau: float, y: Any, u: Any) -> Any:
+def rates(problem: Flow, tau: float, y: Any, u: Any) -> Any:
     """Acceleration of the deviation, and the friction coefficient of a law without memory."""
     now = instant_near(problem, tau)
     rub = _friction(problem, deviation_slip(problem, now, u))

@@ -103,13 +103,13 @@ class BristleLaw(FrictionLaw, ABC):
         return math.inf
 
 
-def on_the_line(law: Any, v: float, z: float) -> Any:
+def bristle_on_the_line(law: Any, v: float, z: float) -> Any:
     """Rate of deflection and friction coefficient of a bristle law along one direction."""
     dz = law.rate(v, z)
     return dz, law.friction(v, z, dz)
 
 
-def in_the_plane(law: Any, v: complex, z: complex) -> Any:
+def bristle_in_the_plane(law: Any, v: complex, z: complex) -> Any:
     """Rate of deflection and friction coefficient of a bristle law in the plane, in its ``planar`` form."""
     if law.form == VECTORIAL:
         dz = law.rate(v, z)

@@ -15,7 +15,7 @@ from frictionlab.results.derived import si_columns, si_scales
 from frictionlab.results.part import Part
 from frictionlab.scene.dimensional import scaled_parameters
 from frictionlab.scene.scene import Scene
-from frictionlab.study import Case, Study
+from frictionlab.study import Study, StudyCase
 
 if TYPE_CHECKING:
     from frictionlab.orbit.sample import Samples
@@ -53,7 +53,7 @@ class Inputs(NamedTuple):
     scales: dict[str, Floats] | None = None
 
 
-def inputs(rows: Sequence[Heading | Case]) -> Inputs:
+def inputs(rows: Sequence[Heading | StudyCase]) -> Inputs:
     """law, kind, method, then every value of the scenes and of the laws; None where a row has none."""
     named = {
         "law": [row.law_label for row in rows],
@@ -70,7 +70,7 @@ def inputs(rows: Sequence[Heading | Case]) -> Inputs:
     return Inputs(named | columns, len(rows), _scales([row.scene for row in rows]))
 
 
-def _scaled(row: Heading | Case) -> dict[str, Any]:
+def _scaled(row: Heading | StudyCase) -> dict[str, Any]:
     """The parameters of its law that were given in SI units in the scales of the scene."""
     si = row.scene.dimensional
     return {} if si is None else _cells(scaled_parameters(row.given_law, si.scales))

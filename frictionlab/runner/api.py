@@ -35,7 +35,7 @@ from frictionlab.runner.folder import Existing, Identity, RunFolder
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.solve import answer, parts
 from frictionlab.scene.scene import Scene
-from frictionlab.study import Case, Study, load_study, parse_study
+from frictionlab.study import Study, StudyCase, load_study, parse_study
 from frictionlab.study.mistakes import did_you_mean
 
 if TYPE_CHECKING:
@@ -186,7 +186,7 @@ def curve(
     task = Task(_checked(tolerance), columns=wanted)
     different, places = np.unique(speeds, return_inverse=True)  # a method is never given a belt speed twice
     scenes = [_scene(scene).at(float(speed)) for speed in different]
-    cases = [Case(kind, kind, law, ready.name, ready, each) for each in scenes]
+    cases = [StudyCase(kind, kind, law, ready.name, ready, each) for each in scenes]
     gathering = Accumulator(inputs(cases), columns=wanted)
     with _workers(None) as pool:
         collect(chunks(cases, task), pool, gathering.take, gathering.tick)
@@ -201,7 +201,7 @@ def steady_state(
     tolerance [-]: absolute, on mean_friction. Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     ready, kind, task = _method(method), _kind(_law(law)), Task(_checked(tolerance))
-    case = Case(kind, kind, law, ready.name, ready, _scene(scene))
+    case = StudyCase(kind, kind, law, ready.name, ready, _scene(scene))
     (chunk,) = chunks([case], task)
     (piece,) = answer(chunk)
     (part,) = parts(chunk, [piece])

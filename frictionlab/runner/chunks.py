@@ -11,7 +11,7 @@ from frictionlab.columns import selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.scene.scene import Scene
-from frictionlab.study import Case
+from frictionlab.study import StudyCase
 
 USUAL_SIZE = 125
 """Points per chunk: pieces of one curve then hold 84 to 187 points. Fewer lose the continuation from the
@@ -39,7 +39,7 @@ class Chunk:
     task: Task
 
 
-def chunk_by_curve(cases: Sequence[Case]) -> list[list[int]]:
+def chunk_by_curve(cases: Sequence[StudyCase]) -> list[list[int]]:
     """The rows of each curve (everything equal but belt speed), ascending in belt speed."""
     found: dict[Any, list[int]] = {}
     for row, case in enumerate(cases):
@@ -47,12 +47,12 @@ def chunk_by_curve(cases: Sequence[Case]) -> list[list[int]]:
     return [sorted(rows, key=lambda row: cases[row].scene.belt_speed) for rows in found.values()]
 
 
-def _curve_key(case: Case) -> Any:
+def _curve_key(case: StudyCase) -> Any:
     values = case.scene.at(0.0).values()
     return case.law_label, case.law, case.method_label, case.method, tuple(values.items())
 
 
-def chunks(cases: Sequence[Case], task: Task, finished: frozenset[int] = frozenset()) -> list[Chunk]:
+def chunks(cases: Sequence[StudyCase], task: Task, finished: frozenset[int] = frozenset()) -> list[Chunk]:
     """The chunks still to solve.
 
     Curves are cut before finished rows are left out: a run stopped and continued then solves the very chunks
@@ -69,6 +69,6 @@ def _cut(curve: list[int]) -> list[list[int]]:
     return [curve[start:end] for start, end in pairwise(ends)]
 
 
-def _chunk(cases: Sequence[Case], rows: list[int], task: Task) -> Chunk:
+def _chunk(cases: Sequence[StudyCase], rows: list[int], task: Task) -> Chunk:
     first = cases[rows[0]]
     return Chunk(tuple(rows), tuple(cases[row].scene for row in rows), first.law, first.method, task)

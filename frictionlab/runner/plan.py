@@ -9,7 +9,7 @@ from typing import Any
 
 from frictionlab import registry
 from frictionlab.runner.chunks import chunk_by_curve
-from frictionlab.study import Case, Study
+from frictionlab.study import Study, StudyCase
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,13 @@ class Planned:
 def plan(study: Study) -> list[Planned]:
     """One entry per law and method, in the order of the study. Raises BrokenPlugin."""
     cases = study.cases()
-    groups: dict[tuple[str, str], list[Case]] = {}
+    groups: dict[tuple[str, str], list[StudyCase]] = {}
     for case in cases:
         groups.setdefault((case.law_label, case.method_label), []).append(case)
     return [_planned(group, study.tolerance) for group in groups.values()]
 
 
-def _planned(cases: Sequence[Case], tolerance: float) -> Planned:
+def _planned(cases: Sequence[StudyCase], tolerance: float) -> Planned:
     first = cases[0]
     reasons = [case.method.refusal(case.scene, case.law) for case in cases]
     able = [case for case, reason in zip(cases, reasons, strict=True) if reason is None]
@@ -55,7 +55,7 @@ def _planned(cases: Sequence[Case], tolerance: float) -> Planned:
     )
 
 
-def _model(case: Case) -> str:
+def _model(case: StudyCase) -> str:
     """The model that will compute the number, and why; the name of a method that makes no choice."""
     auto: Any = registry.method_class("auto")
     if not isinstance(case.method, auto):

@@ -5,15 +5,15 @@ from __future__ import annotations
 from frictionlab.study.law_files import laws_of_files
 from frictionlab.study.mistakes import Mistake, StudyError
 from frictionlab.study.reader import load_study, parse_study, read_back
-from frictionlab.study.study import Case, Expectation, LawChoice, MethodChoice, Study
+from frictionlab.study.study import Expectation, LawChoice, MethodChoice, Study, StudyCase
 
 __all__ = [
-    "Case",
     "Expectation",
     "LawChoice",
     "MethodChoice",
     "Mistake",
     "Study",
+    "StudyCase",
     "StudyError",
     "laws_of_files",
     "load_study",

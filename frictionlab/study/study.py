@@ -96,7 +96,7 @@ class Expectation:
 
 
 @dataclass(frozen=True)
-class Case:
+class StudyCase:
     """One row of the table: a scene, a law and a method, independent of every other row.
 
     given_law: in SI units if the scene is.
@@ -140,10 +140,10 @@ class Study:
     code: dict[str, str] = field(default_factory=dict)
     path: Path | None = field(default=None, compare=False)
 
-    def cases(self) -> list[Case]:
+    def cases(self) -> list[StudyCase]:
         """The full grid: every law at every value of its sweeps, by every method, in every scene."""
         return [
-            Case(choice.label, choice.kind, law, method.label, method.method, scene)
+            StudyCase(choice.label, choice.kind, law, method.label, method.method, scene)
             for choice in self.laws
             for law in self.laws_of(choice)
             for method in self.methods

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import BristleLaw, MemoryLaw, in_the_plane, on_the_line
+from frictionlab.laws.memory import BristleLaw, MemoryLaw, bristle_in_the_plane, bristle_on_the_line
 
 ContactMemory = tuple[Any, ...]
 
@@ -23,7 +23,9 @@ class Response(NamedTuple):
 def response(law: FrictionLaw, v: Any, memory: ContactMemory) -> Response:
     """The law at slip velocity ``v``: ``float`` on the line, ``complex`` in the plane."""
     if isinstance(law, BristleLaw):
-        rate, friction = (in_the_plane if isinstance(v, complex) else on_the_line)(law, v, memory[0])
+        rate, friction = (bristle_in_the_plane if isinstance(v, complex) else bristle_on_the_line)(
+            law, v, memory[0]
+        )
         return Response((rate,), friction)
     if isinstance(law, MemoryLaw):
         kept = np.array(memory)

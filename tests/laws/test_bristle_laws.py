@@ -29,7 +29,7 @@ from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic, breakaway_share
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
-from frictionlab.laws.memory import in_the_plane, on_the_line
+from frictionlab.laws.memory import bristle_in_the_plane, bristle_on_the_line
 from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.theory import (
     SteadySliding,
@@ -116,9 +116,9 @@ def assert_same(law: Any, v: complex, one: Any, other: Any, within: float = EXAC
 def test_friction_along_a_line_turns_round_with_slip_and_deflection(name, data, v, share):
     law = data.draw(BRISTLE_LAWS[name])
     z = share * law.largest_deflection()
-    dz, friction = on_the_line(law, v, z)
+    dz, friction = bristle_on_the_line(law, v, z)
 
-    assert on_the_line(law, -v, -z) == (-dz, -friction)
+    assert bristle_on_the_line(law, -v, -z) == (-dz, -friction)
 
 
 def turned_state(law: Any, z: complex, turn: Any) -> complex:
@@ -135,9 +135,9 @@ def test_vectorial_and_rotated_laws_turn_with_the_slip_and_are_mirrored_with_it(
     z = share * radius(law) * (data.draw(turns) if law.planar == "vectorial" else 1.0)
     assume(z == 0.0 or abs(dot(z, v)) > 1e-9 * abs(z) * abs(v))  # dupont's switch
 
-    dz, friction = in_the_plane(law, v, z)
+    dz, friction = bristle_in_the_plane(law, v, z)
     for change in (lambda a: turn * a, lambda a: (turn * a).conjugate(), lambda a: -a):
-        changed = in_the_plane(law, change(v), turned_state(law, z, change))
+        changed = bristle_in_the_plane(law, change(v), turned_state(law, z, change))
         assert_same(law, v, changed, (turned_state(law, dz, change), change(friction)))
 
 
@@ -150,11 +150,11 @@ def test_per_axis_laws_do_not_turn_with_the_slip_and_exceed_their_limit_on_the_d
     )
     turn = cmath.rect(1.0, math.pi / 4)
 
-    along, _ = in_the_plane(law, 1.0 + 0.0j, 1.0 + 0.0j)  # saturated, mu = stiffness = 1
+    along, _ = bristle_in_the_plane(law, 1.0 + 0.0j, 1.0 + 0.0j)  # saturated, mu = stiffness = 1
     assert abs(along) <= EXACT
-    aslant, _ = in_the_plane(law, turn, turn)
+    aslant, _ = bristle_in_the_plane(law, turn, turn)
     assert abs(aslant) > 0.2  # the turned law has none
-    corner, friction = in_the_plane(law, turn, 1.0 + 1.0j)
+    corner, friction = bristle_in_the_plane(law, turn, 1.0 + 1.0j)
     assert abs(corner) <= EXACT
     assert abs(friction) == pytest.approx(math.sqrt(2.0))
 
@@ -164,10 +164,10 @@ def test_per_axis_laws_do_not_turn_with_the_slip_and_exceed_their_limit_on_the_d
 def test_per_axis_laws_are_the_law_of_one_direction_along_each_axis(name, data, v, share, turn):
     law = data.draw(BRISTLE_LAWS[name]).model_copy(update={"planar": "per-axis"})
     z = share * law.largest_deflection() * turn
-    dz, friction = in_the_plane(law, v, z)
+    dz, friction = bristle_in_the_plane(law, v, z)
 
-    assert (dz.real, friction.real) == on_the_line(law, v.real, z.real)
-    assert (dz.imag, friction.imag) == on_the_line(law, v.imag, z.imag)
+    assert (dz.real, friction.real) == bristle_on_the_line(law, v.real, z.real)
+    assert (dz.imag, friction.imag) == bristle_on_the_line(law, v.imag, z.imag)
 
 
 @every_law
@@ -176,10 +176,13 @@ def test_slip_along_the_line_is_the_law_of_one_direction_with_nothing_across(nam
     law = data.draw(BRISTLE_LAWS[name])
     v = abs(v) if law.planar == "rotated" else v
     z = share * law.largest_deflection()
-    dz, friction = on_the_line(law, v, z)
+    dz, friction = bristle_on_the_line(law, v, z)
 
     assert isinstance(dz, float)
-    assert in_the_plane(law, complex(v, 0.0), complex(z, 0.0)) == (complex(dz, 0.0), complex(friction, 0.0))
+    assert bristle_in_the_plane(law, complex(v, 0.0), complex(z, 0.0)) == (
+        complex(dz, 0.0),
+        complex(friction, 0.0),
+    )
 
 
 @every_law
@@ -191,10 +194,10 @@ def test_friction_is_the_same_in_other_units_and_deflection_moves_at_the_same_sp
     z = share * radius(law) * data.draw(turns)
     assume(abs(dot(z, v)) > 1e-9 * abs(z) * abs(v) and min(abs(z.real), abs(z.imag)) > 1e-9 * abs(z))
     scales = Units(length, time, 7.0)
-    dz, friction = in_the_plane(law, v, z)
+    dz, friction = bristle_in_the_plane(law, v, z)
 
     scaled, speed = scaled_law(law, scales), scales.velocity
-    there = in_the_plane(scaled, v / speed, z / length)
+    there = bristle_in_the_plane(scaled, v / speed, z / length)
     assert_same(law, v, (there[0] * speed, there[1]), (dz, friction), within=1e-11)
 
 
@@ -250,7 +253,7 @@ def test_the_contacts_own_stiffness_and_damping_are_shared_by_the_normal_load(na
 def test_a_passive_law_gives_back_no_more_than_its_bristles_have_stored(name, data, v, share, turn):
     law = made_passive(data.draw(in_a_form_of_the_plane(name)))
     z = share * law.largest_deflection() * (1.0 if law.planar == "rotated" else turn)
-    dz, friction = in_the_plane(law, v, z)
+    dz, friction = bristle_in_the_plane(law, v, z)
     stored = dot(z, dz) if law.planar != "rotated" else z.real * dz.real
     scale = law.bristle_stiffness * law.largest_deflection() * abs(v) + dashpot(law) * abs(v) ** 2
 
@@ -286,10 +289,10 @@ def slipped(law: Any, v: complex, z: complex, time: float) -> tuple[complex, flo
     steps = math.ceil(2.0 * time * law.largest_rate(abs(v))) + 8
     h, work = time / steps, 0.0
     for _ in range(steps):
-        a = in_the_plane(law, v, z)
-        b = in_the_plane(law, v, z + 0.5 * h * a[0])
-        c = in_the_plane(law, v, z + 0.5 * h * b[0])
-        d = in_the_plane(law, v, z + h * c[0])
+        a = bristle_in_the_plane(law, v, z)
+        b = bristle_in_the_plane(law, v, z + 0.5 * h * a[0])
+        c = bristle_in_the_plane(law, v, z + 0.5 * h * b[0])
+        d = bristle_in_the_plane(law, v, z + h * c[0])
         z = z + h / 6.0 * (a[0] + 2.0 * b[0] + 2.0 * c[0] + d[0])
         work += h / 6.0 * dot(a[1] + 2.0 * b[1] + 2.0 * c[1] + d[1], v)
     return z, work
@@ -310,7 +313,7 @@ def test_below_the_bound_of_barahanov_and_ortega_charged_bristles_give_work_that
     keys = {"mu_kinetic": 1.0, "mu_static": ratio, "stribeck_speed": 1e-2 * speed, "stiffness": stiffness}
     law = kind(**keys, damping=damping, viscosity=share * bound)
     z = law.largest_deflection()
-    dz, friction = on_the_line(law, speed, z)
+    dz, friction = bristle_on_the_line(law, speed, z)
 
     assert not law.passive()
     assert friction * speed - stiffness * z * dz < 0.0
@@ -351,8 +354,8 @@ def test_a_law_that_calls_itself_rate_independent_knows_only_the_path(name, data
     law = without_speed(data.draw(in_a_form_of_the_plane(name)))
     z = share * radius(law) * turn
     assume(abs(dot(z, v)) > 1e-9 * abs(z) * abs(v))
-    dz, friction = in_the_plane(law, v, z)
-    quick, same = in_the_plane(law, faster * v, z)
+    dz, friction = bristle_in_the_plane(law, v, z)
+    quick, same = bristle_in_the_plane(law, faster * v, z)
 
     assert law.rate_independent()
     assert_same(law, v, (quick / faster, same), (dz, friction))
@@ -362,7 +365,7 @@ def test_a_law_that_calls_itself_rate_independent_knows_only_the_path(name, data
 @pytest.mark.parametrize("kind", [LuGre, ElastoPlastic])
 def test_damping_viscosity_and_a_falling_curve_make_friction_depend_on_speed(kind, change):
     keys = {"mu_kinetic": 1.0, "stiffness": 2.0}
-    slow, quick = (on_the_line(kind(**{**keys, **change}), v, 0.45) for v in (0.5, 1.5))
+    slow, quick = (bristle_on_the_line(kind(**{**keys, **change}), v, 0.45) for v in (0.5, 1.5))
 
     assert kind(**keys).rate_independent()
     assert not kind(**{**keys, **change}).rate_independent()
@@ -564,7 +567,7 @@ def test_steady_sliding_is_the_stribeck_curve_and_viscosity(kind, data, share, v
         rtol=1e-10,
         atol=1e-12,
     )
-    _, friction = on_the_line(law, v, float(found.y[0, -1]) * size)
+    _, friction = bristle_on_the_line(law, v, float(found.y[0, -1]) * size)
 
     wanted = math.copysign(law.sliding_friction(abs(v)), v)
     assert friction == pytest.approx(wanted, abs=1e-8 * (law.peak + dashpot(law) * abs(v)))
@@ -724,7 +727,7 @@ def test_small_changes_of_slip_meet_the_impedance_of_lugre_friction(frequency):
     periods = 3 + math.ceil(frequency * 5.0 * point.lag)
     for i in range(periods * steps):
         t = i * h
-        dz, friction = on_the_line(law, slip(t), z)
+        dz, friction = bristle_on_the_line(law, slip(t), z)
         if i >= (periods - 1) * steps:
             total += friction * cmath.exp(-1j * frequency * t) * 2j / (steps * mean * small)
         b = law.rate(slip(t + 0.5 * h), z + 0.5 * h * dz)

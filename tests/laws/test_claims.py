@@ -15,7 +15,7 @@ from frictionlab.laws.decay import exp_power_decay, steepest_slope
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
-from frictionlab.laws.memory import BristleLaw, MemoryLaw, in_the_plane
+from frictionlab.laws.memory import BristleLaw, MemoryLaw, bristle_in_the_plane
 from frictionlab.laws.stribeck import Stribeck
 
 
@@ -175,7 +175,7 @@ def test_viscosity_helps_bristles_to_damp_motion_across_up_to_a_speed() -> None:
 def test_a_bristle_along_the_slip_rubs_no_way_at_rest() -> None:
     law = LuGre(mu_kinetic=0.3, stiffness=2, damping=0.1, planar="rotated")
 
-    assert in_the_plane(law, 0j, 0.1 + 0j) == (0j, 0j)
+    assert bristle_in_the_plane(law, 0j, 0.1 + 0j) == (0j, 0j)
 
 
 def test_dahl_friction_has_a_vector_form_for_exponent_one_alone() -> None:

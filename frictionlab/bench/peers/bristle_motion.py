@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import in_the_plane, on_the_line
+from frictionlab.laws.memory import bristle_in_the_plane, bristle_on_the_line
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
@@ -47,13 +47,13 @@ class BristleMotion:
     def _on_the_line(self, turn: complex, y: Floats) -> list[float]:
         m = self.mass
         x, v, z, _ = y.tolist()
-        dz, rub = on_the_line(self.law, v - self.belt_speed, z)
+        dz, rub = bristle_on_the_line(self.law, v - self.belt_speed, z)
         return [v, (m.force * turn).imag - m.damping * v - m.stiffness * x - m.normal_load * rub, dz, rub]
 
     def _in_the_plane(self, turn: complex, y: Floats) -> list[float]:
         m = self.mass
         x1, v1, x2, v2, z1, z2, _ = y.tolist()
-        dz, rub = in_the_plane(self.law, complex(v1 - self.belt_speed, v2), complex(z1, z2))
+        dz, rub = bristle_in_the_plane(self.law, complex(v1 - self.belt_speed, v2), complex(z1, z2))
         a1 = (m.force * turn).imag - m.damping * v1 - m.stiffness * x1 - m.normal_load * rub.real
         across = m.transverse_damping * v2 + m.transverse_stiffness * x2 + m.normal_load * rub.imag
         a2 = (m.transverse_force * turn).imag - across

@@ -15,12 +15,12 @@ from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.compile.dispatch import by_dimension
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import in_the_plane, on_the_line
+from frictionlab.laws.memory import bristle_in_the_plane, bristle_on_the_line
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
 
-compiled_resistance = by_dimension(on_the_line, in_the_plane)
+compiled_resistance = by_dimension(bristle_on_the_line, bristle_in_the_plane)
 MOST_LSODA_STEPS = 10_000_000
 """Per period: the default of 10,000 is too few for stiff bristles."""
 

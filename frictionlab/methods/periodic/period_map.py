@@ -19,7 +19,7 @@ from frictionlab.methods.periodic.maps.memory import coarsest, memory_map
 from frictionlab.methods.periodic.maps.memory_state import (
     coordinates,
     cut_back,
-    measure,
+    measure_scales,
     pack_memory,
     remember_sliding,
     unpack_memory,
@@ -82,7 +82,7 @@ def _no_grain(law: Any, body: Body, accuracy: float, like: Any) -> float:
 def _grain_of_memory(law: Any, body: Body, accuracy: float, like: Any) -> float:
     """A yield within a step, or the sum of all steps' errors."""
     work, most = workspace(law, like), 0.0
-    measure(law, body, work, like)
+    measure_scales(law, body, work, like)
     if law.turning > 0.0:
         for k in range(count_of(law)):
             most = max(most, work.unit[k])
@@ -107,7 +107,7 @@ def _with_memory(case: Case, state: Any, residual: Any, accuracy: float, track: 
     law, body, like = case.law, case.body, case.like
     y, u = unpack(body, state, like)
     work = workspace(law, like)
-    measure(law, body, work, like)
+    measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     cut_back(law, work)
     image = memory_map(case, y, u, accuracy, work, track)
@@ -123,7 +123,7 @@ def _by_path(case: Case, state: Any, residual: Any, accuracy: float, track: Trac
     law, body, like = case.law, case.body, case.like
     y, u = unpack(body, state, like)
     work = workspace(law, like)
-    measure(law, body, work, like)
+    measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     z = work.start[MEMORY]
     image = path_map(case, y, u, z, accuracy, track)
@@ -162,7 +162,7 @@ def _remember_nothing(law: Any, body: Body, state: Any, z: Any) -> None:
 
 def _remember_a_deflection(law: Any, body: Body, state: Any, z: Any) -> None:
     work = workspace(law, z)
-    measure(law, body, work, z)
+    measure_scales(law, body, work, z)
     work.start[MEMORY] = z
     pack_memory(law, body, work, state, z)
 
@@ -170,7 +170,7 @@ def _remember_a_deflection(law: Any, body: Body, state: Any, z: Any) -> None:
 def _remember_sliding(law: Any, body: Body, state: Any, z: Any) -> None:
     """The memory of steady sliding at slip velocity z."""
     work = workspace(law, z)
-    measure(law, body, work, z)
+    measure_scales(law, body, work, z)
     remember_sliding(law, body, work, z)
     pack_memory(law, body, work, state, z)
 

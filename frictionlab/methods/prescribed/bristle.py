@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import PER_AXIS, ROTATED, BristleLaw, in_the_plane, on_the_line
+from frictionlab.laws.memory import PER_AXIS, ROTATED, BristleLaw, bristle_in_the_plane, bristle_on_the_line
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.closed_loop_line import ONE_WAY, Along, line_loop
 from frictionlab.methods.prescribed.closed_loop_plane import plane_loop
@@ -90,14 +90,19 @@ class BristlePoint:
         if len(deflections) == 2:
             pairs = zip(slip.real.flat, slip.imag.flat, z.flat, deflections[1].flat, strict=True)
             values = [
-                complex(on_the_line(law, v1, z1)[1], on_the_line(law, v2, z2)[1]) for v1, v2, z1, z2 in pairs
+                complex(bristle_on_the_line(law, v1, z1)[1], bristle_on_the_line(law, v2, z2)[1])
+                for v1, v2, z1, z2 in pairs
             ]
         elif self._on_the_line():
             values = [
-                on_the_line(law, v, one)[1] + unknown for v, one in zip(slip.real.flat, z.flat, strict=True)
+                bristle_on_the_line(law, v, one)[1] + unknown
+                for v, one in zip(slip.real.flat, z.flat, strict=True)
             ]
         else:
-            values = [in_the_plane(law, v, complex(one))[1] for v, one in zip(slip.flat, z.flat, strict=True)]
+            values = [
+                bristle_in_the_plane(law, v, complex(one))[1]
+                for v, one in zip(slip.flat, z.flat, strict=True)
+            ]
         return np.array(values).reshape(slip.shape)
 
     def _on_the_line(self) -> bool:

@@ -15,8 +15,9 @@ import frictionlab as fl
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.compile.stack import count_of
+from frictionlab.dynamics.motion import anchored
 from frictionlab.methods.periodic.maps.linearization import linearize
-from frictionlab.methods.periodic.maps.rates import MEMORY, anchored, workspace
+from frictionlab.methods.periodic.maps.rates import MEMORY, workspace
 from frictionlab.methods.periodic.maps.step import step
 from frictionlab.numerics.steppers.rodas5p import COUPLINGS, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
 from frictionlab.scene.body import in_the_plane, on_the_line

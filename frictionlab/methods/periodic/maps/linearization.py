@@ -14,6 +14,7 @@ from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.events import reference_acceleration
 from frictionlab.dynamics.motion import (
+    Flow,
     Instant,
     belt_acceleration,
     belt_jerk,
@@ -28,7 +29,6 @@ from frictionlab.methods.periodic.maps.rates import (
     MEMORY,
     SMOOTH,
     YIELDS,
-    Flow,
     U,
     Work,
     Y,

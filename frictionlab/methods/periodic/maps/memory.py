@@ -15,7 +15,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.events import dips
-from frictionlab.dynamics.motion import belt_path, instant_at, instant_near, span, swing_of
+from frictionlab.dynamics.motion import Flow, anchored, belt_path, instant_at, instant_near, span, swing_of
 from frictionlab.dynamics.step_size import growth_factor, longest_step
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.linearization import linearize
@@ -34,11 +34,9 @@ from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
     SMOOTH,
-    Flow,
     U,
     Work,
     Y,
-    anchored,
     deviation_held,
     held_velocity,
     velocity_held,
@@ -184,7 +182,7 @@ def _flow_of(case: Case, work: Work) -> Flow:
     return anchored(case.law, case.body, case.belt_speed, _side(w, a), 0.0)
 
 
-class Node(NamedTuple):
+class StepStart(NamedTuple):
     """Where a step starts: slip and its rate, and whether an event has just been passed."""
 
     tau: float
@@ -193,7 +191,7 @@ class Node(NamedTuple):
     leaving: bool
 
 
-class Landing(NamedTuple):
+class StepEnd(NamedTuple):
     """The step to take, whether it has to be tried first, and whether it ends at an event."""
 
     h: float
@@ -202,7 +200,7 @@ class Landing(NamedTuple):
 
 
 @inner
-def _landing(flow: Flow, node: Node, h: float, accuracy: float, work: Work, like: Any) -> Landing:
+def _end_of_step(flow: Flow, node: StepStart, h: float, accuracy: float, work: Work, like: Any) -> StepEnd:
     """What becomes of a step of h that is accurate enough."""
     w, a = rates_at_end(flow, node.tau + h, work, like)
     guard = lowest(flow, w, a, work)
@@ -210,24 +208,24 @@ def _landing(flow: Flow, node: Node, h: float, accuracy: float, work: Work, like
         # just behind an event a guard is zero to rounding: a step must first get away from it, or never does
         stays = node.leaving and work.guards[2 * guard.number] <= -1e-3 * guard.value
         if stays and h * flow.body.frequency > 1e-12:
-            return Landing(0.25 * h, True, False)
-        return Landing(locate(flow, node.tau, h, accuracy, work, like), False, True)
+            return StepEnd(0.25 * h, True, False)
+        return StepEnd(locate(flow, node.tau, h, accuracy, work, like), False, True)
     if node.leaving:
-        return Landing(h, False, False)
+        return StepEnd(h, False, False)
     # between two ends without events a guard may have passed zero twice, or slip come close to rest
     shorter = hidden(flow, h, w, a, work)
     if shorter == h and min(length(node.w), length(w)) > 10.0 * accuracy:
         shorter = 0.5 * h if _dip(flow.law, node, w, a, h, like) else h
-    return Landing(shorter, shorter < h, False)
+    return StepEnd(shorter, shorter < h, False)
 
 
 @inner
-def _depart(flow: Flow, leaving: bool, work: Work, like: Any) -> Node:
+def _depart(flow: Flow, leaving: bool, work: Work, like: Any) -> StepStart:
     """Get ready for steps from ``work.start``, at the anchor of the flow."""
     w, a = _at_start(flow, work, like)
     note_guards(flow, w, a, work)
     linearize(flow, flow.anchor, work, like)
-    return Node(flow.anchor, w, a, leaving)
+    return StepStart(flow.anchor, w, a, leaving)
 
 
 @inner
@@ -269,20 +267,23 @@ def follow(flow: Flow, friction: float, accuracy: float, track: Track, work: Wor
             continue
         # an event cuts a step short, but says nothing about how long the next may be
         usual = h * growth
-        landing = _landing(flow, node, h, accuracy, work, like)
-        h = landing.h
-        if landing.repeats:
+        ending = _end_of_step(flow, node, h, accuracy, work, like)
+        h = ending.h
+        if ending.repeats:
             continue
         tau = node.tau + h if end - node.tau > h else end
         if track.stick.size > 0:
             _note(track, node.tau, h, False, flow, node.tau, work, like)
             step(flow, node.tau, h, work, like)
-        flow = anchored(law, body, belt_speed, _arrive(flow, tau, landing.ends, work, like), tau)
-        node = _depart(flow, landing.ends, work, like)
+        flow = anchored(law, body, belt_speed, _arrive(flow, tau, ending.ends, work, like), tau)
+        node = _depart(flow, ending.ends, work, like)
         closest = min(closest, length(node.w))
         # a reversal begins a layer, where steps grow with the way; none is known behind the start of the span
-        began = _position(flow, work.start[Y]) if landing.ends else began
-        h = min(usual, _layer(work, abs(_position(flow, work.start[Y]) - began), share, node.a, node.w))
+        began = _position(flow, work.start[Y]) if ending.ends else began
+        h = min(
+            usual,
+            _layer(work, abs(_position(flow, work.start[Y]) - began), share, node.a, node.w),
+        )
     return closest, steps
 
 

@@ -98,7 +98,7 @@ _measure_sizes = by_law(_measure_bristle, _measure_bristle, None, _measure_defle
 
 
 @inner
-def measure(law: Any, body: Body, work: Work, like: Any) -> None:
+def measure_scales(law: Any, body: Body, work: Work, like: Any) -> None:
     """Fill of each number its size in steady sliding, its unit in the norm of energy and where it yields."""
     _measure_sizes(law, body, work, like)
     measure_yield(law, work, like)

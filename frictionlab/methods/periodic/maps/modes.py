@@ -15,17 +15,16 @@ from typing import Any, NamedTuple
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.motion import instant_near, swing_of
+from frictionlab.dynamics.motion import Flow, instant_near, swing_of
 from frictionlab.laws.memory import VECTORIAL
 from frictionlab.methods.periodic.maps.rates import (
     FOLLOWS,
     MEMORY,
     SMOOTH,
     YIELDS,
-    Flow,
     Work,
+    fill_rates,
     on_circle,
-    rates,
     remembers_stick,
 )
 from frictionlab.methods.periodic.maps.step import step
@@ -192,7 +191,7 @@ def rates_at_end(flow: Flow, tau: float, work: Work, like: Any) -> Any:
     """Slip and its rate at ``work.end``, the time tau; leaves the memory there in ``work.memory``."""
     for row in range(MEMORY + count_of(flow.law)):
         work.stage[row] = work.end[row]
-    return rates(flow, instant_near(flow, tau), work, like)
+    return fill_rates(flow, instant_near(flow, tau), work, like)
 
 
 def _begin_smoothly(flow: Flow, a: Any, w: Any, work: Work) -> None:

@@ -107,7 +107,7 @@ def _way(leg: Leg, now: Instant, y: float) -> float:
 
 
 @fast_embedded
-def rates(leg: Leg, tau: float, y: float, u: float) -> Any:
+def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
     """Acceleration of the deviation, and the friction coefficient."""
     side, law, now = leg.side, leg.law, instant_near(leg, tau)
     # Trial steps go beyond the end of the leg: there its law is continued as at rest, so that it stays smooth.
@@ -117,8 +117,8 @@ def rates(leg: Leg, tau: float, y: float, u: float) -> Any:
     return deviation_acceleration(leg.body, now, y, u, rub), rub
 
 
-step = stepper(rates)
-stop, lowest = slip_events(step, rates, slip_at, slip_rate)
+step = stepper(path_rates)
+stop, lowest = slip_events(step, path_rates, slip_at, slip_rate)
 
 
 @inner
@@ -169,7 +169,7 @@ def _until_way(leg: Leg, tau: float, state: State, high: float, way: float) -> A
 def _slipping(part: float, leg: Leg, tau: float, state: State) -> Any:
     """A while into a step; the step is taken anew to there."""
     body, taken, now = leg.body, step(leg, tau, state, part), instant_near(leg, tau + part)
-    _a, rub = rates(leg, tau + part, taken.x, taken.v)
+    _a, rub = path_rates(leg, tau + part, taken.x, taken.v)
     x = taken.x + body.reference_sine * now.sine + body.reference_cosine * now.cosine
     return x, taken.v + reference_velocity(body, now.sine, now.cosine), rub
 
@@ -183,7 +183,7 @@ def _side(case: Case, tau: float, y: float, u: float, z: float) -> float:
     leg = _leg(case, 1.0, tau, y, z)
     w = slip_at(leg, tau, u)
     if w == 0.0:
-        a, _rub = rates(leg, tau, y, u)
+        a, _rub = path_rates(leg, tau, y, u)
         w = slip_rate(leg, tau, a)
     return 1.0 if w >= 0.0 else -1.0
 
@@ -191,7 +191,7 @@ def _side(case: Case, tau: float, y: float, u: float, z: float) -> float:
 REPEAT, ACCEPT, TURN = 0, 1, 2
 
 
-class Landing(NamedTuple):
+class PathStep(NamedTuple):
     """Whether a step is repeated with h, accepted, or ends where slip turns round; its length and its end."""
 
     verdict: int
@@ -200,23 +200,23 @@ class Landing(NamedTuple):
 
 
 @inner
-def _landing(leg: Leg, tau: float, state: State, taken: Any, h: float, leaving: bool) -> Landing:
+def _path_step(leg: Leg, tau: float, state: State, taken: Any, h: float, leaving: bool) -> PathStep:
     """What becomes of an accurate step of h: whether slip turned round in it, between its ends included."""
     body, after, limit = leg.body, leg.side * slip_at(leg, tau + h, taken.v), h
     if after <= 0.0 and leaving:
         # just behind a reversal slip is zero to rounding: a step must first get away from it, or slip never does
         if h * body.frequency > 1e-12:
-            return Landing(REPEAT, 0.25 * h, taken)
-        return Landing(TURN, h, taken)
-    a, _rub = rates(leg, tau + h, taken.x, taken.v)
+            return PathStep(REPEAT, 0.25 * h, taken)
+        return PathStep(TURN, h, taken)
+    a, _rub = path_rates(leg, tau + h, taken.x, taken.v)
     falls, rises = leg.side * slip_rate(leg, tau, state.a), leg.side * slip_rate(leg, tau + h, a)
     if after > 0.0 and not leaving and falls < 0.0 < rises:
         limit = lowest(leg, tau, state, falls, h)
         after = leg.side * slip_at(leg, tau + limit, step(leg, tau, state, limit).v)
     if after > 0.0:
-        return Landing(ACCEPT, h, taken)
+        return PathStep(ACCEPT, h, taken)
     h, taken = stop(leg, tau, state, 0.0, limit)
-    return Landing(TURN, h, taken)
+    return PathStep(TURN, h, taken)
 
 
 @inner
@@ -232,7 +232,7 @@ def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: T
     )
     tau, h, steps, rubbed, closest = 0.0, 0.1 * reach, 0, 0.0, 1e300
     leg = _leg(case, _side(case, tau, y, u, z), tau, y, z)
-    a, f = rates(leg, tau, y, u)
+    a, f = path_rates(leg, tau, y, u)
     state, leaving, way = State(y, u, a, f), True, 0.0
     corner = law.saturation_path(z, leg.side)
     while end - tau > 4e-15 * end:
@@ -250,12 +250,12 @@ def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: T
         if growth < 1.0:
             h = h * growth
             continue
-        landing = _landing(leg, tau, state, taken, h, leaving)
-        if landing.verdict == REPEAT:
-            h = landing.h
+        ending = _path_step(leg, tau, state, taken, h, leaving)
+        if ending.verdict == REPEAT:
+            h = ending.h
             continue
-        turns = landing.verdict == TURN
-        h, taken = landing.h, landing.taken
+        turns = ending.verdict == TURN
+        h, taken = ending.h, ending.taken
         # where friction saturates for good it has a corner
         ended = _slid(leg, tau + h, taken.x)
         if corner > way and corner < math.inf and ended > corner * (1.0 + 1e-14):
@@ -272,7 +272,7 @@ def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: T
             corner, way = law.saturation_path(z, leg.side), 0.0
         else:
             leg = _anchored(leg, tau)
-        a, f = rates(leg, tau, taken.x, taken.v)
+        a, f = path_rates(leg, tau, taken.x, taken.v)
         state = State(taken.x, taken.v, a, f)
         h = h * growth if not turns else reach
     z = law.deflected(leg.z, leg.side * _slid(leg, tau, state.x))

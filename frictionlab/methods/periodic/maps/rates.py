@@ -12,10 +12,11 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from frictionlab.compile.decorators import fast, inlined, inner
+from frictionlab.compile.decorators import fast, inlined
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.stack import count_of, room
 from frictionlab.dynamics.motion import (
+    Flow,
     Instant,
     acceleration_under,
     belt_velocity,
@@ -34,18 +35,6 @@ coefficient; then memory."""
 
 FOLLOWS, SMOOTH, YIELDS = -1.0, 0.0, 1.0
 """Modes of a deflection: it moves with the slip; by its law's rate; on its yield surface, or gives way before it."""
-
-
-class Flow(NamedTuple):
-    """A law and a body on a belt; the sign of slip on the line; sine and cosine of the drive at the anchor time."""
-
-    law: Any
-    body: Body
-    belt_speed: float
-    side: float
-    anchor: float
-    sine: float
-    cosine: float
 
 
 class Work(NamedTuple):
@@ -118,13 +107,6 @@ def workspace(law: Any, like: Any) -> Work:
         radius=room(law, 1, 0, 0.0),
         mode=room(law, 1, 0, 0.0),
     )
-
-
-@inner
-def anchored(law: Any, body: Body, belt_speed: float, side: float, tau: float) -> Flow:
-    """The flow with its sine and cosine at this time."""
-    angle = body.frequency * tau
-    return Flow(law, body, belt_speed, side, tau, math.sin(angle), math.cos(angle))
 
 
 # --- the velocity that a state holds --------------------------------------------------------------------------------
@@ -328,7 +310,7 @@ def load_on(body: Body, now: Instant) -> float:
 
 
 @fast
-def rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
+def fill_rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
     """Fill ``work.rates`` at ``work.stage``; returns slip and its rate."""
     body, n = flow.body, count_of(flow.law)
     for k in range(n):

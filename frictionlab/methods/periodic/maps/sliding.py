@@ -15,7 +15,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
 from frictionlab.dynamics.events import dips, slip_events
 from frictionlab.dynamics.motion import (
-    SlidingMotion,
+    Flow,
     anchored,
     belt_path,
     belt_velocity,
@@ -88,18 +88,16 @@ stop, lowest = slip_events(step, rates, slip_at, slip_rate)
 
 
 @inner
-def _state(problem: SlidingMotion, tau: float, y: Any, u: Any) -> State:
+def _state(problem: Flow, tau: float, y: Any, u: Any) -> State:
     a, f = rates(problem, tau, y, u)
     return State(y, u, a, f)
 
 
-def _before_on_the_line(problem: SlidingMotion, node: Node, accuracy: float, h: float, y: float) -> Landing:
+def _before_on_the_line(problem: Flow, node: Node, accuracy: float, h: float, y: float) -> Landing:
     return Landing(ACCEPT, h, node.state, y)
 
 
-def _before_in_the_plane(
-    problem: SlidingMotion, node: Node, accuracy: float, h: float, y: complex
-) -> Landing:
+def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y: complex) -> Landing:
     """How far the step may go towards rest; where rest is nearer than the accuracy, go there."""
     body, belt_speed, w = problem.body, problem.belt_speed, node.w
     speed, now = node.speed, instant_near(problem, node.tau)
@@ -125,9 +123,7 @@ def _before_in_the_plane(
 _before = by_dimension(_before_on_the_line, _before_in_the_plane)
 
 
-def _after_on_the_line(
-    problem: SlidingMotion, node: Node, leaving: bool, taken: Any, h: float, y: float
-) -> Landing:
+def _after_on_the_line(problem: Flow, node: Node, leaving: bool, taken: Any, h: float, y: float) -> Landing:
     """Whether the slip velocity passed through zero, between the nodes included."""
     side, state, limit = problem.side, node.state, h
     after = side * slip_at(problem, node.tau + h, taken.v)
@@ -146,7 +142,7 @@ def _after_on_the_line(
 
 
 def _after_in_the_plane(
-    problem: SlidingMotion, node: Node, leaving: bool, taken: Any, h: float, y: complex
+    problem: Flow, node: Node, leaving: bool, taken: Any, h: float, y: complex
 ) -> Landing:
     """Whether the slip came close to rest between the nodes: then the step was too long."""
     after = slip_at(problem, node.tau + h, taken.v)
@@ -163,7 +159,7 @@ _after = by_dimension(_after_on_the_line, _after_in_the_plane)
 
 
 @inner
-def _slipping(part: float, problem: SlidingMotion, node: Node) -> Any:
+def _slipping(part: float, problem: Flow, node: Node) -> Any:
     """A while into a step; the step is taken anew to there."""
     body, tau = problem.body, node.tau + part
     taken, now = step(problem, node.tau, node.state, part), instant_near(problem, tau)
@@ -173,7 +169,7 @@ def _slipping(part: float, problem: SlidingMotion, node: Node) -> Any:
 
 
 @inner
-def _resting(part: float, problem: SlidingMotion, tau: float, x: Any) -> Any:
+def _resting(part: float, problem: Flow, tau: float, x: Any) -> Any:
     """A while into a time at rest that began at x."""
     body, belt_speed = problem.body, problem.belt_speed
     now = instant_at(body, tau + part)
@@ -194,7 +190,7 @@ class Hop(NamedTuple):
 
 
 @inner
-def _hopping(part: float, problem: SlidingMotion, hop: Hop) -> Any:
+def _hopping(part: float, problem: Flow, hop: Hop) -> Any:
     body, belt_speed, share = problem.body, problem.belt_speed, part / hop.lasts
     carried = belt_path(body, belt_speed, hop.tau, hop.tau + part)
     x = hop.x + carried + part * (hop.w + 0.5 * share * hop.change)
@@ -206,7 +202,7 @@ _note_slip, _note_stick, _note_hop = panel_writer(_slipping), panel_writer(_rest
 
 
 @inner
-def _note_rest(track: Track, problem: SlidingMotion, tau: float, x: Any, rest: StickPhase) -> None:
+def _note_rest(track: Track, problem: Flow, tau: float, x: Any, rest: StickPhase) -> None:
     """The time at rest from x on, and the short while after it that the balance of momentum closes."""
     slips = tau + rest.stuck
     if rest.stuck > 0.0:
@@ -219,7 +215,7 @@ def _note_rest(track: Track, problem: SlidingMotion, tau: float, x: Any, rest: S
 
 
 @inner
-def _after_rest(problem: SlidingMotion, rest: StickPhase, end: float) -> State:
+def _after_rest(problem: Flow, rest: StickPhase, end: float) -> State:
     """The deviation with which slip begins."""
     body, tau = problem.body, rest.tau
     u = rest.w + belt_velocity(body, problem.belt_speed, instant_at(body, tau))
@@ -237,9 +233,7 @@ class Attempt(NamedTuple):
 
 
 @inner
-def _slide(
-    problem: SlidingMotion, node: Node, leaving: bool, accuracy: float, h: float, track: Track
-) -> Attempt:
+def _slide(problem: Flow, node: Node, leaving: bool, accuracy: float, h: float, track: Track) -> Attempt:
     """One step of slip from a node, of h at most; noted if it is taken."""
     state, room = node.state, track.stick.size
     done = _before(problem, node, accuracy, h, state.x)

@@ -17,17 +17,16 @@ from typing import Any
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.motion import instant_near
+from frictionlab.dynamics.motion import Flow, instant_near
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
-    Flow,
     U,
     Work,
     Y,
     as_memory,
+    fill_rates,
     load_on,
-    rates,
 )
 from frictionlab.numerics.blocks import add, apply, block, diagonal, inverse, keep, product, scale
 from frictionlab.numerics.steppers.rodas5p import COUPLINGS, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
@@ -204,7 +203,7 @@ def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
             return math.inf
         if 0 < i < SIMULTANEOUS:
             now = instant_near(flow, tau + TIMES[i] * h)
-        rates(flow, now, work, like)
+        fill_rates(flow, now, work, like)
         _right_side(i, law, h, work)
         _solve(i, flow, h, work, like)
     # the last increment is the difference to the embedded method, and ends the step

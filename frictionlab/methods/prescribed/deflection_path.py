@@ -371,8 +371,7 @@ def follow_period(law: Any, slip: Oscillation, stretches: Any, scale: Scale, acc
     """
     bristle, radius = Bristle(law, slip, scale), scale.circle
     out, gained, carry = _panel_room(z), 0.0 * z, np.eye(parts(z))
-    work = (work_for(z), work_for(z), work_for(z))
-    step, row, at, idle = 0.1, 0, 0.0, 0
+    work, step, row, at, idle = (work_for(z), work_for(z), work_for(z)), 0.1, 0, 0.0, 0
     longest = math.pi / 8.0 if radius < 0.0 else math.pi / 48.0
     bristle = _first_mode(bristle, radius, stretches, z, carry)
     while row < stretches.shape[0] and out.filled[0] + 2 < ROOM:
@@ -380,9 +379,8 @@ def follow_period(law: Any, slip: Oscillation, stretches: Any, scale: Scale, acc
         place, first = stretch.place, stretch.begin + at
         step = min(min(step, longest), _allowed(stretch, at))
         # After three changes of mode without progress the jump of the rate is left to the step control.
-        step, error, ends, cut = _attempt(
-            bristle, radius if idle < 3 else -1.0, place, (first, step), now, work
-        )
+        edge = radius if idle < 3 else -1.0
+        step, error, ends, cut = _attempt(bristle, edge, place, (first, step), now, work)
         if cut and step <= SHORTEST:
             bristle = _other_mode(bristle, radius, place, first, now, carry)
             step, idle = 1e-3, idle + 1

@@ -215,7 +215,7 @@ class _Undriven:
         return PeriodicMotion(x, v, TURN, mean, ROUNDING, 1.0, kind)
 
     def _at_rest(self) -> PeriodicMotion:
-        state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settled(self.scene.start)
+        state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settle(self.scene.start)
         if periods < 0:
             raise NotFound("the mass still approaches rest after the largest number of periods")
         mean = state[0] / self._pressed

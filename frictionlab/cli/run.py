@@ -105,7 +105,7 @@ def _run(job: Job, asked: RunOptions) -> Run:
     meter = Meter(sys.stderr)
     pool = ThreadPoolExecutor(asked.workers or os.cpu_count())
     try:
-        result = api.run(job.study, job.out, asked.changes, asked.existing, pool, meter)
+        result = api.run(job.study, job.out, asked.changes, asked.existing, executor=pool, progress=meter)
     except api.Interrupted as problem:
         raise CommandError(INTERRUPTED, _how_far(problem.run)) from problem
     except api.UnsavedError as problem:

@@ -24,10 +24,12 @@ MOST_ITERATIONS = 12
 def _radau() -> tuple[Floats, Floats]:
     """Nodes in (0, 1] and the matrix that integrates the polynomial through them from 0 to each."""
     legendre = np.polynomial.legendre.Legendre.basis
+    # The nodes of Radau IIA are the zeros of P_s - P_(s-1), the right end 1 among them: it is divided out.
     inside = (legendre(STAGES) - legendre(STAGES - 1)) // np.polynomial.Polynomial([-1.0, 1.0]).convert(
         kind=np.polynomial.Legendre
     )
     nodes = np.concatenate((0.5 * (1.0 + np.sort(inside.roots().real)), [1.0]))
+    # Row i integrates every monomial up to node i; the inverse turns values at the nodes into monomials.
     powers = np.arange(STAGES)
     values = nodes[:, None] ** powers
     sums = nodes[:, None] ** (powers + 1) / (powers + 1)
@@ -90,6 +92,7 @@ class PanelRoom(NamedTuple):
 @inner
 def slip_in_the_plane(slip: Oscillation, place: Place, angle: float) -> complex:
     """The slip velocity this angle after a place, to rounding of the change since there."""
+    # A difference of sines as a product: near rest the slip keeps its digits.
     turn = place.angle + 0.5 * angle
     swing = complex(math.cos(turn), math.sin(turn)) * (2.0 * math.sin(0.5 * angle))
     return place.slip + complex((slip.along * swing).real, (slip.across * swing).real)
@@ -182,6 +185,7 @@ def _evaluate(bristle: Bristle, z: Any, work: PanelRoom) -> None:
         v, here = work.slip[stage], z + work.gain[stage]
         rate, friction = bound(law, v, scale.circle, here)
         work.rate[stage], work.friction[stage] = rate, friction
+        # The step of the difference is a share of the reach, so that soft and stiff contacts keep as many digits.
         for column in range(n):
             loads = -small if part(column, v) < 0.0 else small
             nudge = made(loads, 0.0, z) if column == 0 else made(0.0, loads, z)
@@ -206,6 +210,7 @@ def _assemble(width: float, n: int, work: PanelRoom) -> None:
 def eliminate(matrix: Any, right: Any) -> None:
     """Gaussian elimination with partial pivoting: ``right`` [n, columns] becomes the solution, in place."""
     n, columns = matrix.shape[0], right.shape[1]
+    # Row pivots: an implicit step over a stiff layer has rows of very different size.
     for k in range(n):
         pivot = k
         for row in range(k + 1, n):
@@ -223,6 +228,7 @@ def eliminate(matrix: Any, right: Any) -> None:
                     matrix[row, column] -= factor * matrix[k, column]
                 for column in range(columns):
                     right[row, column] -= factor * right[k, column]
+    # Back substitution, a right side at a time.
     for column in range(columns):
         for row in range(n - 1, -1, -1):
             total = right[row, column]
@@ -242,6 +248,7 @@ def solve_panel(bristle: Bristle, place: Place, span: Any, z: Any, work: PanelRo
     for stage in range(STAGES):
         work.slip[stage] = slip_at(slip, place, span[0] + NODES[stage] * span[1], z)
         work.gain[stage] = 0.0 * z
+    # Newton's method with new slopes each time: rates bend within a layer of yield.
     for turn in range(MOST_ITERATIONS):
         _evaluate(bristle, z, work)
         _assemble(width, n, work)
@@ -252,6 +259,7 @@ def solve_panel(bristle: Bristle, place: Place, span: Any, z: Any, work: PanelRo
             first = work.right[stage * n, 0]
             second = work.right[stage * n + n - 1, 0]
             step = made(first, second, z)
+            # The unknowns are gains, not deflections: small changes of a soft contact keep their digits.
             work.gain[stage] = work.gain[stage] + step
             change, size = max(change, abs(step)), max(size, abs(work.gain[stage]))
         # A singular matrix gives an infinite or undefined correction.
@@ -260,6 +268,7 @@ def solve_panel(bristle: Bristle, place: Place, span: Any, z: Any, work: PanelRo
         # Converged; after three iterations corrections of rounding size are accepted more readily.
         rounding = (4e-15 if turn < 3 else 5e-14) * scale.change
         if change <= max(1e-8 * size, rounding):
+            # Rates and frictions once more at the solution, and its derivative from the last system.
             _evaluate(bristle, z, work)
             _derivative(n, work)
             return True
@@ -273,6 +282,7 @@ def _residuals(width: float, n: int, work: PanelRoom) -> None:
         lack = -work.gain[i]
         for j in range(STAGES):
             lack = lack + width * MATRIX[i, j] * work.rate[j]
+        # First column: what the stages lack. The others: how the start moves each of them.
         for row in range(n):
             work.right[i * n + row, 0] = part(row, lack)
             for column in range(n):

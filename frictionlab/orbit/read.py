@@ -162,6 +162,7 @@ def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
     """The columns ``READ`` of one period."""
     v, stick = panels.v, panels.stick
     slips = np.empty(v.shape, np.complex128)
+    # Means and energies, by the Gauss-Lobatto weights of every panel.
     sums = _integrals(panels, mass, belt_speed, slips)
     period = sums.duration
     part = np.empty(v.shape)
@@ -170,6 +171,7 @@ def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
     out[1] = sums.position.real / period
     out[2] = mean_friction(sums.friction.imag, period)
     out[3] = sums.position.imag / period
+    # First harmonics, their phases against the load along that direction.
     out[5] = abs(sums.harmonic_1) * 2.0 / period
     out[6] = _lead(sums.harmonic_1, mass.force)
     out[8] = abs(sums.harmonic_2) * 2.0 / period
@@ -182,9 +184,11 @@ def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
     # Reversals of the friction force count in stick too, where the force changes its sign but the slip is zero.
     _along(panels.friction, part)
     out[12] = _sign_changes(part, stick, False)
+    # Reversals of slip, not counted in stick; a slip that is rounding of the velocity has no sign.
     _along(slips, part)
     _drop_rounding(part, v)
     out[11] = _sign_changes(part, stick, True)
+    # Amplitudes: half the way between the extremes of the panel polynomials.
     _along(v, part)
     out[4] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
     _across(v, part)
@@ -270,6 +274,7 @@ def _highest(values: Any, sign: float, stick: Any) -> float:
         for node in range(values.shape[1]):
             row[node] = sign * values[panel, node]
             highest = max(highest, row[node])
+        # An extreme inside a panel lies where its derivative falls through zero between two nodes.
         differentiate_panel(row, slope)
         for node in range(1, values.shape[1]):
             if not stick[panel] and slope[node - 1] > 0.0 >= slope[node]:
@@ -288,6 +293,7 @@ def _sign_changes(values: Any, stick: Any, skip_stick: bool) -> int:
             value = values[panel, node]
             if (skip_stick and stick[panel]) or value == 0.0:
                 continue
+            # The period is a circle: the last sign is compared with the first, too.
             first = value if first == 0.0 else first
             changes += 1 if last * value < 0.0 else 0
             last = value

@@ -58,6 +58,7 @@ def panel_writer(state_at: Any) -> Any:
 
     @inner
     def note_panel(track: Track, tau: float, h: float, stick: bool, *given: Any) -> None:
+        # Room for no panel at all is how maps are asked not to record.
         row = track.filled[0]
         if row == track.stick.size:
             return

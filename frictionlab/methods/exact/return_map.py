@@ -116,6 +116,7 @@ def periodic_state(body: Oscillator, x: float, w: float, most: int) -> Fixed:
     x_next, w_next, here, size, maps, stalled = x, w, unknown(x, w), math.inf, 0, 0
     share, picard = 1.0, True
     while True:
+        # The trial state and its image: a Newton step or an iteration of the map, whichever was proposed.
         trial = passage(body, x_next, w_next, 0.0, body.period)
         trial_size = math.hypot(trial.x - x_next, trial.w - w_next)
         maps = maps + 1
@@ -162,6 +163,7 @@ def whole_periods_of_stick(body: Oscillator, here: Passage) -> float:
     """Displacement of a mass that sticks for a whole period, over all whole periods until friction is exceeded."""
     if here.stick < body.period or body.belt_speed == 0.0:
         return 0.0
+    # Room: how far the spring may still be drawn before the worst instant of the load overcomes friction.
     carried = body.belt_speed * body.period
     room = body.friction - body.load - 2.0 * body.damping * body.belt_speed - here.x - carried
     return max(math.floor(room / carried), 0.0) * carried
@@ -195,6 +197,7 @@ def impulse_error(body: Oscillator, fixed: Fixed) -> float:
     of_x = abs((here.by_x * d - here.by_w * c) / determinant)
     of_w = abs((here.by_w * a - here.by_x * b) / determinant)
     sx, sw = scales(body, fixed.x, fixed.w)
+    # Every leg rounds the state once more.
     share = 2.0 * EPSILON * (4.0 + here.legs)
     dx = abs(here.x - fixed.x) + share * sx
     dw = abs(here.w - fixed.w) + share * sw
@@ -205,6 +208,7 @@ def impulse_error(body: Oscillator, fixed: Fixed) -> float:
 @inner
 def largest_multiplier(here: Passage) -> float:
     """The largest modulus of the eigenvalues of the derivative of the map."""
+    # The modulus of a complex pair, or the larger one of a real pair, which is free of cancellation.
     half, determinant = 0.5 * (here.xx + here.ww), here.xx * here.ww - here.xw * here.wx
     square = half * half - determinant
     if square < 0.0:

@@ -58,6 +58,7 @@ def _arrives(case: Case, start: Any, target: Any) -> bool:
         # A motion that takes this long is no cheap one: the starts are then followed to their ends instead.
         if image.steps < 0 or steps > MUCH_WORK // 4:
             return False
+        # The next period starts where this one ends.
         for row in range(start.size):
             start[row] = start[row] + residual[row]
         subtract(start, target, residual)
@@ -77,10 +78,12 @@ def _reached_with_memory(case: Case, target: Any) -> bool:
     The second is an orbit of its own where the belt is faster than any vibration and sliding friction constant.
     """
     law, body, belt_speed, like = case
+    # Set off at rest on the belt, where the contact remembers nothing.
     start = np.empty(target.size)
     start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
     if not _arrives(case, start, target):
         return False
+    # Set off as in sliding that never reverses, with the memory of that.
     friction = math.copysign(1.0, belt_speed) * law.sliding_friction(abs(belt_speed))
     x, v, z = state_of_sliding(body, friction, like)
     start_of(law, body, start, x, v, z - memory_of_sliding(law, belt_speed))
@@ -115,6 +118,7 @@ LONGEST_PERIOD = 8
 
 @inner
 def _apart(states: Any, a: int, b: int) -> float:
+    # Relative to the largest number of the state: memories may be far smaller than positions.
     total, size = 0.0, 1.0
     for row in range(states.shape[1]):
         total += (states[a, row] - states[b, row]) ** 2

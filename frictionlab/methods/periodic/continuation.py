@@ -23,6 +23,7 @@ from frictionlab.scene.body import Body
 def _first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
     """The spring deflection by the mean friction of a harmonic slip; returns friction's coefficient as a dashpot."""
     swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine))
+    # As if slip were the belt speed and one harmonic of the free motion: the closed form of prescribed slip.
     ratio = abs(belt_speed) / (swing + 1e-300)
     mean = law.sliding_friction(swing + abs(belt_speed)) * (
         math.asin(ratio) * 2.0 / math.pi if ratio < 1.0 else 1.0
@@ -31,6 +32,7 @@ def _first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
         z[i] = 0.0
     stiffness = body.stiffness_mean + body.stiffness_split
     z[0] = math.copysign(body.normal_load * mean / math.sqrt(stiffness), belt_speed)
+    # Friction taken as a dashpot: the force over the slip speed, with a floor that keeps it from blowing up at rest.
     return body.normal_load * law.sliding_friction(swing) / (swing + abs(belt_speed) + 1e-3)
 
 
@@ -43,6 +45,7 @@ def _extrapolated(states: Any, belt_speeds: Any, i: int, known: int, z: Any) -> 
     for row in range(z.size):
         z[row] = 0.0
     for a in range(i - known, i):
+        # Lagrange's weights: belt speeds need not be equally spaced.
         weight = 1.0
         for b in range(i - known, i):
             if a != b:
@@ -159,6 +162,7 @@ def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal,
     else:
         states, results = guess, np.ones((belt_speeds.size, 6))
     n, size = states.shape
+    # The recorded motion is a map of its own, as exact as the mean was asked to be.
     accuracy = max(0.1 * goal.tolerance * body.normal_load, 1e-13)
     matrices, ends_there = np.zeros((n if wanted.matrices else 0, size, size)), np.zeros(n, np.bool_)
     track, ends = track_of(128 if wanted.orbits else 0), np.zeros(n, np.int64)

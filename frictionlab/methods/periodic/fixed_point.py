@@ -103,6 +103,7 @@ def mean_error(body: Body, residual: Any, distance: float) -> float:
 @inner
 def mean_sensitivity(case: Case, search: Iterate, shift: Any, image: Mapped, accuracy: float) -> float:
     """By how much the mean changes where the state, whose map is the image, is shifted."""
+    # At the accuracy of the image, so that the errors of the steps are much the same in both and cancel.
     trial, residual = np.empty(search.z.size), np.empty(search.z.size)
     subtract(search.z, shift, trial)
     moved = image_of(case, trial, residual, accuracy)
@@ -116,10 +117,12 @@ def mean_sensitivity(case: Case, search: Iterate, shift: Any, image: Mapped, acc
 def broyden(inverse: Any, step: Any, change: Any, work: Any) -> None:
     """Broyden's update of the inverse (1965, by the Sherman-Morrison formula)."""
     n = step.size
+    # work: what the old inverse makes of the change of the residual. It should be the step; the update makes it so.
     multiply(inverse, change, work)
     scale = 0.0
     for i in range(n):
         scale += step[i] * work[i]
+    # Nearly singular: the update would blow the inverse up, and the old one still serves.
     if abs(scale) < 1e-3 * norm(step) ** 2:
         return
     for column in range(n):
@@ -138,6 +141,7 @@ def line_search(case: Case, search: Iterate, accuracy: float) -> int:
     n, z = search.z.size, search.z
     step, trial, fresh = np.empty(n), np.empty(n), np.empty(n)
     multiply(search.inverse, search.residual, step)
+    # A tenth of the fall that a linear map would promise is enough (Armijo): the onset of stick bends the map.
     length, part = norm(search.residual), 1.0
     for tried in range(1, 8):
         for i in range(n):
@@ -154,11 +158,13 @@ def line_search(case: Case, search: Iterate, accuracy: float) -> int:
 def newton_step(case: Case, search: Iterate, accuracy: float, of_quotients: float) -> Any:
     """A Newton step with a line search, or where it fails three repetitions of the map: the image, and maps taken."""
     z, residual = search.z, search.residual
+    # The derivative as it is here: where the motion sticks, Broyden's inverse is that of another pattern of events.
     regular = newton_inverse(case, z, of_quotients, search.inverse)
     if not regular:
         free_inverse(case.body, case.body.normal_load, search.inverse, case.like)
     tried = line_search(case, search, accuracy)
     maps = 2 * z.size + tried + 1
+    # The map never moves two orbits of monotone friction apart: it comes nearer, if slowly, where Newton fails.
     if not regular or tried == 8:
         for _ in range(3):
             image_of(case, z, residual, accuracy)
@@ -172,10 +178,12 @@ def newton_step(case: Case, search: Iterate, accuracy: float, of_quotients: floa
 def quasi_newton_step(case: Case, search: Iterate, now: Progress) -> Progress:
     """One Broyden step, along ``search.step``; stalls counts those after which the residual has not fallen."""
     length = norm(search.residual)
+    # A map need not be much more exact than what is left open.
     finer = max(now.finest, min(now.accuracy, 1e-4 * length))
     subtract(search.z, search.step, search.trial)
     image = image_of(case, search.trial, search.fresh, finer)
     falls, usable = norm(search.fresh) < 0.7 * length, norm(search.fresh) <= 1.5 * length
+    # A step that makes it somewhat worse is kept for what it says of the derivative; a worse one is not taken.
     if usable:
         for i in range(search.z.size):
             search.step[i] = -search.step[i]
@@ -184,6 +192,7 @@ def quasi_newton_step(case: Case, search: Iterate, now: Progress) -> Progress:
         copy(search.fresh, search.residual)
         if now.accuracy <= 0.05 * length:  # a coarser map's residual would spoil the inverse
             broyden(search.inverse, search.step, search.work.copy(), search.work)
+    # Two stalls in a row, or a step that was not taken, call for a Newton step.
     stalls = 0 if falls else now.stalls + 1 if usable else max(now.stalls + 1, 2)
     return Progress(image, finer, now.finest, now.maps + 1, stalls, now.checks, now.newtons, -1.0)
 
@@ -214,6 +223,7 @@ def _recover_with_memory(case: Case, search: Iterate, now: Progress, length: flo
 def _check_without_memory(case: Case, search: Iterate, goal: Goal, now: Progress, floor: float) -> Progress:
     """End where a map much finer than those of the search leaves a residual whose bound is below the tolerance."""
     z, residual, work = search.z, search.residual, search.work
+    # The last quasi-Newton step is still taken: it costs no map of its own.
     subtract(z, search.step, search.trial)
     copy(search.trial, z)
     accuracy = now.finest / FINER
@@ -276,12 +286,15 @@ def _check_with_memory(case: Case, search: Iterate, goal: Goal, now: Progress, f
         + ROUNDING
         + grain_of(case.law, body, accuracy, case.like)
     )
+    # The second map, from where the first says the orbit is, must be much nearer to closing, or within its own error.
     settles = norm(residual) <= 0.5 * norm(fresh) + 10.0 * accuracy
     if settles and (error <= goal.tolerance or (now.finest <= floor and checks > 3)):
         return Progress(image, accuracy, accuracy, maps, now.stalls, checks, now.newtons, error)
+    # The state runs away from where the two maps say it is: the inverse is at fault, and is taken anew.
     if not settles or checks > 3:
         image, took = newton_step(case, search, accuracy, accuracy)
         maps += took
+    # Maps of stiff memory may jump about by more than the tolerance however fine they are.
     ended = np.inf if checks > MOST_CHECKS else -1.0
     return Progress(image, accuracy, accuracy, maps, now.stalls, checks, now.newtons, ended)
 
@@ -312,6 +325,7 @@ def _carried_by_the_belt(case: Case, search: Iterate, now: Progress) -> Progress
     """The mass rests on the belt all the time: go on by as many periods at once as it surely does."""
     y, _u = unpack(case.body, search.z, case.like)
     way = belt_path(case.body, case.belt_speed, 0.0, span(case.body))
+    # The belt carries the mass until the spring overcomes friction: all whole periods before that are alike.
     many = rest_of(case.law, case.body, case.belt_speed, y + way)
     for i in range(search.z.size):
         search.z[i] = search.z[i] + many * search.residual[i]
@@ -327,6 +341,7 @@ def fixed_point(case: Case, z: Any, inverse: Any, goal: Goal, expected: float) -
     """
     n, body, period = z.size, case.body, span(case.body)
     search = Iterate(z, inverse, np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n))
+    # No residual is asked to be below the rounding of the state itself.
     floor = 4e-15 * (1.0 + norm(z) + abs(case.belt_speed))
     finest, near = first_accuracy(case.law, body, goal.tolerance)
     finest = max(finest, floor)
@@ -335,16 +350,19 @@ def fixed_point(case: Case, z: Any, inverse: Any, goal: Goal, expected: float) -
     first = norm(search.residual)
     while now.maps < MOST_MAPS and now.error < 0.0:
         length = norm(search.residual)
+        # The map failed, or the state has run away.
         if now.image.steps < 0 or not length < 1e300:
             break
         if not goal.contracts and now.maps * now.image.steps > MUCH_WORK:
             break  # what repels, or is not there, is not to be found: other starts will tell
+        # A period that is all stick says nothing of the orbit: its map is a shift by the way of the belt.
         if now.image.stuck >= period * (1.0 - 1e-9):
             if case.belt_speed == 0.0:  # at rest on a belt at rest
                 error = floor / body.normal_load + ROUNDING
                 return FixedPoint(now.image.rubbed, error, now.maps, now.image.stuck, 0.0, first)
             now = _carried_by_the_belt(case, search, now)
             continue
+        # The error is asked for where maps are as fine as they get and the bound by the distance of states is near.
         multiply(inverse, search.residual, search.step)
         if (
             now.accuracy <= now.finest

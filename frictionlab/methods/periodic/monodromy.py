@@ -23,6 +23,7 @@ def _free_block(damping: float, stiffness: float, period: float, jacobian: Any, 
     s, half = math.sqrt(stiffness), 0.5 * damping
     square = stiffness - half * half
     root = math.sqrt(abs(square)) * period
+    # cosh and sinh are kept from overflow: heavily overdamped, this is only a first guess of the inverse.
     if square > 0.0:
         c, sn = math.cos(root), period * (math.sin(root) / root if root > 0.0 else 1.0)
     else:
@@ -31,6 +32,7 @@ def _free_block(damping: float, stiffness: float, period: float, jacobian: Any, 
             period * (math.sinh(min(root, 300.0)) / root if root > 0.0 else 1.0),
         )
     decay = math.exp(-half * period)
+    # In the norm of energy, where the map of an undamped mass is a rotation.
     jacobian[at, at] = decay * (c + sn * half) - 1.0
     jacobian[at, at + 1] = decay * sn * s
     jacobian[at + 1, at] = -decay * sn * s
@@ -79,6 +81,7 @@ def monodromy(case: Case, z: Any, accuracy: float, matrix: Any) -> None:
     n = z.size
     carried = abs(case.belt_speed) * span(case.body)
     relative = shift_of(case.law, n)
+    # Large against the error of the maps, small against the way of the belt, on which the pattern of events hangs.
     shift = relative * (1.0 + norm(z))
     shift = min(shift, max(0.01 * carried, 1e-3 * shift)) if carried > 0.0 else shift
     accuracy = min(accuracy, relative * shift)
@@ -86,6 +89,7 @@ def monodromy(case: Case, z: Any, accuracy: float, matrix: Any) -> None:
     for column in range(n):
         for row in range(n):
             trial[row] = z[row] + (shift if row == column else 0.0)
+        # Central differences: the map bends where the mass sticks, and one-sided ones would be of first order.
         image_of(case, trial, ahead, accuracy)
         trial[column] = z[column] - shift
         image_of(case, trial, behind, accuracy)
@@ -99,6 +103,7 @@ def newton_inverse(case: Case, z: Any, accuracy: float, inverse: Any) -> bool:
     n = z.size
     matrix = np.empty((n, n))
     monodromy(case, z, accuracy, matrix)
+    # Newton solves (M - I) step = state - image.
     for row in range(n):
         matrix[row, row] = matrix[row, row] - 1.0
     return invert(matrix, inverse)

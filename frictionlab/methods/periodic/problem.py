@@ -86,7 +86,7 @@ class PeriodicProblem:
             self.body, self.like = in_the_plane(self.mass), 0j
         self.size = interpreted(size_of)(law, self.like)  # of a state
 
-    def closed(
+    def close(
         self,
         scenes: Sequence[Scene],
         state: Floats | None = None,
@@ -129,30 +129,30 @@ class PeriodicProblem:
         places = [i for i, state in enumerate(states) if state is not None]
         return places, np.array([states[i] for i in places]).reshape(len(places), self.size)
 
-    def settled(self, start: Initial) -> tuple[Floats, int]:
+    def settle(self, start: Initial) -> tuple[Floats, int]:
         """The state at which the mass stays put on a belt at rest, and in how many periods; -1 for never."""
         accuracy = 1e-13 * self.mass.normal_load
         return compiled(settle, self.law)(self.body, *self._at(start), accuracy)
 
-    def wandered(self, belt_speed: float, start: Initial | None, most: int) -> Transient:
+    def transient(self, belt_speed: float, start: Initial | None, most: int) -> Transient:
         """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
-        at = self._shaken(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
+        at = self._free_start(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
         state = np.empty(self.size)
         compiled(write_start, self.law)(self.body, at, state)
-        return self._followed(belt_speed, state, most, ROUGH[self.law.memory_kind])
+        return self._iterate(belt_speed, state, most, ROUGH[self.law.memory_kind])
 
-    def means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
+    def period_means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
         """The one-period means of an orbit of so many periods, from its state."""
-        return self._followed(belt_speed, state, periods, 1e-9).means
+        return self._iterate(belt_speed, state, periods, 1e-9).means
 
-    def _followed(self, belt_speed: float, state: Floats, most: int, relative: float) -> Transient:
+    def _iterate(self, belt_speed: float, state: Floats, most: int, relative: float) -> Transient:
         means, states = np.empty(most), np.empty((most + 1, self.size))
         states[0] = state
         arguments = self.body, belt_speed, relative * self.mass.normal_load, means, states
         (period, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
         return Transient(period, means[:count], states[count], seconds)
 
-    def _shaken(self, belt_speed: float) -> tuple[complex, complex, complex]:
+    def _free_start(self, belt_speed: float) -> tuple[complex, complex, complex]:
         """On the friction-free orbit; with memory, remembering and shifted as in sliding that never reverses."""
         remembers = self.law.count() > 0
         friction = self.law.sliding_friction(abs(belt_speed)) if remembers else 0.0

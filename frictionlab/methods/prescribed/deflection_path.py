@@ -109,6 +109,7 @@ def _impulse(span: Any, work: Any) -> Any:
 def _times(first: Any, second: Any) -> None:
     """second becomes first times second."""
     n = first.shape[0]
+    # The chain rule: the panel's derivative after that of all before.
     product = np.zeros((n, n))
     for i in range(n):
         for j in range(n):
@@ -122,6 +123,7 @@ def _times(first: Any, second: Any) -> None:
 @inner
 def _allowed(stretch: Stretch, at: float) -> float:
     """The longest step from here, by the distance to both ends of the stretch."""
+    # Towards the end a third of what is left, so that no sliver remains; near an end its layer is no further divided.
     left = stretch.length - at
     ahead = left if left <= 0.5 * stretch.near_end else max(left / 3.0, 0.5 * stretch.near_end)
     return min(min(math.pi / 8.0, ahead), min(0.5 * max(at, stretch.near_start), left))
@@ -133,6 +135,7 @@ def _step_error(bristle: Bristle, place: Place, span: Any, z: Any, work: Any) ->
     whole, first, second = work
     at, step = span
     half = 0.5 * step
+    # The whole step, then its halves, which become the panels: the difference is the error of the whole one.
     if not solve_panel(bristle, place, (at, step), z, whole):
         return FAILED
     if not solve_panel(bristle, place, (at, half), z, first):
@@ -143,6 +146,7 @@ def _step_error(bristle: Bristle, place: Place, span: Any, z: Any, work: Any) ->
     gain = first.gain[STAGES - 1] + second.gain[STAGES - 1]
     error = abs(gain - whole.gain[STAGES - 1]) / bristle.scale.change
     impulse = _impulse((at, half), first) + _impulse((at + half, step - half), second)
+    # Measured by friction met, or by the coefficient of the scale where that is nearly zero.
     size = max(bristle.scale.friction, abs(impulse) / step)
     return max(error, abs(impulse - _impulse((at, step), whole)) / size)
 
@@ -155,6 +159,7 @@ def _outward(v: Any, z: Any) -> bool:
 @inner
 def _mode_ends(mode: float, radius: float, v: Any, z: Any) -> bool:
     """Whether an elastic deflection (mode 0) has begun to yield, or a yielding one to unload."""
+    # Yield ends where slip turns back; elasticity ends on the yield surface while slip still pushes outward.
     if mode != 0.0:
         return not _outward(v, z)
     return _outward(v, z) and abs(z) > radius * (1.0 + 1e-14)
@@ -171,6 +176,7 @@ def _bend(slip: Oscillation, angle: float) -> complex:
 def _mode_margin(mode: float, radius: float, v: Any, bend: complex, z: Any, rate: Any) -> Any:
     """How far a deflection is from turning, and how fast that grows."""
     load = v.real * z.real + v.imag * z.imag
+    # Elastic within a circle: room to the yield surface. Else the load, whose sign tells loading from unloading.
     if mode == 0.0 and radius > 0.0:
         return radius * radius - (z.real * z.real + z.imag * z.imag), -2.0 * load
     growth = v.real * rate.real + v.imag * rate.imag + bend.real * z.real + bend.imag * z.imag
@@ -185,6 +191,7 @@ def _dips(at: float, to: float, slope: float, slope_to: float) -> bool:
     """
     if not (at > 0.0 and to > 0.0 and slope < 0.0 and slope_to > 0.0):
         return False
+    # The cubic through both values and slopes; its minimum without the cancellation of the textbook formula.
     square = 3.0 * (to - at) - 2.0 * slope - slope_to
     cube = slope + slope_to - 2.0 * (to - at)
     lowest = -slope / (square + math.sqrt(max(square * square - 3.0 * cube * slope, 0.0)))
@@ -219,6 +226,7 @@ def _longest_in_mode(bristle: Bristle, radius: float, place: Place, span: Any, z
     at, high = span
     low, ends = 0.0, True
     for _ in range(60):
+        # A part that nothing solves counts as too long, as does one in which the mode ends.
         middle = 0.5 * (low + high)
         smooth = solve_panel(bristle, place, (at, middle), z, work)
         if smooth and not _mode_ends_within(bristle, radius, place, (at, middle), z, work):
@@ -241,6 +249,7 @@ def _mode_end(bristle: Bristle, radius: float, place: Place, span: Any, z: Any, 
     ends = ends or _mode_ends_within(bristle, radius, place, (first + half, step - half), middle, work[2])
     if not ends:
         return step, False, False
+    # Only the part before the end is kept: the panel is then smooth, and its order what it should be.
     part, ends = _longest_in_mode(bristle, radius, place, (first, step), z, work[0])
     return part, ends, True
 
@@ -306,6 +315,7 @@ def _in_mode(bristle: Bristle, circle: float) -> Bristle:
 def _other_mode(bristle: Bristle, radius: float, place: Place, at: float, z: Any, carry: Any) -> Bristle:
     """The bristle in its other mode; the derivative is updated for the change of mode."""
     elastic = bristle.scale.circle == 0.0
+    # Without a yield surface the rate jumps where slip turns; with one the onset of yield drops a direction.
     if radius == 0.0:
         _saltation(bristle, slip_at(bristle.slip, place, at, z), place.angle + at, z, carry)
         return _in_mode(bristle, -1.0 if elastic else 0.0)
@@ -321,6 +331,7 @@ def _first_mode(bristle: Bristle, radius: float, stretches: Any, z: Any, carry: 
     if radius < 0.0:
         return bristle
     begin = Place(stretches[0, 0], complex(stretches[0, 1], stretches[0, 2]))
+    # A little after the start: slip may be zero there, and its sign is that of what follows.
     outward = _outward(slip_at(bristle.slip, begin, stretches[0, 3] + 1e-9, z), z)
     if not outward or abs(z) < radius * (1.0 - 1e-12):
         return _in_mode(bristle, 0.0)
@@ -371,8 +382,7 @@ def follow_period(law: Any, slip: Oscillation, stretches: Any, scale: Scale, acc
     """
     bristle, radius = Bristle(law, slip, scale), scale.circle
     out, gained, carry = _panel_room(z), 0.0 * z, np.eye(parts(z))
-    work = (work_for(z), work_for(z), work_for(z))
-    step, row, at, idle = 0.1, 0, 0.0, 0
+    work, step, row, at, idle = (work_for(z), work_for(z), work_for(z)), 0.1, 0, 0.0, 0
     longest = math.pi / 8.0 if radius < 0.0 else math.pi / 48.0
     bristle = _first_mode(bristle, radius, stretches, z, carry)
     while row < stretches.shape[0] and out.filled[0] + 2 < ROOM:
@@ -380,9 +390,8 @@ def follow_period(law: Any, slip: Oscillation, stretches: Any, scale: Scale, acc
         place, first = stretch.place, stretch.begin + at
         step = min(min(step, longest), _allowed(stretch, at))
         # After three changes of mode without progress the jump of the rate is left to the step control.
-        step, error, ends, cut = _attempt(
-            bristle, radius if idle < 3 else -1.0, place, (first, step), now, work
-        )
+        edge = radius if idle < 3 else -1.0
+        step, error, ends, cut = _attempt(bristle, edge, place, (first, step), now, work)
         if cut and step <= SHORTEST:
             bristle = _other_mode(bristle, radius, place, first, now, carry)
             step, idle = 1e-3, idle + 1

@@ -50,6 +50,7 @@ def _less_sine(angle: float) -> float:
     """angle - sin(angle) to rounding, by its series where the difference would cancel."""
     if angle > 0.6:
         return angle - math.sin(angle)
+    # Taylor's series: up to 0.6 its next term is below rounding.
     square = angle * angle
     series = 1.0 - square / 110.0 * (1.0 - square / 156.0 * (1.0 - square / 210.0))
     series = 1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0 * series))
@@ -75,6 +76,7 @@ def _velocity(legs: Legs, side: float, angle: float) -> float:
 @inner
 def _angle_of(legs: Legs, side: float, path: float, longest: float) -> float:
     """The angle at which the slip of a leg has this length, by bisection in its logarithm."""
+    # Bisection in the logarithm: angles down to 1e-26 are as quick to find as large ones.
     low, high = -60.0, math.log(longest)
     for _ in range(80):
         middle = 0.5 * (low + high)
@@ -93,6 +95,7 @@ def _deflected(law: Any, z: float, side: float, path: float) -> float:
 @inner
 def _gained(law: Any, legs: Legs, z: float, side: float, path: float) -> float:
     """The change of deflection over a leg, with full relative accuracy for soft contacts, too."""
+    # Far along, or saturated, the difference of deflections keeps its digits; else the rate is integrated.
     if path > SOFT * legs.length or path >= law.saturation_path(z, side):
         return _deflected(law, z, side, path) - z
     total = 0.0
@@ -105,6 +108,7 @@ def _gained(law: Any, legs: Legs, z: float, side: float, path: float) -> float:
 @inner
 def _opened(law: Any, legs: Legs, z: float, forward: float, back: float) -> float:
     """The change of deflection over both legs; it decreases as the deflection at the start increases."""
+    # The second leg starts where the first ends.
     up = _gained(law, legs, z, 1.0, forward)
     return up + _gained(law, legs, z + up, -1.0, back)
 
@@ -173,6 +177,7 @@ def closed_legs(law: Any, legs: Legs) -> Any:
     Returns starts and widths of the panels (angles after the start of the forward leg), slip velocity, deflection
     and friction at their nodes.
     """
+    # Both legs as paths: the loop closes on those alone, whatever the speed along them.
     long, short = 2.0 * (math.pi - legs.turn), 2.0 * legs.turn
     forward, back = _path(legs, 1.0, long), _path(legs, -1.0, short)
     z = _closed(law, legs, forward, back)
@@ -184,6 +189,7 @@ def closed_legs(law: Any, legs: Legs) -> Any:
     slips, deflections = np.empty((both, POINTS.size)), np.empty((both, POINTS.size))
     frictions = np.empty((both, POINTS.size))
     for panel in range(both):
+        # Every node from the start of its leg: nothing accumulates from panel to panel.
         leg, row = (0, panel) if panel < count else (1, panel - count)
         side, base = (1.0, z) if leg == 0 else (-1.0, top)
         here, width = edges[leg, row], edges[leg, row + 1] - edges[leg, row]

@@ -85,7 +85,7 @@ def attractors(
     known = [candidate] if candidate is not None else []
     reached, seconds = [], 0.0
     for start in starts(scene, problem.mass.normal_load * friction_at_rest(problem.law)):
-        way = problem.wandered(scene.belt_speed, start, _patience(candidate))
+        way = problem.transient(scene.belt_speed, start, _patience(candidate))
         seconds += way.seconds
         found = next((orbit for orbit in known if _arrived(way, orbit)), None)
         if found is None:
@@ -118,7 +118,7 @@ def _closed(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Att
         curve, period, seconds = _shortest(problem, scene, way)
         means = way.means[-period:]
         if period > 1 and curve.results[0, 3] > 0.0:
-            means = problem.means(scene.belt_speed, curve.states[0], period)
+            means = problem.period_means(scene.belt_speed, curve.states[0], period)
         orbit = closed_orbit(curve, means)
         if orbit is not None:
             return orbit, seconds
@@ -128,9 +128,9 @@ def _closed(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Att
 
 def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Curve, int, float]:
     """The orbit at the end of a way, and its periods: fewer than seen where the motion was still alternating."""
-    curve, seconds = problem.closed([scene], way.state, way.period)
+    curve, seconds = problem.close([scene], way.state, way.period)
     for period in [each for each in range(1, way.period) if way.period % each == 0]:
-        shorter, more = problem.closed([scene], curve.states[0], period)
+        shorter, more = problem.close([scene], curve.states[0], period)
         seconds += more
         if curve.results[0, 3] > 0.0 and shorter.results[0, 3] > 0.0 and _same(shorter, curve):
             return shorter, period, seconds

@@ -152,7 +152,7 @@ def _held(turned: OneAxis, law: FrictionLaw, tolerance: float) -> Across | None:
     if law.elastic_deflection() == 0.0 or turned.own.damping == 0.0:
         return None
     problem = PeriodicProblem(turned, law, tolerance)
-    curve, seconds = problem.closed([turned])
+    curve, seconds = problem.close([turned])
     if curve.results[0, 3] < 0.0 or not multiplier(curve) > 1.0 - 1e-6:
         return None
     return Across(

@@ -78,7 +78,7 @@ class SteadyStates:
         """Close the orbits of the scenes at these places, from a known state at the first where there is one."""
         if not where:
             return
-        curve, seconds = self.problem.closed([self.scenes[i] for i in where], state, wanted=self.wanted)
+        curve, seconds = self.problem.close([self.scenes[i] for i in where], state, wanted=self.wanted)
         self.seconds[where] = seconds / len(where)
         multipliers = _multipliers(curve)
         for row, i in enumerate(where):
@@ -109,7 +109,7 @@ class SteadyStates:
             highest = resting_range(self.scenes[i], self.problem.law)
             self._leave_open(i, MAY_REST, -highest, highest)
             return
-        state, periods = self.problem.settled(start)
+        state, periods = self.problem.settle(start)
         if periods < 0:
             self.reason[i] = f"started from scene.initial the mass still creeps after {MOST_PERIODS} periods"
             return
@@ -168,7 +168,7 @@ class SteadyStates:
         """Keep an answer only where every start reaches it; else the one reached from scene.initial, or none."""
         problem, scene, known = self.problem, self.scenes[i], None
         if self.states[i] is not None:
-            curve, _ = problem.closed([scene], self.states[i])
+            curve, _ = problem.close([scene], self.states[i])
             known = closed_orbit(curve, curve.results[0, :1])
         reached, seconds = attractors(problem, scene, known)
         self.seconds[i] += seconds

@@ -163,9 +163,11 @@ class _Undriven:
         x, v, peaks = self.scene.start.x, self.scene.start.velocity, 0
         for count in range(MOST_PIECES):
             image = self._follow(x, v, PIECE, self._accuracy)
+            # Judged at every peak, and now and then between: a motion without peaks may be overdamped.
             look = v > 0.0 >= image.u or count % 32 == 31
             ended = self._ended(x, v, peaks) if look else None
             rests = image.stuck > 0.0 and ended is None
+            # From the end of rest the motion is one and the same, whatever came before.
             if rests:
                 ended = self._stick_slip()
             if ended is not None:
@@ -193,10 +195,12 @@ class _Undriven:
     def _ended(self, x: float, v: float, peaks: int) -> PeriodicMotion | None:
         """The steady motion that this one is sure to become; now and then, near a peak, the cycle next to it."""
         reach = math.hypot(x - self._deflection(), v)
+        # Slip never reverses within this energy.
         if self._conserves() and reach <= abs(self._speed):
             return self._free(x, v)
         if self._settles(x, v):
             return self._sliding()
+        # The search for a cycle is costly: one peak in twenty starts it.
         if peaks % 20 == 19 and v > 0.0:
             return self._slip_cycle(self._peak(x, v, PIECE, self._accuracy)[0])
         return None
@@ -211,7 +215,7 @@ class _Undriven:
         return PeriodicMotion(x, v, TURN, mean, ROUNDING, 1.0, kind)
 
     def _at_rest(self) -> PeriodicMotion:
-        state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settled(self.scene.start)
+        state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settle(self.scene.start)
         if periods < 0:
             raise NotFound("the mass still approaches rest after the largest number of periods")
         mean = state[0] / self._pressed
@@ -241,6 +245,7 @@ class _Undriven:
         if reach > speed:
             return False
         speeds = np.linspace(speed - reach, speed + reach, 129) if reach > 1e-6 * speed else speed * _NEAR
+        # Where the range is small against the speed the slopes are those of a millionth of it.
         friction = np.array([self.law.sliding_friction(float(each)) for each in speeds])
         slopes = np.diff(friction) / np.diff(speeds)
         return bool((self._pressed * slopes).min() > -self._mass.damping + 1e-9)
@@ -266,6 +271,7 @@ class _Undriven:
             return self._free(x, speed)
         if self._settles(x, speed):
             return self._sliding()
+        # Twice, the second time much finer: the difference is the error.
         rough, fine = (self._cycle_from(x, part * self._accuracy) for part in (1.0, 1.0 / FINER))
         if rough is None or fine is None:
             return None
@@ -290,6 +296,7 @@ class _Undriven:
         while peaks < 3 and turns < patience:
             image = self._follow(y, v, PIECE, accuracy)
             turns += PIECE
+            # At rest again: the belt carries the mass on to where slip began.
             if turns > PIECE and image.stuck > 0.0:
                 period = turns * TURN + (x - image.y) / speed
                 whole = self._follow(x, speed, period / TURN, accuracy)
@@ -305,6 +312,7 @@ class _Undriven:
             (here, _), (ahead, _), (behind, _) = (
                 self._next_peak(x + shift, 1e-13) for shift in (0.0, step, -step)
             )
+            # Newton on the map from peak to peak; a slope of one, where cycles are born, is kept away from.
             slope = (ahead - behind) / (2.0 * step)
             change = (here - x) / max(1.0 - slope, 1e-6)
             x += change
@@ -312,6 +320,7 @@ class _Undriven:
                 break
         else:
             return None
+        # Steady sliding is a fixed point of this map, too; and a cycle that repels is none to end on.
         if abs(x - self._deflection()) < 1e-7 or abs(slope) >= 1.0:
             return None
         return self._slip_motion(x, slope)
@@ -343,6 +352,7 @@ class _Undriven:
         low, high, at = 0.0, turns * TURN, min(turns * TURN, -v / self._force(x, v) if v > 0.0 else 0.0)
         for _ in range(60):
             image = self._follow(x, v, at / TURN, accuracy)
+            # Newton's method, kept inside the bracket of the zero of the velocity.
             low, high = (at, high) if image.u > 0.0 else (low, at)
             force = self._force(image.y, image.u)
             new = at - image.u / force if force != 0.0 else 0.5 * (low + high)

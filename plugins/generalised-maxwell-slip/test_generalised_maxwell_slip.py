@@ -164,6 +164,13 @@ def test_what_makes_no_law_is_refused(wrong, told):
         GeneralisedMaxwellSlip(**({"share": [1, 1, 1], "stiffness": [1, 3, 10]} | FALLING | wrong))
 
 
+def test_time_steps_which_remember_no_stick_are_refused():
+    found = fl.steady_state(BODY, LAW, "march", tolerance=1e-4)
+
+    assert found.status == "refused"
+    assert "does not remember which deflections stick; use shooting" in found.reason
+
+
 def test_its_study_keeps_its_promises():
     done = fl.run(Path(__file__).parent / "study.yaml")
 

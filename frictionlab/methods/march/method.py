@@ -183,6 +183,8 @@ class March(Method):
             return (
                 "theta is a key of stepper moreau, which does not support friction with memory; leave it out"
             )
+        if law.remembers_stick():
+            return "stepper rk4 does not remember which deflections stick; use shooting"
         if scene.degrees_of_freedom == 0:
             return "for a law with several memories or scalars march needs a driven mass; use shooting"
         if scene.undriven:

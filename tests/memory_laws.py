@@ -142,3 +142,42 @@ class Elements(MemoryLaw):
         for k in range(len(self.stiffness)):
             total += 0.5 * self.stiffness[k] * abs(memory[k]) ** 2
         return total
+
+
+class BrokenAway(MemoryLaw):
+    """Elasto-plastic friction (Dupont et al., 2002) of constant sliding friction, as a memory of one number.
+
+    Its rate jumps where a stretched deflection begins to be unloaded, which it does not declare.
+    mu [-], stiffness [1/scene length], > 0; breakaway_ratio [-], in (0, 1).
+    """
+
+    mu: Positive
+    stiffness: Positive
+    breakaway_ratio: Positive = 0.7
+
+    def sliding_friction(self, speed: float) -> float:
+        """At every speed."""
+        return self.mu
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """v, less what does not stretch the bristle."""
+        z, ends = memory[k], self.mu / self.stiffness
+        if (z * v.conjugate()).real <= 0.0:
+            return v
+        begins, size = self.breakaway_ratio * ends, abs(z)
+        share = 0.5 + 0.5 * math.sin(math.pi * (size - 0.5 * (begins + ends)) / (ends - begins))
+        share = 0.0 if size <= begins else 1.0 if size >= ends else share
+        return v - (share * abs(v) / ends) * z
+
+    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
+        """The spring's."""
+        return self.stiffness * memory[0]
+
+    def steady(self, v: Any, k: int) -> Any:
+        """The whole of sliding friction."""
+        return (self.mu / self.stiffness) * (v / abs(v))
+
+    def largest_rate(self, speed: float) -> float:
+        """As the bristle law's."""
+        ends = 1.0 - self.breakaway_ratio
+        return (1.2 + 0.25 * math.pi * (1.0 + self.breakaway_ratio) / ends) * self.stiffness * speed / self.mu

@@ -156,6 +156,7 @@ def test_a_second_process_takes_the_compiled_kernel_from_the_cache(compiled_once
         ("law_package/inside.py", "SHIFT = 0.25", "SHIFT = 0.75", 104.75),
         ("pair.py", "return 100.0", "return 300.0", 304.25),
         ("pair.py", "return 0.0", "return 7.0", 111.25),
+        ("pair.py", "of_sliding, of_bristle)", "of_sliding, of_bristle, None, of_bristle)", 104.25),
         ("kernel_of_test.py", "+ body(speed)", "- body(speed)", -95.75),
     ],
     ids=[
@@ -167,6 +168,7 @@ def test_a_second_process_takes_the_compiled_kernel_from_the_cache(compiled_once
         "a constant inside a package",
         "a body chosen by dimension",
         "a body chosen by law",
+        "the laws that a body is for",
         "the kernel",
     ],
 )

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from maxwell_slip import MaxwellSlip
-from memory_laws import Ageing, Elements, elements
+from memory_laws import Ageing, BrokenAway, Elements, elements
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
@@ -226,6 +226,49 @@ def test_the_error_covers_what_scipy_finds_of_elements_in_the_plane(law: Maxwell
 
         assert found.status == "ok", found.reason
         assert abs(found.mean_friction - known) <= found.error + 3e-9
+
+
+ALONG = fl.Scene(belt_speed=0.2, slip=fl.Slip(velocity_amplitude=1, frequency=1))
+ON_AN_ELLIPSE = ALONG.model_copy(
+    update={"transverse_slip": fl.TransverseSlip(velocity_amplitude=0.7, phase=60)}
+)
+SOFT_ACROSS = fl.Transverse(natural_frequency=0.7, damping_ratio=0.1, load=fl.Load(unbalance=6))
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        pytest.param(ALONG, id="slip along"),
+        pytest.param(ON_AN_ELLIPSE, id="slip on an ellipse"),
+        pytest.param(driven(0.5), id="line", marks=deep),
+        pytest.param(driven(0.5).model_copy(update={"transverse": SOFT_ACROSS}), id="plane", marks=deep),
+    ],
+)
+def test_a_memory_that_declares_no_corner_is_the_bristle_law_that_does(scene: fl.Scene) -> None:
+    """Unloading is found from the rates; followed in steps across it, slip along was off by 1.7e-4 at 1e-6."""
+    law = BrokenAway(mu=0.4, stiffness=4)
+    known = fl.steady_state(scene, fl.ElastoPlastic(mu_kinetic=0.4, stiffness=4), tolerance=1e-9)
+
+    for tolerance in TOLERANCES:
+        found = fl.steady_state(scene, law, "shooting", tolerance=tolerance)
+        assert found.status == "ok", found.reason
+        assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
+
+
+def test_one_kernel_follows_many_elements() -> None:
+    """Twenty springs, each a share of friction: Iwan's distribution, that of one law whatever their order."""
+    stiffness = [0.3 * 1.3**k for k in range(20)]
+    law = MaxwellSlip(mu=[0.02] * 20, stiffness=stiffness)
+    scene = fl.Scene(belt_speed=2, slip=fl.Slip(velocity_amplitude=10, frequency=1))
+
+    found = fl.steady_state(scene, law, "shooting", tolerance=1e-8)
+
+    means = [
+        fl.steady_state(scene, fl.Jenkins(mu=0.02, stiffness=each), tolerance=1e-10).mean_friction
+        for each in stiffness
+    ]
+    assert found.status == "ok", found.reason
+    assert abs(found.mean_friction - sum(means)) <= found.error + 20 * 1e-10
 
 
 @pytest.mark.parametrize("share", [1e-30, 1e-3, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 40.0, 1e9])

@@ -16,7 +16,6 @@ from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import Flow, instant_near, swing_of
-from frictionlab.laws.memory import VECTORIAL
 from frictionlab.methods.periodic.maps.rates import (
     FOLLOWS,
     MEMORY,
@@ -35,35 +34,6 @@ SLACK = 1e-12
 """Of a yield surface: a smaller excess is rounding."""
 CLOSE = 1e-3
 """Of the accuracy: how far beyond its zero a guard may be where a step ends at it."""
-
-
-def _never_on_the_line(law: Any, w: float) -> bool:
-    """On the line the corner is where slip reverses: the law's own rate is kept up to there."""
-    return False
-
-
-def _a_bristle_in_the_plane(law: Any, w: complex) -> bool:
-    return law.elastic_unloading() and law.form == VECTORIAL
-
-
-def _a_deflection_in_the_plane(law: Any, w: complex) -> bool:
-    return law.elastic_unloading()
-
-
-_bristle_unloads = by_dimension(_never_on_the_line, _a_bristle_in_the_plane)
-_deflection_unloads = by_dimension(_never_on_the_line, _a_deflection_in_the_plane)
-
-
-def _a_bristle_unloads(law: Any, w: Any) -> bool:
-    return _bristle_unloads(law, w)
-
-
-def _a_deflection_unloads(law: Any, w: Any) -> bool:
-    return _deflection_unloads(law, w)
-
-
-unloads = by_law(_a_bristle_unloads, _a_bristle_unloads, None, _a_deflection_unloads)
-"""unloads(law, w): whether a deflection without a yield surface follows the slip wherever that makes it smaller."""
 
 
 def _along_on_the_line(z: float, w: float) -> float:
@@ -204,7 +174,7 @@ def _begin_by_state(flow: Flow, a: Any, w: Any, work: Work) -> None:
     for k in range(count_of(flow.law)):
         radius, z = work.radius[k], work.start[MEMORY + k]
         work.mode[k] = SMOOTH
-        if radius > 0.0 or unloads(flow.law, w):
+        if radius > 0.0 or work.unloads[k] > 0.0:
             loaded = along(z, w) > 0.0 or (along(z, w) == 0.0 and along(z, a) >= 0.0)
             work.mode[k] = YIELDS if loaded and size(z) >= radius * (1.0 - 1e-13) else FOLLOWS
 

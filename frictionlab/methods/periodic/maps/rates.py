@@ -58,6 +58,7 @@ class Work(NamedTuple):
     size: Any  # [n] of a number in steady sliding
     positive: Any  # [n] 1 for a scalar that is never negative, else 0
     radius: Any  # [n] of its yield surface, 0 for none
+    unloads: Any  # [n] 1 for a deflection without one that follows the slip wherever that makes it smaller
     mode: Any  # [n] FOLLOWS, SMOOTH or YIELDS
 
 
@@ -105,6 +106,7 @@ def workspace(law: Any, like: Any) -> Work:
         size=room(law, 1, 0, 0.0),
         positive=room(law, 1, 0, 0.0),
         radius=room(law, 1, 0, 0.0),
+        unloads=room(law, 1, 0, 0.0),
         mode=room(law, 1, 0, 0.0),
     )
 

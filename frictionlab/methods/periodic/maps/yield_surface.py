@@ -1,8 +1,9 @@
-"""The yield surface of each deflection: as a law declares it, or found by asking the rates of a law that does not.
+"""Where the rate of each deflection has corners: its yield surface, and whether it is unloaded elastically.
 
-A plugin may drag a slider without saying where: its rate then jumps inside a step, and a step of many stages, some
-before the jump and some behind it, may end before it for ever. Deflections have no preferred direction and one moves
-by slip and itself alone, so that one ray tells all: where along it the deflection stops following the slip.
+As a law declares it, or found from the rates of a law that does not. A plugin may drag a slider without saying where:
+its rate then jumps inside a step, and a step of many stages, some before the jump and some behind it, may end before
+it for ever. Deflections have no preferred direction and one moves by slip and itself alone, so that one ray tells
+all: where along it the deflection stops following the slip, and whether it follows a slip that makes it smaller.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_law, length
+from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
 from frictionlab.laws.memory import VECTORIAL
 from frictionlab.methods.periodic.maps.rates import Work
@@ -75,24 +76,64 @@ def _found_radius(law: Any, work: Work, k: int, like: Any) -> float:
     return radius
 
 
-def _radius_of_a_bristle(law: Any, work: Work, like: Any) -> None:
-    radius = law.yield_deflection()
-    work.radius[0] = radius if radius < math.inf and law.form == VECTORIAL else 0.0
+def _never_unloaded_on_the_line(law: Any, work: Work, k: int, like: float) -> bool:
+    """On the line the corner is where slip reverses: the law's own rate is kept up to there."""
+    return False
 
 
-def _radii_of_deflections(law: Any, work: Work, like: Any) -> None:
+def _found_unloaded_in_the_plane(law: Any, work: Work, k: int, like: complex) -> bool:
+    """Whether rates follow a slip that makes a deflection smaller or turns it, and not one that stretches it."""
+    if law.elastic_unloading():
+        return True
+    stretched = True
+    for part in range(1, SHARES + 1):
+        z = complex(work.size[k] * part / SHARES, 0.0)
+        for v in (complex(-1.0, 0.0), complex(0.0, 1.0), complex(0.0, -1.0), complex(-1e-3, 1.0)):
+            if not _follows(law, work, k, v, z):
+                return False
+        stretched = stretched and _follows(law, work, k, complex(1.0, 0.0), z)
+    return not stretched
+
+
+_found_unloaded = by_dimension(_never_unloaded_on_the_line, _found_unloaded_in_the_plane)
+
+
+def _bristle_on_the_line(law: Any, work: Work, like: float) -> None:
+    work.radius[0], work.unloads[0] = law.yield_deflection(), 0.0
+
+
+def _bristle_in_the_plane(law: Any, work: Work, like: complex) -> None:
+    vectorial = law.form == VECTORIAL
+    work.radius[0] = law.yield_deflection() if vectorial else math.inf
+    work.unloads[0] = 1.0 if vectorial and law.elastic_unloading() else 0.0
+
+
+_corners_of_bristle = by_dimension(_bristle_on_the_line, _bristle_in_the_plane)
+
+
+def _bristle(law: Any, work: Work, like: Any) -> None:
+    _corners_of_bristle(law, work, like)
+    work.radius[0] = work.radius[0] if work.radius[0] < math.inf else 0.0
+
+
+def _deflections(law: Any, work: Work, like: Any) -> None:
     for k in range(count_of(law)):
         work.memory[k] = 0.0 * like
     for k in range(count_of(law)):
         radius = law.yield_deflection(k)
-        work.radius[k] = radius if radius < math.inf else 0.0
-        if radius == math.inf and not law.remembers_stick() and not law.elastic_unloading():
-            work.radius[k] = _found_radius(law, work, k, like)
+        work.radius[k], work.unloads[k] = radius if radius < math.inf else 0.0, 0.0
+        # what remembers its mode has a breakaway in place of both
+        if radius == math.inf and not law.remembers_stick():
+            work.radius[k] = 0.0 if law.elastic_unloading() else _found_radius(law, work, k, like)
+            if work.radius[k] == 0.0:
+                work.unloads[k] = 1.0 if _found_unloaded(law, work, k, like) else 0.0
+        work.memory[k] = 0.0 * like
 
 
-def _no_radius(law: Any, work: Work, like: Any) -> None:
+def _scalars(law: Any, work: Work, like: Any) -> None:
     """A scalar has no direction in which to yield."""
 
 
-measure_yield = by_law(_radius_of_a_bristle, _radius_of_a_bristle, None, _radii_of_deflections, _no_radius)
-"""measure_yield(law, work, like): fill the radius of each yield surface, 0 for none."""
+measure_yield = by_law(_bristle, _bristle, None, _deflections, _scalars)
+"""measure_yield(law, work, like): fill the radius of each yield surface, 0 for none, and ``unloads``: 1 for what has
+none and follows the slip wherever that makes it smaller. On the line a reversal of slip serves for that."""

@@ -255,6 +255,7 @@ def test_a_memory_that_declares_no_corner_is_the_bristle_law_that_does(scene: fl
         assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
 
 
+@deep
 def test_one_kernel_follows_many_elements() -> None:
     """Twenty springs, each a share of friction: Iwan's distribution, that of one law whatever their order."""
     stiffness = [0.3 * 1.3**k for k in range(20)]

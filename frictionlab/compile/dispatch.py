@@ -119,6 +119,39 @@ def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
     return chosen
 
 
+def as_argument(function: Any) -> Any:
+    """A kernel function that others may be handed: numba caches no code that is handed a compiled function."""
+    body = getattr(function, "py_func", function)
+
+    def handed(*arguments: Any) -> Any:
+        return body(*arguments)
+
+    def resolve(*types: Any) -> Any:
+        return body
+
+    handed.bodies = (body,)  # type: ignore[attr-defined]
+    resolve.__signature__ = inspect.signature(body)  # type: ignore[attr-defined]
+    options = getattr(function, "targetoptions", INNER)
+    _extending.overload(handed, jit_options=options, strict=False)(resolve)
+    return handed
+
+
+def by_stepper(bodies: dict[type, Any]) -> Any:
+    """A kernel function with several bodies, chosen by the type of the field ``stepper`` of its first argument."""
+    plain = {kind: getattr(body, "py_func", body) for kind, body in bodies.items()}
+
+    def chosen(*arguments: Any) -> Any:
+        return plain[type(arguments[0].stepper)](*arguments)
+
+    def resolve(*types: Any) -> Any:
+        return plain[types[0].types[types[0].fields.index("stepper")].instance_class]
+
+    chosen.bodies = tuple(plain.values())  # type: ignore[attr-defined]
+    resolve.__signature__ = inspect.signature(chosen.bodies[0])  # type: ignore[attr-defined]
+    _extending.overload(chosen, jit_options=INNER, strict=False)(resolve)
+    return chosen
+
+
 def by_law(
     of_sliding: Any,
     of_bristle: Any,

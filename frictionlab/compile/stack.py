@@ -11,6 +11,7 @@ from typing import Any
 import numba.core.cgutils
 import numba.core.types
 import numba.extending
+import numba.np.arrayobj
 import numpy as np
 
 from frictionlab.compile.dispatch import law_of_numbers
@@ -20,19 +21,20 @@ _cgutils: Any = numba.core.cgutils  # internals of numba, untyped
 _types: Any = numba.core.types
 _extending: Any = numba.extending
 _config: Any = numba.config
+_arrays: Any = numba.np.arrayobj
 
 
 def count_known(numbers: Any) -> int:
     """The count of a law as the compiler knows it, from numba's type of the law's numbers."""
     law, structure = law_of_numbers[numbers.instance_class]
     if not issubclass(law, MemoryLaw):
-        return 1
+        return int(law.memory_kind != "none")
     return next(int(word.split()[0]) for word in structure if word.endswith("numbers"))
 
 
 def count_of(law: Any) -> int:
     """How many numbers a law remembers: a constant to the compiler."""
-    return law.count() if isinstance(law, MemoryLaw) else 1
+    return int(law.count())
 
 
 def _count(law: Any) -> Any:
@@ -70,8 +72,30 @@ def _room(typing: Any, law: Any, each: Any, more: Any, item: Any) -> Any:
 
 def _interpreted_room(law: Any, each: int, more: int, item: Any) -> Any:
     """The same where Python runs the kernels."""
-    return np.zeros(each * count_of(law) + more, complex if isinstance(item, complex) else float)
+    return np.zeros(max(1, each * count_of(law) + more), complex if isinstance(item, complex) else float)
 
 
 room: Any = _interpreted_room if _config.DISABLE_JIT else _extending.intrinsic(prefer_literal=True)(_room)
 """room(law, each, more, item): see ``_room``."""
+
+
+def _items(typing: Any, array: Any) -> Any:
+    """items_of(array): a bare pointer to the items of a one-dimensional array, which must outlive it.
+
+    numba lets go of an array after its last use by name: use it once more where the pointer is needed no longer.
+    """
+    if not isinstance(array, _types.Array) or array.ndim != 1:
+        return None
+
+    def codegen(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _arrays.make_array(array)(context, builder, arguments[0]).data
+
+    return _types.CPointer(array.dtype)(array), codegen
+
+
+def _interpreted_items(array: Any) -> Any:
+    return array
+
+
+items_of: Any = _interpreted_items if _config.DISABLE_JIT else _extending.intrinsic(_items)
+"""items_of(array): see ``_items``."""

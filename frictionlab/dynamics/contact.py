@@ -1,4 +1,4 @@
-"""Rate and friction of one bristle, its advance over a time step, its projection onto the yield surface."""
+"""Rate and friction of a contact that remembers; advance of one bristle, its projection onto the yield surface."""
 
 from __future__ import annotations
 
@@ -6,12 +6,74 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.laws.memory import PER_AXIS, VECTORIAL, bristle_in_the_plane, bristle_on_the_line
 
 resistance = by_dimension(bristle_on_the_line, bristle_in_the_plane)
 """(law, slip velocity, deflection) -> (rate of deflection, friction coefficient), interpreted and compiled."""
 
+
+def _rate_of_a_bristle_on_the_line(law: Any, memory: Any, k: int, w: float) -> float:
+    return law.rate(w, memory[0])
+
+
+def _rate_of_a_bristle_in_the_plane(law: Any, memory: Any, k: int, w: complex) -> complex:
+    z = memory[0]
+    if law.form == VECTORIAL:
+        return law.rate(w, z)
+    if law.form == PER_AXIS:
+        return complex(law.rate(w.real, z.real), law.rate(w.imag, z.imag))
+    return complex(law.rate(abs(w), z.real), 0.0)
+
+
+_rate_of_a_bristle = by_dimension(_rate_of_a_bristle_on_the_line, _rate_of_a_bristle_in_the_plane)
+
+
+def _bristle_rate(law: Any, memory: Any, k: int, w: Any) -> Any:
+    return _rate_of_a_bristle(law, memory, k, w)
+
+
+def _memory_rate(law: Any, memory: Any, k: int, w: Any) -> Any:
+    return law.rate(w, memory, k)
+
+
+rate_of = by_law(_bristle_rate, _bristle_rate, None, _memory_rate)
+"""rate_of(law, memory, k, w): the rate of the k-th memory at slip velocity w; a bristle law remembers one."""
+
+
+def _friction_of_a_bristle_on_the_line(law: Any, memory: Any, moving: Any, w: float) -> float:
+    return law.friction(w, memory[0], moving[0])
+
+
+def _friction_of_a_bristle_in_the_plane(law: Any, memory: Any, moving: Any, w: complex) -> complex:
+    z, dz = memory[0], moving[0]
+    if law.form == VECTORIAL:
+        return law.friction(w, z, dz)
+    if law.form == PER_AXIS:
+        across = law.friction(w.imag, z.imag, dz.imag)
+        return complex(law.friction(w.real, z.real, dz.real), across)
+    speed = abs(w)
+    if speed == 0.0:
+        return complex(0.0, 0.0)
+    return (law.friction(speed, z.real, dz.real) / speed) * w
+
+
+_friction_of_a_bristle = by_dimension(_friction_of_a_bristle_on_the_line, _friction_of_a_bristle_in_the_plane)
+
+
+def _bristle_friction(law: Any, memory: Any, moving: Any, w: Any) -> Any:
+    return _friction_of_a_bristle(law, memory, moving, w)
+
+
+def _memory_friction(law: Any, memory: Any, moving: Any, w: Any) -> Any:
+    return law.friction(w, memory, moving)
+
+
+friction_of = by_law(_bristle_friction, _bristle_friction, None, _memory_friction)
+"""friction_of(law, memory, moving, w): the friction coefficient at a memory that changes at these rates."""
+
+
+# --- the advance of one bristle -----------------------------------------------------------------------------------
 
 NEARBY = 1e-6
 """Share of a path or a deflection at which the decay rate of undeflected bristles is evaluated."""

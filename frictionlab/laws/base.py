@@ -104,6 +104,18 @@ class FrictionLaw(Record, ABC):
         """
         return False
 
+    def presliding(self) -> float:
+        """The slip [scene length] within which friction turns round after a reversal: 0 where it jumps."""
+        return 0.0
+
+    def largest_rate(self, speed: float) -> float:
+        """Largest modulus of d(rate)/d(memory) [1/scene time] at this slip speed; it limits explicit steps."""
+        return 0.0
+
+    def rate_jumps(self, directions: int) -> bool:
+        """Whether the rate of a memory may jump, in so many directions, while slip does not turn round."""
+        return False
+
     def structure(self) -> tuple[str, ...]:
         """The properties of the parameters that select which kernels are compiled, as words."""
         return ()

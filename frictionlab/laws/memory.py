@@ -64,6 +64,11 @@ class BristleLaw(FrictionLaw, ABC):
         """Largest modulus of d(rate)/dz [1/scene time] at this slip speed; it limits explicit steps."""
         return math.inf
 
+    def rate_jumps(self, directions: int) -> bool:
+        """In the plane: by axis, where unloading begins or ends, at yield."""
+        jumps = self.elastic_unloading() or math.isfinite(self.yield_deflection())
+        return directions == 2 and (jumps or self.form == PER_AXIS)
+
     def rate_independent(self) -> bool:
         """Whether friction depends on the path of the slip alone, not on its speed."""
         return False
@@ -162,6 +167,12 @@ class MemoryLaw(FrictionLaw, ABC):
         """The k-th memory in steady sliding at slip velocity ``v`` (not zero); zero if the law does not define it."""
         return 0.0 * v
 
+    def presliding(self) -> float:
+        """The shortest deflection in steady sliding [scene length]; 0 of scalars, or where none is known."""
+        if self.memory_kind == "scalars":
+            return 0.0
+        return min(abs(self.steady(1.0, k)) for k in range(self.count()))
+
     def stored(self, memory: Any) -> float:
         """The recoverable work [scene length, per unit load] in the memory; used where a law is passive."""
         return 0.0
@@ -196,6 +207,10 @@ class MemoryLaw(FrictionLaw, ABC):
     def largest_rate(self, speed: float) -> float:
         """Largest modulus of d(rate)/d(memory) [1/scene time] at this slip speed; infinite where none is known."""
         return math.inf
+
+    def rate_jumps(self, directions: int) -> bool:
+        """Of deflections it may, at yield."""
+        return self.memory_kind == "deflections"
 
     def rate_independent(self) -> bool:
         """Whether friction depends on the path of the slip alone, not on its speed."""

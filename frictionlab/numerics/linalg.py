@@ -61,6 +61,31 @@ def invert(matrix: Any, inverse: Any) -> bool:
 
 
 @inner
+def solve_linear(matrix: Any, right: Any) -> None:
+    """Gaussian elimination with row pivots, in place of both; the result is not finite for a singular matrix."""
+    n = right.size
+    for pivot in range(n):
+        best = pivot
+        for row in range(pivot + 1, n):
+            if abs(matrix[row, pivot]) > abs(matrix[best, pivot]):
+                best = row
+        if best != pivot:
+            right[pivot], right[best] = right[best], right[pivot]
+            for column in range(n):
+                matrix[pivot, column], matrix[best, column] = matrix[best, column], matrix[pivot, column]
+        # Below the pivot alone: what is above it is left to back substitution.
+        for row in range(pivot + 1, n):
+            factor = matrix[row, pivot] / matrix[pivot, pivot]
+            right[row] = right[row] - factor * right[pivot]
+            for column in range(pivot + 1, n):
+                matrix[row, column] = matrix[row, column] - factor * matrix[pivot, column]
+    for row in range(n - 1, -1, -1):
+        for column in range(row + 1, n):
+            right[row] = right[row] - matrix[row, column] * right[column]
+        right[row] = right[row] / matrix[row, row]
+
+
+@inner
 def subtract(z: Any, step: Any, out: Any) -> None:
     """Write z - step to ``out``."""
     for i in range(z.size):

@@ -22,8 +22,8 @@ from frictionlab.faults import CannotCompile
 from frictionlab.laws.base import Positive, SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.lugre import LuGre
-from frictionlab.methods.march.prescribed import sampled
-from frictionlab.methods.march.prescribed_bristle import rubbed
+from frictionlab.methods.march.prescribed import sample_friction
+from frictionlab.methods.march.prescribed_bristle import step_periods
 from frictionlab.methods.periodic.continuation import answer_curve
 from frictionlab.methods.reduced.contact import harmonic_friction
 from frictionlab.methods.shooting.undriven import flow
@@ -200,7 +200,9 @@ def test_words_and_the_place_in_the_file_change_nothing(compiled_once, name, bef
         compiled_once.edit(name, after, before)
 
 
-@pytest.mark.parametrize("root", [answer_curve, flow, rubbed, sampled, harmonic_friction, LuGre])
+@pytest.mark.parametrize(
+    "root", [answer_curve, flow, sample_friction, step_periods, harmonic_friction, LuGre]
+)
 def test_the_name_of_a_kept_kernel_holds_no_address(root):
     assert not [piece for piece in cache._pieces([root], set()) if " at 0x" in piece]
 

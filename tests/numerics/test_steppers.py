@@ -16,15 +16,11 @@ from frictionlab.compile.decorators import inner
 from frictionlab.dynamics import smoothing
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
-from frictionlab.methods.march.laps import (
-    TIRED,
-    MarchSettings,
-    march_moreau,
-    march_rk4,
-    march_smoothed,
-    restoring_force,
-)
-from frictionlab.numerics.steppers import moreau
+from frictionlab.methods.march.adapters import Moreau, Rk4, Smoothed, _restoring_force
+from frictionlab.methods.march.lap import NOTHING, MarchSettings
+from frictionlab.methods.march.laps import TIRED, MarchStart, march_laps
+from frictionlab.numerics.steppers.moreau import moreau_step
+from frictionlab.numerics.steppers.step import StepStart
 from frictionlab.scene.body import Body, Mass, in_the_plane, on_the_line
 
 LAW = Coulomb(mu=0.4)
@@ -65,73 +61,76 @@ def alike() -> Body:
     return body._replace(damping_mean=0.2, damping_split=0.0, stiffness_mean=1.0, stiffness_split=0.0)
 
 
-def way_of(push: Push, steps: int, theta: float, **changes: Any) -> MarchSettings:
+def settings_of(push: Push, steps: int, **changes: Any) -> MarchSettings:
     """Once from tau = 0 to the end in equal steps."""
     values = {
         "belt_speed": push.belt_speed, "driven": True, "steps": steps, "span": END, "first": END / steps,
-        "theta": theta, "width": 1.0, "shape": smoothing.TANH, "accuracy": 1e-12, "reach": END / steps,
-        "enough": 0.0, "most": 1, "stride": 2, "rate": 0.0, "near": 0.0, "work": 10**9, "window": 50,
-        "room": 0,
+        "slack": 0.5, "reach": END / steps, "enough": 0.0, "most": 1, "stride": 2, "rate": 0.0, "near": 0.0,
+        "work": 10**9, "window": 50, "room": 0,
     }  # fmt: skip
     return MarchSettings(**(values | changes))
 
 
-def end_of(kernel: Any, push: Push, steps: int, theta: float = 0.5, **changes: Any) -> np.ndarray:
-    """Position and velocity at the end."""
+def marched(stepper: Any, push: Push, steps: int, **changes: Any) -> Any:
+    """The march once to the end, from rest."""
     start = 0j if push.planar else 0.0
-    march = compiled(kernel, LAW)(body_of(push), way_of(push, steps, theta, **changes), start, start)
-    assert march.verdict != TIRED
-    return np.array([march.x[-1], march.v[-1]])
+    settings = settings_of(push, steps, **changes)
+    return compiled(march_laps, LAW)(body_of(push), stepper, settings, MarchStart(start, start, NOTHING))
+
+
+def end_of(stepper: Any, push: Push, steps: int, **changes: Any) -> np.ndarray:
+    """Position and velocity at the end."""
+    march = marched(stepper, push, steps, **changes)
+    assert march.progress.verdict != TIRED
+    return np.array([march.laps.x[-1], march.laps.v[-1]])
 
 
 def reference(push: Push) -> np.ndarray:
     """By another stepper: smooth motion by the eighth-order one with next to no smoothing, jumps by many steps."""
     if push.planar:
-        return end_of(march_smoothed, push, 100, width=1e-3, accuracy=1e-13, first=1e-3)
-    return end_of(march_moreau, push, 3_276_800)
+        return end_of(Smoothed(1e-3, smoothing.TANH, 1e-13), push, 100, first=1e-3, slack=1e-9)
+    return end_of(Moreau(0.5), push, 3_276_800)
 
 
-def worst_order(kernel: Any, push: Push, theta: float, shifts: int) -> float:
+def worst_order(stepper: Any, push: Push, shifts: int) -> float:
     """The slope of the largest error of several neighbouring grids: one alone may round reversals luckily."""
     exact = reference(push)
     errors = [
-        max(np.abs(end_of(kernel, push, steps + 3 * shift, theta) - exact).sum() for shift in range(shifts))
+        max(np.abs(end_of(stepper, push, steps + 3 * shift) - exact).sum() for shift in range(shifts))
         for steps in GRIDS.tolist()
     ]
     return float(np.polyfit(np.log(1.0 / GRIDS), np.log(errors), 1)[0])
 
 
 @pytest.mark.parametrize(
-    ("push", "kernel", "theta", "low", "high"),
+    ("push", "stepper", "low", "high"),
     [
-        (CROSSING, march_rk4, 0.5, 0.7, 1.5),
-        (CROSSING, march_moreau, 0.5, 0.8, 1.5),
-        (CROSSING, march_moreau, 1.0, 0.9, 1.1),
-        (STICK, march_rk4, 0.5, 0.7, 1.5),
-        (STICK, march_moreau, 0.5, 1.7, 2.3),
-        (STICK, march_moreau, 1.0, 0.9, 1.1),
+        (CROSSING, Rk4(), 0.7, 1.5),
+        (CROSSING, Moreau(0.5), 0.8, 1.5),
+        (CROSSING, Moreau(1.0), 0.9, 1.1),
+        (STICK, Rk4(), 0.7, 1.5),
+        (STICK, Moreau(0.5), 1.7, 2.3),
+        (STICK, Moreau(1.0), 0.9, 1.1),
     ],
 )
-def test_jumps_of_friction_leave_the_orders_that_are_known_of_them(push, kernel, theta, low, high):
-    assert low <= worst_order(kernel, push, theta, 6) <= high
+def test_jumps_of_friction_leave_the_orders_that_are_known_of_them(push, stepper, low, high):
+    assert low <= worst_order(stepper, push, 6) <= high
 
 
 @pytest.mark.parametrize(
-    ("kernel", "theta", "order", "grids"),
-    [(march_rk4, 0.5, 4, 400), (march_moreau, 0.5, 2, 800), (march_moreau, 1.0, 1, 12_800)],
+    ("stepper", "order", "grids"), [(Rk4(), 4, 400), (Moreau(0.5), 2, 800), (Moreau(1.0), 1, 12_800)]
 )
-def test_planar_slip_without_rest_is_stepped_at_the_declared_order(kernel, theta, order, grids):
+def test_planar_slip_without_rest_is_stepped_at_the_declared_order(stepper, order, grids):
     exact = reference(SMOOTH)
-    coarse, fine = (np.abs(end_of(kernel, SMOOTH, n, theta) - exact).sum() for n in (grids, 4 * grids))
+    coarse, fine = (np.abs(end_of(stepper, SMOOTH, n) - exact).sum() for n in (grids, 4 * grids))
     assert math.log(coarse / fine, 4.0) == pytest.approx(order, abs=0.25 if order < 4 else 1.0)
 
 
 @pytest.mark.parametrize("steps", [12_800, 51_200, 102_403, 1_638_400])
-@pytest.mark.parametrize("kernel", [march_rk4, march_moreau])
-def test_equal_steps_end_with_the_lap_however_their_sum_is_rounded(kernel, steps):
+@pytest.mark.parametrize("stepper", [Rk4(), Moreau(1.0)])
+def test_equal_steps_end_with_the_lap_however_their_sum_is_rounded(stepper, steps):
     """One more, of rounding's length, would read a load beyond the last."""
-    march = compiled(kernel, LAW)(body_of(CROSSING), way_of(CROSSING, steps, 1.0), 0.0, 0.0)
-    assert march.steps == steps
+    assert marched(stepper, CROSSING, steps).progress.steps == steps
 
 
 # --- moreau -------------------------------------------------------------------------------------------------------
@@ -143,22 +142,19 @@ class Problem(NamedTuple):
     law: Any
     body: Body
     grid: Any
-    theta: float
-
-
-_step = moreau.stepper(restoring_force)
+    stepper: Moreau
 
 
 @inner
-def one_step(law, body, grid, theta, x, v, h):
+def one_step(law, body, grid, stepper, start, h):
     """One step, for tests."""
-    return _step(Problem(law, body, grid, theta), 0, x, v, h)
+    return moreau_step(_restoring_force, Problem(law, body, grid, stepper), start, h)
 
 
 def step(body, belt_speed, load, theta, x, v, h, law=LAW):
     """One step of moreau under a constant load."""
-    grid = np.array([[load, body.normal_load, belt_speed]] * 3)
-    return compiled(one_step, law)(body, grid, theta, x, v, h)
+    grid = np.array([load, body.normal_load, belt_speed] * 3)
+    return compiled(one_step, law)(body, grid, Moreau(theta), StepStart(0, 0.0, x, v), h)
 
 
 planar = st.builds(
@@ -174,7 +170,7 @@ def test_the_impulse_of_friction_never_leaves_its_disk(x, v, load, h, theta):
     law = Stribeck(mu_static=0.6, mu_kinetic=0.3, stribeck_speed=0.5)
     taken = step(body_of(SMOOTH), 0.7, load, theta, x, v, h, law)
     highest = 0.6 if taken.stuck else 0.6 * (1.0 + 1e-12)
-    assert abs(taken.rubbed) <= highest * h * (1.0 + 1e-12)
+    assert abs(taken.impulse) <= highest * h * (1.0 + 1e-12)
     assert not taken.stuck or taken.v == 0.7
 
 
@@ -183,7 +179,7 @@ def test_friction_never_pushes_the_mass_along_its_slip(x, v, load, h, theta):
     taken = step(body_of(SMOOTH), 0.7, load, theta, x, v, h)
     if not taken.stuck:
         mean = theta * taken.v + (1.0 - theta) * v - 0.7
-        assert (taken.rubbed * mean.conjugate()).real >= -1e-12 * abs(taken.rubbed) * (
+        assert (taken.impulse * mean.conjugate()).real >= -1e-12 * abs(taken.impulse) * (
             abs(v) + abs(taken.v) + 0.7
         )
 

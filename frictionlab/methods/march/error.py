@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from frictionlab.laws.base import SlidingLaw
 from frictionlab.methods.march.laps import CLOSED, LATE, STALLED, TIRED, TOO_FAST, TOO_STIFF
 from frictionlab.methods.march.run import MarchResult, MarchRun, Resolution
 from frictionlab.methods.march.stability import MARGIN
@@ -37,7 +36,7 @@ class Plan(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Found:
+class MarchMean:
     """A mean with its error, the period [time], and the runs it was computed from, the finest last."""
 
     mean: complex
@@ -47,88 +46,88 @@ class Found:
     how: str
 
 
-def found(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
+def march_mean(march: MarchRun, plan: Plan, tolerance: float) -> MarchMean:
     """The mean by this plan; without an error where a run did not settle."""
     if plan.stepper == "smoothed":
-        return _by_widths(walker, plan, tolerance)
-    return _by_given_steps(walker, plan, tolerance) if plan.steps else _by_halving(walker, plan, tolerance)
+        return _by_widths(march, plan, tolerance)
+    return _by_given_steps(march, plan, tolerance) if plan.steps else _by_halving(march, plan, tolerance)
 
 
 # --- fixed steps --------------------------------------------------------------------------------------------------
 
 
-def _by_given_steps(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
+def _by_given_steps(march: MarchRun, plan: Plan, tolerance: float) -> MarchMean:
     """The mean at a given number of steps; its error from runs of twice and four times as many."""
     assert plan.steps is not None
     runs: list[MarchResult] = []
     for steps in (plan.steps, 2 * plan.steps, 4 * plan.steps):
-        runs.append(_next_run(walker, plan, steps, runs, tolerance))
+        runs.append(_next_run(march, plan, steps, runs, tolerance))
         if not runs[-1].settled:
             return _unsettled(runs)
     first = runs[0]
     doubt = first_error([run.mean.real for run in runs]) + max(
-        _unseen(walker, runs[:2]), _unseen(walker, runs[1:])
+        _unseen(march, runs[:2]), _unseen(march, runs[1:])
     )
     error = (
         doubt
-        + crossing(walker, first)
-        + _creep(walker, first)
+        + crossing(march, first)
+        + _creep(march, first)
         + sum(run.closing for run in runs)
         + _rounding(first)
     )
-    return Found(first.mean, error, first.period, tuple(runs), f"{plan.steps} steps per period")
+    return MarchMean(first.mean, error, first.period, tuple(runs), f"{plan.steps} steps per period")
 
 
-def _by_halving(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
+def _by_halving(march: MarchRun, plan: Plan, tolerance: float) -> MarchMean:
     """Steps are doubled until the error is below the tolerance or the work is done."""
-    steps, work = _coarsest(walker), 0
+    steps, work = _coarsest(march), 0
     runs: list[MarchResult] = []
-    best: Found | None = None
+    best: MarchMean | None = None
     while best is None or best.error > tolerance:
-        run = _next_run(walker, plan, steps, runs, tolerance, WORK - work)
+        run = _next_run(march, plan, steps, runs, tolerance, WORK - work)
         work += run.steps
         if not run.settled:
-            more = steps_needed(walker, run)
+            more = steps_needed(march, run)
             if 3 * FEWEST_LAPS * more > WORK - work:
                 break
             runs, steps = [], math.ceil(more)
             continue
         runs.append(run)
         if len(runs) >= FEWEST:
-            best = _limit(walker, plan, runs)
-        if work + 2 * run.steps * min(1.0, 12 / run.laps) > WORK or _changes_for_ever(runs, walker):
+            best = _limit(march, plan, runs)
+        if work + 2 * run.steps * min(1.0, 12 / run.laps) > WORK or _changes_for_ever(runs, march):
             break
         steps *= 2
     if best is None and len(runs) > 1 and run.verdict != TOO_STIFF:
-        best = _limit(walker, plan, runs)
+        best = _limit(march, plan, runs)
     return best or _unsettled([*runs, run])
 
 
-def steps_needed(walker: MarchRun, run: MarchResult) -> float:
+def steps_needed(march: MarchRun, run: MarchResult) -> float:
     """Steps per period that would be stable where those of a run were not; infinite where it failed otherwise."""
     if run.verdict == TOO_FAST:
-        return 1.5 * run.pace.steps * run.met / walker.fastest(run.pace)
-    return MARGIN * walker.through_rest if run.verdict == TOO_STIFF else math.inf
+        return 1.5 * run.pace.steps * run.met / march.fastest(run.pace)
+    return MARGIN * march.through_rest if run.verdict == TOO_STIFF else math.inf
 
 
-def _limit(walker: MarchRun, plan: Plan, runs: list[MarchResult]) -> Found:
+def _limit(march: MarchRun, plan: Plan, runs: list[MarchResult]) -> MarchMean:
     last, every = runs[-1], runs
     runs = [run for run in runs if (run.verdict, run.stride) == (last.verdict, last.stride)]
     runs = runs if len(runs) > 1 else every
-    unseen = _unseen(walker, runs[-3:])
+    unseen = _unseen(march, runs[-3:])
     reversing = unseen > 0.0 or len(runs) < len(every) or any(run.crossings > 0 for run in runs[-3:])
-    reversing = reversing or last.verdict == STALLED or walker.has_corners
+    reversing = reversing or last.verdict == STALLED or march.has_corners
     least = REVERSING if reversing else STICKING if last.stuck > 0.0 else SMOOTH
     along = richardson([run.mean.real for run in runs], plan.order, least)
     across = richardson([run.mean.imag for run in runs], plan.order, least)
     period = richardson([run.period for run in runs], plan.order, least)
     error = (
-        along.error + unseen + crossing(walker, last) + _creep(walker, last) + last.closing + _rounding(last)
+        along.error + unseen + crossing(march, last) + _creep(march, last) + last.closing + _rounding(last)
     )
     error += runs[-2].closing if along.order else 0.0
     how = f"{last.pace.steps} steps per period"
     how += f", extrapolated at order {along.order}" if along.order else ""
-    return Found(complex(along.value, across.value), error, period.value, tuple(runs), how)
+    return MarchMean(complex(along.value, across.value), error, period.value, tuple(runs), how)
 
 
 def _rounding(run: MarchResult) -> float:
@@ -137,7 +136,7 @@ def _rounding(run: MarchResult) -> float:
 
 
 def _next_run(
-    walker: MarchRun,
+    march: MarchRun,
     plan: Plan,
     steps: int,
     runs: Sequence[MarchResult],
@@ -146,37 +145,37 @@ def _next_run(
 ) -> MarchResult:
     """A run of so many steps per period, from where the last one ended."""
     before = runs[-1] if runs else None
-    share = max(0.05 * tolerance, 0.02 * _expected(walker, runs, steps))
+    share = max(0.05 * tolerance, 0.02 * _expected(march, runs, steps))
     pace = Resolution(
         steps=steps,
         theta=plan.theta,
-        enough=0.25 * share * walker.mass.normal_load,
+        enough=0.25 * share * march.mass.normal_load,
         most=plan.periods,
         work=max(work, FEWEST_LAPS * steps),
         rate=before.rate if before is not None and before.verdict == CLOSED else 0.0,
     )
-    return walker.run(pace, before.place if before is not None and walker.forgets else None)
+    return march.run(pace, before.place if before is not None and march.forgets else None)
 
 
-def _expected(walker: MarchRun, runs: Sequence[MarchResult], steps: int) -> float:
+def _expected(march: MarchRun, runs: Sequence[MarchResult], steps: int) -> float:
     """The expected error of the mean at this number of steps; small enough at first not to limit the result."""
     if len(runs) < 2:
-        return 0.1 * walker.law.sliding_friction(1.0) / steps
+        return 0.1 * march.law.sliding_friction(1.0) / steps
     change = abs(runs[-1].mean.real - runs[-2].mean.real)
-    return max(0.25 * change, crossing(walker, runs[-1]) * runs[-1].pace.steps / steps)
+    return max(0.25 * change, crossing(march, runs[-1]) * runs[-1].pace.steps / steps)
 
 
-def crossing(walker: MarchRun, run: MarchResult) -> float:
+def crossing(march: MarchRun, run: MarchResult) -> float:
     """What reversals inside a step may cost: of the impulse of that step, a grid knows the sign but not the share.
 
     A release costs the drop of friction from rest to slip in the same way. Several grids in a row can round either
     the same way, and then no change between them tells of it.
     """
-    per_period = run.pace.steps * run.period / walker.lap
-    slip = walker.slipping
-    if not isinstance(walker.law, SlidingLaw):
-        return slip * run.crossings / per_period * _unresolved(walker.presliding, run)
-    release = walker.at_rest - slip if run.stuck > 0.0 else 0.0
+    per_period = run.pace.steps * run.period / march.lap
+    slip = march.slipping
+    if march.law.count() > 0:
+        return slip * run.crossings / per_period * _unresolved(march.law.presliding(), run)
+    release = march.at_rest - slip if run.stuck > 0.0 else 0.0
     return (slip * run.crossings + release * run.stride) / per_period
 
 
@@ -194,12 +193,12 @@ def _unresolved(presliding: float, run: MarchResult) -> float:
     return min(1.0, 0.5 * step / bending) if bending > 0.0 else 1.0
 
 
-def _creep(walker: MarchRun, run: MarchResult) -> float:
+def _creep(march: MarchRun, run: MarchResult) -> float:
     """Where creep hides stick, friction may have any value while it does."""
-    return 2.0 * walker.at_rest * run.creeping
+    return 2.0 * march.at_rest * run.creeping
 
 
-def _unseen(walker: MarchRun, runs: Sequence[MarchResult]) -> float:
+def _unseen(march: MarchRun, runs: Sequence[MarchResult]) -> float:
     """What a reversal would cost that the last grid does not see, slip being least between two of its nodes.
 
     The least slip is known as well as it agrees between runs, and as the nodes around it are close. A reversal
@@ -219,37 +218,37 @@ def _unseen(walker: MarchRun, runs: Sequence[MarchResult]) -> float:
     if not (depth > 0.0 and bend > 0.0):
         return 0.0
     lasts = min(2.0 * math.sqrt(2.0 * depth / bend), fine.period)
-    return 2.0 * walker.slipping * lasts / fine.period
+    return 2.0 * march.slipping * lasts / fine.period
 
 
-def _coarsest(walker: MarchRun) -> int:
+def _coarsest(march: MarchRun) -> int:
     """Steps to begin with: what the motion asks for, and what the stepper needs not to explode."""
-    return max(COARSEST * _slowness(walker), walker.fewest())
+    return max(COARSEST * _slowness(march), march.fewest())
 
 
-def _slowness(walker: MarchRun) -> int:
+def _slowness(march: MarchRun) -> int:
     """Steps are counted per period; a slow drive needs more of them for the body's own motion."""
-    mass = walker.mass
+    mass = march.mass
     quickest = max(1.0, mass.damping)
-    if not walker.straight:
+    if not march.straight:
         quickest = max(quickest, math.sqrt(mass.transverse_stiffness), mass.transverse_damping)
     return max(1, math.ceil(quickest / mass.frequency))
 
 
-def _changes_for_ever(runs: Sequence[MarchResult], walker: MarchRun) -> bool:
+def _changes_for_ever(runs: Sequence[MarchResult], march: MarchRun) -> bool:
     """Whether finer steps calm a motion that does not repeat no more."""
-    return len(runs) >= FEWEST and all(run.verdict == STALLED for run in runs[-3:]) and restless(runs, walker)
+    return len(runs) >= FEWEST and all(run.verdict == STALLED for run in runs[-3:]) and restless(runs, march)
 
 
-def restless(runs: Sequence[MarchResult], walker: MarchRun) -> bool:
+def restless(runs: Sequence[MarchResult], march: MarchRun) -> bool:
     """Whether the motion itself never repeats: the spread of its means is there, and does not shrink with the steps.
 
     A thousandth of the friction at rest passes for noise, and is left to the error.
     """
     early, last = runs[max(0, len(runs) - 3)], runs[-1]
     spread = last.high - last.low
-    seen = last.verdict == STALLED == early.verdict and spread > 1e-3 * walker.at_rest
-    return not walker.converges and seen and spread > 0.5 * (early.high - early.low)
+    seen = last.verdict == STALLED == early.verdict and spread > 1e-3 * march.at_rest
+    return not march.converges and seen and spread > 0.5 * (early.high - early.low)
 
 
 def why_not(run: MarchResult) -> str:
@@ -268,16 +267,16 @@ def why_not(run: MarchResult) -> str:
     return f"is not finite after {run.laps} periods: it grows without bound, or never returns; give shorter steps"
 
 
-def _unsettled(runs: Sequence[MarchResult]) -> Found:
-    return Found(complex(math.nan), math.nan, math.nan, tuple(runs), "")
+def _unsettled(runs: Sequence[MarchResult]) -> MarchMean:
+    return MarchMean(complex(math.nan), math.nan, math.nan, tuple(runs), "")
 
 
 # --- smoothed friction --------------------------------------------------------------------------------------------
 
 
-def _by_widths(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
+def _by_widths(march: MarchRun, plan: Plan, tolerance: float) -> MarchMean:
     """The mean of this width; twice, half and a quarter of it tell the bias, a run of looser steps their error."""
-    load = walker.mass.normal_load * walker.law.sliding_friction(plan.width)
+    load = march.mass.normal_load * march.law.sliding_friction(plan.width)
     accuracy = max(min(1e-5 * tolerance * load, 1e-3 * plan.width, 1e-6 * load), 1e-13 * load)
     pace = Resolution(
         width=plan.width,
@@ -297,16 +296,16 @@ def _by_widths(walker: MarchRun, plan: Plan, tolerance: float) -> Found:
     runs: dict[str, MarchResult] = {}
     place = None
     for name, one in paces.items():
-        runs[name] = walker.run(one, place)
+        runs[name] = march.run(one, place)
         if not runs[name].settled:
             return _unsettled(list(runs.values()))
-        place = runs[name].place if walker.forgets else None
+        place = runs[name].place if march.forgets else None
     means = {name: run.mean.real for name, run in runs.items()}
     error = bias(means["wide"], means["asked"], means["narrow"], means["narrowest"]) + abs(
         means["loose"] - means["asked"]
     )
-    error += runs["asked"].closing + runs["narrowest"].closing + _creep(walker, runs["asked"]) + ROUNDING
+    error += runs["asked"].closing + runs["narrowest"].closing + _creep(march, runs["asked"]) + ROUNDING
     asked = runs["asked"]
-    return Found(
+    return MarchMean(
         asked.mean, error, asked.period, tuple(runs.values()), f"{plan.smoothing} of width {plan.width:g}"
     )

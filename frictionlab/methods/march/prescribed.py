@@ -7,7 +7,6 @@ with a mass that friction does not move (15 to 87 times), 120 times at 1e-4.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -16,12 +15,13 @@ import numpy as np
 from frictionlab.compile.cache import compiled, timed
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import interpreted
-from frictionlab.dynamics.motion import instant_at, mean_friction, slip
+from frictionlab.dynamics.motion import mean_friction
 from frictionlab.dynamics.smoothing import share
-from frictionlab.laws.base import SlidingLaw
-from frictionlab.methods.base import Answers, Status
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Status
+from frictionlab.methods.march.answers import PointAnswer
 from frictionlab.methods.march.error import COARSEST, ROUNDING, Plan
-from frictionlab.methods.march.rows import Row, answers_of
+from frictionlab.methods.march.prescribed_slip import slip_at_angle
 from frictionlab.methods.march.run import SHAPES
 from frictionlab.methods.prescribed.quadrature import orbit_of_slip
 from frictionlab.numerics.richardson import bias
@@ -32,7 +32,7 @@ from frictionlab.scene.scene import Scene
 MOST_SAMPLES = 1 << 21
 
 
-class Sampled(NamedTuple):
+class SampledMean(NamedTuple):
     """Mean coefficient over one period, and what samples may miss of it."""
 
     mean: complex
@@ -49,45 +49,34 @@ def _friction(law: Any, w: complex, width: float, shape: float) -> complex:
 
 
 @inner
-def _at(motion: Motion, angle: float) -> complex:
-    turn = complex(math.cos(angle), math.sin(angle))
-    return complex((motion.velocity * turn).imag, (motion.transverse_velocity * turn).imag)
-
-
-@inner
-def _slip(motion: Motion, belt_speed: float, angle: float) -> complex:
-    return slip(motion, belt_speed, instant_at(motion, angle / motion.frequency), _at(motion, angle))
-
-
-@inner
-def sampled(law: Any, motion: Motion, belt_speed: float, n: int, width: float, shape: float) -> Sampled:
+def sample_friction(
+    law: Any, motion: Motion, belt_speed: float, n: int, width: float, shape: float
+) -> SampledMean:
     """The midpoint rule with n samples.
 
     Between its samples friction may jump anywhere: a jump costs up to half of it times the spacing. Second
     differences count each jump twice, and vanish with the square of the spacing where friction is smooth.
     """
+    # Two samples of the period before, so that every second difference is of three neighbours.
     total, bent = 0j, 0.0
     before, now = (
-        _friction(law, _slip(motion, belt_speed, -3.0 * math.pi / n), width, shape),
-        _friction(law, _slip(motion, belt_speed, -math.pi / n), width, shape),
+        _friction(law, slip_at_angle(motion, belt_speed, -3.0 * math.pi / n, 0j), width, shape),
+        _friction(law, slip_at_angle(motion, belt_speed, -math.pi / n, 0j), width, shape),
     )
     for i in range(n):
-        after = _friction(law, _slip(motion, belt_speed, (2.0 * i + 1.0) * math.pi / n), width, shape)
+        after = _friction(
+            law, slip_at_angle(motion, belt_speed, (2.0 * i + 1.0) * math.pi / n, 0j), width, shape
+        )
         bent += abs(after - 2.0 * now + before)
         before, now = now, after
         total += after
-    return Sampled(mean_friction(total, n), 0.25 * bent / n)
+    return SampledMean(mean_friction(total, n), 0.25 * bent / n)
 
 
-def solve_sampled(scenes: Sequence[Scene], law: SlidingLaw, tolerance: float, plan: Plan) -> Answers:
-    """Answer scenes of prescribed slip."""
-    return answers_of([_Point(scene, law, tolerance, plan) for scene in scenes])
-
-
-class _Point:
+class SampledPoint:
     """One scene of prescribed slip, sampled."""
 
-    def __init__(self, scene: Scene, law: SlidingLaw, tolerance: float, plan: Plan) -> None:
+    def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float, plan: Plan) -> None:
         self.scene, self.law, self.motion = scene, law, scene.motion()
         self.width = plan.width if plan.stepper == "smoothed" else 0.0
         self.shape, self.seconds = SHAPES[plan.smoothing], 0.0
@@ -104,10 +93,10 @@ class _Point:
         self.model = f"prescribed slip: friction at {n} samples per period"
         self.reason = f"the error is above the tolerance {tolerance:.1e}" if error > tolerance else ""
         self.status: Status = "ok"
-        self.found = Row(found.mean, error, 1.0)
+        self.answer = PointAnswer(found.mean, error, 1.0)
 
-    def _sampled(self, n: int, width: float) -> Sampled:
-        call = compiled(sampled, self.law)
+    def _sampled(self, n: int, width: float) -> SampledMean:
+        call = compiled(sample_friction, self.law)
         found, seconds = timed(call, self.motion, self.scene.belt_speed, n, width, self.shape)
         self.seconds += seconds
         return found

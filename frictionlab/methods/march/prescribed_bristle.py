@@ -7,7 +7,6 @@ with a mass that friction does not move (0.8 to 33 times; kernels alone 138 time
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,13 +14,14 @@ from numpy.typing import NDArray
 
 from frictionlab.compile.cache import compiled, timed
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.compile.dispatch import length
 from frictionlab.dynamics.contact import advance_bristle, project_to_yield, resistance
-from frictionlab.dynamics.motion import belt_path, instant_at, mean_friction, slip
-from frictionlab.laws.memory import PER_AXIS, VECTORIAL, BristleLaw
-from frictionlab.methods.base import Answers, Status
+from frictionlab.dynamics.motion import mean_friction
+from frictionlab.laws.memory import PER_AXIS, VECTORIAL
+from frictionlab.methods.base import Status
+from frictionlab.methods.march.answers import PointAnswer
 from frictionlab.methods.march.error import COARSEST, ROUNDING, Plan
-from frictionlab.methods.march.rows import Row, answers_of
+from frictionlab.methods.march.prescribed_slip import path_between, slip_at_angle
 from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.numerics.richardson import REVERSING, SMOOTH, first_error, richardson
 from frictionlab.orbit.panels import NODES
@@ -38,8 +38,8 @@ REPEATED = 1e-13
 """Change of the deflection over a period, over the largest met, that counts as none."""
 
 
-class Slipping(NamedTuple):
-    """What the bristles are dragged along by."""
+class PrescribedSteps(NamedTuple):
+    """The slip that drags the bristle along, and how it is stepped."""
 
     motion: Motion
     belt_speed: float
@@ -48,7 +48,7 @@ class Slipping(NamedTuple):
     most: int  # periods
 
 
-class Rubbed(NamedTuple):
+class BristlePeriod(NamedTuple):
     """Over the last period: mean coefficient; reversals; how often bristles begin or end to be bent back, z.v = 0;
     deflection at its end.
 
@@ -64,123 +64,98 @@ class Rubbed(NamedTuple):
     each: Any
 
 
-def _wave_on_the_line(motion: Motion, turn: complex, like: float) -> float:
-    return (motion.velocity * turn).imag
-
-
-def _wave_in_the_plane(motion: Motion, turn: complex, like: complex) -> complex:
-    return complex((motion.velocity * turn).imag, (motion.transverse_velocity * turn).imag)
-
-
-_wave = by_dimension(_wave_on_the_line, _wave_in_the_plane)
+@inner
+def slip_of(drive: PrescribedSteps, angle: float, like: Any) -> Any:
+    """Slip velocity at an angle of the period."""
+    return slip_at_angle(drive.motion, drive.belt_speed, angle, like)
 
 
 @inner
-def _velocity(motion: Motion, angle: float, like: Any) -> Any:
-    return _wave(motion, complex(math.cos(angle), math.sin(angle)), like)
-
-
-@inner
-def _place(motion: Motion, angle: float, like: Any) -> Any:
-    return _wave(motion, complex(math.sin(angle), -math.cos(angle)), like) / motion.frequency
-
-
-@inner
-def _slip(slipping: Slipping, angle: float, like: Any) -> Any:
-    motion, now = slipping.motion, instant_at(slipping.motion, angle / slipping.motion.frequency)
-    return slip(motion, slipping.belt_speed, now, _velocity(motion, angle, like))
-
-
-@inner
-def _path(slipping: Slipping, start: float, end: float, like: Any) -> Any:
+def path_of(drive: PrescribedSteps, start: float, end: float, like: Any) -> Any:
     """The way slid from one angle to another."""
-    motion = slipping.motion
-    carried = belt_path(motion, slipping.belt_speed, start / motion.frequency, end / motion.frequency)
-    return _place(motion, end, like) - _place(motion, start, like) - carried
+    return path_between(drive.motion, drive.belt_speed, start, end, like)
 
 
-class Bent(NamedTuple):
+class BristleStep(NamedTuple):
     """Deflection at the end of a step, and friction over it."""
 
     z: Any
-    rub: Any
+    mu: Any
 
 
 @inner
-def _by_rk4(law: Any, slipping: Slipping, angle: float, h: float, z: Any) -> Bent:
+def _by_rk4(law: Any, drive: PrescribedSteps, angle: float, h: float, z: Any) -> BristleStep:
     """The classical Runge-Kutta method (W. Kutta, 1901)."""
-    motion, half = slipping.motion, 0.5 * h
-    w1 = _slip(slipping, angle, z)
-    w2 = _slip(slipping, angle + half * motion.frequency, z)
-    w4 = _slip(slipping, angle + h * motion.frequency, z)
+    motion, half = drive.motion, 0.5 * h
+    # The slip is known at any time: the deflection alone is stepped, and its two middle stages share a slip.
+    w1 = slip_of(drive, angle, z)
+    w2 = slip_of(drive, angle + half * motion.frequency, z)
+    w4 = slip_of(drive, angle + h * motion.frequency, z)
     r1, f1 = resistance(law, w1, z)
     r2, f2 = resistance(law, w2, z + half * r1)
     r3, f3 = resistance(law, w2, z + half * r2)
     r4, f4 = resistance(law, w4, z + h * r3)
     after = z + (h / 6.0) * (r1 + 2.0 * r2 + 2.0 * r3 + r4)
-    return Bent(project_to_yield(law, after), (f1 + 2.0 * f2 + 2.0 * f3 + f4) / 6.0)
+    return BristleStep(project_to_yield(law, after), (f1 + 2.0 * f2 + 2.0 * f3 + f4) / 6.0)
 
 
 @inner
-def _exponentially(law: Any, slipping: Slipping, angle: float, h: float, z: Any) -> Bent:
+def _exponentially(law: Any, drive: PrescribedSteps, angle: float, h: float, z: Any) -> BristleStep:
     """Straight slip over as much path as there is; friction is that of the middle."""
-    motion, half = slipping.motion, 0.5 * h
+    motion, half = drive.motion, 0.5 * h
+    # Two halves, each straight and at its mean velocity; friction is asked for between them.
     middle = angle + half * motion.frequency
-    bent = advance_bristle(law, half, _path(slipping, angle, middle, z) / half, z)
-    _, rub = resistance(law, _slip(slipping, middle, z), bent)
+    bent = advance_bristle(law, half, path_of(drive, angle, middle, z) / half, z)
+    _, rub = resistance(law, slip_of(drive, middle, z), bent)
     end = middle + half * motion.frequency
-    return Bent(advance_bristle(law, half, _path(slipping, middle, end, z) / half, bent), rub)
+    return BristleStep(advance_bristle(law, half, path_of(drive, middle, end, z) / half, bent), rub)
 
 
 @inner
-def rubbed(law: Any, slipping: Slipping, z: Any) -> Rubbed:
+def step_periods(law: Any, drive: PrescribedSteps, z: Any) -> BristlePeriod:
     """Period after period from the deflection z, until it repeats or the periods are used up."""
-    motion, n = slipping.motion, slipping.steps
+    motion, n = drive.motion, drive.steps
     h = 2.0 * math.pi / (motion.frequency * n)
     each = np.empty(n, np.complex128)
     period, last_gap, left, total, reversals, bends = 0, 0.0, 1e300, 0.0 * z, 0, 0
-    while period < slipping.most and left > REPEATED:
+    while period < drive.most and left > REPEATED:
+        # A period anew: of the last one alone the mean, the reversals and the bends are kept.
         before, deepest, total, reversals, bends = z, 1e-300, 0.0 * z, 0, 0
-        last = _slip(slipping, 0.0, z)
+        last = slip_of(drive, 0.0, z)
         for i in range(n):
             angle, bent = 2.0 * math.pi * i / n, (z * last.conjugate()).real
             step = (
-                _by_rk4(law, slipping, angle, h, z)
-                if slipping.by_rk4
-                else _exponentially(law, slipping, angle, h, z)
+                _by_rk4(law, drive, angle, h, z) if drive.by_rk4 else _exponentially(law, drive, angle, h, z)
             )
             z, deepest = step.z, max(deepest, length(step.z))
-            total = total + step.rub
-            each[i] = step.rub + 0j
-            ahead = _slip(slipping, angle + 2.0 * math.pi / n, z)
+            total = total + step.mu
+            each[i] = step.mu + 0j
+            # Where slip reverses, or the bristle begins or ends to be bent back, friction has a corner in this step.
+            ahead = slip_of(drive, angle + 2.0 * math.pi / n, z)
             reversals += 1 if (ahead * last.conjugate()).real < 0.0 else 0
             bends += 1 if (z * ahead.conjugate()).real * bent < 0.0 else 0
             last = ahead
+        # Gaps shrink like a geometric series: what is left is their sum. Rounding alone keeps the last ones open.
         gap = length(z - before) / deepest
         rate = min(gap / last_gap, 0.9999999) if last_gap > 0.0 else 0.0
         left = gap / (1.0 - rate) if period > 0 else 1e300
         left = gap if gap <= REPEATED else left
         last_gap, period = gap, period + 1
-    return Rubbed(mean_friction(total, n) + 0j, reversals, bends, z + 0j, left, period, each)
+    return BristlePeriod(mean_friction(total, n) + 0j, reversals, bends, z + 0j, left, period, each)
 
 
-def solve_rubbed(scenes: Sequence[Scene], law: BristleLaw, tolerance: float, plan: Plan) -> Answers:
-    """Answer scenes of prescribed slip."""
-    return answers_of([_Point(scene, law, tolerance, plan) for scene in scenes])
-
-
-class _Point:
+class SteppedPoint:
     """One scene of prescribed slip, stepped."""
 
-    def __init__(self, scene: Scene, law: BristleLaw, tolerance: float, plan: Plan) -> None:
+    def __init__(self, scene: Scene, law: Any, tolerance: float, plan: Plan) -> None:
         self.scene, self.law, self.plan, self.motion = scene, law, plan, scene.motion()
         self.straight = scene.load_along_belt_only
         self.seconds, self.reason = 0.0, ""
         self.status: Status = "ok"
-        self.runs: list[Rubbed] = []
+        self.runs: list[BristlePeriod] = []
         self.mean, self.error = self._given() if plan.steps else self._halved(tolerance)
         self.model = f"prescribed slip, {plan.stepper}: {len(self.runs[0].each)} steps per period"
-        self.found = Row(self.mean, self.error, 1.0)
+        self.answer = PointAnswer(self.mean, self.error, 1.0)
         self._judge(tolerance)
 
     def _judge(self, tolerance: float) -> None:
@@ -200,19 +175,19 @@ class _Point:
                 "not_unique",
                 "the mean depends on the start: slip stays within the elastic range",
             )
-            self.found = Row(low=low, high=high)
+            self.answer = PointAnswer(low=low, high=high)
         elif self.error > tolerance:
             self.reason = f"the error is above the tolerance {tolerance:.1e}"
 
     def _leave(self, status: Status, reason: str) -> None:
-        self.status, self.reason, self.found = status, reason, Row()
+        self.status, self.reason, self.answer = status, reason, PointAnswer()
 
-    def _run(self, steps: int, start: complex) -> Rubbed:
-        call = compiled(rubbed, self.law)
+    def _run(self, steps: int, start: complex) -> BristlePeriod:
+        call = compiled(step_periods, self.law)
         most = max(2, min(self.plan.periods, WORK // steps))
-        slipping = Slipping(self.motion, self.scene.belt_speed, steps, self.plan.stepper == "rk4", most)
+        drive = PrescribedSteps(self.motion, self.scene.belt_speed, steps, self.plan.stepper == "rk4", most)
         z = float(start.real) if self.straight else complex(start)
-        found, seconds = timed(call, slipping, z)
+        found, seconds = timed(call, drive, z)
         self.seconds += seconds
         return found
 
@@ -238,7 +213,7 @@ class _Point:
         self.runs = runs[-1:]
         return complex(value, across), error
 
-    def _beside(self, run: Rubbed) -> float:
+    def _beside(self, run: BristlePeriod) -> float:
         """Rounding, what is open, and what steps in which slip reverses may misplace."""
         friction, n = self.law.sliding_friction(0.0), len(run.each)
         turn = self.motion.frequency * math.hypot(
@@ -272,13 +247,13 @@ class _Point:
         """How often per period slip reverses along x1."""
         return 2 if abs(self.motion.velocity) > abs(self.scene.belt_speed) else 0
 
-    def _turns(self, run: Rubbed) -> int:
+    def _turns(self, run: BristlePeriod) -> int:
         """How often slip turns round for the law: of a law of each axis, along either."""
         if self.law.form != PER_AXIS or self.straight:
             return run.reversals
         return self._along() + (2 if self.motion.transverse_velocity != 0 else 0)
 
-    def _jumps(self, run: Rubbed) -> int:
+    def _jumps(self, run: BristlePeriod) -> int:
         """How often the rate of bristles jumps: in the plane slip need not stop for z.v = 0."""
         return (
             0
@@ -286,7 +261,7 @@ class _Point:
             else run.bends
         )
 
-    def _has_corners(self, run: Rubbed) -> bool:
+    def _has_corners(self, run: BristlePeriod) -> bool:
         """Whether friction has corners within steps: an order is then seen by chance alone."""
         yields = math.isfinite(self.law.yield_deflection()) and not self.straight
         return self._turns(run) + self._jumps(run) > 0 or yields

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,24 +12,25 @@ from frictionlab.compile.cache import compiled, timed
 from frictionlab.compile.dispatch import interpreted
 from frictionlab.dynamics.motion import mean_friction
 from frictionlab.dynamics.smoothing import ARCTAN, SQUARE_ROOT, TANH
-from frictionlab.laws.base import FrictionLaw, SlidingLaw
-from frictionlab.laws.memory import PER_AXIS, BristleLaw, MemoryLaw
-from frictionlab.methods.march import memory_stability
-from frictionlab.methods.march.bristle_adapter import march_bristle_rk4, march_exponential, march_sdirk2
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.march.adapters import Exponential, Moreau, Rk4, Sdirk2, Smoothed, Stepper
+from frictionlab.methods.march.lap import NOTHING, MarchSettings
 from frictionlab.methods.march.laps import (
     CLOSED,
-    NOTHING,
     RESTING,
     STALLED,
     TOO_STIFF,
-    March,
-    MarchSettings,
-    march_moreau,
-    march_rk4,
-    march_smoothed,
+    MarchHistory,
+    MarchStart,
+    march_laps,
 )
-from frictionlab.methods.march.memory_adapter import march_memory_rk4
-from frictionlab.methods.march.stability import fastest_slip, fewest_steps, spring_of
+from frictionlab.methods.march.stability import (
+    fastest_slip,
+    fewest_steps,
+    first_memory,
+    memory_stiffness,
+    steps_through_rest,
+)
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -38,9 +38,8 @@ from frictionlab.scene.body import Mass, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.rest import friction_at_rest
 
-KERNELS = {"moreau": march_moreau, "rk4": march_rk4, "smoothed": march_smoothed}
-BRISTLE_KERNELS = {"rk4": march_bristle_rk4, "exponential": march_exponential, "sdirk2": march_sdirk2}
-MEMORY_KERNELS = {"rk4": march_memory_rk4}
+OF_NO_NUMBERS: dict[str, Stepper] = {"rk4": Rk4(), "exponential": Exponential(), "sdirk2": Sdirk2()}
+"""Steppers of which a run sets nothing but the number of steps."""
 SHAPES = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
 GRIDDED = "moreau", "rk4", "exponential"
 """Steppers that meet the load at half steps alone."""
@@ -114,18 +113,14 @@ class MarchRun:
     def __init__(self, scene: Scene, law: FrictionLaw, stepper: str) -> None:
         self.scene, self.law, self.stepper = scene, law, stepper
         self.mass: Mass = scene.mass()
-        self.bristles = law if isinstance(law, BristleLaw) else None
-        self.memory = law if isinstance(law, MemoryLaw) else None
-        self.through_rest = (
-            memory_stability.steps_through_rest(scene, law) if isinstance(law, MemoryLaw) else 0.0
-        )
+        self.through_rest = steps_through_rest(scene, law)
         straight = along_the_belt(scene, law) and not _starts_across(scene)
         self.straight = straight
         self.body = on_the_line(self.mass) if straight else in_the_plane(self.mass)
         sine, cosine = self.body.reference_sine, self.body.reference_cosine
         self._free = complex(cosine), complex(scene.frequency * sine)
-        self._fresh = memory_stability.first_memory(scene, law) if isinstance(law, MemoryLaw) else NOTHING
-        self._spring = self._springs()
+        self._fresh = first_memory(scene, law)
+        self._spring = memory_stiffness(scene, law)
         self.start = self.place(scene.start if scene.undriven else scene.initial)
         self.forgets = scene.belt_speed != 0.0  # on a belt at rest the mass stays wherever a run left it
         self.lap = 2.0 * math.pi / self.mass.frequency
@@ -143,16 +138,9 @@ class MarchRun:
         return self.law.sliding_friction(0.0) or self.at_rest
 
     @property
-    def presliding(self) -> float:
-        """The slip within which friction turns round after a reversal; 0 where it jumps, or none is known."""
-        if self.memory is not None:
-            return memory_stability.presliding_of(self.memory)
-        return self.bristles.presliding() if self.bristles is not None else 0.0
-
-    @property
     def follows_the_drive(self) -> bool:
         """Whether a theorem gives every motion the drive's period in the end (Leine & van de Wouw, 2008)."""
-        if not isinstance(self.law, SlidingLaw):
+        if self.law.memory_kind != "none":
             return False
         mass = self.mass
         damping = mass.damping if self.straight else min(mass.damping, mass.transverse_damping)
@@ -166,12 +154,7 @@ class MarchRun:
     @property
     def has_corners(self) -> bool:
         """Whether a memory's rate may jump while slip does not turn round: by axis, at yield, in unloading."""
-        if self.memory is not None:
-            return self.memory.memory_kind == "deflections"
-        law = self.bristles
-        if law is None or self.straight:
-            return False
-        return law.form == PER_AXIS or law.elastic_unloading() or math.isfinite(law.yield_deflection())
+        return self.law.rate_jumps(1 if self.straight else 2)
 
     def place(self, start: Initial | None) -> MarchState:
         """A start as a state; None for the friction-free orbit."""
@@ -181,18 +164,16 @@ class MarchRun:
 
     def fewest(self) -> int:
         """Steps per period that the stepper needs not to explode; 1 where any number will do."""
-        if self.memory is not None:
-            return memory_stability.fewest_steps(self.scene, self.memory)
-        return fewest_steps(self.scene, self.bristles, self.stepper) if self.bristles is not None else 1
+        return fewest_steps(self.scene, self.law, self.stepper)
 
     def run(self, pace: Resolution, place: MarchState | None = None) -> MarchResult:
         """March to the steady state, period doublings included."""
         place = place or self.start
-        march = self._marched(self._way(pace), place)
+        march = self._marched(pace, self._way(pace), place)
         run = self._read(march, pace, 1)
-        stride = _stride(march) if march.verdict == STALLED else 1
+        stride = _stride(march) if march.progress.verdict == STALLED else 1
         if stride > 1:
-            longer = self._marched(self._way(pace)._replace(stride=stride, rate=0.0), run.place)
+            longer = self._marched(pace, self._way(pace)._replace(stride=stride, rate=0.0), run.place)
             other = self._read(longer, pace, self._least(longer, stride, 2.0 * pace.enough))
             run = replace(other, steps=run.steps + other.steps) if other.verdict == CLOSED else run
         return run
@@ -200,8 +181,8 @@ class MarchRun:
     def watch(self, run: MarchResult, laps: int) -> MarchResult:
         """So many more laps of a motion that does not repeat."""
         way = self._way(run.pace)._replace(most=laps, stride=laps)
-        march = self._marched(way, run.place)
-        return self._read(march, run.pace, len(march.rubbed))
+        march = self._marched(run.pace, way, run.place)
+        return self._read(march, run.pace, len(march.laps.impulse))
 
     def track(self, run: MarchResult, laps: int) -> Orbit:
         """So many laps, from the end of a run that settled."""
@@ -209,18 +190,14 @@ class MarchRun:
         way = self._way(run.pace)._replace(most=laps, stride=laps + 1, room=room)
         if run.verdict == RESTING:
             way = way._replace(span=2.0 * math.pi)
-        march = self._marched(way, run.place)
+        march = self._marched(run.pace, way, run.place)
         track, n = march.track, int(march.track.filled[0])
         tau = track.tau[:n] + _offsets(track.tau[:n])[:, None]
         return Orbit(tau, track.x[:n], track.v[:n], track.friction[:n], track.stick[:n])
 
     def fastest(self, pace: Resolution) -> float:
         """The slip speed that steps of this pace can bear."""
-        if self.memory is not None:
-            return fastest_slip(self.memory, self.lap / pace.steps, memory_stability.decay(self.memory))
-        if self.bristles is None or self.stepper != "rk4":
-            return 1e300
-        return fastest_slip(self.bristles, self.lap / pace.steps)
+        return fastest_slip(self.law, self.lap / pace.steps) if self.stepper == "rk4" else 1e300
 
     def _relaxing(self) -> int:
         """Laps in which a drift towards the steady state dies out by a third, at least fifty and at most 2000."""
@@ -228,30 +205,21 @@ class MarchRun:
         slow = max(1.0, 2.0 / damping if damping > 0.0 else 1.0, self.mass.damping)
         return int(min(2000.0, max(50.0, slow / self.lap)))
 
-    def _marched(self, way: MarchSettings, place: MarchState) -> March:
+    def _marched(self, pace: Resolution, way: MarchSettings, place: MarchState) -> MarchHistory:
+        real = self.straight or self.law.memory_kind == "scalars"
         x, v = (place.x.real, place.v.real) if self.straight else (place.x, place.v)
-        if self.bristles is not None:
-            way = way._replace(z=float(place.z[0].real) if self.straight else complex(place.z[0]))
-        if self.memory is not None:
-            real = self.straight or self.memory.memory_kind == "scalars"
-            way = way._replace(z=np.array(place.z.real) if real else place.z.astype(complex))
-        call = compiled(self._kernels()[self.stepper], self.law)
-        march, seconds = timed(call, self.body, way, x, v)
+        z = np.array(place.z.real) if real else place.z.astype(complex)
+        call = compiled(march_laps, self.law)
+        history, seconds = timed(call, self.body, self._stepper_of(pace), way, MarchStart(x, v, z))
         self.seconds += seconds
-        return march
+        return history
 
-    def _kernels(self) -> Mapping[str, Any]:
-        if self.memory is not None:
-            return MEMORY_KERNELS
-        return KERNELS if self.bristles is None else BRISTLE_KERNELS
-
-    def _springs(self) -> Floats:
-        """The stiffness of what is remembered, in the norm of energy."""
-        if self.memory is not None:
-            return memory_stability.springs_of(self.scene, self.memory)
-        return np.array(
-            [self.mass.normal_load * spring_of(self.bristles) if self.bristles is not None else 0.0]
-        )
+    def _stepper_of(self, pace: Resolution) -> Stepper:
+        if self.stepper == "moreau":
+            return Moreau(pace.theta)
+        if self.stepper == "smoothed":
+            return Smoothed(pace.width, SHAPES[pace.smoothing], pace.accuracy)
+        return OF_NO_NUMBERS[self.stepper]
 
     def _way(self, pace: Resolution) -> MarchSettings:
         driven, h = not self.scene.undriven, self.lap / pace.steps
@@ -263,10 +231,7 @@ class MarchRun:
             steps=pace.steps if driven and self.stepper in GRIDDED else 1,
             span=self.lap if driven else self.lap * pace.most,
             first=1e-3 * reach if adaptive else h,
-            theta=pace.theta,
-            width=pace.width,
-            shape=SHAPES[pace.smoothing],
-            accuracy=pace.accuracy,
+            slack=0.5 if driven and not adaptive else 1e-9,
             reach=reach,
             enough=pace.enough,
             most=pace.most,
@@ -285,96 +250,100 @@ class MarchRun:
         if self.stepper == "smoothed":
             return 3.0 * pace.width
         force = self.mass.normal_load * self.law.sliding_friction(0.0)
-        blind = self.stepper == "rk4" and isinstance(self.law, SlidingLaw)
+        blind = self.stepper == "rk4" and self.law.memory_kind == "none"
         return 2.0 * force * self.lap / pace.steps if blind else 0.0
 
-    def _creeping(self, pace: Resolution, march: March) -> float:
+    def _creeping(self, pace: Resolution, march: MarchHistory) -> float:
         """The belt carries a mass that sticks; one that creeps as fast as the belt moves stays where it is.
 
         Chatter of a stepper that is blind to stick is erratic: its creep is trusted at an eighth of that alone.
         """
         trusted = 1.0 if self.stepper == "smoothed" else 8.0
         near, belt_speed = self._near(pace), abs(self.scene.belt_speed)
-        if trusted * near < belt_speed or march.lingered == 0.0:
+        if trusted * near < belt_speed or march.trace.lingered == 0.0:
             return 0.0
-        share = float(march.lingered / march.duration[-1])
+        share = float(march.trace.lingered / march.laps.duration[-1])
         return min(1.0, share * (1.0 + near / belt_speed)) if belt_speed > 0.0 else 1.0
 
-    def _read(self, march: March, pace: Resolution, stride: int) -> MarchResult:
-        laps = len(march.rubbed)
-        window = min(self.window * stride if march.verdict == STALLED else stride, laps)
-        time = float(march.duration[-window:].sum())
-        mean = interpreted(mean_friction)(complex(march.rubbed[-window:].sum()), time)
-        each = interpreted(mean_friction)(march.rubbed[-window:].real, march.duration[-window:])
+    def _read(self, march: MarchHistory, pace: Resolution, stride: int) -> MarchResult:
+        laps = len(march.laps.impulse)
+        window = min(self.window * stride if march.progress.verdict == STALLED else stride, laps)
+        time = float(march.laps.duration[-window:].sum())
+        mean = interpreted(mean_friction)(complex(march.laps.impulse[-window:].sum()), time)
+        each = interpreted(mean_friction)(march.laps.impulse[-window:].real, march.laps.duration[-window:])
         low, high = float(each.min()), float(each.max())
         drift = self._apart(march, laps, laps - stride)
-        stiff = march.crossings > 0 and pace.steps < self.through_rest
+        stiff = march.trace.crossings > 0 and pace.steps < self.through_rest
         return MarchResult(
             pace=pace,
-            place=MarchState(complex(march.x[-1]), complex(march.v[-1]), march.z[-1]),
+            place=MarchState(complex(march.laps.x[-1]), complex(march.laps.v[-1]), march.laps.z[-1]),
             mean=mean,
             closing=self._closing(march, drift, high - low),
             low=low,
             high=high,
             laps=laps,
             period=time / window * stride,
-            stuck=float(march.stuck[-1]),
-            verdict=TOO_STIFF if stiff else int(march.verdict),
-            dip=float(march.dip),
-            bend=float(march.bend),
-            crossings=int(march.crossings) * stride,
+            stuck=float(march.laps.stuck[-1]),
+            verdict=TOO_STIFF if stiff else int(march.progress.verdict),
+            dip=float(march.trace.dip),
+            bend=float(march.trace.bend),
+            crossings=int(march.trace.crossings) * stride,
             rate=float(march.rate),
             creeping=self._creeping(pace, march),
-            steps=int(march.steps),
+            steps=int(march.progress.steps),
             stride=stride,
             drift=drift,
-            turn=float(march.turn),
-            met=float(march.met),
+            turn=float(march.trace.turn),
+            met=float(march.trace.met),
         )
 
-    def _least(self, march: March, stride: int, within: float) -> int:
+    def _least(self, march: MarchHistory, stride: int, within: float) -> int:
         """The fewest laps after which a motion known to repeat after ``stride`` laps has repeated already."""
-        last = len(march.rubbed)
+        last = len(march.laps.impulse)
         whole = [laps for laps in range(1, stride) if stride % laps == 0]
         return next((laps for laps in whole if self._apart(march, last, last - laps) <= within), stride)
 
-    def _closing(self, march: March, drift: float, spread: float) -> float:
+    def _closing(self, march: MarchHistory, drift: float, spread: float) -> float:
         """What the mean may still change by: integrate the motion along x1 over a period, as shooting does.
 
         The friction impulses of two orbits differ by the change of dv + damping*dx, which the gap is, plus the
         integral of dx, which their distance bounds.
         """
-        if march.verdict == RESTING:
+        if march.progress.verdict == RESTING:
             return 1e-12 + self._from_sliding(march)
-        if march.verdict == STALLED:
-            led = self._apart(march, len(march.rubbed), len(march.rubbed) - self.window)
+        if march.progress.verdict == STALLED:
+            led = self._apart(march, len(march.laps.impulse), len(march.laps.impulse) - self.window)
             return spread + 2.0 * led / self.mass.normal_load
         ends = (1.0 + self.mass.damping) * drift
         doubt = (
-            2.0 if isinstance(self.law, SlidingLaw) else 4.0
+            2.0 if self.law.memory_kind == "none" else 4.0
         )  # with memory, orbits may part before they meet
-        left = doubt * float(march.distance + ends / self.lap) / self.mass.normal_load
+        left = doubt * float(march.progress.distance + ends / self.lap) / self.mass.normal_load
         return left + (self._from_sliding(march) if self._only_slides(march) else 0.0)
 
-    def _only_slides(self, march: March) -> bool:
+    def _only_slides(self, march: MarchHistory) -> bool:
         """Whether friction must end at one number: slip on a line that never turns, a law of one sliding friction."""
-        one = self.bristles is not None and self.bristles.constant_sliding_friction()
-        return one and self.straight and not self.scene.undriven and march.crossings == 0
+        one = self.law.memory_kind == "bristle" and self.law.constant_sliding_friction()
+        return one and self.straight and not self.scene.undriven and march.trace.crossings == 0
 
-    def _from_sliding(self, march: March) -> float:
+    def _from_sliding(self, march: MarchHistory) -> float:
         """How far friction is from that of steady sliding, where bristles go under slip that does not turn.
 
         Their way there may be algebraic, or slower than any swing of the mass can tell.
         """
         speed = abs(self.scene.belt_speed)
-        if self.bristles is None or speed == 0.0:
+        if self.law.memory_kind != "bristle" or speed == 0.0:
             return 0.0
-        mean = interpreted(mean_friction)(march.rubbed[-1].real, float(march.duration[-1]))
-        return abs(abs(mean) - self.bristles.sliding_friction(speed))
+        mean = interpreted(mean_friction)(march.laps.impulse[-1].real, float(march.laps.duration[-1]))
+        return abs(abs(mean) - self.law.sliding_friction(speed))
 
-    def _apart(self, march: March, a: int, b: int) -> float:
+    def _apart(self, march: MarchHistory, a: int, b: int) -> float:
         b = max(b, 0)
-        dx, dv, dz = march.x[a] - march.x[b], march.v[a] - march.v[b], march.z[a] - march.z[b]
+        dx, dv, dz = (
+            march.laps.x[a] - march.laps.x[b],
+            march.laps.v[a] - march.laps.v[b],
+            march.laps.z[a] - march.laps.z[b],
+        )
         across = self.mass.transverse_stiffness * dx.imag**2
         bent = float(np.dot(self._spring, np.abs(dz) ** 2))
         return float(math.sqrt(dx.real**2 + across + abs(dv) ** 2 + bent))
@@ -385,9 +354,11 @@ def _starts_across(scene: Scene) -> bool:
     return initial is not None and (initial.x2 != 0.0 or initial.velocity2 != 0.0)
 
 
-def _stride(march: March) -> int:
+def _stride(march: MarchHistory) -> int:
     """After how many laps a motion that does not close every lap comes nearest to repeating."""
-    points = np.stack([march.x.real, march.v.real, march.x.imag, march.v.imag], axis=1)[-3 * LONGEST_PERIOD :]
+    points = np.stack([march.laps.x.real, march.laps.v.real, march.laps.x.imag, march.laps.v.imag], axis=1)[
+        -3 * LONGEST_PERIOD :
+    ]
     gaps = [
         float(np.abs(points[n:] - points[:-n]).max(axis=1)[-LONGEST_PERIOD:].mean())
         for n in range(1, LONGEST_PERIOD + 1)

@@ -1,80 +1,29 @@
-"""Stability limit of explicit steps for a law with bristles."""
+"""How short the steps of an explicit stepper must be, from what the law says of its memory."""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
+from frictionlab.compile.stack import count_of
+from frictionlab.dynamics.contact import friction_of, rate_of
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.numerics.steppers import bristle_rk4, exponential
-from frictionlab.scene.body import Mass
+from frictionlab.numerics.steppers import exponential, rk4
+from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity
 
 MARGIN = 1.02
 """Steps used over the steps that a stability limit requires."""
+AGE = 1.0
+"""Largest step times decay rate of a scalar, so that no stage of a step becomes negative."""
+SLOW = np.geomspace(1e-30, 1.0, 241)
+"""Speeds at which friction near rest is evaluated, over that of the motion."""
 
 
-def spring_of(law: BristleLaw) -> float:
-    """Friction coefficient per deflection [1/scene length], from the friction of the law."""
-    depth = law.presliding()
-    depth = depth if math.isfinite(depth) else 1e-6
-    return float(law.friction(0.0, depth, 0.0)) / depth
-
-
-def dashpot_of(law: BristleLaw) -> float:
-    """Friction coefficient per slip velocity while bristles follow the slip [1/scene velocity]."""
-    return float(law.friction(1.0, 0.0, 1.0))
-
-
-def fastest_slip(law: BristleLaw | MemoryLaw, h: float, decay: float = bristle_rk4.DECAY) -> float:
-    """The slip speed at which the memory decays at the largest rate for which rk4 steps of length h are stable.
-
-    decay: the largest step times rate.
-    """
-    low, high = 0.0, 1e12
-    if h * law.largest_rate(high) <= decay:
-        return high
-    for _ in range(200):
-        middle = math.sqrt(low * high) if low > 0.0 else 1e-12 if high > 1e-12 else 0.5 * high
-        if h * law.largest_rate(middle) <= decay:
-            low = middle
-        else:
-            high = middle
-        if high - low <= 1e-9 * high:
-            break
-    return low
-
-
-def friction_falls(law: FrictionLaw) -> bool:
-    """Whether steady sliding friction decreases with speed anywhere."""
-    speeds = np.geomspace(1e-9, 1e9, 721)
-    friction = [law.sliding_friction(speed) for speed in [0.0, *speeds.tolist()]]
-    return bool((np.diff(friction) < -1e-12 * friction[0]).any())
-
-
-def fewest_steps(scene: Scene, law: BristleLaw, stepper: str) -> int:
-    """Steps per period that an explicit stepper needs; 1 where any number is stable.
-
-    For slip as fast as that of the friction-free motion on this belt, and for a mass held by its bristles.
-    """
-    if stepper == "sdirk2":
-        return 1
-    lap = 2.0 * math.pi / scene.frequency
-    held = 0.0 if scene.degrees_of_freedom == 0 else _quickest_when_held(scene.mass(), law)
-    if stepper == "exponential":
-        return math.ceil(MARGIN * lap * held / exponential.DECAY)
-    rate = law.largest_rate(expected_slip(scene))
-    return math.ceil(MARGIN * lap * max(held, rate) / bristle_rk4.DECAY) if math.isfinite(rate) else 0
-
-
-def _quickest_when_held(mass: Mass, law: BristleLaw) -> float:
-    """The largest frequency, or rate of decay, of a mass held by its spring and its bristles."""
-    stiffness = max(mass.stiffness, mass.transverse_stiffness) + mass.normal_load * spring_of(law)
-    damping = max(mass.damping, mass.transverse_damping) + mass.normal_load * dashpot_of(law)
-    return max(math.sqrt(stiffness), damping)
+# --- the motion ---------------------------------------------------------------------------------------------------
 
 
 def expected_slip(scene: Scene) -> float:
@@ -90,3 +39,136 @@ def expected_slip(scene: Scene) -> float:
     if start is not None:
         speed = max(speed, math.hypot(start.velocity - scene.belt_speed, start.velocity2))
     return speed
+
+
+def usual_slip(scene: Scene) -> float:
+    """A slip speed of the motion, above zero [scene velocity]."""
+    return expected_slip(scene) or 1.0
+
+
+# --- the contact --------------------------------------------------------------------------------------------------
+
+
+def friction_falls(law: FrictionLaw) -> bool:
+    """Whether steady sliding friction decreases with speed anywhere."""
+    speeds = np.geomspace(1e-9, 1e9, 721)
+    friction = [law.sliding_friction(speed) for speed in [0.0, *speeds.tolist()]]
+    return bool((np.diff(friction) < -1e-12 * friction[0]).any())
+
+
+def steady_memory(law: Any, speed: float) -> Floats:
+    """What a law of several numbers remembers in steady sliding."""
+    return np.array([law.steady(speed, k) for k in range(count_of(law))])
+
+
+def first_memory(scene: Scene, law: FrictionLaw) -> Floats:
+    """The memory at the start: no deflection; scalars as in steady sliding at the speed of the motion."""
+    if law.memory_kind == "scalars":
+        return steady_memory(law, usual_slip(scene))
+    return np.zeros(max(1, count_of(law)))
+
+
+def elastic_stiffness(law: FrictionLaw) -> float:
+    """Friction coefficient per slip from rest, while the contact is elastic [1/scene length]; 0 where it is not."""
+    if law.memory_kind in ("none", "scalars"):
+        return 0.0
+    depth = law.presliding()
+    depth = depth if 0.0 < depth < math.inf else 1e-6
+    n = count_of(law)
+    return float(friction_of(law, np.full(n, depth), np.zeros(n), 0.0)) / depth
+
+
+def friction_at_once(law: FrictionLaw, speed: float, memory: Floats) -> float:
+    """Friction at a speed with this memory."""
+    rates = np.array([rate_of(law, memory, k, speed) for k in range(count_of(law))])
+    return float(friction_of(law, memory, rates, speed))
+
+
+def contact_damping(scene: Scene, law: FrictionLaw) -> float:
+    """Slope of friction over slip velocity; for deflections, friction from rest over the speed."""
+    memory = first_memory(scene, law)
+    speed = 1.0 if law.memory_kind == "bristle" else usual_slip(scene)
+    if law.memory_kind != "scalars":
+        return friction_at_once(law, speed, memory) / speed
+    change = friction_at_once(law, 1.01 * speed, memory) - friction_at_once(law, speed, memory)
+    return max(0.0, change / (0.01 * speed))
+
+
+def memory_stiffness(scene: Scene, law: FrictionLaw) -> Floats:
+    """The stiffness of each memory in the energy norm; of a scalar, from its effect on friction."""
+    if law.memory_kind in ("none", "bristle"):
+        return np.array([scene.mass().normal_load * elastic_stiffness(law)])
+    speed, load = usual_slip(scene), scene.mass().normal_load
+    most, n = law.sliding_friction(speed), count_of(law)
+    steady, still = steady_memory(law, speed), np.zeros(n)
+    size = np.where(steady == 0.0, 1.0, np.abs(steady))
+    change = [
+        friction_of(law, steady + shift, still, speed) - friction_of(law, steady - shift, still, speed)
+        for shift in 1e-3 * size * np.eye(n)
+    ]
+    slope = np.maximum(np.abs(change) / (2e-3 * size), 1e-6 * most / size)
+    if law.memory_kind == "deflections":
+        return np.asarray(load * slope)
+    return np.asarray((load * slope / scene.mass().frequency) ** 2)
+
+
+# --- steps --------------------------------------------------------------------------------------------------------
+
+
+def stable_decay(law: FrictionLaw) -> float:
+    """Largest stable step of rk4 times decay rate of the memory."""
+    return AGE if law.memory_kind == "scalars" else rk4.DECAY
+
+
+def fastest_slip(law: FrictionLaw, h: float) -> float:
+    """The slip speed at which the memory decays at the largest rate for which rk4 steps of length h are stable."""
+    low, high, decay = 0.0, 1e12, stable_decay(law)
+    if law.memory_kind == "none":
+        return 1e300
+    if h * law.largest_rate(high) <= decay:
+        return high
+    for _ in range(200):
+        middle = math.sqrt(low * high) if low > 0.0 else 1e-12 if high > 1e-12 else 0.5 * high
+        if h * law.largest_rate(middle) <= decay:
+            low = middle
+        else:
+            high = middle
+        if high - low <= 1e-9 * high:
+            break
+    return low
+
+
+def fewest_steps(scene: Scene, law: FrictionLaw, stepper: str) -> int:
+    """Steps per period that a stepper needs; 1 where any number is stable, 0 where the law names no rate.
+
+    For slip as fast as that of the friction-free motion on this belt, and for a mass held by its contact.
+    """
+    if law.memory_kind == "none" or stepper == "sdirk2":
+        return 1
+    lap = 2.0 * math.pi / scene.frequency
+    held = 0.0 if scene.degrees_of_freedom == 0 else quickest_when_held(scene, law)
+    if stepper == "exponential":
+        return math.ceil(MARGIN * lap * held / exponential.DECAY)
+    rate = law.largest_rate(expected_slip(scene))
+    if not math.isfinite(rate):
+        return 0
+    return math.ceil(MARGIN * lap * max(held / rk4.DECAY, rate / stable_decay(law)))
+
+
+def quickest_when_held(scene: Scene, law: FrictionLaw) -> float:
+    """The largest frequency, or rate of decay, of a mass held by its springs and by its contact."""
+    mass = scene.mass()
+    stiffness = max(mass.stiffness, mass.transverse_stiffness) + mass.normal_load * elastic_stiffness(law)
+    damping = max(mass.damping, mass.transverse_damping) + mass.normal_load * contact_damping(scene, law)
+    return max(math.sqrt(stiffness), damping)
+
+
+def steps_through_rest(scene: Scene, law: FrictionLaw) -> float:
+    """Steps per period that rk4 needs where slip comes to rest: friction may be steep there. 0 for laws that say how
+    their one deflection slows down, and for those without memory.
+    """
+    if law.memory_kind in ("none", "bristle"):
+        return 0.0
+    speeds, memory = usual_slip(scene) * SLOW, first_memory(scene, law)
+    steepest = max(friction_at_once(law, float(speed), memory) / float(speed) for speed in speeds)
+    return 2.0 * math.pi / scene.frequency * scene.mass().normal_load * steepest / rk4.DECAY

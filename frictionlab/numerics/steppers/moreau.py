@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
-from frictionlab.numerics.steppers.grid import BELT, LOAD, NORMAL_LOAD
+from frictionlab.numerics.steppers.step import StepEnd, StepStart, belt_at, load_at, normal_load_at
 
 MOST_TRIALS = 60
 TINY = 1e-300
@@ -27,17 +27,8 @@ SMALL = 2e-15
 """Relative to the impulse or the speed; about what rounding leaves."""
 
 
-class Taken(NamedTuple):
-    """The state after a step, the integral of the friction coefficient over it, and whether it ended at rest."""
-
-    x: Any
-    v: Any
-    rubbed: Any
-    stuck: bool
-
-
-class Contact(NamedTuple):
-    """One contact over one step: slip w and impulse P with mass_1 w1 + P1 = q1, mass_2 w2 + P2 = q2."""
+class ContactStep(NamedTuple):
+    """The contact over one step: slip w and impulse P with mass_1 w1 + P1 = q1, mass_2 w2 + P2 = q2."""
 
     law: Any
     weight: float  # normal load times step
@@ -45,8 +36,8 @@ class Contact(NamedTuple):
     mass_2: float
 
 
-class Met(NamedTuple):
-    """What a contact ends with: slip velocity and impulse."""
+class ContactEnd(NamedTuple):
+    """Slip velocity and impulse at the end of a step."""
 
     w: Any
     impulse: Any
@@ -65,14 +56,14 @@ over = by_dimension(_over_on_the_line, _over_in_the_plane)
 
 
 @inner
-def _excess(contact: Contact, speed: float, q: Any) -> float:
+def _excess(contact: ContactStep, speed: float, q: Any) -> float:
     """Above zero where a slip of this speed takes more than q; linear in speed for one mass and constant friction."""
     rub = contact.weight * contact.law.sliding_friction(speed)
     return 1.0 / length(over(contact.mass_1 * speed + rub, contact.mass_2 * speed + rub, q)) - 1.0
 
 
 @inner
-def _slip_speed(contact: Contact, q: Any) -> float:
+def _slip_speed(contact: ContactStep, q: Any) -> float:
     """The speed of slip at the end of the step (Illinois regula falsi on a bracket that always holds).
 
     The first guess is exact for constant friction and one mass.
@@ -80,11 +71,13 @@ def _slip_speed(contact: Contact, q: Any) -> float:
     size = length(q)
     low, high = 0.0, size / min(contact.mass_1, contact.mass_2)
     nothing = SMALL * high
+    # Two fixed-point steps: exact already for constant friction and one mass.
     speed = max((size - contact.weight * contact.law.sliding_friction(0.0)) / contact.mass_1, 0.0)
     speed = max((size - contact.weight * contact.law.sliding_friction(speed)) / contact.mass_1, 0.0)
     value = _excess(contact, min(speed, high), q)
     if abs(value) <= SMALL:
         return min(speed, high)
+    # Regula falsi; an end that stays twice has its value halved, else the other end would creep (Illinois).
     at_low, at_high, side = _excess(contact, low, q), _excess(contact, high, q), 0
     speed = min(speed, high)
     for _ in range(MOST_TRIALS):
@@ -105,43 +98,40 @@ def _slip_speed(contact: Contact, q: Any) -> float:
 
 
 @inner
-def meet(contact: Contact, theta: float, before: Any, q: Any) -> Met:
+def project_impulse(contact: ContactStep, theta: float, before: Any, q: Any) -> ContactEnd:
     """Slip at the end of the step and impulse of a contact that is pushed by q; before: the slip it began with."""
+    # What brings the slip to zero at the end of the step lies in the disk of the static coefficient: it sticks.
     if length(q) <= contact.weight * contact.law.static_friction():
-        return Met(0.0 * q, q)
+        return ContactEnd(0.0 * q, q)
+    # Otherwise friction is directed by the slip theta into the step, for which the same balance is written.
     share = (1.0 - theta) / theta
-    late = Contact(contact.law, contact.weight, contact.mass_1 / theta, contact.mass_2 / theta)
+    late = ContactStep(contact.law, contact.weight, contact.mass_1 / theta, contact.mass_2 / theta)
     pushed = q + over(1.0 / (share * contact.mass_1 + TINY), 1.0 / (share * contact.mass_2 + TINY), before)
+    # That slip vanishes where the push on it is within the disk of the sliding coefficient: the step passes rest.
     if length(pushed) <= contact.weight * contact.law.sliding_friction(0.0):
-        return Met(-share * before, pushed)
+        return ContactEnd(-share * before, pushed)
     speed = _slip_speed(late, pushed)
     rub = contact.weight * contact.law.sliding_friction(speed)
     along = over(late.mass_1 * speed + rub, late.mass_2 * speed + rub, pushed)
-    return Met(speed / theta * along - share * before, rub * along)
+    return ContactEnd(speed / theta * along - share * before, rub * along)
 
 
-def stepper(restoring_force: Any) -> Any:
-    """``step(problem, k, x, v, h)``: from the kth step's start over h.
-
-    The problem has ``law``, ``body``, ``theta`` and ``grid``, what acts at every half step (grid.py);
-    restoring_force(body, x, v) is linear, and acts along each axis for itself.
-    """
-
-    @inner
-    def step(problem: Any, k: int, x: Any, v: Any, h: float) -> Taken:
-        body, theta = problem.body, problem.theta
-        late, left = theta * h, 1.0 - theta
-        mass_1 = 1.0 + late * (body.damping_mean + body.damping_split)
-        mass_1 += late * late * (body.stiffness_mean + body.stiffness_split)
-        mass_2 = 1.0 + late * (body.damping_mean - body.damping_split)
-        mass_2 += late * late * (body.stiffness_mean - body.stiffness_split)
-        grid, j = problem.grid, 2 * k + int(2.0 * theta)
-        pushed = v + h * (grid[j, LOAD] - restoring_force(body, x + late * left * v, left * v))
-        pressed, belt = grid[j, NORMAL_LOAD].real, grid[2 * k + 2, BELT].real
-        contact = Contact(problem.law, h * pressed, mass_1, mass_2)
-        # Written for the slip that ends the step: mass * w1 + P = what pushes, less what carries along with the belt.
-        w, impulse = meet(contact, theta, v - grid[2 * k, BELT].real, pushed - mass_1 * belt)
-        after = w + belt
-        return Taken(x + late * after + h * left * v, after, impulse / pressed, length(w) == 0.0)
-
-    return step
+@inner
+def moreau_step(restoring_force: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
+    """One step over h; restoring_force(body, x, v) is linear, and acts along each axis for itself."""
+    body, theta, x, v = problem.body, problem.stepper.theta, start.x, start.v
+    late, left = theta * h, 1.0 - theta
+    # The mass that an impulse moves along either axis: springs and dashpots are implicit, and add to it.
+    mass_1 = 1.0 + late * (body.damping_mean + body.damping_split)
+    mass_1 += late * late * (body.stiffness_mean + body.stiffness_split)
+    mass_2 = 1.0 + late * (body.damping_mean - body.damping_split)
+    mass_2 += late * late * (body.stiffness_mean - body.stiffness_split)
+    # Loads are those of the instant theta into the step: its middle or its end.
+    k, j = start.k, 2 * start.k + int(2.0 * theta)
+    pushed = v + h * (load_at(problem, j) - restoring_force(body, x + late * left * v, left * v))
+    pressed, belt = normal_load_at(problem, j), belt_at(problem, 2 * k + 2)
+    contact = ContactStep(problem.law, h * pressed, mass_1, mass_2)
+    # Written for the slip that ends the step: mass * w1 + P = what pushes, less what carries along with the belt.
+    w, impulse = project_impulse(contact, theta, v - belt_at(problem, 2 * k), pushed - mass_1 * belt)
+    after = w + belt
+    return StepEnd(x + late * after + h * left * v, after, impulse / pressed, length(w) == 0.0, 1.0)

@@ -7,11 +7,7 @@ eighth increment is the difference to the embedded method of order 4.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-
-from frictionlab.compile.decorators import inner
 
 STAGES = 8
 GAMMA = 0.21193756319429014
@@ -60,42 +56,3 @@ _COUPLINGS = [
 ]
 COUPLINGS = np.array([[*row, *[0.0] * (STAGES - len(row))] for row in _COUPLINGS])
 """c_ij."""
-
-
-@inner
-def factored(matrix: Any, rows: Any) -> None:
-    """Replace a small matrix by its LU factors, with row pivots in ``rows``."""
-    n = rows.size
-    for pivot in range(n):
-        best = pivot
-        for row in range(pivot + 1, n):
-            if abs(matrix[row, pivot]) > abs(matrix[best, pivot]):
-                best = row
-        # Rows are swapped in full, so the factors and the pivots recorded so far stay consistent.
-        rows[pivot] = best
-        if best != pivot:
-            for column in range(n):
-                matrix[pivot, column], matrix[best, column] = matrix[best, column], matrix[pivot, column]
-        for row in range(pivot + 1, n):
-            factor = matrix[row, pivot] / matrix[pivot, pivot]
-            matrix[row, pivot] = factor
-            for column in range(pivot + 1, n):
-                matrix[row, column] = matrix[row, column] - factor * matrix[pivot, column]
-
-
-@inner
-def solved(matrix: Any, rows: Any, right: Any) -> None:
-    """Solve with the factors, in place of the right-hand side."""
-    n = rows.size
-    # The row swaps of the factorization, then forward and back substitution.
-    for pivot in range(n):
-        best = rows[pivot]
-        if best != pivot:
-            right[pivot], right[best] = right[best], right[pivot]
-    for row in range(n):
-        for column in range(row):
-            right[row] = right[row] - matrix[row, column] * right[column]
-    for row in range(n - 1, -1, -1):
-        for column in range(row + 1, n):
-            right[row] = right[row] - matrix[row, column] * right[column]
-        right[row] = right[row] / matrix[row, row]

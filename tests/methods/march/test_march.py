@@ -233,7 +233,7 @@ def test_the_period_is_the_smallest_after_which_the_motion_repeats():
     pace = Resolution(steps=512, enough=1e-6, most=1000)
     run = walker.run(pace)
     assert run.stride == 2
-    march = walker._marched(walker._way(pace)._replace(stride=8), run.place)
+    march = walker._marched(pace, walker._way(pace)._replace(stride=8), run.place)
     assert [walker._least(march, laps, 2e-6) for laps in (8, 4, 2, 3)] == [2, 2, 2, 3]
 
 

@@ -23,16 +23,17 @@ from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
-from frictionlab.methods.march.bristle_adapter import march_bristle_rk4, march_exponential, march_sdirk2
-from frictionlab.methods.march.laps import MarchSettings
+from frictionlab.methods.march.adapters import Exponential, Rk4, Sdirk2
+from frictionlab.methods.march.lap import MarchSettings
+from frictionlab.methods.march.laps import MarchStart, march_laps
 from frictionlab.methods.march.method import March
-from frictionlab.numerics.steppers.bristle_rk4 import DECAY
+from frictionlab.numerics.steppers.rk4 import DECAY
 from frictionlab.scene.body import Mass, on_the_line
 from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse, TransverseSlip
 
 REFERENCE = Path(__file__).parents[2] / "reference"
 DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
-KERNELS = {"rk4": march_bristle_rk4, "exponential": march_exponential, "sdirk2": march_sdirk2}
+STEPPERS = {"rk4": Rk4(), "exponential": Exponential(), "sdirk2": Sdirk2()}
 KNOWN = 2e-7
 """Accuracy of the reference rows of a mass; of prescribed slip 5e-9."""
 STEADY = LuGre(mu_kinetic=0.4, presliding_length=1.0, damping=0.05)
@@ -162,13 +163,13 @@ FREE = Mass(0.0, 0.0, 0.0, 0.0, 1e-12, 1.0, 0j, 0j)
 def stepped(stepper, mass, steps, h, law=STEADY, **start):
     """So many equal steps of a mass in one lap."""
     values = {"belt_speed": 0.0, "v": 0.0, "z": 0.0, **start}
-    way = MarchSettings(
-        belt_speed=values["belt_speed"], driven=True, steps=steps, span=h * steps, first=h, theta=0.5, width=1.0,
-        shape=0.0, accuracy=1.0, reach=h, enough=0.0, most=1, stride=2, rate=0.0, near=0.0, work=10**9, window=50,
-        room=0, z=values["z"],
+    settings = MarchSettings(
+        belt_speed=values["belt_speed"], driven=True, steps=steps, span=h * steps, first=h, slack=0.5, reach=h,
+        enough=0.0, most=1, stride=2, rate=0.0, near=0.0, work=10**9, window=50, room=0,
     )  # fmt: skip
-    march = compiled(KERNELS[stepper], law)(on_the_line(mass), way, 0.0, values["v"])
-    return np.array([march.x[-1].real, march.v[-1].real, march.z[-1, 0].real])
+    begin = MarchStart(0.0, values["v"], np.array([values["z"]]))
+    laps = compiled(march_laps, law)(on_the_line(mass), STEPPERS[stepper], settings, begin).laps
+    return np.array([laps.x[-1].real, laps.v[-1].real, laps.z[-1, 0].real])
 
 
 def order_of(stepper, grids, shifts, **case):
@@ -190,7 +191,7 @@ def test_slip_that_does_not_reverse_is_stepped_at_the_declared_order(stepper, or
     assert order_of(stepper, [200, 400, 800], 1, law=soft, belt_speed=60.0) == pytest.approx(order, abs=0.2)
 
 
-@pytest.mark.parametrize("stepper", KERNELS)
+@pytest.mark.parametrize("stepper", STEPPERS)
 def test_where_slip_reverses_the_order_is_two(stepper):
     assert 1.6 <= order_of(stepper, [1600, 6400, 25_600], 6, belt_speed=5.0) <= 2.5
 

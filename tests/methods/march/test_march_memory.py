@@ -6,11 +6,12 @@ import os
 
 import pytest
 from answered import with_columns
+from generalised_maxwell_slip import GeneralisedMaxwellSlip
 from memory_laws import Ageing, elements
 
 from frictionlab.laws.jenkins import Jenkins
-from frictionlab.methods.march.memory_stability import fewest_steps
 from frictionlab.methods.march.method import March
+from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Scene, Slip, Transverse
 
@@ -18,6 +19,9 @@ DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
 ONE = elements(stiffness=(4.0,), reach=(0.1,))
 THREE = elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
+STICKING = GeneralisedMaxwellSlip(
+    share=[2, 1], stiffness=[1, 3], mu_kinetic=0.25, mu_static=0.4, stribeck_speed=5.0, attraction=2.0
+)
 AGEING = Ageing(mu0=0.4, a=0.01, b=0.008, slip_length=2.0)
 
 
@@ -89,7 +93,7 @@ def test_a_motion_faster_than_without_friction_takes_more_steps_by_itself():
     """The longer spring brings the body to resonance."""
     soft = elements(stiffness=(0.1, 0.35), reach=(4.0, 0.07))
     scene = driven(2.0, damping_ratio=0.1)
-    fewest = fewest_steps(scene, soft)
+    fewest = fewest_steps(scene, soft, "rk4")
     given = with_columns(March(steps=fewest), [scene], soft, 1e-2)
 
     assert given.status == ["refused"]
@@ -125,8 +129,9 @@ def test_in_the_plane_without_a_load_across_march_answers_as_along_the_belt():
         (driven(1.0), {"stepper": "moreau"}, ONE, "use rk4"),
         (driven(1.0), {"theta": 1}, ONE, "leave it out"),
         (driven(1.0), {}, elements(stiffness=(1e6,), reach=(1e-6,)), "steps per period"),
+        (driven(1.0), {}, STICKING, "no stick or slip of single elements; shooting does"),
     ],
-    ids=["prescribed", "undriven", "stepper", "theta", "stiff"],
+    ids=["prescribed", "undriven", "stepper", "theta", "stiff", "stick"],
 )
 def test_march_says_what_it_cannot_do_with_several_memories(scene, keys, law, said):
     assert said in March(**keys).refusal(scene, law)

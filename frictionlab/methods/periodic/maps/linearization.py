@@ -12,6 +12,7 @@ from typing import Any
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
+from frictionlab.dynamics.contact import friction_of
 from frictionlab.dynamics.events import reference_acceleration
 from frictionlab.dynamics.motion import (
     Flow,
@@ -34,7 +35,6 @@ from frictionlab.methods.periodic.maps.rates import (
     Y,
     as_memory,
     friction_in_mode,
-    friction_of,
     load_on,
     rate_in_mode,
     slip_held,

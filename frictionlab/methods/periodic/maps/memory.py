@@ -182,7 +182,7 @@ def _flow_of(case: Case, work: Work) -> Flow:
     return anchored(case.law, case.body, case.belt_speed, _side(w, a), 0.0)
 
 
-class StepStart(NamedTuple):
+class MemoryNode(NamedTuple):
     """Where a step starts: slip and its rate, and whether an event has just been passed."""
 
     tau: float
@@ -191,7 +191,7 @@ class StepStart(NamedTuple):
     leaving: bool
 
 
-class StepEnd(NamedTuple):
+class MemoryStep(NamedTuple):
     """The step to take, whether it has to be tried first, and whether it ends at an event."""
 
     h: float
@@ -200,7 +200,9 @@ class StepEnd(NamedTuple):
 
 
 @inner
-def _end_of_step(flow: Flow, node: StepStart, h: float, accuracy: float, work: Work, like: Any) -> StepEnd:
+def _end_of_step(
+    flow: Flow, node: MemoryNode, h: float, accuracy: float, work: Work, like: Any
+) -> MemoryStep:
     """What becomes of a step of h that is accurate enough."""
     w, a = rates_at_end(flow, node.tau + h, work, like)
     guard = lowest(flow, w, a, work)
@@ -208,24 +210,24 @@ def _end_of_step(flow: Flow, node: StepStart, h: float, accuracy: float, work: W
         # just behind an event a guard is zero to rounding: a step must first get away from it, or never does
         stays = node.leaving and work.guards[2 * guard.number] <= -1e-3 * guard.value
         if stays and h * flow.body.frequency > 1e-12:
-            return StepEnd(0.25 * h, True, False)
-        return StepEnd(locate(flow, node.tau, h, accuracy, work, like), False, True)
+            return MemoryStep(0.25 * h, True, False)
+        return MemoryStep(locate(flow, node.tau, h, accuracy, work, like), False, True)
     if node.leaving:
-        return StepEnd(h, False, False)
+        return MemoryStep(h, False, False)
     # between two ends without events a guard may have passed zero twice, or slip come close to rest
     shorter = hidden(flow, h, w, a, work)
     if shorter == h and min(length(node.w), length(w)) > 10.0 * accuracy:
         shorter = 0.5 * h if _dip(flow.law, node, w, a, h, like) else h
-    return StepEnd(shorter, shorter < h, False)
+    return MemoryStep(shorter, shorter < h, False)
 
 
 @inner
-def _depart(flow: Flow, leaving: bool, work: Work, like: Any) -> StepStart:
+def _depart(flow: Flow, leaving: bool, work: Work, like: Any) -> MemoryNode:
     """Get ready for steps from ``work.start``, at the anchor of the flow."""
     w, a = _at_start(flow, work, like)
     note_guards(flow, w, a, work)
     linearize(flow, flow.anchor, work, like)
-    return StepStart(flow.anchor, w, a, leaving)
+    return MemoryNode(flow.anchor, w, a, leaving)
 
 
 @inner

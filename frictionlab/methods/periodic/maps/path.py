@@ -188,29 +188,52 @@ def _side(case: Case, tau: float, y: float, u: float, z: float) -> float:
     return 1.0 if w >= 0.0 else -1.0
 
 
-REPEAT, ACCEPT, TURN = 0, 1, 2
+REPEAT, ACCEPT, TURN, SATURATE = 0, 1, 2, 3
 
 
 class PathStep(NamedTuple):
-    """Whether a step is repeated with h, accepted, or ends where slip turns round; its length and its end."""
+    """Whether a step is repeated with h or accepted, ends where slip turns round or where friction saturates."""
 
     verdict: int
     h: float
     taken: Any
 
 
+class PathNode(NamedTuple):
+    """Where a step starts: its leg, anchored there, the way slid on it and the way after which friction saturates.
+
+    leaving: whether slip has just turned round.
+    """
+
+    leg: Leg
+    tau: float
+    state: State
+    way: float
+    corner: float
+    leaving: bool
+
+
 @inner
-def _path_step(leg: Leg, tau: float, state: State, taken: Any, h: float, leaving: bool) -> PathStep:
+def _node_of(leg: Leg, tau: float, y: float, u: float) -> PathNode:
+    """The start of a leg."""
+    a, rub = path_rates(leg, tau, y, u)
+    return PathNode(leg, tau, State(y, u, a, rub), 0.0, leg.law.saturation_path(leg.z, leg.side), True)
+
+
+@inner
+def _until_turn(node: PathNode, taken: Any, h: float) -> PathStep:
     """What becomes of an accurate step of h: whether slip turned round in it, between its ends included."""
-    body, after, limit = leg.body, leg.side * slip_at(leg, tau + h, taken.v), h
-    if after <= 0.0 and leaving:
+    leg, tau, state = node.leg, node.tau, node.state
+    after, limit = leg.side * slip_at(leg, tau + h, taken.v), h
+    if after <= 0.0 and node.leaving:
         # just behind a reversal slip is zero to rounding: a step must first get away from it, or slip never does
-        if h * body.frequency > 1e-12:
+        if h * leg.body.frequency > 1e-12:
             return PathStep(REPEAT, 0.25 * h, taken)
         return PathStep(TURN, h, taken)
     a, _rub = path_rates(leg, tau + h, taken.x, taken.v)
     falls, rises = leg.side * slip_rate(leg, tau, state.a), leg.side * slip_rate(leg, tau + h, a)
-    if after > 0.0 and not leaving and falls < 0.0 < rises:
+    # slip that falls first and rises last may have passed zero twice between the ends
+    if after > 0.0 and not node.leaving and falls < 0.0 < rises:
         limit = lowest(leg, tau, state, falls, h)
         after = leg.side * slip_at(leg, tau + limit, step(leg, tau, state, limit).v)
     if after > 0.0:
@@ -220,60 +243,68 @@ def _path_step(leg: Leg, tau: float, state: State, taken: Any, h: float, leaving
 
 
 @inner
+def _attempt(node: PathNode, h: float, in_a_layer: bool, accuracy: float) -> Any:
+    """One step of h from a node: what becomes of it, and how much longer the next one may be."""
+    leg, tau, corner = node.leg, node.tau, node.corner
+    taken = step(leg, tau, node.state, h)
+    growth = wary_growth_of(leg.body, taken, accuracy) if in_a_layer else growth_of(leg.body, taken, accuracy)
+    if growth < 1.0:
+        return PathStep(REPEAT, h * growth, taken), growth
+    ending = _until_turn(node, taken, h)
+    if ending.verdict == REPEAT:
+        return ending, growth
+    # where friction saturates for good it has a corner
+    beyond = _slid(leg, tau + ending.h, ending.taken.x) > corner * (1.0 + 1e-14)
+    if node.way < corner < math.inf and beyond:
+        h, taken = _until_way(leg, tau, node.state, ending.h, corner)
+        return PathStep(SATURATE, h, taken), growth
+    return ending, growth
+
+
+@inner
+def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> PathNode:
+    """Where an accepted step has led: on along the leg, or into the next one, which begins bent as this one ends."""
+    leg, taken = node.leg, ending.taken
+    way = node.corner if ending.verdict == SATURATE else _slid(leg, node.tau + ending.h, taken.x)
+    if ending.verdict == TURN:
+        z = leg.law.deflected(leg.z, leg.side * way)
+        return _node_of(_leg(case, -leg.side, tau, taken.x, z), tau, taken.x, taken.v)
+    leg = _anchored(leg, tau)
+    a, rub = path_rates(leg, tau, taken.x, taken.v)
+    return PathNode(leg, tau, State(taken.x, taken.v, a, rub), way, node.corner, False)
+
+
+@inner
 def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: Track) -> Carried:
     """One span from the deviation (y, u) and deflection z at tau = 0; accuracy is each step's, in the energy norm.
 
     On a track with room every piece of the way is noted.
     """
     law, body, end = case.law, case.body, span(case.body)
-    reach, share = (
+    longest, share = (
         longest_step(body, law.sliding_friction(0.0), accuracy),
         share_of_the_way(law, body, accuracy),
     )
-    tau, h, steps, rubbed, closest = 0.0, 0.1 * reach, 0, 0.0, 1e300
-    leg = _leg(case, _side(case, tau, y, u, z), tau, y, z)
-    a, f = path_rates(leg, tau, y, u)
-    state, leaving, way = State(y, u, a, f), True, 0.0
-    corner = law.saturation_path(z, leg.side)
-    while end - tau > 4e-15 * end:
-        leg = _anchored(leg, tau)
+    node = _node_of(_leg(case, _side(case, 0.0, y, u, z), 0.0, y, z), 0.0, y, u)
+    h, steps, rubbed, closest = 0.1 * longest, 0, 0.0, 1e300
+    while end - node.tau > 4e-15 * end:
+        leg, tau, state = node.leg, node.tau, node.state
         w, rate = slip_at(leg, tau, state.v), slip_rate(leg, tau, state.a)
         closest = min(closest, abs(w))
-        # in the layer behind a reversal steps grow with the way
-        ahead = _longest(leg, way, share, w, rate) if corner > way or corner == math.inf else 1e300
-        h = min(h, ahead, reach, end - tau)
-        taken = step(leg, tau, state, h)
-        steps += 1
-        growth = wary_growth_of(body, taken, accuracy) if ahead < 1e300 else growth_of(body, taken, accuracy)
+        # in the layer behind a reversal steps grow with the way, lest a tolerance jumps over it
+        layered = node.corner > node.way or node.corner == math.inf
+        ahead = _longest(leg, node.way, share, w, rate) if layered else 1e300
+        h = min(h, ahead, longest, end - tau)
+        ending, growth = _attempt(node, h, ahead < 1e300, accuracy)
+        h, steps = ending.h, steps + 1
         if steps > MOST_STEPS:
             return Carried(state.x, state.v, z, rubbed, closest, -1)
-        if growth < 1.0:
-            h = h * growth
-            continue
-        ending = _path_step(leg, tau, state, taken, h, leaving)
         if ending.verdict == REPEAT:
-            h = ending.h
             continue
-        turns = ending.verdict == TURN
-        h, taken = ending.h, ending.taken
-        # where friction saturates for good it has a corner
-        ended = _slid(leg, tau + h, taken.x)
-        if corner > way and corner < math.inf and ended > corner * (1.0 + 1e-14):
-            h, taken = _until_way(leg, tau, state, h, corner)
-            ended, turns = corner, False
         if track.stick.size > 0:
             _note_slip(track, tau, h, False, leg, tau, state)
-        rubbed = rubbed + taken.rubbed
-        tau = tau + h if end - tau > h else end
-        leaving, way = turns, ended
-        if turns:
-            z = law.deflected(leg.z, leg.side * ended)
-            leg = _leg(case, -leg.side, tau, taken.x, z)
-            corner, way = law.saturation_path(z, leg.side), 0.0
-        else:
-            leg = _anchored(leg, tau)
-        a, f = path_rates(leg, tau, taken.x, taken.v)
-        state = State(taken.x, taken.v, a, f)
-        h = h * growth if not turns else reach
-    z = law.deflected(leg.z, leg.side * _slid(leg, tau, state.x))
-    return Carried(state.x, state.v, z, rubbed, closest, steps)
+        rubbed = rubbed + ending.taken.rubbed
+        node = _next_node(case, node, ending, tau + h if end - tau > h else end)
+        h = h * growth if ending.verdict != TURN else longest
+    z = law.deflected(node.leg.z, node.leg.side * _slid(node.leg, node.tau, node.state.x))
+    return Carried(node.state.x, node.state.v, z, rubbed, closest, steps)

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from frictionlab.compile.decorators import fast, inlined
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.stack import count_of, room
+from frictionlab.dynamics.contact import friction_of, rate_of
 from frictionlab.dynamics.motion import (
     Flow,
     Instant,
@@ -26,7 +27,6 @@ from frictionlab.dynamics.motion import (
     reference_velocity,
     unbalanced_load,
 )
-from frictionlab.laws.memory import PER_AXIS, VECTORIAL
 from frictionlab.scene.body import Body
 
 Y, U, IMPULSE, MEMORY = 0, 1, 2, 3
@@ -169,67 +169,7 @@ rate_held = by_law(_rate_of_deviation, _rate_of_deviation, None, _rate_of_deviat
 """rate_held(flow, now, a): the rate of the velocity that a state holds, from the deviation's acceleration."""
 
 
-# --- what a law says of one of its numbers -------------------------------------------------------------------------
-
-
-def _rate_of_a_bristle_on_the_line(law: Any, memory: Any, k: int, w: float) -> float:
-    return law.rate(w, memory[0])
-
-
-def _rate_of_a_bristle_in_the_plane(law: Any, memory: Any, k: int, w: complex) -> complex:
-    z = memory[0]
-    if law.form == VECTORIAL:
-        return law.rate(w, z)
-    if law.form == PER_AXIS:
-        return complex(law.rate(w.real, z.real), law.rate(w.imag, z.imag))
-    return complex(law.rate(abs(w), z.real), 0.0)
-
-
-_rate_of_a_bristle = by_dimension(_rate_of_a_bristle_on_the_line, _rate_of_a_bristle_in_the_plane)
-
-
-def _bristle_rate(law: Any, memory: Any, k: int, w: Any) -> Any:
-    return _rate_of_a_bristle(law, memory, k, w)
-
-
-def _memory_rate(law: Any, memory: Any, k: int, w: Any) -> Any:
-    return law.rate(w, memory, k)
-
-
-rate_of = by_law(_bristle_rate, _bristle_rate, None, _memory_rate)
-"""rate_of(law, memory, k, w): the rate of the k-th deflection at slip velocity w."""
-
-
-def _friction_of_a_bristle_on_the_line(law: Any, memory: Any, moving: Any, w: float) -> float:
-    return law.friction(w, memory[0], moving[0])
-
-
-def _friction_of_a_bristle_in_the_plane(law: Any, memory: Any, moving: Any, w: complex) -> complex:
-    z, dz = memory[0], moving[0]
-    if law.form == VECTORIAL:
-        return law.friction(w, z, dz)
-    if law.form == PER_AXIS:
-        across = law.friction(w.imag, z.imag, dz.imag)
-        return complex(law.friction(w.real, z.real, dz.real), across)
-    speed = abs(w)
-    if speed == 0.0:
-        return complex(0.0, 0.0)
-    return (law.friction(speed, z.real, dz.real) / speed) * w
-
-
-_friction_of_a_bristle = by_dimension(_friction_of_a_bristle_on_the_line, _friction_of_a_bristle_in_the_plane)
-
-
-def _bristle_friction(law: Any, memory: Any, moving: Any, w: Any) -> Any:
-    return _friction_of_a_bristle(law, memory, moving, w)
-
-
-def _memory_friction(law: Any, memory: Any, moving: Any, w: Any) -> Any:
-    return law.friction(w, memory, moving)
-
-
-friction_of = by_law(_bristle_friction, _bristle_friction, None, _memory_friction)
-"""friction_of(law, memory, moving, w): the friction coefficient at a memory that moves at these rates."""
+# --- stick, modes and yield -----------------------------------------------------------------------------------------
 
 
 def _never(law: Any) -> bool:

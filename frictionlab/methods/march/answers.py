@@ -1,4 +1,4 @@
-"""What is found of one marched point, and of many the answers."""
+"""The answer of one marched point, and the answers of many."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from frictionlab.orbit.record import Orbit
 
 
 @dataclass(frozen=True)
-class Row:
+class PointAnswer:
     """Mean friction (x1 + i x2), the error of its x1 and the period; the range of a mean that depends on the start.
 
     Whatever is not known is NaN.
@@ -27,13 +27,13 @@ class Row:
     high: float = math.nan
 
 
-class Point(Protocol):
+class AnsweredPoint(Protocol):
     """A point once it is marched."""
 
     status: Status
     reason: str
     model: str
-    found: Row
+    answer: PointAnswer
     seconds: float
 
     @property
@@ -41,19 +41,19 @@ class Point(Protocol):
         """Makes the orbit; None without one."""
 
 
-def answers_of(points: Sequence[Point]) -> Answers:
+def answers_of(points: Sequence[AnsweredPoint]) -> Answers:
     """The answers of points, none of which hangs on another."""
-    low = np.array([point.found.low for point in points])
+    low = np.array([point.answer.low for point in points])
     return Answers(
         status=[point.status for point in points],
         reason=[point.reason for point in points],
         model=[point.model for point in points],
         error_kind=["estimated" if point.status == "ok" else "" for point in points],
-        mean=np.array([point.found.mean for point in points]),
-        error=np.array([point.found.error for point in points]),
-        period=np.array([point.found.period for point in points]),
+        mean=np.array([point.answer.mean for point in points]),
+        error=np.array([point.answer.error for point in points]),
+        period=np.array([point.answer.period for point in points]),
         mean_low=low,
-        mean_high=np.array([point.found.high for point in points]),
+        mean_high=np.array([point.answer.high for point in points]),
         window=np.where(np.isnan(low), np.nan, 1.0),
         seconds=np.array([point.seconds for point in points]),
         orbit=lambda i: points[i].orbit(),

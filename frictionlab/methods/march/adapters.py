@@ -1,0 +1,256 @@
+"""The steppers of march: the numbers of each, and its step for a mass, a contact and what the contact remembers.
+
+A stepper is a record; kernels choose their step by its type, so that one march serves all of them.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from frictionlab.compile.decorators import embedded, inner
+from frictionlab.compile.dispatch import as_argument, by_law, by_stepper, length
+from frictionlab.compile.stack import count_of, room
+from frictionlab.dynamics import smoothing
+from frictionlab.dynamics.contact import advance_bristle, friction_of, project_to_yield, rate_of, resistance
+from frictionlab.dynamics.motion import acceleration, acceleration_under, instant_at, restoring_force, slip
+from frictionlab.dynamics.step_size import growth_of
+from frictionlab.methods.periodic.maps.memory_state import pulled
+from frictionlab.numerics.steppers import dop853, exponential, rk4
+from frictionlab.numerics.steppers.exponential import exponential_step
+from frictionlab.numerics.steppers.moreau import moreau_step
+from frictionlab.numerics.steppers.rk4 import rk4_step
+from frictionlab.numerics.steppers.sdirk2 import sdirk2_step
+from frictionlab.numerics.steppers.step import StepEnd, StepStart, belt_at, load_at, normal_load_at
+from frictionlab.orbit.recorder import panel_writer
+from frictionlab.scene.body import Body
+
+
+class Moreau(NamedTuple):
+    """theta: where in a step springs, dashpots and friction act, from its start (0) to its end (1)."""
+
+    theta: float
+
+
+class Rk4(NamedTuple):
+    """decay: largest stable step times rate of decay."""
+
+    decay: float = rk4.DECAY
+
+
+class Smoothed(NamedTuple):
+    """DOP853 on friction smoothed over a slip speed, by a shape; accuracy of a step, in the energy norm."""
+
+    width: float
+    shape: float
+    accuracy: float
+
+
+class Exponential(NamedTuple):
+    """decay: largest stable step times frequency of a mass held by its bristles."""
+
+    decay: float = exponential.DECAY
+
+
+class Sdirk2(NamedTuple):
+    """decay: stable for any step."""
+
+    decay: float = math.inf
+
+
+Stepper = Moreau | Rk4 | Smoothed | Exponential | Sdirk2
+
+
+class MarchProblem(NamedTuple):
+    """What a stepper sees; memory, ahead: what the law remembers where a step starts, and where it ends."""
+
+    law: Any
+    body: Body
+    belt_speed: float
+    stepper: Any
+    grid: Any  # numerics/steppers/step.py
+    memory: Any
+    ahead: Any
+
+
+class SmoothedFriction(NamedTuple):
+    """A law, and over which slip speed and by which shape its jump at rest is smoothed."""
+
+    law: Any
+    width: float
+    shape: float
+
+
+# --- friction of a stage ------------------------------------------------------------------------------------------
+
+
+def _of_slip_alone(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
+    """Blind to stick: friction is along the slip wherever there is any."""
+    return problem.law.sliding_vector(w) if length(w) > 0.0 else 0.0 * w
+
+
+def _of_a_bristle(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
+    moving[0] = rate_of(problem.law, memory, 0, w)
+    return friction_of(problem.law, memory, moving, w)
+
+
+@inner
+def _of_several(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
+    law = problem.law
+    for i in range(count_of(law)):
+        moving[i] = rate_of(law, memory, i, w)
+    return friction_of(law, memory, moving, w)
+
+
+def _of_deflections(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
+    return _of_several(problem, w, memory, moving)
+
+
+def _of_scalars(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
+    # A scalar that has left its set makes the motion not a number: the march ends as one that is lost.
+    if not problem.law.within(memory):
+        return math.nan * w
+    return _of_several(problem, w, memory, moving)
+
+
+contact_friction = by_law(_of_slip_alone, _of_a_bristle, None, _of_deflections, _of_scalars)
+"""contact_friction(problem, w, memory, moving): the coefficient at a slip velocity; writes the memory's rates."""
+
+
+def _nothing_to_project(problem: MarchProblem) -> None:
+    return
+
+
+def _project_bristle(problem: MarchProblem) -> None:
+    problem.ahead[0] = project_to_yield(problem.law, problem.ahead[0])
+
+
+def _project_deflections(problem: MarchProblem) -> None:
+    pulled(problem.law, problem.ahead, room(problem.law, 1, 0, problem.ahead[0]))
+
+
+project_memory = by_law(
+    _nothing_to_project, _project_bristle, None, _project_deflections, _nothing_to_project
+)
+"""project_memory(problem): bring back what a step has left beyond the deflections that slip can lead to."""
+
+
+# --- steps --------------------------------------------------------------------------------------------------------
+
+
+@as_argument
+@embedded
+def _rates_of_the_grid(problem: MarchProblem, j: int, x: Any, v: Any, memory: Any, moving: Any) -> Any:
+    """Acceleration and friction coefficient at a half step."""
+    mu = contact_friction(problem, v - belt_at(problem, j), memory, moving)
+    push, pressed = load_at(problem, j), normal_load_at(problem, j)
+    return acceleration_under(problem.body, push, pressed, x, v, mu), mu
+
+
+@embedded
+def _smooth_rates(problem: MarchProblem, tau: float, x: Any, v: Any) -> Any:
+    """Acceleration and coefficient of smoothed friction at any time."""
+    body, now, stepper = problem.body, instant_at(problem.body, tau), problem.stepper
+    smooth = SmoothedFriction(problem.law, stepper.width, stepper.shape)
+    mu = smoothing.friction(smooth, slip(body, problem.belt_speed, now, v))
+    return acceleration(body, now, x, v, mu), mu
+
+
+@as_argument
+@embedded
+def _rates_with_a_bristle(problem: MarchProblem, tau: float, x: Any, v: Any, z: Any) -> Any:
+    """Acceleration, friction coefficient and rate of deflection at any time."""
+    body, now = problem.body, instant_at(problem.body, tau)
+    rate, mu = resistance(problem.law, slip(body, problem.belt_speed, now, v), z)
+    return acceleration(body, now, x, v, mu), mu, rate
+
+
+_restoring_force, _acceleration_under = as_argument(restoring_force), as_argument(acceleration_under)
+_smooth_step = dop853.stepper(_smooth_rates)
+
+
+def _by_moreau(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
+    return moreau_step(_restoring_force, problem, start, h)
+
+
+def _by_rk4(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
+    # A step may leave a deflection beyond the set that slip leads to, where it would stay: it is brought back.
+    end = rk4_step(_rates_of_the_grid, problem, start, h)
+    project_memory(problem)
+    return end
+
+
+def _by_dop853(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
+    """A step whose error decides how long it may be."""
+    body, belt_speed = problem.body, problem.belt_speed
+    # The slopes at the start are found anew: the last step may have been repeated, or ended at a zero of velocity.
+    a, mu = _smooth_rates(problem, start.tau, start.x, start.v)
+    end = _smooth_step(problem, start.tau, dop853.State(start.x, start.v, a, mu), h)
+    growth = growth_of(body, end, problem.stepper.accuracy)
+    before = slip(body, belt_speed, instant_at(body, start.tau), start.v)
+    # Slip may have come and gone within the step: the error estimate can be blind to that.
+    if growth >= 1.0 and length(end.v - start.v) > 2.0 * length(before) + 8.0 * problem.stepper.width:
+        growth = 0.5
+    return StepEnd(end.x, end.v, end.rubbed, False, growth)
+
+
+def _by_exponential(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
+    return exponential_step(_acceleration_under, resistance, advance_bristle, problem, start, h)
+
+
+def _by_sdirk2(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
+    end = sdirk2_step(_rates_with_a_bristle, problem, start, h)
+    project_memory(problem)
+    return end
+
+
+advance = by_stepper(
+    {
+        Moreau: _by_moreau,
+        Rk4: _by_rk4,
+        Smoothed: _by_dop853,
+        Exponential: _by_exponential,
+        Sdirk2: _by_sdirk2,
+    }
+)
+"""advance(problem, start, h): the end of a step."""
+
+
+# --- the record of an orbit ---------------------------------------------------------------------------------------
+
+
+@inner
+def _on_a_parabola(problem: MarchProblem, part: float, start: StepStart, end: StepEnd, h: float) -> Any:
+    """Between ends that alone are known: velocity changes evenly, friction is its mean."""
+    # Position is the integral of that velocity, and what it misses of the step's end spread evenly.
+    share, stray = part / h, end.x - start.x - 0.5 * h * (start.v + end.v)
+    x = start.x + share * (h * (start.v + 0.5 * share * (end.v - start.v)) + stray)
+    return x, start.v + share * (end.v - start.v), end.impulse / h
+
+
+def _by_another_step(problem: MarchProblem, part: float, start: StepStart, end: StepEnd, h: float) -> Any:
+    """A step of high order is taken anew to there."""
+    between = advance(problem, start, part)
+    _, mu = _smooth_rates(problem, start.tau + part, between.x, between.v)
+    return between.x, between.v, mu
+
+
+state_within = by_stepper(
+    {
+        Moreau: _on_a_parabola,
+        Rk4: _on_a_parabola,
+        Smoothed: _by_another_step,
+        Exponential: _on_a_parabola,
+        Sdirk2: _on_a_parabola,
+    }
+)
+
+
+@inner
+def _state_at(part: float, problem: MarchProblem, start: StepStart, end: StepEnd, h: float) -> Any:
+    """Position, velocity and friction coefficient a while into a step."""
+    return state_within(problem, part, start, end, h)
+
+
+note_step = panel_writer(_state_at)
+"""note_step(track, tau, h, stick, problem, start, end, h): write a step down as a panel of an orbit."""

@@ -1,0 +1,185 @@
+"""Whether a march has settled, on what, and what of it is an answer: status, reason, mean and error of a point."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Status
+from frictionlab.methods.march.answers import PointAnswer
+from frictionlab.methods.march.attractors import Arrival, OtherStarts, first_arrival, one_motion
+from frictionlab.methods.march.error import MarchMean, Plan, march_mean, restless, steps_needed, why_not
+from frictionlab.methods.march.laps import RESTING, STALLED, TOO_FAST, TOO_STIFF
+from frictionlab.methods.march.refusal import unstable
+from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
+from frictionlab.methods.march.stability import friction_falls
+from frictionlab.methods.shooting.attractors import describe
+from frictionlab.orbit.read import read_columns
+from frictionlab.orbit.record import Orbit
+from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import resting_range, stays_at_rest
+from frictionlab.theory.uniqueness import is_convergent
+
+READABLE = 4096
+"""Most steps per period of the run that the columns besides the mean are read from."""
+WATCHED = 300
+"""Laps over which a motion that never repeats is averaged."""
+
+
+class MarchedPoint:
+    """One scene, marched, and what came of it."""
+
+    def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float, plan: Plan) -> None:
+        self.scene, self.law, self.plan = scene, law, plan
+        self.march = MarchRun(scene, law, plan.stepper)
+        self.answer = PointAnswer()
+        self.status: Status = "failed"
+        self.reason, self.model = "", ""
+        self.orbit: Callable[[], Orbit | None] = nowhere
+        if stays_at_rest(scene, law) and scene.initial is None and not scene.undriven:
+            self._leave_open(resting_range(scene, law))
+        else:
+            self._judge(march_mean(self.march, plan, tolerance), tolerance)
+        self.seconds = self.march.seconds
+
+    def _leave_open(self, highest: float) -> None:
+        self._range(-highest, highest)
+        self.reason = (
+            "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range; "
+            "give scene.initial to choose a start"
+        )
+
+    def _range(self, low: float, high: float) -> None:
+        self.status = "not_unique"
+        self.answer = PointAnswer(low=low, high=high)
+
+    def _judge(self, mean: MarchMean, tolerance: float) -> None:
+        last = mean.runs[-1]
+        self.model = f"march, {self.plan.stepper}{self._theta()}: {mean.how or 'no steady state'}"
+        if not last.settled:
+            self._give_up(last)
+            return
+        readable = self._readable(mean.runs)
+        arrivals, problem = self._arrivals(mean, readable)
+        unique = not problem and one_motion(arrivals)
+        if arrivals[0].period == 1 and (unique or self.scene.initial is not None):
+            # Which lap's mean is meant makes so much of a difference.
+            spread = arrivals[0].high - arrivals[0].low
+            self._accept(replace(mean, error=mean.error + spread), readable, tolerance)
+        elif problem:
+            self.reason = f"{describe(arrivals, 6)}; {problem}"
+        else:
+            self._leave_range(arrivals)
+        if self.status == "ok" and not unique:
+            others = "; ".join(filter(None, (describe(arrivals, 6), problem)))
+            self._remark(f"reached from scene.initial; {others}")
+
+    def _give_up(self, last: MarchResult) -> None:
+        """Without a steady state: refused where other steps would do, else failed."""
+        self.reason = f"the motion {why_not(last)}"
+        if last.verdict == TOO_FAST:
+            self.status = "refused"
+            fewest = math.ceil(steps_needed(self.march, last))
+            self.reason = unstable(last.pace.steps, fewest, self.law, self.plan.stepper)
+        if last.verdict == TOO_STIFF:
+            self.status = "refused"
+            fewest_said = f"{steps_needed(self.march, last):.2g}"
+            self.reason += f": about {fewest_said} are enough; or use method shooting"
+
+    def _arrivals(self, mean: MarchMean, readable: MarchResult) -> tuple[list[Arrival], str]:
+        """Where the starts lead; and why one leads nowhere, or ''."""
+        if restless(mean.runs, self.march):
+            seen = self.march.watch(mean.runs[-1], WATCHED)
+            first = Arrival(0, math.nan, seen.low, seen.high, seen.laps)
+        else:
+            first = first_arrival(self.march, mean)
+        if not self._may_depend_on_start():
+            return [first], ""
+        return OtherStarts(self.march, mean, first, readable).arrivals()
+
+    def _may_depend_on_start(self) -> bool:
+        """Whether another start may lead elsewhere, in a row that is not about one start alone."""
+        scene, law = self.scene, self.law
+        if scene.undriven or stays_at_rest(scene, law):
+            return False
+        if law.memory_kind == "none":
+            return not is_convergent(scene, law)
+        if law.memory_kind == "scalars" or friction_falls(law):
+            return True
+        # An elastic contact holds the mass wherever it stops on a belt at rest; several deflections always do.
+        elastic = law.memory_kind == "deflections" or law.elastic_deflection() > 0.0
+        return scene.belt_speed == 0.0 and elastic
+
+    def _falls(self) -> bool:
+        return self.law.memory_kind == "none" or friction_falls(self.law)
+
+    def _leave_range(self, arrivals: Sequence[Arrival]) -> None:
+        self._range(min(one.low for one in arrivals), max(one.high for one in arrivals))
+        why = "friction falls with speed: " if self._may_depend_on_start() and self._falls() else ""
+        if not why and arrivals[0].period == 0:
+            why = "the motion is not periodic at any step: "
+        self.reason = why + describe(arrivals, 6)
+        if one_motion(arrivals):
+            self.answer = replace(self.answer, period=float(arrivals[0].period))
+
+    def _lost_in_chatter(self, mean: MarchMean) -> float:
+        """All that the mean may be off by, where the belt is slower than the jumps that rk4 makes about rest."""
+        if self.law.memory_kind != "none" or self.plan.stepper != "rk4":
+            return 0.0
+        step = 2.0 * math.pi / self.scene.frequency / mean.runs[-1].pace.steps
+        jump = self.march.mass.normal_load * self.march.at_rest * step
+        return self.march.at_rest + abs(mean.mean.real) if abs(self.scene.belt_speed) < jump else 0.0
+
+    def _remark(self, said: str) -> None:
+        self.reason = "; ".join(filter(None, (self.reason, said)))
+
+    def _theta(self) -> str:
+        return f" with theta {self.plan.theta:g}" if self.plan.stepper == "moreau" else ""
+
+    def _accept(self, mean: MarchMean, readable: MarchResult, tolerance: float) -> None:
+        last = mean.runs[-1]
+        self.status = "ok"
+        self.orbit = partial(self._orbit, readable, last.stride if self.scene.undriven else 1)
+        error = max(mean.error, self._lost_in_chatter(mean))
+        self.answer = PointAnswer(mean.mean, error, self._period(mean, last))
+        if last.verdict == STALLED:
+            self._remark(
+                f"rounding to time steps makes the motion aperiodic: averaged over {self.march.window} periods"
+            )
+        if not (self.march.converges or self._may_depend_on_start() or self._moves_on()):
+            start = "scene.initial" if self.scene.initial else "the default start"
+            self._remark(f"the state reached from {start}; no other start was tried")
+        if not self.answer.error <= tolerance:
+            self._remark(f"the error is above the tolerance {tolerance:.1e}")
+
+    def _moves_on(self) -> bool:
+        """Whether bristles that a moving belt drags along forget where the mass started."""
+        return self.law.count() > 0 and not self.scene.undriven and self.scene.belt_speed != 0.0
+
+    def _period(self, mean: MarchMean, last: MarchResult) -> float:
+        if not self.scene.undriven:
+            return 1.0
+        swing = read_columns([self.scene], lambda i: self.orbit())["velocity_amplitude"][0]
+        still = swing <= 2.0 * last.pace.enough
+        return math.nan if last.verdict == RESTING or still else mean.period / (2.0 * math.pi)
+
+    def _readable(self, runs: Sequence[MarchResult]) -> MarchResult:
+        """The run of which an orbit is kept: the one asked for, else the finest that is not too long to keep."""
+        fine = [run for run in runs if run.pace.steps <= READABLE] or [runs[0]]
+        return runs[0] if self.plan.steps is not None else fine[-1]
+
+    def _orbit(self, run: MarchResult, own: int) -> Orbit:
+        """The orbit of a run whose response takes ``own`` laps; more where steps keep it from repeating so soon."""
+        steps = max(1, run.steps // run.laps)
+        laps = max(1, min(LONGEST_PERIOD, LONGEST_PERIOD * READABLE // steps))
+        laps = laps if run.verdict == STALLED else run.stride
+        periods = max(1, laps // own)
+        orbit = replace(self.march.track(run, periods * own), periods=periods)
+        return orbit if self.plan.stepper == "moreau" else replace(orbit, stick=None)
+
+
+def nowhere() -> None:
+    """The orbit of a point without one."""

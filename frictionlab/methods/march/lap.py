@@ -1,0 +1,239 @@
+"""Kernel of one lap of a motion: steps, and what is met on them.
+
+A lap is a period of the drive, or, undriven, from one falling zero of the velocity along the belt to the next. The
+motion is stepped as it is, not as a deviation from a known response: that is how everybody does it, and its errors
+are to be seen.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.decorators import embedded, inner
+from frictionlab.compile.dispatch import length
+from frictionlab.compile.stack import count_of
+from frictionlab.dynamics.motion import instant_at, slip
+from frictionlab.methods.march.adapters import MarchProblem, advance, note_step
+from frictionlab.numerics.steppers.step import StepEnd, StepStart
+from frictionlab.orbit.recorder import Track
+
+NOTHING = np.zeros(1)
+"""Of a memory that is none."""
+SHORT = 3
+"""Steps at rest within which a reversal counts as one without stick."""
+NO_DIP = 1e300
+"""A least slip speed where there is none."""
+
+
+class MarchSettings(NamedTuple):
+    """What a lap is, how long steps are, and when to stop."""
+
+    belt_speed: float
+    driven: bool
+    steps: int  # of equal length in a lap; 1 where the stepper meets the load wherever it likes, or there is none
+    span: float  # a lap of a driven motion; undriven, the longest lap
+    first: float  # step
+    slack: float  # share of a step by which the last of a lap may be longer
+    reach: float  # longest step
+    enough: float  # distance from the closed orbit, in the energy norm
+    most: int  # laps
+    stride: int  # laps after which the motion is to repeat
+    rate: float  # at which gaps are known to shrink from lap to lap; 0: unknown
+    near: float  # slip speed below which the stepper cannot tell stick from creep
+    work: int  # most steps
+    window: int  # laps over which a motion that does not close is judged, twice
+    room: int  # panels of the record of the last lap
+    spring: Any = NOTHING  # stiffness of each memory, in the energy norm
+    fastest: float = 1e300  # slip that the steps are short enough for
+
+
+class SlipTrace(NamedTuple):
+    """Slip at the end of the last step, and what it did since the lap began."""
+
+    w: Any  # the last that was not zero
+    speed: float
+    before: float  # the speed a step earlier; below zero where slip reversed since
+    crossed: bool  # whether it reversed in the last step
+    resting: int  # steps
+    dip: float  # least slip speed between two nodes of more slip, no reversal seen
+    bend: float  # second derivative of slip speed there
+    crossings: int  # reversals of slip within a few steps; a run of them counts once
+    turn: float  # largest rate at which slip passed through zero
+    met: float  # most slip
+    lingered: float  # time with less slip than ``near``
+
+
+class Tally(NamedTuple):
+    """Of friction since a lap began: its impulse, time at rest, its largest coefficient over one step."""
+
+    impulse: Any
+    stuck: float
+    peak: float
+
+
+class Swing(NamedTuple):
+    """Of an undriven motion since a mark: its largest speed, and impulse and time at rest at the mark."""
+
+    mark: float  # when it is judged
+    most: float
+    impulse: Any
+    stuck: float
+
+
+class Lap(NamedTuple):
+    """A lap's end and what was met on it."""
+
+    x: Any
+    v: Any
+    tally: Tally
+    trace: SlipTrace
+    duration: float
+    step: float  # the next one; 0 where the mass rests in the spring
+    steps: int
+    returned: bool
+
+
+# --- one step of a lap --------------------------------------------------------------------------------------------
+
+
+@inner
+def falling_zero(problem: MarchProblem, start: StepStart, h: float) -> float:
+    """When within a step the velocity along the belt falls to zero (Illinois regula falsi)."""
+    low, high, side = 0.0, h, 0
+    at_low, at_high = start.v.real, advance(problem, start, h).v.real
+    part = h
+    # Every trial is a step from the same start: its end is no interpolation.
+    for _ in range(100):
+        if at_high == 0.0 or high - low <= 1e-15 * (start.tau + h):
+            break
+        part = (low * at_high - high * at_low) / (at_high - at_low)
+        value = advance(problem, start, part).v.real
+        # An end that stays twice has its value halved, else the other end would creep.
+        if value <= 0.0:
+            high, at_high, at_low = part, value, 0.5 * at_low if side > 0 else at_low
+            side = 1
+        else:
+            low, at_low, at_high = part, value, 0.5 * at_high if side < 0 else at_high
+            side = -1
+    return high
+
+
+@embedded
+def slip_trace(trace: SlipTrace, w: Any, h: float, near: float) -> SlipTrace:
+    """The trace after a step over h that ended with slip w; near: slip speed that passes for creep."""
+    speed, turned = length(w), (trace.w * w.conjugate()).real
+    dip, bend, turn = trace.dip, trace.bend, trace.turn
+    # A minimum of the slip speed between two nodes: what the steps may have missed of a reversal there.
+    if trace.before >= trace.speed < speed and turned > 0.0 and trace.speed < dip:
+        dip, bend = trace.speed, (trace.before - 2.0 * trace.speed + speed) / (h * h)
+    # Chatter reverses every step: a run of reversals counts once, and one after a longer rest is a release.
+    alone = turned < 0.0 and not trace.crossed and trace.resting <= SHORT
+    if turned < 0.0:
+        turn = max(turn, length(w - trace.w) / h)
+    return SlipTrace(
+        w if speed > 0.0 else trace.w,
+        speed,
+        trace.speed if turned > 0.0 else -1.0,
+        turned < 0.0,
+        trace.resting + 1 if speed == 0.0 else 0,
+        dip,
+        bend,
+        trace.crossings + (1 if alone else 0),
+        turn,
+        max(trace.met, speed),
+        trace.lingered + (h if speed < near else 0.0),
+    )
+
+
+@embedded
+def first_trace(w: Any) -> SlipTrace:
+    """The trace of a lap that begins with slip w."""
+    return SlipTrace(w, length(w), -1.0, False, 0, NO_DIP, 1.0, 0, 0.0, 0.0, 0.0)
+
+
+@inner
+def keep_memory(problem: MarchProblem) -> None:
+    """What the law remembers at the end of a step is what it remembers at the start of the next."""
+    for k in range(count_of(problem.law)):
+        problem.memory[k] = problem.ahead[k]
+
+
+@embedded
+def tally_step(tally: Tally, taken: StepEnd, h: float) -> Tally:
+    """Friction of a step over h added."""
+    return Tally(
+        tally.impulse + taken.impulse,
+        tally.stuck + (h if taken.stuck else 0.0),
+        max(tally.peak, length(taken.impulse) / h),
+    )
+
+
+@embedded
+def rests_in_spring(swing: Swing, x: Any, v: Any, tau: float) -> bool:
+    """Whether it is time to judge the swing, and nothing has moved but by rounding since the mark."""
+    return tau >= swing.mark and max(swing.most, length(v)) <= 1e-12 * (length(x) + 1e-3)
+
+
+@embedded
+def next_swing(swing: Swing, tally: Tally, tau: float, speed: float) -> Swing:
+    """The swing after a step that ended with this speed; begun anew every 2 pi."""
+    if tau >= swing.mark:
+        return Swing(tau + 2.0 * math.pi, 0.0, tally.impulse, tally.stuck)
+    return Swing(swing.mark, max(swing.most, speed), swing.impulse, swing.stuck)
+
+
+# --- a lap --------------------------------------------------------------------------------------------------------
+
+
+@inner
+def march_lap(
+    problem: MarchProblem, settings: MarchSettings, start: StepStart, h: float, track: Track
+) -> Lap:
+    """From tau = 0 once around; h: the first step."""
+    body, belt_speed, driven, end = problem.body, problem.belt_speed, settings.driven, settings.span
+    x, v, tau, k, steps, back = start.x, start.v, 0.0, 0, 0, False
+    trace = first_trace(slip(body, belt_speed, instant_at(body, tau), v))
+    tally, swing = Tally(0.0 * x, 0.0, 0.0), Swing(2.0 * math.pi, length(v), 0.0 * x, 0.0)
+    while tau < end and steps < settings.work:
+        # The last step ends with the lap, however the sum of equal steps was rounded.
+        last = end - tau <= h * (1.0 + settings.slack)
+        begin, step = StepStart(k, tau, x, v), end - tau if last else h
+        taken = advance(problem, begin, step)
+        steps += 1
+        # A step whose error is too large is taken again, shorter; it has cost work all the same.
+        if taken.growth < 1.0:
+            h = step * taken.growth
+            continue
+        # Undriven, a lap ends where the velocity falls through zero: that step is taken anew, to there.
+        back = not driven and v.real > 0.0 and taken.v.real <= 0.0
+        if back:
+            step = falling_zero(problem, begin, step)
+            taken = advance(problem, begin, step)
+        if settings.room > 0 and track.filled[0] < settings.room:
+            note_step(track, tau, step, taken.stuck, problem, begin, taken, step)
+        keep_memory(problem)
+        x, v, k, tau = taken.x, taken.v, k + 1 if driven else k, end if last and not back else tau + step
+        trace = slip_trace(trace, slip(body, belt_speed, instant_at(body, tau), v), step, settings.near)
+        tally = tally_step(tally, taken, step)
+        if back:
+            break
+        h = min(h * taken.growth, settings.reach) if taken.growth > 1.0 else h
+        # A mass at rest in its spring never returns: undriven, it is looked at once in 2 pi.
+        if not driven and rests_in_spring(swing, x, v, tau):
+            return resting_lap(Lap(x, v, tally, trace, tau, h, steps, False), swing)
+        swing = swing if driven else next_swing(swing, tally, tau, length(v))
+        # Steps too long for this slip would explode: no need to see it.
+        if trace.met > settings.fastest:
+            break
+    return Lap(x, v - v.real if back else v, tally, trace, tau, h, steps, back or (driven and tau >= end))
+
+
+@inner
+def resting_lap(lap: Lap, swing: Swing) -> Lap:
+    """The lap of a mass that never returns: the last time over which it was at rest in the spring."""
+    since = Tally(lap.tally.impulse - swing.impulse, lap.tally.stuck - swing.stuck, lap.tally.peak)
+    duration = lap.duration - swing.mark + 2.0 * math.pi
+    return Lap(lap.x, lap.v, since, lap.trace, duration, 0.0, lap.steps, False)

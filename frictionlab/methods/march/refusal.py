@@ -1,0 +1,146 @@
+"""Why march cannot step a scene under a law, as sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.march.error import FEWEST_LAPS, WORK
+from frictionlab.methods.march.stability import fewest_steps
+from frictionlab.methods.periodic.problem import along_the_belt
+from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import friction_at_rest
+
+STEPPERS = {
+    "none": ("moreau", "rk4", "smoothed"),
+    "bristle": ("exponential", "rk4", "sdirk2"),
+    "deflections": ("rk4",),
+    "scalars": ("rk4",),
+}
+"""Of each kind of memory, the one taken where none is named first."""
+SEVERAL = "deflections", "scalars"
+"""Kinds of memory that are several numbers, or no deflection."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """A scene, a law under its load, the stepper and the keys of a study that may not suit them."""
+
+    scene: Scene
+    law: Any
+    stepper: str
+    theta: float | None
+    steps: int | None
+
+    @property
+    def kind(self) -> str:
+        """What the law remembers."""
+        return self.law.memory_kind
+
+
+def reasons_against(asked: Request) -> Iterator[str]:
+    """Every reason why march cannot do what is asked, the first to be mended first."""
+    law, scene = asked.law, asked.scene
+    if asked.kind not in STEPPERS:
+        yield "march needs a SlidingLaw, a BristleLaw or a MemoryLaw"
+        return
+    yield from _against_the_stepper(asked)
+    if asked.theta is not None and law.count() > 0:
+        yield "theta is a key of stepper moreau, which does not support friction with memory; leave it out"
+    yield from _against_several_memories(asked)
+    planar = law.planar_form() == "vectorial" and not along_the_belt(scene, law)
+    if planar and law.no_vector_form():
+        yield law.no_vector_form()
+    yield from _against_jumps(asked)
+    yield from _against_rates(asked)
+    yield from _against_so_few_steps(asked)
+
+
+def _against_the_stepper(asked: Request) -> Iterator[str]:
+    if asked.stepper in STEPPERS[asked.kind]:
+        return
+    if asked.kind == "none":
+        yield f"stepper {asked.stepper} needs a bristle law; use moreau, rk4 or smoothed"
+    elif asked.kind == "bristle":
+        yield f"stepper {asked.stepper} does not support friction with memory; use exponential, rk4 or sdirk2"
+    else:
+        yield f"stepper {asked.stepper} does not support laws with several memories or scalars; use rk4"
+
+
+def _against_several_memories(asked: Request) -> Iterator[str]:
+    if asked.kind not in SEVERAL:
+        return
+    if asked.law.remembers_stick():
+        yield "march steps follow no stick or slip of single elements; shooting does"
+    if asked.scene.degrees_of_freedom == 0:
+        yield "for a law with several memories or scalars march needs a driven mass; use shooting"
+    if asked.scene.undriven:
+        yield "for a law with several memories or scalars march needs a driven mass: give a drive"
+
+
+def _against_jumps(asked: Request) -> Iterator[str]:
+    """Static friction above sliding friction, but for moreau along the belt."""
+    law, scene = asked.law, asked.scene
+    if asked.kind != "none" or not friction_at_rest(law) > law.sliding_friction(0.0):
+        return
+    if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
+        yield suggest_shooting(
+            "static friction above sliding friction: in the plane a time step may stop a mass that passes rest, "
+            "and the error of that has no known bound",
+            scene,
+            law,
+        )
+    if asked.stepper != "moreau":
+        yield (
+            f"stepper {asked.stepper} has no stick, and static friction above sliding friction needs it; "
+            f"use stepper moreau"
+        )
+
+
+def _against_rates(asked: Request) -> Iterator[str]:
+    """Rates of a memory without a bound, or that jump."""
+    law = asked.law
+    if asked.stepper == "rk4" and math.isinf(law.largest_rate(1.0)):
+        what, use = ("the memory", "shooting") if asked.kind in SEVERAL else ("bristles", "exponential")
+        yield f"stepper rk4 needs a bound on the decay rate of {what}, and this law has none; use {use}"
+    if asked.stepper != "sdirk2":
+        return
+    if asked.scene.degrees_of_freedom == 0:
+        yield "stepper sdirk2 is not needed under a prescribed slip; use exponential, for any stiffness"
+    if math.isfinite(law.yield_deflection()):
+        yield "stepper sdirk2 needs continuous rates, and those of this law jump at yield; use exponential"
+
+
+def _against_so_few_steps(asked: Request) -> Iterator[str]:
+    """A stepper that needs more steps than are given, or than can be refined."""
+    law, stepper = asked.law, asked.stepper
+    fewest = fewest_steps(asked.scene, law, stepper)
+    if asked.steps is not None and asked.steps < fewest:
+        yield unstable(asked.steps, fewest, law, stepper)
+    if asked.steps is None and 3 * FEWEST_LAPS * fewest > WORK:
+        yield (
+            f"stepper {stepper} is unstable on {_stiff(law)} below about {fewest:,} steps per period, too "
+            f"many to refine with {WORK:,} steps in all; give steps, or use {_others(law, 'exponential')}"
+        )
+
+
+def unstable(steps: int, fewest: int, law: FrictionLaw, stepper: str) -> str:
+    """Why an explicit stepper is unstable with so many steps, and how many are enough."""
+    return (
+        f"stepper {stepper} is unstable on {_stiff(law)} with {steps:,} steps per period: about {fewest:,} "
+        f"are enough; or use {_others(law, stepper)}"
+    )
+
+
+def _stiff(law: FrictionLaw) -> str:
+    return "memory this fast" if law.memory_kind in SEVERAL else "bristles this stiff"
+
+
+def _others(law: FrictionLaw, stepper: str) -> str:
+    if law.memory_kind in SEVERAL:
+        return "method shooting"
+    return "stepper exponential or sdirk2" if stepper == "rk4" else "stepper sdirk2"

@@ -11,7 +11,7 @@ from math import isfinite
 from numbers import Real
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -60,30 +60,23 @@ class UnsavedError(SaveError):
         self.run = run
 
 
-class Execution(TypedDict, total=False):
-    """How a run is carried out: by an executor, threads of this process by default; what is called all along."""
-
-    executor: Executor | None
-    progress: Progress
-
-
 def run(
     study: str | PathLike[str] | Mapping[str, Any] | Study,
     out: str | PathLike[str] | None = None,
     overrides: Sequence[str] = (),
     existing: Existing = "reuse",
+    executor: Executor | None = None,
+    progress: Progress = silent,
     columns: Sequence[str] | None = None,
-    **execution: Unpack[Execution],
 ) -> Run:
     """Solve every case of a study. Writes only with ``out``, the folder for results.
 
     overrides: ``path=value`` as for ``--set``; a ``Study`` holds its own already, they are for the record.
     existing: take over finished points of the same study in ``out``, or replace whatever results it holds.
+    executor: any; threads of this process by default.
     columns: result columns, in place of those of the study; inputs, mean_friction, error, status and reason always.
-    executor: any; threads of this process by default. progress: called with what is done so far.
     Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin, ValueError for an unknown column.
     """
-    executor, progress = _execution(**execution)
     ready = _loaded(study, overrides)
     if columns is not None:
         ready = replace(ready, columns=_result_columns(columns, ready.scene))
@@ -98,12 +91,6 @@ def run(
         folder.open(existing)
     stopped = _solve(gathering, left, executor)
     return _finished(ready, gathering, folder, stopped)
-
-
-def _execution(
-    executor: Executor | None = None, progress: Progress = silent
-) -> tuple[Executor | None, Progress]:
-    return executor, progress
 
 
 def _loaded(study: str | PathLike[str] | Mapping[str, Any] | Study, overrides: Sequence[str]) -> Study:

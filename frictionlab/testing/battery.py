@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
-from typing import Literal, TypedDict, Unpack
+from typing import Literal
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.testing.check import Check
@@ -64,32 +64,25 @@ SECONDS = 60.0
 NEEDED = "answers"
 
 
-class Effort(TypedDict, total=False):
-    """How hard a check tries: examples, fewer for expensive checks, and seconds, ten times that where it compiles."""
-
-    examples: int
-    seconds: float
-
-
 def check_law(
     law: type[FrictionLaw],
     *,
     expected_failures: Mapping[str, str] | None = None,
     only: Collection[str] = (),
+    examples: int = EXAMPLES,
+    seconds: float = SECONDS,
     on_failure: Literal["raise", "return"] = "raise",
     tell: Callable[[Outcome], None] = lambda outcome: None,
-    **effort: Unpack[Effort],
 ) -> Report:
     """Put a law class through every check that is for it.
 
     expected_failures: check -> why the law fails it, beside those the law itself names; one that passes after all
-    is a failure. only: names of the checks to run; all where left out. tell: called with each outcome as it comes.
-    examples: per check, 100 by default, fewer for expensive ones. seconds: the most a check may take, 60 by default,
-    ten times that where it compiles.
+    is a failure. only: names of the checks to run; all where left out. examples: per check,
+    fewer where they are dear. seconds: the most a check may
+    take, ten times that where it compiles. tell: called with each outcome as it comes.
     Raises LawFailed, an AssertionError, where a check fails, unless on_failure is ``return``; ValueError for the name
     of a check there is none of.
     """
-    most = _most(**effort)
     expected = {**law.expected_failures, **(expected_failures or {})}
     _known("only", only)
     _known("expected_failures", expected)
@@ -97,16 +90,12 @@ def check_law(
         raise ValueError(f"expected_failures: {name}: say why the law fails it")
     outcomes: list[Outcome] = []
     for check in [check for check in CHECKS if not only or check.name in only]:
-        outcomes.append(_outcome(check, law, most, outcomes, expected.get(check.name)))
+        outcomes.append(_outcome(check, law, (examples, seconds), outcomes, expected.get(check.name)))
         tell(outcomes[-1])
     report = Report(law.__name__, tuple(outcomes))
     if on_failure == "raise" and not report.passed:
         raise LawFailed(report)
     return report
-
-
-def _most(examples: int = EXAMPLES, seconds: float = SECONDS) -> tuple[int, float]:
-    return examples, seconds
 
 
 def _known(whose: str, names: Collection[str]) -> None:

@@ -177,6 +177,7 @@ def _at_start(flow: Flow, work: Work, like: Any) -> Any:
 def _flow_of(case: Case, work: Work) -> Flow:
     """The flow at tau = 0 with the modes and the side that the state in ``work.start`` has."""
     flow = anchored(case.law, case.body, case.belt_speed, 1.0, 0.0)
+    # the side of slip is needed for the rates, and they for the side of a slip that is zero
     w, a = _at_start(flow, work, case.like)
     begin(flow, a, w, work)
     return anchored(case.law, case.body, case.belt_speed, _side(w, a), 0.0)
@@ -205,6 +206,7 @@ def _end_of_step(
 ) -> MemoryStep:
     """What becomes of a step of h that is accurate enough."""
     w, a = rates_at_end(flow, node.tau + h, work, like)
+    # the step ends at the first event in it, wherever in the step that is
     guard = lowest(flow, w, a, work)
     if guard.value <= 0.0:
         # just behind an event a guard is zero to rounding: a step must first get away from it, or never does
@@ -224,6 +226,7 @@ def _end_of_step(
 @inner
 def _depart(flow: Flow, leaving: bool, work: Work, like: Any) -> MemoryNode:
     """Get ready for steps from ``work.start``, at the anchor of the flow."""
+    # guards at the start, to be compared with those at the end, and the blocks of all stages
     w, a = _at_start(flow, work, like)
     note_guards(flow, w, a, work)
     linearize(flow, flow.anchor, work, like)
@@ -260,6 +263,7 @@ def follow(flow: Flow, friction: float, accuracy: float, track: Track, work: Wor
     closest = length(node.w)
     while end - node.tau > 4e-15 * end:
         h = min(h, longest, end - node.tau)
+        # one step: too inaccurate, it is repeated shorter
         growth = growth_factor(step(flow, node.tau, h, work, like) / accuracy, 5.0)
         steps += 1
         if steps > MOST_STEPS:
@@ -274,9 +278,11 @@ def follow(flow: Flow, friction: float, accuracy: float, track: Track, work: Wor
         if ending.repeats:
             continue
         tau = node.tau + h if end - node.tau > h else end
+        # noting a panel takes parts of the step anew and leaves the last of them: the step itself is taken again
         if track.stick.size > 0:
             _note(track, node.tau, h, False, flow, node.tau, work, like)
             step(flow, node.tau, h, work, like)
+        # sine and cosine within a step are expanded about its start
         flow = anchored(law, body, belt_speed, _arrive(flow, tau, ending.ends, work, like), tau)
         node = _depart(flow, ending.ends, work, like)
         closest = min(closest, length(node.w))

@@ -69,6 +69,7 @@ def _effects(law: Any, body: Body, work: Work, like: Any) -> None:
         here = work.memory[k]
         far = length(here)
         work.size[k] = far if far > 0.0 else 1.0
+        # how much friction in steady sliding changes with one number, the others as they are
         shift = 1e-3 * work.size[k]
         work.memory[k] = here + shift
         ahead = law.friction(v, work.memory, work.moving)
@@ -89,6 +90,7 @@ def _measure_scalars(law: Any, body: Body, work: Work, like: Any) -> None:
     for k in range(count_of(law)):
         work.unit[k] = body.normal_load * work.unit[k] * work.size[k] / body.frequency
         here = work.memory[k]
+        # a law that does not allow the negative of it takes the number for positive
         work.memory[k] = -here
         work.positive[k] = 0.0 if law.within(work.memory) else 1.0
         work.memory[k] = here
@@ -199,6 +201,7 @@ def pulled(law: Any, memory: Any, alone: Any) -> None:
     if law.turning == 0.0 or law.within(memory):
         return
     for k in range(count_of(law)):
+        # each deflection by itself: the set that slip leads to is a product of theirs
         for j in range(count_of(law)):
             alone[j] = 0.0 * memory[j]
         low, high = 0.0, 2.0

@@ -185,6 +185,7 @@ def _begin_by_memory(flow: Flow, a: Any, w: Any, work: Work) -> None:
     for k in range(count_of(flow.law)):
         z = work.start[MEMORY + k]
         work.memory[k] = z
+        # rounding of the section may leave a mode that its state has just passed
         if work.mode[k] == YIELDS and along(z, w) < 0.0:
             work.mode[k] = FOLLOWS
         if work.mode[k] == FOLLOWS and breakaway(flow, k, w, a, work).value <= 0.0:
@@ -218,12 +219,14 @@ def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, lik
     """
     low, h, within = 0.0, high, CLOSE * accuracy
     for turn in range(60):
+        # a step was taken to h: on which side of the event does it end?
         w, a = rates_at_end(flow, tau + h, work, like)
         guard = lowest(flow, w, a, work)
         if guard.value <= 0.0:
             high = h
         else:
             low = h
+        # just beyond the event, never before it: the next step starts in the new mode
         if -within <= guard.value <= 0.0 or high - low <= 4e-16 * (tau + high):
             break
         # half of what may remain beyond: an approach from the near side does not end there
@@ -231,6 +234,7 @@ def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, lik
         # on a bend Newton's steps may creep towards one end: halve now and then
         h = trial if low < trial < high and turn % 4 < 3 else 0.5 * (low + high)
         step(flow, tau, h, work, like)
+    # the last step tried need not be the one that ends just beyond
     if h != high:
         step(flow, tau, high, work, like)
     return high
@@ -242,6 +246,7 @@ def change(flow: Flow, w: Any, a: Any, work: Work) -> float:
     n = count_of(flow.law)
     reverses = guard_of(flow, n, w, a, work).value <= 0.0
     for k in range(n):
+        # slip that reverses on the line unloads every deflection that yields at once
         passed = guard_of(flow, k, w, a, work).value <= 0.0
         if work.mode[k] == YIELDS and (passed or reverses):
             work.mode[k] = FOLLOWS
@@ -280,6 +285,7 @@ def hidden(flow: Flow, h: float, w: Any, a: Any, work: Work) -> float:
     for number in range(count_of(flow.law) + 1):
         value0, rate0 = work.guards[2 * number], work.guards[2 * number + 1]
         guard = guard_of(flow, number, w, a, work)
+        # a guard that falls first and rises last may have been zero in between
         if rate0 < 0.0 < guard.rate:
             share, least = _lowest_between(h, value0, rate0, guard.value, guard.rate)
             if least < 0.0625 * min(value0, guard.value) and 0.01 < share < 0.99:

@@ -259,6 +259,7 @@ def fill_rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
         work.memory[k] = as_memory(flow.law, work.stage[MEMORY + k])
     y, held = work.stage[Y], work.stage[U]
     w, u = slip_held(flow, now, held), deviation_held(flow, now, held)
+    # friction first: it may depend on the rates of what is remembered
     friction = friction_in_mode(flow.law, work, w)
     a = acceleration_under(body, unbalanced_load(body, now), load_on(body, now), y, u, friction)
     work.rates[Y], work.rates[U], work.rates[IMPULSE] = u, rate_held(flow, now, a), friction

@@ -218,6 +218,7 @@ def _note_rest(track: Track, problem: Flow, tau: float, x: Any, rest: StickPhase
 def _after_rest(problem: Flow, rest: StickPhase, end: float) -> State:
     """The deviation with which slip begins."""
     body, tau = problem.body, rest.tau
+    # slip sets off with the velocity that the balance of momentum gives it
     u = rest.w + belt_velocity(body, problem.belt_speed, instant_at(body, tau))
     u = u - reference_velocity(body, problem.sine, problem.cosine)
     y = rest.x - reference_position(body, tau)
@@ -243,6 +244,7 @@ def _slide(problem: Flow, node: Node, leaving: bool, accuracy: float, h: float, 
             hop = Hop(node.tau, done.h, x, node.w, -node.w, rub)
             _note_hop(track, node.tau, done.h, False, problem, hop)
         return Attempt(done, h, 0)
+    # a step of slip: too inaccurate, it is repeated shorter
     taken = step(problem, node.tau, state, done.h)
     growth = growth_of(problem.body, taken, accuracy)
     if growth < 1.0:
@@ -262,6 +264,7 @@ def sliding_map(case: Case, y: Any, u: Any, accuracy: float, track: Track) -> Ma
     On a track with room every piece of the way is noted.
     """
     law, body, belt_speed, end = case.law, case.body, case.belt_speed, span(case.body)
+    # the side of the first slip; a slip within the accuracy of zero is rest
     longest = longest_step(body, law.sliding_friction(0.0), accuracy)
     tau, h, steps = 0.0, 0.1 * longest, 0
     rubbed, stuck, closest, released = 0.0 * y, 0.0, 1e300, -1.0
@@ -271,6 +274,7 @@ def sliding_map(case: Case, y: Any, u: Any, accuracy: float, track: Track) -> Ma
     state = State(y, u, u, u) if resting else _state(problem, tau, y, u)
     while end - tau > 4e-15 * end:  # slip cannot get away from rest in less
         if resting:
+            # at rest: until the belt has carried the mass to where friction no longer holds it
             x = state.x + reference_position(body, tau)
             rest = stick_phase(case, tau, x, accuracy, end)
             if track.stick.size > 0:

@@ -104,6 +104,7 @@ def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
     """The increments of stage i from its right-hand sides in ``work.rates``."""
     n, body = count_of(flow.law), flow.body
     first = (MEMORY + n) * i
+    # each number with the velocity kept, then the mass, then what its change of velocity adds to each number
     alone = 0.0 * like  # friction of what the deflections would do if the mass kept its velocity
     for k in range(n):
         moved = apply(block(work.factors, 2 * k, like), work.rates[MEMORY + k])
@@ -198,6 +199,7 @@ def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
     factor(flow, h, work, like)
     now = instant_near(flow, tau)
     for i in range(STAGES):
+        # stages 6 to 8 are all at the end of the step: its sine and cosine serve them
         _argument(i, law, work)
         if not _within(flow, work):
             return math.inf

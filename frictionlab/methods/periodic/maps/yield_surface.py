@@ -58,8 +58,10 @@ def _yields_at(law: Any, work: Work, k: int, v: Any, radius: float) -> bool:
         share = (1.0 - 1e-9) * radius * part / SHARES
         if not (_follows(law, work, k, v, share * way) and _follows(law, work, k, v, -share * way)):
             return False
+    # unloaded from the surface, too, it follows the slip
     if not _follows(law, work, k, v, -radius * way):
         return False
+    # at the surface slip turns it, but stretches it no further
     work.memory[k] = radius * way
     return length(law.rate(v, work.memory, k)) <= ALIKE * speed
 
@@ -69,6 +71,7 @@ def _found_radius(law: Any, work: Work, k: int, like: Any) -> float:
     """The radius that rates tell, the same at slips of any speed; 0 where they tell none."""
     along = 1.0 + 0.0 * like
     radius = _first_yield(law, work, k, along)
+    # a surface that moves with the speed of slip is none
     for exponent in (-4.0, 2.0):
         if radius > 0.0 and not _yields_at(law, work, k, 10.0**exponent * along, radius):
             radius = 0.0

@@ -63,15 +63,15 @@ def _of_bristle(law: Any, like: Any) -> float:
     return 1.0
 
 
-def _of_memory(law: Any, like: Any) -> float:
+def _of_deflections(law: Any, like: Any) -> float:
     return 2.0
 
 
-def _of_vectors(law: Any, like: Any) -> float:
+def _of_scalars(law: Any, like: Any) -> float:
     return 3.0
 
 
-_body = by_law(_of_sliding, _of_bristle, None, _of_memory, _of_vectors)
+_body = by_law(_of_sliding, _of_bristle, None, _of_deflections, _of_scalars)
 
 
 @njit
@@ -80,8 +80,8 @@ def which(law: Any, like: Any) -> Any:
     return _body(law, like)
 
 
-def test_kernels_take_the_body_made_for_the_kind_of_memory() -> None:
+def test_kernels_take_the_body_made_for_the_kind_of_deflections() -> None:
     cases = [(Coulomb(mu=0.4), 0j), (THREE, 0.0), (THREE, 0j), (Ageing(), 0.0), (Ageing(), 0j)]
 
-    assert [compiled(which, law)(like) for law, like in cases] == [0.0, 2.0, 3.0, 2.0, 2.0]
-    assert [which.py_func(law, like) for law, like in cases] == [0.0, 2.0, 3.0, 2.0, 2.0]
+    assert [compiled(which, law)(like) for law, like in cases] == [0.0, 2.0, 2.0, 3.0, 3.0]
+    assert [which.py_func(law, like) for law, like in cases] == [0.0, 2.0, 2.0, 3.0, 3.0]

@@ -50,6 +50,7 @@ CHECKS: tuple[Check, ...] = (
     path.elastic_unloading,
     path.yield_deflection,
     path.breakaway,
+    path.uncoupled,
     compiled.compiled_on_the_line,
     compiled.compiled_in_the_plane,
     limits.coulomb_limit_of_prescribed_slip,

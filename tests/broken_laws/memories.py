@@ -76,6 +76,15 @@ class SecondYieldsEarly(Declared):
         return super().rate(v, [z / 0.9 for z in memory] if k > 0 else memory, k)
 
 
+class InSeries(Springs):
+    """Elements of which each takes the slip that the one before it leaves."""
+
+    def rate(self, v: Any, memory: Any, k: int) -> Any:
+        """Less where the one before has reached half way."""
+        share = 0.5 if k > 0 and abs(memory[k - 1]) > 0.5 * self.reach[k - 1] else 1.0
+        return super().rate(share * v, memory, k)
+
+
 class Sticking(GeneralisedMaxwellSlip):
     """Elements that remember whether they stick."""
 
@@ -181,6 +190,7 @@ CASES = (
     Case(BackwardsLost, Springs, "invariant_set"),
     Case(ElementsApart, Springs, "rotation"),
     Case(SecondYieldsEarly, Declared, "yield_deflection"),
+    Case(InSeries, Springs, "uncoupled"),
     Case(BreaksAwayLate, Sticking, "breakaway"),
     Case(BreaksAwayAcross, Sticking, "breakaway"),
     Case(HoldsNothingQuick, Sticking, "breakaway"),

@@ -223,6 +223,23 @@ def breakaway(one: Given) -> None:
         one.require(still == 0.0, f"deflection {k} moves at rest", rate=still)
 
 
+@make_check(
+    "uncoupled",
+    skips=for_laws_of(MemoryLaw, without="of laws that remember one number at most"),
+    seldom="count() is 1 for all parameters drawn",
+)
+def uncoupled(one: Given) -> None:
+    """The rate of each number depends on slip and on that number alone: steps are solved number by number."""
+    law = one.law(lambda law: law.count() > 1)
+    v, memory = one.slip(), one.memory(law)
+    rates = response(law, v, memory).rates
+    for k, rate in enumerate(rates):
+        others = tuple(each if j == k else 0.3 * each for j, each in enumerate(memory))
+        alone = response(law, v, others).rates[k]
+        same = abs(alone - rate) <= 1e-9 * (abs(alone) + abs(rate))
+        one.require(same, f"the rate of memory {k} changes with the others", got=alone, expected=rate)
+
+
 def _yield_surfaces(law: FrictionLaw) -> list[float]:
     """The radius of each deflection's yield surface; none for laws that have none in the plane."""
     if isinstance(law, MemoryLaw):

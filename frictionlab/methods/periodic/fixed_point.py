@@ -279,13 +279,8 @@ def _check_with_memory(case: Case, search: Iterate, goal: Goal, now: Progress, f
     )
     multiply(search.inverse, residual, step)
     rest = slope * norm(step) + SURE * mean_error(body, residual, norm(step))
-    error = (
-        2.0 * rest
-        + doubt
-        + floor / body.normal_load
-        + ROUNDING
-        + grain_of(case.law, body, accuracy, case.like)
-    )
+    error = 2.0 * rest + doubt + floor / body.normal_load + ROUNDING
+    error += grain_of(case.law, body, accuracy, case.like)
     # The second map, from where the first says the orbit is, must be much nearer to closing, or within its own error.
     settles = norm(residual) <= 0.5 * norm(fresh) + 10.0 * accuracy
     if settles and (error <= goal.tolerance or (now.finest <= floor and checks > 3)):
@@ -364,10 +359,8 @@ def fixed_point(case: Case, z: Any, inverse: Any, goal: Goal, expected: float) -
             continue
         # The error is asked for where maps are as fine as they get and the bound by the distance of states is near.
         multiply(inverse, search.residual, search.step)
-        if (
-            now.accuracy <= now.finest
-            and mean_error(body, search.residual, norm(search.step)) <= near * goal.tolerance
-        ):
+        bound = mean_error(body, search.residual, norm(search.step))
+        if now.accuracy <= now.finest and bound <= near * goal.tolerance:
             now = check(case, search, goal, now, floor)
             continue
         now = quasi_newton_step(case, search, now)

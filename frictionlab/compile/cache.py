@@ -208,7 +208,7 @@ def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
     for value in values:
         value = getattr(value, "py_func", value)
         if id(value) in seen:  # which one stands here matters, too
-            yield f"{value.__module__ if hasattr(value, '__module__') else ''}.{value.__name__}"
+            yield f"{getattr(value, '__module__', '')}.{value.__name__}"
             continue
         if isinstance(value, FunctionType | type | ModuleType):
             seen.add(id(value))

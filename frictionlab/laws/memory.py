@@ -180,13 +180,13 @@ class MemoryLaw(FrictionLaw, ABC):
     def yield_deflection(self, k: int) -> float:
         """Deflection [scene length] below which the k-th moves with the slip, and which it never exceeds.
 
-        At it and with z.v > 0, ``rate`` moves it along the circle of that radius. Infinite for none. A corner that a
-        law does not declare is met by short steps: that costs time, and may cost accuracy.
+        At it and with z.v > 0, ``rate`` moves it along the circle of that radius. Infinite for none, or where
+        a law does not say: it is then found from ``rate`` and ``steady``, if it is the same at slips of any speed.
         """
         return math.inf
 
     def elastic_unloading(self) -> bool:
-        """Whether each deflection follows the slip wherever z.v <= 0: friction may have a corner there."""
+        """Whether each deflection follows the slip wherever z.v <= 0; found from ``rate`` where it is not declared."""
         return False
 
     def remembers_stick(self) -> bool:

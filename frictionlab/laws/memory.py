@@ -186,7 +186,7 @@ class MemoryLaw(FrictionLaw, ABC):
         return math.inf
 
     def elastic_unloading(self) -> bool:
-        """Whether each deflection follows the slip wherever z.v <= 0; found from ``rate`` where it is not declared."""
+        """Whether each deflection follows the slip wherever z.v <= 0; found from ``rate`` if not declared."""
         return False
 
     def remembers_stick(self) -> bool:

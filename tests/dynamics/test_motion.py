@@ -79,10 +79,10 @@ def test_the_numbers_of_the_load_are_read_at_one_address():
 
 
 def test_the_springs_are_asked_by_few_beside_the_equation_of_motion():
-    implicit = {"methods/march/laps.py", "numerics/steppers/moreau.py"}  # springs at the end of the step
+    implicit = {"methods/march/adapters.py", "numerics/steppers/moreau.py"}  # springs at the end of the step
     momentum = {"methods/periodic/maps/stick.py"}  # over the first moment of slip
     power = {"orbit/read.py"}  # of the dashpots
-    slope = {"methods/periodic/maps/jacobian.py"}  # of the acceleration in time
+    slope = {"methods/periodic/maps/linearization.py"}  # of the acceleration in time
     assert uses_of(MECHANICS[:1]) <= ADDRESSES | implicit | momentum | power | slope
 
 

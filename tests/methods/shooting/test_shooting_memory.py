@@ -239,7 +239,7 @@ SOFT_ACROSS = fl.Transverse(natural_frequency=0.7, damping_ratio=0.1, load=fl.Lo
     "scene",
     [
         pytest.param(ALONG, id="slip along"),
-        pytest.param(ON_AN_ELLIPSE, id="slip on an ellipse"),
+        pytest.param(ON_AN_ELLIPSE, id="slip on an ellipse", marks=deep),
         pytest.param(driven(0.5), id="line", marks=deep),
         pytest.param(driven(0.5).model_copy(update={"transverse": SOFT_ACROSS}), id="plane", marks=deep),
     ],

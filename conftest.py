@@ -1,6 +1,8 @@
-"""Lets the tests of a checkout see the plugins without installing them, by the door they enter when installed.
+"""Profiles of the tests, and the plugins of this checkout seen without installing them.
 
-The battery of checks that each plugin's law must pass takes minutes: it is in the deep profile.
+The default profile draws the same examples on every machine and in every run. ``HYPOTHESIS_PROFILE=deep`` draws fresh
+ones by the thousand, and runs what takes minutes: the battery of checks that each plugin's law must pass, and every
+golden row. Plugins enter by the door they use when installed.
 """
 
 from __future__ import annotations
@@ -10,6 +12,17 @@ import sys
 import tempfile
 import tomllib
 from pathlib import Path
+
+import hypothesis
+from hypothesis.internal.conjecture import providers
+
+hypothesis.settings.register_profile("default", max_examples=20, deadline=None, derandomize=True)
+hypothesis.settings.register_profile(
+    "deep", max_examples=5_000, deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
+)
+hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE") or "default")
+# Hypothesis also draws numbers that it reads in whichever modules are loaded: no test may depend on those.
+setattr(providers, "is_local_module_file", lambda path: False)  # noqa: B010
 
 FOLDERS = sorted(path.parent for path in Path(__file__).parent.glob("plugins/*/pyproject.toml"))
 collect_ignore_glob = (

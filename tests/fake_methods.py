@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -41,11 +42,15 @@ class Fake(Method):
     troubles: ClassVar[dict[float, Callable[[], None]]] = {}
 
     pause: NonNegative = 0.0
+    touch: str = ""
+    """A file to make when the first chunk is begun."""
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         return "thirteen, of all numbers" if scene.belt_speed in self.refused_at else None
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        if self.touch:
+            Path(self.touch).touch()
         time.sleep(self.pause)
         speeds = [scene.belt_speed for scene in scenes]
         assert sorted(set(speeds)) == speeds

@@ -438,13 +438,16 @@ def test_normal_load_and_coefficient_count_only_as_their_product(scene, factor):
     assert other.mean_friction / factor == pytest.approx(one.mean_friction, abs=within)
 
 
-@given(
-    frequency=st.floats(0.3, 4.0).filter(lambda value: abs(value - 1.0) > 1e-3),
-    damping=st.floats(0.0, 0.6),
-    share=st.floats(0.05, 0.9),
+# undamped and slow, superharmonics resonate at 1/3, 1/5, ...: there Den Hartog's formula divides by zero
+between_resonances = st.tuples(st.floats(0.3, 4.0), st.floats(0.0, 0.6)).filter(
+    lambda drawn: abs(drawn[0] - 1.0) > 1e-3 and (drawn[1] > 0.01 or drawn[0] > 0.55)
 )
-@example(frequency=0.8, damping=0.0, share=0.5)
-def test_symmetric_motion_without_stops_has_den_hartogs_amplitude(frequency, damping, share):
+
+
+@given(between_resonances, st.floats(0.05, 0.9))
+@example((0.8, 0.0), 0.5)
+def test_symmetric_motion_without_stops_has_den_hartogs_amplitude(frequency_and_damping, share):
+    frequency, damping = frequency_and_damping
     stretch, delay, response = den_hartog(frequency, damping)
     friction = share * min(1.0, response / math.hypot(stretch, delay))
     still = Scene(
@@ -453,7 +456,6 @@ def test_symmetric_motion_without_stops_has_den_hartogs_amplitude(frequency, dam
         belt_speed=0.0,
         drive=Drive(amplitude=1.0, frequency=frequency),
     )
-    assume(damping > 0.01 or frequency > 0.55)  # undamped, slow: superharmonic resonances at 1/3, 1/5, ...
     found = exact(still)
     assume(found.stick_fraction == 0.0 and found.reversals == 2.0)
     amplitude = np.abs(found.orbit.x.real[:, [0, -1]]).max()  # pieces end where the velocity does

@@ -509,7 +509,7 @@ def test_a_stopped_run_keeps_what_is_done_and_the_same_command_continues(
     ratios = [0.1 * k for k in range(1, 9)]
     slow = [{"kind": "fake", "pause": 0.5, "touch": "begun"}]
     sweep = {"scene.damping_ratio": ratios, "scene.belt_speed": POINTS}
-    study(methods=slow, sweep=sweep, columns=["mean_friction"])  # a first orbit read may take longer than the grace
+    study(methods=slow, sweep=sweep, columns=["mean_friction"])
     command = [*COMMAND, "run", "study.yaml", "-o", "out", "-j", "1"]
     process = subprocess.Popen(
         command, env=surroundings, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True

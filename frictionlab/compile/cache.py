@@ -1,4 +1,4 @@
-"""Compiled kernel entries kept on disk, each in a module named by a hash of all the code it can reach.
+"""Compiled kernel entries, each named by a hash of all the code it can reach.
 
 numba's own cache misses an edit in another file, so an entry is named by every piece of code and every constant the
 kernel and the law can reach.
@@ -6,24 +6,17 @@ kernel and the law can reach.
 
 from __future__ import annotations
 
-import atexit
 import contextlib
 import hashlib
-import importlib.util
 import inspect
 import itertools
-import os
 import platform
 import secrets
-import shutil
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
 from functools import cache, partial
-from importlib.abc import MetaPathFinder
-from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
@@ -37,6 +30,7 @@ from numba.core.bytecode import FunctionIdentity
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
 from frictionlab.compile.dispatch import law_of_numbers, names_used
+from frictionlab.compile.kept import KeptEntry
 from frictionlab.faults import cannot_compile
 from frictionlab.laws.base import FrictionLaw
 
@@ -98,22 +92,22 @@ def _entry(
     """The compiled entry and the type of the law's numbers (None without a law)."""
     parameters = ", ".join(inspect.signature(kernel.py_func).parameters)
     source = (
-        '"""A compiled kernel entry of frictionlab, named by its content; safe to delete."""\n'
         "from numba import njit\n\n\n"
         f"# {', '.join((*fields, *structure))}\n"
-        '@njit(nogil=True, error_model="numpy", cache=True)\n'
+        '@njit(nogil=True, error_model="numpy")\n'
         f"def entry({parameters}):\n    return kernel({parameters})\n"
     )
     numbers = _numbers(law, fields, structure) if law is not None else None
     name = f"frictionlab_{kernel.py_func.__name__}_{_fingerprint(source, kernel, law)}"
-    return _load(name, source, kernel=kernel).entry, numbers
+    entry = _module(name, source, kernel=kernel).entry
+    entry._cache = KeptEntry(name)
+    return entry, numbers
 
 
 @cache
 def _numbers(law: type[FrictionLaw], fields: tuple[str, ...], structure: tuple[str, ...]) -> Any:
     """The type of a law's numbers, one for all entries: what they share is compiled once in a process."""
     source = (
-        '"""The numbers of a law as kernels of frictionlab see them, named by content; safe to delete."""\n'
         "from typing import NamedTuple\n\n\n"
         f"# {', '.join(structure)}\n"
         "class Numbers(NamedTuple):\n    "
@@ -122,71 +116,27 @@ def _numbers(law: type[FrictionLaw], fields: tuple[str, ...], structure: tuple[s
     )
     name = f"frictionlab_numbers_{_fingerprint(source, law)}"
     known = sys.modules.get(name)  # of another class of the same code: entries may be kept that name its type
-    numbers = (known or _load(name, source)).Numbers
+    numbers = (known or _module(name, source)).Numbers
     law_of_numbers[numbers] = law, structure
     return numbers
 
 
-def _load(name: str, source: str, **given: Any) -> ModuleType:
-    """The module of this content, some names given before it runs."""
-    path = _written(cache_folder() / f"{name}.py", source)
-    if path is None:  # nowhere to write: compile afresh in every process
-        folder = Path(tempfile.mkdtemp(prefix="frictionlab-"))
-        atexit.register(shutil.rmtree, folder, ignore_errors=True)
-        path = folder / f"{name}.py"
-        path.write_text(source)
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
+def _module(name: str, source: str, **given: Any) -> ModuleType:
+    """The module of this content, some names given before it runs; machine code refers to it by name."""
+    module = ModuleType(name)
     vars(module).update(given)
     sys.modules[name] = module
-    spec.loader.exec_module(module)
+    exec(compile(source, f"<{name}>", "exec"), vars(module))
     return module
 
 
-class _NumbersOfOtherVersions(MetaPathFinder):
-    """Finds the numbers of laws in the cache folder.
-
-    An entry keeps machine code for all numbers it was ever called with, and numba asks for their modules when it
-    reads the entry: also for those that other versions of ``_numbers`` named.
-    """
-
-    def find_spec(self, fullname: str, path: Any, target: Any = None) -> ModuleSpec | None:
-        file = cache_folder() / f"{fullname}.py"
-        if not fullname.startswith("frictionlab_numbers_") or not file.exists():
-            return None
-        return importlib.util.spec_from_file_location(fullname, file)
-
-
-sys.meta_path.append(_NumbersOfOtherVersions())
-
-
-def _written(path: Path, source: str) -> Path | None:
-    """The module file, written once and whole, or None where that is not possible."""
-    try:
-        if not path.exists():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-            with os.fdopen(handle, "w") as file:
-                file.write(source)
-            os.replace(temporary, path)
-    except OSError:
-        return None
-    return path
-
-
-def cache_folder() -> Path:
-    """Where compiled entries are kept: $FRICTIONLAB_CACHE, else the user's cache folder."""
-    if chosen := os.environ.get("FRICTIONLAB_CACHE"):
-        return Path(chosen)
-    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"
-    return Path(base) / "frictionlab"
-
-
+HOST_ONLY = {"kept.py"}
+"""Files of this folder that decide where machine code is kept, and nothing in it."""
 # Read once: were these files edited while a process runs, an entry would be named by the new ones and refer to
 # numbers named by the old ones, and no other process could load it.
-_COMPILER = b"".join(file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py")))
+_COMPILER = b"".join(
+    file.read_bytes() for file in sorted(Path(__file__).parent.glob("*.py")) if file.name not in HOST_ONLY
+)
 
 
 def _fingerprint(*roots: Any) -> str:

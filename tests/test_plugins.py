@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
 
 import pytest
+from profiles import deep
 
 from frictionlab.study import load_study
 
 PROJECT = Path(__file__).parent.parent
 FOLDERS = sorted(path.parent for path in PROJECT.glob("plugins/*/pyproject.toml"))
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 every_folder = pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
 
 
@@ -43,7 +42,7 @@ def test_a_folder_holds_a_law_a_study_that_runs_it_and_is_told_of(folder: Path) 
     assert f"[{folder.name}]({folder.name})" in (PROJECT / "plugins" / "README.md").read_text()
 
 
-@pytest.mark.skipif(not DEEP, reason="making an environment is in the deep profile")
+@deep("making an environment")
 def test_in_a_fresh_environment_a_plugin_is_listed_and_run_and_missed_when_it_is_gone(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-m", "venv", tmp_path / "venv"], check=True)
     python, frictionlab = tmp_path / "venv" / "bin" / "python", tmp_path / "venv" / "bin" / "frictionlab"

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 
 import pytest
+from profiles import DEEP
 
 import frictionlab as fl
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.study import load_study
 
 STUDIES = sorted((Path(__file__).parent.parent / "studies").glob("*.yaml"))
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 
 
 def is_for_the_deep_profile(study: Path) -> bool:

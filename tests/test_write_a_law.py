@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.runner.saved import read_saved
 from frictionlab.study import load_study
 
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 PAGE = (Path(__file__).parents[1] / "docs" / "write_a_law.md").read_text()
 COMMANDS = [
     shlex.split(line)
@@ -117,7 +117,7 @@ def test_smoothing_is_a_stepper_of_march(walked: Path) -> None:
     assert case.method.name == "march"
 
 
-@pytest.mark.skipif(not DEEP, reason="compiles the law and installs it, in the deep profile")
+@deep("compiles the law and installs it")
 def test_the_whole_way_leads_to_a_curve(walked: Path) -> None:
     pytest.importorskip("frictionlab.testing")
     site = walked.parent / "site"

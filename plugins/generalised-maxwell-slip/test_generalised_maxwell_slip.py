@@ -6,7 +6,6 @@ import cmath
 import csv
 import json
 import math
-import os
 import sys
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from generalised_maxwell_slip import GeneralisedMaxwellSlip
 from hypothesis import given
 from hypothesis import strategies as st
 from maxwell_slip import MaxwellSlip
+from profiles import deep
 
 import frictionlab as fl
 
@@ -23,7 +23,6 @@ sys.path.append(str(Path(__file__).parents[2] / "tests" / "reference"))
 from generalised_events import Elements
 from make_generalised import RESULTS
 
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 TOLERANCE = 1e-8
 with RESULTS.open(newline="") as _file:
     ROWS = list(csv.DictReader(_file))
@@ -33,14 +32,14 @@ sizes = st.floats(0.01, 10.0)
 elements = st.lists(st.tuples(sizes, sizes), min_size=1, max_size=5)
 vectors = st.builds(cmath.rect, sizes, st.floats(-3.1, 3.1))
 BODY = fl.Scene(damping_ratio=0.4, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1.5))
-deep_alone = pytest.mark.skipif(not DEEP, reason="more kernels to compile: HYPOTHESIS_PROFILE=deep")
+compiling = deep("more kernels to compile")
 
 
 def _marked(row: dict[str, str]) -> object:
-    """By default one element on the line and in the plane, and three on the line."""
+    """By default one element on a body, and three with their slip given: two kernels."""
     kind, count, *_ = row["name"].split("/")
-    quick = count == "1" or (count == "3" and kind in ("slip", "body"))
-    return pytest.param(row, id=row["name"], marks=() if quick else deep_alone)
+    quick = (kind, count) in (("body", "1"), ("slip", "3"))
+    return pytest.param(row, id=row["name"], marks=() if quick else compiling)
 
 
 @pytest.mark.parametrize("row", [_marked(row) for row in ROWS])
@@ -74,6 +73,7 @@ def test_the_reference_of_constant_friction_is_maxwell_slip_along_a_line(name):
     assert abs(found.mean_friction - float(row["mean_friction"])) <= found.error <= TOLERANCE
 
 
+@compiling
 @pytest.mark.parametrize("attraction", [0.01, 1.0, 100.0])
 def test_along_a_line_and_with_constant_friction_it_is_maxwell_slip_whatever_the_attraction(attraction):
     law = GeneralisedMaxwellSlip(
@@ -99,6 +99,7 @@ def test_one_element_of_constant_friction_is_jenkins_along_a_line():
     assert abs(found.mean_friction - same.mean_friction) <= found.error + same.error
 
 
+@compiling
 @pytest.mark.parametrize("attraction", [1.0, 10.0])
 def test_while_every_element_slips_in_the_plane_the_mean_of_constant_friction_is_coulombs(attraction):
     slip, across = (

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from profiles import deep
 
 from frictionlab.compile import cache, kept
 from frictionlab.compile.cache import compiled
@@ -236,7 +237,7 @@ print(compiled(difference)(5.0, 2.0))
 """
 
 
-@pytest.mark.skipif(os.environ.get("HYPOTHESIS_PROFILE") != "deep", reason="ten processes take a minute")
+@deep("ten processes take a minute")
 def test_ten_processes_on_a_cold_cache_are_all_right(folder):
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
     racing = [

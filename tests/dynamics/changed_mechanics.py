@@ -7,15 +7,15 @@ replaced.
 from __future__ import annotations
 
 import json
-import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-sys.path.append(str(Path(__file__).parents[2] / "plugins" / "maxwell-slip"))
+sys.path += [str(Path(__file__).parents[1]), str(Path(__file__).parents[2] / "plugins" / "maxwell-slip")]
 
 from maxwell_slip import MaxwellSlip
+from profiles import DEEP
 
 from frictionlab.dynamics import motion
 from frictionlab.laws.coulomb import Coulomb
@@ -68,7 +68,6 @@ CASES: dict[str, tuple[Any, Any, dict[str, Any]]] = {
 }
 
 
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 SLOW = "shooting, elements", "rk4 of elements"
 """Cases that Python takes half a minute for; in kernels they share the map and the step of one bristle."""
 

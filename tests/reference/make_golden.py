@@ -1,6 +1,6 @@
 """Pins today's numbers: python tests/reference/make_golden.py [--only PATTERN] [--out FOLDER].
 
-Solves every group of golden_scenes.py and writes golden.csv, golden_curves.csv and golden_made_on.json beside itself,
+Solves every group of golden_scenes.py and writes golden.csv and golden_curves.csv beside itself,
 or into FOLDER. With --only, groups whose name matches PATTERN (of fnmatch) are solved anew and the other rows kept.
 Make the tables anew only for a change of behaviour that is meant; one of the path of computation alone is listed in
 golden_changes.csv (see tests/golden).
@@ -45,8 +45,6 @@ def main(only: str, out: Path) -> None:
         golden_files.write(
             out / name, dict(sorted(kept.items(), key=lambda row: order[row[0].split("/")[0]]))
         )
-    if out == HERE:
-        golden_files.write_machine()
     print(f"{len(results)} rows, {len(curves)} curves")
 
 

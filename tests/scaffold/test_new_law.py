@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from profiles import DEEP
 
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.registry.law_file import read_law_file
 from frictionlab.study import load_study
 
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 MEMORIES = ["none", "bristle"]
 SLIP = {"slip": {"velocity_amplitude": 2, "frequency": 1}, "belt_speed": 1}
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import os
-
 import pytest
 from broken_laws import COMPILED, QUICK
 from broken_laws.case import Case
+from profiles import deep
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.testing import CHECKS, check_law, running
 from frictionlab.testing.strategies import quietly
 
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
-deep_alone = pytest.mark.skipif(not DEEP, reason="compiles a kernel for each: HYPOTHESIS_PROFILE=deep")
+deep_alone = deep("compiles a kernel for each")
 TWINS = {(case.twin, case.check): case for case in QUICK}.values()
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from dataclasses import replace
 
 import collocation
@@ -27,7 +26,6 @@ from frictionlab.orbit.read import read_columns
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
 
 LAW = Coulomb(mu=0.4)
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 PLANAR = sorted(REFERENCE.glob("planar_fig*.csv"))
 FIGURES = {
     (4.0, 1.0): 45.0,

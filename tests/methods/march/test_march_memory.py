@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
-
 import pytest
 from answered import with_columns
 from generalised_maxwell_slip import GeneralisedMaxwellSlip
 from memory_laws import Ageing, elements
+from profiles import deep
 
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.methods.march.method import March
@@ -15,8 +14,7 @@ from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Scene, Slip, Transverse
 
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
-deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
+compiling = deep("more kernels to compile")
 ONE = elements(stiffness=(4.0,), reach=(0.1,))
 THREE = elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
 STICKING = GeneralisedMaxwellSlip(
@@ -63,7 +61,7 @@ def test_march_and_shooting_agree_about_three_elements():
     assert agree(solve(March(), scene, THREE, 1e-4), solve(Shooting(), scene, THREE, 1e-6))
 
 
-@deep
+@compiling
 @pytest.mark.parametrize("law", [AGEING, AGEING.model_copy(update={"b": 0.015})], ids=["rising", "falling"])
 def test_march_and_shooting_agree_about_an_age_where_slip_never_reverses(law):
     scene = driven(20.0)

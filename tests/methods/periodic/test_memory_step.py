@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import os
 from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
 from maxwell_slip import MaxwellSlip
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.compile.cache import compiled
@@ -22,8 +22,7 @@ from frictionlab.methods.periodic.maps.step import step
 from frictionlab.numerics.steppers.rodas5p import COUPLINGS, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
 from frictionlab.scene.body import in_the_plane, on_the_line
 
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
-deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
+compiling = deep("more kernels to compile")
 BELT_SPEED, START = 1.0, 0.1
 LUGRE = fl.LuGre(mu_kinetic=0.3, mu_static=0.5, stiffness=40, damping=0.01, stribeck_speed=0.5)
 
@@ -145,14 +144,17 @@ def elements(n: int) -> MaxwellSlip:
     return MaxwellSlip(mu=[0.4 / n] * n, stiffness=[10.0 * (k + 1) for k in range(n)])
 
 
-@pytest.mark.parametrize("planar", [False, True], ids=["line", "plane"])
 @pytest.mark.parametrize(
-    "law",
+    ("law", "planar"),
     [
-        pytest.param(LUGRE, id="lugre"),
-        pytest.param(elements(3), id="three elements"),
-        pytest.param(elements(1), id="one element", marks=deep),
-        pytest.param(elements(10), id="ten elements", marks=deep),
+        pytest.param(LUGRE, False, id="lugre, line"),
+        pytest.param(LUGRE, True, id="lugre, plane", marks=compiling),
+        pytest.param(elements(3), False, id="three elements, line", marks=compiling),
+        pytest.param(elements(3), True, id="three elements, plane"),
+        pytest.param(elements(1), False, id="one element, line", marks=compiling),
+        pytest.param(elements(1), True, id="one element, plane", marks=compiling),
+        pytest.param(elements(10), False, id="ten elements, line", marks=compiling),
+        pytest.param(elements(10), True, id="ten elements, plane", marks=compiling),
     ],
 )
 @pytest.mark.parametrize("h", [1e-3, 0.2])
@@ -165,7 +167,7 @@ def test_elimination_along_the_arrow_is_elimination_in_full(law: Any, planar: bo
     assert np.abs(system.real(state) - known).max() <= 1e-12 * np.abs(known).max()
 
 
-@pytest.mark.parametrize("planar", [False, True], ids=["line", "plane"])
+@pytest.mark.parametrize("planar", [False, pytest.param(True, marks=compiling)], ids=["line", "plane"])
 def test_a_step_is_of_order_five(planar: bool) -> None:
     soft = LUGRE.model_copy(update={"stiffness": 2.0})
     span, errors = 0.1, []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 
 import collocation
 import numpy as np
@@ -12,6 +11,7 @@ from answered import with_columns
 from collocation import REFERENCE
 from hypothesis import given
 from hypothesis import strategies as st
+from profiles import DEEP
 from strategies import sizes
 
 from frictionlab.laws.base import FrictionLaw
@@ -25,7 +25,6 @@ from frictionlab.theory.rest import resting_range, stays_at_rest
 PLANAR = sorted(REFERENCE.glob("planar_fig*.csv"))
 ON_THE_LINE = sorted(REFERENCE.glob("sdof_fig*.csv"))
 LAW = Coulomb(mu=0.4)
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
 """Whether to look at every point instead of every few."""
 
 of_file = pytest.mark.parametrize("path", PLANAR, ids=lambda path: path.stem)

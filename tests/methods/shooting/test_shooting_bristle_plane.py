@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 from answered import with_columns
+from profiles import DEEP, deep
 
 import frictionlab as fl
 from frictionlab.laws.memory import BristleLaw
@@ -17,9 +17,8 @@ from frictionlab.methods.shooting.method import Shooting
 REFERENCE = Path(__file__).parents[2] / "reference"
 MORE = pd.read_csv(REFERENCE / "bristle_more.csv")
 SYSTEM = pd.read_csv(REFERENCE / "dynamic_laws_system.csv")
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
-WHY = "the planar kernels of each law take half a minute to compile: only those of one are in the default profile"
-deep = pytest.mark.skipif(not DEEP, reason=WHY)
+WHY = "the planar kernels of each law take half a minute to compile"
+compiling = deep(WHY)
 
 
 def scenes(belt_speeds: np.ndarray, omega_r: float, across: float = 10.0) -> list[fl.Scene]:
@@ -49,7 +48,7 @@ def law_of(row: pd.Series) -> BristleLaw:
 @pytest.mark.parametrize("kind", ["dahl", "lugre", "dupont"])
 def test_planar_bristles_are_true_to_the_reference(kind: str) -> None:
     if kind != "dupont" and not DEEP:
-        pytest.skip(WHY)
+        pytest.skip(f"{WHY}: in the deep profile")
     rows = MORE[(MORE["omega_r"] != "none") & (MORE["kind"] == kind)].fillna(1.0)
     assert len(rows) >= 6
     for (omega_r, _length), curve in rows.groupby(["omega_r", "presliding_length"]):
@@ -106,7 +105,7 @@ def test_an_orbit_is_found_where_the_steps_of_a_map_jump_by_as_much_as_is_asked(
         assert abs(answers.columns["mean_friction"][0] - 0.13038352) <= answers.columns["error"][0] + 1e-10
 
 
-@deep
+@compiling
 def test_planar_jenkins_friction_moves_on_its_circle_and_tends_to_coulombs() -> None:
     gaps = []
     for length in (1.0, 1e-2, 1e-4):
@@ -125,7 +124,7 @@ def test_planar_jenkins_friction_moves_on_its_circle_and_tends_to_coulombs() -> 
     assert gaps[0] > 20 * gaps[1] > 400 * gaps[2] or gaps[2] < 1e-6
 
 
-@deep
+@compiling
 def test_without_a_load_across_the_belt_planar_bristles_are_those_of_the_line() -> None:
     law = fl.Dahl(mu=0.4, presliding_length=0.1)
     planar = with_columns(Shooting(), scenes([15.0], 0.5, across=0.0), law, 1e-8)
@@ -142,7 +141,7 @@ def test_without_a_load_across_the_belt_planar_bristles_are_those_of_the_line() 
     assert "x2 decays" in planar.model[0]
 
 
-@deep
+@compiling
 def test_the_three_planar_forms_are_three_laws() -> None:
     means = {}
     for form in ("vectorial", "per-axis", "rotated"):

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import cmath
 import math
-import os
 from typing import Any
 
 import numpy as np
 import pytest
 from maxwell_slip import MaxwellSlip
 from memory_laws import Ageing, BrokenAway, Elements, elements
+from profiles import deep
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
 from frictionlab.compile.dispatch import interpreted
 from frictionlab.methods.periodic.maps.memory_state import scalar_coordinate, scalar_share
 
-DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
-deep = pytest.mark.skipif(not DEEP, reason="more kernels to compile: in the deep profile")
+compiling = deep("more kernels to compile")
 ONE = elements(stiffness=(40.0,), reach=(0.01,))
 THREE = elements(stiffness=(10.0, 2.0, 0.5), reach=(0.015, 0.05, 0.3))
 STIFF = elements(stiffness=(1e4, 2e3, 5e2), reach=(1.5e-5, 5e-5, 3e-4))
@@ -152,7 +151,7 @@ def test_one_element_is_jenkins_friction_under_a_prescribed_slip(belt_speed: flo
     assert found.energy_contact == pytest.approx(known.energy_contact, rel=1e-3)
 
 
-@deep
+@compiling
 def test_elements_that_never_yield_leave_the_mean_open() -> None:
     slip = fl.Slip(velocity_amplitude=0.05, frequency=2)
 
@@ -171,9 +170,9 @@ TAKING_NOTHING_BACK = Elements(stiffness=THREE.stiffness, reach=THREE.reach)
     [
         pytest.param(THREE, 1.0, id="three elements"),
         pytest.param(STIFF, 1.0, id="three stiff elements"),
-        pytest.param(TAKING_NOTHING_BACK, 1.0, id="springs that stay where a step overshot", marks=deep),
-        pytest.param(SLIPPERY, 40.0, id="no reversal", marks=deep),
-        pytest.param(SLIPPERY, 3.0, id="two reversals", marks=deep),
+        pytest.param(TAKING_NOTHING_BACK, 1.0, id="springs that stay where a step overshot", marks=compiling),
+        pytest.param(SLIPPERY, 40.0, id="no reversal", marks=compiling),
+        pytest.param(SLIPPERY, 3.0, id="two reversals", marks=compiling),
     ],
 )
 def test_the_error_covers_what_scipy_finds_on_the_interpreted_law(
@@ -200,7 +199,7 @@ def test_a_curve_of_elements_has_every_column_of_a_steady_state() -> None:
     assert table["floquet"].max() < 1.0
 
 
-@deep
+@compiling
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
 def test_one_element_is_jenkins_friction_in_the_plane(tolerance: float) -> None:
     drive, load = fl.Drive(unbalance=10, frequency=1.5), fl.Load(unbalance=6)
@@ -214,7 +213,7 @@ def test_one_element_is_jenkins_friction_in_the_plane(tolerance: float) -> None:
     assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
 
 
-@deep
+@compiling
 @pytest.mark.parametrize("law", [THREE, TAKING_NOTHING_BACK], ids=["takes back", "stays"])
 def test_the_error_covers_what_scipy_finds_of_elements_in_the_plane(law: MaxwellSlip | Elements) -> None:
     across = fl.Transverse(natural_frequency=0.7, damping_ratio=0.4, load=fl.Load(unbalance=6))
@@ -235,13 +234,14 @@ ON_AN_ELLIPSE = ALONG.model_copy(
 SOFT_ACROSS = fl.Transverse(natural_frequency=0.7, damping_ratio=0.1, load=fl.Load(unbalance=6))
 
 
+@compiling
 @pytest.mark.parametrize(
     "scene",
     [
         pytest.param(ALONG, id="slip along"),
-        pytest.param(ON_AN_ELLIPSE, id="slip on an ellipse", marks=deep),
-        pytest.param(driven(0.5), id="line", marks=deep),
-        pytest.param(driven(0.5).model_copy(update={"transverse": SOFT_ACROSS}), id="plane", marks=deep),
+        pytest.param(ON_AN_ELLIPSE, id="slip on an ellipse"),
+        pytest.param(driven(0.5), id="line"),
+        pytest.param(driven(0.5).model_copy(update={"transverse": SOFT_ACROSS}), id="plane"),
     ],
 )
 def test_a_memory_that_declares_no_corner_is_the_bristle_law_that_does(scene: fl.Scene) -> None:
@@ -255,7 +255,7 @@ def test_a_memory_that_declares_no_corner_is_the_bristle_law_that_does(scene: fl
         assert abs(found.mean_friction - known.mean_friction) <= found.error + known.error
 
 
-@deep
+@compiling
 def test_one_kernel_follows_many_elements() -> None:
     """Twenty springs, each a share of friction: Iwan's distribution, that of one law whatever their order."""
     stiffness = [0.3 * 1.3**k for k in range(20)]

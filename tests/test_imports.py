@@ -20,6 +20,7 @@ PROJECT = HOUSE.parent
 # The rooms are the folders of the package, and those of its methods, from the ground up; a file beside the folders is
 # one too. room -> the rooms it may import. Modules of one room may import each other, but no law another law.
 ARROWS = {
+    "printable": [],
     "quantities": [],
     "columns": [],
     "laws": ["quantities"],
@@ -56,16 +57,16 @@ ARROWS = {
     ],
     "methods.auto": ["laws", "methods.base", "methods.exact", "methods.shooting", "scene"],
     "registry": ["faults", "laws", "methods.base"],
-    "study": ["columns", "laws", "methods.base", "registry", "scene"],
+    "study": ["columns", "laws", "methods.base", "printable", "registry", "scene"],
     "results": [
         *("columns", "laws", "methods.base", "orbit", "quantities", "registry", "scene", "shape", "study"),
         "theory",
     ],
     "runner": [
-        *("columns", "faults", "laws", "methods.base", "orbit", "quantities", "registry", "results", "scene"),
-        "study",
+        *("columns", "faults", "laws", "methods.base", "orbit", "printable", "quantities", "registry"),
+        *("results", "scene", "study"),
     ],
-    "charts": ["columns"],
+    "charts": ["columns", "printable"],
     "report": ["charts", "columns", "registry", "results", "runner", "scene", "study"],
     "scaffold": ["registry", "runner"],
     "bench": [
@@ -80,6 +81,7 @@ ARROWS = {
         "bench",
         "charts",
         "faults",
+        "printable",
         "registry",
         "report",
         "results",

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from frictionlab.charts.curves import CurveData, Family, SweptValue, family_of, is_logarithmic, kinks
 from frictionlab.columns import SI, belt_speed, word
+from frictionlab.printable import printable
 
 FIGURES = {
     "mean_friction": ["mean_friction"],
@@ -100,7 +101,7 @@ def draw_figures(table: pd.DataFrame, title: str, folder: Path) -> list[Path]:
     with mpl.rc_context(STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # of a title: an empty box says it
         for name, columns in figure_columns(table).items():
-            files += _save(_figure(family, columns, title), folder / name)
+            files += _save(_figure(family, columns, printable(title)), folder / name)
     return files
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import io
 import os
 import threading
 import traceback
@@ -50,7 +51,9 @@ def _invoke(arguments: Sequence[str] | None) -> int:
 def _report(problem: BaseException) -> int:
     """Print what went wrong, and choose the exit code."""
     if isinstance(problem, click.ClickException):
-        problem.show()
+        told = io.StringIO()
+        problem.show(told)
+        print_message(told.getvalue().rstrip("\n"))
         return problem.exit_code
     if isinstance(problem.__context__, BrokenPipeError):
         discard_stdout()  # the reader of a help text had enough: click's way to say so

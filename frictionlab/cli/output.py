@@ -11,6 +11,8 @@ from typing import Any
 
 import click
 
+from frictionlab.printable import printable
+
 OK, BUG, WRONG, FAILED, BROKEN_PLUGIN, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 
@@ -23,16 +25,22 @@ class CommandError(Exception):
 
 
 def open_streams() -> None:
-    """Replace the stdout or stderr that the caller closed, which Python sets to None, by one that nobody reads."""
+    """Streams that take every text: one that the caller closed (Python: None) is replaced by one that nobody reads.
+
+    A character that a terminal cannot show is written with a backslash.
+    """
     for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:
+        stream = getattr(sys, name)
+        if stream is None:
             setattr(sys, name, io.StringIO())
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def print_result(text: str) -> None:
     """A result, on stdout; a reader that closed the pipe is no error."""
     try:
-        click.echo(text)
+        click.echo(printable(text))
         sys.stdout.flush()
     except BrokenPipeError:
         discard_stdout()
@@ -47,7 +55,7 @@ def print_records(records: list[dict[str, Any]]) -> None:
 def print_message(message: str) -> None:
     """A message, on stderr; a closed stderr is no error."""
     with suppress(OSError):
-        click.echo(message, err=True)
+        click.echo(printable(message), err=True)
 
 
 def flush_stdout(code: int) -> int:

@@ -17,6 +17,8 @@ def plot_command(run: Path) -> None:
     from frictionlab.runner.saved import read_saved
 
     saved = read_saved(run)
+    for line in saved.damaged:
+        print_message(line)
     if files := draw_into(saved.table, saved.title, run):
         print_result("\n".join(map(str, files)))
     else:

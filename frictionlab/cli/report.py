@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from frictionlab.cli.figures import draw_into
-from frictionlab.cli.output import print_result
+from frictionlab.cli.output import print_message, print_result
 
 
 @click.command("report")
@@ -18,5 +18,7 @@ def report_command(run: Path) -> None:
     from frictionlab.runner.saved import read_saved
 
     saved = read_saved(run)
+    for line in saved.damaged:
+        print_message(line)
     draw_into(saved.table, saved.title, run)
     print_result(str(write_report(saved)))

@@ -102,6 +102,8 @@ def _run(job: Job, asked: RunOptions) -> Run:
     from frictionlab.runner import api
     from frictionlab.runner.progress import Meter
 
+    for line in [] if asked.force else api.run_folder(job.study, job.out).damaged():
+        print_message(line)
     meter = Meter(sys.stderr)
     pool = ThreadPoolExecutor(asked.workers or os.cpu_count())
     try:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import errno
+import io
 import json
 import os
 import platform
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import shlex
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -14,7 +17,9 @@ from typing import Any, Literal
 
 import pandas as pd
 
+from frictionlab.printable import printable
 from frictionlab.runner.errors import FolderError, SaveError
+from frictionlab.runner.files import damage, remove_leftovers, stamp, stamps, write_whole
 from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study.study import LAW_COPIES
 
@@ -72,6 +77,14 @@ class RunFolder:
     def _orbits(self) -> Path:
         return self.path / "orbits.parquet"
 
+    @property
+    def _csv(self) -> Path:
+        return self.path / "results.csv"
+
+    @property
+    def _curves(self) -> Path:
+        return self.path / "curves.csv"
+
     def check(self, existing: Existing) -> None:
         """Raises FolderError where this run cannot be written, or would mix with another study."""
         nearest = next(place for place in [self.path, *self.path.absolute().parents] if place.exists())
@@ -81,7 +94,7 @@ class RunFolder:
             raise FolderError(
                 f"{self.path}: no permission to write in {nearest}; give another folder with -o"
             )
-        if self._study.exists() and not self._account.exists():
+        if self._study.exists() and not self._account.exists() and not self.table.exists():
             raise FolderError(
                 f"{self.path} holds a study.yaml that no run wrote; choose another folder with -o"
             )
@@ -122,10 +135,14 @@ class RunFolder:
     def _provenance(self) -> dict[str, Any]:
         try:
             found = json.loads(self._account.read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+            stamps(found)
+        except (OSError, ValueError, AttributeError):
             found = None
         if not isinstance(found, dict):
-            raise FolderError(f"{self.path} holds results, but no readable provenance.json; {REMEDY}")
+            raise FolderError(
+                f"{self.path} holds results, but no readable provenance.json; replace them: "
+                f"{rerun(self.path)} --force, or choose another folder with -o"
+            )
         return found
 
     def _difference(self) -> str:
@@ -147,25 +164,53 @@ class RunFolder:
         return [f"  the code of law '{law}' was edited since" for law in laws]
 
     def earlier(self, existing: Existing) -> pd.DataFrame | None:
-        """The table of an earlier run of this study; None without one. Raises FolderError."""
+        """The table of an earlier run of this study; None without an intact one. Raises FolderError."""
         return self._earlier(self.table, existing)
 
     def earlier_orbits(self, existing: Existing) -> pd.DataFrame | None:
-        """The orbits kept by an earlier run of this study; None without them."""
+        """The orbits kept by an earlier run of this study; None where they are not there or damaged."""
         return self._earlier(self._orbits, existing)
 
     def _earlier(self, path: Path, existing: Existing) -> pd.DataFrame | None:
-        if existing == "replace" or not path.exists():
+        if existing == "replace" or not path.exists() or self._damage(path.name):
             return None
+        return _parquet(path)
+
+    def damaged(self) -> list[str]:
+        """What is wrong with the files of an earlier run of this study, and what the next run does about it."""
+        if not self._account.exists():
+            return []
+        what = {self.table.name: "its points are", self._orbits.name: "its points are"}
+        found = {name: self._damage(name) for name in self._stamps()}
+        return [
+            f"{self.path / name} {wrong}; {what.get(name, 'it is')} made again"
+            for name, wrong in found.items()
+            if wrong
+        ]
+
+    def _damage(self, name: str) -> str:
+        """What is wrong with a file of an earlier run; '' for an intact one. Raises FolderError."""
+        path = self.path / name
         try:
-            return pd.read_parquet(path)
-        except (OSError, ValueError) as problem:  # pyarrow's errors are both
-            raise FolderError(f"{path} cannot be read ({problem}); {REMEDY}") from problem
+            wrong = damage(path, self._stamps().get(name, []))
+        except OSError as problem:
+            raise FolderError(f"{path} cannot be read ({problem.strerror}); {REMEDY}") from problem
+        if not wrong and path.suffix == ".parquet" and path.exists() and _parquet(path) is None:
+            return "is damaged: it is no table"
+        return wrong
+
+    def _stamps(self) -> dict[str, list[dict[str, Any]]]:
+        """What the files of an earlier run are known to hold; nothing where that is not known."""
+        with suppress(FolderError):
+            return stamps(self._provenance())
+        return {}
 
     def open(self, existing: Existing) -> None:
         """Create the folder; ``replace`` removes the results in it. Raises FolderError, SaveError."""
         try:
             self.path.mkdir(parents=True, exist_ok=True)
+            remove_leftovers(self.path)
+            remove_leftovers(self.path / LAW_COPIES)
             kept = self.identity.law_texts
             copies = [path for path in self._copies() if path.relative_to(self.path).as_posix() not in kept]
             for path in [*self._results(), *copies] if existing == "replace" else ():
@@ -174,7 +219,7 @@ class RunFolder:
             _refuse_folder(self.path, problem)
 
     def _results(self) -> Iterator[Path]:
-        yield from (self.table, self.path / "results.csv", self.path / "curves.csv", self._orbits)
+        yield from (self.table, self._csv, self._curves, self._orbits)
         yield self.path / "report.html"
         for pattern in ("*.svg", "*.png"):
             yield from (self.path / "figures").glob(pattern)
@@ -189,13 +234,37 @@ class RunFolder:
             "plugins": list(self.identity.law_texts),
             **runs,
             **_platform(),
+            "files": self._stamps_of_files(),
         }
-        text = json.dumps(provenance, indent=2) + "\n"
-        for name, law in self.identity.law_texts.items():
-            _write_copy(self.path / name, law)
         # provenance.json first: a study.yaml without it is treated as a user's own file.
-        _write(self._account, lambda path: path.write_text(text, encoding="utf-8"))
-        _write(self._study, lambda path: path.write_text(self.identity.text, encoding="utf-8"))
+        self._write_account(provenance)
+        for name, law in self.identity.law_texts.items():
+            _make_folder((self.path / name).parent)
+            self._put(self.path / name, law.encode())
+        write_whole(self._study, self.identity.text.encode())
+
+    def _write_account(self, account: dict[str, Any]) -> None:
+        write_whole(self._account, (json.dumps(account, indent=2) + "\n").encode())
+
+    def _put(self, path: Path, content: bytes) -> None:
+        """Write a file, its stamp first: a crash between the two leaves a file that is known."""
+        name, new = path.relative_to(self.path).as_posix(), stamp(content)
+        known = self._stamps().get(name, [])
+        if known == [new] and not self._damage(name):
+            return
+        self._know(name, [*known, new])
+        write_whole(path, content)
+        self._know(name, [new])
+
+    def _stamps_of_files(self) -> dict[str, list[dict[str, Any]]]:
+        return {name: known for name, known in self._stamps().items() if (self.path / name).exists()}
+
+    def _know(self, name: str, known: list[dict[str, Any]]) -> None:
+        try:
+            account = self._provenance()
+        except FolderError:  # somebody took it away; the end of the run writes it again
+            account = {}
+        self._write_account(account | {"files": self._stamps_of_files() | {name: known}})
 
     def previous_runs(self) -> list[dict[str, Any]]:
         """When and how long earlier runs of this study worked in this folder."""
@@ -203,28 +272,52 @@ class RunFolder:
 
     def save(self, table: pd.DataFrame, orbits: pd.DataFrame | None) -> None:
         """Write what a run continues from: results.parquet, and orbits.parquet if any. Raises SaveError."""
+        for path in (self._csv, self._curves):  # those of an earlier table
+            try:
+                path.unlink(missing_ok=True)
+            except OSError as problem:
+                raise SaveError(f"cannot replace {path}: {problem.strerror}") from problem
         if orbits is not None:
-            _write(self._orbits, lambda path: orbits.to_parquet(path, index=False))
-        _write(self.table, lambda path: table.to_parquet(path, index=False))
+            self._put(self._orbits, _as_parquet(orbits))
+        self._put(self.table, _as_parquet(table))
 
     def save_csv(self, table: pd.DataFrame) -> None:
         """Write results.csv; floats in shortest round-trip form. Raises SaveError."""
-        _write(self.path / "results.csv", lambda path: table.to_csv(path, index=False, lineterminator="\n"))
+        self._put(self._csv, _as_csv(table))
 
     def save_curves(self, curves: pd.DataFrame) -> None:
         """Write curves.csv, where there are curves. Raises SaveError."""
         if not curves.empty:
-            _write(
-                self.path / "curves.csv", lambda path: curves.to_csv(path, index=False, lineterminator="\n")
-            )
+            self._put(self._curves, _as_csv(curves))
 
     @property
     def has_csv(self) -> bool:
-        """Whether the table is there as text too."""
-        return (self.path / "results.csv").exists()
+        """Whether the table is there as text too, and intact."""
+        return self._csv.exists() and not self._damage(self._csv.name)
 
 
 REMEDY = "choose another folder with -o, or replace what is there with --force"
+
+
+def rerun(folder: Path, study: str = "STUDY") -> str:
+    """The command that runs a study into a folder."""
+    return f"frictionlab run {study} -o {shlex.quote(str(folder))}"
+
+
+def _parquet(path: Path) -> pd.DataFrame | None:
+    """The table of a file; None for one that holds none."""
+    try:
+        return pd.read_parquet(io.BytesIO(path.read_bytes()))
+    except Exception:  # a damaged file makes pyarrow raise whatever it stumbles over
+        return None
+
+
+def _as_parquet(table: pd.DataFrame) -> bytes:
+    return bytes(table.to_parquet(None, index=False))
+
+
+def _as_csv(table: pd.DataFrame) -> bytes:
+    return table.to_csv(None, index=False, lineterminator="\n").encode()
 
 
 def _brief(line: str, others: Sequence[str]) -> str:
@@ -273,28 +366,16 @@ def check_page(path: Path) -> None:
 
 def write_page(path: Path, text: str) -> None:
     """Write a page. Raises SaveError."""
-    _write(path, lambda file: file.write_text(text, encoding="utf-8"))
+    with suppress(OSError):
+        remove_leftovers(path.parent)
+    write_whole(path, printable(text).encode())
 
 
-def _write(path: Path, write: Callable[[Path], object]) -> None:
-    """Beside the place, then renamed into it: a reader or a crash sees the old file or the new one."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+def _make_folder(path: Path) -> None:
     try:
-        write(temporary)
-        os.replace(temporary, path)
+        path.mkdir(exist_ok=True)
     except OSError as problem:
-        raise SaveError(f"cannot write {path}: {problem.strerror or problem}") from problem
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _write_copy(path: Path, text: str) -> None:
-    """A file of laws as it was read, line ends and all."""
-    try:
-        path.parent.mkdir(exist_ok=True)
-    except OSError as problem:
-        raise SaveError(f"cannot make the folder {path.parent}: {problem.strerror}") from problem
-    _write(path, lambda file: file.write_bytes(text.encode()))
+        raise SaveError(f"cannot make the folder {path}: {problem.strerror}") from problem
 
 
 def _refuse_folder(path: Path, problem: OSError) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import json
+import shlex
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,23 +17,31 @@ from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
 from frictionlab.results.table import status_counts, whole
 from frictionlab.runner.errors import FolderError
-from frictionlab.study import Study, read_back
+from frictionlab.runner.files import damage, stamps
+from frictionlab.runner.folder import rerun
+from frictionlab.study import Study, StudyError, read_back
 from frictionlab.study.grid import grid_size
 
 WANTED = "RUN is a folder that 'frictionlab run STUDY -o RUN' wrote"
+REPORT_FILES = frozenset({"results.parquet", "curves.csv"})
+"""Files that a report is made from, beside the study and its account."""
 MOST_NAMED = 3
 """Runs named to somebody who gave the folder around them."""
 
 
 @dataclass(frozen=True)
 class Saved:
-    """A run in its folder. account: provenance.json; curves: curves.csv, None where there is none."""
+    """A run in its folder. account: provenance.json; curves: curves.csv, None where there is none.
+
+    damaged: what is wrong with files that a report does without, and the command that mends them.
+    """
 
     folder: Path
     study: Study
     table: pd.DataFrame
     curves: pd.DataFrame | None
     account: dict[str, Any]
+    damaged: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -59,9 +69,12 @@ def read_saved(folder: Path) -> Saved:
     """The run of this folder. Raises FolderError where it is no run or a damaged one, StudyError."""
     _check_is_a_run(folder)
     account = _account(folder)
-    study = read_back(folder / "study.yaml", account["code"])
+    study = _study(folder, account)
+    wrong = _damaged(folder, account, study)
+    for name in REPORT_FILES & wrong.keys():
+        raise FolderError(wrong[name])
     table = _table(folder, study)
-    saved = Saved(folder, study, whole(table), _curves(folder), account)
+    saved = Saved(folder, study, whole(table), _curves(folder), account, tuple(wrong.values()))
     _check_belongs_together(saved)
     return saved
 
@@ -80,9 +93,10 @@ def _check_is_a_run(folder: Path) -> None:
     names = ("results.parquet", "study.yaml", "provenance.json")
     missing = [name for name in names if not (folder / name).is_file()]
     if missing:
-        raise FolderError(
-            f"{folder} is not the folder of a run: no {', '.join(missing)} in it; {_folder_hint(folder)}"
-        )
+        hint = _folder_hint(folder)
+        if len(missing) < len(names):
+            hint = f"{hint}; if it is one, {_remedy(folder, 'provenance.json' in missing)}"
+        raise FolderError(f"{folder} is not the folder of a run: no {', '.join(missing)} in it; {hint}")
 
 
 def _folder_hint(folder: Path) -> str:
@@ -93,10 +107,33 @@ def _folder_hint(folder: Path) -> str:
     return f"it holds runs, give one of them: {named}"
 
 
+def _study(folder: Path, account: dict[str, Any]) -> Study:
+    try:
+        return read_back(folder / "study.yaml", account["code"])
+    except StudyError as problem:
+        raise FolderError(f"{problem}\n{_remedy(folder, force=False)}") from problem
+
+
+def _damaged(folder: Path, account: dict[str, Any], study: Study) -> dict[str, str]:
+    """By file, what is wrong with it and the command that mends it."""
+    found = {name: _wrong_file(folder / name, known) for name, known in stamps(account).items()}
+    wrong = {name: what for name, what in found.items() if what}
+    complete = study.digest() == account.get("digest") and not any(name.endswith(".py") for name in wrong)
+    command = rerun(folder, shlex.quote(str(folder / "study.yaml")) if complete else "STUDY")
+    return {name: f"{folder / name} {what}; mend it: {command}" for name, what in wrong.items()}
+
+
+def _wrong_file(file: Path, known: list[dict[str, Any]]) -> str:
+    try:
+        return damage(file, known)
+    except OSError as problem:
+        return f"cannot be read ({problem.strerror})"
+
+
 def _table(folder: Path, study: Study) -> pd.DataFrame:
     file = folder / "results.parquet"
     try:
-        table = pd.read_parquet(file)
+        table = pd.read_parquet(io.BytesIO(file.read_bytes()))
     except Exception as problem:  # a damaged file makes pyarrow raise whatever it stumbles over
         reason = str(problem).partition("\n")[0]
         raise FolderError(f"{file} cannot be read ({reason}); {_remedy(folder)}") from problem
@@ -140,8 +177,9 @@ def _account(folder: Path) -> dict[str, Any]:
             and all(isinstance(run["seconds"], float | int) for run in whole["runs"])
             and isinstance(whole["packages"], dict)
             and isinstance(whole["code"], dict)
+            and stamps(whole) is not None
         )
-    except (OSError, ValueError, TypeError, KeyError):
+    except (OSError, ValueError, TypeError, KeyError, AttributeError):
         sound = False
     if not sound:
         raise FolderError(f"{file} is not the account of a run; {_remedy(folder)}")
@@ -159,5 +197,5 @@ def _check_belongs_together(saved: Saved) -> None:
         )
 
 
-def _remedy(folder: Path) -> str:
-    return f"run the study again: frictionlab run STUDY -o {folder} --force"
+def _remedy(folder: Path, force: bool = True) -> str:
+    return f"run the study again: {rerun(folder)}{' --force' if force else ''}"

@@ -8,6 +8,8 @@ import textwrap
 from collections.abc import Iterator
 from typing import Any
 
+from frictionlab.printable import printable
+
 WIDTH = 110
 _PLAIN = re.compile(r"[A-Za-z][\w.()/-]*(?: [\w.()/-]+)*")
 _RESERVED = {"true", "false", "yes", "no", "on", "off", "y", "n", "null", "nan", "inf"}
@@ -31,7 +33,7 @@ def _entry(head: str, value: Any, indent: str) -> Iterator[str]:
     elif isinstance(value, dict):
         yield head
         yield from _mapping(value, indent + "  ")
-    elif any(isinstance(item, dict | list) for item in value):
+    elif any(isinstance(item, dict | list) or "  " in str(item) for item in value):  # a wrap loses spaces
         yield head
         for item in value:
             yield from _item(item, indent + "  ")
@@ -64,7 +66,7 @@ def _scalar(value: Any) -> str:
         return _number(value)
     if isinstance(value, str) and _PLAIN.fullmatch(value) and value.lower() not in _RESERVED:
         return value
-    return json.dumps(value, ensure_ascii=False)
+    return printable(json.dumps(value, ensure_ascii=False))  # YAML reads \\x7f, too
 
 
 def _number(value: float) -> str:

@@ -6,11 +6,20 @@ import difflib
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, NamedTuple
+
+from frictionlab.printable import lone_surrogate, one_line, printable
 
 Path = tuple[str | int, ...]
 
+MOST_MISTAKES_SHOWN = 50
 _WIDTH = 100
+_LONGEST_SENTENCE = 2000
+_LONGEST_PATH = 200
+_LONGEST_NAME = 60
+_MOST_NAMES = 200
+"""A longer name, and names beyond these, are not searched for what was meant."""
 
 
 class TextPosition(NamedTuple):
@@ -47,12 +56,18 @@ class Mistake:
 
     def __str__(self) -> str:
         """Position, mistake, source line with a caret, and a suggestion."""
-        where = f"{self.origin}:{self.place.line}:{self.place.column}" if self.place else self.origin
-        shown = [": ".join(part for part in (where, self.path, self.what) if part)]
+        origin = one_line(_short(self.origin, _LONGEST_PATH))
+        where = f"{origin}:{self.place.line}:{self.place.column}" if self.place else origin
+        said = (
+            where,
+            one_line(_short(self.path, _LONGEST_PATH)),
+            one_line(_short(self.what, _LONGEST_SENTENCE)),
+        )
+        shown = [": ".join(part for part in said if part)]
         if self.place:
             shown += _with_caret(self.line, self.place.column)
         if self.hint:
-            shown.append(f"    {self.hint}")
+            shown.append(f"    {one_line(self.hint)}")
         return "\n".join(shown)
 
 
@@ -64,16 +79,19 @@ class StudyError(Exception):
         super().__init__(self.mistakes)
 
     def __str__(self) -> str:
-        """Every mistake, as printed by the command line."""
-        return "\n".join(map(str, self.mistakes))
+        """The first mistakes, and how many more there are, as printed by the command line."""
+        shown = [str(mistake) for mistake in self.mistakes[:MOST_MISTAKES_SHOWN]]
+        if more := len(self.mistakes) - len(shown):
+            shown.append(f"and {more} more: correct these first")
+        return "\n".join(shown)
 
 
 def _with_caret(line: str, column: int) -> list[str]:
     """The line, cut to a readable width around the column, and a caret below the column."""
     start = max(0, min(column - 1 - _WIDTH // 2, len(line) - _WIDTH))
     shown = line[start : start + _WIDTH]
-    before = "".join("\t" if letter == "\t" else " " for letter in shown[: column - 1 - start])
-    return [f"    {shown}".rstrip(), f"    {before}^"]
+    before = "".join("\t" if letter == "\t" else " " for letter in printable(shown[: column - 1 - start]))
+    return [f"    {printable(shown)}".rstrip(), f"    {before}^"]
 
 
 def dotted(path: Path) -> str:
@@ -86,7 +104,9 @@ def dotted(path: Path) -> str:
 
 def closest(name: str, among: Iterable[str]) -> str | None:
     """The most similar name, if any is close; else the only name that begins with this one and a unit."""
-    names = list(among)
+    if len(name) > _LONGEST_NAME:
+        return None
+    names = list(islice(among, _MOST_NAMES))
     found = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1, cutoff=0.6)
     begun = [n for n in names if n.lower().startswith(f"{name.lower()}_")]
     return next((n for n in names if found and n.lower() == found[0]), begun[0] if len(begun) == 1 else None)
@@ -124,8 +144,8 @@ def value_text(value: Any) -> str:
     return _short(str(value))
 
 
-def _short(text: str) -> str:
-    return text if len(text) <= 40 else f"{text[:37]}..."
+def _short(text: str, most: int = 40) -> str:
+    return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def _advice(text: str) -> str:
@@ -145,17 +165,27 @@ class Notes:
         self.all: list[Note] = list(notes)
         self._settled: set[Path] = {note.path for note in self.all if note.place is None}
         self._misspelt: set[Path] = set()
+        self._above: set[Path] = set()
+        for note in self.all:
+            if note.place is None:
+                self._mark(note.path)
+
+    def _mark(self, path: Path) -> None:
+        """Remember that this path and those above it have a mistake."""
+        self._above.update(path[:length] for length in range(len(path) + 1))
 
     def add(self, path: Path, what: str, hint: str = "") -> None:
         """A mistake in the value at this path."""
         if path not in self._settled:
             self._settled.add(path)
+            self._mark(path)
             self.all.append(Note(path, what, hint))
 
     def unknown_key(self, path: Path, allowed: Iterable[str]) -> None:
         """An unknown key."""
         if path not in self._misspelt:
             self._misspelt.add(path)
+            self._mark(path)
             names = list(allowed)
             hint = did_you_mean(str(path[-1]), names)
             what = f"unknown key; allowed: {', '.join(names) or 'none'}"
@@ -165,11 +195,12 @@ class Notes:
         """A mistake in the key itself."""
         if path not in self._settled:
             self._settled.add(path)
+            self._mark(path)
             self.all.append(Note(path, what, hint, on_key=True))
 
     def below(self, path: Path) -> bool:
         """Whether a mistake is noted at this path or under it."""
-        return any(noted[: len(path)] == path for noted in self._settled | self._misspelt)
+        return path in self._above
 
     def mapping(self, value: Any, path: Path, allowed: Iterable[str] | None = None) -> dict[str, Any] | None:
         """The value if it is a mapping, unknown keys noted; None, noted, if it is not."""
@@ -220,6 +251,8 @@ class Notes:
     def text(self, value: Any, path: Path) -> str:
         """The value as text; empty, noted, if it is not text."""
         if isinstance(value, str):
+            if half := lone_surrogate(value):
+                self.add(path, f"holds {half}, half a character")
             return value
         kind = "" if isinstance(value, (dict, list)) or value is None else " (put it in quotes)"
         self.add(path, f"must be text, got {value_text(value)}{kind}")

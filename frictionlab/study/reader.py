@@ -8,8 +8,6 @@ from os import PathLike
 from pathlib import Path as FilePath
 from typing import Any
 
-import numpy as np
-
 from frictionlab import columns, registry
 from frictionlab.scene.dimensional import dimensions
 from frictionlab.scene.scene import Scene
@@ -25,11 +23,12 @@ from frictionlab.study.choices import (
 from frictionlab.study.expectations import Table, expectations, result_column
 from frictionlab.study.grid import Sweeps, note_impossible_points, read_sweeps
 from frictionlab.study.law_files import LawReader, StudyLaws, add_law_files, read_laws, saved_law_reader
+from frictionlab.study.mapping_source import read_mapping
 from frictionlab.study.mistakes import Notes, Path, StudyError
 from frictionlab.study.overrides import apply_overrides
 from frictionlab.study.study import SCHEMA, LawChoice, MethodChoice, Study
 from frictionlab.study.validation import build_record, number_paths
-from frictionlab.study.yaml_source import Source, UnsupportedValue, plain_number, read_file
+from frictionlab.study.yaml_source import SAVED, Source, read_file
 
 STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
@@ -60,7 +59,7 @@ def read_back(path: FilePath, codes: Mapping[str, str]) -> Study:
 
     Raises StudyError with every mistake.
     """
-    return replace(_study(read_file(path), (), path.parent, saved_law_reader(codes)), path=path)
+    return replace(_study(read_file(path, SAVED), (), path.parent, saved_law_reader(codes)), path=path)
 
 
 def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name: str = "study") -> Study:
@@ -68,7 +67,7 @@ def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name:
 
     Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
     """
-    return _study(Source(name, tree=_plain(mapping)), overrides)
+    return _study(read_mapping(mapping, name), overrides)
 
 
 def study_of(source: Source) -> Study:
@@ -203,20 +202,3 @@ class _StudyReader:
         in_si = isinstance(given, Mapping) and "dimensional" in given
         speed = columns.belt_speed(inputs) if in_si else columns.BELT_SPEED
         return Table(texts, tuple(inputs), tuple(columns.results(inputs)), swept, speed)
-
-
-def _plain(value: Any) -> Any:
-    """A Python value in the types that YAML text gives."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (np.ndarray, np.generic)):
-        return _plain(value.tolist())
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return plain_number(value)
-    return (
-        value
-        if value is None or isinstance(value, (str, bool))
-        else UnsupportedValue(f"a {type(value).__name__}")
-    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -12,13 +13,21 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
+from frictionlab.printable import lone_surrogate, one_line, with_joined_pairs
 from frictionlab.study.mistakes import Mistake, Note, Path, StudyError, TextPosition, dotted
 
 LARGEST_YAML_FILE = 5_000_000
-MOST_NODES = 300_000
+"""Bytes; and letters of the values, where aliases repeat them."""
+MOST_NODES = 50_000
+DEEPEST = 20
+"""Mappings and lists inside each other."""
+TOO_DEEP = "not a study: nested too deeply"
+SAVED = 10
+"""A study that a run saved may be so many times larger: it has its defaults, and no aliases."""
 
 _TAG = "tag:yaml.org,2002:"
-_CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ufffe\uffff]")
+_CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")
+_LINE_END = re.compile("\r\n|[\r\n]")  # as the YAML reader counts lines
 
 
 @dataclass(frozen=True)
@@ -37,7 +46,8 @@ class Source:
     """The values of a study with their positions; notes: the mistakes of the YAML itself.
 
     keys, values: path -> position. origins: path -> the ``--set`` that set the value. refused: substitute path of a
-    ``--set`` that could not be carried out -> the path it refers to.
+    ``--set`` that could not be carried out -> the path it refers to. room: how many times as large as a file that a
+    person writes it may be.
     """
 
     name: str
@@ -48,6 +58,12 @@ class Source:
     origins: dict[Path, str] = field(default_factory=dict)
     refused: dict[Path, Path] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
+    room: int = 1
+
+    @cached_property
+    def lines(self) -> list[str]:
+        """The lines of the text."""
+        return _LINE_END.split(self.text)
 
     def located(self, notes: Iterable[Note]) -> list[Mistake]:
         """The notes as mistakes, in the order of the file, those of the command line last."""
@@ -56,8 +72,7 @@ class Source:
 
     def _located(self, note: Note) -> Mistake:
         origin, place = (self.name, note.place) if note.place else self._where(note)
-        lines = re.split("\r\n|[\r\n]", self.text)
-        line = lines[place.line - 1] if place and place.line <= len(lines) else ""
+        line = self.lines[place.line - 1] if place and place.line <= len(self.lines) else ""
         path = dotted(self.refused.get(note.path, note.path))
         return Mistake(origin, place, path, note.what, note.hint, line)
 
@@ -73,14 +88,14 @@ class Source:
         return self.name, None
 
 
-def read_file(path: FilePath) -> Source:
+def read_file(path: FilePath, room: int = 1) -> Source:
     """The values of a YAML file. Raises StudyError for a file that is not readable YAML text."""
-    return read_text(_text_of(path), str(path))
+    return read_text(_text_of(path, room), str(path), room)
 
 
-def read_text(text: str, name: str) -> Source:
+def read_text(text: str, name: str, room: int = 1) -> Source:
     """The values of YAML text. Raises StudyError where it is empty or not YAML."""
-    source = Source(name, text)
+    source = Source(name, text, room=room)
     node = _compose(source)
     if node is None:
         raise _unreadable(source, "the study is empty", TextPosition(1, 1))
@@ -88,14 +103,14 @@ def read_text(text: str, name: str) -> Source:
     return source
 
 
-def _text_of(path: FilePath) -> str:
+def _text_of(path: FilePath, room: int) -> str:
     nothing = Source(str(path))
     try:
         if path.is_dir():
             raise _unreadable(nothing, "is a folder; a study is a file")
         if path.exists() and not path.is_file():
             raise _unreadable(nothing, "is not an ordinary file")
-        if path.exists() and path.stat().st_size > LARGEST_YAML_FILE:
+        if path.exists() and path.stat().st_size > LARGEST_YAML_FILE * room:
             raise _unreadable(
                 nothing, f"is larger than {LARGEST_YAML_FILE // 10**6} MB; a study is a short text"
             )
@@ -116,9 +131,11 @@ def _unreadable(source: Source, what: str, place: TextPosition | None = None) ->
 def _compose(source: Source) -> Node | None:
     """The YAML node of the text; unlike values, nodes have positions and keep repeated keys."""
     if odd := _CONTROL.search(source.text):
-        before = source.text[: odd.start()].split("\n")
+        before = _LINE_END.split(source.text[: odd.start()])
         place = TextPosition(len(before), len(before[-1]) + 1)
-        raise _unreadable(source, f"is not text: character {odd.group()!r}", place)
+        raise _unreadable(source, f"is not text: character '{one_line(odd.group())}'", place)
+    if source.text.count(",") + source.text.count("\n") > MOST_NODES * source.room:
+        raise _too_many(source)
     try:
         node: Node | None = YAML(typ="rt").compose(source.text)
         return node
@@ -128,10 +145,15 @@ def _compose(source: Source) -> Node | None:
         at = TextPosition(mark.line + 1, mark.column + 1) if mark else None
         raise _unreadable(source, f"not YAML: {what}", at) from None
     except RecursionError:
-        raise _unreadable(source, "not a study: nested too deeply") from None
+        raise _unreadable(source, TOO_DEEP) from None
     except (YAMLError, ValueError, AttributeError, TypeError, LookupError, AssertionError) as problem:
         # For some broken texts the parser raises errors of its own code.
-        raise _unreadable(source, f"not YAML: {str(problem).splitlines()[0] or 'unreadable'}") from None
+        raise _unreadable(source, f"not YAML: {[*str(problem).splitlines(), 'unreadable'][0]}") from None
+
+
+def _too_many(source: Source, place: TextPosition | None = None) -> StudyError:
+    what = f"has more than {MOST_NODES * source.room} values; write those of a sweep as {{start, stop, num}}"
+    return _unreadable(source, what, place)
 
 
 class _NodeReader:
@@ -141,18 +163,21 @@ class _NodeReader:
         self._source = source
         self._open: set[int] = set()
         self._count = 0
+        self._letters = 0
 
     def value(self, node: Node, path: Path) -> Any:
         """The node as a plain value; its position and those below it are recorded."""
         place = TextPosition(node.start_mark.line + 1, node.start_mark.column + 1)
         self._source.values.setdefault(path, place)
         self._count += 1
-        if self._count > MOST_NODES:
-            raise _unreadable(self._source, f"has more than {MOST_NODES} values", place)
+        if self._count > MOST_NODES * self._source.room:
+            raise _too_many(self._source, place)
         if isinstance(node, ScalarNode):
             return self._scalar(node, path)
         if id(node) in self._open:
             return self._odd(path, "contains itself")
+        if len(path) > DEEPEST:
+            raise _unreadable(self._source, TOO_DEEP, place)
         if not str(node.tag).startswith((_TAG + "map", _TAG + "seq")):
             return self._odd(path, f"the YAML tag {node.tag} has no meaning here")
         self._open.add(id(node))
@@ -186,8 +211,10 @@ class _NodeReader:
             self._source.notes.append(Note(path, "a key must be a name", place=place))
         elif key.tag == _TAG + "merge":
             self._source.notes.append(Note(path, "merge keys (<<) are not used here", place=place))
+        elif half := lone_surrogate(name := with_joined_pairs(str(key.value))):
+            self._source.notes.append(Note(path, f"a key holds {half}, half a character", place=place))
         else:
-            return str(key.value)
+            return name
         return None
 
     def _scalar(self, node: ScalarNode, path: Path) -> Any:
@@ -196,7 +223,14 @@ class _NodeReader:
             return UnsupportedValue(f"the date {node.value}")
         if kind not in _SCALARS:
             return self._odd(path, f"the YAML tag {node.tag} has no meaning here")
-        text = _scalar_text(node)
+        text = with_joined_pairs(_scalar_text(node))
+        self._letters += len(text)
+        if self._letters > LARGEST_YAML_FILE * self._source.room:
+            raise _unreadable(
+                self._source, f"holds more than {LARGEST_YAML_FILE * self._source.room} letters"
+            )
+        if half := lone_surrogate(text):
+            return self._odd(path, f"holds {half}, half a character")
         try:
             return _SCALARS[kind](text)
         except ValueError:

@@ -14,6 +14,7 @@ import pandas as pd
 import pytest
 from fake_methods import Fake, breaks_down
 from pages import Page, complaints
+from run_folders import without_stamps
 
 import frictionlab as fl
 from frictionlab import registry
@@ -27,7 +28,6 @@ from frictionlab.runner import api
 from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.saved import Saved, read_saved, saved_as
 from frictionlab.scaffold.study import new_study
-from frictionlab.study import StudyError
 
 SCENE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
 HOSTILE = "<script>alert(1)</script></title></style> & \"quotes\" 'and' {{ 7 * 7 }} $\\mu$"
@@ -234,6 +234,7 @@ def test_there_is_a_line_for_every_curve_and_what_tells_it_apart(ran: Runner) ->
 
 def test_the_measures_of_curves_are_shown_with_their_errors_where_there_are_any(ran: Runner) -> None:
     saved = ran()
+    without_stamps(saved.folder)
     measured = {"law": ["coulomb"], "kind": ["coulomb"], "method": ["fake"], "scene.normal_load": [10.0]}
     measured |= {"shape_area": [0.0577], "shape_area_error": [2e-4], "shape": ["concave"], "reason": [None]}
     (saved.folder / "curves.csv").write_text(pd.DataFrame(measured).to_csv(index=False))
@@ -655,6 +656,7 @@ def test_what_is_no_run_or_a_damaged_one_is_told_in_one_message(
     damage: Callable[[Path], None], message: str, ran: Runner
 ) -> None:
     folder = ran().folder
+    without_stamps(folder)
     damage(folder)
     with pytest.raises(FolderError) as raised:
         read_saved(folder)
@@ -667,8 +669,9 @@ def test_what_is_no_run_or_a_damaged_one_is_told_in_one_message(
 def test_a_damaged_study_is_told_as_any_study_is(ran: Runner) -> None:
     folder = ran().folder
     (folder / "study.yaml").write_text("schema: 2\n")
-    with pytest.raises(StudyError, match=r"study\.yaml:1:9: schema: must be 1"):
+    with pytest.raises(FolderError, match=r"study\.yaml:1:9: schema: must be 1") as raised:
         read_saved(folder)
+    assert f"frictionlab run STUDY -o {folder}" in str(raised.value)
 
 
 def test_a_page_that_cannot_be_written_is_a_message_and_leaves_nothing_behind(ran: Runner) -> None:

@@ -1,0 +1,87 @@
+"""Files of a run: written whole or not at all, and known again by their length and checksum."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from frictionlab.runner.errors import SaveError
+
+_TEMPORARY = re.compile(
+    r"\.(?:results\.parquet|orbits\.parquet|.+\.(?:csv|html|json|py|yaml))\.(?P<process>\d+)"
+)
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Beside the place, then renamed into it: a crash leaves the old file or the new one. Raises SaveError."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        temporary.write_bytes(content)
+        os.replace(temporary, path)
+    except OSError as problem:
+        raise SaveError(f"cannot write {path}: {problem.strerror or problem}") from problem
+    finally:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove what killed processes had begun to write in a folder; that of running ones stays. Raises OSError."""
+    if not folder.is_dir():
+        return
+    for path in folder.iterdir():
+        found = _TEMPORARY.fullmatch(path.name)
+        if found and not _is_running(int(found["process"])):
+            path.unlink(missing_ok=True)
+
+
+def _is_running(process: int) -> bool:
+    """Whether it is another process that still runs."""
+    if process == os.getpid():
+        return False
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:  # it is somebody else's
+        return True
+    return True
+
+
+def stamp(content: bytes) -> dict[str, Any]:
+    """Length and SHA-256 of a file, as an account holds them."""
+    return {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+
+
+def stamps(account: Mapping[str, Any]) -> dict[str, list[dict[str, Any]]]:
+    """By file, what it may hold: while it is replaced, old or new. Raises ValueError where the account is damaged."""
+    files = account.get("files", {})
+    each = files.values() if isinstance(files, dict) else [None]
+    if not all(isinstance(known, list) and known and all(map(_is_stamp, known)) for known in each):
+        raise ValueError("no stamps of files")
+    return dict(files)
+
+
+def _is_stamp(known: Any) -> bool:
+    return isinstance(known, dict) and isinstance(known.get("bytes"), int) and "sha256" in known
+
+
+def damage(path: Path, known: Iterable[Mapping[str, Any]]) -> str:
+    """What is wrong with a file that was written with one of these stamps; '' for an intact one. Raises OSError."""
+    expected = list(known)
+    if not expected:  # written before files had stamps
+        return ""
+    if not path.exists():
+        return "is missing"
+    found = stamp(path.read_bytes())
+    if found in expected:
+        return ""
+    size = expected[-1]["bytes"]
+    if found["bytes"] != size:
+        return f"is damaged: it has {found['bytes']} bytes, and {size} were written"
+    return "is damaged: its bytes are not those that were written"

@@ -1,0 +1,238 @@
+"""Damage to the folder of a run: what a run and a report say, and how the same command mends it."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from fake_methods import Fake
+from pandas.testing import assert_frame_equal
+from run_folders import without_stamps
+
+import frictionlab as fl
+from frictionlab import cli, registry
+from frictionlab.charts import figures
+from frictionlab.printable import printable
+from frictionlab.runner.api import run_folder
+from frictionlab.runner.errors import FolderError
+from frictionlab.runner.files import remove_leftovers
+from frictionlab.runner.saved import read_saved
+from frictionlab.runner.yaml_text import yaml_text
+from frictionlab.study import load_study
+
+LAW = '''"""A law."""
+import frictionlab as fl
+
+
+class Steady(fl.SlidingLaw):
+    """Of a constant coefficient."""
+
+    mu: fl.Positive
+
+    def sliding_friction(self, speed: float) -> float:
+        """The coefficient."""
+        return self.mu
+'''
+STUDY = {
+    "schema": 1,
+    "scene": {"damping_ratio": 0.1, "normal_load": 10, "drive": {"unbalance": 10, "frequency": 1}},
+    "plugins": ["steady.py"],
+    "laws": [{"kind": "steady", "mu": 0.4}],
+    "methods": ["fake"],
+    "sweep": {"scene.belt_speed": [2.0, 4.0, 9.0, 12.0]},
+    "keep": {"orbit": 4},
+    "expect": [{"column": "mean_friction", "below": 1}],
+}
+FILES = ("results.parquet", "results.csv", "curves.csv", "orbits.parquet", "study.yaml", "laws/steady.py")
+
+
+@pytest.fixture(autouse=True)
+def _solved_by_a_fake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    known, names = registry.method_class, registry.method_names()
+    monkeypatch.setattr(registry, "method_class", lambda name: Fake if name == "fake" else known(name))
+    monkeypatch.setattr(registry, "method_names", lambda: [*names, "fake"])
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "steady.py").write_text(LAW)
+    (tmp_path / "mine.yaml").write_text(yaml_text(STUDY))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {name: (folder / name).read_bytes() for name in FILES}
+
+
+def half(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def emptied(path: Path) -> None:
+    path.write_bytes(b"")
+
+
+def flipped(path: Path) -> None:
+    whole = bytearray(path.read_bytes())
+    whole[len(whole) // 2] ^= 1
+    path.write_bytes(whole)
+
+
+def removed(path: Path) -> None:
+    path.unlink()
+
+
+@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("deed", [half, flipped, removed])
+def test_a_damaged_file_is_named_with_the_command_that_mends_it(
+    name: str, deed: Callable[[Path], None]
+) -> None:
+    out, study = Path("out"), load_study("mine.yaml")
+    whole = fl.run(study, out=out)
+    before = contents(out)
+    deed(out / name)
+
+    told = reported(out)
+    assert f"out/{name}" in told or f"no {name} in it" in told
+    command = told.rpartition("frictionlab ")[2].replace("STUDY", "mine.yaml").split()
+    assert command in (["run", "mine.yaml", "-o", "out"], ["run", "out/study.yaml", "-o", "out"])
+
+    said = run_folder(study, out).damaged()
+    if name != "study.yaml":  # it may be edited, and is written by every run
+        (line,) = said
+        assert line.startswith(f"out/{name} is ")
+        assert line.endswith(" made again")
+    again = fl.run(command[1], out=out)
+    assert contents(out) == before
+    assert_frame_equal(again.table, whole.table)
+    assert (reported(out), run_folder(study, out).damaged()) == ("", [])
+
+
+def reported(folder: Path) -> str:
+    """What a report says about the files of its folder."""
+    try:
+        return "\n".join(read_saved(folder).damaged)
+    except FolderError as problem:
+        return str(problem)
+
+
+def test_the_commands_say_what_is_damaged(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(figures, "draw_figures", lambda *_: [Path("out")])
+    fl.run("mine.yaml", out="out")
+    flipped(Path("out/results.csv"))
+
+    assert cli.main(["report", "out"]) == 0
+    assert "out/results.csv is damaged: its bytes are not those that were written" in capsys.readouterr().err
+    assert cli.main(["run", "mine.yaml", "-o", "out"]) == 0
+    assert "results.csv is damaged" in capsys.readouterr().err
+    assert cli.main(["plot", "out"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("deed", [half, emptied, removed])
+def test_a_folder_without_its_account_is_replaced_by_the_command_that_is_named(
+    deed: Callable[[Path], None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    fl.run("mine.yaml", out="out")
+    deed(Path("out/provenance.json"))
+
+    for asked in (["report", "out"], ["run", "mine.yaml", "-o", "out"]):
+        assert cli.main(asked) == 2
+        assert "frictionlab run STUDY -o out --force" in capsys.readouterr().err
+    fl.run("mine.yaml", out="out", existing="replace")
+    assert reported(Path("out")) == ""
+
+
+@pytest.mark.parametrize("name", [*FILES, "provenance.json"])
+def test_any_flipped_bit_is_noticed_or_does_no_harm(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    fl.run("mine.yaml", out="out")
+    place = Path("out") / name
+    whole = place.read_bytes()
+
+    for at in range(0, len(whole), max(1, len(whole) // 12)):
+        changed = bytearray(whole)
+        changed[at] ^= 1 << at % 8
+        place.write_bytes(changed)
+        told = reported(Path("out"))
+        assert "frictionlab run " in told or told == ""
+        assert printable(told) == told
+
+
+def test_a_file_that_is_being_replaced_is_known_before_and_after(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Killed(BaseException):
+        """A process that ends here."""
+
+    out, replace = Path("out"), os.replace
+    steps, table = 0, fl.run("mine.yaml").table
+    while not (out / "results.csv").exists() or steps < 12:
+        steps += 1
+        left = [steps]
+
+        def dying(source: Path, target: Path, left: list[int] = left) -> None:
+            left[0] -= 1
+            if left[0] == 0:
+                raise Killed
+            replace(source, target)
+
+        monkeypatch.setattr(os, "replace", dying)
+        with pytest.raises(Killed):
+            fl.run("mine.yaml", out=out, existing="replace")
+        monkeypatch.setattr(os, "replace", replace)
+        again = fl.run("mine.yaml", out=out)
+
+        assert_frame_equal(again.table, table)
+        assert read_saved(out).damaged == ()
+
+
+def test_a_table_is_not_left_beside_the_text_of_an_earlier_one() -> None:
+    fl.run("mine.yaml", out="out")
+    part = fl.run("mine.yaml", out="out", columns=["floquet"], existing="reuse")
+    assert part.computed == 0
+    folder = fl.run("mine.yaml", out="few", columns=["floquet"]).folder
+    assert folder is not None
+    fl.run("mine.yaml", out="few")
+
+    assert_frame_equal(
+        pd.read_csv("few/results.csv"), pd.read_csv(io.StringIO(Path("out/results.csv").read_text()))
+    )
+
+
+def test_leftovers_of_killed_runs_are_removed_and_those_of_running_ones_stay(tmp_path: Path) -> None:
+    process = subprocess.Popen([sys.executable, "-c", ""])
+    process.wait()
+    gone, mine = process.pid, os.getpid()
+    for folder in ("out", "out/laws"):
+        Path(folder).mkdir()
+        for name in (f".results.parquet.{gone}", f".report.html.{gone}", f".steady.py.{gone}", ".mine"):
+            (Path(folder) / name).write_text("")
+        (Path(folder) / f".results.csv.{os.getppid()}").write_text("")
+
+    fl.run("mine.yaml", out="out")
+
+    left = {path.name for path in Path("out").rglob(".*")}
+    assert left == {".mine", f".results.csv.{os.getppid()}"}
+    (tmp_path / f".index.html.{mine}").write_text("")
+    remove_leftovers(tmp_path)
+    assert not list(tmp_path.glob(".index*"))
+
+
+def test_a_folder_of_a_version_without_stamps_is_taken_over() -> None:
+    fl.run("mine.yaml", out="out")
+    without_stamps(Path("out"))
+
+    assert fl.run("mine.yaml", out="out").computed == 0
+    assert read_saved(Path("out")).damaged == ()
+
+
+def test_the_account_holds_length_and_checksum_of_every_file_that_is_read_again() -> None:
+    fl.run("mine.yaml", out="out")
+    files = json.loads(Path("out/provenance.json").read_text())["files"]
+
+    assert set(files) == set(FILES) - {"study.yaml"}
+    assert all(known == [{"bytes": (Path("out") / name).stat().st_size, "sha256": known[0]["sha256"]}]
+               for name, known in files.items())  # fmt: skip

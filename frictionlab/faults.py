@@ -5,8 +5,10 @@ from __future__ import annotations
 import linecache
 import re
 import sys
+import sysconfig
 import traceback
 from collections.abc import Collection, Iterator
+from pathlib import PurePath
 from types import CodeType
 
 from frictionlab.laws.base import FrictionLaw
@@ -16,6 +18,8 @@ LAW_FILE = "frictionlab_law_"
 _PACKAGE = __file__.removesuffix("faults.py")
 MARK = "broken plugin: "
 """Beginning of the reason of a point that failed in a law of another package."""
+LONGEST_TEXT = 500
+"""Characters of a foreign message that are shown."""
 
 
 class BrokenPlugin(Exception):
@@ -44,8 +48,33 @@ def describe_error(problem: BaseException, files: Collection[str]) -> str:
     """Type and message of an error, and the innermost line of these files in its traceback."""
     if isinstance(problem, SyntaxError) and problem.filename:
         return f"SyntaxError: {problem.msg}{source_line(problem.filename, problem.lineno or 1)}"
-    text = f"{type(problem).__name__}: {problem}" if str(problem) else type(problem).__name__
-    return text + (innermost_line(problem, files) or "")
+    return text_of_error(problem) + (innermost_line(problem, files) or "")
+
+
+def text_of_error(problem: BaseException) -> str:
+    """Type and message of an error, whatever its class does when asked for the message."""
+    try:
+        text = str(problem)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as another:
+        text = f"its message raises {type(another).__name__}"
+    text = re.sub(r"\s*For further information visit \S+$", "", text)  # pydantic's
+    return _cut(f"{type(problem).__name__}: {text}" if text else type(problem).__name__)
+
+
+def shown(value: object) -> str:
+    """A value as Python writes it, whatever its class does when asked to."""
+    try:
+        return _cut(repr(value))
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:
+        return f"a {type(value).__name__} that cannot be shown ({type(problem).__name__})"
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}..."
 
 
 def innermost_line(problem: BaseException, files: Collection[str]) -> str | None:
@@ -56,7 +85,7 @@ def innermost_line(problem: BaseException, files: Collection[str]) -> str | None
 
 def source_line(file: str, line: int) -> str:
     """File, line number and text of a source line, indented on a line of its own below a message."""
-    return f"\n  {file}:{line}: {linecache.getline(file, line).strip()}"
+    return f"\n  {file}:{line}: {_cut(linecache.getline(file, line).strip())}"
 
 
 def definition_line(code: CodeType) -> str:
@@ -119,9 +148,15 @@ def failing_law(problem: BaseException) -> str | None:
 
 
 def outside_files(problem: BaseException) -> set[str]:
-    """The files in the traceback of an error, without those of frictionlab and of Python's import system."""
+    """The files in the traceback of an error, without those of frictionlab, of pydantic and of Python itself."""
     names = {frame.filename for frame in traceback.extract_tb(problem.__traceback__)}
-    return {name for name in names if not name.startswith(("<", _PACKAGE)) and "importlib" not in name}
+    return {name for name in names if not name.startswith(("<", _PACKAGE)) and not _is_pythons(name)}
+
+
+def _is_pythons(file: str) -> bool:
+    parts = PurePath(file).parts
+    own = "site-packages" not in parts and file.startswith(sysconfig.get_path("stdlib"))
+    return own or "pydantic" in parts
 
 
 def _laws(kind: type[FrictionLaw]) -> Iterator[type[FrictionLaw]]:

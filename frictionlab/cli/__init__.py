@@ -8,6 +8,7 @@ import os
 import threading
 import traceback
 from collections.abc import Sequence
+from functools import cache
 from importlib import import_module
 
 import click
@@ -24,6 +25,7 @@ from frictionlab.cli.output import (
     flush_stdout,
     open_streams,
     print_message,
+    results_apart,
 )
 
 COMMANDS = ("bench", "check", "laws", "methods", "new", "plot", "report", "run", "schema")
@@ -99,9 +101,16 @@ class CommandGroup(click.Group):
         """The command of a name; None where there is none."""
         if cmd_name not in COMMANDS:
             return None
-        module = import_module(f"frictionlab.cli.{cmd_name}")
-        command: click.Command = getattr(module, f"{cmd_name}_command")
-        return command
+        return _command(cmd_name)
+
+
+@cache
+def _command(name: str) -> click.Command:
+    """The command of this name, all of whose output but the result goes to stderr."""
+    command: click.Command = getattr(import_module(f"frictionlab.cli.{name}"), f"{name}_command")
+    assert command.callback is not None
+    command.callback = results_apart()(command.callback)
+    return command
 
 
 @click.group(cls=CommandGroup, context_settings={"help_option_names": ["-h", "--help"]})

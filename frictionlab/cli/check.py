@@ -14,21 +14,26 @@ from frictionlab.cli.output import print_records, print_result
 
 if TYPE_CHECKING:
     from frictionlab.runner.plan import Planned
+    from frictionlab.study import Plugins
 
 
 @click.command("check")
 @click.argument("study", type=click.Path(path_type=Path))
 @options.overrides
 @options.law_files
+@options.no_plugins
 @options.as_json
 def check_command(
-    study: Path, overrides: tuple[str, ...], law_files: tuple[Path, ...], as_json: bool
+    study: Path, overrides: tuple[str, ...], law_files: tuple[Path, ...], plugins: Plugins, as_json: bool
 ) -> None:
-    """Check STUDY and tell what it will take: models, refusals, cost. Nothing is computed."""
+    """Check STUDY and tell what it will take: models, refusals, cost. Nothing is computed.
+
+    The plugins that STUDY lists are Python code, which is run to check it, unless --no-plugins is given.
+    """
     from frictionlab.runner import batch
     from frictionlab.runner.plan import plan
 
-    planned = [(job.name, plan(job.study)) for job in batch.jobs(study, None, overrides, law_files)]
+    planned = [(job.name, plan(job.study)) for job in batch.jobs(study, None, overrides, law_files, plugins)]
     if as_json:
         print_records([{"study": name, **entry.record()} for name, entries in planned for entry in entries])
     else:

@@ -23,6 +23,13 @@ law_files = click.option(
     metavar="FILE",
     help="Take the laws of a Python file, too; may be repeated.",
 )
+no_plugins = click.option(
+    "--no-plugins",
+    "plugins",
+    flag_value="refuse",
+    default="run",
+    help="Refuse a study that lists plugins: their code would be run.",
+)
 as_json = click.option("--json", "as_json", is_flag=True, help="Print a list of records instead of text.")
 
 

@@ -6,13 +6,16 @@ import io
 import json
 import os
 import sys
-from contextlib import suppress
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, TextIO
 
 import click
 
 from frictionlab.printable import printable
 
+STDOUT, STDERR = 1, 2
+"""File descriptors."""
 OK, BUG, WRONG, FAILED, BROKEN_PLUGIN, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 
@@ -37,11 +40,56 @@ def open_streams() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
+_apart: list[TextIO] = []
+"""The stream of results while a command runs; empty before and after."""
+
+
+@contextmanager
+def results_apart() -> Iterator[None]:
+    """Within, only results reach stdout: what else is printed, by a plugin or by a kernel, goes to stderr."""
+    from frictionlab.registry.guard import ForwardedText
+
+    stdout = sys.stdout
+    results, number = _copy_of(stdout)
+    _apart.append(results)
+    sys.stdout = ForwardedText(sys.stderr)
+    try:
+        yield
+    finally:
+        sys.stdout = stdout
+        _apart.pop()
+        if number is not None:
+            os.dup2(results.fileno(), number)
+            with suppress(OSError):  # what could not be written has been told
+                results.close()
+
+
+def _copy_of(stdout: TextIO) -> tuple[TextIO, int | None]:
+    """A stream of its own to where stdout leads, whose file descriptor, if it has one, then leads to stderr."""
+    try:
+        number = stdout.fileno()
+    except (OSError, ValueError):  # a stream in memory
+        return stdout, None
+    if number != STDOUT:  # not the program's own
+        return stdout, None
+    stdout.flush()
+    copy = open(os.dup(number), "w", encoding=stdout.encoding, errors=stdout.errors)  # noqa: SIM115
+    try:
+        os.dup2(STDERR, number)
+    except OSError:  # closed by the caller
+        os.dup2(os.open(os.devnull, os.O_WRONLY), number)
+    return copy, number
+
+
+def _results() -> TextIO:
+    return _apart[-1] if _apart else sys.stdout
+
+
 def print_result(text: str) -> None:
     """A result, on stdout; a reader that closed the pipe is no error."""
     try:
-        click.echo(printable(text))
-        sys.stdout.flush()
+        click.echo(printable(text), _results())
+        _results().flush()
     except BrokenPipeError:
         discard_stdout()
 
@@ -54,7 +102,7 @@ def print_records(records: list[dict[str, Any]]) -> None:
 
 def print_message(message: str) -> None:
     """A message, on stderr; a closed stderr is no error."""
-    with suppress(OSError):
+    with suppress(OSError, ValueError):
         click.echo(printable(message), err=True)
 
 
@@ -73,4 +121,4 @@ def flush_stdout(code: int) -> int:
 
 def discard_stdout() -> None:
     """Send what is still written to stdout nowhere: the interpreter flushes it once more at its end."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    os.dup2(os.open(os.devnull, os.O_WRONLY), _results().fileno())

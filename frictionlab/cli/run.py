@@ -27,6 +27,7 @@ from frictionlab.cli.output import (
 if TYPE_CHECKING:
     from frictionlab.results.run import Run
     from frictionlab.runner.batch import Job
+    from frictionlab.study import Plugins
 
 
 class RunOptions(NamedTuple):
@@ -37,6 +38,7 @@ class RunOptions(NamedTuple):
     overrides: tuple[str, ...]
     columns: str | None
     law_files: tuple[Path, ...]
+    plugins: Plugins
     workers: int | None
     as_json: bool
     cite: bool
@@ -58,6 +60,7 @@ class RunOptions(NamedTuple):
 @options.folder("runs/<study name>")
 @options.overrides
 @options.law_files
+@options.no_plugins
 @click.option(
     "--columns",
     metavar="A,B",
@@ -72,14 +75,15 @@ class RunOptions(NamedTuple):
 def run_command(**given: Any) -> int:
     """Run STUDY, a file or a folder of studies, and write its table, figures and report to DIR.
 
-    The same study into the same DIR takes over the points that are finished.
+    The same study into the same DIR takes over the points that are finished. The plugins that STUDY lists are
+    Python code, which is run, unless --no-plugins is given.
     """
     from frictionlab.runner import batch  # with pandas
 
     asked = RunOptions(**given)
     if asked.as_json and asked.cite:
         raise click.UsageError("--json and --cite print different things; give one of them")
-    jobs = batch.jobs(asked.study, asked.out, asked.changes, asked.law_files)
+    jobs = batch.jobs(asked.study, asked.out, asked.changes, asked.law_files, asked.plugins)
     batch.check_folders(jobs, asked.existing)
     index = batch.index_folder(asked.study, asked.out)
     signal.signal(signal.SIGTERM, signal.default_int_handler)

@@ -14,10 +14,13 @@ from frictionlab.faults import (
     from_outside,
     innermost_line,
     outside_files,
+    shown,
 )
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
+from frictionlab.registry import guard
 from frictionlab.registry.bibliography import read_bibtex
+from frictionlab.registry.guard import Meddling, TimeLimitExceeded, guarded, load_guarded
 from frictionlab.registry.smoke_test import fault_with_samples, overridden_methods
 
 OWN_PACKAGE = "frictionlab"
@@ -58,7 +61,7 @@ def open_entry_point(doors: Sequence[EntryPoint], kind: type[FrictionLaw] | type
     home = home_of(door)
     loaded = _load(door, home)
     if not isinstance(loaded, type):
-        raise home.broken(f"is not a class but {loaded!r}; its entry point must name the class itself")
+        raise home.broken(f"is not a class but {shown(loaded)}; its entry point must name the class itself")
     if not issubclass(loaded, kind):
         raise home.broken(f"class {loaded.__name__} is not derived from frictionlab.{_bases(kind)}")
     return check_class(loaded, home)
@@ -77,12 +80,15 @@ def describe_clash(doors: Sequence[EntryPoint]) -> str:
 
 def _load(door: EntryPoint, home: Home) -> Any:
     try:
-        return door.load()
+        own = door.dist is not None and door.dist.name == OWN_PACKAGE
+        return door.load() if own else load_guarded(door.load)
     except ModuleNotFoundError as problem:
         if problem.name and f"{door.module}.".startswith(f"{problem.name}."):
             raise home.broken(f"does not exist: there is no module '{problem.name}'", problem) from problem
         raise unloadable(home, problem) from problem
-    except (Exception, SystemExit) as problem:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:
         if isinstance(problem, AttributeError) and _is_of_load(problem):
             raise home.broken(f"does not exist: {problem}", problem) from problem
         raise unloadable(home, problem) from problem
@@ -99,16 +105,29 @@ def _is_of_load(problem: AttributeError) -> bool:
 def unloadable(home: Home, problem: BaseException) -> BrokenPlugin:
     """The error for a module that cannot be imported."""
     files = outside_files(problem)
-    if isinstance(problem, ModuleNotFoundError):
+    if isinstance(problem, Meddling):
+        return home.broken(str(problem), problem)
+    if isinstance(problem, TimeLimitExceeded):
+        line = innermost_line(problem, files) or ""
+        return home.broken(
+            f"cannot be loaded: does not end: stopped after {guard.LOADING:g} s{line}", problem
+        )
+    if isinstance(problem, ModuleNotFoundError) and problem.name:
         what = f"needs '{problem.name}', which is not installed{innermost_line(problem, files) or ''}"
         remedy = f"install it, or remove the import: pip install {str(problem.name).partition('.')[0]}"
         return home._replace(remedy=remedy).broken(what, problem)
-    return home.broken(f"cannot be loaded: {describe_error(problem, files)}", problem)
+    said = guarded(lambda: describe_error(problem, files))  # the text of an error may be code, too
+    return home.broken(f"cannot be loaded: {said}", problem)
 
 
 def check_class(loaded: Any, home: Home) -> Any:
     """The class, after a few trial calls. Raises BrokenPlugin."""
-    for wrong in _faults(loaded):
+    try:
+        wrong = next(_faults(loaded), "")
+    except (Exception, SystemExit) as problem:
+        said = describe_error(problem, outside_files(problem))
+        raise home.broken(f"cannot be checked: {said}", problem) from problem
+    if wrong:
         raise home.broken(wrong)
     return loaded
 
@@ -159,7 +178,7 @@ def _mutable(law: type[FrictionLaw]) -> Iterator[str]:
     for kind in own:
         held = [name for name, value in vars(kind).items() if isinstance(value, list | dict | set)]
         for name in [name for name in held if not name.startswith(("_", "model_", "expected_failures"))]:
-            yield f"its attribute {name} = {vars(kind)[name]!r} is mutable; {_FIXED}"
+            yield f"its attribute {name} = {shown(vars(kind)[name])} is mutable; {_FIXED}"
         for name in kind.__private_attributes__:
             yield f"it has a private state, {name}; {_FIXED}"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import linecache
 import re
@@ -14,6 +15,7 @@ from types import ModuleType
 from frictionlab.faults import LAW_FILE
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.registry.entry_points import Home, unloadable
+from frictionlab.registry.guard import load_guarded
 
 LARGEST_LAW_FILE = 1_000_000
 
@@ -52,6 +54,8 @@ def read_law_file(path: Path) -> LawFile:
     text = text_of(path)
     name = re.sub(r"\W", "_", path.stem)
     module = _module(f"{LAW_FILE}{name}_{_sha256(text)[:12]}", path, text)
+    if wrong := _doubled(text):
+        raise home_of_file(path).broken(f"{wrong}; give one another name")
     return LawFile(path, text, _laws(module, path))
 
 
@@ -105,9 +109,9 @@ def _module(name: str, path: Path, text: str) -> ModuleType:
     module.__file__ = str(path)
     sys.modules[name] = module
     try:
-        exec(compile(text, str(path), "exec"), module.__dict__)
+        load_guarded(lambda: exec(compile(text, str(path), "exec"), module.__dict__))
     except BaseException as problem:
-        del sys.modules[name]
+        sys.modules.pop(name, None)
         if isinstance(problem, KeyboardInterrupt):
             raise
         raise unloadable(home_of_file(path), problem) from problem
@@ -116,14 +120,33 @@ def _module(name: str, path: Path, text: str) -> ModuleType:
 
 def _laws(module: ModuleType, path: Path) -> dict[str, type[FrictionLaw]]:
     """The laws defined in the module itself, without the base classes of others among them."""
-    own = [kind for kind in vars(module).values() if _is_law(kind) and kind.__module__ == module.__name__]
+    found = {kind: None for kind in vars(module).values() if _is_law(kind)}
+    own = [kind for kind in found if kind.__module__ == module.__name__]
     bases = {base for kind in own for base in kind.__mro__[1:]}
-    laws = {law_name(kind.__name__): kind for kind in own if kind not in bases}
+    laws: dict[str, type[FrictionLaw]] = {}
+    for kind in (kind for kind in own if kind not in bases):
+        other = laws.setdefault(law_name(kind.__name__), kind)
+        if other is not kind:
+            names = f"{other.__name__} and {kind.__name__}"
+            raise home_of_file(path).broken(
+                f"its classes {names} are both the law '{law_name(kind.__name__)}'; rename one"
+            )
     if not laws:
         raise home_of_file(path).broken(
             "defines no law: give it a class derived from frictionlab.SlidingLaw, BristleLaw or MemoryLaw"
         )
     return laws
+
+
+def _doubled(text: str) -> str:
+    """The class that a file defines twice, with both lines; '' for none: the second would replace the first."""
+    lines: dict[str, int] = {}
+    for node in ast.parse(text).body:
+        if isinstance(node, ast.ClassDef):
+            if node.name in lines:
+                return f"class {node.name} is defined twice, in lines {lines[node.name]} and {node.lineno}"
+            lines[node.name] = node.lineno
+    return ""
 
 
 def _is_law(kind: object) -> bool:

@@ -10,8 +10,16 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
-from frictionlab.faults import definition_line, describe_error, files_of, from_outside
+from frictionlab.faults import (
+    definition_line,
+    describe_error,
+    files_of,
+    from_outside,
+    outside_files,
+    shown,
+)
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.registry.guard import Meddling, guarded
 
 LIMIT = 2.0
 """Time limit [s] for all calls of a trial; they normally need a millisecond."""
@@ -41,10 +49,24 @@ def fault_with_samples(law: type[FrictionLaw]) -> Fault | None:
 def _with_time_limit(work: Callable[[_Progress], Fault | None]) -> Fault | None:
     """The fault that ``work`` finds, or that it exceeds the time limit; its thread is then abandoned."""
     now, found = _Progress([""]), []
-    thread = threading.Thread(target=lambda: found.append(work(now)), daemon=True)
+
+    def tried() -> None:
+        try:
+            found.append(work(now))
+        except BaseException as problem:
+            found.append(f"{now.what[0]} raises {describe_error(problem, outside_files(problem))}")
+
+    thread = threading.Thread(target=tried, daemon=True)
+    try:
+        guarded(lambda: _run(thread))
+    except Meddling as problem:
+        return f"{now.what[0]} {problem}"
+    return found[0] if found else f"{now.what[0]} does not return: stopped after {LIMIT:g} s"
+
+
+def _run(thread: threading.Thread) -> None:
     thread.start()
     thread.join(LIMIT)
-    return found[0] if found else f"{now.what[0]} does not return: stopped after {LIMIT:g} s"
 
 
 def _first(wrongs: Iterator[Fault]) -> Fault | None:
@@ -60,7 +82,7 @@ def _faults_of_samples(law: type[FrictionLaw], now: _Progress) -> Iterator[Fault
             if not law.model_fields or (not parameters and not _optional(law)):
                 yield f"its own defaults are refused: {problem.errors(include_url=False)[0]['msg']}"
             continue
-        except Exception as problem:
+        except BaseException as problem:
             given = ", ".join(f"{name}={value:g}" for name, value in parameters.items())
             yield f"{law.__name__}({given}) raises {describe_error(problem, files_of(law))}"
             return
@@ -152,7 +174,7 @@ def _fault_of_call(law: FrictionLaw, name: str, interface: Any, arguments: dict[
         return None
     hint = ": is its return missing?" if answer[0] is None else ""
     code = inspect.unwrap(getattr(type(law), name)).__code__
-    return f"{call} returns {answer[0]!r}, which is no {_KINDS[kind]}{hint}{definition_line(code)}"
+    return f"{call} returns {shown(answer[0])}, which is no {_KINDS[kind]}{hint}{definition_line(code)}"
 
 
 def _fault_of_error(law: FrictionLaw, what: str, call: Callable[[], object]) -> Fault | None:
@@ -161,7 +183,7 @@ def _fault_of_error(law: FrictionLaw, what: str, call: Callable[[], object]) -> 
         call()
     except (ArithmeticError, ValueError):
         return None
-    except Exception as problem:
+    except BaseException as problem:
         return f"{what} raises {describe_error(problem, files_of(type(law)))}"
     return None
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from frictionlab.runner.api import run_folder
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.folder import Existing, check_page
-from frictionlab.study import Mistake, Study, StudyError, load_study
+from frictionlab.study import Mistake, Plugins, Study, StudyError, load_study
 
 
 class Job(NamedTuple):
@@ -20,15 +20,24 @@ class Job(NamedTuple):
     out: Path
 
 
-def jobs(path: Path, out: Path | None, overrides: Sequence[str], law_files: Sequence[Path] = ()) -> list[Job]:
-    """The studies of a file or of a folder's ``*.yaml``. Raises StudyError with all their mistakes, BrokenPlugin."""
+def jobs(
+    path: Path,
+    out: Path | None,
+    overrides: Sequence[str],
+    law_files: Sequence[Path] = (),
+    plugins: Plugins = "run",
+) -> list[Job]:
+    """The studies of a file or of a folder's ``*.yaml``. Raises StudyError with all their mistakes, BrokenPlugin.
+
+    plugins: whether law files that a study itself lists are run, or refused.
+    """
     folder = _folder(path, out)
     if not path.is_dir():
-        return [Job(path.stem, load_study(path, overrides, law_files), folder)]
+        return [Job(path.stem, load_study(path, overrides, law_files, plugins), folder)]
     files = sorted(path.glob("*.yaml"))
     if not files:
         raise StudyError([Mistake(str(path), None, "", "a folder without studies: no *.yaml in it")])
-    studies = _all_read(files, overrides, law_files)
+    studies = _all_read(files, lambda file: load_study(file, overrides, law_files, plugins))
     return [Job(file.stem, study, folder / file.stem) for file, study in zip(files, studies, strict=True)]
 
 
@@ -45,12 +54,12 @@ def _folder(path: Path, out: Path | None) -> Path:
     return out or Path("runs") / path.absolute().stem
 
 
-def _all_read(files: Sequence[Path], overrides: Sequence[str], law_files: Sequence[Path]) -> list[Study]:
+def _all_read(files: Sequence[Path], read: Callable[[Path], Study]) -> list[Study]:
     studies: list[Study] = []
     mistakes: list[Mistake] = []
     for file in files:
         try:
-            studies.append(load_study(file, overrides, law_files))
+            studies.append(read(file))
         except StudyError as problem:
             mistakes += problem.mistakes
     if mistakes:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from frictionlab.columns import DERIVED, FROM_ORBITS, RESULTS, TEXT
-from frictionlab.faults import MARK, BrokenPlugin, CannotCompile, failing_law
+from frictionlab.faults import MARK, BrokenPlugin, CannotCompile, failing_law, text_of_error
 from frictionlab.methods.base import Answers, refused
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import derived_columns
@@ -40,7 +40,7 @@ def answer(chunk: Chunk) -> list[Piece]:
         reasons = [chunk.method.refusal(scene, chunk.law) for scene in chunk.scenes]
     except BrokenPlugin:
         raise
-    except Exception as problem:
+    except (Exception, SystemExit) as problem:
         return [Piece(places, _failed(len(places), problem))]
     out = {place: reason for place, reason in enumerate(reasons) if reason is not None}
     pieces = [Piece(list(out), refused(list(out.values())))] if out else []
@@ -60,25 +60,25 @@ def _solved(chunk: Chunk, places: list[int]) -> list[Piece]:
         ]
     except BrokenPlugin:
         raise
-    except Exception as problem:
+    except (Exception, SystemExit) as problem:
         if _numerical(problem) and len(places) > 1:
             half = len(places) // 2
             return _solved(chunk, places[:half]) + _solved(chunk, places[half:])
         return [Piece(places, _failed(len(places), problem))]
 
 
-def _numerical(problem: Exception) -> bool:
+def _numerical(problem: BaseException) -> bool:
     """ValueError covers numpy's LinAlgError and the domain errors of the math module."""
     return isinstance(problem, ArithmeticError | ValueError)
 
 
-def _failed(size: int, problem: Exception) -> Answers:
+def _failed(size: int, problem: BaseException) -> Answers:
     """Answers of points whose method raised; errors other than arithmetic are defects of a plugin law or of ours."""
     return replace(refused([_reason(problem)] * size), status=["failed"] * size)
 
 
-def _reason(problem: Exception) -> str:
-    sentence = f"{type(problem).__name__}: {problem}"
+def _reason(problem: BaseException) -> str:
+    sentence = text_of_error(problem)
     if _numerical(problem):
         return sentence
     law = str(problem) if isinstance(problem, CannotCompile) else failing_law(problem)
@@ -154,7 +154,7 @@ def _part(chunk: Chunk, piece: Piece) -> Part:
         return Part(rows, text_columns(piece.answers), numbers, _orbits(chunk, piece))
     except BrokenPlugin:
         raise
-    except Exception as problem:
+    except (Exception, SystemExit) as problem:
         return Part(rows, text_columns(_failed(len(rows), problem)), {}, {})
 
 

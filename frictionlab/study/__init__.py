@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from frictionlab.study.law_files import laws_of_files
+from frictionlab.study.law_files import Plugins, laws_of_files
 from frictionlab.study.mistakes import Mistake, StudyError
 from frictionlab.study.reader import load_study, parse_study, read_back
 from frictionlab.study.study import Expectation, LawChoice, MethodChoice, Study, StudyCase
@@ -12,6 +12,7 @@ __all__ = [
     "LawChoice",
     "MethodChoice",
     "Mistake",
+    "Plugins",
     "Study",
     "StudyCase",
     "StudyError",

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path as FilePath
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from pydantic import create_model
 
@@ -44,6 +44,8 @@ class StudyLaws(NamedTuple):
         return self.codes.get(kind) or next(own, "") or code_of(self.laws.named(kind))
 
 
+Plugins = Literal["run", "refuse"]
+"""What becomes of the law files that a study lists: loading them runs their code."""
 LawReader = Callable[[dict[str, Any], FilePath, Notes], StudyLaws]
 
 
@@ -54,6 +56,16 @@ def add_law_files(source: Source, files: Iterable[FilePath]) -> None:
         if isinstance(listed, list):
             source.origins[(KEY, len(listed))] = f"--law {file}"
             listed.append(str(file.absolute()))
+
+
+def refuse_law_files(source: Source) -> None:
+    """Raises StudyError where the study itself lists law files."""
+    if KEY in source.tree:
+        notes = Notes(source.notes)
+        notes.on_key(
+            (KEY,), "names Python code, which --no-plugins does not run; read it, then leave out --no-plugins"
+        )
+        raise StudyError(source.located(notes.all))
 
 
 def read_laws(tree: dict[str, Any], folder: FilePath, notes: Notes) -> StudyLaws:
@@ -77,8 +89,9 @@ def _read(name: str, path: Path, folder: FilePath, notes: Notes) -> LawFile | No
     try:
         return read_law_file(folder / name)
     except UnreadableLawFile as problem:
+        missing = not (folder / name).exists()
         there = [str(file.relative_to(folder)) for file in sorted((folder / name).parent.glob("*.py"))]
-        notes.add(path, f"{folder / name}: {problem}", did_you_mean(name, there))
+        notes.add(path, f"{folder / name}: {problem}", did_you_mean(name, there) if missing else "")
         return None
 
 

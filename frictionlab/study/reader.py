@@ -22,7 +22,15 @@ from frictionlab.study.choices import (
 )
 from frictionlab.study.expectations import Table, expectations, result_column
 from frictionlab.study.grid import Sweeps, note_impossible_points, read_sweeps
-from frictionlab.study.law_files import LawReader, StudyLaws, add_law_files, read_laws, saved_law_reader
+from frictionlab.study.law_files import (
+    LawReader,
+    Plugins,
+    StudyLaws,
+    add_law_files,
+    read_laws,
+    refuse_law_files,
+    saved_law_reader,
+)
 from frictionlab.study.mapping_source import read_mapping
 from frictionlab.study.mistakes import Notes, Path, StudyError
 from frictionlab.study.overrides import apply_overrides
@@ -41,15 +49,21 @@ HERE = FilePath()
 
 
 def load_study(
-    path: str | PathLike[str], overrides: Sequence[str] = (), law_files: Sequence[FilePath] = ()
+    path: str | PathLike[str],
+    overrides: Sequence[str] = (),
+    law_files: Sequence[FilePath] = (),
+    plugins: Plugins = "run",
 ) -> Study:
     """The study of this file, with ``path=value`` overrides and more files of laws.
 
+    plugins: ``refuse`` makes the law files that the study itself lists a mistake; ``run`` runs their code.
     Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
     """
     file = FilePath(path)
     source = read_file(file)
     if isinstance(source.tree, dict):
+        if plugins == "refuse":
+            refuse_law_files(source)
         add_law_files(source, law_files)
     return replace(_study(source, overrides, file.parent), path=file)
 

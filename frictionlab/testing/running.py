@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import ctypes
 import sys
-import threading
 import time
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
 from hypothesis import Phase, given
@@ -17,14 +14,11 @@ from hypothesis.errors import Unsatisfiable
 
 from frictionlab.faults import describe_error
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.registry.guard import TimeLimitExceeded, time_limit
 from frictionlab.testing.check import Check
 from frictionlab.testing.example import Given
 from frictionlab.testing.outcome import Outcome
 from frictionlab.testing.strategies import quietly
-
-
-class TimeLimitExceeded(BaseException):
-    """Raised at the time limit; not an Exception, so that a law cannot catch it by ``except Exception``."""
 
 
 class ExampleCount:
@@ -98,27 +92,3 @@ def _describe_failure(problem: Exception, law: type[FrictionLaw]) -> str:
         return str(problem)
     files = {getattr(sys.modules.get(kind.__module__), "__file__", None) for kind in law.__mro__[:-1]}
     return describe_error(problem, {file for file in files if file is not None and "pydantic" not in file})
-
-
-@contextmanager
-def time_limit(seconds: float) -> Iterator[None]:
-    """Raise TimeLimitExceeded in this thread if the block takes longer; compiled code is not interrupted."""
-    thread, done, turn = threading.get_ident(), threading.Event(), threading.Lock()
-
-    def watch() -> None:
-        wait = seconds
-        while not done.wait(wait):
-            wait = 0.5  # again: what is raised inside a callback of the collector is lost
-            with turn:
-                if not done.is_set():
-                    ctypes.pythonapi.PyThreadState_SetAsyncExc(
-                        ctypes.c_ulong(thread), ctypes.py_object(TimeLimitExceeded)
-                    )
-
-    watcher = threading.Thread(target=watch, daemon=True)
-    watcher.start()
-    try:
-        yield
-    finally:
-        with turn:
-            done.set()

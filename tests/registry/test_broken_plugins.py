@@ -95,6 +95,10 @@ BROKEN = {
         {HEAD: f"raise SystemExit(3)\n{HEAD}"},
         "cannot be loaded: SystemExit: 3\n  {file}:1: raise SystemExit(3)",
     ),
+    "end of the process at import": (
+        {HEAD: f"import os\nos._exit(0)\n{HEAD}"},
+        "cannot be loaded: ProcessExit: os._exit is not for plugins: it acts on the whole program\n  {file}:2:",
+    ),
     "missing method": (
         {GOOD: BRISTLE},
         "class Good does not define friction(self, v, z, dz), rate(self, v, z)",

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass
 from numbers import Real
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+
+from frictionlab.mistakes.validation import unnamed, wrong_values
 
 
 def _a_number(value: object) -> object:
@@ -52,6 +55,38 @@ EPSILON = 2.0**-52
 
 
 class Record(BaseModel):
-    """A frozen record that refuses keys it does not know."""
+    """A frozen record that refuses keys it does not know. Made in Python it raises WrongValues, which tells mistakes
+    as a study does, and TypeError for values without names."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    if not TYPE_CHECKING:  # type checkers and pydantic take the signature from the fields
+
+        def __init__(self, /, *without_names: Any, **values: Any) -> None:
+            if without_names:
+                raise unnamed(type(self), without_names)
+            try:
+                super().__init__(**values)
+            except ValidationError:
+                raise wrong_values(type(self), values) from None
+
+        __init__.__signature__ = inspect.signature(BaseModel.__init__)
+        __init__.__pydantic_base_init__ = True  # mappings inside other mappings are not made by __init__
+
+
+_RecordT = TypeVar("_RecordT", bound=Record)
+
+
+def rebuilt(record: _RecordT) -> _RecordT:
+    """The record if it holds what making it again from its values gives, else that.
+
+    Raises WrongValues where ``model_copy`` put in what the record refuses.
+    """
+    made = type(record)(**given_values(record))
+    return record if repr(made) == repr(record) else made
+
+
+def given_values(record: Record) -> dict[str, Any]:
+    """Nested plain values that were given for a record, whether or not they are valid."""
+    held = {name: value for name, value in vars(record).items() if name in record.model_fields_set}
+    return {name: given_values(value) if isinstance(value, Record) else value for name, value in held.items()}

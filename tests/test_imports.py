@@ -21,7 +21,8 @@ PROJECT = HOUSE.parent
 # one too. room -> the rooms it may import. Modules of one room may import each other, but no law another law.
 ARROWS = {
     "printable": [],
-    "quantities": [],
+    "mistakes": ["printable"],
+    "quantities": ["mistakes"],
     "columns": [],
     "laws": ["quantities"],
     "faults": ["laws"],
@@ -57,20 +58,21 @@ ARROWS = {
     ],
     "methods.auto": ["laws", "methods.base", "methods.exact", "methods.shooting", "scene"],
     "registry": ["faults", "laws", "methods.base"],
-    "study": ["columns", "laws", "methods.base", "printable", "registry", "scene"],
+    "study": ["columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
     "results": [
         *("columns", "laws", "methods.base", "orbit", "quantities", "registry", "scene", "shape", "study"),
         "theory",
     ],
     "runner": [
-        *("columns", "faults", "laws", "methods.base", "orbit", "printable", "quantities", "registry"),
+        *("columns", "faults", "laws", "methods.base", "mistakes", "orbit", "printable", "quantities"),
+        "registry",
         *("results", "scene", "study"),
     ],
     "charts": ["columns", "printable"],
     "report": ["charts", "columns", "registry", "results", "runner", "scene", "study"],
     "scaffold": ["registry", "runner"],
     "bench": [
-        *("charts", "columns", "compile", "laws", "quantities", "runner", "scene", "study"),
+        *("charts", "columns", "compile", "laws", "mistakes", "quantities", "runner", "scene", "study"),
         "methods.base",
     ],
     "testing": [
@@ -95,7 +97,17 @@ ROOMS = list(ARROWS)
 
 # what is not Python's own -> the rooms that may bring it in
 OUTSIDE = {
-    "pydantic": ["quantities", "laws", "scene", "methods", "registry", "study", "bench", "testing"],
+    "pydantic": [
+        "mistakes",
+        "quantities",
+        "laws",
+        "scene",
+        "methods",
+        "registry",
+        "study",
+        "bench",
+        "testing",
+    ],
     "numpy": [
         *("quantities", "compile", "theory", "shape", "orbit", "numerics", "dynamics", "methods", "study"),
         *("results", "runner", "charts", "bench", "testing"),

@@ -14,10 +14,10 @@ import frictionlab as fl
 from frictionlab import registry
 from frictionlab.charts.figures import FIGURES
 from frictionlab.columns import CURVES, RESULTS, SI, TEXT
+from frictionlab.mistakes.validation import number_paths
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
 from frictionlab.study import load_study
-from frictionlab.study.validation import number_paths
 
 PROJECT = Path(__file__).parent.parent
 README = (PROJECT / "README.md").read_text()

@@ -8,9 +8,9 @@ from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.record import BenchSetting, Contender, ReferenceSource
 from frictionlab.methods.base import Method
+from frictionlab.mistakes.notes import Notes, Path, value_text
+from frictionlab.mistakes.validation import build_record
 from frictionlab.study.choices import items, method_choice
-from frictionlab.study.mistakes import Notes, Path, value_text
-from frictionlab.study.validation import build_record
 
 OWN_KEYS_OF_CONTENDER = ("tolerance", "points")
 TOLERANCE = 1e-8

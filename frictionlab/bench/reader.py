@@ -11,9 +11,9 @@ from frictionlab import columns
 from frictionlab.bench.contenders import Defaults, contenders
 from frictionlab.bench.record import Bench, Workload
 from frictionlab.bench.references import read_references
+from frictionlab.mistakes.notes import Notes, Path
 from frictionlab.study import Mistake, Study, StudyError
 from frictionlab.study.choices import items
-from frictionlab.study.mistakes import Notes, Path
 from frictionlab.study.reader import study_of
 from frictionlab.study.yaml_source import Source, read_file
 

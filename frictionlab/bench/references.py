@@ -12,8 +12,8 @@ import numpy as np
 
 from frictionlab.bench.record import ReferenceMeans, ReferenceSource, Workload
 from frictionlab.bench.solvers import solve_points
+from frictionlab.mistakes.notes import Notes, Path
 from frictionlab.study.choices import items, method_choice
-from frictionlab.study.mistakes import Notes, Path
 
 REFERENCE_COLUMNS = ("belt_speed", "mean_friction")
 

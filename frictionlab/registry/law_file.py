@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import copyreg
 import hashlib
 import linecache
 import re
@@ -11,6 +12,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from frictionlab.faults import LAW_FILE
 from frictionlab.laws.base import FrictionLaw
@@ -18,6 +20,8 @@ from frictionlab.registry.entry_points import Home, unloadable
 from frictionlab.registry.guard import load_guarded
 
 LARGEST_LAW_FILE = 1_000_000
+_TEXTS: dict[str, str] = {}
+"""The text of every law file read, by the name of its module."""
 
 
 class UnreadableLawFile(Exception):
@@ -106,7 +110,7 @@ def _module(name: str, path: Path, text: str) -> ModuleType:
     if name in sys.modules:  # the same text from another folder
         return sys.modules[name]
     module = ModuleType(name)
-    module.__file__ = str(path)
+    module.__file__, _TEXTS[name] = str(path), text
     sys.modules[name] = module
     try:
         load_guarded(lambda: exec(compile(text, str(path), "exec"), module.__dict__))
@@ -131,6 +135,8 @@ def _laws(module: ModuleType, path: Path) -> dict[str, type[FrictionLaw]]:
             raise home_of_file(path).broken(
                 f"its classes {names} are both the law '{law_name(kind.__name__)}'; rename one"
             )
+    for kind in laws.values():
+        copyreg.pickle(kind, _pickled)
     if not laws:
         raise home_of_file(path).broken(
             "defines no law: give it a class derived from frictionlab.SlidingLaw, BristleLaw or MemoryLaw"
@@ -147,6 +153,23 @@ def _doubled(text: str) -> str:
                 return f"class {node.name} is defined twice, in lines {lines[node.name]} and {node.lineno}"
             lines[node.name] = node.lineno
     return ""
+
+
+def _pickled(law: FrictionLaw) -> tuple[Any, ...]:
+    """What another process makes the law from: the file's text is in it, since no module of this name is there."""
+    module = sys.modules[type(law).__module__]
+    return (
+        _blank,
+        (module.__name__, module.__file__, _TEXTS[module.__name__], type(law).__name__),
+        law.__getstate__(),
+    )
+
+
+def _blank(name: str, file: str, text: str, kind: str) -> FrictionLaw:
+    """A law of this class without values, for pickle to fill."""
+    path = Path(file)
+    laws = {law.__name__: law for law in _laws(_module(name, path, text), path).values()}
+    return laws[kind].__new__(laws[kind])
 
 
 def _is_law(kind: object) -> bool:

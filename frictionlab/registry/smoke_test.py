@@ -77,7 +77,7 @@ def _faults_of_samples(law: type[FrictionLaw], now: _Progress) -> Iterator[Fault
     now.what[0] = "building it"
     for parameters in _samples(law):
         try:
-            made = law(**parameters)
+            made = law.model_validate(parameters)
         except ValidationError as problem:
             if not law.model_fields or (not parameters and not _optional(law)):
                 yield f"its own defaults are refused: {problem.errors(include_url=False)[0]['msg']}"

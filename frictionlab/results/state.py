@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any
 
 from frictionlab.methods.base import Status
+from frictionlab.orbit.record import Orbit
+from frictionlab.scene.scene import Scene
 
 if TYPE_CHECKING:
     from frictionlab.orbit.sample import Samples
@@ -15,7 +18,37 @@ if TYPE_CHECKING:
 NAN = float("nan")
 
 
-@dataclass(frozen=True)
+class NoMeanError(RuntimeError):
+    """A steady state that has no mean friction; the message gives its status and the reason."""
+
+
+class OrbitOf:
+    """The orbit of one steady state, made when first asked for, or when it goes to another process."""
+
+    def __init__(self, make: Callable[[int], Orbit | None], scene: Scene) -> None:
+        self._make, self._scene = make, scene
+
+    @cached_property
+    def _orbit(self) -> Orbit | None:
+        return self._make(0)
+
+    def sampled(self, n: int) -> Samples | None:
+        """So many samples of it; None where there is no orbit."""
+        if self._orbit is None:
+            return None
+        from frictionlab.orbit.sample import sample  # imports numba: only where it is needed
+
+        return sample(self._orbit, self._scene, n)
+
+    def __reduce__(self) -> Any:
+        return OrbitOf, (partial(_kept, self._orbit), self._scene)
+
+
+def _kept(orbit: Orbit | None, _place: int) -> Orbit | None:
+    return orbit
+
+
+@dataclass(frozen=True, repr=False)
 class SteadyState:
     """A steady state: the result columns of the table, in its units; NaN or "" where one does not apply.
 
@@ -53,13 +86,31 @@ class SteadyState:
     model: str = ""
     seconds: float = NAN
     si: Mapping[str, float] = field(default_factory=dict)
-    sampled: Callable[[int], Samples | None] = field(default=lambda n: None, repr=False, compare=False)
+    motion: OrbitOf | None = field(default=None, compare=False)
+
+    def __repr__(self) -> str:
+        """The mean with its error, or what there is instead of one and why."""
+        if self.status == "ok":
+            said = f"mean_friction={self.mean_friction!r}, error={self.error:.1e}"
+            return f"SteadyState(ok, {said}, {self.model}{f'; {self.reason}' if self.reason else ''})"
+        return f"SteadyState({self._why()})"
+
+    def _why(self) -> str:
+        between = f"between {self.mean_low!r} and {self.mean_high!r}"
+        none = f"mean_friction {between}" if self.status == "not_unique" else "no mean_friction"
+        return f"{self.status}, {none}: {self.reason}"
+
+    def raise_for_status(self) -> SteadyState:
+        """This steady state if its status is ``ok``. Raises NoMeanError with status and reason for every other."""
+        if self.status != "ok":
+            raise NoMeanError(self._why())
+        return self
 
     def orbit(self, n: int) -> Samples:
         """One period at n equally spaced times. Raises ValueError where there is no orbit, saying why."""
         if n < 1:
             raise ValueError(f"an orbit has at least one sample, not {n}")
-        samples = self.sampled(n)
+        samples = None if self.motion is None else self.motion.sampled(n)
         if samples is None:
             raise ValueError(
                 f"no orbit: the steady state is '{self.status}': {self.reason or 'none was kept'}"

@@ -6,28 +6,36 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from dataclasses import replace
-from math import isfinite
-from numbers import Real
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
 from frictionlab import __version__, registry
-from frictionlab.columns import RESULTS, SI, selected
+from frictionlab.columns import RESULTS, selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.results.curve_table import curve_table
 from frictionlab.results.derived import si_columns, si_scales
 from frictionlab.results.expectations import judge
 from frictionlab.results.part import Part
-from frictionlab.results.state import SteadyState
+from frictionlab.results.run import Run
+from frictionlab.results.state import OrbitOf, SteadyState
 from frictionlab.results.table import headings, inputs
 from frictionlab.runner.accumulate import Accumulator
+from frictionlab.runner.arguments import (
+    check_ways,
+    given_columns,
+    given_law,
+    given_method,
+    given_scene,
+    given_speeds,
+    given_study,
+    given_tolerance,
+)
 from frictionlab.runner.chunks import Chunk, Task, chunks
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.execute import collect
@@ -35,13 +43,7 @@ from frictionlab.runner.folder import Existing, Identity, RunFolder
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.solve import answer, parts
 from frictionlab.scene.scene import Scene
-from frictionlab.study import Study, StudyCase, load_study, parse_study
-from frictionlab.study.mistakes import did_you_mean
-
-if TYPE_CHECKING:
-    from frictionlab.orbit.sample import Samples
-
-from frictionlab.results.run import Run
+from frictionlab.study import Study, StudyCase
 
 
 class Interrupted(KeyboardInterrupt):
@@ -75,11 +77,11 @@ def run(
     existing: take over finished points of the same study in ``out``, or replace whatever results it holds.
     executor: any; threads of this process by default.
     columns: result columns, in place of those of the study; inputs, mean_friction, error, status and reason always.
-    Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin, ValueError for an unknown column.
+    Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin, ValueError or TypeError for what makes no
+    sense, such as an unknown column.
     """
-    ready = _loaded(study, overrides)
-    if columns is not None:
-        ready = replace(ready, columns=_result_columns(columns, ready.scene))
+    check_ways(existing, executor)
+    ready = given_study(study, overrides, columns)
     folder = run_folder(ready, Path(out)) if out is not None else None
     if folder is not None:
         folder.check(existing)
@@ -91,12 +93,6 @@ def run(
         folder.open(existing)
     stopped = _solve(gathering, left, executor)
     return _finished(ready, gathering, folder, stopped)
-
-
-def _loaded(study: str | PathLike[str] | Mapping[str, Any] | Study, overrides: Sequence[str]) -> Study:
-    if isinstance(study, Study):
-        return study
-    return parse_study(study, overrides) if isinstance(study, Mapping) else load_study(study, overrides)
 
 
 def run_folder(study: Study, out: Path) -> RunFolder:
@@ -178,14 +174,12 @@ def curve(
     columns: result columns, all by default; inputs, mean_friction, error, status and reason always.
     Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
-    speeds = np.atleast_1d(np.asarray(belt_speed, dtype=float))
-    if speeds.ndim != 1 or not speeds.size or not np.isfinite(speeds).all():
-        raise ValueError("belt_speed must be a list of finite numbers")
-    ready, kind = _method(method), _kind(_law(law))
-    wanted = selected(None if columns is None else _result_columns(columns, _scene(scene)))
-    task = Task(_checked(tolerance), columns=wanted)
-    different, places = np.unique(speeds, return_inverse=True)  # a method is never given a belt speed twice
-    scenes = [_scene(scene).at(float(speed)) for speed in different]
+    scene, law, ready = given_scene(scene), given_law(law), given_method(method)
+    kind, wanted = _kind(law), selected(None if columns is None else given_columns(columns, scene))
+    task = Task(given_tolerance(tolerance), columns=wanted)
+    # a method is never given a belt speed twice
+    different, places = np.unique(given_speeds(belt_speed), return_inverse=True)
+    scenes = [scene.at(float(speed)) for speed in different]
     cases = [StudyCase(kind, kind, law, ready.name, ready, each) for each in scenes]
     gathering = Accumulator(inputs(cases), columns=wanted)
     with _workers(None) as pool:
@@ -200,23 +194,16 @@ def steady_state(
 
     tolerance [-]: absolute, on mean_friction. Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
-    ready, kind, task = _method(method), _kind(_law(law)), Task(_checked(tolerance))
-    case = StudyCase(kind, kind, law, ready.name, ready, _scene(scene))
+    scene, law, ready = given_scene(scene), given_law(law), given_method(method)
+    kind, task = _kind(law), Task(given_tolerance(tolerance))
+    case = StudyCase(kind, kind, law, ready.name, ready, scene)
     (chunk,) = chunks([case], task)
     (piece,) = answer(chunk)
     (part,) = parts(chunk, [piece])
     numbers = {name: float(column[0]) for name, column in part.numbers.items()}
     words = {name: column[0] for name, column in part.text.items()}
-
-    def sampled(n: int) -> Samples | None:
-        orbit = piece.answers.orbit(0)
-        if orbit is None:
-            return None
-        from frictionlab.orbit.sample import sample  # imports numba: only where it is needed
-
-        return sample(orbit, scene, n)
-
-    return SteadyState(**words, **numbers, si=_in_si(part, scene), sampled=sampled)  # type: ignore[arg-type]
+    motion = OrbitOf(piece.answers.orbit, scene)
+    return SteadyState(**words, **numbers, si=_in_si(part, scene), motion=motion)  # type: ignore[arg-type]
 
 
 def _in_si(part: Part, scene: Scene) -> dict[str, float]:
@@ -228,26 +215,6 @@ def _in_si(part: Part, scene: Scene) -> dict[str, float]:
     return {name: float(column[0]) for name, column in si_columns(found, scales).items()}
 
 
-def _result_columns(names: Sequence[str], scene: Scene) -> tuple[str, ...]:
-    """The names, each of a result column of such a scene."""
-    known = [*RESULTS, *(SI if scene.dimensional is not None else ())]
-    if isinstance(names, str):
-        raise ValueError(f"columns must be a list of names, not the text '{names}'")
-    for name in names:
-        if name not in known:
-            hint = did_you_mean(str(name), known)
-            raise ValueError(f"columns: no result column '{name}'{f'; {hint}' if hint else ''}")
-    return tuple(dict.fromkeys(names))
-
-
-def _method(method: str | Method) -> Method:
-    if isinstance(method, Method):
-        return method
-    if method not in registry.method_names():
-        raise ValueError(f"no method '{method}'; there are {', '.join(registry.method_names())}")
-    return registry.method_class(method)()
-
-
 def _kind(law: FrictionLaw) -> str:
     """The registered name of a law, of several that of its file; its class's where it is not registered."""
     names = []
@@ -257,22 +224,3 @@ def _kind(law: FrictionLaw) -> str:
                 names.append(name)
     file = type(law).__module__.rpartition(".")[2].replace("_", "-")
     return file if file in names else next(iter(names), type(law).__name__)
-
-
-def _law(law: FrictionLaw) -> FrictionLaw:
-    if not isinstance(law, FrictionLaw):
-        raise TypeError(f"law must be a friction law such as fl.Coulomb(mu=0.4), not {law!r}")
-    return law
-
-
-def _scene(scene: Scene) -> Scene:
-    if not isinstance(scene, Scene):
-        raise TypeError(f"scene must be an fl.Scene, not {scene!r}")
-    return scene
-
-
-def _checked(tolerance: float) -> float:
-    number = isinstance(tolerance, Real) and not isinstance(tolerance, bool)
-    if not (number and isfinite(tolerance) and tolerance > 0.0):
-        raise ValueError(f"tolerance must be a positive number, not {tolerance!r}")
-    return float(tolerance)

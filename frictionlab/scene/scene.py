@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from pydantic import ValidationError, model_validator
 
-from frictionlab.quantities import Finite, NonNegative, Positive, Record
+from frictionlab.quantities import Finite, NonNegative, Positive, Record, given_values
 from frictionlab.scene.body import Mass, Motion
 from frictionlab.scene.dimensional import Dimensional
 
@@ -255,12 +256,45 @@ class Scene(_Part):
         kept = "" if self.dimensional is None else "dimensional."
         return {path: value for path, value in self.values().items() if path.startswith(kept)}
 
+    def with_(self, **changes: Any) -> Scene:
+        """The same scene with other values: ``with_(normal_load=3, **{"drive.frequency": 2})``; None leaves one out.
+
+        Raises WrongValues. A scene in SI units is changed in them: ``**{"dimensional.mass_kg": 2}``.
+        """
+        given = given_values(self)
+        tree = given if self.dimensional is None else {"dimensional": given["dimensional"]}
+        return type(self)(**with_values(tree, changes))
+
+    def checked(self) -> Scene:
+        """The same scene, made again from what it was given: raises WrongValues where its values make no scene."""
+        given = given_values(self)
+        if given.get("dimensional") is None:
+            return type(self)(**given)
+        found = type(self)(**{"dimensional": given["dimensional"]})
+        other = [name for name in type(self).model_fields if getattr(found, name) != getattr(self, name)]
+        return (
+            found if not other else type(self)(dimensional=found.dimensional, **{n: given[n] for n in other})
+        )
+
     def at(self, belt_speed: float) -> Scene:
         """The same scene at another belt speed: [m/s] where the scene is given in SI units."""
         if self.dimensional is None:
             return self.model_copy(update={"belt_speed": belt_speed})
         there = self.dimensional.model_copy(update={"belt_speed_m_per_s": belt_speed})
         return self.model_copy(update={"belt_speed": there.scaled()["belt_speed"], "dimensional": there})
+
+
+def with_values(tree: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """A copy of nested values with some replaced, by dotted path."""
+    new = dict(tree)
+    for path, value in values.items():
+        head, _, rest = path.partition(".")
+        held = new.get(head) if rest else None
+        inside = given_values(held) if isinstance(held, Record) else held
+        new[head] = (
+            with_values(inside if isinstance(inside, Mapping) else {}, {rest: value}) if rest else value
+        )
+    return new
 
 
 def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, float]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from frictionlab.mistakes.notes import Mistake, StudyError
 from frictionlab.study.law_files import Plugins, laws_of_files
-from frictionlab.study.mistakes import Mistake, StudyError
 from frictionlab.study.reader import load_study, parse_study, read_back
 from frictionlab.study.study import Expectation, LawChoice, MethodChoice, Study, StudyCase
 

@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from frictionlab import registry
-from frictionlab.study.mistakes import Notes, Path, did_you_mean, value_text
+from frictionlab.mistakes.notes import Notes, Path, unknown_name, value_text
+from frictionlab.mistakes.validation import build_record
 from frictionlab.study.study import LawChoice, MethodChoice
-from frictionlab.study.validation import build_record
+
+REMEDIES = {"law": "; install the package that provides it, or list its file under plugins"}
 
 
 def items(given: Any, path: Path, example: str, notes: Notes) -> list[Any]:
@@ -111,13 +113,8 @@ def _name_reader(what: str, installed: Iterable[str], notes: Notes) -> Callable[
         if isinstance(given, str) and given in names:
             return given
         if isinstance(given, str):
-            hint = did_you_mean(given, names)
-            remedy = (
-                "; install the package that provides it, or list its file under plugins"
-                if what == "law"
-                else ""
-            )
-            notes.add(path, f"unknown {what} '{given}'; installed: {', '.join(names)}{remedy}", hint)
+            said, hint = unknown_name(what, given, names)
+            notes.add(path, f"{said}{REMEDIES.get(what, '')}", hint)
         else:
             notes.add(path, f"must be the name of a {what}, got {value_text(given)}")
         return None

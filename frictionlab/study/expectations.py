@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictionlab import columns
-from frictionlab.study.mistakes import Notes, Path, did_you_mean, value_text
+from frictionlab.mistakes.notes import Notes, Path, did_you_mean, value_text
 from frictionlab.study.study import Expectation
 
 EXPECTATION_KEYS = (

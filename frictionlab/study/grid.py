@@ -11,12 +11,12 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from frictionlab import registry
+from frictionlab.mistakes.notes import Notes, Path, did_you_mean, number_text, value_text
+from frictionlab.mistakes.validation import number_paths, record_at, valid_number, wrong_value
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import label_of, may_become_a_label
-from frictionlab.study.mistakes import Notes, Path, did_you_mean, number_text, value_text
 from frictionlab.study.study import Study
-from frictionlab.study.validation import number_paths, record_at, valid_number, wrong_value
 
 _GROUPS = (
     ("unbalance", "amplitude"),

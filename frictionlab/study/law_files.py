@@ -14,6 +14,7 @@ from pydantic import create_model
 
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.mistakes.notes import Mistake, Notes, Path, StudyError, did_you_mean, value_text
 from frictionlab.registry.law_file import (
     LawFile,
     UnreadableLawFile,
@@ -22,7 +23,6 @@ from frictionlab.registry.law_file import (
     read_law_file,
     text_of,
 )
-from frictionlab.study.mistakes import Mistake, Notes, Path, StudyError, did_you_mean, value_text
 from frictionlab.study.yaml_source import Source
 
 KEY = "plugins"

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from frictionlab.study.mistakes import Note, StudyError
+from frictionlab.mistakes.notes import Note, StudyError
 from frictionlab.study.yaml_source import (
     DEEPEST,
     LARGEST_YAML_FILE,

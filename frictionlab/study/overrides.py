@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from frictionlab.study.mistakes import Note, Path, StudyError, did_you_mean
+from frictionlab.mistakes.notes import Note, Path, StudyError, did_you_mean
 from frictionlab.study.yaml_source import Source, read_text
 
 _RANGE = ("start", "stop", "num", "spacing")

@@ -9,6 +9,8 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from frictionlab import columns, registry
+from frictionlab.mistakes.notes import Notes, Path, StudyError
+from frictionlab.mistakes.validation import build_record, number_paths
 from frictionlab.scene.dimensional import dimensions
 from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import (
@@ -32,10 +34,8 @@ from frictionlab.study.law_files import (
     saved_law_reader,
 )
 from frictionlab.study.mapping_source import read_mapping
-from frictionlab.study.mistakes import Notes, Path, StudyError
 from frictionlab.study.overrides import apply_overrides
 from frictionlab.study.study import SCHEMA, LawChoice, MethodChoice, Study
-from frictionlab.study.validation import build_record, number_paths
 from frictionlab.study.yaml_source import SAVED, Source, read_file
 
 STUDY_KEYS = (

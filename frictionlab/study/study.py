@@ -14,10 +14,10 @@ from typing import Any
 from frictionlab import columns, registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
+from frictionlab.mistakes.notes import number_text
 from frictionlab.registry.law_file import LawFile
 from frictionlab.scene.dimensional import Units, scaled_law
-from frictionlab.scene.scene import Scene
-from frictionlab.study.mistakes import number_text
+from frictionlab.scene.scene import Scene, with_values
 
 SCHEMA = 1
 LAW_COPIES = "laws"
@@ -238,15 +238,6 @@ def _in_scene(law: FrictionLaw, scales: Units | None, normal_load: float | None)
     assert normal_load is not None  # every valid scene has one
     scaled = law if scales is None else scaled_law(law, scales)
     return scaled.under_load(normal_load)
-
-
-def with_values(tree: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
-    """A copy of nested values with some replaced, by dotted path."""
-    new = dict(tree)
-    for path, value in values.items():
-        head, _, rest = path.partition(".")
-        new[head] = with_values(new.get(head, {}), {rest: value}) if rest else value
-    return new
 
 
 def _grid(sweep: Mapping[str, tuple[float, ...]], prefix: str) -> Iterator[dict[str, float]]:

@@ -13,8 +13,8 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
+from frictionlab.mistakes.notes import Mistake, Note, Path, StudyError, TextPosition, dotted
 from frictionlab.printable import lone_surrogate, one_line, with_joined_pairs
-from frictionlab.study.mistakes import Mistake, Note, Path, StudyError, TextPosition, dotted
 
 LARGEST_YAML_FILE = 5_000_000
 """Bytes; and letters of the values, where aliases repeat them."""

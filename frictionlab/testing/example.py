@@ -151,7 +151,7 @@ def _between(
 
 def _changed(law: FrictionLaw, name: str, value: float) -> FrictionLaw | None:
     try:
-        return type(law)(**law.model_dump(exclude_none=True) | {name: value})
+        return law.model_validate(law.model_dump(exclude_none=True) | {name: value})
     except ValidationError:
         return None
 

@@ -101,7 +101,7 @@ def _of_one_length(told: dict[str, Any], lists: list[str]) -> dict[str, Any]:
 
 def _made(law: type[FrictionLaw], told: dict[str, Any]) -> FrictionLaw | None:
     try:
-        return law(**told)
+        return law.model_validate(told)
     except ValidationError:
         return None
 
@@ -165,7 +165,7 @@ def _probed(inside: tuple[Any, tuple[Any, ...]], random: Random) -> Any:
 def _refusal(law: type[FrictionLaw], given: tuple[str, ...]) -> str:
     """Why a law of these, each as large as one, is refused."""
     try:
-        law(**dict.fromkeys(given, 1.0))
+        law.model_validate(dict.fromkeys(given, 1.0))
     except ValidationError as problem:
         return "; ".join(error["msg"] for error in problem.errors())
     return "its limits leave next to nothing"

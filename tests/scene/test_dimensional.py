@@ -10,7 +10,6 @@ import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pydantic import ValidationError
 from strategies import LAWS, scenes_in_the_plane, scenes_on_the_line, sizes
 
 import frictionlab as fl
@@ -18,6 +17,7 @@ from frictionlab.charts import figures
 from frictionlab.charts.curves import family_of, kinks
 from frictionlab.columns import RESULTS, SI
 from frictionlab.laws.base import Dimension, Positive, Record
+from frictionlab.mistakes.notes import WrongValues
 from frictionlab.scene.dimensional import Units, dimensions, scaled_law
 from frictionlab.scene.scene import Scene
 from frictionlab.study import StudyError, parse_study
@@ -553,7 +553,7 @@ def test_a_column_in_si_units_needs_a_scene_in_si_units() -> None:
 
 
 def test_a_scene_made_in_python_with_both_sets_of_values_is_refused() -> None:
-    with pytest.raises(ValidationError, match="damping_ratio: leave it out, dimensional gives the scene"):
+    with pytest.raises(WrongValues, match="damping_ratio: leave it out, dimensional gives the scene"):
         Scene(damping_ratio=0.1, dimensional=fl.Dimensional.model_validate(BODY))
 
 
@@ -583,7 +583,7 @@ def test_figures_are_in_si_units_where_the_scene_is() -> None:
 
 def test_every_si_value_has_its_word_its_symbol_and_its_unit() -> None:
     from frictionlab.columns import word
-    from frictionlab.study.validation import number_paths
+    from frictionlab.mistakes.validation import number_paths
 
     starts = "initial."
     for path in number_paths(fl.Dimensional):

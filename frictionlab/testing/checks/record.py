@@ -111,7 +111,7 @@ def defaults_valid(one: Given) -> None:
         default = None if field.is_required() else field.get_default(call_default_factory=True)
         if default is not None:
             try:
-                one.kind(**{**given, name: default})
+                one.kind.model_validate({**given, name: default})
             except ValidationError as problem:
                 wrong = [error["msg"] for error in problem.errors() if error["loc"][:1] == (name,)]
                 one.require(
@@ -121,7 +121,7 @@ def defaults_valid(one: Given) -> None:
 
 def _refused(law: type[FrictionLaw], given: dict[str, Any]) -> bool:
     try:
-        law(**given)
+        law.model_validate(given)
     except ValidationError:
         return True
     return False
@@ -239,7 +239,7 @@ def _with_another(name: str, law: FrictionLaw) -> Iterator[FrictionLaw]:
     for change in _changes(value, words(type(law), name)):
         if change != value:
             with suppress(ValidationError):
-                yield type(law)(**law.model_dump(exclude_none=True) | {name: change})
+                yield law.model_validate(law.model_dump(exclude_none=True) | {name: change})
 
 
 def _changes(value: Any, words: Sequence[str]) -> Sequence[Any]:

@@ -12,7 +12,6 @@ from answered import with_columns
 from hypothesis import given
 from hypothesis import strategies as st
 from profiles import deep
-from pydantic import ValidationError
 from strategies import sizes
 
 from frictionlab.compile.cache import compiled
@@ -27,6 +26,7 @@ from frictionlab.methods.march.adapters import Exponential, Rk4, Sdirk2
 from frictionlab.methods.march.lap import MarchSettings
 from frictionlab.methods.march.laps import MarchStart, march_laps
 from frictionlab.methods.march.method import March
+from frictionlab.mistakes.notes import WrongValues
 from frictionlab.numerics.steppers.rk4 import DECAY
 from frictionlab.scene.body import Mass, on_the_line
 from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse, TransverseSlip
@@ -448,5 +448,5 @@ def test_a_law_without_a_vector_form_is_refused_in_the_plane_alone():
 
 
 def test_a_key_of_another_stepper_is_refused_by_name():
-    with pytest.raises(ValidationError, match="stepper exponential knows steps and periods"):
+    with pytest.raises(WrongValues, match="stepper exponential knows steps and periods"):
         March(stepper="exponential", width=0.1)

@@ -1,10 +1,10 @@
-"""Mistakes in a study: noted by path, located in the file or command line, printed with a caret."""
+"""Mistakes in what is given, by YAML or in Python: noted by path, located, told with a caret and a suggestion."""
 
 from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any, NamedTuple
@@ -45,7 +45,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Mistake:
-    """A located mistake. origin: the file or the ``--set`` that has it; place: None for the latter."""
+    """A located mistake. origin: the file, the ``--set`` or the Python name that has it; place: in a file alone."""
 
     origin: str
     place: TextPosition | None
@@ -71,8 +71,8 @@ class Mistake:
         return "\n".join(shown)
 
 
-class StudyError(Exception):
-    """A study that cannot be run; ``mistakes`` holds every reason, in the order of the file."""
+class _Mistaken(Exception):
+    """What cannot be used; ``mistakes`` holds every reason."""
 
     def __init__(self, mistakes: Sequence[Mistake]) -> None:
         self.mistakes = tuple(mistakes)
@@ -84,6 +84,14 @@ class StudyError(Exception):
         if more := len(self.mistakes) - len(shown):
             shown.append(f"and {more} more: correct these first")
         return "\n".join(shown)
+
+
+class StudyError(_Mistaken):
+    """A study that cannot be run; its mistakes are in the order of the file."""
+
+
+class WrongValues(_Mistaken, ValueError):
+    """Values of which no scene, law or method can be made."""
 
 
 def _with_caret(line: str, column: int) -> list[str]:
@@ -118,6 +126,11 @@ def did_you_mean(name: str, among: Iterable[str]) -> str:
     return f"did you mean '{found}'?" if found is not None else ""
 
 
+def unknown_name(what: str, given: str, installed: Sequence[str]) -> tuple[str, str]:
+    """The sentence for the name of a law or method that is not installed, and a suggestion."""
+    return f"unknown {what} '{given}'; installed: {', '.join(installed)}", did_you_mean(given, installed)
+
+
 def number_text(value: float) -> str:
     """A number in the notation of a study: 5, 0.1, 1e-08, .nan."""
     if value != value:
@@ -144,6 +157,29 @@ def value_text(value: Any) -> str:
     return _short(str(value))
 
 
+class Notation(NamedTuple):
+    """How a value is written in ``got ...``, and what a part may be given as."""
+
+    text_of: Callable[[Any], str]
+    part: str
+
+
+YAML = Notation(value_text, "a mapping (key: value)")
+
+
+def python_text(value: Any) -> str:
+    """The text for a value given in Python."""
+    if isinstance(value, type):
+        return f"the class {value.__name__}"
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if isinstance(value, (str, dict, list, tuple)) or (number and math.isfinite(value)):
+        return value_text(value)
+    return _short(" ".join(repr(value).split()))
+
+
+PYTHON = Notation(python_text, "{0}(...) or a mapping")
+
+
 def _short(text: str, most: int = 40) -> str:
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
@@ -159,10 +195,11 @@ def _advice(text: str) -> str:
 
 
 class Notes:
-    """The mistakes of a study; of several at the same path only the first is kept."""
+    """Mistakes by path; of several at the same path only the first is kept."""
 
-    def __init__(self, notes: Iterable[Note] = ()) -> None:
+    def __init__(self, notes: Iterable[Note] = (), notation: Notation | None = None) -> None:
         self.all: list[Note] = list(notes)
+        self.notation = notation or YAML
         self._settled: set[Path] = {note.path for note in self.all if note.place is None}
         self._misspelt: set[Path] = set()
         self._above: set[Path] = set()
@@ -181,13 +218,14 @@ class Notes:
             self._mark(path)
             self.all.append(Note(path, what, hint))
 
-    def unknown_key(self, path: Path, allowed: Iterable[str]) -> None:
-        """An unknown key."""
+    def unknown_key(self, path: Path, allowed: Iterable[str], given: Iterable[str] = ()) -> None:
+        """An unknown key beside those given; one of the others is more likely to be meant."""
         if path not in self._misspelt:
             self._misspelt.add(path)
             self._mark(path)
             names = list(allowed)
-            hint = did_you_mean(str(path[-1]), names)
+            left = [name for name in names if name not in (*given,)]
+            hint = did_you_mean(str(path[-1]), left) or did_you_mean(str(path[-1]), names)
             what = f"unknown key; allowed: {', '.join(names) or 'none'}"
             self.all.append(Note(path, what, hint, on_key=True))
 
@@ -205,7 +243,7 @@ class Notes:
     def mapping(self, value: Any, path: Path, allowed: Iterable[str] | None = None) -> dict[str, Any] | None:
         """The value if it is a mapping, unknown keys noted; None, noted, if it is not."""
         if not isinstance(value, dict):
-            self.add(path, f"must be a mapping (key: value), got {value_text(value)}")
+            self.add(path, f"must be {YAML.part}, got {value_text(value)}")
             return None
         for key in value if allowed is not None else ():
             if key not in (names := list(allowed or ())):

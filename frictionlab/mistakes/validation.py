@@ -1,17 +1,29 @@
-"""Check of a mapping of a study against a record (scene, law, method), with a sentence for every mistake."""
+"""Check of values against a record (scene, law, method), with a sentence for every mistake."""
 
 from __future__ import annotations
 
-import copy
 import math
 import re
 import types
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
-from frictionlab.study.mistakes import Notes, Path, closest, did_you_mean, number_text, value_text
+from frictionlab.mistakes.notes import (
+    PYTHON,
+    Mistake,
+    Note,
+    Notes,
+    Path,
+    WrongValues,
+    closest,
+    did_you_mean,
+    dotted,
+    number_text,
+    value_text,
+)
 
 _RecordT = TypeVar("_RecordT", bound=BaseModel)
 
@@ -49,7 +61,7 @@ def wrong_value(record: type[BaseModel], key: str, value: Any) -> str | None:
     try:
         _field(record, key).validate_python(value)
     except ValidationError as problem:
-        return _value_mistake(problem.errors(include_url=False)[0])
+        return _value_mistake(problem.errors(include_url=False)[0], value_text)
     return None
 
 
@@ -77,9 +89,34 @@ def build_record(record: type[_RecordT], tree: Any, path: Path, notes: Notes) ->
     """The record of this mapping; None, with every mistake noted, if it cannot be built."""
     if notes.mapping(tree, path) is None:
         return None
-    made = _Check(record, copy.deepcopy(tree), path, notes).built()
+    made = _Check(record, _copied(tree), path, notes).built()
     assert made is None or isinstance(made, record)
     return made
+
+
+def wrong_values(record: type[BaseModel], values: Mapping[str, Any]) -> WrongValues:
+    """What is wrong with values that Python code gave for a record that refuses them, in the sentences of studies."""
+    notes = Notes(notation=PYTHON)
+    _Check(record, _copied(values), (), notes).built()
+    return WrongValues([_in_python(note, record.__name__) for note in notes.all])
+
+
+def _in_python(note: Note, name: str) -> Mistake:
+    return Mistake(name, None, dotted(note.path), note.what, note.hint)
+
+
+def unnamed(record: type[BaseModel], values: Sequence[Any]) -> TypeError:
+    """What is wrong with values given without their names."""
+    names = list(record.model_fields)
+    if len(values) > len(names):
+        return TypeError(f"{record.__name__} takes {', '.join(names) or 'no values'}, each by its name")
+    given = ", ".join(f"{name}={PYTHON.text_of(value)}" for name, value in zip(names, values, strict=False))
+    return TypeError(f"{record.__name__} takes its values by name: write {record.__name__}({given})")
+
+
+def _copied(tree: Mapping[str, Any]) -> dict[str, Any]:
+    """A copy whose mappings can be changed."""
+    return {key: _copied(value) if isinstance(value, dict) else value for key, value in tree.items()}
 
 
 class _Check:
@@ -88,17 +125,21 @@ class _Check:
     def __init__(self, record: type[BaseModel], tree: dict[str, Any], path: Path, notes: Notes) -> None:
         self._record, self._tree, self._path, self._notes = record, tree, path, notes
         self._spelt: dict[Path, Path] = {}
+        self._filled_in: set[str] = set()
         self._clean = True
 
     def built(self) -> BaseModel | None:
-        self._drop_nulls(self._tree, self._record, ())
+        if self._notes.notation is not PYTHON:
+            self._drop_nulls(self._tree, self._record, ())
         for _ in range(_ROUNDS):
             try:
                 record = self._record.model_validate(self._tree)
                 return record if self._clean else None
             except ValidationError as problem:
                 self._clean = False
-                if not any([self._mended(error) for error in problem.errors(include_url=False)]):
+                errors = problem.errors(include_url=False)
+                misspelt_first = sorted(errors, key=lambda error: error["type"] != "extra_forbidden")
+                if not any([self._mended(error) for error in misspelt_first]):
                     return None
         return None
 
@@ -125,26 +166,33 @@ class _Check:
         inside: Path = error["loc"]
         if error["type"] == "extra_forbidden":
             return self._unknown(inside)
+        if error["type"] == "missing" and self._at(inside) is not None:
+            return True  # a misspelt key that was meant to be this one
         if error["type"] == "missing":
             self._note(inside, "required key is missing")
             return self._filled(inside)
         if error["type"] in ("model_type", "model_attributes_type", "dict_type"):
-            self._note(inside, f"must be a mapping (key: value), got {value_text(error['input'])}")
+            self._note(inside, self._no_part(error))
             return self._replaced(inside)
-        if error["type"] == "value_error" and isinstance(error["input"], dict):
+        if error["type"] == "value_error" and record_at(self._record, inside) is not None:
             return any([self._rule(inside, part, what) for part, what in self._said(inside, _message(error))])
         if error["type"] == "literal_error":
             names = re.findall("'([^']*)'", error["ctx"]["expected"])
             hint = did_you_mean(error["input"], names) if isinstance(error["input"], str) else ""
-            self._note(inside, _value_mistake(error), hint)
+            self._note(inside, _value_mistake(error, self._notes.notation.text_of), hint)
             return self._dropped(inside)
-        self._note(inside, _value_mistake(error))
+        self._note(inside, _value_mistake(error, self._notes.notation.text_of))
         return self._filled(inside)
+
+    def _no_part(self, error: Any) -> str:
+        given = self._notes.notation.text_of(error["input"])
+        return f"must be {self._notes.notation.part.format(error['ctx']['class_name'])}, got {given}"
 
     def _rule(self, whole: Path, inside: Path, what: str) -> bool:
         """A rule of a record on itself or on one of its keys, such as a key that is not available yet."""
         required = what.startswith("required")
-        self._note(inside, what.replace("required", "required key is missing", 1) if required else what)
+        if not any(f"{name} = " in what for name in self._filled_in):  # a number that nobody gave
+            self._note(inside, what.replace("required", "required key is missing", 1) if required else what)
         if required:
             return self._filled(inside)
         return self._replaced(inside) if inside == whole else self._dropped(inside)
@@ -170,10 +218,10 @@ class _Check:
         """An unknown key; the check continues as if the most similar key were given."""
         record, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
         allowed = list(record.model_fields) if record else []
-        self._notes.unknown_key(self._path + inside, allowed)
+        self._notes.unknown_key(self._path + inside, allowed, tree)
         value = tree.pop(inside[-1])
         meant = closest(str(inside[-1]), [name for name in allowed if name not in tree])
-        if meant is not None and meant == closest(str(inside[-1]), allowed):
+        if meant is not None and closest(str(inside[-1]), allowed) in (None, meant):
             tree[meant] = value
             self._spelt[(*inside[:-1], meant)] = inside
         return True
@@ -192,9 +240,11 @@ class _Check:
         if str(inside[-1]) not in number_paths(record):
             return False
         filler = valid_number(record, str(inside[-1]))
-        if tree.get(inside[-1]) == filler:
+        held = tree.get(inside[-1])
+        if isinstance(held, int | float) and held == filler:
             return False
         tree[inside[-1]] = filler
+        self._filled_in.add(str(inside[-1]))
         return True
 
     def _replaced(self, inside: Path) -> bool:
@@ -203,7 +253,8 @@ class _Check:
         part = nested(parent, str(inside[-1])) if inside and parent else None
         if part is None or not isinstance(tree, dict):
             return False
-        if tree.get(inside[-1]) == _ones(part):
+        held = tree.get(inside[-1])
+        if isinstance(held, dict) and held == _ones(part):
             return False
         tree[inside[-1]] = _ones(part)
         return True
@@ -230,9 +281,9 @@ _BOUNDS = {"greater_than": (">", "gt"), "greater_than_equal": (">=", "ge")}
 _BOUNDS |= {"less_than": ("<", "lt"), "less_than_equal": ("<=", "le")}
 
 
-def _value_mistake(error: Any) -> str:
+def _value_mistake(error: Any, text_of: Callable[[Any], str]) -> str:
     """An error in a single value as a sentence."""
-    given = value_text(error["input"])
+    given = text_of(error["input"])
     if isinstance(error["input"], float) and not math.isfinite(error["input"]):
         return f"must be a finite number, got {given}"
     if error["type"] in _BOUNDS:

@@ -1,0 +1,1 @@
+"""What is wrong with given values: one sentence for each mistake, in a study and in Python."""

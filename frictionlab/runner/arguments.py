@@ -1,0 +1,136 @@
+"""What Python code gives for a run, a curve or a steady state: checked, each mistake with what is allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import replace
+from math import isfinite
+from numbers import Real
+from os import PathLike
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from frictionlab import registry
+from frictionlab.columns import RESULTS, SI
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
+from frictionlab.mistakes.notes import closest, did_you_mean, python_text, unknown_name
+from frictionlab.quantities import Floats, rebuilt
+from frictionlab.runner.folder import Existing
+from frictionlab.scene.scene import Scene
+from frictionlab.study import Study, load_study, parse_study
+
+
+def given_scene(scene: Scene) -> Scene:
+    """The scene, its values checked. Raises TypeError, WrongValues."""
+    if isinstance(scene, Scene):
+        return scene.checked()
+    hint = "did you mean fl.Scene(**scene)?" if isinstance(scene, Mapping) else ""
+    raise TypeError(_told("scene must be an fl.Scene", scene, hint))
+
+
+def given_law(law: FrictionLaw) -> FrictionLaw:
+    """The law, its values checked. Raises TypeError, WrongValues."""
+    if isinstance(law, FrictionLaw):
+        return rebuilt(law)
+    kind: Any = law
+    if isinstance(law, str) and (name := closest(law, registry.law_names())):
+        kind = registry.law_class(name)
+    hint = f"did you mean {_call(kind)}?" if isinstance(kind, type) and issubclass(kind, FrictionLaw) else ""
+    raise TypeError(_told("law must be a friction law such as fl.Coulomb(mu=0.4)", law, hint))
+
+
+def given_method(method: str | Method) -> Method:
+    """The method, its values checked. Raises TypeError, ValueError for an unknown name."""
+    if isinstance(method, Method):
+        return rebuilt(method)
+    if not isinstance(method, str):
+        hint = f"did you mean {_call(method)}?" if isinstance(method, type) else ""
+        raise TypeError(
+            _told("method must be a name such as 'auto', or a method such as fl.March()", method, hint)
+        )
+    if method not in registry.method_names():
+        raise ValueError(_with(*unknown_name("method", method, registry.method_names())))
+    return registry.method_class(method)()
+
+
+def given_tolerance(tolerance: float) -> float:
+    """The tolerance. Raises ValueError."""
+    number = isinstance(tolerance, Real) and not isinstance(tolerance, bool)
+    if not (number and isfinite(tolerance) and tolerance > 0.0):
+        raise ValueError(_told("tolerance must be a positive number", tolerance))
+    return float(tolerance)
+
+
+def given_speeds(belt_speed: ArrayLike) -> Floats:
+    """Belt speeds as an array. Raises ValueError."""
+    given = np.atleast_1d(np.asarray(belt_speed, dtype=object))
+    numbers = [isinstance(each, Real) and not isinstance(each, bool) for each in given.flat]
+    if given.ndim != 1 or not given.size or not all(numbers) or not np.isfinite(given.astype(float)).all():
+        raise ValueError(_told("belt_speed must be a list of finite numbers", belt_speed))
+    return given.astype(np.float64)
+
+
+def given_columns(names: Sequence[str], scene: Scene) -> tuple[str, ...]:
+    """The names, each of a result column of such a scene. Raises ValueError."""
+    known = [*RESULTS, *(SI if scene.dimensional is not None else ())]
+    if isinstance(names, str) or not isinstance(names, Sequence):
+        raise ValueError(_told("columns must be a list of names", names))
+    for name in names:
+        if name not in known:
+            raise ValueError(_with(f"columns: no result column '{name}'", did_you_mean(str(name), known)))
+    return tuple(dict.fromkeys(names))
+
+
+def given_study(
+    study: str | PathLike[str] | Mapping[str, Any] | Study,
+    overrides: Sequence[str],
+    columns: Sequence[str] | None,
+) -> Study:
+    """The study of a file, a mapping or a record, its values checked. Raises StudyError, TypeError, ValueError."""
+    if isinstance(overrides, str) or not all(isinstance(each, str) for each in overrides):
+        raise TypeError(_told("overrides must be a list such as ['scene.belt_speed=5']", overrides))
+    if isinstance(study, Study):
+        ready = _checked_study(study)
+    elif isinstance(study, Mapping):
+        ready = parse_study(study, overrides)
+    elif isinstance(study, str | PathLike):
+        ready = load_study(study, overrides)
+    else:
+        raise TypeError(_told("study must be the path of a study file, a mapping or a Study", study))
+    return ready if columns is None else replace(ready, columns=given_columns(columns, ready.scene))
+
+
+def _checked_study(study: Study) -> Study:
+    """The study, where neither ``replace`` nor ``model_copy`` put in what a study file would not take."""
+    for choice in study.laws:
+        choice.law_class(**choice.parameters)
+    given_columns(study.columns or (), study.scene)
+    return replace(study, scene=given_scene(study.scene), tolerance=given_tolerance(study.tolerance))
+
+
+def check_ways(existing: Existing, executor: Executor | None) -> None:
+    """Check how to go about a run. Raises ValueError, TypeError."""
+    if existing not in get_args(Existing):
+        allowed = " or ".join(map(repr, get_args(Existing)))
+        raise ValueError(_told(f"existing must be {allowed}", existing))
+    if executor is not None and not isinstance(executor, Executor):
+        raise TypeError(_told("executor must be a concurrent.futures.Executor", executor))
+
+
+def _told(allowed: str, value: Any, hint: str = "") -> str:
+    return _with(f"{allowed}, got {python_text(value)}", hint)
+
+
+def _with(what: str, hint: str) -> str:
+    return f"{what}; {hint}" if hint else what
+
+
+def _call(kind: Any) -> str:
+    """How to make a record of this class: its name and the values it requires."""
+    fields = getattr(kind, "model_fields", {})
+    required = (f"{name}=..." for name, field in fields.items() if field.is_required())
+    return f"{kind.__name__}({', '.join(required)})"

@@ -17,8 +17,9 @@ MOST_MISTAKES_SHOWN = 50
 _WIDTH = 100
 _LONGEST_SENTENCE = 2000
 _LONGEST_PATH = 200
+_MOST_SHOWN = 50
 _LONGEST_NAME = 60
-_MOST_NAMES = 200
+_MOST_NAMES = 100
 """A longer name, and names beyond these, are not searched for what was meant."""
 
 
@@ -302,5 +303,6 @@ class Notes:
         if isinstance(value, str) and value in allowed:
             return value
         hint = did_you_mean(value, allowed) if isinstance(value, str) else ""
-        self.add(path, f"must be one of {', '.join(allowed)}; got {value_text(value)}", hint)
+        shown = [*allowed[:_MOST_SHOWN], *(["..."] if len(allowed) > _MOST_SHOWN else [])]
+        self.add(path, f"must be one of {', '.join(shown)}; got {value_text(value)}", hint)
         return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from typing import Any
 
 from frictionlab import registry
@@ -84,14 +84,22 @@ def certain_law_labels(given: Any, laws: registry.Laws) -> tuple[str, ...] | Non
     return certain_labels(given, laws.names()) if mappings else None
 
 
-def may_become_a_label(label: str, given: Any, laws: registry.Laws) -> bool:
-    """Whether an unknown label may become known when other mistakes in the laws are corrected."""
-    if not isinstance(given, list) or not given or not all(isinstance(item, dict) for item in given):
+class Anything:
+    """A container of all labels."""
+
+    def __contains__(self, label: object) -> bool:
+        """Always."""
         return True
+
+
+def possible_labels(given: Any, laws: registry.Laws) -> Container[str]:
+    """The labels that may become known when other mistakes in the laws are corrected."""
+    if not isinstance(given, list) or not given or not all(isinstance(item, dict) for item in given):
+        return Anything()
     labels = [label_of(item) for item in given if "label" in item or "kind" in item]
     if not all(each and each.isprintable() for each in labels) or len(set(labels)) < len(labels):
-        return True
-    return certain_law_labels(given, laws) is None and label in laws.names()
+        return Anything()
+    return laws.names() if certain_law_labels(given, laws) is None else ()
 
 
 def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:

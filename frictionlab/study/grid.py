@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
-from fractions import Fraction
+from collections.abc import Callable, Container, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel
 
 from frictionlab import registry
-from frictionlab.mistakes.notes import Notes, Path, did_you_mean, number_text, value_text
+from frictionlab.mistakes.notes import Notes, Path, StudyError, did_you_mean, number_text, value_text
 from frictionlab.mistakes.validation import number_paths, record_at, valid_number, wrong_value
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
-from frictionlab.study.choices import label_of, may_become_a_label
-from frictionlab.study.study import Study
+from frictionlab.study.choices import label_of, possible_labels
+from frictionlab.study.ranges import SPACINGS, SweepRange
+from frictionlab.study.study import Study, owner
+
+LARGEST_GRID = 1_000_000
+LARGEST_CHECK = 20_000
+"""Points that are built to check a grid; of a larger one the ends and evenly spaced values of each sweep."""
+MOST_KEPT_SAMPLES = 50_000_000
+"""Samples of kept orbits in all."""
+_KEYS = ("start", "stop", "num", "spacing")
 
 _GROUPS = (
     ("unbalance", "amplitude"),
@@ -30,9 +38,10 @@ _GROUPS = (
 
 @dataclass
 class Sweeps:
-    """The sweeps of a study, and where their first values stand in for what the study left out."""
+    """The sweeps of a study, the ranges among them, and where first values stand in for what the study left out."""
 
     sweep: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    ranges: dict[str, SweepRange] = field(default_factory=dict)
     stand_ins: dict[Path, Path] = field(default_factory=dict)
 
 
@@ -49,93 +58,129 @@ def read_sweeps(tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> Swee
     """Read the sweeps; a swept value that the study leaves out is put into the tree."""
     found = Sweeps()
     given = notes.mapping(tree.get("sweep", {}), ("sweep",)) or {}
-    for key, range_ in given.items():
-        values = sweep_values(range_, ("sweep", key), notes)
-        if target := _target(tree, key, laws, notes):
-            _check_values(values, target, ("sweep", key), notes)
-            _stand_in(tree, target, values, found.stand_ins, key)
-        found.sweep[key] = values
+    read = {key: _read_values(values, ("sweep", key), notes) for key, values in given.items()}
+    found.ranges = {key: values for key, values in read.items() if isinstance(values, SweepRange)}
+    too_large = _note_too_large(read, notes)
+    targets = _Targets(tree, laws, notes)
+    for key, values in read.items():
+        built = _ends(values) if too_large else _built(values, ("sweep", key), notes)
+        if target := targets.target(key):
+            _check_values(_ends(values) if key in found.ranges else built, target, ("sweep", key), notes)
+            _stand_in(tree, target, built, found.stand_ins, key)
+        found.sweep[key] = built
     return found
 
 
-def _target(tree: dict[str, Any], key: str, laws: registry.Laws, notes: Notes) -> _Target | None:
-    head, *steps = key.split(".")
-    if head == "scene" and key.removeprefix("scene.") in number_paths(Scene):
-        return _scene_target(tree, steps, ("sweep", key), notes)
-    if head == "laws":
-        return _law_target(tree, key, laws, notes)
-    known = _sweepable(tree, laws)
-    what = "only scene.<value> and laws.<label>.<parameter> can be swept"
-    what = "no such value in a scene" if head == "scene" else what
-    notes.on_key(("sweep", key), what, did_you_mean(key, known))
-    return None
+def _ends(read: tuple[float, ...] | SweepRange) -> tuple[float, ...]:
+    """The ends of a range, which decide whether its values are allowed; of a list the first value."""
+    return (read.start, read.stop) if isinstance(read, SweepRange) else read[:1]
 
 
-def _scene_target(tree: dict[str, Any], steps: list[str], path: Path, notes: Notes) -> _Target | None:
-    parent: Path = ("scene", *steps[:-1])
-    if steps[0] != "dimensional" and isinstance(_at(tree, ("scene", "dimensional")), dict):
-        known = [f"scene.{value}" for value in number_paths(Dimensional, "dimensional.")]
-        hint = did_you_mean(f"scene.{'.'.join(steps)}", known)
-        notes.on_key(path, "the scene is given in SI units: sweep its values under scene.dimensional", hint)
-        return None
-    within = _at(tree, parent)
-    name = ".".join(map(str, parent))
-    if not isinstance(within, dict):
-        if within is None:
-            notes.on_key(path, f"the study has no {name}")
-        return None
-    if other := _alias_given(within, steps[-1]):
-        notes.on_key(path, f"{name} gives {other}, so {steps[-1]} cannot be swept")
-        return None
-    record = record_at(Scene, tuple(steps[:-1]))
-    return _Target(parent, steps[-1], record) if record else None
+def _note_too_large(read: Mapping[str, tuple[float, ...] | SweepRange], notes: Notes) -> bool:
+    """Whether the sweeps alone give too large a grid, noted before their values are built."""
+    sizes: dict[str, int] = {}
+    for key, values in read.items():
+        size = values.num if isinstance(values, SweepRange) else len(values)
+        sizes[owner(key)] = sizes.get(owner(key), 1) * max(1, size)
+    size = sizes.pop("scene.", 1) * max(1, sum(sizes.values()))
+    if size > LARGEST_GRID:
+        notes.add(("sweep",), f"the grid has at least {size} points, more than {LARGEST_GRID}")
+    return size > LARGEST_GRID
 
 
-def _law_target(tree: dict[str, Any], key: str, laws: registry.Laws, notes: Notes) -> _Target | None:
-    label, _, parameter = key.removeprefix("laws.").rpartition(".")
-    index = _labels(tree).get(label)
-    if index is None and may_become_a_label(label, tree.get("laws"), laws):
+class _Targets:
+    """What sweeps can vary: the numbers of a scene and of its laws, by label."""
+
+    def __init__(self, tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> None:
+        self._tree, self._laws, self._notes = tree, laws, notes
+
+    @cached_property
+    def _labels(self) -> dict[str, int]:
+        laws = self._tree.get("laws")
+        laws = laws if isinstance(laws, list) else []
+        found = {label_of(law): index for index, law in enumerate(laws) if isinstance(law, dict)}
+        return {label: index for label, index in found.items() if label is not None}
+
+    @cached_property
+    def _sweepable(self) -> list[str]:
+        paths = [f"scene.{path}" for path in number_paths(Scene)]
+        for label, index in self._labels.items():
+            kind = self._tree["laws"][index].get("kind")
+            if kind in self._laws.names():
+                paths += [f"laws.{label}.{name}" for name in number_paths(self._laws.named(kind))]
+        return paths
+
+    @cached_property
+    def _possible_labels(self) -> Container[str]:
+        return possible_labels(self._tree.get("laws"), self._laws)
+
+    def target(self, key: str) -> _Target | None:
+        """What a sweep of this name varies; None, noted, where it is nothing."""
+        head, *steps = key.split(".")
+        if head == "scene" and key.removeprefix("scene.") in number_paths(Scene):
+            return self._of_scene(steps, ("sweep", key))
+        if head == "laws":
+            return self._of_law(key)
+        what = "only scene.<value> and laws.<label>.<parameter> can be swept"
+        what = "no such value in a scene" if head == "scene" else what
+        self._notes.on_key(("sweep", key), what, did_you_mean(key, self._sweepable))
         return None
-    if index is None:
-        what = f"no law is labelled '{label}'" if label else "write laws.<label>.<parameter>"
-        notes.on_key(("sweep", key), what, did_you_mean(key, _sweepable(tree, laws)))
-        return None
-    kind = tree["laws"][index].get("kind")
-    if kind not in laws.names():
-        return None
-    law = laws.named(kind)
-    if parameter not in number_paths(law):
-        what = f"the law '{label}' has no parameter '{parameter}' to sweep"
-        if parameter in law.model_fields:
-            what = f"{parameter} of the law '{label}' is not one number: give a law of its own for each of its values"
-        notes.on_key(("sweep", key), what, did_you_mean(parameter, number_paths(law)))
-        return None
-    if other := _alias_given(tree["laws"][index], parameter):
-        notes.on_key(("sweep", key), f"the law '{label}' gives {other}, so {parameter} cannot be swept")
-        return None
-    return _Target(("laws", index), parameter, law)
+
+    def _of_scene(self, steps: list[str], path: Path) -> _Target | None:
+        parent: Path = ("scene", *steps[:-1])
+        if steps[0] != "dimensional" and isinstance(_at(self._tree, ("scene", "dimensional")), dict):
+            known = [f"scene.{value}" for value in number_paths(Dimensional, "dimensional.")]
+            hint = did_you_mean(f"scene.{'.'.join(steps)}", known)
+            what = "the scene is given in SI units: sweep its values under scene.dimensional"
+            self._notes.on_key(path, what, hint)
+            return None
+        within = _at(self._tree, parent)
+        name = ".".join(map(str, parent))
+        if not isinstance(within, dict):
+            if within is None:
+                self._notes.on_key(path, f"the study has no {name}")
+            return None
+        if other := _alias_given(within, steps[-1]):
+            self._notes.on_key(path, f"{name} gives {other}, so {steps[-1]} cannot be swept")
+            return None
+        record = record_at(Scene, tuple(steps[:-1]))
+        return _Target(parent, steps[-1], record) if record else None
+
+    def _of_law(self, key: str) -> _Target | None:
+        label, _, parameter = key.removeprefix("laws.").rpartition(".")
+        index = self._labels.get(label)
+        if index is None and label in self._possible_labels:
+            return None
+        if index is None:
+            what = f"no law is labelled '{label}'" if label else "write laws.<label>.<parameter>"
+            self._notes.on_key(("sweep", key), what, did_you_mean(key, self._sweepable))
+            return None
+        kind = self._tree["laws"][index].get("kind")
+        return (
+            self._of_parameter(("laws", index), kind, label, parameter)
+            if kind in self._laws.names()
+            else None
+        )
+
+    def _of_parameter(self, at: Path, kind: str, label: str, parameter: str) -> _Target | None:
+        law, path = self._laws.named(kind), ("sweep", f"laws.{label}.{parameter}")
+        if parameter not in number_paths(law):
+            what = f"the law '{label}' has no parameter '{parameter}' to sweep"
+            if parameter in law.model_fields:
+                advice = "give a law of its own for each of its values"
+                what = f"{parameter} of the law '{label}' is not one number: {advice}"
+            self._notes.on_key(path, what, did_you_mean(parameter, number_paths(law)))
+            return None
+        if other := _alias_given(_at(self._tree, at), parameter):
+            self._notes.on_key(path, f"the law '{label}' gives {other}, so {parameter} cannot be swept")
+            return None
+        return _Target(at, parameter, law)
 
 
 def _alias_given(within: dict[str, Any], key: str) -> str | None:
     """An alternative to ``key``, such as amplitude for unbalance, if the study gives that one."""
     group = next((names for names in _GROUPS if key in names), ())
     return None if key in within else next((name for name in group if name in within), None)
-
-
-def _labels(tree: dict[str, Any]) -> dict[str, int]:
-    laws = tree.get("laws")
-    laws = laws if isinstance(laws, list) else []
-    found = {label_of(law): index for index, law in enumerate(laws) if isinstance(law, dict)}
-    return {label: index for label, index in found.items() if label is not None}
-
-
-def _sweepable(tree: dict[str, Any], laws: registry.Laws) -> list[str]:
-    paths = [f"scene.{path}" for path in number_paths(Scene)]
-    for label, index in _labels(tree).items():
-        kind = tree["laws"][index].get("kind")
-        if kind in laws.names():
-            paths += [f"laws.{label}.{name}" for name in number_paths(laws.named(kind))]
-    return paths
 
 
 def _at(tree: Any, path: Path) -> Any:
@@ -150,7 +195,7 @@ def _at(tree: Any, path: Path) -> Any:
     return tree
 
 
-def _check_values(values: Iterable[float], target: _Target, path: Path, notes: Notes) -> None:
+def _check_values(values: tuple[float, ...], target: _Target, path: Path, notes: Notes) -> None:
     """Check each value by itself, so that a mistake refers to the value and not to a point of the grid."""
     for index, value in enumerate(values):
         if what := wrong_value(target.record, target.key, value):
@@ -174,6 +219,13 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
     if size > LARGEST_GRID:
         notes.add(("sweep",), f"the grid has {size} points, more than {LARGEST_GRID}")
         return
+    if (study.keep_orbit or 0) * size > MOST_KEPT_SAMPLES:
+        notes.add(
+            ("keep", "orbit"),
+            f"{study.keep_orbit} samples of {size} points are more than {MOST_KEPT_SAMPLES}",
+        )
+        return
+    study = _thinned(study)
     _build(lambda: study.scenes, study.sweep, "scene.", notes)
     for index, choice in enumerate(study.laws if not notes.all else ()):
         _build(lambda law=choice: study.laws_in_scenes(law), study.sweep, f"laws.{choice.label}.", notes)  # type: ignore[misc]
@@ -188,41 +240,39 @@ def _has_a_stiffness(law: Any) -> bool:
     return 0.0 < law.bristle_stiffness < math.inf and 0.0 < law.presliding() < math.inf
 
 
+def _thinned(study: Study) -> Study:
+    """The study with few enough values of each sweep, its ends among them, to build every point."""
+    while grid_size(study) > LARGEST_CHECK:
+        path, values = max(study.sweep.items(), key=lambda item: len(item[1]))
+        if len(values) == 2:
+            break
+        study = replace(study, sweep={**study.sweep, path: (*values[:-1:2], values[-1])})
+    return study
+
+
 def grid_size(study: Study) -> int:
     """The number of rows of the table."""
-    scenes = math.prod(len(v) for path, v in study.sweep.items() if path.startswith("scene."))
-    laws = (
-        math.prod(len(v) for path, v in study.sweep.items() if path.rpartition(".")[0] == f"laws.{law.label}")
-        for law in study.laws
-    )
-    return scenes * sum(laws) * len(study.methods)
+    sizes = {prefix: math.prod(map(len, sweeps.values())) for prefix, sweeps in study.sweeps_by_owner.items()}
+    laws = sum(sizes.get(f"laws.{law.label}.", 1) for law in study.laws)
+    return sizes.get("scene.", 1) * laws * len(study.methods)
 
 
 def _build(build: Callable[[], Any], sweep: Mapping[str, Any], prefix: str, notes: Notes) -> None:
     """Note values that are right one by one but invalid together."""
     try:
         build()
-    except (ValidationError, OverflowError) as problem:
-        what = str(problem)
-        if isinstance(problem, ValidationError):
-            what = problem.errors(include_url=False)[0]["msg"]
+    except StudyError as problem:
         own = [path for path in sweep if path.startswith(prefix)]
         path: Path = ("sweep", own[-1]) if own else ("laws",)
-        notes.on_key(path, f"a point of the grid cannot be built: {what}")
+        notes.on_key(path, problem.mistakes[0].what)
 
 
-LARGEST_GRID = 1_000_000
-
-_KEYS = ("start", "stop", "num", "spacing")
-_SPACINGS = ("linear", "log")
-
-
-def sweep_values(given: Any, path: Path, notes: Notes) -> tuple[float, ...]:
-    """The values of one sweep, from a list or a range; empty, noted, where there is a mistake."""
+def _read_values(given: Any, path: Path, notes: Notes) -> tuple[float, ...] | SweepRange:
+    """The values of one sweep, from a list or a range not yet built; empty, noted, where there is a mistake."""
     if isinstance(given, list):
         return _list_values(given, path, notes)
     if isinstance(given, dict):
-        return _range_values(given, path, notes)
+        return _read_range(given, path, notes) or ()
     notes.add(path, f"must be a list or {{start, stop, num, spacing}}, got {value_text(given)}")
     return ()
 
@@ -238,7 +288,7 @@ def _list_values(given: list[Any], path: Path, notes: Notes) -> tuple[float, ...
     return tuple(value for value in values if value is not None)
 
 
-def _range_values(given: dict[str, Any], path: Path, notes: Notes) -> tuple[float, ...]:
+def _read_range(given: dict[str, Any], path: Path, notes: Notes) -> SweepRange | None:
     notes.mapping(given, path, _KEYS)
     for key in ("start", "stop", "num"):
         if key not in given:
@@ -246,30 +296,22 @@ def _range_values(given: dict[str, Any], path: Path, notes: Notes) -> tuple[floa
     ends = [notes.number(given[key], (*path, key)) if key in given else None for key in ("start", "stop")]
     start, stop = ends
     num = notes.whole_number(given["num"], (*path, "num"), 2) if "num" in given else None
-    spacing = notes.one_of(given.get("spacing", "linear"), (*path, "spacing"), _SPACINGS)
+    spacing = notes.one_of(given.get("spacing", "linear"), (*path, "spacing"), SPACINGS)
     if start is not None and spacing == "log" and start <= 0:
         notes.add((*path, "start"), f"must be > 0 for log spacing, got {number_text(start)}")
     if start is not None and stop is not None and stop <= start:
         notes.add((*path, "stop"), f"must be > start = {number_text(start)}, got {number_text(stop)}")
     if num is not None and num > LARGEST_GRID:
         notes.add((*path, "num"), f"must be <= {LARGEST_GRID}, got {num}")
-    if notes.below(path) or start is None or stop is None or num is None:
-        return ()
-    values = _log(start, stop, num) if spacing == "log" else _linear(start, stop, num)
-    if len(set(values)) < num:
-        notes.add(path, f"there are no {num} different numbers between start and stop")
+    if notes.below(path) or start is None or stop is None or num is None or spacing is None:
+        return None
+    return SweepRange(start, stop, num, spacing)
+
+
+def _built(read: tuple[float, ...] | SweepRange, path: Path, notes: Notes) -> tuple[float, ...]:
+    if not isinstance(read, SweepRange):
+        return read
+    values = read.values()
+    if len(set(values)) < read.num:
+        notes.add(path, f"there are no {read.num} different numbers between start and stop")
     return values
-
-
-def _linear(start: float, stop: float, num: int) -> tuple[float, ...]:
-    """Evenly spaced and correctly rounded: {0.1, 1, 10} holds 0.3, not 0.30000000000000004."""
-    first, last = Fraction(repr(start)), Fraction(repr(stop))
-    step = (last - first) / (num - 1)
-    return tuple(float(first + index * step) for index in range(num))
-
-
-def _log(start: float, stop: float, num: int) -> tuple[float, ...]:
-    """Evenly spaced in the logarithm, both ends exact."""
-    low, high = math.log(start), math.log(stop)
-    inner = (math.exp(low + (high - low) * index / (num - 1)) for index in range(1, num - 1))
-    return (start, *inner, stop)

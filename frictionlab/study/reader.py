@@ -129,6 +129,7 @@ class _StudyReader:
             return None
         told["code"] = brought.code(choice.kind for choice in laws)
         told["plugins"] = brought.files
+        told["ranges"] = sweep.ranges
         study = Study(scene=scene, laws=laws, methods=methods, sweep=sweep.sweep, **told)
         note_impossible_points(study, self._notes)
         return study

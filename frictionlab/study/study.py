@@ -11,13 +11,16 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from pydantic import ValidationError
+
 from frictionlab import columns, registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.mistakes.notes import number_text
+from frictionlab.mistakes.notes import Mistake, StudyError, number_text
 from frictionlab.registry.law_file import LawFile
 from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.scene.scene import Scene, with_values
+from frictionlab.study.ranges import SweepRange
 
 SCHEMA = 1
 LAW_COPIES = "laws"
@@ -121,6 +124,7 @@ class Study:
     """Scenes, laws and methods, their full grid, and the expectations of the table.
 
     scene: the scene without sweeps. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values.
+    ranges: those of the sweeps that were given as ranges.
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
     columns: result columns asked for, None for all.
     plugins: its law files. code: SHA-256 of every law that is not frictionlab's own, by kind.
@@ -138,6 +142,7 @@ class Study:
     source: str = ""
     plugins: tuple[LawFile, ...] = ()
     code: dict[str, str] = field(default_factory=dict)
+    ranges: dict[str, SweepRange] = field(default_factory=dict)
     path: Path | None = field(default=None, compare=False)
 
     def cases(self) -> list[StudyCase]:
@@ -152,17 +157,30 @@ class Study:
 
     @cached_property
     def scenes(self) -> tuple[Scene, ...]:
-        """Every scene of the grid, the last sweep running fastest."""
+        """Every scene of the grid, the last sweep running fastest. Raises StudyError where one cannot be built."""
         tree = self.scene.given()
-        return tuple(Scene.model_validate(with_values(tree, point)) for point in self.scene_points())
+        try:
+            return tuple(Scene.model_validate(with_values(tree, point)) for point in self.scene_points())
+        except (ValidationError, OverflowError) as problem:
+            raise self._impossible(problem) from None
+
+    def _impossible(self, problem: ValidationError | OverflowError) -> StudyError:
+        what = str(problem)
+        if isinstance(problem, ValidationError):
+            what = problem.errors(include_url=False)[0]["msg"]
+        name = "study" if self.path is None else str(self.path)
+        return StudyError([Mistake(name, None, "sweep", f"a point of the grid cannot be built: {what}")])
 
     def scene_points(self) -> Iterator[dict[str, float]]:
         """The swept scene values of each scene, by dotted path without the leading ``scene.``."""
-        return _grid(self.sweep, "scene.")
+        return self._grid("scene.")
 
     def laws_of(self, choice: LawChoice) -> tuple[FrictionLaw, ...]:
-        """The law at every value of its own sweeps."""
-        return tuple(choice.law(point) for point in self.law_points(choice))
+        """The law at every value of its own sweeps. Raises StudyError where one cannot be built."""
+        try:
+            return tuple(choice.law(point) for point in self.law_points(choice))
+        except (ValidationError, OverflowError) as problem:
+            raise self._impossible(problem) from None
 
     def laws_in_scenes(self, choice: LawChoice) -> set[FrictionLaw]:
         """The different laws that result in the scales and under the normal loads of the scenes."""
@@ -175,7 +193,20 @@ class Study:
 
     def law_points(self, choice: LawChoice) -> Iterator[dict[str, float]]:
         """The swept parameters of this law, one mapping per combination."""
-        return _grid(self.sweep, f"laws.{choice.label}.")
+        return self._grid(f"laws.{choice.label}.")
+
+    @cached_property
+    def sweeps_by_owner(self) -> dict[str, dict[str, tuple[float, ...]]]:
+        """The sweeps of the scene, ``scene.``, and of each law, ``laws.<label>.``, by what comes after that."""
+        found: dict[str, dict[str, tuple[float, ...]]] = {}
+        for path, values in self.sweep.items():
+            found.setdefault(owner(path), {})[path.removeprefix(owner(path))] = values
+        return found
+
+    def _grid(self, prefix: str) -> Iterator[dict[str, float]]:
+        """Every combination of the sweeps of one owner."""
+        own = self.sweeps_by_owner.get(prefix, {})
+        return (dict(zip(own, point, strict=True)) for point in itertools.product(*own.values()))
 
     def resolved(self) -> dict[str, Any]:
         """The study as plain values; with its ``law_texts`` beside it they load to an equal study."""
@@ -188,7 +219,10 @@ class Study:
         told["methods"] = [method.resolved() for method in self.methods]
         told["tolerance"] = self.tolerance
         if self.sweep:
-            told["sweep"] = {path: _natural(list(values)) for path, values in self.sweep.items()}
+            told["sweep"] = {
+                path: _natural(self.ranges[path].resolved() if path in self.ranges else list(values))
+                for path, values in self.sweep.items()
+            }
         if self.keep_orbit is not None:
             told["keep"] = {"orbit": self.keep_orbit}
         if self.columns is not None:
@@ -229,8 +263,8 @@ class Study:
         return hashlib.sha256(json.dumps(_natural(numbers), sort_keys=True).encode()).hexdigest()
 
     def _fixed(self, law: LawChoice) -> dict[str, Any]:
-        swept = {path for path in self.sweep if path.startswith(f"laws.{law.label}.")}
-        return {name: v for name, v in law.parameters.items() if f"laws.{law.label}.{name}" not in swept}
+        swept = self.sweeps_by_owner.get(f"laws.{law.label}.", {})
+        return {name: v for name, v in law.parameters.items() if name not in swept}
 
 
 def _in_scene(law: FrictionLaw, scales: Units | None, normal_load: float | None) -> FrictionLaw:
@@ -240,13 +274,7 @@ def _in_scene(law: FrictionLaw, scales: Units | None, normal_load: float | None)
     return scaled.under_load(normal_load)
 
 
-def _grid(sweep: Mapping[str, tuple[float, ...]], prefix: str) -> Iterator[dict[str, float]]:
-    """Every combination of the sweeps directly under a prefix."""
-    own = {path.removeprefix(prefix): values for path, values in sweep.items() if _owner(path) == prefix}
-    return (dict(zip(own, point, strict=True)) for point in itertools.product(*own.values()))
-
-
-def _owner(path: str) -> str:
+def owner(path: str) -> str:
     """The part that a sweep varies: ``scene.`` or ``laws.<label>.`` (a label may contain points)."""
     return "scene." if path.startswith("scene.") else f"{path.rpartition('.')[0]}."
 

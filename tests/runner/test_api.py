@@ -426,7 +426,8 @@ def test_another_study_is_refused_a_folder_that_is_taken(tmp_path: Path) -> None
 
 
 def test_studies_that_differ_in_long_lines_are_told_apart_in_short_ones(tmp_path: Path) -> None:
-    fl.run(study(sweep=MANY), out=tmp_path / "out")
+    values = list(parse_study(study(sweep=MANY)).sweep["scene.belt_speed"])
+    fl.run(study(sweep={"scene.belt_speed": values}), out=tmp_path / "out")
 
     with pytest.raises(FolderError) as caught:
         fl.run(study(), out=tmp_path / "out")

@@ -1,0 +1,43 @@
+"""A range of a sweep: its ends, how many values and how they are spaced; the values are built on demand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from fractions import Fraction
+from typing import Any
+
+SPACINGS = ("linear", "log")
+
+
+@dataclass(frozen=True)
+class SweepRange:
+    """The values from start to stop (> start), num (>= 2) of them, evenly spaced or evenly in the logarithm."""
+
+    start: float
+    stop: float
+    num: int
+    spacing: str = "linear"
+
+    def values(self) -> tuple[float, ...]:
+        """Every value, in rising order."""
+        return self._logarithmic() if self.spacing == "log" else self._linear()
+
+    def resolved(self) -> dict[str, Any]:
+        """The entry of a study file; linear spacing is left out."""
+        told = asdict(self)
+        return told if self.spacing != "linear" else {key: told[key] for key in ("start", "stop", "num")}
+
+    def _linear(self) -> tuple[float, ...]:
+        """Evenly spaced and correctly rounded: {0.1, 1, 10} holds 0.3, not 0.30000000000000004."""
+        first, last = Fraction(repr(self.start)), Fraction(repr(self.stop))
+        shared = math.lcm(first.denominator, last.denominator)
+        low, high = int(first * shared), int(last * shared)
+        steps = self.num - 1
+        return tuple((low * (steps - k) + high * k) / (shared * steps) for k in range(self.num))
+
+    def _logarithmic(self) -> tuple[float, ...]:
+        """Both ends exact."""
+        low, high = math.log(self.start), math.log(self.stop)
+        inner = (math.exp(low + (high - low) * k / (self.num - 1)) for k in range(1, self.num - 1))
+        return (self.start, *inner, self.stop)

@@ -8,6 +8,7 @@ from typing import Any
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.methods.exact.legs import Oscillator, canonical
 from frictionlab.methods.exact.return_map import (
+    LEGS_IN_ALL,
     Fixed,
     friction_free_start,
     impulse_error,
@@ -87,12 +88,14 @@ def iterate_until_fixed(mass: Mass, coefficient: float, belt_speed: float, start
     """
     body = body_at(mass, coefficient, belt_speed)
     first = passage(body, start[0], start[1], start[2], body.period)
-    x, w = first.x, first.w
+    x, w, work = first.x, first.w, 0
     for periods in range(MOST_PERIODS):
         here = passage(body, x, w, 0.0, body.period)
         residual = math.hypot(here.x - x, here.w - w)
         if residual <= rounding(body, x, w):
             write_fixed(body, Fixed(x, w, here, residual, periods), mass.normal_load, row)
             return periods
-        x, w = here.x, here.w
+        x, w, work = here.x, here.w, work + here.legs
+        if work > LEGS_IN_ALL:
+            break
     return -1

@@ -20,6 +20,8 @@ TINY = 1e-300
 STICK = 0.0
 MOST_CREEPING = 1000
 """Most steps of rounding size in a leg; more give NaN: the motion is smaller than the rounding of its position."""
+STEPS_IN_A_LEG = 1_000_000
+"""Most steps of any size in a leg; more give NaN."""
 
 
 class Oscillator(NamedTuple):
@@ -259,7 +261,7 @@ def slip_leg(body: Oscillator, tau: float, x: float, w: float, sign: float, left
     y0, z0 = x - u + friction, w + (body.belt_speed - speed)
     noise = slip_noise(body, y0, z0)
     y, z, r = y0, z0, 0.0
-    keep, turn, damp, event, crept = 1.0, 0.0, 1.0, 0.0, 0
+    keep, turn, damp, event, crept, steps = 1.0, 0.0, 1.0, 0.0, 0, 0
     while r < left:
         slope, bend, bound = _slip_cubic(body, sign, y, z, response)
         if r > 0.0:
@@ -276,9 +278,10 @@ def slip_leg(body: Oscillator, tau: float, x: float, w: float, sign: float, left
                 event = 1.0
                 break
             step, crept = 8.0 * least, crept + 1
-            if crept > MOST_CREEPING:
-                y = math.nan
-                break
+        steps += 1
+        if crept > MOST_CREEPING or steps > STEPS_IN_A_LEG:
+            y = math.nan
+            break
         r = min(r + step, left)
         # Always from the start of the leg, so that rounding does not accumulate over its steps.
         response = load_and_response(body, tau + r)
@@ -316,7 +319,8 @@ def stick_leg(body: Oscillator, tau: float, x: float, left: float) -> LegEnd:
     """Rest on the belt from x at tau until the net force exceeds friction, for at most ``left``."""
     noise = 4.0 * EPSILON * (body.friction + body.load + abs(x) + 2.0 * body.damping * body.belt_speed)
     bound = max(body.load * body.frequency**3, TINY)
-    r, event, side, net, crept = 0.0, 0.0, 1.0, 0.0, 0
+    r, event, side, net, crept, steps = 0.0, 0.0, 1.0, 0.0, 0, 0
+    lost = False
     while True:
         angle = body.frequency * (tau + r)
         sine, cosine = math.sin(angle), math.cos(angle)
@@ -339,9 +343,10 @@ def stick_leg(body: Oscillator, tau: float, x: float, left: float) -> LegEnd:
         if event != 0.0:
             break
         least = 8.0 * EPSILON * (tau + r + 1e-3 * body.period)
-        crept = crept + 1 if step < least else crept
-        r = left if crept > MOST_CREEPING else min(r + max(step, least), left)
-    x = math.nan if crept > MOST_CREEPING else x + body.belt_speed * r
+        crept, steps = crept + 1 if step < least else crept, steps + 1
+        lost = crept > MOST_CREEPING or steps > STEPS_IN_A_LEG
+        r = left if lost else min(r + max(step, least), left)
+    x = math.nan if lost else x + body.belt_speed * r
     return LegEnd(r, x, 0.0, net, side * event, event, 1.0, 0.0, 0.0)
 
 

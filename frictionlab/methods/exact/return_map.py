@@ -22,6 +22,8 @@ from frictionlab.methods.exact.legs import (
 from frictionlab.quantities import EPSILON
 
 MOST_LEGS = 1_000_000
+LEGS_IN_ALL = 20_000_000
+"""Legs of all maps, some ten seconds, after which a periodic state is no longer looked for."""
 """Most legs in a period; a period with more is not solved, since its motion is below the rounding of its position."""
 SHORTEST = 1e-6
 
@@ -114,12 +116,12 @@ def periodic_state(body: Oscillator, x: float, w: float, most: int) -> Fixed:
     the onset of stick or of slip changes the derivative abruptly.
     """
     x_next, w_next, here, size, maps, stalled = x, w, unknown(x, w), math.inf, 0, 0
-    share, picard = 1.0, True
+    share, picard, work = 1.0, True, 0
     while True:
         # The trial state and its image: a Newton step or an iteration of the map, whichever was proposed.
         trial = passage(body, x_next, w_next, 0.0, body.period)
         trial_size = math.hypot(trial.x - x_next, trial.w - w_next)
-        maps = maps + 1
+        maps, work = maps + 1, work + trial.legs
         # A Newton step counts if the residual falls in proportion to it. An iteration of the map always counts: it
         # never increases the distance to the fixed point. Four in a row without gain near rounding end the search.
         if picard or trial_size < (1.0 - 0.25 * share) * size:
@@ -129,7 +131,7 @@ def periodic_state(body: Oscillator, x: float, w: float, most: int) -> Fixed:
             x, w, here, size = x_next, w_next, trial, trial_size
         else:
             share = 0.25 * share
-        if trial.legs >= MOST_LEGS or not trial_size < math.inf:
+        if trial.legs >= MOST_LEGS or work > LEGS_IN_ALL or not trial_size < math.inf:
             return Fixed(x, w, here, math.inf, maps)
         if size <= rounding(body, x, w) or maps >= most or stalled >= 4:
             return Fixed(x, w, here, size, maps)

@@ -11,7 +11,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.case import Case, case_of
-from frictionlab.methods.periodic.fixed_point import MUCH_WORK
+from frictionlab.methods.periodic.fixed_point import MUCH_WORK, UTMOST_WORK
 from frictionlab.methods.periodic.period_map import image_of, size_of, start_of
 from frictionlab.numerics.linalg import norm, subtract
 from frictionlab.scene.body import Body
@@ -97,9 +97,9 @@ reached = by_law(_reached_without_memory, _reached_with_memory, None, _reached_w
 def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
     """From position x and velocity v on a belt at rest: the state once the mass stays put, and the periods it took.
 
-    Periods: -1 where after many periods the mass still creeps.
+    Periods: negative where the mass still creeps after so many.
     """
-    case, period = case_of(law, body, 0.0), span(body)
+    case, period, steps = case_of(law, body, 0.0), span(body), 0
     z, residual = np.empty(size_of(law, x)), np.empty(size_of(law, x))
     start_of(law, body, z, x, v, case.like)
     for count in range(1, MOST_PERIODS):
@@ -109,7 +109,10 @@ def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
         # Stuck for the whole of a period: the next ones repeat it.
         if image.stuck >= period * (1.0 - 1e-12):
             return z, count
-    return z, -1
+        steps += image.steps
+        if image.steps < 0 or steps > UTMOST_WORK:
+            return z, -count
+    return z, -MOST_PERIODS
 
 
 LONGEST_PERIOD = 8

@@ -25,6 +25,8 @@ from frictionlab.scene.body import Body
 MOST_MAPS = 600
 MUCH_WORK = 500_000
 """Steps, some tenths of a second, after which an orbit that need not exist is no longer looked for."""
+UTMOST_WORK = 10_000_000
+"""Steps, half a minute of them, after which no orbit is looked for and no motion followed any longer."""
 FINER = 16.0
 """How much finer the last map is; of order eight, its own error is then a small part of what it measures."""
 ROUNDING = 2e-14
@@ -348,8 +350,9 @@ def fixed_point(case: Case, z: Any, inverse: Any, goal: Goal, expected: float) -
         # The map failed, or the state has run away.
         if now.image.steps < 0 or not length < 1e300:
             break
-        if not goal.contracts and now.maps * now.image.steps > MUCH_WORK:
-            break  # what repels, or is not there, is not to be found: other starts will tell
+        # what repels, or is not there, is not to be found: other starts will tell
+        if now.maps * now.image.steps > (UTMOST_WORK if goal.contracts else MUCH_WORK):
+            break
         # A period that is all stick says nothing of the orbit: its map is a shift by the way of the belt.
         if now.image.stuck >= period * (1.0 - 1e-9):
             if case.belt_speed == 0.0:  # at rest on a belt at rest

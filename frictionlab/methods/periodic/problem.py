@@ -130,7 +130,7 @@ class PeriodicProblem:
         return places, np.array([states[i] for i in places]).reshape(len(places), self.size)
 
     def settle(self, start: Initial) -> tuple[Floats, int]:
-        """The state at which the mass stays put on a belt at rest, and in how many periods; -1 for never."""
+        """The state at which the mass stays put on a belt at rest, and in how many periods; negative for never."""
         accuracy = 1e-13 * self.mass.normal_load
         return compiled(settle, self.law)(self.body, *self._at(start), accuracy)
 

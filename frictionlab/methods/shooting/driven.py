@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
-from frictionlab.methods.periodic.attraction import MOST_PERIODS
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, map_kind
 from frictionlab.methods.shooting.attractors import attractors, closed_orbit, describe, multiplier
@@ -111,7 +110,7 @@ class SteadyStates:
             return
         state, periods = self.problem.settle(start)
         if periods < 0:
-            self.reason[i] = f"started from scene.initial the mass still creeps after {MOST_PERIODS} periods"
+            self.reason[i] = f"started from scene.initial the mass still creeps after {-periods} periods"
             return
         self.close([i], state)
         self.error[i] += 1e-11 * periods  # of the steps on the way there

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -32,7 +32,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.periodic.case import case_of
 from frictionlab.methods.periodic.continuation import record_orbit
-from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
+from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING, UTMOST_WORK
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.period_map import pack, size_of
 from frictionlab.methods.periodic.problem import PeriodicProblem
@@ -45,6 +45,8 @@ from frictionlab.theory.rest import friction_at_rest
 PIECE = 1.0 / 32.0
 """Of 2 pi, the period of the free mass: how far the motion is followed between looks at it."""
 MOST_PIECES = 200_000
+WORK_OF_A_PIECE = 3
+"""What following one costs beside its steps [steps]."""
 TURN = 2.0 * math.pi
 ALWAYS = Instant(0.0, 0.0, 1.0)
 """Nothing shakes the mass: what acts on it is the same at every instant."""
@@ -74,6 +76,14 @@ class PeriodicMotion(NamedTuple):
     error: float
     multiplier: float
     kind: str
+
+
+@dataclass
+class Effort:
+    """What following a motion has taken so far [steps], and how far it has led [pieces]."""
+
+    work: int = 0
+    pieces: int = 0
 
 
 class NotFound(Exception):
@@ -124,6 +134,7 @@ class _Undriven:
     scene: Scene
     law: FrictionLaw
     tolerance: float
+    effort: Effort = field(default_factory=Effort)
 
     @cached_property
     def _mass(self) -> Mass:
@@ -175,13 +186,18 @@ class _Undriven:
             peaks += 1 if v > 0.0 >= image.u else 0
             # the belt carries what rests to where slip begins
             x, v = (self._release, self._speed) if rests else (image.y, image.u)
+            self.effort.pieces = count
         raise NotFound(f"no steady state within {MOST_PIECES * PIECE:.0f} periods of the free mass")
 
     def _follow(self, x: float, v: float, turns: float, accuracy: float) -> Mapped:
         body = self._body._replace(periods=turns)
         image: Mapped = self._kernel(body, self.scene.belt_speed, x, v, accuracy)
-        if image.steps < 0:
-            raise NotFound("the motion needs more steps than the limit")
+        self.effort.work += WORK_OF_A_PIECE + image.steps
+        if image.steps < 0 or self.effort.work > UTMOST_WORK:
+            raise NotFound(
+                f"no steady state within {UTMOST_WORK:,} steps: after {self.effort.pieces * PIECE:.3g} periods of "
+                f"the free mass it is at x = {x:.6g} with velocity {v:.6g}"
+            )
         return image
 
     def _force(self, x: float, v: float) -> float:
@@ -217,7 +233,7 @@ class _Undriven:
     def _at_rest(self) -> PeriodicMotion:
         state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settle(self.scene.start)
         if periods < 0:
-            raise NotFound("the mass still approaches rest after the largest number of periods")
+            raise NotFound(f"the mass still creeps towards rest after {-periods} periods of the free mass")
         mean = state[0] / self._pressed
         error = 1e-11 * periods + ROUNDING
         return PeriodicMotion(
@@ -238,17 +254,23 @@ class _Undriven:
     def _settles(self, x: float, v: float) -> bool:
         """Whether every motion with no more energy than this one loses it, down to steady sliding.
 
-        It does where friction falls by less than damping makes up for at every slip velocity within its reach.
+        It does where no slip velocity within its reach makes friction differ from that of steady sliding in the
+        direction of the motion by more than damping takes. Slip that has turned round, and rest where it holds by
+        no more than that, lose energy by themselves.
         """
         reach = math.hypot(x - self._deflection(), v)
         speed = abs(self._speed)
-        if reach > speed:
-            return False
-        speeds = np.linspace(speed - reach, speed + reach, 129) if reach > 1e-6 * speed else speed * _NEAR
+        slowest = max(speed - reach, 0.0)
         # Where the range is small against the speed the slopes are those of a millionth of it.
-        friction = np.array([self.law.sliding_friction(float(each)) for each in speeds])
-        slopes = np.diff(friction) / np.diff(speeds)
-        return bool((self._pressed * slopes).min() > -self._mass.damping + 1e-9)
+        speeds = np.concatenate((np.linspace(slowest, speed + reach, 129), speed * _NEAR))
+        speeds = speeds[np.abs(speeds - speed) >= 0.9e-6 * speed]
+        friction = np.array([self._largest_friction(float(each)) for each in speeds])
+        chords = (friction - self.law.sliding_friction(speed)) / (speeds - speed)
+        return bool((self._pressed * chords).min() > -self._mass.damping + 1e-9)
+
+    def _largest_friction(self, speed: float) -> float:
+        """Of slip at this speed, zero included."""
+        return self.law.sliding_friction(speed) if speed > 0.0 else friction_at_rest(self.law)
 
     def _sliding(self) -> PeriodicMotion:
         speed = self._speed
@@ -349,7 +371,9 @@ class _Undriven:
 
     def _peak(self, x: float, v: float, turns: float, accuracy: float) -> tuple[float, float]:
         """Where and when, within these turns, the velocity falls through zero."""
-        low, high, at = 0.0, turns * TURN, min(turns * TURN, -v / self._force(x, v) if v > 0.0 else 0.0)
+        low, high, force = 0.0, turns * TURN, self._force(x, v)
+        # Nothing slows a mass down that starts where steady sliding is: look from the middle.
+        at = 0.0 if v <= 0.0 else min(high, -v / force) if force < 0.0 else 0.5 * high
         for _ in range(60):
             image = self._follow(x, v, at / TURN, accuracy)
             # Newton's method, kept inside the bracket of the zero of the velocity.
@@ -372,4 +396,4 @@ class _Undriven:
         return Orbit(*(part[: track.filled[0]] for part in parts))
 
 
-_NEAR = np.array([1.0 - 1e-6, 1.0, 1.0 + 1e-6])
+_NEAR = np.array([1.0 - 1e-6, 1.0 + 1e-6])

@@ -23,6 +23,8 @@ from frictionlab.numerics.steppers.step import StepEnd, StepStart
 GAMMA = 1.0 - math.sqrt(0.5)
 MOST_TRIALS = 30
 MOST_HALVINGS = 24
+MOST_PARTS = 10_000
+"""Parts of one step that are tried; a contact that needs more is too stiff for it."""
 CLOSE = 1e-10
 """Relative size of the last Newton step; convergence is quadratic, so the remaining error is negligible."""
 NUDGE = 1e-6
@@ -164,14 +166,15 @@ def two_stages(
 def sdirk2_step(rates: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
     """One step over h, for a law of one deflection; ``rates(problem, tau, x, v, z)`` = (x'', friction, z').
 
-    Steps in which Newton's method fails are halved; the state is NaN if even 2^-24 of the step fails.
+    Steps in which Newton's method fails are halved; the state is NaN if even 2^-24 of the step fails, or too many.
     """
     # Parts of the step, each a half of the one that failed: what is done is kept.
     state = DeflectedState(start.x, start.v, problem.memory[0], 0.0 * start.v)
-    done, part, least = 0.0, h, h * 0.5**MOST_HALVINGS
+    done, part, least, tried = 0.0, h, h * 0.5**MOST_HALVINGS, 0
     while done < h * (1.0 - 1e-9):
         ahead, converged = two_stages(rates, problem, start.tau + done, state, part)
-        if not converged and part <= least:
+        tried += 1
+        if tried > MOST_PARTS or (not converged and part <= least):
             nothing = math.nan * start.v
             state = DeflectedState(math.nan * start.x, nothing, math.nan * state.z, nothing)
             break

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -13,7 +14,9 @@ from strategies import sizes
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
+from frictionlab.methods.shooting import undriven
 from frictionlab.methods.shooting.method import Shooting
+from frictionlab.methods.shooting.undriven import _Undriven
 from frictionlab.scene.scene import Initial, Scene, Transverse
 
 TURN = 2.0 * math.pi
@@ -173,3 +176,48 @@ def test_a_start_across_the_belt_is_refused_without_a_drive():
     )
 
     assert "initial.x2" in Shooting().refusal(scene, LEINE)
+
+
+def test_a_motion_that_creeps_for_thousands_of_periods_is_known_to_end_in_steady_sliding():
+    # friction that rises steeply with slip makes the mass creep towards it, by steps of a ten-thousandth
+    law = Stribeck(mu_kinetic=1.58, mu_static=3.16, stribeck_speed=1.56, curve="cubic")
+    status, row, _, model = solve(law, 7.3, damping_ratio=0.03, normal_load=684.0)
+
+    assert status == "ok"
+    assert model.startswith("undriven: steady sliding")
+    assert row["mean_friction"] == pytest.approx(law.sliding_friction(7.3), rel=1e-14)
+
+
+@given(load=sizes(0.3, 3.0), belt_speed=sizes(0.02, 2.0), damping=sizes(0.01, 1.0), reach=sizes(0.1, 10.0))
+def test_a_motion_said_to_settle_has_settled_when_it_is_followed(load, belt_speed, damping, reach):
+    scene = Scene(damping_ratio=damping, normal_load=load, belt_speed=belt_speed)
+    motion = _Undriven(scene, CUBIC, 1e-8)
+    x, v = motion._deflection() + reach, 0.0
+    settles = motion._settles(x, v)
+    energies = []
+    for _ in range(int(40.0 / damping) if settles else 0):
+        image = motion._follow(x, v, 0.5, 1e-10)
+        x, v = image.y, image.u
+        energies.append(math.hypot(x - motion._deflection(), v))
+
+    assert all(later <= before + 1e-9 for before, later in pairwise(energies))
+
+
+def test_a_motion_beyond_the_bound_on_work_fails_and_says_how_far_it_came(monkeypatch):
+    monkeypatch.setattr(undriven, "UTMOST_WORK", 300)
+    one = Scene(damping_ratio=0.0, normal_load=1.0, belt_speed=0.2)
+    answers = Shooting().solve([one], LEINE, 1e-8)
+
+    assert answers.status == ["failed"]
+    assert answers.reason[0].startswith("no steady state within 300 steps: after ")
+    assert "of the free mass it is at x = " in answers.reason[0]
+
+
+def test_the_peak_of_a_motion_that_hardly_leaves_steady_sliding_is_found():
+    motion = _Undriven(Scene(damping_ratio=0.0, normal_load=1.0, belt_speed=1.0), Coulomb(mu=0.5), 1e-8)
+    assert motion._force(0.5, 1e-300) == 0.0
+
+    place, time = motion._peak(0.5, 1e-300, 0.5, 1e-10)
+
+    assert place == pytest.approx(0.5, abs=1e-15)
+    assert 0.0 <= time <= math.pi

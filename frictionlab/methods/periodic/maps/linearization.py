@@ -124,7 +124,7 @@ def _creep_by_slip(flow: Flow, w: Any, work: Work, column: int, like: Any) -> fl
         behind = friction_in_mode(flow.law, work, w - shift * unit(column, like))
         work.columns[(n + 1) * column + n] = (ahead - behind) / (2.0 * shift)
         # what rounding leaves of the difference is too little: move the slip by more
-        if shift >= least or length(ahead - behind) > LOST * (length(ahead) + length(behind)):
+        if not shift < least or length(ahead - behind) > LOST * (length(ahead) + length(behind)):
             return shift
         shift = min(1e3 * shift, least)
 

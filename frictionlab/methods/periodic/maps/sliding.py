@@ -283,6 +283,7 @@ def sliding_map(case: Case, y: Any, u: Any, accuracy: float, track: Track) -> Ma
             if rest.stuck > 0.0 and rest.tau < end:
                 released = tau + rest.stuck
             tau, resting, leaving, closest, h = rest.tau, False, True, 0.0, 0.1 * longest
+            steps += 1  # rest that ends where it begins takes no step, and no time
             problem = anchored(law, body, belt_speed, rest.side, tau)
             state = _after_rest(problem, rest, end)
             continue

@@ -18,6 +18,8 @@ LAW_FILE = "frictionlab_law_"
 _PACKAGE = __file__.removesuffix("faults.py")
 MARK = "broken plugin: "
 """Beginning of the reason of a point that failed in a law of another package."""
+INTERNAL = "internal error: "
+"""Beginning of the reason of a point that failed by a defect of the program."""
 LONGEST_TEXT = 500
 """Characters of a foreign message that are shown."""
 

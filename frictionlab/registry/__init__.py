@@ -20,6 +20,7 @@ from frictionlab.registry.entry_points import (
     home_of,
     open_entry_point,
 )
+from frictionlab.registry.law_file import code_around
 from frictionlab.registry.smoke_test import fault_with_values
 
 __all__ = [
@@ -56,6 +57,11 @@ def law_class(name: str) -> type[FrictionLaw]:
 def method_class(name: str) -> type[Method]:
     """The method of this name. Raises KeyError for an unknown name, BrokenPlugin for one that is broken."""
     return _usable(_load(METHODS, name))
+
+
+def method_code(name: str) -> str:
+    """SHA-256 of the Python files of the package of a method, which is not loaded; '' for one of frictionlab."""
+    return "".join(code_around(door.module) for door in _entry_points(METHODS).get(name, ()))
 
 
 class Laws:

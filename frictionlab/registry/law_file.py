@@ -10,6 +10,7 @@ import re
 import sys
 from dataclasses import dataclass, field
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -69,11 +70,17 @@ def law_name(name: str) -> str:
     return parts.replace("_", "-").strip("-").lower()
 
 
-@cache
 def code_of(law: type[FrictionLaw]) -> str:
     """SHA-256 of the Python files of the package of a law; '' for a law of frictionlab."""
-    head, _, rest = law.__module__.partition(".")
-    file = getattr(sys.modules.get(head), "__file__", None)
+    return code_around(law.__module__)
+
+
+@cache
+def code_around(module: str) -> str:
+    """SHA-256 of the Python files of the package of a module, which is not imported; '' for one of frictionlab."""
+    head, _, rest = module.partition(".")
+    spec = None if head == "frictionlab" or head in sys.modules else find_spec(head)
+    file = spec.origin if spec is not None else getattr(sys.modules.get(head), "__file__", None)
     if head == "frictionlab" or file is None:
         return ""
     files = sorted(Path(file).parent.rglob("*.py")) if rest or Path(file).stem == "__init__" else [Path(file)]

@@ -37,6 +37,7 @@ from frictionlab.runner.arguments import (
     given_tolerance,
 )
 from frictionlab.runner.chunks import Chunk, Task, chunks
+from frictionlab.runner.code_digest import code_digest
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.execute import collect
 from frictionlab.runner.folder import Existing, Identity, RunFolder
@@ -99,7 +100,7 @@ def run_folder(study: Study, out: Path) -> RunFolder:
     """The output folder of a study."""
     file = study.path.name if study.path is not None else None
     told = study.resolved(), study.digest(), __version__, file, study.code, study.law_texts()
-    return RunFolder(out, Identity(*told))
+    return RunFolder(out, Identity(*told, solver=code_digest(study)))
 
 
 def _solve(gathering: Accumulator, left: list[Chunk], executor: Executor | None) -> bool:

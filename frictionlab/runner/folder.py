@@ -17,6 +17,7 @@ from typing import Any, Literal
 
 import pandas as pd
 
+from frictionlab.faults import INTERNAL, MARK
 from frictionlab.printable import printable
 from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.files import damage, remove_leftovers, stamp, stamps, write_whole
@@ -30,6 +31,8 @@ MOST_DIFFERENCES = 2
 """Lines shown of each of two studies that differ."""
 SHOWN = 72
 """Letters shown of such a line."""
+SOLVER = "solver"
+"""Where a saved table holds the digest of the code that found it."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,7 @@ class Identity:
     """What a folder's results answer: the study, whole and as a digest of what determines its numbers.
 
     file: the name of the file it came from, for the record. code: SHA-256 by law, of those from outside.
-    law_texts: its law files, by their names in the folder.
+    law_texts: its law files, by their names in the folder. solver: a digest of all code that finds the numbers.
     """
 
     study: dict[str, Any]
@@ -46,6 +49,7 @@ class Identity:
     file: str | None = None
     code: Mapping[str, str] = field(default_factory=dict)
     law_texts: Mapping[str, str] = field(default_factory=dict)
+    solver: str = ""
 
     @property
     def text(self) -> str:
@@ -164,8 +168,18 @@ class RunFolder:
         return [f"  the code of law '{law}' was edited since" for law in laws]
 
     def earlier(self, existing: Existing) -> pd.DataFrame | None:
-        """The table of an earlier run of this study; None without an intact one. Raises FolderError."""
-        return self._earlier(self.table, existing)
+        """The table of an earlier run of this study, without the points to try again; None without an intact one.
+
+        Those are the points that failed by a defect, and all that failed where the code that finds numbers is
+        another. Raises FolderError.
+        """
+        table = self._earlier(self.table, existing)
+        if table is None or not {"status", "reason"} <= set(table):
+            return table
+        again = table["status"] == "failed"
+        if table.attrs.get(SOLVER) == self.identity.solver:
+            again &= table["reason"].astype("str").str.startswith((INTERNAL, MARK))
+        return table[~again]
 
     def earlier_orbits(self, existing: Existing) -> pd.DataFrame | None:
         """The orbits kept by an earlier run of this study; None where they are not there or damaged."""
@@ -279,7 +293,9 @@ class RunFolder:
                 raise SaveError(f"cannot replace {path}: {problem.strerror}") from problem
         if orbits is not None:
             self._put(self._orbits, _as_parquet(orbits))
-        self._put(self.table, _as_parquet(table))
+        marked = table.copy(deep=False)
+        marked.attrs = {SOLVER: self.identity.solver}
+        self._put(self.table, _as_parquet(marked))
 
     def save_csv(self, table: pd.DataFrame) -> None:
         """Write results.csv; floats in shortest round-trip form. Raises SaveError."""

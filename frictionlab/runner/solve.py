@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from frictionlab.columns import DERIVED, FROM_ORBITS, RESULTS, TEXT
-from frictionlab.faults import MARK, BrokenPlugin, CannotCompile, failing_law, text_of_error
+from frictionlab.faults import INTERNAL, MARK, BrokenPlugin, CannotCompile, failing_law, text_of_error
 from frictionlab.methods.base import Answers, refused
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import derived_columns
@@ -83,7 +83,7 @@ def _reason(problem: BaseException) -> str:
         return sentence
     law = str(problem) if isinstance(problem, CannotCompile) else failing_law(problem)
     return (
-        f"internal error: {sentence}"
+        f"{INTERNAL}{sentence}"
         if law is None
         else MARK + "; ".join(line.strip() for line in law.splitlines())
     )

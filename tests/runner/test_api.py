@@ -324,7 +324,7 @@ def test_no_method_is_loaded_where_every_point_is_finished(tmp_path: Path, monke
 
 def test_points_that_were_killed_are_solved_by_the_next_run(tmp_path: Path) -> None:
     whole = fl.run(study(), out=tmp_path / "out").table
-    partial = whole.copy()
+    partial = pd.read_parquet(tmp_path / "out" / "results.parquet")
     partial.loc[[0, 3], "status"] = "killed"
     partial.loc[[0, 3], "mean_friction"] = np.nan
     without_stamps(tmp_path / "out")
@@ -541,7 +541,7 @@ def test_orbits_are_kept_row_by_row_and_survive_an_interruption(tmp_path: Path) 
     assert whole.orbits.groupby("row").size().to_dict() == {0: 4, 2: 4, 4: 4, 5: 4}
     assert whole.orbits["v1"][whole.orbits["row"] == 5].tolist() == pytest.approx([9.0] * 4)
 
-    partial = whole.table.copy()
+    partial = pd.read_parquet(tmp_path / "out" / "results.parquet")
     partial.loc[2, "status"] = "killed"
     without_stamps(tmp_path / "out")
     partial.to_parquet(tmp_path / "out" / "results.parquet")

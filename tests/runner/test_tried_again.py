@@ -1,0 +1,117 @@
+"""Which points of an earlier run are tried again: what failed may succeed with other code, a defect is no answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fake_methods import Fake, breaks_down, is_wrong
+
+import frictionlab as fl
+from frictionlab import registry
+from frictionlab.runner import api
+
+Trouble = Callable[[dict[float, Callable[[], None]]], None]
+STUDY: dict[str, Any] = {
+    "schema": 1,
+    "scene": {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
+    | {"drive": {"unbalance": 10, "frequency": 1}},
+    "laws": [{"kind": "coulomb", "mu": 0.4}],
+    "methods": ["fake"],
+    "sweep": {"scene.belt_speed": [4, 9]},
+}
+
+
+@pytest.fixture(autouse=True)
+def _fake_method(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = registry.method_class
+    monkeypatch.setattr(registry, "method_class", lambda name: Fake if name == "fake" else known(name))
+    monkeypatch.setattr(registry, "method_names", lambda: ["auto", "fake"])
+
+
+@pytest.fixture
+def trouble(monkeypatch: pytest.MonkeyPatch) -> Trouble:
+    return lambda troubles: monkeypatch.setattr(Fake, "troubles", troubles)
+
+
+def test_a_point_that_failed_is_taken_over_while_all_code_is_the_same(
+    trouble: Trouble, tmp_path: Path
+) -> None:
+    trouble({4.0: breaks_down})
+    fl.run(STUDY, out=tmp_path)
+
+    again = fl.run(STUDY, out=tmp_path)
+
+    assert again.computed == 0
+    assert again.table["reason"].tolist()[0] == "ZeroDivisionError: float division by zero"
+
+
+def test_a_point_that_failed_is_tried_again_by_other_code(
+    trouble: Trouble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trouble({4.0: breaks_down})
+    fl.run(STUDY, out=tmp_path)
+    monkeypatch.setattr(api, "code_digest", lambda study: "mended")
+    trouble({})
+
+    again = fl.run(STUDY, out=tmp_path)
+
+    assert (again.computed, again.table["status"].tolist()) == (1, ["ok", "ok"])
+    assert fl.run(STUDY, out=tmp_path).computed == 0
+
+
+def test_a_point_that_failed_is_tried_again_where_results_are_replaced(
+    trouble: Trouble, tmp_path: Path
+) -> None:
+    trouble({4.0: breaks_down})
+    fl.run(STUDY, out=tmp_path)
+    trouble({})
+
+    assert fl.run(STUDY, out=tmp_path, existing="replace").table["status"].tolist() == ["ok", "ok"]
+
+
+def test_a_point_that_failed_by_an_internal_error_is_never_taken_over(
+    trouble: Trouble, tmp_path: Path
+) -> None:
+    trouble({4.0: is_wrong})
+    first = fl.run(STUDY, out=tmp_path)
+    trouble({})
+
+    again = fl.run(STUDY, out=tmp_path)
+
+    assert first.table["reason"].str.startswith("internal error: ").all()
+    assert again.computed == 2
+    assert again.table["status"].tolist() == ["ok", "ok"]
+
+
+def test_a_run_by_other_code_that_dies_before_it_saves_keeps_nothing_that_failed(
+    trouble: Trouble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def dies(done: int, total: int) -> None:
+        raise MemoryError
+
+    trouble({4.0: breaks_down})
+    fl.run(STUDY, out=tmp_path)
+    monkeypatch.setattr(api, "code_digest", lambda study: "mended")
+    with pytest.raises(MemoryError):
+        fl.run(STUDY, out=tmp_path, progress=dies)
+    trouble({})
+
+    assert fl.run(STUDY, out=tmp_path).table["status"].tolist() == ["ok", "ok"]
+
+
+def test_the_code_of_a_run_holds_that_of_frictionlab_and_of_methods_of_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from frictionlab.runner import code_digest as home
+
+    study = fl.run(STUDY).study
+    before = home.code_digest(study)
+    assert home.code_digest(study) == before
+    monkeypatch.setattr(registry, "method_code", lambda name: "edited")
+    edited = home.code_digest(study)
+    monkeypatch.setattr(home, "own_code", lambda: "edited")
+
+    assert len({before, edited, home.code_digest(study)}) == 3

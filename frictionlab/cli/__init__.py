@@ -13,6 +13,7 @@ from importlib import import_module
 
 import click
 
+from frictionlab.cli.interrupts import prompt_interrupts
 from frictionlab.cli.output import (
     BROKEN_PLUGIN,
     BUG,
@@ -36,7 +37,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; its exit code. Only our own bugs show a traceback."""
     open_streams()
     try:
-        code = _invoke(arguments)
+        with prompt_interrupts():
+            code = _invoke(arguments)
     except BaseException as problem:
         code = _report(problem)
     code = flush_stdout(code)

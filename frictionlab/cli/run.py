@@ -101,15 +101,14 @@ def run_command(**given: Any) -> int:
 
 def _run(job: Job, asked: RunOptions) -> Run:
     """Run one study, print its summary, then draw it: the summary does not wait for the figures."""
-    from concurrent.futures import ThreadPoolExecutor
-
     from frictionlab.runner import api
     from frictionlab.runner.progress import Meter
+    from frictionlab.runner.workers import Workers
 
     for line in [] if asked.force else api.run_folder(job.study, job.out).damaged():
         print_message(line)
     meter = Meter(sys.stderr)
-    pool = ThreadPoolExecutor(asked.workers or os.cpu_count())
+    pool = Workers(asked.workers or os.cpu_count() or 1)
     try:
         result = api.run(job.study, job.out, asked.changes, asked.existing, executor=pool, progress=meter)
     except api.Interrupted as problem:

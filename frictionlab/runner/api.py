@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, Executor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor
 from contextlib import contextmanager, suppress
+from math import inf
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -43,6 +44,7 @@ from frictionlab.runner.execute import collect
 from frictionlab.runner.folder import Existing, Identity, RunFolder
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.solve import answer, parts
+from frictionlab.runner.workers import Workers, within
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Study, StudyCase
 
@@ -87,7 +89,7 @@ def run(
     if folder is not None:
         folder.check(existing)
     gathering = Accumulator(inputs(headings(ready)), folder, progress, overrides, ready.selected())
-    task = Task(ready.tolerance, ready.keep_orbit or 0, ready.selected())
+    task = Task(ready.tolerance, ready.keep_orbit or 0, ready.selected(), ready.seconds_per_point)
     gathering.resume(existing, task.samples)
     left = [] if gathering.complete else chunks(ready.cases(), task, gathering.finished)
     if folder is not None:
@@ -125,7 +127,7 @@ def _workers(executor: Executor | None) -> Iterator[Executor]:
     if executor is not None:
         yield executor
         return
-    pool = ThreadPoolExecutor(os.cpu_count())
+    pool = Workers(os.cpu_count() or 1)
     try:
         yield pool
     finally:
@@ -199,8 +201,8 @@ def steady_state(
     kind, task = _kind(law), Task(given_tolerance(tolerance))
     case = StudyCase(kind, kind, law, ready.name, ready, scene)
     (chunk,) = chunks([case], task)
-    (piece,) = answer(chunk)
-    (part,) = parts(chunk, [piece])
+    (piece,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
+    (part,) = within(inf, parts, chunk, [piece])
     numbers = {name: float(column[0]) for name, column in part.numbers.items()}
     words = {name: column[0] for name, column in part.text.items()}
     motion = OrbitOf(piece.answers.orbit, scene)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -20,12 +21,13 @@ neighbour, more leave workers idle. Never made to depend on the number of worker
 
 @dataclass(frozen=True)
 class Task:
-    """What all points of a run share: tolerance on mean_friction [-], samples per kept orbit (0: none), and the
-    result columns asked for."""
+    """What all points of a run share: tolerance on mean_friction [-], samples per kept orbit (0: none), the result
+    columns asked for, and the time a point may take [s]."""
 
     tolerance: float
     samples: int = 0
     columns: frozenset[str] = selected(None)
+    seconds_per_point: float = math.inf
 
 
 @dataclass(frozen=True)

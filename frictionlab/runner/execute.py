@@ -8,7 +8,7 @@ from contextlib import suppress
 
 from frictionlab.results.part import Part
 from frictionlab.runner.chunks import Chunk
-from frictionlab.runner.solve import solve
+from frictionlab.runner.limit import solve_within
 
 TICK = 0.1
 """Seconds between two looks at what goes on."""
@@ -22,10 +22,10 @@ Solving = Future[list[Part]]
 def collect(chunks: Sequence[Chunk], executor: Executor, take: Take, tick: Callable[[], None]) -> None:
     """Solve every chunk, giving each answer to ``take`` on this thread; ``tick`` is called all along.
 
-    Raises what ``solve`` raises, BrokenExecutor where workers died, and KeyboardInterrupt: chunks not begun
+    Raises what ``solve_within`` raises, BrokenExecutor where workers died, and KeyboardInterrupt: chunks not begun
     are then dropped and those being solved get ``GRACE`` seconds, in which what they find is taken too.
     """
-    futures = [executor.submit(solve, chunk) for chunk in chunks]
+    futures = [executor.submit(solve_within, chunk) for chunk in chunks]
     taken: set[Solving] = set()
     try:
         _follow(futures, taken, take, tick)

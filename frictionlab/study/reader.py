@@ -35,12 +35,12 @@ from frictionlab.study.law_files import (
 )
 from frictionlab.study.mapping_source import read_mapping
 from frictionlab.study.overrides import apply_overrides
-from frictionlab.study.study import SCHEMA, LawChoice, MethodChoice, Study
+from frictionlab.study.study import LIMIT_KEY, SCHEMA, LawChoice, MethodChoice, Study
 from frictionlab.study.yaml_source import SAVED, Source, read_file
 
 STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
-    *("sweep", "expect", "keep", "columns"),
+    *("sweep", "expect", "keep", "columns", "limit"),
 )
 REQUIRED = ("schema", "scene", "laws")
 DEFAULT_TOLERANCE = 1e-8
@@ -184,6 +184,9 @@ class _StudyReader:
         keep = notes.mapping(tree.get("keep", {}), ("keep",), ("orbit",)) or {}
         if "orbit" in keep:
             told["keep_orbit"] = notes.whole_number(keep["orbit"], ("keep", "orbit"), 2)
+        limit = notes.mapping(tree.get("limit", {}), ("limit",), (LIMIT_KEY,)) or {}
+        if LIMIT_KEY in limit:
+            told[LIMIT_KEY] = notes.positive(limit[LIMIT_KEY], ("limit", LIMIT_KEY))
         return told
 
     def _columns(self, scene: Scene | None) -> tuple[str, ...] | None:

@@ -10,10 +10,11 @@ from frictionlab import columns, registry
 from frictionlab.scene.scene import Scene
 from frictionlab.study import reader
 from frictionlab.study.grid import LARGEST_GRID
-from frictionlab.study.study import SCHEMA
+from frictionlab.study.study import LIMIT_KEY, SCHEMA, SECONDS_PER_POINT
 
 _NUMBER = {"type": "number"}
 _TEXT = {"type": "string"}
+_TIME = {"type": "number", "exclusiveMinimum": 0, "default": SECONDS_PER_POINT}
 # Behind a validator defined here a bound keeps pydantic's name.
 _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
 
@@ -39,6 +40,7 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
         "sweep": _sweep(),
         "expect": {"type": "array", "items": {"oneOf": _expectations()}},
         "columns": {"type": "array", "minItems": 1, "items": {"enum": [*columns.RESULTS, *columns.SI]}},
+        "limit": _closed_object({LIMIT_KEY: _TIME}, []),
         "keep": _closed_object({"orbit": {"type": "integer", "minimum": 2}}, []),
     }
     return {

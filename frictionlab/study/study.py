@@ -25,6 +25,9 @@ from frictionlab.study.ranges import SweepRange
 SCHEMA = 1
 LAW_COPIES = "laws"
 """The folder in which a run keeps the files of laws it used."""
+LIMIT_KEY = "seconds_per_point"
+SECONDS_PER_POINT = 300.0
+"""The time [s] that a point may take where a study does not say."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +129,7 @@ class Study:
     scene: the scene without sweeps. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values.
     ranges: those of the sweeps that were given as ranges.
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
-    columns: result columns asked for, None for all.
+    columns: result columns asked for, None for all. seconds_per_point: the time a point may take [s].
     plugins: its law files. code: SHA-256 of every law that is not frictionlab's own, by kind.
     """
 
@@ -138,6 +141,7 @@ class Study:
     expect: tuple[Expectation, ...] = ()
     keep_orbit: int | None = None
     columns: tuple[str, ...] | None = None
+    seconds_per_point: float = SECONDS_PER_POINT
     title: str = ""
     source: str = ""
     plugins: tuple[LawFile, ...] = ()
@@ -227,6 +231,8 @@ class Study:
             told["keep"] = {"orbit": self.keep_orbit}
         if self.columns is not None:
             told["columns"] = list(self.columns)
+        if self.seconds_per_point != SECONDS_PER_POINT:
+            told["limit"] = {LIMIT_KEY: self.seconds_per_point}
         if self.expect:
             told["expect"] = [expectation.resolved() for expectation in self.expect]
         return told

@@ -553,7 +553,7 @@ def test_an_interrupted_run_does_not_wait_for_a_method_that_takes_for_ever(
 def test_every_command_is_a_module_of_its_name() -> None:
     files = {path.stem for path in Path(cli.__file__).parent.glob("*.py")}
 
-    assert {*cli.COMMANDS} == files - {"__init__", "figures", "options", "output"}
+    assert {*cli.COMMANDS} == files - {"__init__", "figures", "interrupts", "options", "output"}
     assert [*cli.COMMANDS] == sorted(cli.COMMANDS)
 
 

@@ -1,0 +1,106 @@
+"""A point over the limit of time is killed, its neighbours are answered; an interrupt is obeyed during a kernel."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from typing import Any
+
+import pytest
+from fake_methods import Fake
+
+import frictionlab as fl
+from frictionlab import registry
+from frictionlab.runner.workers import OverLimit, Workers, within
+from frictionlab.study import StudyError, parse_study
+
+STUDY: dict[str, Any] = {
+    "schema": 1,
+    "scene": {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
+    | {"drive": {"unbalance": 10, "frequency": 1}},
+    "laws": [{"kind": "coulomb", "mu": 0.4}],
+    "methods": ["fake"],
+    "sweep": {"scene.belt_speed": [4, 5, 6, 7, 8]},
+    "limit": {"seconds_per_point": 0.3},
+}
+
+
+@pytest.fixture
+def released(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The method takes for ever at a belt speed of 6, until the test is over."""
+    event = threading.Event()
+    known = registry.method_class
+    monkeypatch.setattr(registry, "method_class", lambda name: Fake if name == "fake" else known(name))
+    monkeypatch.setattr(registry, "method_names", lambda: ["auto", "fake"])
+    monkeypatch.setattr(Fake, "troubles", {6.0: lambda: event.wait(60.0)})
+    yield event
+    event.set()
+
+
+def test_a_point_over_the_limit_is_killed_and_its_neighbours_are_answered(released, tmp_path):
+    began = time.monotonic()
+    done = fl.run(STUDY, out=tmp_path)
+
+    assert time.monotonic() - began < 5.0
+    assert done.table["status"].tolist() == ["ok", "ok", "killed", "ok", "ok"]
+    reason = "over the limit of 0.3 s (limit: {seconds_per_point: 0.3} in the study)"
+    assert done.table["reason"].tolist()[2] == reason
+    released.set()
+    again = fl.run(STUDY, out=tmp_path)
+    assert (again.computed, again.table["status"].tolist()) == (1, ["ok"] * 5)
+
+
+def test_compilation_does_not_count(monkeypatch):
+    monkeypatch.setattr("frictionlab.runner.workers.compiling", lambda: True)
+
+    assert within(0.01, lambda: time.sleep(0.3) or "done") == "done"
+
+
+def test_work_within_a_limit_gives_its_result_or_its_error():
+    assert within(1.0, divmod, 7, 2) == (3, 1)
+    with pytest.raises(ZeroDivisionError):
+        within(1.0, divmod, 7, 0)
+    with pytest.raises(OverLimit):
+        within(0.05, time.sleep, 1.0)
+
+
+def test_an_interrupt_is_obeyed_while_a_kernel_runs(released):
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=6, drive=fl.Drive(unbalance=10, frequency=1)
+    )
+    threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
+    began = time.monotonic()
+
+    with pytest.raises(KeyboardInterrupt):
+        fl.steady_state(scene, fl.Coulomb(mu=0.4), method=Fake())
+    assert time.monotonic() - began < 5.0
+
+
+def test_workers_answer_in_order_drop_what_is_cancelled_and_hold_no_program_back():
+    pool = Workers(1)
+    hold = threading.Event()
+    first, second, third = pool.submit(hold.wait, 10.0), pool.submit(pow, 2, 3), pool.submit(pow, 2, 5)
+    assert third.cancel()
+    hold.set()
+    assert (first.result(5.0), second.result(5.0)) == (True, 8)
+    failing = pool.submit(divmod, 1, 0)
+    assert isinstance(failing.exception(5.0), ZeroDivisionError)
+    pool.shutdown(wait=True, cancel_futures=True)
+    assert all(thread.daemon and not thread.is_alive() for thread in pool._threads)
+
+
+@pytest.mark.parametrize("given", [0, -1, "long", True])
+def test_a_limit_that_is_no_time_is_refused(given):
+    with pytest.raises(StudyError, match=r"limit\.seconds_per_point: must be"):
+        parse_study(STUDY | {"methods": ["auto"], "limit": {"seconds_per_point": given}})
+
+
+def test_a_study_says_its_limit_only_where_it_is_not_the_usual_one():
+    plain = {key: value for key, value in STUDY.items() if key != "limit"} | {"methods": ["auto"]}
+    usual, short = parse_study(plain), parse_study(plain | {"limit": {"seconds_per_point": 2}})
+
+    assert (usual.seconds_per_point, short.seconds_per_point) == (300.0, 2.0)
+    assert "limit" not in usual.resolved()
+    assert parse_study(short.resolved()) == short
+    assert short.digest() == usual.digest()

@@ -32,7 +32,7 @@ from typing import Any
 ROOT = Path(__file__).parents[2]
 COLUMNS = (
     *("number", "family", "freedom", "method", "tolerance", "status", "mean_friction", "error"),
-    *("mean_low", "mean_high", "cpu", "reason", "scene", "law"),
+    *("mean_low", "mean_high", "energy_gap", "energy_error", "cpu", "reason", "scene", "law"),
 )
 SLOW = 75
 """The exit code of a process that a scene kept too long."""
@@ -240,7 +240,16 @@ def _answered(fl: Any, classes: dict[str, Any], one: dict[str, Any]) -> dict[str
         return {"status": f"raised {type(problem).__name__}", "reason": str(problem)}
     row = table.iloc[0].to_dict()
     names = "status", "mean_friction", "error", "mean_low", "mean_high", "reason"
-    return {name: row[name] for name in names if row[name] == row[name] and row[name] is not None}
+    told = {name: row[name] for name in names} | _balance(row)
+    return {name: cell for name, cell in told.items() if cell == cell and cell is not None}
+
+
+def _balance(row: dict[str, Any]) -> dict[str, Any]:
+    """What is missing from energy_input = energy_viscous + energy_friction, and what their errors allow."""
+    put_in, *taken = "energy_input", "energy_viscous", "energy_friction"
+    gap = abs(row[put_in] - sum(row[name] for name in taken))
+    errors = [row.get(f"{name}_error", math.nan) for name in (put_in, *taken)]
+    return {"energy_gap": gap, "energy_error": sum(errors)}
 
 
 class Solver:
@@ -304,7 +313,19 @@ def solve(out: Path, given: argparse.Namespace) -> None:
             rows.writerow({"number": number, **row, **words})
             file.flush()
     solver.end()
-    print(*sorted(Counter(row["status"] for row in read(out)).items()))
+    _sum_up(read(out))
+
+
+def _sum_up(rows: list[dict[str, str]]) -> None:
+    """Statuses, the slowest scene, and the scenes whose energies do not close within their errors."""
+    print(*sorted(Counter(row["status"] for row in rows).items()))
+    print("slowest:", max(float(row["cpu"] or 0.0) for row in rows), "s")
+    told = [row for row in rows if row["status"] == "ok" and row["energy_error"]]
+    wide = [row["number"] for row in told if float(row["energy_gap"]) > float(row["energy_error"])]
+    print(f"energies close within their errors: {len(told) - len(wide)} of {len(told)}; not:", *wide)
+    for row in rows:
+        if row["status"] not in ("ok", "refused", "not_unique"):
+            print(f"{row['number']}: {row['status']}: {row['family']}, {row['method']}: {row['reason']}")
 
 
 def read(path: Path) -> list[dict[str, str]]:

@@ -151,12 +151,18 @@ def _fingerprint(*roots: Any) -> str:
 
 
 _FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "typing", "pydantic", "abc"}
+_OF_RECORDS = "frictionlab.quantities"
+"""Home of what laws share with all records: it checks what they are given, and no kernel calls it."""
 
 
 def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
     """Text that changes whenever what these values compute changes; each object is read once, then named."""
     for value in values:
         value = getattr(value, "py_func", value)
+        if not isinstance(
+            value, FunctionType
+        ):  # a cached one has its function inside, and no text of its own
+            value = getattr(value, "__wrapped__", value)
         if id(value) in seen:  # which one stands here matters, too
             yield f"{getattr(value, '__module__', '')}.{value.__name__}"
             continue
@@ -168,6 +174,8 @@ def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
         elif isinstance(value, list | tuple | dict):  # of functions: their own text is an address
             yield f"{type(value).__name__} of {len(value)}"
             yield from _pieces(itertools.chain(*value.items()) if isinstance(value, dict) else value, seen)
+        elif isinstance(value, set | frozenset):  # in another order in every process
+            yield repr(sorted(map(repr, value)))
         else:
             yield repr(value)
 
@@ -176,6 +184,8 @@ def _pieces_of_code(value: Any, seen: set[int]) -> Iterator[str]:
     home: str = getattr(value, "__module__", None) or getattr(value, "__name__", None) or ""
     yield f"{home}.{getattr(value, '__qualname__', '')}"
     if home.partition(".")[0] in _FOREIGN or isinstance(value, ModuleType):
+        return
+    if isinstance(value, type) and home == _OF_RECORDS:
         return
     if isinstance(value, type):
         yield repr(getattr(value, "_fields", ()))
@@ -193,7 +203,7 @@ def _pieces_of_bytecode(code: CodeType) -> Iterator[str]:
         if isinstance(constant, CodeType):
             yield from _pieces_of_bytecode(constant)
         else:
-            yield repr(constant)
+            yield from _pieces([constant], set())
 
 
 def _constants(code: CodeType) -> tuple[Any, ...]:

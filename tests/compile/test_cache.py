@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import os
 import subprocess
@@ -204,6 +205,30 @@ def test_words_and_the_place_in_the_file_change_nothing(compiled_once, name, bef
 )
 def test_the_name_of_a_kept_kernel_holds_no_address(root):
     assert not [piece for piece in cache._pieces([root], set()) if " at 0x" in piece]
+
+
+def test_how_records_check_what_they_are_given_is_no_part_of_a_kernel():
+    pieces = list(cache._pieces([LuGre, Coulomb], set()))
+
+    assert [piece for piece in pieces if "LuGre.rate" in piece]
+    assert not [piece for piece in pieces if "frictionlab.mistakes" in piece or "pydantic_core" in piece]
+
+
+def _vowel(letter):
+    return letter in {"a", "e", "i", "o", "u"}
+
+
+@functools.cache
+def _cached(number):
+    return 2.0 * number
+
+
+def test_the_name_of_a_kept_kernel_is_the_same_in_every_process():
+    pieces = list(cache._pieces([_vowel, _cached], set()))
+
+    assert repr(sorted(map(repr, "aeiou"))) in pieces
+    assert f"{__name__}._cached" in pieces
+    assert "2.0" in pieces
 
 
 def test_two_processes_on_a_cold_cache_are_both_right(tmp_path):

@@ -247,3 +247,26 @@ def test_ten_processes_on_a_cold_cache_are_all_right(folder):
 
     assert [process.communicate(timeout=300)[0] for process in racing] == ["3.0\n"] * 10
     assert len(kernels(folder)) == len(list(folder.iterdir())) == 1
+
+
+INTERPRETED = """
+import frictionlab as fl
+scene = fl.Scene(damping_ratio=0.1, normal_load=1, belt_speed=1, drive=fl.Drive(amplitude=2, frequency=1))
+for law in (fl.Coulomb(mu=0.4), fl.LuGre(mu_kinetic=0.4, stiffness=5.0)):
+    state = fl.steady_state(scene, law, tolerance=1e-4)
+    print(state.status, repr(state.mean_friction), repr(state.energy_friction))
+"""
+
+
+def test_where_numba_compiles_nothing_python_finds_the_same_numbers():
+    def answers(disabled: str) -> list[list[str]]:
+        environment = {**os.environ, "NUMBA_DISABLE_JIT": disabled}
+        command = [sys.executable, "-W", "error", "-c", INTERPRETED]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+        return [line.split() for line in done.stdout.splitlines()]
+
+    for slow, quick in zip(answers("1"), answers("0"), strict=True):
+        assert slow[0] == quick[0] == "ok"
+        assert [float(text) for text in slow[1:]] == pytest.approx(
+            [float(text) for text in quick[1:]], rel=1e-11
+        )

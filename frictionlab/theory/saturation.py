@@ -28,6 +28,18 @@ def saturates(law: Any) -> bool:
     )
 
 
+def slides_saturated(law: Any) -> bool:
+    """Whether a bristle at its limit stays there in slip of any speed along a line, at one friction."""
+    if law.memory_kind != "bristle" or not law.constant_sliding_friction():
+        return False
+    limit, friction = law.largest_deflection(), law.sliding_friction(1.0)
+    return (
+        math.isfinite(limit)
+        and math.isclose(law.friction(1.0, limit, 0.0), friction, rel_tol=1e-12)
+        and abs(law.rate(1.0, limit)) <= 1e-12
+    )
+
+
 def remaining_share(law: Any, path: Any) -> Any:
     """What is left of a small lack of deflection after a path slid [scene length], of what there was before."""
     limit = law.largest_deflection()

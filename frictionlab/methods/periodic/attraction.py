@@ -3,54 +3,36 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
-from frictionlab.dynamics.motion import mean_friction, span
+from frictionlab.dynamics.motion import belt_path, mean_friction, span
 from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, UTMOST_WORK
-from frictionlab.methods.periodic.period_map import image_of, size_of, start_of
+from frictionlab.methods.periodic.period_map import image_of, rest_of, size_of, start_of, unpack
+from frictionlab.methods.periodic.steady_sliding import NEAR, ends_sliding, never_reverses, write_sliding
 from frictionlab.numerics.linalg import norm, subtract
 from frictionlab.scene.body import Body
 
 MOST_PERIODS = 5000
-
-
-NEAR = 1e-3
-"""Of the size of a state: how near to an orbit that attracts a motion must come to be said to end there."""
 PATIENCE = 300
-"""Periods it may take."""
+"""Periods within which a motion must come near to an orbit."""
+
+
+class Follow(NamedTuple):
+    """How a motion is followed: the accuracy of its maps, and whether friction is the same at every speed of slip."""
+
+    accuracy: float
+    constant: bool
 
 
 @inner
-def state_of_sliding(body: Body, friction: float, like: Any) -> Any:
-    """Position and velocity at tau = 0 of the friction-free orbit, shifted by a constant friction; no deflection."""
-    shift = body.normal_load * friction / (body.stiffness_mean + body.stiffness_split)
-    return body.reference_cosine + shift + 0.0 * like, body.frequency * body.reference_sine, 0.0 * like
-
-
-def _no_memory(law: Any, belt_speed: float) -> float:
-    return 0.0
-
-
-def _deflection_of_sliding(law: Any, belt_speed: float) -> float:
-    return math.copysign(1.0, belt_speed) * law.largest_deflection()
-
-
-def _velocity_of_sliding(law: Any, belt_speed: float) -> float:
-    return belt_speed
-
-
-memory_of_sliding = by_law(_no_memory, _deflection_of_sliding, None, _velocity_of_sliding)
-"""memory_of_sliding(law, belt_speed): what ``start_of`` is given, with the other sign, for a mass that slides on."""
-
-
-@inner
-def _arrives(case: Case, start: Any, target: Any) -> bool:
+def _arrives(case: Case, start: Any, target: Any, constant: bool) -> bool:
     """Whether a motion comes near to a closed orbit within some hundred periods."""
+    slides_on = constant and never_reverses(case.body, case.belt_speed)
     residual, size, steps = np.empty(start.size), 1.0 + norm(target), 0
     for _ in range(PATIENCE):
         image = image_of(case, start, residual, 1e-5 * case.body.normal_load)
@@ -61,18 +43,20 @@ def _arrives(case: Case, start: Any, target: Any) -> bool:
         # The next period starts where this one ends.
         for row in range(start.size):
             start[row] = start[row] + residual[row]
+        if slides_on:
+            ends_sliding(case, start)
         subtract(start, target, residual)
         if norm(residual) < NEAR * size:
             return True
     return False
 
 
-def _reached_without_memory(case: Case, target: Any) -> bool:
+def _reached_without_memory(case: Case, target: Any, constant: bool) -> bool:
     """Where it is not sure that all motions end there, four starts are followed to their ends instead."""
     return False
 
 
-def _reached_with_memory(case: Case, target: Any) -> bool:
+def _reached_with_memory(case: Case, target: Any, constant: bool) -> bool:
     """Whether the mass ends on this orbit, set off at rest on the belt and sliding as if it never reversed.
 
     The second is an orbit of its own where the belt is faster than any vibration and sliding friction constant.
@@ -81,13 +65,11 @@ def _reached_with_memory(case: Case, target: Any) -> bool:
     # Set off at rest on the belt, where the contact remembers nothing.
     start = np.empty(target.size)
     start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
-    if not _arrives(case, start, target):
+    if not _arrives(case, start, target, constant):
         return False
     # Set off as in sliding that never reverses, with the memory of that.
-    friction = math.copysign(1.0, belt_speed) * law.sliding_friction(abs(belt_speed))
-    x, v, z = state_of_sliding(body, friction, like)
-    start_of(law, body, start, x, v, z - memory_of_sliding(law, belt_speed))
-    return _arrives(case, start, target)
+    write_sliding(case, start)
+    return _arrives(case, start, target, constant)
 
 
 reached = by_law(_reached_without_memory, _reached_with_memory, None, _reached_with_memory)
@@ -136,25 +118,51 @@ def write_start(law: Any, body: Body, start: Any, state: Any) -> None:
     start_of(law, body, state, x, v, deflection)
 
 
+MANY = 8.0
+"""Fewer periods at rest on the belt are followed one by one: orbits of several periods rest for some of them."""
+
+
+@inner
+def _periods_alike(case: Case, state: Any, image: Any) -> float:
+    """How many periods from this one on the belt is sure to carry a mass that rests on it all the time, or 1.
+
+    From where it starts to the mean of its orbit a slow belt carries it for thousands of them.
+    """
+    law, body, belt_speed, like = case
+    period = span(body)
+    if belt_speed == 0.0 or image.stuck < period * (1.0 - 1e-9):
+        return 1.0
+    y, _u = unpack(body, state, like)
+    many = 1.0 + rest_of(law, body, belt_speed, y + belt_path(body, belt_speed, 0.0, period))
+    return many if many > MANY else 1.0
+
+
 @inner
 def iterate_until_periodic(
-    law: Any, body: Body, belt_speed: float, accuracy: float, means: Any, states: Any
+    law: Any, body: Body, belt_speed: float, how: Follow, means: Any, states: Any
 ) -> Any:
     """Follow the motion from ``states[0]``, period by period, until it repeats.
+
+    Of the periods in which the belt carries it at rest one stands for many.
 
     Fills the one-period means [n] and the states [n + 1, size]; returns after how many periods it repeats (0 where
     it has not after n), and how many it was followed.
     """
     case, steps = case_of(law, body, belt_speed), 0
     # Coarse maps wander on by their own error: what they repeat is less exact.
-    alike = 1e-7 if accuracy <= 1e-8 * body.normal_load else 1e-5
-    residual = np.empty(states.shape[1])
+    alike = 1e-7 if how.accuracy <= 1e-8 * body.normal_load else 1e-5
+    residual, slides_on = np.empty(states.shape[1]), how.constant and never_reverses(body, belt_speed)
+    # A bristle that nears its limit as a power of the way slid comes to move less than that long before it is there.
+    alike *= 0.1 if slides_on else 1.0
     for n in range(means.size):
-        image = image_of(case, states[n], residual, accuracy)
+        image = image_of(case, states[n], residual, how.accuracy)
         means[n] = mean_friction(image.rubbed.real, span(body))
         steps += image.steps
+        many = _periods_alike(case, states[n], image)
         for row in range(residual.size):
-            states[n + 1, row] = states[n, row] + residual[row]
+            states[n + 1, row] = states[n, row] + many * residual[row]
+        if slides_on and ends_sliding(case, states[n + 1]):
+            return 1, n + 1
         nearest = 1e300
         for k in range(1, min(LONGEST_PERIOD, n // 2) + 1):
             # Two states in a row must repeat: one alone may pass near an old one by chance.

@@ -8,13 +8,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import mean_friction, span
+from frictionlab.dynamics.motion import mean_friction, span, swing_of
 from frictionlab.methods.periodic.attraction import reached
 from frictionlab.methods.periodic.case import Case, case_of
-from frictionlab.methods.periodic.fixed_point import FixedPoint, Goal, fixed_point
+from frictionlab.methods.periodic.fixed_point import ROUNDING, FixedPoint, Goal, fixed_point
 from frictionlab.methods.periodic.monodromy import free_inverse, monodromy
 from frictionlab.methods.periodic.period_map import period_map, size_of
-from frictionlab.numerics.linalg import copy
+from frictionlab.methods.periodic.steady_sliding import NEAR, never_reverses, write_sliding
+from frictionlab.numerics.linalg import copy, norm
 from frictionlab.orbit.recorder import Track, grown, track_of
 from frictionlab.scene.body import Body
 
@@ -70,14 +71,22 @@ def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) ->
 
 @inner
 def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal) -> Any:
-    """States [n, size] and results [n, 6]: mean friction, across, error, maps, share of stick, slowest slip."""
+    """States [n, size], results [n, 6] and monodromies [n, size, size], NaN where the search did without.
+
+    Results: mean friction, across, error, maps (0: closed form), share of stick, slowest slip.
+    """
     like = case_of(law, body, 0.0).like
     size, n = size_of(law, like), belt_speeds.size
     states, results = np.zeros((n, size)), np.empty((n, 6))
+    matrices = np.full((n, size, size), np.nan)
     z, work, inverse = np.empty(size), np.empty(size), np.empty((size, size))
     known, order, expected = 0, 1, 1e300
     for i in range(n):
         case = case_of(law, body, belt_speeds[i])
+        if goal.constant and _slides_on(case, guess if i == 0 else guess[:0], states[i]):
+            _write_results(body, _sliding(case), results[i])
+            known = 0
+            continue
         # From the states before it by extrapolation, with the last inverse; the first one from a harmonic motion.
         if known == 0:
             free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
@@ -85,11 +94,11 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal) 
                 copy(guess[0], z)
         else:
             _extrapolated(states, belt_speeds, i, min(order, known), z)
-        closed = fixed_point(case, z, inverse, goal, expected)
+        closed = fixed_point(case, z, inverse, matrices[i], goal, expected)
         # Neighbours mislead where the curve has a jump: once more without them.
         if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
             free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
-            closed = fixed_point(case, z, inverse, goal, 1e300)
+            closed = fixed_point(case, z, inverse, matrices[i], goal, 1e300)
         copy(z, states[i])
         _write_results(body, closed, results[i])
         # The order that would have predicted this state best, and one more: orders are not known where none is tried.
@@ -99,7 +108,31 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal) 
             order = known + 1
         known = min(known + 1, MOST_KNOWN) if closed.maps > 0 else 0
         expected = closed.first if known > 1 else 1e300
-    return states, results
+    return states, results, matrices
+
+
+@inner
+def _slides_on(case: Case, guess: Any, state: Any) -> bool:
+    """Whether the orbit looked for is that of slip that never reverses, written then to the state: closed form.
+
+    It is where no guess says otherwise.
+    """
+    if not never_reverses(case.body, case.belt_speed):
+        return False
+    write_sliding(case, state)
+    apart = 0.0
+    for row in range(state.size if guess.shape[0] > 0 else 0):
+        apart = math.hypot(apart, guess[0, row] - state[row])
+    return apart < NEAR * (1.0 + norm(state))
+
+
+@inner
+def _sliding(case: Case) -> FixedPoint:
+    """The constant friction of slip that never reverses; it takes no map."""
+    friction = case.law.sliding_friction(abs(case.belt_speed))
+    rubbed = -math.copysign(friction, case.belt_speed) * span(case.body) + 0.0 * case.like
+    slowest = max(0.0, abs(case.belt_speed) - swing_of(case.body))
+    return FixedPoint(rubbed, ROUNDING * max(1.0, friction), 0, 0.0, slowest, 0.0)
 
 
 @inner
@@ -158,23 +191,27 @@ def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal,
     guess: a state to start from [0 or 1, size]; where nothing is to be closed, the states of all orbits [n, size].
     """
     if wanted.closed:
-        states, results = solve_curve(law, body, belt_speeds, guess, goal)
+        states, results, matrices = solve_curve(law, body, belt_speeds, guess, goal)
     else:
         states, results = guess, np.ones((belt_speeds.size, 6))
+        matrices = np.full((states.shape[0], states.shape[1], states.shape[1]), np.nan)
     n, size = states.shape
     # The recorded motion is a map of its own, as exact as the mean was asked to be.
     accuracy = max(0.1 * goal.tolerance * body.normal_load, 1e-13)
-    matrices, ends_there = np.zeros((n if wanted.matrices else 0, size, size)), np.zeros(n, np.bool_)
+    ends_there, gradient = np.zeros(n, np.bool_), np.empty(size, np.complex128)
     track, ends = track_of(128 if wanted.orbits else 0), np.zeros(n, np.int64)
     for i in range(n):
         case = case_of(law, body, belt_speeds[i])
         # An orbit that was not found has a negative count of maps.
-        if results[i, 3] > 0.0:
+        if results[i, 3] >= 0.0:
             if wanted.orbits:
                 track = record_orbit(case, states[i], accuracy, track)
-            if wanted.matrices:
-                monodromy(case, states[i], 1.0, matrices[i])
+            if wanted.matrices and math.isnan(matrices[i, 0, 0]):
+                monodromy(case, states[i], 1.0, matrices[i], gradient)
             if wanted.closed and goal.asks:
-                ends_there[i] = reached(case, states[i])
+                ends_there[i] = reached(case, states[i], goal.constant)
+        else:
+            matrices[i] = 0.0
         ends[i] = track.filled[0]
-    return Curve(states, results, matrices, ends_there, track, ends)
+    kept = matrices if wanted.matrices else matrices[:0]
+    return Curve(states, results, kept, ends_there, track, ends)

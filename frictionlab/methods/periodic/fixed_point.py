@@ -17,7 +17,7 @@ from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import belt_path, span
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.sliding import Mapped
-from frictionlab.methods.periodic.monodromy import free_inverse, newton_inverse
+from frictionlab.methods.periodic.monodromy import free_inverse, inverse_of, monodromy, newton_inverse
 from frictionlab.methods.periodic.period_map import coarsest_of, grain_of, image_of, rest_of, unpack
 from frictionlab.numerics.linalg import copy, multiply, norm, subtract
 from frictionlab.scene.body import Body
@@ -38,6 +38,11 @@ LOOSE = 2.0
 """How much coarser than the tolerance the maps of a law with memory are; the two that end the search are finer."""
 PATIENCE = 3
 """How often quasi-Newton steps stall before the maps of a law with memory are made finer."""
+SMALL = 0.035
+"""Of the error before a Newton step to a map finer by ``FINER``: stands in where two means agree by chance. With it
+none of 2,500 random rows was uncovered, and half of the errors stated were below 30 times the true ones."""
+ALMOST_SINGULAR = 1e6
+"""Size of an inverse of (monodromy - identity) that belongs to a line of orbits, not to one."""
 MOST_CHECKS = 12
 """How often the last maps of a law with memory may disagree before the search gives up."""
 
@@ -45,12 +50,14 @@ MOST_CHECKS = 12
 class Goal(NamedTuple):
     """What an orbit is closed for: the tolerance on the mean, and whether no two motions ever move apart.
 
-    asks: whether the two cheap starts are followed to see that they converge to the orbit.
+    asks: whether the two cheap starts are followed to see that they converge to the orbit. constant: whether friction
+    is the same at every speed of slip that never reverses, so that this is an orbit in closed form.
     """
 
     tolerance: float
     contracts: bool
     asks: bool
+    constant: bool
 
 
 class FixedPoint(NamedTuple):
@@ -65,10 +72,14 @@ class FixedPoint(NamedTuple):
 
 
 class Iterate(NamedTuple):
-    """The state, the inverse of (monodromy - identity), the residual, and room for vectors, all [n]."""
+    """The state, the inverse of (monodromy - identity), the residual, and room for vectors, all [n].
+
+    monodromy: that of the orbit found, where the end of the search computes it.
+    """
 
     z: Any
     inverse: Any
+    monodromy: Any
     residual: Any
     trial: Any
     fresh: Any
@@ -256,6 +267,38 @@ def _check_without_memory(case: Case, search: Iterate, goal: Goal, now: Progress
     )
 
 
+@inner
+def _corrected(
+    case: Case, search: Iterate, image: Mapped, accuracy: float, floor: float, before: float
+) -> Any:
+    """A Newton step with the derivatives at the state, a finer map from there, its error and the maps taken.
+
+    The inverse of the search is that of states passed long ago, and may say far too little of what is left open.
+    before: the error before the step.
+    """
+    n, body, residual = search.z.size, case.body, search.residual
+    gradient, inverse = np.empty(n, np.complex128), np.empty((n, n))
+    monodromy(case, search.z, 1.0, search.monodromy, gradient)
+    # On a line of orbits, as under a contact that stays elastic, no step leads to one of them.
+    if not inverse_of(search.monodromy, inverse) or np.abs(inverse).max() > ALMOST_SINGULAR:
+        return image, before, 2 * n
+    for row in range(n):
+        copy(inverse[row], search.inverse[row])
+    multiply(search.inverse, residual, search.step)
+    subtract(search.z, search.step, search.z)
+    finer = max(accuracy / FINER, floor)
+    better = image_of(case, search.z, residual, finer)
+    multiply(search.inverse, residual, search.step)
+    left = 0.0j
+    for i in range(n):
+        left += gradient[i] * search.step[i]
+    # Two maps of one accuracy agree however wrong they are.
+    share = SMALL if finer < 0.5 * accuracy else 1.0
+    moved = abs(better.rubbed - image.rubbed) / span(body)
+    error = moved + share * before + 2.0 * abs(left) + floor / body.normal_load + ROUNDING
+    return better, error + grain_of(case.law, body, finer, case.like), 2 * n + 1
+
+
 def _check_with_memory(case: Case, search: Iterate, goal: Goal, now: Progress, floor: float) -> Progress:
     """End where two maps much finer than those of the search change the mean by less than the tolerance.
 
@@ -286,7 +329,10 @@ def _check_with_memory(case: Case, search: Iterate, goal: Goal, now: Progress, f
     # The second map, from where the first says the orbit is, must be much nearer to closing, or within its own error.
     settles = norm(residual) <= 0.5 * norm(fresh) + 10.0 * accuracy
     if settles and (error <= goal.tolerance or (now.finest <= floor and checks > 3)):
-        return Progress(image, accuracy, accuracy, maps, now.stalls, checks, now.newtons, error)
+        image, error, took = _corrected(case, search, image, accuracy, floor, error)
+        maps += took
+        if error <= goal.tolerance or (now.finest <= floor and checks > 3):
+            return Progress(image, accuracy, accuracy, maps, now.stalls, checks, now.newtons, error)
     # The state runs away from where the two maps say it is: the inverse is at fault, and is taken anew.
     if not settles or checks > 3:
         image, took = newton_step(case, search, accuracy, accuracy)
@@ -331,13 +377,15 @@ def _carried_by_the_belt(case: Case, search: Iterate, now: Progress) -> Progress
 
 
 @inner
-def fixed_point(case: Case, z: Any, inverse: Any, goal: Goal, expected: float) -> FixedPoint:
+def fixed_point(case: Case, z: Any, inverse: Any, matrix: Any, goal: Goal, expected: float) -> FixedPoint:
     """Find the fixed point from the guess z with the guess of the inverse of (monodromy - identity).
+
+    matrix: becomes the monodromy of an orbit of a law with memory.
 
     expected: the norm of the first residual; the maps are a little more accurate than the next one.
     """
     n, body, period = z.size, case.body, span(case.body)
-    search = Iterate(z, inverse, np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n))
+    search = Iterate(z, inverse, matrix, np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n))
     # No residual is asked to be below the rounding of the state itself.
     floor = 4e-15 * (1.0 + norm(z) + abs(case.belt_speed))
     finest, near = first_accuracy(case.law, body, goal.tolerance)

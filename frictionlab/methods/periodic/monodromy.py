@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
-from frictionlab.dynamics.motion import span
+from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.period_map import image_of
 from frictionlab.numerics.linalg import invert, norm
@@ -72,8 +72,8 @@ shift_of = by_law(_shift_without_memory, _shift_with_a_bristle, None, _shift_wit
 
 
 @inner
-def monodromy(case: Case, z: Any, accuracy: float, matrix: Any) -> None:
-    """The derivative of the period map by central differences [n, n]; it takes 2 n maps.
+def monodromy(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
+    """The derivatives of the period map [n, n] and of the mean friction [n] by central differences; 2 n maps.
 
     The shift stays below the way the belt moves in a period: that much slip ends a period that was all stick.
     The maps are at least as accurate as asked, and always much finer than the shift.
@@ -90,9 +90,10 @@ def monodromy(case: Case, z: Any, accuracy: float, matrix: Any) -> None:
         for row in range(n):
             trial[row] = z[row] + (shift if row == column else 0.0)
         # Central differences: the map bends where the mass sticks, and one-sided ones would be of first order.
-        image_of(case, trial, ahead, accuracy)
+        above = image_of(case, trial, ahead, accuracy)
         trial[column] = z[column] - shift
-        image_of(case, trial, behind, accuracy)
+        below = image_of(case, trial, behind, accuracy)
+        gradient[column] = mean_friction(above.rubbed - below.rubbed, span(case.body)) / (2.0 * shift)
         for row in range(n):
             matrix[row, column] = (ahead[row] - behind[row]) / (2.0 * shift) + (1.0 if row == column else 0.0)
 
@@ -100,10 +101,16 @@ def monodromy(case: Case, z: Any, accuracy: float, matrix: Any) -> None:
 @inner
 def newton_inverse(case: Case, z: Any, accuracy: float, inverse: Any) -> bool:
     """Leave the inverse of (monodromy - identity) in inverse; False where the matrix is singular."""
-    n = z.size
-    matrix = np.empty((n, n))
-    monodromy(case, z, accuracy, matrix)
+    matrix, gradient = np.empty((z.size, z.size)), np.empty(z.size, np.complex128)
+    monodromy(case, z, accuracy, matrix, gradient)
+    return inverse_of(matrix, inverse)
+
+
+@inner
+def inverse_of(matrix: Any, inverse: Any) -> bool:
+    """Leave the inverse of (matrix - identity) in inverse; False where that is singular."""
     # Newton solves (M - I) step = state - image.
-    for row in range(n):
-        matrix[row, row] = matrix[row, row] - 1.0
-    return invert(matrix, inverse)
+    shifted = matrix.copy()
+    for row in range(matrix.shape[0]):
+        shifted[row, row] = shifted[row, row] - 1.0
+    return invert(shifted, inverse)

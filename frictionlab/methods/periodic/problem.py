@@ -12,10 +12,9 @@ from frictionlab.compile.cache import compiled, timed
 from frictionlab.compile.dispatch import interpreted
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import (
+    Follow,
     iterate_until_periodic,
-    memory_of_sliding,
     settle,
-    state_of_sliding,
     write_start,
 )
 from frictionlab.methods.periodic.continuation import (
@@ -28,10 +27,12 @@ from frictionlab.methods.periodic.continuation import (
 )
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.period_map import size_of
+from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
 from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
+from frictionlab.theory.saturation import slides_saturated
 from frictionlab.theory.uniqueness import falls_slowly, is_convergent
 
 
@@ -77,13 +78,14 @@ class PeriodicProblem:
         self.mass, self.law = scene.mass(), law
         self.falls_slowly = falls_slowly(scene, law)
         asks = law.count() > 0 and self.falls_slowly
-        self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), asks)
         self.body: Body
         self.like: complex  # a number of the kind of its positions
         if along_the_belt(scene, law):
             self.body, self.like = on_the_line(self.mass), 0.0
         else:
             self.body, self.like = in_the_plane(self.mass), 0j
+        constant = not isinstance(self.like, complex) and slides_saturated(law)
+        self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), asks, constant)
         self.size = interpreted(size_of)(law, self.like)  # of a state
 
     def close(
@@ -148,7 +150,8 @@ class PeriodicProblem:
     def _iterate(self, belt_speed: float, state: Floats, most: int, relative: float) -> Transient:
         means, states = np.empty(most), np.empty((most + 1, self.size))
         states[0] = state
-        arguments = self.body, belt_speed, relative * self.mass.normal_load, means, states
+        how = Follow(relative * self.mass.normal_load, self.goal.constant)
+        arguments = self.body, belt_speed, how, means, states
         (period, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
         return Transient(period, means[:count], states[count], seconds)
 

@@ -10,7 +10,7 @@ from frictionlab.compile.cache import compiled, timed
 from frictionlab.compile.dispatch import interpreted
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.periodic.attraction import iterate_until_periodic, write_start
+from frictionlab.methods.periodic.attraction import Follow, iterate_until_periodic, write_start
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.period_map import size_of
@@ -44,7 +44,7 @@ class MemoryPoint:
 
     def _answer(self, tolerance: float) -> PrescribedMean:
         guess = np.zeros((1, interpreted(size_of)(self.law, self.like)))
-        self.goal = Goal(tolerance, False, True)
+        self.goal = Goal(tolerance, False, True, False)
         curve = self._called(guess, DIFFERENTIATED)
         multiplier = float(np.abs(np.linalg.eigvals(curve.matrices[0])).max())
         if curve.results[0, 3] < 0.0 or not curve.reached[0] or multiplier > FORGETS:
@@ -68,8 +68,8 @@ class MemoryPoint:
             compiled(write_start, self.law)(self.body, start, state)
             each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(state)))
             states[0] = state
-            accuracy = 1e-6 * self.motion.normal_load
-            arguments: tuple[Any, ...] = self.body, self.belt_speed, accuracy, each, states
+            how = Follow(1e-6 * self.motion.normal_load, False)
+            arguments: tuple[Any, ...] = self.body, self.belt_speed, how, each, states
             (_repeats, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
             self.seconds += seconds
             means.append(each[count - 1])

@@ -9,6 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.continuation import Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
 from frictionlab.quantities import Floats
@@ -20,6 +21,8 @@ STABLE = 1.0 - 1e-7
 """Largest Floquet multiplier of an orbit that counts as attractive."""
 FEWEST, MOST = 200, 20_000
 """Periods a start is followed for."""
+DECAYS, CLIMBS = 30.0, 2.0
+"""Time constants after which nothing is left of a start, and ways to the mean that a belt carries a mass at most."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +58,8 @@ def multiplier(curve: Curve, row: int = 0) -> float:
 
 def closed_orbit(curve: Curve, means: Floats) -> Attractor | None:
     """A closed orbit, with its means over each drive period; None where it did not close, or repels."""
-    if curve.results[0, 3] < 0.0 or not multiplier(curve) < STABLE:
+    # of slip that never reverses bristles may near their limit as a power of the way: multipliers are then one
+    if curve.results[0, 3] < 0.0 or (curve.results[0, 3] > 0.0 and not multiplier(curve) < STABLE):
         return None
     return Attractor(0, len(means), float(means.min()), float(means.max()), curve)
 
@@ -83,9 +87,9 @@ def attractors(
 ) -> tuple[list[Attractor], float]:
     """Where each of the starts leads; and kernel time [s]. The candidate is an orbit already known."""
     known = [candidate] if candidate is not None else []
-    reached, seconds = [], 0.0
+    reached, seconds, patience = [], 0.0, _patience(scene, problem.law, candidate)
     for start in starts(scene, problem.mass.normal_load * friction_at_rest(problem.law)):
-        way = problem.transient(scene.belt_speed, start, _patience(candidate))
+        way = problem.transient(scene.belt_speed, start, patience)
         seconds += way.seconds
         found = next((orbit for orbit in known if _arrived(way, orbit)), None)
         if found is None:
@@ -95,12 +99,22 @@ def attractors(
     return reached, seconds
 
 
-def _patience(candidate: Attractor | None) -> int:
-    """Periods after which every start is at the candidate, if that attracts them all."""
+def _patience(scene: Scene, law: FrictionLaw, candidate: Attractor | None) -> int:
+    """Periods after which every start is at the candidate, if that attracts them all.
+
+    In the motion's own times: that in which dashpots end it, that in which the belt carries it to the mean friction,
+    and that in which the candidate attracts it.
+    """
+    mass = scene.mass()
+    period = 2.0 * math.pi / mass.frequency
+    weakest = mass.damping if scene.load_along_belt_only else min(mass.damping, mass.transverse_damping)
+    own = 2.0 * DECAYS / (weakest * period) if weakest > 0.0 else MOST
+    climb = CLIMBS * mass.normal_load * friction_at_rest(law) / mass.stiffness
+    own = max(own, climb / (abs(scene.belt_speed) * period) if scene.belt_speed != 0.0 else 0.0)
     if candidate is None or candidate.curve is None:
-        return 5 * FEWEST
-    rate = -math.log(max(multiplier(candidate.curve), 1e-3))
-    return int(min(max(FEWEST, 20.0 / rate), MOST))
+        return int(min(max(5 * FEWEST, own), MOST))
+    rate = max(-math.log(max(multiplier(candidate.curve), 1e-3)), 1e-9)
+    return int(min(max(FEWEST, own, 2.0 * DECAYS / rate), MOST))
 
 
 def _arrived(way: Transient, orbit: Attractor) -> bool:
@@ -116,8 +130,8 @@ def _closed(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Att
     seconds = 0.0
     if way.period > 0:
         curve, period, seconds = _shortest(problem, scene, way)
-        means = way.means[-period:]
-        if period > 1 and curve.results[0, 3] > 0.0:
+        means: Floats = curve.results[0, :1]  # of finer maps than those on the way
+        if period > 1 and curve.results[0, 3] >= 0.0:
             means = problem.period_means(scene.belt_speed, curve.states[0], period)
         orbit = closed_orbit(curve, means)
         if orbit is not None:
@@ -132,7 +146,7 @@ def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[C
     for period in [each for each in range(1, way.period) if way.period % each == 0]:
         shorter, more = problem.close([scene], curve.states[0], period)
         seconds += more
-        if curve.results[0, 3] > 0.0 and shorter.results[0, 3] > 0.0 and _same(shorter, curve):
+        if curve.results[0, 3] >= 0.0 and shorter.results[0, 3] >= 0.0 and _same(shorter, curve):
             return shorter, period, seconds
     return curve, way.period, seconds
 

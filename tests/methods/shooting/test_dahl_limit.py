@@ -91,3 +91,43 @@ def test_the_mean_position_carries_the_mean_friction_and_the_energies_close(pres
     belt = BELT * LOAD * state.mean_friction * period
     assert state.energy_contact == pytest.approx(state.energy_friction + belt, rel=1e-7)
     assert state.energy_contact > 0
+
+
+def on_a_fast_belt(times_the_vibration: float, frequency: float = 0.5) -> fl.Scene:
+    """A belt so many times as fast as the vibration without friction."""
+    peak = UNBALANCE * frequency**3 / math.hypot(1.0 - frequency**2, 2.0 * DAMPING * frequency)
+    drive = fl.Drive(unbalance=UNBALANCE, frequency=frequency)
+    return fl.Scene(
+        damping_ratio=DAMPING, normal_load=LOAD, belt_speed=times_the_vibration * peak, drive=drive
+    )
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
+@pytest.mark.parametrize("times", [1.001, 1.05, 1.3, -1.3])
+def test_where_slip_never_reverses_the_mean_is_mu_however_slowly_bristles_saturate(
+    times: float, exponent: float
+) -> None:
+    law = Dahl(mu=MU, stiffness=40.0, exponent=exponent)
+    state = fl.steady_state(on_a_fast_belt(times), law, method="shooting", tolerance=1e-6)
+
+    assert state.status == "ok"
+    assert abs(state.mean_friction) == pytest.approx(MU, abs=state.error)
+    assert state.error < 1e-12
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("times", [1.0, 1.00001])
+def test_a_belt_just_as_fast_as_the_vibration_has_the_mean_of_sliding(times: float, exponent: float) -> None:
+    law = Dahl(mu=MU, stiffness=40.0, exponent=exponent)
+    state = fl.steady_state(on_a_fast_belt(times), law, method="shooting")
+
+    assert (state.status, state.mean_friction) == ("ok", pytest.approx(MU, abs=1e-12))
+
+
+@pytest.mark.parametrize(("exponent", "second"), [(2.0, 0.379791832), (3.0, 0.349295841)])
+def test_a_second_orbit_beside_sliding_that_never_reverses_is_found(exponent: float, second: float) -> None:
+    law = Dahl(mu=MU, stiffness=4.0, exponent=exponent)
+    state = fl.steady_state(on_a_fast_belt(1.001, frequency=1.5), law, method="shooting")
+
+    assert state.status == "not_unique"
+    assert (state.mean_low, state.mean_high) == pytest.approx((second, MU), abs=2e-8)

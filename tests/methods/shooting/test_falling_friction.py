@@ -232,6 +232,28 @@ def test_a_motion_that_never_repeats_is_told_from_one_that_takes_several_periods
     assert "do not repeat within" in answers.reason[0]
 
 
+def test_a_belt_that_takes_thousands_of_periods_to_carry_the_mass_to_its_mean_leaves_one_mean():
+    drive = Drive(amplitude=14.243499772705484, frequency=0.4913955988248217, phase=170.69015335572655)
+    one = scene(
+        0.0022362962192191966,
+        damping_ratio=0.13106815218909004,
+        normal_load=496.3320328420566,
+        drive=drive,
+    )
+    law = Stribeck(
+        mu_kinetic=0.17768839733369366,
+        mu_static=0.1881916382308799,
+        stribeck_speed=1.5630226223278636,
+        viscosity=0.00073223857582998,
+        curve="hyperbolic",
+    )
+
+    answers, row = solve(one, law)
+
+    assert answers.status == ["ok"]
+    assert row["mean_friction"] == pytest.approx(0.1596497504, abs=row["error"] + 1e-10)  # brute force
+
+
 def test_where_two_states_attract_the_start_decides():
     # Sliding without reversal and a stick-slip motion, both driven weakly at light damping.
     law = Stribeck(mu_static=0.8, mu_kinetic=0.2, stribeck_speed=0.1, viscosity=0.01)

@@ -280,6 +280,25 @@ def test_errors_cover_along_whole_curves(workload: str) -> None:
         compared(answers, curve["mean_friction"].to_numpy(), 1e-12, tolerance)
 
 
+def test_an_error_is_judged_with_the_derivative_at_the_orbit_and_not_one_of_states_passed_before() -> None:
+    drive = fl.Drive(amplitude=2.7073789880102015, frequency=1.4771137152980933, phase=30.702428808464994)
+    scene = fl.Scene(
+        damping_ratio=0.3437022511713936,
+        normal_load=26.32933412098672,
+        belt_speed=0.7346841787119447,
+        drive=drive,
+    )
+    law = fl.ElastoPlastic(
+        mu_kinetic=0.4137753901361184, stiffness=221.76349900884185, breakaway_ratio=0.6220427078927453
+    )
+    brute_force = 0.37730518566
+
+    for tolerance in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
+        state = fl.steady_state(scene, law, method="shooting", tolerance=tolerance)
+        assert abs(state.mean_friction - brute_force) <= state.error + 1e-11
+        assert state.error <= tolerance
+
+
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-6, 5e-7, 1e-7])
 def test_the_layer_after_a_reversal_is_not_passed_in_one_step_that_seems_exact(tolerance: float) -> None:
     """Found at random: maps of two accuracies agreed to 3e-10, both 4e-8 off in the layer."""

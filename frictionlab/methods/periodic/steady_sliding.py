@@ -1,0 +1,137 @@
+"""Sliding that never reverses, under friction that is then the same at every speed: an orbit in closed form.
+
+On a belt at least as fast as any vibration without friction, that vibration, shifted by the constant friction of a
+bristle at its limit, is a steady state of any such law. Bristles may near their limit as a power of the way slid
+(Dahl's with an exponent above one): no map of a period then has an inverse to close the orbit with, or to judge its
+error by, and which starts end there is told by a bound on what is left of their motion.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_dimension, by_law
+from frictionlab.dynamics.motion import swing_of
+from frictionlab.methods.periodic.case import Case
+from frictionlab.methods.periodic.maps.memory_state import measure_scales, unpack_memory
+from frictionlab.methods.periodic.maps.rates import MEMORY, workspace
+from frictionlab.methods.periodic.period_map import start_of, unpack
+from frictionlab.numerics.linalg import norm, subtract
+from frictionlab.scene.body import Body
+
+NEAR = 1e-3
+"""Of the size of a state: how near to an orbit that attracts a motion must come to be said to end there."""
+GRAZING = 1e-5
+"""Share of the vibration's speed by which the belt is faster where coming near is enough: no bound is left there."""
+
+
+@inner
+def state_of_sliding(body: Body, friction: float, like: Any) -> Any:
+    """Position and velocity at tau = 0 of the friction-free orbit, shifted by a constant friction; no deflection."""
+    shift = body.normal_load * friction / (body.stiffness_mean + body.stiffness_split)
+    return body.reference_cosine + shift + 0.0 * like, body.frequency * body.reference_sine, 0.0 * like
+
+
+def _no_memory(law: Any, belt_speed: float) -> float:
+    return 0.0
+
+
+def _deflection_of_sliding(law: Any, belt_speed: float) -> float:
+    return math.copysign(1.0, belt_speed) * law.largest_deflection()
+
+
+def _velocity_of_sliding(law: Any, belt_speed: float) -> float:
+    return belt_speed
+
+
+memory_of_sliding = by_law(_no_memory, _deflection_of_sliding, None, _velocity_of_sliding)
+"""memory_of_sliding(law, belt_speed): what ``start_of`` is given, with the other sign, for a mass that slides on."""
+
+
+@inner
+def write_sliding(case: Case, state: Any) -> None:
+    """The state at tau = 0 of a mass that slides as if slip never reversed, under friction at the belt's speed."""
+    law, body, belt_speed, like = case
+    friction = math.copysign(1.0, belt_speed) * law.sliding_friction(abs(belt_speed))
+    x, v, z = state_of_sliding(body, friction, like)
+    start_of(law, body, state, x, v, z - memory_of_sliding(law, belt_speed))
+
+
+@inner
+def never_reverses(body: Body, belt_speed: float) -> bool:
+    """Whether the belt is, to rounding, as fast as the vibration without friction or faster, and dashpots act."""
+    damped = body.damping_mean + body.damping_split > 0.0
+    return damped and abs(belt_speed) >= (1.0 - 1e-14) * swing_of(body)
+
+
+@inner
+def _impulse_response(body: Body) -> float:
+    """The integral of the size of the position's response to an impulse."""
+    stiffness, half = (
+        body.stiffness_mean + body.stiffness_split,
+        0.5 * (body.damping_mean + body.damping_split),
+    )
+    square = stiffness - half * half
+    return 1.0 / (
+        stiffness * math.tanh(0.5 * math.pi * half / math.sqrt(square)) if square > 0.0 else stiffness
+    )
+
+
+def _creep_on_the_line(case: Case, state: Any, like: float) -> float:
+    law, body, belt_speed, _like = case
+    stiffness = body.stiffness_mean + body.stiffness_split
+    y, u = unpack(body, state, like)
+    work = workspace(law, like)
+    measure_scales(law, body, work, like)
+    unpack_memory(law, body, work, state, like)
+    z, nudge, fastest = work.start[MEMORY], 1e-3 * law.largest_deflection(), -2.0 * belt_speed
+    rate = law.rate(fastest, z)
+    friction = law.friction(fastest, z, 0.0)
+    if law.friction(fastest, z, rate) != friction:
+        return math.inf
+    # a deflection that lacks less of its limit grows more slowly
+    slope = abs(law.friction(fastest, z + nudge, rate) - law.friction(fastest, z - nudge, rate)) / (
+        2.0 * nudge
+    )
+    left = math.hypot(math.sqrt(stiffness) * (y + body.normal_load * friction / stiffness), u)
+    return left + _impulse_response(body) * body.normal_load * slope * abs(rate)
+
+
+def _creep_in_the_plane(case: Case, state: Any, like: complex) -> float:
+    return math.inf
+
+
+_creep = by_dimension(_creep_on_the_line, _creep_in_the_plane)
+"""A bound on the speed of the deviation from the vibration, from now on; none for bristles that are damped."""
+
+
+def _ends_without_bristle(case: Case, state: Any) -> bool:
+    return False
+
+
+def _ends_with_a_bristle(case: Case, state: Any) -> bool:
+    """Whether a motion on so fast a belt surely slides on in one direction: it is then written as that orbit.
+
+    Friction that only grows to its limit, no faster than at the fastest slip, moves the mass at its quasi-static
+    place; off it, energy falls. While both together leave the mass slower than the belt no slip reverses.
+    """
+    _law, body, belt_speed, like = case
+    target = np.empty(state.size)
+    write_sliding(case, target)
+    subtract(target, state, target)
+    distance = norm(target)
+    write_sliding(case, target)
+    margin = abs(belt_speed) - swing_of(body)
+    ends = margin <= GRAZING * swing_of(body) and distance < NEAR * (1.0 + norm(target))
+    ends = ends or _creep(case, state, like) < margin
+    for row in range(state.size if ends else 0):
+        state[row] = target[row]
+    return ends
+
+
+ends_sliding = by_law(_ends_without_bristle, _ends_with_a_bristle, None, _ends_without_bristle)
+"""ends_sliding(case, state): for bristles on a belt where ``never_reverses``."""

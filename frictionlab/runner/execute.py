@@ -12,7 +12,7 @@ from frictionlab.runner.limit import solve_within
 
 TICK = 0.1
 """Seconds between two looks at what goes on."""
-GRACE = 3.0
+GRACE = 2.0
 """Time [s] that an interrupted run waits for chunks in progress; most chunks need far less."""
 
 Take = Callable[[list[Part]], None]

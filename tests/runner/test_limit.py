@@ -12,6 +12,8 @@ from fake_methods import Fake
 
 import frictionlab as fl
 from frictionlab import registry
+from frictionlab.runner import limit
+from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.workers import OverLimit, Workers, within
 from frictionlab.study import StudyError, parse_study
 
@@ -38,11 +40,19 @@ def released(monkeypatch: pytest.MonkeyPatch) -> Any:
     event.set()
 
 
-def test_a_point_over_the_limit_is_killed_and_its_neighbours_are_answered(released, tmp_path):
-    began = time.monotonic()
+def test_a_point_over_the_limit_is_killed_and_its_neighbours_are_answered(released, monkeypatch, tmp_path):
+    allowed = []
+
+    def by_the_clock(seconds: float, work: Any, chunk: Chunk) -> Any:
+        allowed.append((len(chunk.rows), seconds))
+        if not released.is_set() and any(scene.belt_speed == 6.0 for scene in chunk.scenes):
+            raise OverLimit
+        return work(chunk)
+
+    monkeypatch.setattr(limit, "within", by_the_clock)
     done = fl.run(STUDY, out=tmp_path)
 
-    assert time.monotonic() - began < 5.0
+    assert allowed == [(5, 0.3), (2, 0.3), (3, 0.3), (1, 0.3), (2, 0.3)]
     assert done.table["status"].tolist() == ["ok", "ok", "killed", "ok", "ok"]
     reason = "over the limit of 0.3 s (limit: {seconds_per_point: 0.3} in the study)"
     assert done.table["reason"].tolist()[2] == reason
@@ -58,11 +68,25 @@ def test_compilation_does_not_count(monkeypatch):
 
 
 def test_work_within_a_limit_gives_its_result_or_its_error():
-    assert within(1.0, divmod, 7, 2) == (3, 1)
+    assert within(60.0, divmod, 7, 2) == (3, 1)
     with pytest.raises(ZeroDivisionError):
-        within(1.0, divmod, 7, 0)
+        within(60.0, divmod, 7, 0)
     with pytest.raises(OverLimit):
-        within(0.05, time.sleep, 1.0)
+        within(0.05, time.sleep, 2.0)
+
+
+def test_a_point_that_never_ends_is_killed(released):
+    done = fl.run(STUDY | {"sweep": {"scene.belt_speed": [6]}})
+
+    assert done.table["status"].tolist() == ["killed"]
+
+
+def test_a_curve_is_allowed_the_time_of_a_tenth_of_its_points(released, monkeypatch):
+    allowed = []
+    monkeypatch.setattr(limit, "within", lambda seconds, work, chunk: allowed.append(seconds) or work(chunk))
+    fl.run(STUDY | {"sweep": {"scene.belt_speed": [10.0 + 0.01 * k for k in range(50)]}})
+
+    assert allowed == [0.3 * 50 / 10]
 
 
 def test_an_interrupt_is_obeyed_while_a_kernel_runs(released):

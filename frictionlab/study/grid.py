@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -312,6 +313,6 @@ def _built(read: tuple[float, ...] | SweepRange, path: Path, notes: Notes) -> tu
     if not isinstance(read, SweepRange):
         return read
     values = read.values()
-    if len(set(values)) < read.num:
+    if not all(map(operator.lt, values, values[1:])):
         notes.add(path, f"there are no {read.num} different numbers between start and stop")
     return values

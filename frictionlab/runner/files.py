@@ -44,6 +44,8 @@ def _is_running(process: int) -> bool:
     """Whether it is another process that still runs."""
     if process == os.getpid():
         return False
+    if os.name == "nt":  # to ask there is to interrupt
+        return True
     try:
         os.kill(process, 0)
     except (ProcessLookupError, OverflowError):

@@ -8,6 +8,8 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from textwrap import indent
+from typing import Any
 
 import pandas as pd
 import pytest
@@ -141,3 +143,16 @@ def test_the_whole_way_leads_to_a_curve(walked: Path) -> None:
         assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
     assert read_saved(walked / "out").counts == {"ok": 80}
     assert read_saved(walked / "runs" / "study").counts == {"ok": 80}
+
+
+def test_the_bounds_of_the_page_refuse_what_lies_outside() -> None:
+    head, _, fields = block("bounds").partition("\n\n")
+    law = "class Bounded(fl.SlidingLaw):\n    sliding_friction = lambda self, speed: 0.4\n"
+    space: dict[str, Any] = {}
+    text = f"import frictionlab as fl\n{head}\n{law}{indent(fields, '    ')}"
+    exec(compile(text, "page", "exec", dont_inherit=True), space)
+
+    assert space["Bounded"](share=0.5).fading_speed == 1.0
+    for wrong in ({"share": 1.5}, {"share": 0.5, "fading_speed": 11.0}):
+        with pytest.raises(ValueError, match=r"must be <= 1|must be >= 0.01 and <= 10|must be <= 10"):
+            space["Bounded"](**wrong)

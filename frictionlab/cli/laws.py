@@ -13,6 +13,7 @@ from frictionlab.cli.output import BROKEN_PLUGIN, FAILED, OK, print_message, pri
 
 if TYPE_CHECKING:
     from frictionlab.registry import Laws
+    from frictionlab.testing import Report
 
 
 @click.command("laws")
@@ -75,29 +76,46 @@ class TestOptions(NamedTuple):
 
 
 def _to_test(known: Laws, law_files: Sequence[Path]) -> tuple[str, ...]:
-    """The laws of the files given, else every law; one of two names of the same law."""
+    """The laws of the files given, else every law, broken ones too; one of two names of the same law."""
     from frictionlab import registry
 
-    names = [name for name in known.usable() if not law_files or name not in registry.law_names()]
-    first = {known.named(name): name for name in reversed(names)}
-    return tuple(name for name in names if first[known.named(name)] == name)
+    names = [name for name in known.names() if not law_files or name not in registry.law_names()]
+    usable = [name for name in names if name in known.usable()]
+    first = {known.named(name): name for name in reversed(usable)}
+    return tuple(name for name in names if name not in usable or first[known.named(name)] == name)
 
 
 def _test(names: Sequence[str], known: Laws, given: TestOptions) -> int:
     """Put laws through the battery, one after the other; the table grows as checks end."""
+    from frictionlab.registry import BrokenPlugin
+
+    reports: dict[str, Report] = {}
+    for name in names:
+        try:
+            reports[name] = _tested(name, known.named(name), given)
+        except BrokenPlugin as problem:
+            print_message(str(problem))
+    if given.as_json:
+        print_records([{"name": name, **record} for name, one in reports.items() for record in one.records()])
+    if len(reports) < len(names):
+        return BROKEN_PLUGIN
+    return OK if all(report.passed for report in reports.values()) else FAILED
+
+
+def _tested(name: str, law: Any, given: TestOptions) -> Report:
+    """Put one law through the battery. Where the result is a record or Markdown, stderr has progress alone."""
     from frictionlab.testing import EXAMPLES, check_law, heading
 
-    reports = []
-    say = print_message if given.as_json or given.markdown else print_result
-    for name in names:
-        say(heading(name))
-        examples = given.examples or EXAMPLES
-        law = known.named(name)
-        report = check_law(law, examples=examples, on_failure="return", tell=lambda one: say(one.line()))
-        say(report.summary(name))
-        reports.append((name, report))
-        if given.markdown:
-            print_result(f"{report.markdown(name)}\n")
-    if given.as_json:
-        print_records([{"name": name, **record} for name, report in reports for record in report.records()])
-    return OK if all(report.passed for _, report in reports) else FAILED
+    apart = given.as_json or given.markdown
+    say = print_message if apart else print_result
+    say(heading(name))
+    report = check_law(
+        law,
+        examples=given.examples or EXAMPLES,
+        on_failure="return",
+        tell=lambda one: say(one.line(remark="" if apart else one.remark)),
+    )
+    say(report.summary(name))
+    if given.markdown:
+        print_result(f"{report.markdown(name)}\n")
+    return report

@@ -143,6 +143,13 @@ class SlidingLaw(FrictionLaw, ABC):
         """Friction coefficient [-] that slip must overcome to begin; not below ``sliding_friction(0)``."""
         return self.sliding_friction(0.0)
 
+    def vanishes_at_rest(self) -> bool:
+        """Whether friction vanishes with slip, as that of a film of fluid does, and nothing is held at rest.
+
+        Dry friction does not: a law in which it does without saying so has the smoothing width of a method in it.
+        """
+        return False
+
     def steepest_fall(self) -> float:
         """0 where friction is monotone."""
         return 0.0 if self.monotone() else math.inf

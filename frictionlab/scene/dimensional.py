@@ -236,6 +236,19 @@ def _divide(value: float | tuple[float, ...], unit: float) -> float | tuple[floa
 
 @lru_cache(maxsize=4096)  # the rows of a curve share their law
 def scaled_law(law: _RecordT, scales: Units) -> _RecordT:
-    """A law given in SI units, converted to the lengths and times of a scene."""
+    """A law given in SI units, converted to the lengths and times of a scene.
+
+    The bounds of its parameters are those of the numbers given. Raises OverflowError for a number without size.
+    """
     parameters = scaled_parameters(law, scales)
-    return type(law).model_validate(law.model_dump(exclude_none=True) | parameters) if parameters else law
+    for name, value in parameters.items():
+        if not _has_size(value, getattr(law, name)):
+            raise OverflowError(f"{name}: {getattr(law, name)} in SI units is {value} in those of the scene")
+    return law.model_copy(update=parameters) if parameters else law
+
+
+def _has_size(value: float | tuple[float, ...], given: Any) -> bool:
+    """Whether each converted number is finite, and zero only where the one given is."""
+    if isinstance(value, tuple):
+        return all(_has_size(*pair) for pair in zip(value, given, strict=True))
+    return math.isfinite(value) and (value != 0.0 or given == 0.0)

@@ -63,6 +63,7 @@ EXAMPLES = 100
 SECONDS = 60.0
 """Most time a check may take, ten times that where it compiles; compiled code is waited for."""
 NEEDED = "answers"
+CANNOT_COMPILE = "cannot be compiled by numba"
 
 
 def check_law(
@@ -117,6 +118,9 @@ def _outcome(
 ) -> Outcome:
     if any(outcome.check == NEEDED and outcome.result == "failed" for outcome in before):
         return Outcome(check.name, "skipped", 0, f"{NEEDED} failed: the law cannot be asked")
+    uncompiled = [outcome.check for outcome in before if CANNOT_COMPILE in outcome.counterexample]
+    if uncompiled and check.patience > 1.0:
+        return Outcome(check.name, "skipped", 0, f"{uncompiled[0]} failed: the law cannot be compiled")
     outcome = run_check(check, law, *most)
     if expected is None:
         return outcome

@@ -23,7 +23,7 @@ class Check:
     skips: why a law does not need the check, or ''. share: fraction of the examples to run, below one where examples
     are slow; 0 for a single one. seldom: the reason to skip if no drawn parameters let the check run. declares: the
     method by which a law declares the property; a law that does not override it needs no check. after: tests what all
-    examples noted. patience: factor on the time limit.
+    examples noted. patience: factor on the time limit. change: what to change in a law that fails.
     """
 
     name: str
@@ -35,12 +35,14 @@ class Check:
     declares: str = ""
     after: CheckFunction | None = None
     patience: float = 1.0
+    change: str = "correct the method"
 
     def needless(self, law: type[FrictionLaw]) -> str:
         """Why this law does not need the check, or ''."""
         if reason := self.skips(law):
             return reason
-        return self.seldom if self.declares and _owner(law, self.declares) in BASES else ""
+        undeclared = bool(self.declares) and _owner(law, self.declares) in BASES
+        return f"{self.declares}() is not declared" if undeclared else ""
 
 
 def _owner(law: type[FrictionLaw], method: str) -> type:

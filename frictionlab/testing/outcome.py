@@ -34,9 +34,10 @@ class Outcome:
         """Reason and counterexample."""
         return "; ".join(part for part in (self.reason, self.counterexample) if part)
 
-    def line(self) -> str:
-        """One line of a table."""
-        return f"{self.check:32}  {self.result:16}  {self.examples:5}  {self.remark}".rstrip()
+    def line(self, remark: str | None = None) -> str:
+        """One line of a table, with its own remark or this one."""
+        told = self.remark if remark is None else remark
+        return f"{self.check:32}  {self.result:16}  {self.examples:5}  {told}".rstrip()
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ from frictionlab.faults import describe_error
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.registry.guard import TimeLimitExceeded, time_limit
 from frictionlab.testing.check import Check
-from frictionlab.testing.example import Given
+from frictionlab.testing.example import Given, Violation
 from frictionlab.testing.outcome import Outcome
-from frictionlab.testing.strategies import quietly
+from frictionlab.testing.strategies import NoParameters, quietly
 
 
 class ExampleCount:
@@ -40,7 +40,9 @@ def run_check(check: Check, law: type[FrictionLaw], examples: int, seconds: floa
     if problem is None and counted.examples == 0:
         if check.seldom:
             return Outcome(check.name, "skipped", 0, check.seldom, seconds=spent)
-        problem = "the check ran no example: nothing was tested"
+        problem = (
+            "the check ran no example: nothing was tested; to change: widen the bounds of the parameters"
+        )
     if problem is None:
         return Outcome(check.name, "passed", counted.examples, seconds=spent)
     return Outcome(check.name, "failed", counted.examples, counterexample=problem, seconds=spent)
@@ -59,12 +61,19 @@ def _problem(
     except Unsatisfiable:
         return None
     except TimeLimitExceeded:
-        return (
-            f"no answer within {seconds:g} s; does a method of the law never return? {_drawn_values(counted)}"
-        )
+        what = f"no answer within {seconds:g} s; does a method of the law never return?"
+        return _told(what, counted, "let every loop of its methods end")
     except Exception as problem:
-        return f"{_describe_failure(problem, law)}; {_drawn_values(counted)}".rstrip("; ")
+        return _told(_describe_failure(problem, law), counted, _change(check, problem))
     return None
+
+
+def _change(check: Check, problem: Exception) -> str:
+    if isinstance(problem, Violation):
+        return check.change
+    if isinstance(problem, NoParameters):
+        return "widen the bounds of the parameters, or take fewer together for a mistake"
+    return "correct that line, or bound the parameters: Annotated[fl.Positive, Field(le=10)]"
 
 
 def _examples(
@@ -81,9 +90,10 @@ def _examples(
     return quietly(examples, Phase.shrink)(given(st.data())(body))
 
 
-def _drawn_values(counted: ExampleCount) -> str:
-    told = counted.last.told() if counted.last is not None else ""
-    return f"seen with {told}" if told else ""
+def _told(what: str, counted: ExampleCount, change: str) -> str:
+    """What is wrong, with which numbers, and what to change."""
+    drawn = counted.last.told() if counted.last is not None else ""
+    return "; ".join([what, *([f"seen with {drawn}"] if drawn else []), f"to change: {change}"])
 
 
 def _describe_failure(problem: Exception, law: type[FrictionLaw]) -> str:

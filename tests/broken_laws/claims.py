@@ -59,6 +59,14 @@ class SmoothedSliding(Falling):
         return super().sliding_friction(speed) * math.tanh(speed / 1e-6)
 
 
+class SaysVanishing(Falling):
+    """Dry friction that calls itself a film of fluid."""
+
+    def vanishes_at_rest(self) -> bool:
+        """Always."""
+        return True
+
+
 class SmoothedBristles(Bristles):
     """The width of a method in the law."""
 
@@ -161,6 +169,7 @@ CASES = (
     Case(MonotoneWithAJump, Coulomb, "monotone", examples=100),
     Case(HoldsTooLittle, Falling, "static_friction"),
     Case(SmoothedSliding, Falling, "not_smoothed"),
+    Case(SaysVanishing, Falling, "not_smoothed"),
     Case(SmoothedBristles, Bristles, "held_at_rest"),
     Case(BoundLost, Dahl, "invariant_set"),
     Case(UnsignedPower, Dahl, "invariant_set"),

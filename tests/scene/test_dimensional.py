@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import Field
 from strategies import LAWS, scenes_in_the_plane, scenes_on_the_line, sizes
 
 import frictionlab as fl
@@ -292,6 +293,15 @@ def test_dimensions_are_found_beside_optional_types_and_scale_by_their_powers() 
     assert scaled_law(Marked(reach=0.3), Units(0.1, 5.0, 7.0)).reach == pytest.approx(3.0)
     assert scaled_law(Marked(), Units(0.1, 5.0, 7.0)) == Marked()
     assert Units(2.0, 3.0, 5.0).of(Dimension(force=1, length=-1, time=2)) == 5.0 / 2.0 * 9.0
+
+
+def test_bounds_of_a_parameter_are_those_of_the_number_given_and_a_number_without_size_is_told() -> None:
+    class Short(Record):
+        reach: Annotated[Positive, Dimension(length=1), Field(le=0.01)]
+
+    assert scaled_law(Short(reach=0.005), Units(1e-3, 1.0, 1.0)).reach == pytest.approx(5.0)
+    with pytest.raises(OverflowError, match=r"reach: 0\.005 in SI units is inf in those of the scene"):
+        scaled_law(Short(reach=0.005), Units(1e-320, 1.0, 1.0))
 
 
 STRIBECK: dict[str, Any] = {"kind": "stribeck", "mu_static": 0.5, "mu_kinetic": 0.3, "viscosity": 0.02}

@@ -5,19 +5,23 @@ from __future__ import annotations
 import json
 import math
 import time
-from typing import Any
+from pathlib import Path
+from typing import Annotated, Any
 
 import pytest
 from hypothesis import strategies as st
 from maxwell_slip import MaxwellSlip
 from memory_laws import Ageing
+from pydantic import Field
 
 from frictionlab.cli import main
-from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
+from frictionlab.laws.base import FrictionLaw, NonNegative, Positive, SlidingLaw, Speed
+from frictionlab.laws.compliant import Length
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.lugre import LuGre
-from frictionlab.testing import CHECKS, LawFailed, check_law
+from frictionlab.laws.memory import BristleLaw
+from frictionlab.testing import CHECKS, Check, LawFailed, check_law
 from frictionlab.testing.check import make_check
 from frictionlab.testing.example import Given
 from frictionlab.testing.running import run_check
@@ -94,7 +98,10 @@ def test_a_check_that_ran_nothing_has_failed() -> None:
         """What never comes up."""
         one.law(lambda law: False)
 
-    assert run_check(never, Coulomb, 5, 10.0).counterexample == "the check ran no example: nothing was tested"
+    said = run_check(never, Coulomb, 5, 100.0).counterexample
+    assert (
+        said == "the check ran no example: nothing was tested; to change: widen the bounds of the parameters"
+    )
 
 
 class Endless(Coulomb):
@@ -186,3 +193,217 @@ def test_a_slider_that_meets_its_limit_between_two_steps_keeps_within_it_and_one
 
 def test_memories_that_know_no_direction_are_never_asked_turned_round() -> None:
     assert check_law(Ageing, only=["instances_apart", "largest_rate"], on_failure="return").passed
+
+
+class Plain(SlidingLaw):
+    """A law as an author begins it: nothing is declared.
+
+    mu [-], > 0: friction coefficient.
+    Source: nobody (1900).
+    """
+
+    mu: Positive
+
+    def sliding_friction(self, speed: float) -> float:
+        """mu."""
+        return self.mu
+
+
+class Spring(BristleLaw):
+    """A bristle of which nothing is declared, not even how far it bends.
+
+    mu [-], > 0: friction coefficient.
+    limit [scene length], > 0: deflection in steady sliding.
+    Source: nobody (1900).
+    """
+
+    mu: Positive
+    limit: Length
+
+    def sliding_friction(self, speed: float) -> float:
+        """mu."""
+        return self.mu
+
+    def rate(self, v: Any, z: Any) -> Any:
+        """Dahl's."""
+        return v - abs(v) * z / self.limit
+
+    def friction(self, v: Any, z: Any, dz: Any) -> Any:
+        """A spring."""
+        return self.mu * z / self.limit
+
+
+@pytest.mark.parametrize("law", [Plain, Spring])
+def test_what_a_law_does_not_declare_is_skipped_with_the_name_of_the_declaration(
+    law: type[FrictionLaw],
+) -> None:
+    about = [check.name for check in CHECKS if check.declares] + ["steepest_fall", "steady_sliding"]
+    report = check_law(law, only=set(about) & set(QUICK), examples=20, on_failure="return")
+
+    assert report.passed, str(report)
+    assert "steepest_fall() is not declared" in report.outcome("steepest_fall").reason
+    if law is Spring:
+        assert report.outcome("passivity").reason == "passive() is not declared"
+        assert report.outcome("not_passive").reason == "passive() is not declared"
+        assert report.outcome("steady_sliding").result == "passed"
+
+
+class Steep(Plain):
+    """Friction that rises steeply from a positive value at rest: by half within 1e-12 of a speed.
+
+    mu [-], > 0: friction coefficient.
+    Source: nobody (1900).
+    """
+
+    def sliding_friction(self, speed: float) -> float:
+        """A power of the speed."""
+        return self.mu * (1.0 + 1e3 * speed**0.2)
+
+
+class Film(Plain):
+    """A film of fluid.
+
+    mu [-], > 0: friction coefficient at unit speed.
+    Source: Newton (1687).
+    """
+
+    def sliding_friction(self, speed: float) -> float:
+        """Viscous."""
+        return self.mu * speed
+
+
+class ToldFilm(Film):
+    """A film of fluid that says so."""
+
+    def vanishes_at_rest(self) -> bool:
+        """Always."""
+        return True
+
+
+def test_a_steep_rise_is_no_smoothing_and_a_film_of_fluid_says_that_friction_vanishes() -> None:
+    for law in (Steep, ToldFilm):
+        assert check_law(law, only=["not_smoothed"], examples=20).passed
+    with pytest.raises(LawFailed, match=r"to change: .* let vanishes_at_rest\(\) be true"):
+        check_law(Film, only=["not_smoothed"], examples=20)
+
+
+def test_every_check_tells_what_to_change_and_a_failed_one_ends_with_it() -> None:
+    assert [check.name for check in CHECKS if check.change == Check.change] == []
+    words = {check.name: check.change for check in CHECKS}["oddness"]
+    report = check_law(Lopsided, only=["oddness"], on_failure="return")
+    assert report.failures[0].counterexample.endswith(f"; to change: {words}")
+
+
+class NotForNumba(Plain):
+    """Friction from a table that numba cannot read.
+
+    mu [-], > 0: friction coefficient.
+    Source: nobody (1900).
+    """
+
+    def sliding_friction(self, speed: float) -> float:
+        """By a method of its own."""
+        return self.half()
+
+    def half(self) -> float:
+        """mu/2."""
+        return 0.5 * self.mu
+
+
+def test_a_law_that_cannot_be_compiled_is_told_once() -> None:
+    only = ["compiled_on_the_line", "compiled_in_the_plane", "two_methods"]
+    report = check_law(NotForNumba, only=only, examples=2, on_failure="return")
+
+    assert [outcome.result for outcome in report.outcomes] == ["failed", "skipped", "skipped"]
+    assert "cannot be compiled by numba" in report.outcomes[0].counterexample
+    assert report.outcomes[1].reason == "compiled_on_the_line failed: the law cannot be compiled"
+
+
+class Bounded(Plain):
+    """A law whose parameters have bounds of their own.
+
+    mu [-], 0.1 < mu <= 0.3: friction coefficient.
+    share [-], 0 <= share < 1: of it at quick slip.
+    many [-], >= 1000: a large number.
+    fading_speed [scene velocity], <= 2: where the rest has faded.
+    Source: nobody (1900).
+    """
+
+    mu: Annotated[Positive, Field(gt=0.1, le=0.3)]
+    share: Annotated[NonNegative, Field(lt=1.0)] = 0.5
+    many: Annotated[Positive, Field(ge=1e3)] = 1e3
+    fading_speed: Annotated[Speed, Field(le=2.0)] = 1.0
+
+    def sliding_friction(self, speed: float) -> float:
+        """Falls to a share."""
+        fading = math.exp(-speed / self.fading_speed)
+        return self.mu * (self.share + (1.0 - self.share) * fading) * (1.0 + 1.0 / self.many)
+
+
+def test_laws_are_drawn_and_scaled_within_the_bounds_of_their_parameters() -> None:
+    seen: list[Bounded] = []
+
+    @make_check("drawn")
+    def drawn(one: Given) -> None:
+        """Any."""
+        seen.append(one.law())
+
+    assert run_check(drawn, Bounded, 60, 60.0).examples == 60
+    assert all(0.1 < law.mu <= 0.3 and law.many >= 1e3 and law.fading_speed <= 2.0 for law in seen)
+    assert max(law.mu for law in seen) > 0.25
+    assert min(law.share for law in seen) < 0.2 < 0.8 < max(law.share for law in seen) < 1.0
+    assert check_law(Bounded, only=["limits_kept", "unit_scaling", "monotone"], examples=20).passed
+
+
+LAWS = '''import frictionlab as fl
+
+HALF = 0.5
+
+
+class One(fl.SlidingLaw):
+    """A law. Source: nobody (1900).
+
+    mu [-]: friction coefficient.
+    """
+
+    mu: fl.Positive
+
+    def sliding_friction(self, speed):
+        return self.mu
+
+
+class Two(fl.SlidingLaw):
+    """A law that is broken.
+
+    mu [-]: friction coefficient.
+    """
+
+    mu: fl.Positive
+
+    def sliding_friction(self, speed):
+        return None
+'''
+
+
+def test_every_law_of_a_file_is_tested_and_a_broken_one_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: Any
+) -> None:
+    monkeypatch.setattr("frictionlab.testing.battery.CHECKS", CHECKS[1:3])
+    both, broken, sound = (tmp_path / f"{name}.py" for name in ("both", "broken", "sound"))
+    both.write_text(LAWS)
+    broken.write_text(LAWS.replace("class One(fl.SlidingLaw)", "class One(object)"))
+    sound.write_text(LAWS.replace("return None", "return HALF * self.mu"))
+
+    assert main(["laws", "test", "--law", str(both), "--examples", "2"]) == 4
+    said = capsys.readouterr()
+    assert "\none\n" in said.out
+    assert said.err.startswith(
+        f"law 'two' (class Two) of file {both}: sliding_friction(speed=1.0) returns None"
+    )
+    assert main(["laws", "test", "--law", str(broken)]) == 4
+    assert "law 'two' (class Two)" in capsys.readouterr().err
+    assert main(["laws", "test", "--law", str(sound), "--markdown", "--examples", "2"]) == 3
+    said = capsys.readouterr()
+    assert "### one" in said.out
+    assert "### two" in said.out
+    assert (said.out + said.err).count("the docstring names no source") == 1

@@ -56,7 +56,12 @@ def machine_response(one: Given, law: FrictionLaw, v: Any, memory: ContactMemory
     return Response(tuple(answer[1 : 1 + len(memory)]), answer[0]), answer[-1]
 
 
-@make_check("compiled_on_the_line", patience=10.0, share=0.5)
+@make_check(
+    "compiled_on_the_line",
+    change="use plain arithmetic, abs, if, for and the math module in methods; parameters and properties for numbers",
+    patience=10.0,
+    share=0.5,
+)
 def compiled_on_the_line(one: Given) -> None:
     """Compiled by numba and run by Python a law answers the same to rounding, along a line."""
     law = one.law()
@@ -65,7 +70,11 @@ def compiled_on_the_line(one: Given) -> None:
 
 
 @make_check(
-    "compiled_in_the_plane", patience=10.0, share=0.5, seldom="no parameters drawn have a form in the plane"
+    "compiled_in_the_plane",
+    change="use plain arithmetic, abs, if, for and the math module in methods; no float of a complex number",
+    patience=10.0,
+    share=0.5,
+    seldom="no parameters drawn have a form in the plane",
 )
 def compiled_in_the_plane(one: Given) -> None:
     """Compiled by numba and run by Python a law answers the same to rounding, in the plane."""

@@ -28,12 +28,15 @@ from frictionlab.testing.strategies import directions, sizes, speeds
 WITH_MEMORY = for_laws_of(BristleLaw, MemoryLaw, without="without memory")
 BRISTLES = for_laws_of(BristleLaw, without="of laws with one bristle deflection")
 SLIDING = for_laws_of(SlidingLaw, without="of laws without memory")
+BARELY_MOVING = 1e-300, 1e-100
+"""Speeds below any width: a curve however steep is at its value of rest there."""
 SLOW_TO_QUICK = tuple(10.0**exponent for exponent in range(-6, 16))
 """Speeds at which work may be drawn out of a law that is not passive, far above those drawn."""
 
 
 @make_check(
     "constant_sliding_friction",
+    change="let constant_sliding_friction() be false for these parameters, or correct sliding_friction",
     declares="constant_sliding_friction",
     seldom="constant_sliding_friction() is false for all parameters drawn",
 )
@@ -45,7 +48,11 @@ def constant_sliding_friction(one: Given) -> None:
     one.require(abs(quick - slow) <= 1e-12 * abs(slow), "sliding friction differs", got=quick, expected=slow)
 
 
-@make_check("steepest_fall")
+@make_check(
+    "steepest_fall",
+    seldom="steepest_fall() is not declared, or infinite for all parameters drawn",
+    change="let steepest_fall() return at least this slope, or leave it out",
+)
 def steepest_fall(one: Given) -> None:
     """Sliding friction falls nowhere steeper with speed than declared, from rest to the quickest slip drawn."""
     law = one.law(lambda law: law.steepest_fall() < math.inf)
@@ -60,7 +67,11 @@ def steepest_fall(one: Given) -> None:
 
 
 @make_check(
-    "monotone", declares="monotone", skips=SLIDING, seldom="monotone() is false for all parameters drawn"
+    "monotone",
+    change="let monotone() be false for these parameters, or leave it out",
+    declares="monotone",
+    skips=SLIDING,
+    seldom="monotone() is false for all parameters drawn",
 )
 def monotone(one: Given) -> None:
     """Where friction is declared monotone, more slip never meets less friction, rest included."""
@@ -80,7 +91,11 @@ def monotone(one: Given) -> None:
     one.require(fall == 0.0, "monotone friction falls nowhere, yet its steepest fall is declared", got=fall)
 
 
-@make_check("static_friction", skips=SLIDING)
+@make_check(
+    "static_friction",
+    change="let static_friction() return at least sliding_friction(0), or leave it out",
+    skips=SLIDING,
+)
 def static_friction(one: Given) -> None:
     """Rest holds at least what slip that has only just begun meets."""
     law = one.law()
@@ -88,7 +103,12 @@ def static_friction(one: Given) -> None:
     one.require(held >= first * (1.0 - 1e-12), "rest holds less than slip", rest=held, slip=first)
 
 
-@make_check("invariant_set", skips=WITH_MEMORY, seldom="no parameters drawn have a bounded set")
+@make_check(
+    "invariant_set",
+    change="correct rate, or largest_deflection() (within(memory) of several numbers), or leave that out",
+    skips=WITH_MEMORY,
+    seldom="no parameters drawn have a bounded set",
+)
 def invariant_set(one: Given) -> None:
     """No slip leads a memory out of its set, and from just outside every slip leads back or leaves it."""
     law = one.law(_bounded)
@@ -130,7 +150,9 @@ def _moved(memory: ContactMemory, rates: ContactMemory, step: float) -> ContactM
     return tuple(each + step * slope for each, slope in zip(memory, rates, strict=True))
 
 
-@make_check("held_at_rest", skips=BRISTLES)
+@make_check(
+    "held_at_rest", change="let rate(0, z) be zero: take the smoothing width out of the law", skips=BRISTLES
+)
 def held_at_rest(one: Given) -> None:
     """A contact at rest keeps its deflection: one that creeps there has a smoothing width in it."""
     law = one.law()
@@ -140,16 +162,29 @@ def held_at_rest(one: Given) -> None:
     one.require(rate == 0.0, "the deflection moves at rest", rate=rate)
 
 
-@make_check("not_smoothed", skips=SLIDING)
+@make_check(
+    "not_smoothed",
+    change="leave the smoothing width to a method; or, of a film of fluid, let vanishes_at_rest() be true",
+    skips=SLIDING,
+)
 def not_smoothed(one: Given) -> None:
-    """Friction does not vanish with slip: a law of dry friction has no width about rest, a method may have one."""
+    """Friction does not vanish with slip unless declared so: dry friction has no width about rest, methods may."""
     law = one.law()
-    slow, quicker = law.sliding_friction(1e-12), law.sliding_friction(1e-9)
-    one.require(slow >= 0.5 * quicker, "friction vanishes with slip", at_1e_12=slow, at_1e_9=quicker)
+    rest, slow, quicker = (law.sliding_friction(speed) for speed in (0.0, *BARELY_MOVING))
+    if law.vanishes_at_rest():
+        held = max(rest, law.static_friction())
+        one.require(held == 0.0, "friction is declared to vanish at rest, and does not", got=held)
+        return
+    kept = slow >= 0.5 * rest > 0.0 or slow >= 0.5 * quicker > 0.0
+    one.require(kept, "friction vanishes with slip", at_rest=rest, at_1e_300=slow, at_1e_100=quicker)
 
 
 @make_check(
-    "passivity", declares="passive", skips=WITH_MEMORY, seldom="passive() is false for all parameters drawn"
+    "passivity",
+    change="let passive() be false for these parameters, or leave it out; or correct stored",
+    declares="passive",
+    skips=WITH_MEMORY,
+    seldom="passive() is false for all parameters drawn",
 )
 def passivity(one: Given) -> None:
     """Where a law is declared passive, friction takes as much work as its memory stores, however quick the slip."""
@@ -197,7 +232,12 @@ def _rates_tell_all(law: type[FrictionLaw]) -> str:
 
 
 @make_check(
-    "not_passive", skips=_rates_tell_all, share=0.2, seldom="passive() is true for all parameters drawn"
+    "not_passive",
+    declares="passive",
+    change="let passive() be true for these parameters, or leave it out",
+    skips=_rates_tell_all,
+    share=0.2,
+    seldom="passive() is true for all parameters drawn",
 )
 def not_passive(one: Given) -> None:
     """Where a law is declared not passive, some slip gives work that was never stored."""
@@ -224,6 +264,7 @@ def _charged(law: BristleLaw | MemoryLaw) -> list[tuple[float, ...]]:
 
 @make_check(
     "rate_independence",
+    change="let rate_independent() be false for these parameters, or leave it out",
     declares="rate_independent",
     skips=WITH_MEMORY,
     seldom="rate_independent() is false for all parameters drawn",
@@ -242,6 +283,7 @@ def rate_independence(one: Given) -> None:
 
 @make_check(
     "largest_rate",
+    change="let largest_rate(speed) return at least this, or leave it out",
     declares="largest_rate",
     skips=WITH_MEMORY,
     seldom="largest_rate() is infinite for all parameters drawn",
@@ -280,7 +322,12 @@ def _change_of_rate(
     return abs(ahead - behind) / (2.0 * step), abs(ahead), corner
 
 
-@make_check("damps_across", skips=BRISTLES, seldom="damps_across() is false for all parameters drawn")
+@make_check(
+    "damps_across",
+    change="let damps_across(speed) be false at this speed",
+    skips=BRISTLES,
+    seldom="damps_across() is false for all parameters drawn",
+)
 def damps_across(one: Given) -> None:
     """Where declared, a small motion across the slip only loses energy to friction."""
     law = one.planar_law()

@@ -57,6 +57,7 @@ def _settles(law: FrictionLaw) -> bool:
 
 @make_check(
     "coulomb_limit_of_prescribed_slip",
+    change="correct rate and friction: a stiff contact slides; or let constant_sliding_friction() be false",
     declares="constant_sliding_friction",
     patience=10.0,
     skips=WITH_MEMORY,
@@ -79,6 +80,7 @@ def coulomb_limit_of_prescribed_slip(one: Given) -> None:
 
 @make_check(
     "coulomb_limit_of_a_body",
+    change="correct rate and friction: a stiff contact slides; or let constant_sliding_friction() be false",
     declares="constant_sliding_friction",
     patience=10.0,
     skips=WITH_MEMORY,
@@ -100,7 +102,11 @@ def coulomb_limit_of_a_body(one: Given) -> None:
 
 
 @make_check(
-    "two_methods", patience=10.0, share=0.02, seldom="no parameters drawn give a state that both methods find"
+    "two_methods",
+    change="check what the law declares (largest_rate, exact_path, yield_deflection): the methods use it",
+    patience=10.0,
+    share=0.02,
+    seldom="no parameters drawn give a state that both methods find",
 )
 def two_methods(one: Given) -> None:
     """Shooting and time stepping agree on a short curve within the sum of their errors."""

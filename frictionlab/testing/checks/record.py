@@ -39,7 +39,12 @@ def _leads_to(name: str, law: type[FrictionLaw]) -> bool:
         return False
 
 
-@make_check("loads_by_name", skips=not_registered, share=0.0)
+@make_check(
+    "loads_by_name",
+    change="enter the class under [project.entry-points.'frictionlab.laws'] of pyproject.toml",
+    skips=not_registered,
+    share=0.0,
+)
 def loads_by_name(one: Given) -> None:
     """The law is found by its name, and can be listed."""
     one.require(
@@ -47,7 +52,11 @@ def loads_by_name(one: Given) -> None:
     )
 
 
-@make_check("documented", share=0.0)
+@make_check(
+    "documented",
+    change="write into the docstring of the class what each parameter is, as in `mu [-], > 0: ...`, and its source",
+    share=0.0,
+)
 def documented(one: Given) -> None:
     """The docstring names a source with its year, and every parameter with its unit in brackets."""
     record = law_record("law", one.kind)
@@ -65,7 +74,7 @@ def documented(one: Given) -> None:
         )
 
 
-@make_check("frozen", share=0.1)
+@make_check("frozen", change="leave model_config as it is, and make defaults numbers or tuples", share=0.1)
 def frozen(one: Given) -> None:
     """A law cannot be changed once made, and no default of it can."""
     law = one.law()
@@ -81,7 +90,7 @@ def frozen(one: Given) -> None:
     hash(law)
 
 
-@make_check("unknown_parameters_refused", share=0.1)
+@make_check("unknown_parameters_refused", change="leave model_config as it is", share=0.1)
 def unknown_parameters_refused(one: Given) -> None:
     """A parameter the law does not have is refused."""
     law = one.law()
@@ -91,7 +100,9 @@ def unknown_parameters_refused(one: Given) -> None:
     )
 
 
-@make_check("limits_kept", share=0.1)
+@make_check(
+    "limits_kept", change="annotate the parameter as fl.Positive, fl.NonNegative or fl.Finite", share=0.1
+)
 def limits_kept(one: Given) -> None:
     """Words, truth values, NaN and infinity are no numbers of a law."""
     law = one.law()
@@ -103,7 +114,7 @@ def limits_kept(one: Given) -> None:
                 one.require(_refused(one.kind, changed), f"{name} takes {wrong!r}")
 
 
-@make_check("defaults_valid", share=0.1)
+@make_check("defaults_valid", change="change the default, or the bound of the parameter", share=0.1)
 def defaults_valid(one: Given) -> None:
     """What a parameter is where it is left out lies within the law's own limits."""
     given = one.law().model_dump(exclude_none=True)
@@ -127,7 +138,10 @@ def _refused(law: type[FrictionLaw], given: dict[str, Any]) -> bool:
     return False
 
 
-@make_check("answers")
+@make_check(
+    "answers",
+    change="return a finite number from that method, or bound the parameters: Annotated[fl.Positive, Field(le=10)]",
+)
 def answers(one: Given) -> None:
     """Every method answers with a finite number: a float on the line, a complex number in the plane."""
     law = one.law()
@@ -152,7 +166,11 @@ def _number(one: Given, kind: type, value: Any, whose: str) -> None:
     one.require(math.isfinite(abs(value)), f"{whose} must be finite", got=value)
 
 
-@make_check("extremes", share=0.3)
+@make_check(
+    "extremes",
+    change="write the formula so that it holds at rest and at any speed, or bound the parameters",
+    share=0.3,
+)
 def extremes(one: Given) -> None:
     """At rest and at speeds of any size nothing divides by zero and nothing overflows."""
     law = one.law()
@@ -176,7 +194,7 @@ def _numbers_in_the_plane(one: Given, law: FrictionLaw, v: complex, memory: Cont
     _numbers(one, complex, got, float if _scalars(law) else complex)
 
 
-@make_check("repeatable", share=0.2)
+@make_check("repeatable", change="let the method depend on its arguments and the parameters alone", share=0.2)
 def repeatable(one: Given) -> None:
     """Asked the same again, later, a law answers the same: no chance, no clock, nothing kept between calls."""
     law = one.law()
@@ -198,7 +216,11 @@ def _friction_alone(law: Any, v: float, memory: ContactMemory, rates: ContactMem
     return law.friction(v, np.array(memory), np.array(rates))
 
 
-@make_check("instances_apart", share=0.2)
+@make_check(
+    "instances_apart",
+    change="let the method depend on its arguments and the parameters alone, without a cache of its own",
+    share=0.2,
+)
 def instances_apart(one: Given) -> None:
     """What one law is asked changes nothing for another of the same parameters."""
     law = one.law()
@@ -217,7 +239,12 @@ def _all_mattered(one: Given) -> None:
         one.require(not idle, f"{name} changes no answer of the law")
 
 
-@make_check("parameters_matter", share=0.5, after=_all_mattered)
+@make_check(
+    "parameters_matter",
+    change="use the parameter in a method, or take it out",
+    share=0.5,
+    after=_all_mattered,
+)
 def parameters_matter(one: Given) -> None:
     """Every parameter changes what the law answers, for some values of the others."""
     law = one.draw("law", fullest_laws(one.kind))

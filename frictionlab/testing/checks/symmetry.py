@@ -13,7 +13,10 @@ BEYOND_LIMIT = 1.5
 """Times what a memory can hold: it yields wholly, not only just."""
 
 
-@make_check("oddness")
+@make_check(
+    "oddness",
+    change="let `rate` and `friction` change sign with v and the deflections; `abs(v)` alone has no direction",
+)
 def oddness(one: Given) -> None:
     """Slip and deflections turned round turn friction round, and change it in nothing else."""
     law = one.law(lambda law: getattr(law, "planar", "") != "rotated")
@@ -26,7 +29,11 @@ def oddness(one: Given) -> None:
         one.require_same(law, (v, memory), got, should, "slip turned round")
 
 
-@make_check("rotation", seldom="no parameters drawn have a form in the plane that turns with the slip")
+@make_check(
+    "rotation",
+    change="write v / abs(v) and (v * z.conjugate()).real in place of v.real, v.imag or a fixed direction",
+    seldom="no parameters drawn have a form in the plane that turns with the slip",
+)
 def rotation(one: Given) -> None:
     """In the plane everything turned by an angle gives friction turned by that angle (but for per-axis forms)."""
     law = one.planar_law(_isotropic)
@@ -45,7 +52,11 @@ def rotation(one: Given) -> None:
         one.require_same(law, (v, memory), got, should, "everything turned")
 
 
-@make_check("reflection", seldom="no parameters drawn have a form in the plane")
+@make_check(
+    "reflection",
+    change="write v / abs(v) and (v * z.conjugate()).real in place of v.imag or a fixed sense of turning",
+    seldom="no parameters drawn have a form in the plane",
+)
 def reflection(one: Given) -> None:
     """In the plane everything mirrored in the belt's line gives friction mirrored in it."""
     law = one.planar_law()
@@ -57,7 +68,11 @@ def reflection(one: Given) -> None:
     one.require_same(law, (v, memory), got, should, "everything mirrored")
 
 
-@make_check("straight_planar_slide", seldom="no parameters drawn have a form in the plane")
+@make_check(
+    "straight_planar_slide",
+    change="write abs(v) and v / abs(v), which mean the same on the line and in the plane",
+    seldom="no parameters drawn have a form in the plane",
+)
 def straight_planar_slide(one: Given) -> None:
     """Slip along a straight line in the plane is slip on the line, with nothing across."""
     law = one.planar_law()
@@ -71,7 +86,10 @@ def straight_planar_slide(one: Given) -> None:
     one.require_same(law, (v, memory), got, response(law, v, memory), "slip along the line in the plane")
 
 
-@make_check("unit_scaling")
+@make_check(
+    "unit_scaling",
+    change="annotate parameters with a dimension as fl.Speed, fl.PerSpeed, fl.Length or fl.Stiffness",
+)
 def unit_scaling(one: Given) -> None:
     """In other units of length and time friction is the same, and memory moves at the same pace.
 

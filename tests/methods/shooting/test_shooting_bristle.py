@@ -299,6 +299,22 @@ def test_an_error_is_judged_with_the_derivative_at_the_orbit_and_not_one_of_stat
         assert state.error <= tolerance
 
 
+def test_friction_that_begins_within_rounding_of_its_limit_reaches_it_once() -> None:
+    drive = fl.Drive(amplitude=10.332913485240994, frequency=0.4716048960417302, phase=3.04427042833868)
+    scene = fl.Scene(
+        damping_ratio=0.019769936226340757,
+        normal_load=1.0359981415202357,
+        belt_speed=1.7300261101377998,
+        drive=drive,
+    )
+    law = fl.Jenkins(mu=0.38048274228969603, stiffness=2.316657022174747)
+
+    for tolerance in (1e-4, 6.576885527660651e-06, 1e-8):
+        state = fl.steady_state(scene, law, method="shooting", tolerance=tolerance)
+        assert state.status == "ok"
+        assert state.mean_friction == pytest.approx(0.05392415, abs=tolerance + 1e-8)  # brute force
+
+
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-6, 5e-7, 1e-7])
 def test_the_layer_after_a_reversal_is_not_passed_in_one_step_that_seems_exact(tolerance: float) -> None:
     """Found at random: maps of two accuracies agreed to 3e-10, both 4e-8 off in the layer."""

@@ -265,7 +265,9 @@ def _attempt(node: PathNode, h: float, in_a_layer: bool, accuracy: float) -> Any
 def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> PathNode:
     """Where an accepted step has led: on along the leg, or into the next one, which begins bent as this one ends."""
     leg, taken = node.leg, ending.taken
-    way = node.corner if ending.verdict == SATURATE else _slid(leg, node.tau + ending.h, taken.x)
+    # A way of rounding size may shrink: the corner at its end, once passed, would be met again for ever.
+    way = max(node.way, _slid(leg, node.tau + ending.h, taken.x))
+    way = node.corner if ending.verdict == SATURATE else way
     if ending.verdict == TURN:
         z = leg.law.deflected(leg.z, leg.side * way)
         return _node_of(_leg(case, -leg.side, tau, taken.x, z), tau, taken.x, taken.v)

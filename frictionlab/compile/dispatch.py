@@ -113,8 +113,8 @@ def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
     def resolve(*types: Any) -> Any:
         return in_the_plane if isinstance(types[-1], numba.types.Complex) else on_the_line
 
-    chosen.bodies = (on_the_line, in_the_plane)  # type: ignore[attr-defined]
-    resolve.__signature__ = inspect.signature(on_the_line)  # type: ignore[attr-defined]
+    chosen.bodies = (on_the_line, in_the_plane)  # type: ignore[attr-defined]  # for the fingerprint to find
+    resolve.__signature__ = inspect.signature(on_the_line)  # type: ignore[attr-defined]  # numba compares them
     _extending.overload(chosen, jit_options=INNER | {"fastmath": True}, strict=False)(resolve)
     return chosen
 
@@ -129,8 +129,8 @@ def as_argument(function: Any) -> Any:
     def resolve(*types: Any) -> Any:
         return body
 
-    handed.bodies = (body,)  # type: ignore[attr-defined]
-    resolve.__signature__ = inspect.signature(body)  # type: ignore[attr-defined]
+    handed.bodies = (body,)  # type: ignore[attr-defined]  # for the fingerprint to find
+    resolve.__signature__ = inspect.signature(body)  # type: ignore[attr-defined]  # numba compares them
     options = getattr(function, "targetoptions", INNER)
     _extending.overload(handed, jit_options=options, strict=False)(resolve)
     return handed
@@ -146,8 +146,8 @@ def by_stepper(bodies: dict[type, Any]) -> Any:
     def resolve(*types: Any) -> Any:
         return plain[types[0].types[types[0].fields.index("stepper")].instance_class]
 
-    chosen.bodies = tuple(plain.values())  # type: ignore[attr-defined]
-    resolve.__signature__ = inspect.signature(chosen.bodies[0])  # type: ignore[attr-defined]
+    chosen.bodies = tuple(plain.values())  # type: ignore[attr-defined]  # for the fingerprint to find
+    resolve.__signature__ = inspect.signature(chosen.bodies[0])  # type: ignore[attr-defined]  # numba compares them
     _extending.overload(chosen, jit_options=INNER, strict=False)(resolve)
     return chosen
 

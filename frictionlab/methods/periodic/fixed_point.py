@@ -40,7 +40,7 @@ PATIENCE = 3
 """How often quasi-Newton steps stall before the maps of a law with memory are made finer."""
 SMALL = 0.035
 """Of the error before a Newton step to a map finer by ``FINER``: stands in where two means agree by chance. Fitted
-to 2,500 random rows; of 399 others none was uncovered, and half of the errors stated were below 27 times the true ones."""
+to 2,500 random rows; of 399 others none was uncovered, and half of the errors stated were below 27 times the true."""
 ALMOST_SINGULAR = 1e6
 """Size of an inverse of (monodromy - identity) that belongs to a line of orbits, not to one."""
 MOST_CHECKS = 12

@@ -46,3 +46,19 @@ class Orbits:
             return None
         parts = self.tau[panels], self.x[panels], self.v[panels], self.friction[panels]
         return Orbit(*parts, self.stick[panels])
+
+    def and_those_of(self, other: Orbits) -> Orbits:
+        """All orbits that either has; of each at most one has panels."""
+        if not other.ends.any():
+            return self
+        first, second = np.diff(self.ends, prepend=0), np.diff(other.ends, prepend=0)
+        owner = np.repeat(np.arange(len(first)), first), np.repeat(np.arange(len(second)), second)
+        order = np.argsort(np.concatenate(owner), kind="stable")
+        return Orbits(
+            np.concatenate((self.tau, other.tau))[order],
+            np.concatenate((self.x, other.x))[order],
+            np.concatenate((self.v, other.v))[order],
+            np.concatenate((self.friction, other.friction))[order],
+            np.concatenate((self.stick, other.stick))[order],
+            np.cumsum(first + second),
+        )

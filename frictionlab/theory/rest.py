@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,15 @@ def friction_at_rest(law: Any) -> float:
         return float(law.static_friction())
     at_rest: float = law.sliding_friction(0.0)
     return at_rest or float(law.sliding_friction(CREEP))  # a law that is zero at rest: in slow slip
+
+
+def can_hold(scene: Scene, law: FrictionLaw) -> bool:
+    """Whether static friction can balance the loads at all times where the spring is not bent."""
+    mass = scene.mass()
+    along, across = mass.force, mass.transverse_force
+    # the longer half axis of the ellipse of loads
+    sizes = abs(along) ** 2 + abs(across) ** 2 + abs(along**2 + across**2)
+    return math.sqrt(0.5 * sizes) <= mass.normal_load * friction_at_rest(law)
 
 
 def stays_at_rest(scene: Scene, law: FrictionLaw) -> bool:

@@ -21,7 +21,7 @@ from frictionlab.scene.body import Body
 
 
 @inner
-def _first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
+def first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
     """The spring deflection by the mean friction of a harmonic slip; returns friction's coefficient as a dashpot."""
     swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine))
     # As if slip were the belt speed and one harmonic of the free motion: the closed form of prescribed slip.
@@ -89,7 +89,7 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal) 
             continue
         # From the states before it by extrapolation, with the last inverse; the first one from a harmonic motion.
         if known == 0:
-            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
+            free_inverse(body, first_guess(law, body, belt_speeds[i], z), inverse, like)
             if i == 0 and guess.shape[0] > 0:
                 copy(guess[0], z)
         else:
@@ -97,7 +97,7 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal) 
         closed = fixed_point(case, z, inverse, matrices[i], goal, expected)
         # Neighbours mislead where the curve has a jump: once more without them.
         if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
-            free_inverse(body, _first_guess(law, body, belt_speeds[i], z), inverse, like)
+            free_inverse(body, first_guess(law, body, belt_speeds[i], z), inverse, like)
             closed = fixed_point(case, z, inverse, matrices[i], goal, 1e300)
         copy(z, states[i])
         _write_results(body, closed, results[i])

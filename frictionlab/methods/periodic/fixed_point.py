@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_law
+from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.dynamics.motion import belt_path, span
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.sliding import Mapped
@@ -27,6 +27,8 @@ MUCH_WORK = 500_000
 """Steps, some tenths of a second, after which an orbit that need not exist is no longer looked for."""
 UTMOST_WORK = 10_000_000
 """Steps, half a minute of them, after which no orbit is looked for and no motion followed any longer."""
+LITTLE_WORK = 100_000
+"""Steps after which one that exists in the plane is left to the maps of implicit steps (near_rest.py)."""
 FINER = 16.0
 """How much finer the last map is; of order eight, its own error is then a small part of what it measures."""
 ROUNDING = 2e-14
@@ -360,6 +362,18 @@ first_accuracy = by_law(
 """The accuracy of the maps that find an orbit, and how near [tolerances] it must be for its error to be asked."""
 
 
+def _work_on_the_line(goal: Goal, like: float) -> int:
+    return UTMOST_WORK if goal.contracts else MUCH_WORK
+
+
+def _work_in_the_plane(goal: Goal, like: complex) -> int:
+    return LITTLE_WORK if goal.contracts else MUCH_WORK
+
+
+_work_of = by_dimension(_work_on_the_line, _work_in_the_plane)
+"""_work_of(goal, like): how many steps a search may take."""
+
+
 # --- the search -----------------------------------------------------------------------------------------------------
 
 
@@ -398,8 +412,8 @@ def fixed_point(case: Case, z: Any, inverse: Any, matrix: Any, goal: Goal, expec
         # The map failed, or the state has run away.
         if now.image.steps < 0 or not length < 1e300:
             break
-        # what repels, or is not there, is not to be found: other starts will tell
-        if now.maps * now.image.steps > (UTMOST_WORK if goal.contracts else MUCH_WORK):
+        # what repels, or is not there, is not to be found: other starts, or other maps, will tell
+        if now.maps * now.image.steps > _work_of(goal, case.like):
             break
         # A period that is all stick says nothing of the orbit: its map is a shift by the way of the belt.
         if now.image.stuck >= period * (1.0 - 1e-9):

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from frictionlab.compile.cache import compiled, timed
 from frictionlab.compile.dispatch import interpreted
+from frictionlab.dynamics.motion import swing_of
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import (
     Follow,
@@ -26,6 +28,7 @@ from frictionlab.methods.periodic.continuation import (
     answer_curve,
 )
 from frictionlab.methods.periodic.fixed_point import Goal
+from frictionlab.methods.periodic.near_rest import answer_near_rest
 from frictionlab.methods.periodic.period_map import size_of
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
 from frictionlab.orbit.record import Orbits
@@ -76,6 +79,7 @@ class PeriodicProblem:
 
     def __init__(self, scene: Scene, law: FrictionLaw, tolerance: float) -> None:
         self.mass, self.law = scene.mass(), law
+        self.kernel: Any = answer_curve
         self.falls_slowly = falls_slowly(scene, law)
         asks = law.count() > 0 and self.falls_slowly
         self.body: Body
@@ -87,6 +91,20 @@ class PeriodicProblem:
         constant = not isinstance(self.like, complex) and slides_saturated(law)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), asks, constant)
         self.size = interpreted(size_of)(law, self.like)  # of a state
+
+    @property
+    def by_implicit_steps(self) -> Self | None:
+        """The same problem solved next to rest: a sliding law's in the plane whose motions converge; else None."""
+        if not (isinstance(self.like, complex) and self.goal.contracts):
+            return None
+        other = copy.copy(self)
+        other.kernel = answer_near_rest
+        return other
+
+    @property
+    def swing(self) -> float:
+        """The speed of the friction-free response."""
+        return float(interpreted(swing_of)(self.body))
 
     def close(
         self,
@@ -105,7 +123,7 @@ class PeriodicProblem:
     ) -> tuple[Curve, float]:
         belt_speeds = np.array([scene.belt_speed for scene in scenes])
         body = self.body._replace(periods=float(periods))
-        call = compiled(answer_curve, self.law)
+        call = compiled(self.kernel, self.law)
         return timed(call, body, belt_speeds, states, goal, wanted)
 
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:

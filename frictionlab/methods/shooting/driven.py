@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,10 @@ from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, map_kind
 from frictionlab.methods.shooting.attractors import attractors, closed_orbit, describe, multiplier
+from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
-from frictionlab.theory.rest import resting_range, stays_at_rest
+from frictionlab.theory.rest import can_hold, resting_range, stays_at_rest
 
 Complexes = NDArray[np.complex128]
 
@@ -33,6 +35,10 @@ UNDAMPED = "without damping a free oscillation remains, and the state depends on
 HELD_ELASTICALLY = (
     "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
 )
+NEAR_REST = "; slip near rest in polar coordinates (Radau IIA)"
+BY_ROUNDING = (
+    "next to rest two motions hardly approach each other in a period, and rounding alone leaves this error"
+)
 MAY_REST = (
     "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range; "
     "give scene.initial to choose a start"
@@ -44,7 +50,7 @@ def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) ->
     states = SteadyStates(scenes, PeriodicProblem(scenes[0], law, tolerance))
     resting = [i for i, scene in enumerate(scenes) if stays_at_rest(scene, law)]
     moving = [i for i in range(len(scenes)) if i not in resting]
-    states.close(moving)
+    states.close_all(moving)
     for i in moving if not states.problem.goal.contracts else ():
         states.check_attraction(i)
     for i in resting:
@@ -72,24 +78,51 @@ class SteadyStates:
         self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.like, complex)
         judged_by_multipliers = not problem.goal.contracts or _undamped(scenes[0])
         self.wanted = DIFFERENTIATED if judged_by_multipliers else CLOSED
+        self.near_rest = problem.by_implicit_steps
+        self.solved_by = [problem] * n
 
-    def close(self, where: list[int], state: Floats | None = None) -> None:
+    def close_all(self, where: list[int]) -> None:
+        """Close the orbits of the scenes at these places: near rest by implicit steps, or where others fail."""
+        held = [i for i in where if self._is_held(i)]
+        self.close(held, by=self.near_rest)
+        self.close([i for i in where if i not in held or self.status[i] == "failed"])
+        failed = [i for i in where if i not in held and self.status[i] == "failed"]
+        self.close(failed if self.near_rest else [], by=self.near_rest)
+
+    def close(self, where: list[int], state: Floats | None = None, by: PeriodicProblem | None = None) -> None:
         """Close the orbits of the scenes at these places, from a known state at the first where there is one."""
         if not where:
             return
-        curve, seconds = self.problem.close([self.scenes[i] for i in where], state, wanted=self.wanted)
-        self.seconds[where] = seconds / len(where)
+        problem = by or self.problem
+        curve, seconds = problem.close([self.scenes[i] for i in where], state, wanted=self.wanted)
+        self.seconds[where] = np.nan_to_num(self.seconds[where]) + seconds / len(where)
         multipliers = _multipliers(curve)
         for row, i in enumerate(where):
             self.reached[i] = bool(curve.reached[row])
-            maps, error = curve.results[row, 3], curve.results[row, 2]
+            maps = curve.results[row, 3]
+            self.solved_by[i] = problem
             if maps < 0.0:
-                self.reason[i] = f"no steady state found in {-maps:.0f} period maps (error {error:.1e})"
-            elif _undamped(self.scenes[i]) and multipliers[row] > 1.0 - 1e-6 and not _at_rest(curve, row):
+                steps = "" if problem is self.problem else " of implicit steps"
+                said = f"no closed orbit found in {-maps:.0f} period maps{steps}"
+                self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
+            elif _undamped(self.scenes[i]) and self._repeats(curve, row, multipliers[row], problem):
                 self._leave_open(i, UNDAMPED, curve.results[row, 0], curve.results[row, 0])
             else:
+                self.reason[i] = ""
                 self._put(i, curve, row)
                 self.multipliers[i] = multipliers[row]
+
+    def _is_held(self, i: int) -> bool:
+        """Whether friction can hold the mass at all times and the belt is too slow to keep it from rest."""
+        near_rest, scene = self.near_rest, self.scenes[i]
+        if near_rest is None or not 0.0 < abs(scene.belt_speed) < near_rest.swing:
+            return False
+        return can_hold(scene, near_rest.law)
+
+    def _repeats(self, curve: Curve, row: int, multiplier: float, problem: PeriodicProblem) -> bool:
+        """Whether a motion beside an orbit goes on beside it: difference quotients know less of that."""
+        known = 1e-6 if problem is self.problem else 1e-12
+        return multiplier > 1.0 - known and not _at_rest(curve, row)
 
     def check_attraction(self, i: int) -> None:
         """Keep an answer that no theorem makes unique only where starts far from it end there."""
@@ -121,15 +154,15 @@ class SteadyStates:
         for i, error in enumerate(self.error):
             if self.status[i] == "ok" and not error <= tolerance:
                 said = f"the error is above the tolerance {tolerance:.1e}"
+                said = said if self.solved_by[i] is self.problem else f"{said}: {BY_ROUNDING}"
                 self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
 
     def answers(self) -> Answers:
         """As every method gives them."""
-        problem, scenes = self.problem, self.scenes
         return Answers(
             status=self.status,
             reason=self.reason,
-            model=[_model(scenes[0], problem)] * len(scenes),
+            model=[_model(self.scenes[0], self.problem, problem) for problem in self.solved_by],
             error_kind=["estimated" if status == "ok" else "" for status in self.status],
             mean=self.mean,
             error=self.error,
@@ -139,19 +172,33 @@ class SteadyStates:
             mean_high=self.high,
             window=np.where(np.isnan(self.low), np.nan, 1.0),
             seconds=self.seconds,
-            orbit=lambda i: problem.orbits([scenes[i]], [self.states[i]]).one(0),
-            orbits=lambda: problem.orbits(scenes, self.states),
+            orbit=lambda i: self.solved_by[i].orbits([self.scenes[i]], [self.states[i]]).one(0),
+            orbits=self._orbits,
         )
+
+    def _states_by(self, problem: PeriodicProblem) -> list[Floats | None]:
+        """The states of the orbits that one way of solving has found."""
+        return [
+            state if by is problem else None for state, by in zip(self.states, self.solved_by, strict=True)
+        ]
+
+    def _orbits(self) -> Orbits:
+        ways = list(dict.fromkeys(self.solved_by))
+        found = [way.orbits(self.scenes, self._states_by(way)) for way in ways]
+        return reduce(Orbits.and_those_of, found)
 
     def _floquet(self) -> Floats:
         """The largest multipliers, where those of every degree of freedom are known; computed where not known yet."""
         if not self.whole:
             return np.full(len(self.scenes), np.nan)
-        unknown = [
-            state if math.isnan(known) else None
-            for state, known in zip(self.states, self.multipliers, strict=True)
-        ]
-        return np.fmax(self.multipliers, self.problem.multipliers(self.scenes, unknown))
+        found = self.multipliers
+        for way in dict.fromkeys(self.solved_by):
+            unknown = [
+                state if math.isnan(known) else None
+                for state, known in zip(self._states_by(way), found, strict=True)
+            ]
+            found = np.fmax(found, way.multipliers(self.scenes, unknown))
+        return found
 
     def _attracts(self, i: int) -> bool:
         """Whether no small disturbance leaves the answer, and both of the cheap starts end there."""
@@ -221,13 +268,14 @@ def _at_rest(curve: Curve, row: int) -> bool:
     return bool(curve.results[row, 4] > 1.0 - 1e-9)
 
 
-def _model(scene: Scene, problem: PeriodicProblem) -> str:
+def _model(scene: Scene, problem: PeriodicProblem, solved_by: PeriodicProblem) -> str:
     planar = isinstance(problem.like, complex)
     directions = "two degrees of freedom" if planar else "one degree of freedom"
     decays = (
         ": without a load across the belt x2 decays" if scene.degrees_of_freedom == 2 and not planar else ""
     )
-    return f"shooting, {directions}{decays}{SOLVED[map_kind(problem.law, planar)]}"
+    implicit = "" if solved_by is problem else NEAR_REST
+    return f"shooting, {directions}{decays}{SOLVED[map_kind(problem.law, planar)]}{implicit}"
 
 
 def _multipliers(curve: Curve) -> Floats:

@@ -56,6 +56,8 @@ class Shooting(Method):
     from a last map sixteen times finer: what it leaves open, carried to the mean by the contraction of monotone
     friction, or by the mean's own change where friction falls with speed. There the orbit must attract, and starts
     far from each other must reach it; otherwise the mean is not unique.
+    In the plane slip next to rest is stepped implicitly in polar coordinates where friction can hold the mass, and
+    wherever explicit steps fail, by Newton's method with the exact derivative.
     Along the belt a bristle whose path is exact is put in as a function of the way slid; otherwise mass and bristle
     are solved for together by Rodas5P, as mass and any other memory are. In the plane, friction by axis leaves two
     bodies of one direction, and a deflection along the slip ends at its limit: friction is then without memory.

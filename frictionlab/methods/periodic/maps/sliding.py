@@ -198,7 +198,7 @@ def _hopping(part: float, problem: Flow, hop: Hop) -> Any:
     return x, v, hop.rub
 
 
-_note_slip, _note_stick, _note_hop = panel_writer(_slipping), panel_writer(_resting), panel_writer(_hopping)
+_note_slip, note_stick, note_hop = panel_writer(_slipping), panel_writer(_resting), panel_writer(_hopping)
 
 
 @inner
@@ -206,12 +206,12 @@ def _note_rest(track: Track, problem: Flow, tau: float, x: Any, rest: StickPhase
     """The time at rest from x on, and the short while after it that the balance of momentum closes."""
     slips = tau + rest.stuck
     if rest.stuck > 0.0:
-        _note_stick(track, tau, rest.stuck, True, problem, tau, x)
+        note_stick(track, tau, rest.stuck, True, problem, tau, x)
     if rest.tau > slips:
         lasts = rest.tau - slips
         x = x + belt_path(problem.body, problem.belt_speed, tau, slips)
         hop = Hop(slips, lasts, x, 0.0 * rest.w, rest.w, rest.pulled / lasts)
-        _note_hop(track, slips, lasts, False, problem, hop)
+        note_hop(track, slips, lasts, False, problem, hop)
 
 
 @inner
@@ -242,7 +242,7 @@ def _slide(problem: Flow, node: Node, leaving: bool, accuracy: float, h: float, 
         if room > 0 and done.h > 0.0:
             x, rub = state.x + reference_position(problem.body, node.tau), done.rubbed / done.h
             hop = Hop(node.tau, done.h, x, node.w, -node.w, rub)
-            _note_hop(track, node.tau, done.h, False, problem, hop)
+            note_hop(track, node.tau, done.h, False, problem, hop)
         return Attempt(done, h, 0)
     # a step of slip: too inaccurate, it is repeated shorter
     taken = step(problem, node.tau, state, done.h)

@@ -135,24 +135,34 @@ class StickPhase(NamedTuple):
 
 
 @inner
-def stick_phase(case: Case, tau: float, x: Any, accuracy: float, end: float) -> StickPhase:
-    """From rest at tau, x until slip begins, or until the end of the period."""
+def end_of_rest(case: Case, tau: float, x: Any, end: float) -> float:
+    """When slip begins of a mass at rest at tau, x: tau itself where friction cannot hold it; end at the latest."""
     law, body, belt_speed = case.law, case.body, case.belt_speed
     now, holds = instant_at(body, tau), law.static_friction()
     limit, rise = normal_load(body, now) * holds, normal_load_rate(body, now) * holds
-    held, rate, bend = holding_force(body, belt_speed, now, x)
-    start, stuck, rubbed = tau, 0.0, 0.0 * x
+    held, rate, _bend = holding_force(body, belt_speed, now, x)
     rising = (rate * held.conjugate()).real > rise * abs(held)
-    if abs(held) < limit * (1.0 - 1e-13) or (abs(held) <= limit * (1.0 + 1e-13) and not rising):
-        # At the limit itself the search would end where it begins: it sets out a moment later.
-        begin = tau if abs(held) < limit * (1.0 - 1e-13) else min(end, tau + 1e-9 / body.frequency)
-        tau = _stick_end(law, body, belt_speed, begin, x + belt_path(body, belt_speed, tau, begin), end)
-        stuck = tau - start
-        rubbed = resting_friction(body, belt_speed, start, tau, x)
-        x, now = x + belt_path(body, belt_speed, start, tau), instant_at(body, tau)
-        held, rate, bend = holding_force(body, belt_speed, now, x)
+    below = abs(held) < limit * (1.0 - 1e-13)
+    if not below and (rising or abs(held) > limit * (1.0 + 1e-13)):
+        return tau
+    # At the limit itself the search would end where it begins: it sets out a moment later.
+    begin = tau if below else min(end, tau + 1e-9 / body.frequency)
+    return _stick_end(law, body, belt_speed, begin, x + belt_path(body, belt_speed, tau, begin), end)
+
+
+@inner
+def stick_phase(case: Case, tau: float, x: Any, accuracy: float, end: float) -> StickPhase:
+    """From rest at tau, x until slip begins, or until the end of the period."""
+    body, belt_speed = case.body, case.belt_speed
+    start, until = tau, end_of_rest(case, tau, x, end)
+    stuck, rubbed = until - start, 0.0 * x
+    if stuck > 0.0:
+        rubbed, tau = resting_friction(body, belt_speed, start, until, x), until
+        x = x + belt_path(body, belt_speed, start, tau)
         if tau >= end:
             return StickPhase(tau, x, 0.0 * x, 0.0, rubbed, stuck, 0.0 * x)
+    now = instant_at(body, tau)
+    held, rate, bend = holding_force(body, belt_speed, now, x)
     side = 1.0 if held.real > 0.0 else -1.0
     t, w, path = _start(case, now, accuracy, rate, bend, held)
     # The balance of momentum over the start: what neither spring nor slip has taken of the impulse, friction has.

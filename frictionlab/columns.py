@@ -36,6 +36,10 @@ RESULTS: dict[str, str] = {
     "energy_viscous": "loss in the dashpots, per period",
     "energy_friction": "work absorbed by friction, per period",
     "energy_contact": "heat in the contact, per period",
+    "energy_input_error": "bound on the absolute error of energy_input, estimated",
+    "energy_viscous_error": "bound on the absolute error of energy_viscous, estimated",
+    "energy_friction_error": "bound on the absolute error of energy_friction, estimated",
+    "energy_contact_error": "bound on the absolute error of energy_contact, estimated",
     "period": "period of the response in drive periods, of an undriven one in units of 2 pi",
     "floquet": "largest modulus of the Floquet multipliers, without the trivial one of an undriven orbit",
     "normalized_friction": "mean_friction / steady sliding friction at the belt speed",
@@ -47,11 +51,14 @@ RESULTS: dict[str, str] = {
 }
 """The columns after the inputs, in the order of the table, with one line each."""
 
+ENERGIES = "energy_input", "energy_viscous", "energy_friction", "energy_contact"
+
 FROM_ORBITS: tuple[str, ...] = (
     *("velocity_amplitude", "velocity_harmonic", "velocity_phase"),
     *("transverse_velocity_amplitude", "transverse_velocity_harmonic", "transverse_velocity_phase"),
     *("stick_fraction", "reversals", "force_reversals"),
-    *("energy_input", "energy_viscous", "energy_friction", "energy_contact"),
+    *ENERGIES,
+    *(f"{name}_error" for name in ENERGIES),
 )
 """The result columns that are read from orbits."""
 
@@ -85,6 +92,16 @@ SI: dict[str, InSI] = {
     "energy_viscous_J": InSI("energy_viscous", "energy", "loss in the dashpots, per period [J]"),
     "energy_friction_J": InSI("energy_friction", "energy", "work absorbed by friction, per period [J]"),
     "energy_contact_J": InSI("energy_contact", "energy", "heat in the contact, per period [J]"),
+    "energy_input_error_J": InSI("energy_input_error", "energy", "bound on the error of energy_input_J [J]"),
+    "energy_viscous_error_J": InSI(
+        "energy_viscous_error", "energy", "bound on the error of energy_viscous_J [J]"
+    ),
+    "energy_friction_error_J": InSI(
+        "energy_friction_error", "energy", "bound on the error of energy_friction_J [J]"
+    ),
+    "energy_contact_error_J": InSI(
+        "energy_contact_error", "energy", "bound on the error of energy_contact_J [J]"
+    ),
     "period_s": InSI("period", "drive period", "period of the response [s]"),
 }
 """The columns at the end of the table of a scene given in SI units."""

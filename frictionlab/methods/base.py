@@ -31,6 +31,7 @@ class Answers:
     seconds: kernel time. An array left out is empty for every scene.
     floquet(): largest modulus of the multipliers of each, found when asked for. orbit(i): the orbit of scene i, made
     when asked for; None without one. orbits(): all of them, where a method makes them together at less cost.
+    balanced: whether orbits obey the equation of motion but for numerical errors; energies of others have no errors.
     """
 
     status: list[Status]
@@ -47,6 +48,7 @@ class Answers:
     seconds: Floats | None = None
     orbit: Callable[[int], Orbit | None] = field(default=no_orbit, repr=False)
     orbits: Callable[[], Orbits] | None = field(default=None, repr=False)
+    balanced: bool = True
 
 
 class Method(Record, ABC):

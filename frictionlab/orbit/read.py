@@ -21,6 +21,7 @@ from frictionlab.dynamics.motion import (
     restoring_force,
     slip,
 )
+from frictionlab.orbit.energy_errors import FOR_ERRORS, Means, energy_errors
 from frictionlab.orbit.panels import NODES, WEIGHTS, differentiate_panel, interpolate, zero_between
 from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats
@@ -45,18 +46,24 @@ READ = (
     "energy_viscous",
     "energy_friction",
     "energy_contact",
+    *FOR_ERRORS,
 )
 """The columns that ``read`` returns, in this order. The mean positions serve to check the mean balance:
 <x1> = N mean_friction, omega_r^2 <x2> = N mean_friction_transverse."""
-SUMMED = np.array(["energy" in name or "reversals" in name for name in READ])
+_SUMS = "duration", "misfit_load", "misfit_speed"
+SUMMED = np.array(["energy" in name or "reversals" in name or name in _SUMS for name in READ])
 """Of these, sums and counts over the whole of what is read; all else is a mean, a phase or an extreme."""
 
 
 def read_columns(
-    scenes: Sequence[Scene], orbit: Callable[[int], Orbit | None], orbits: Callable[[], Orbits] | None = None
+    scenes: Sequence[Scene],
+    orbit: Callable[[int], Orbit | None],
+    orbits: Callable[[], Orbits] | None = None,
+    means: Means | None = None,
 ) -> dict[str, Floats]:
     """Every column of ``FROM_ORBITS`` for scenes that differ in belt speed alone; NaN where one does not apply.
 
+    means: what the method found of each scene, for the errors of energies; these are left out without it.
     orbit: makes that of one scene, None where it has none. orbits: makes all of them at once, where that is cheaper.
     """
     if orbits is not None:
@@ -64,7 +71,13 @@ def read_columns(
     else:
         found = np.array([_read_one(scene, orbit(i)) for i, scene in enumerate(scenes)])
     found[:, _not_there(scenes[0])] = np.nan
-    return {name: found[:, READ.index(name)].copy() for name in FROM_ORBITS}
+    columns = {name: found[:, place].copy() for place, name in enumerate(READ)}
+    if means is not None:
+        errors = energy_errors(scenes, _mass(scenes[0]), means, columns)
+        for error, values in errors.items():
+            values[np.isnan(columns[error.removesuffix("_error")])] = np.nan
+        columns |= errors
+    return {name: columns[name] for name in FROM_ORBITS if name in columns}
 
 
 def _not_there(scene: Scene) -> list[bool]:
@@ -155,6 +168,13 @@ class Sums(NamedTuple):
     by_friction: float
     contact: float
     stick: float
+    moved: complex  # integral of the velocity: zero, were the motion exactly periodic
+    pressed: complex  # integral of the friction force
+    swing: float  # integral of the squared velocity
+    misfit_load: (
+        float  # by what velocities and positions differ in each panel, times its largest load, added up
+    )
+    misfit_speed: float  # the same, times its largest speed
 
 
 @inner
@@ -166,7 +186,7 @@ def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
     sums = _integrals(panels, mass, belt_speed, slips)
     period = sums.duration
     part = np.empty(v.shape)
-    out = np.empty(17)
+    out = np.empty(22)
     out[0] = mean_friction(sums.friction.real, period)
     out[1] = sums.position.real / period
     out[2] = mean_friction(sums.friction.imag, period)
@@ -179,8 +199,15 @@ def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
     out[10] = sums.stick / period
     out[13] = sums.input
     out[14] = sums.viscous
-    out[15] = sums.by_friction
-    out[16] = sums.contact
+    # The mean friction force, in presliding many times the loads, would do work on the little by which the recorded
+    # motion is not periodic. A periodic motion has no mean velocity: what there is of it is taken out.
+    drift = _power(sums.pressed, sums.moved) / period
+    out[15] = sums.by_friction - drift
+    out[16] = sums.contact - drift
+    out[17] = period
+    out[18] = _open_ends(panels, mass)
+    out[19] = math.sqrt(sums.swing / period)
+    out[20], out[21] = sums.misfit_load, sums.misfit_speed
     # Reversals of the friction force count in stick too, where the force changes its sign but the slip is zero.
     _along(panels.friction, part)
     out[12] = _sign_changes(part, stick, False)
@@ -194,6 +221,15 @@ def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
     _across(v, part)
     out[7] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
     return out
+
+
+@inner
+def _open_ends(panels: OrbitPanels, mass: Mass) -> float:
+    """How far the end of the motion is from its beginning, in the norm of energy."""
+    x = panels.x[-1, -1] - panels.x[0, 0]
+    v = panels.v[-1, -1] - panels.v[0, 0]
+    stretched = mass.stiffness * x.real**2 + mass.transverse_stiffness * x.imag**2
+    return math.sqrt(stretched + v.real**2 + v.imag**2)
 
 
 @inner
@@ -226,10 +262,12 @@ def _integrals(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -
     duration, stuck = 0.0, 0.0
     position, rubbed, harmonic_1, harmonic_2 = 0j, 0j, 0j, 0j
     put_in, viscous, taken, contact = 0.0, 0.0, 0.0, 0.0
+    moved, force, swing, misfit_load, misfit_speed = 0j, 0j, 0.0, 0.0, 0.0
     for panel in range(tau.shape[0]):
         half = 0.5 * (tau[panel, -1] - tau[panel, 0])
         duration += 2.0 * half
         stuck += 2.0 * half if panels.stick[panel] else 0.0
+        way, strongest, fastest = 0j, 0.0, 0.0
         for node in range(tau.shape[1]):
             weight, now = half * WEIGHTS[node], instant_at(body, tau[panel, node])
             turn = complex(now.cosine, now.sine)
@@ -244,11 +282,23 @@ def _integrals(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -
             # Powers: of the load, of the dashpots (springs give back what they take), and of friction, whose part in
             # the contact is heat; the rest is the work on the belt.
             pressed = weight * normal_load(body, now)
-            put_in += weight * _power(load(body, now), velocity)
+            pushed = load(body, now)
+            put_in += weight * _power(pushed, velocity)
             viscous += weight * _power(restoring_force(body, 0.0 * velocity, velocity), velocity)
             taken += pressed * _power(rub, velocity)
             contact += pressed * _power(rub, w)
-    return Sums(duration, position, rubbed, harmonic_1, harmonic_2, put_in, viscous, taken, contact, stuck)
+            way += weight * velocity
+            force += pressed * rub
+            swing += weight * _power(velocity, velocity)
+            strongest, fastest = max(strongest, abs(pushed)), max(fastest, abs(velocity))
+        moved += way
+        misfit = abs(way - (x[panel, -1] - x[panel, 0]))
+        misfit_load += strongest * misfit
+        misfit_speed += fastest * misfit
+    return Sums(
+        *(duration, position, rubbed, harmonic_1, harmonic_2, put_in, viscous, taken, contact, stuck),
+        *(moved, force, swing, misfit_load, misfit_speed),
+    )
 
 
 @inner

@@ -77,6 +77,10 @@ class SteadyState:
     energy_viscous: float = NAN
     energy_friction: float = NAN
     energy_contact: float = NAN
+    energy_input_error: float = NAN
+    energy_viscous_error: float = NAN
+    energy_friction_error: float = NAN
+    energy_contact_error: float = NAN
     period: float = NAN
     floquet: float = NAN
     normalized_friction: float = NAN

@@ -127,9 +127,11 @@ def number_columns(answers: Answers, scenes: Sequence[Scene], wanted: Collection
     if "floquet" in wanted and answers.floquet is not None:
         found["floquet"] = answers.floquet()
     if any(name in wanted for name in FROM_ORBITS):
+        from frictionlab.orbit.energy_errors import Means
         from frictionlab.orbit.read import read_columns  # brings numba: only where it is needed
 
-        found |= read_columns(scenes, answers.orbit, answers.orbits)
+        means = Means(answers.mean.real, answers.error, answers.balanced)
+        found |= read_columns(scenes, answers.orbit, answers.orbits, means)
     found["seconds"] = found["seconds"] + (time.perf_counter() - start) / len(scenes)
     return {name: found.get(name, nothing) for name in wanted}
 

@@ -169,7 +169,7 @@ def test_the_length_that_scales_a_scene_is_in_no_result_in_si_units(
 
     assert other.mean_friction == pytest.approx(one.mean_friction, abs=1e-11)
     assert other.velocity_amplitude != pytest.approx(one.velocity_amplitude, rel=0.9)
-    for name in SI.keys() - {"error_N"}:
+    for name in (name for name in SI if "error" not in name):
         assert other.si[name] == pytest.approx(one.si[name], rel=1e-9, nan_ok=True), name
 
 
@@ -223,7 +223,7 @@ def test_every_column_in_si_units_has_the_unit_its_name_ends_in(body: dict[str, 
     si, other = (fl.steady_state(si_scene(**tree), LAW).si for tree in (body, in_units(body, units)))
 
     assert set(si) == set(SI)
-    for name in SI.keys() - {"error_N"}:
+    for name in (name for name in SI if "error" not in name):
         size = math.prod(unit**power for unit, power in zip(units, unit_of(name), strict=True))
         assert size != 1.0
         assert other[name] * size == pytest.approx(si[name], rel=1e-9, nan_ok=True), name

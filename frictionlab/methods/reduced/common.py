@@ -146,6 +146,7 @@ def judged(
         period=np.where(against, np.nan, 1.0),
         seconds=np.full(len(reasons), found.seconds / len(reasons)),
         orbit=lambda i: None if reasons[i] else orbit(i),
+        balanced=False,
     )
 
 

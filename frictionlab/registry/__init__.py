@@ -59,6 +59,7 @@ def method_class(name: str) -> type[Method]:
     return _usable(_load(METHODS, name))
 
 
+@cache
 def method_code(name: str) -> str:
     """SHA-256 of the Python files of the package of a method, which is not loaded; '' for one of frictionlab."""
     return "".join(code_around(door.module) for door in _entry_points(METHODS).get(name, ()))

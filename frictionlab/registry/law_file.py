@@ -70,12 +70,12 @@ def law_name(name: str) -> str:
     return parts.replace("_", "-").strip("-").lower()
 
 
+@cache
 def code_of(law: type[FrictionLaw]) -> str:
     """SHA-256 of the Python files of the package of a law; '' for a law of frictionlab."""
     return code_around(law.__module__)
 
 
-@cache
 def code_around(module: str) -> str:
     """SHA-256 of the Python files of the package of a module, which is not imported; '' for one of frictionlab."""
     head, _, rest = module.partition(".")

@@ -6,8 +6,10 @@ import errno
 import io
 import os
 import threading
+import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from contextlib import suppress
 from functools import cache
 from importlib import import_module
 
@@ -31,20 +33,32 @@ from frictionlab.cli.output import (
 
 COMMANDS = ("bench", "check", "laws", "methods", "new", "plot", "report", "run", "schema")
 """Each is the function ``NAME_command`` of the module of its name."""
+MOMENT = 0.2
+"""Seconds in which the threads of an interrupted command may end."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; its exit code. Only our own bugs show a traceback."""
     open_streams()
+    earlier = threading.enumerate()
     try:
         with prompt_interrupts():
             code = _invoke(arguments)
     except BaseException as problem:
         code = _report(problem)
     code = flush_stdout(code)
-    if code == INTERRUPTED and threading.active_count() > 1:
+    if code == INTERRUPTED and _works_on(earlier):
         os._exit(code)  # a worker deep in a kernel cannot be stopped, and would be waited for
     return code
+
+
+def _works_on(earlier: Collection[threading.Thread]) -> bool:
+    """Whether a thread goes on that is none of these; those about to end get a moment."""
+    until = time.monotonic() + MOMENT
+    with suppress(KeyboardInterrupt):  # a second one: no more waiting
+        while time.monotonic() < until and not set(threading.enumerate()).issubset(earlier):
+            time.sleep(0.01)
+    return not set(threading.enumerate()).issubset(earlier)
 
 
 def _invoke(arguments: Sequence[str] | None) -> int:

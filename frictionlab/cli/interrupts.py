@@ -38,14 +38,17 @@ def prompt_interrupts() -> Iterator[None]:
     before = signal.set_wakeup_fd(tell, warn_on_full_buffer=False)
     signal.signal(signal.SIGINT, notice)
     sys.unraisablehook = _once_more(hook)
-    threading.Thread(target=_watch, args=(told, noticed), daemon=True).start()
+    watcher = threading.Thread(target=_watch, args=(told, noticed), daemon=True)
+    watcher.start()
     try:
         yield
     finally:
+        noticed.set()  # a command that ends has obeyed, whoever's handler heard the interrupt
         signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.set_wakeup_fd(before)
         sys.unraisablehook = hook
         os.close(tell)
+        watcher.join()
 
 
 def _watch(told: int, noticed: threading.Event) -> None:

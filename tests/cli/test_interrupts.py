@@ -5,9 +5,13 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import pytest
+
+from frictionlab import cli
+from frictionlab.cli import interrupts
 
 START = """
 import sys, time
@@ -67,3 +71,24 @@ def test_an_interrupt_ends_a_command_within_seconds(work):
 
     assert time.monotonic() - began < 5.0
     assert (process.returncode, problems) == (130, "interrupted\n")
+
+
+def test_an_interrupted_command_ends_neither_its_caller_nor_the_threads_of_its_caller(monkeypatch):
+    def command(arguments):
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # another handler than the one that tells
+        signal.raise_signal(signal.SIGINT)
+
+    ended, over = [], threading.Event()
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    monkeypatch.setattr(cli.os, "_exit", ended.append)
+    monkeypatch.setattr(interrupts, "PATIENCE", 0.05)
+    monkeypatch.setattr(cli, "_invoke", command)
+    threading.Thread(target=over.wait, daemon=True).start()
+    try:
+        assert cli.main([]) == 130
+        time.sleep(0.1)
+    finally:
+        over.set()
+        signal.signal(signal.SIGINT, before)
+
+    assert ended == []

@@ -158,6 +158,8 @@ _OF_RECORDS = "frictionlab.quantities"
 def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
     """Text that changes whenever what these values compute changes; each object is read once, then named."""
     for value in values:
+        if value is law_of_numbers:  # laws that this process has met change no code
+            continue
         value = getattr(value, "py_func", value)
         if not isinstance(
             value, FunctionType

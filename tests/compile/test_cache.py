@@ -465,3 +465,11 @@ def test_threads_that_ask_for_one_kernel_at_once_get_one_entry():
         for _ in range(20):
             cache._entry.cache_clear()
             assert len(set(pool.map(ask, range(threads)))) == 1
+
+
+def test_laws_that_a_process_has_met_change_no_name_of_a_kernel():
+    """They did: what was compiled after another law had been used was compiled anew by every process that had not."""
+    before = cache._fingerprint(answer_curve, LuGre)
+    cache._numbers(Coulomb, ("a_name_that_no_law_has",), ())
+
+    assert cache._fingerprint(answer_curve, LuGre) == before

@@ -81,7 +81,10 @@ def test_the_numbers_of_the_load_are_read_at_one_address():
 def test_the_springs_are_asked_by_few_beside_the_equation_of_motion():
     implicit = {"methods/march/adapters.py", "numerics/steppers/moreau.py"}  # springs at the end of the step
     momentum = {"methods/periodic/maps/stick.py"}  # over the first moment of slip
-    polar = {"methods/periodic/maps/polar.py", "methods/periodic/maps/polar_step.py"}  # implicit steps, their tangent
+    polar = {
+        "methods/periodic/maps/polar.py",
+        "methods/periodic/maps/polar_step.py",
+    }  # implicit steps, their tangent
     power = {"orbit/read.py"}  # of the dashpots
     slope = {"methods/periodic/maps/linearization.py"}  # of the acceleration in time
     assert uses_of(MECHANICS[:1]) <= ADDRESSES | implicit | momentum | polar | power | slope

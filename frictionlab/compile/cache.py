@@ -29,6 +29,7 @@ import numpy as np
 from numba.core.bytecode import FunctionIdentity
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
+from frictionlab.compile import collection  # noqa: F401  # listens
 from frictionlab.compile.dispatch import law_of_numbers, names_used
 from frictionlab.compile.kept import KeptEntry
 from frictionlab.faults import cannot_compile
@@ -130,8 +131,8 @@ def _module(name: str, source: str, **given: Any) -> ModuleType:
     return module
 
 
-HOST_ONLY = {"kept.py"}
-"""Files of this folder that decide where machine code is kept, and nothing in it."""
+HOST_ONLY = {"collection.py", "kept.py"}
+"""Files of this folder that decide where machine code is kept and how soon it is there, and nothing in it."""
 # Read once: were these files edited while a process runs, an entry would be named by the new ones and refer to
 # numbers named by the old ones, and no other process could load it.
 _COMPILER = b"".join(

@@ -1,7 +1,7 @@
 """Code of all reduced models of Coulomb friction along a line: accepted scenes, model error, results.
 
 A reduced model gives the motion as one harmonic. What it leaves out is found by bounding the mean friction of the
-full problem independently of any stepping, from motions that reverse twice (two_reversals.py).
+full problem independently of any stepping, from motions that reverse twice (bounds.py).
 """
 
 from __future__ import annotations
@@ -53,6 +53,9 @@ class Modelled(NamedTuple):
     error: Floats
     seconds: float
 
+
+UNBOUNDED_ENERGIES = "; energies are those of this motion, without an error"
+"""Said of every row: what one harmonic leaves out is bounded in the mean friction alone."""
 
 Model = Callable[[Scene, float, Floats], Harmonic]
 """(scene, friction = mu*normal_load, belt speeds >= 0) -> the model's motion."""
@@ -139,7 +142,7 @@ def judged(
     return Answers(
         status=status,
         reason=said,
-        model=["" if reason else text for reason in reasons],
+        model=["" if reason else text + UNBOUNDED_ENERGIES for reason in reasons],
         error_kind=["" if reason else "estimated" for reason in reasons],
         mean=np.where(against, np.nan, found.mean),
         error=np.where(against, np.nan, found.error),

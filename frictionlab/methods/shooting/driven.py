@@ -14,7 +14,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, map_kind
-from frictionlab.methods.shooting.attractors import attractors, closed_orbit, describe, multiplier
+from frictionlab.methods.shooting.attractors import FEWEST, attractors, closed_orbit, describe, multiplier
 from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
@@ -31,6 +31,7 @@ SOLVED = {
     "scalars": "; mass and memory solved together (Rodas5P)",
 }
 """How the period map treats what the law remembers."""
+STOPPED = ", and were followed no farther: that took hundreds of thousands of steps, for friction near rest is steep"
 UNDAMPED = "without damping a free oscillation remains, and the state depends on the start"
 HELD_ELASTICALLY = (
     "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
@@ -226,7 +227,8 @@ class SteadyStates:
             self.reason[i] = "" if unique else f"reached from scene.initial; {describe(reached)}"
             return
         if problem.falls_slowly and all(one.curve is None for one in reached):
-            self.reason[i] = f"no steady state found: {describe(reached)}"
+            stopped = STOPPED if max(one.followed for one in reached) < FEWEST else ""
+            self.reason[i] = f"no steady state found: {describe(reached)}{stopped}"
             return
         lags = (
             f"the {'deflection' if problem.law.memory_kind == 'bristle' else 'memory'} lags behind the slip"

@@ -30,6 +30,7 @@ from numba.core.bytecode import FunctionIdentity
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
 from frictionlab.compile import collection  # noqa: F401  # listens
+from frictionlab.compile.account import Account
 from frictionlab.compile.dispatch import law_of_numbers, names_used
 from frictionlab.compile.kept import KeptEntry
 from frictionlab.faults import cannot_compile
@@ -69,14 +70,25 @@ def compiled(kernel: Any, law: FrictionLaw | None = None) -> Callable[..., Any]:
 
 def timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
     """What a compiled entry returns, and the seconds it took, compilation left out."""
-    entry: Any = call.args[0] if isinstance(call, partial) else call
-    bound = call.args[2:] if isinstance(call, partial) else ()
     # The call itself says what is wrong with a law; interpreted kernels have nothing to compile.
     with contextlib.suppress(NumbaError, UnsupportedBytecodeError, AttributeError):
-        entry.compile(tuple(_typeof(argument) for argument in (*bound, *arguments)))
+        entry, signature = _entry_and_signature(call, arguments)
+        entry.compile(signature)
     start = time.perf_counter()
     result = call(*arguments)
     return result, time.perf_counter() - start
+
+
+def account_of(call: Callable[..., Any], arguments: tuple[Any, ...]) -> Account:
+    """What Python has spent on a compiled entry for arguments like these."""
+    entry, signature = _entry_and_signature(call, arguments)
+    return entry._cache.account(signature, entry.targetctx.codegen(), signature in entry.overloads)
+
+
+def _entry_and_signature(call: Any, arguments: tuple[Any, ...]) -> tuple[Any, tuple[Any, ...]]:
+    entry: Any = call.args[0] if isinstance(call, partial) else call
+    bound = call.args[2:] if isinstance(call, partial) else ()
+    return entry, tuple(_typeof(argument) for argument in (*bound, *arguments))
 
 
 def _guarded(entry: Callable[..., Any], law: type[FrictionLaw], *arguments: Any) -> Any:
@@ -131,7 +143,7 @@ def _module(name: str, source: str, **given: Any) -> ModuleType:
     return module
 
 
-HOST_ONLY = {"collection.py", "kept.py"}
+HOST_ONLY = {"account.py", "call.py", "collection.py", "kept.py", "notice.py"}
 """Files of this folder that decide where machine code is kept and how soon it is there, and nothing in it."""
 # Read once: were these files edited while a process runs, an entry would be named by the new ones and refer to
 # numbers named by the old ones, and no other process could load it.

@@ -6,7 +6,6 @@ the law itself. A kernel with several bodies is chosen here too, by dimension or
 
 from __future__ import annotations
 
-import dis
 import inspect
 import math
 from collections.abc import Iterator
@@ -230,23 +229,6 @@ def compilable(function: FunctionType) -> FunctionType:
     )
     twin.__annotations__ = {}
     return twin
-
-
-@cache
-def interpreted(kernel: Any) -> Any:
-    """A kernel function as Python runs it: the formulas of a kernel have one address, for drivers too."""
-    function = getattr(kernel, "py_func", kernel)
-    if function is kernel:  # run by Python anyhow
-        return kernel
-    named = {step.argval for step in dis.get_instructions(function) if step.opname == "LOAD_GLOBAL"}
-    scope = {
-        name: interpreted(value) if hasattr(value, "py_func") else value
-        for name, value in function.__globals__.items()
-        if name in named
-    }
-    return FunctionType(
-        function.__code__, scope, function.__name__, function.__defaults__, function.__closure__
-    )
 
 
 def names_used(code: CodeType) -> Iterator[str]:

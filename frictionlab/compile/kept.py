@@ -22,6 +22,9 @@ import numba.core.compiler
 import numba.core.serialize
 import numba.core.types
 
+from frictionlab.compile.account import SPENT, Account
+from frictionlab.compile.notice import compiled_here
+
 _Cache: Any = numba.core.caching._Cache  # internals of numba, untyped
 _compiler: Any = numba.core.compiler
 _serialize: Any = numba.core.serialize
@@ -72,6 +75,7 @@ class KeptEntry(_Cache):  # type: ignore[misc]
 
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep what was compiled, where that is possible."""
+        compiled_here.append(self._name)
         path = self._path(signature, result.codegen)
         if path is None or any(not each.can_cache for each in result.lifted):
             return
@@ -89,6 +93,13 @@ class KeptEntry(_Cache):  # type: ignore[misc]
         folder = cache_folder()
         about = repr((_about(signature), codegen.magic_tuple()))
         return folder and folder / f"{self._name}_{hashlib.sha256(about.encode()).hexdigest()[:16]}{SUFFIX}"
+
+    def account(self, signature: Any, codegen: Any, compiled: bool) -> Account:
+        """What Python has spent on this signature; it counts as compiled where there is a file, sound or not."""
+        path = self._path(signature, codegen)
+        if path is None:
+            return Account(f"{self._name} {_about(signature)}", None, compiled)
+        return Account(path.stem, path.with_suffix(SPENT), compiled or path.exists())
 
     def enable(self) -> None:
         """Nothing to do: it always is."""

@@ -15,6 +15,7 @@ import numba.np.arrayobj
 import numpy as np
 
 from frictionlab.compile.dispatch import law_of_numbers
+from frictionlab.compile.interpret import run_as
 from frictionlab.laws.memory import MemoryLaw
 
 _cgutils: Any = numba.core.cgutils  # internals of numba, untyped
@@ -75,7 +76,9 @@ def _interpreted_room(law: Any, each: int, more: int, item: Any) -> Any:
     return np.zeros(max(1, each * count_of(law) + more), complex if isinstance(item, complex) else float)
 
 
-room: Any = _interpreted_room if _config.DISABLE_JIT else _extending.intrinsic(prefer_literal=True)(_room)
+room: Any = _interpreted_room
+if not _config.DISABLE_JIT:
+    room = run_as(_extending.intrinsic(prefer_literal=True)(_room), _interpreted_room)
 """room(law, each, more, item): see ``_room``."""
 
 
@@ -97,5 +100,7 @@ def _interpreted_items(array: Any) -> Any:
     return array
 
 
-items_of: Any = _interpreted_items if _config.DISABLE_JIT else _extending.intrinsic(_items)
+items_of: Any = _interpreted_items
+if not _config.DISABLE_JIT:
+    items_of = run_as(_extending.intrinsic(_items), _interpreted_items)
 """items_of(array): see ``_items``."""

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.columns import FROM_ORBITS
-from frictionlab.compile.cache import compiled
+from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.dynamics.motion import (
     SLIP_ROUNDING,
@@ -99,7 +99,7 @@ def _mass(scene: Scene) -> Mass:
 def _read_together(scenes: Sequence[Scene], found: Orbits) -> Floats:
     out, speeds = np.full((len(scenes), len(READ)), np.nan), np.array([scene.belt_speed for scene in scenes])
     panels = OrbitPanels(found.tau, found.x, found.v, found.friction, found.stick)
-    compiled(read_each)(panels, found.ends, _mass(scenes[0]), speeds, out)
+    KernelCall(read_each)(panels, found.ends, _mass(scenes[0]), speeds, out)
     return out
 
 
@@ -114,7 +114,7 @@ def _read_one(scene: Scene, orbit: Orbit | None) -> Floats:
     stick = np.zeros(len(orbit.tau), np.bool_) if orbit.stick is None else orbit.stick
     out, ends = np.full((1, len(READ)), np.nan), np.array([len(orbit.tau)])
     panels = OrbitPanels(orbit.tau, orbit.x, orbit.v, orbit.friction, stick)
-    compiled(read_each)(panels, ends, mass, np.array([scene.belt_speed]), out)
+    KernelCall(read_each)(panels, ends, mass, np.array([scene.belt_speed]), out)
     if orbit.stick is None:
         out[0, READ.index("stick_fraction")] = np.nan
     return np.where(SUMMED, out[0] / orbit.periods, out[0])

@@ -7,13 +7,13 @@ import time
 from collections.abc import Callable
 from typing import TextIO
 
+from frictionlab.compile.notice import compiled_here, kernel_at_work
+
 Progress = Callable[[int, int], None]
 """Called now and then with the number of points done and of all points."""
 
 QUIET = 2.0
 """Time [s] before a run prints its progress."""
-
-COMPILING = ", compiling kernels (once per machine)"
 
 
 def silent(done: int, total: int) -> None:
@@ -29,6 +29,11 @@ def compiling() -> bool:
     if free := lock.acquire(blocking=False):
         lock.release()
     return not free
+
+
+def _compiling_what() -> str:
+    kernel = kernel_at_work()
+    return f", compiling kernel {len(compiled_here) + 1}{kernel and f' ({kernel})'}, once per machine"
 
 
 class Meter:
@@ -53,7 +58,7 @@ class Meter:
         if now < self._next:
             return
         self._next = now + self._interval
-        news = COMPILING if waiting else self._time_left(done, total)
+        news = _compiling_what() if waiting else self._time_left(done, total)
         self._write(f"{done} of {total} points, {now - self._start:.0f} s{news}")
 
     def _time_left(self, done: int, total: int) -> str:

@@ -19,7 +19,7 @@ from strategies import sizes
 import frictionlab
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
-from frictionlab.compile.dispatch import interpreted
+from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics import motion
 from frictionlab.dynamics.motion import START, Instant
 from frictionlab.dynamics.step_size import growth_factor

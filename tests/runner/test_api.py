@@ -26,6 +26,7 @@ from run_folders import without_stamps
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.columns import RESULTS, TEXT
+from frictionlab.compile.notice import named_while_it_compiles
 from frictionlab.results.summary import summary
 from frictionlab.results.table import headings, inputs, records
 from frictionlab.runner import accumulate, api, folder
@@ -685,7 +686,8 @@ def test_time_spent_compiling_is_named_and_not_held_against_the_points(monkeypat
     told = io.StringIO()
     meter = Meter(told)
     meter(0, 400)
-    with ThreadPoolExecutor(1) as elsewhere:
+    monkeypatch.setattr("frictionlab.runner.progress.compiled_here", [])
+    with ThreadPoolExecutor(1) as elsewhere, named_while_it_compiles("some kernel for Coulomb"):
         now[0] = 130.0
         elsewhere.submit(global_compiler_lock.acquire).result()
         meter(100, 400)
@@ -694,7 +696,7 @@ def test_time_spent_compiling_is_named_and_not_held_against_the_points(monkeypat
     meter(200, 400)
 
     assert told.getvalue().splitlines() == [
-        "100 of 400 points, 30 s, compiling kernels (once per machine)",
+        "100 of 400 points, 30 s, compiling kernel 1 (some kernel for Coulomb), once per machine",
         "200 of 400 points, 36 s, about 6 s left",
     ]
 

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled, timed
+from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method, Status
 from frictionlab.methods.exact import continuation as curve
@@ -168,7 +168,7 @@ class _Curve:
         w = side * (initial.velocity - self.belt_speeds[i])
         start = np.array([side * initial.x, w, self._shift(i)])
         row = np.full(9, np.nan)
-        periods = compiled(curve.iterate_until_fixed)(
+        periods = KernelCall(curve.iterate_until_fixed)(
             self.mass, self.coefficient, abs(self.belt_speeds[i]), start, row
         )
         if periods < 0:
@@ -193,7 +193,10 @@ class _Curve:
         """Both directions of the belt share one solution: the mean is exactly odd."""
         speeds, back = np.unique(np.abs(self.belt_speeds[places]), return_inverse=True)
         rows = np.full((len(speeds), 9), np.nan)
-        _, self.seconds = timed(compiled(curve.continue_in_speed), self.mass, self.coefficient, speeds, rows)
+        first = self.mass, self.coefficient, speeds[:1], rows[:1]
+        _, self.seconds = KernelCall(curve.continue_in_speed).timed(
+            self.mass, self.coefficient, speeds, rows, points=len(speeds), first=first
+        )
         rows[speeds == 0.0, curve.MEAN] = 0.0  # the orbit is its own mirror image half a period later
         self.rows[places] = rows[back]
 
@@ -232,7 +235,7 @@ class _Curve:
         shifts, legs = [self._shift(i) for i in places], np.nan_to_num(rows[:, curve.LEGS])
         states = np.column_stack([rows[:, curve.STATE_X], rows[:, curve.STATE_W], legs, shifts])
         speeds = self.belt_speeds[list(places)]
-        track = compiled(make_orbits)(self.mass, self.coefficient, speeds, states, ends)
+        track = KernelCall(make_orbits)(self.mass, self.coefficient, speeds, states, ends)
         return Orbits(track.tau, track.x, track.v, track.friction, track.stick, ends)
 
 

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled, timed
+from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import interpreted
+from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import mean_friction
 from frictionlab.dynamics.smoothing import share
 from frictionlab.laws.base import FrictionLaw
@@ -96,8 +96,8 @@ class SampledPoint:
         self.answer = PointAnswer(found.mean, error, 1.0)
 
     def _sampled(self, n: int, width: float) -> SampledMean:
-        call = compiled(sample_friction, self.law)
-        found, seconds = timed(call, self.motion, self.scene.belt_speed, n, width, self.shape)
+        call = KernelCall(sample_friction, self.law)
+        found, seconds = call.timed(self.motion, self.scene.belt_speed, n, width, self.shape)
         self.seconds += seconds
         return found
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.compile.cache import compiled, timed
+from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import length
 from frictionlab.dynamics.contact import advance_bristle, project_to_yield, resistance
@@ -183,11 +183,11 @@ class SteppedPoint:
         self.status, self.reason, self.answer = status, reason, PointAnswer()
 
     def _run(self, steps: int, start: complex) -> BristlePeriod:
-        call = compiled(step_periods, self.law)
+        call = KernelCall(step_periods, self.law)
         most = max(2, min(self.plan.periods, WORK // steps))
         drive = PrescribedSteps(self.motion, self.scene.belt_speed, steps, self.plan.stepper == "rk4", most)
         z = float(start.real) if self.straight else complex(start)
-        found, seconds = timed(call, drive, z)
+        found, seconds = call.timed(drive, z)
         self.seconds += seconds
         return found
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled, timed
-from frictionlab.compile.dispatch import interpreted
+from frictionlab.compile.call import KernelCall
+from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import mean_friction
 from frictionlab.dynamics.smoothing import ARCTAN, SQUARE_ROOT, TANH
 from frictionlab.laws.base import FrictionLaw
@@ -209,8 +209,8 @@ class MarchRun:
         real = self.straight or self.law.memory_kind == "scalars"
         x, v = (place.x.real, place.v.real) if self.straight else (place.x, place.v)
         z = np.array(place.z.real) if real else place.z.astype(complex)
-        call = compiled(march_laps, self.law)
-        history, seconds = timed(call, self.body, self._stepper_of(pace), way, MarchStart(x, v, z))
+        call = KernelCall(march_laps, self.law)
+        history, seconds = call.timed(self.body, self._stepper_of(pace), way, MarchStart(x, v, z))
         self.seconds += seconds
         return history
 

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled, timed
-from frictionlab.compile.dispatch import interpreted
+from frictionlab.compile.call import KernelCall
+from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import swing_of
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import (
@@ -123,8 +123,9 @@ class PeriodicProblem:
     ) -> tuple[Curve, float]:
         belt_speeds = np.array([scene.belt_speed for scene in scenes])
         body = self.body._replace(periods=float(periods))
-        call = compiled(self.kernel, self.law)
-        return timed(call, body, belt_speeds, states, goal, wanted)
+        call = KernelCall(self.kernel, self.law)
+        first = body, belt_speeds[:1], states[:1], goal, wanted
+        return call.timed(body, belt_speeds, states, goal, wanted, points=len(belt_speeds), first=first)
 
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
         """The closed orbits from these states, one for each scene; without panels where there is no state."""
@@ -152,13 +153,13 @@ class PeriodicProblem:
     def settle(self, start: Initial) -> tuple[Floats, int]:
         """The state at which the mass stays put on a belt at rest, and in how many periods; negative for never."""
         accuracy = 1e-13 * self.mass.normal_load
-        return compiled(settle, self.law)(self.body, *self._at(start), accuracy)
+        return KernelCall(settle, self.law)(self.body, *self._at(start), accuracy)
 
     def transient(self, belt_speed: float, start: Initial | None, most: int) -> Transient:
         """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
         at = self._free_start(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
         state = np.empty(self.size)
-        compiled(write_start, self.law)(self.body, at, state)
+        KernelCall(write_start, self.law)(self.body, at, state)
         return self._iterate(belt_speed, state, most, ROUGH[self.law.memory_kind])
 
     def period_means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
@@ -170,7 +171,7 @@ class PeriodicProblem:
         states[0] = state
         how = Follow(relative * self.mass.normal_load, self.goal.constant)
         arguments = self.body, belt_speed, how, means, states
-        (period, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
+        (period, count), seconds = KernelCall(iterate_until_periodic, self.law).timed(*arguments)
         return Transient(period, means[:count], states[count], seconds)
 
     def _free_start(self, belt_speed: float) -> tuple[complex, complex, complex]:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled, timed
+from frictionlab.compile.call import KernelCall
 from frictionlab.dynamics.radau_panel import Oscillation
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.prescribed.exact_legs import POINTS, SHARES, Legs, closed_legs
@@ -83,10 +83,10 @@ def line_loop(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
 def _legs(law: BristleLaw, along: Along) -> Closed:
     reach, fastest = law.largest_deflection(), law.largest_rate(1.0)
     length = min(reach, 1.0 / fastest) if 0.0 < fastest < math.inf else reach
-    kernel, loops, seconds = compiled(closed_legs, law), [], 0.0
+    kernel, loops, seconds = KernelCall(closed_legs, law), [], 0.0
     for cuts in (1.0, 2.0):
         legs = Legs(along.turn, along.size / along.frequency, along.size, length, reach, cuts)
-        (start, *rest), spent = timed(kernel, legs)
+        (start, *rest), spent = kernel.timed(legs)
         seconds += spent
         loops.append(_turned(along, (start + along.turn - math.pi, *rest), POINTS, SHARES))
     coarse, fine = loops

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled, timed
-from frictionlab.compile.dispatch import interpreted
+from frictionlab.compile.call import KernelCall
+from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.periodic.attraction import Follow, iterate_until_periodic, write_start
@@ -55,7 +55,7 @@ class MemoryPoint:
 
     def _called(self, states: Floats, wanted: Wanted) -> Curve:
         arguments: tuple[Any, ...] = self.body, np.array([self.belt_speed]), states, self.goal, wanted
-        curve, seconds = timed(compiled(answer_curve, self.law), *arguments)
+        curve, seconds = KernelCall(answer_curve, self.law).timed(*arguments)
         self.seconds += seconds
         return curve
 
@@ -65,12 +65,12 @@ class MemoryPoint:
         swing = abs(self.motion.velocity) + abs(self.motion.transverse_velocity) + abs(self.belt_speed)
         for side in (0.0, 1.0, -1.0):
             start = 0.0 * self.like, 0.0 * self.like, side * swing + 0.0 * self.like
-            compiled(write_start, self.law)(self.body, start, state)
+            KernelCall(write_start, self.law)(self.body, start, state)
             each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(state)))
             states[0] = state
             how = Follow(1e-6 * self.motion.normal_load, False)
             arguments: tuple[Any, ...] = self.body, self.belt_speed, how, each, states
-            (_repeats, count), seconds = timed(compiled(iterate_until_periodic, self.law), *arguments)
+            (_repeats, count), seconds = KernelCall(iterate_until_periodic, self.law).timed(*arguments)
             self.seconds += seconds
             means.append(each[count - 1])
         return self._left_open(means, "the memory does not converge from different starts")

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled, timed
+from frictionlab.compile.call import KernelCall
 from frictionlab.dynamics.radau_panel import NODES, WEIGHTS, Oscillation, Scale
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.prescribed.deflection_path import follow_period
@@ -119,13 +119,13 @@ class _Closing:
     def __init__(
         self, law: BristleLaw, slip: Oscillation, stretches: Floats, scale: Scale, exactness: float
     ) -> None:
-        self.kernel = compiled(follow_period, law)
+        self.kernel = KernelCall(follow_period, law)
         self.given = slip, stretches, scale, exactness
         self.reach, self.enough = scale.reach, max(0.1 * exactness, 1e-14) * scale.reach
         self.seconds = 0.0
 
     def _period(self, z: Any) -> _Period | None:
-        found, seconds = timed(self.kernel, *self.given, z)
+        found, seconds = self.kernel.timed(*self.given, z)
         self.seconds += seconds
         period = _Period(*found)
         return period if len(period.start) else None

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled
+from frictionlab.compile.call import KernelCall
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.reduced.contact import HarmonicContact, Harmonics, harmonic_friction
 from frictionlab.quantities import Floats
@@ -67,7 +67,7 @@ class _Reader:
         self.mass, self.belt_speed = mass, belt_speed
         self.impedance = mass.damping + 1j * (mass.frequency - mass.stiffness / mass.frequency)
         self.contact, self._steady = contact_of(law), law.sliding_friction(0.0)
-        self._friction = compiled(harmonic_friction, law)
+        self._friction = KernelCall(harmonic_friction, law)
         self.unturned = belt_speed if law.constant_sliding_friction() else 0.0
 
     def friction(self, amplitude: float) -> Harmonics:

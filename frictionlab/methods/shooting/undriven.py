@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled
+from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import interpreted
+from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import (
     Instant,
     acceleration,
@@ -156,7 +156,7 @@ class _Undriven:
 
     @cached_property
     def _kernel(self) -> Callable[..., Mapped]:
-        return compiled(flow, self.law)
+        return KernelCall(flow, self.law)
 
     @property
     def _accuracy(self) -> float:
@@ -391,7 +391,7 @@ class _Undriven:
         turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
         body = self._body._replace(periods=turns)
         speed, accuracy = self.scene.belt_speed, self._accuracy / FINER
-        track = compiled(record_flow, self.law)(body, speed, motion.x, motion.v, accuracy)
+        track = KernelCall(record_flow, self.law)(body, speed, motion.x, motion.v, accuracy)
         parts = track.tau, track.x, track.v, track.friction, track.stick
         return Orbit(*(part[: track.filled[0]] for part in parts))
 

@@ -14,7 +14,7 @@ from profiles import deep
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
-from frictionlab.compile.dispatch import interpreted
+from frictionlab.compile.interpret import interpreted
 from frictionlab.methods.periodic.maps.memory_state import scalar_coordinate, scalar_share
 
 compiling = deep("more kernels to compile")

@@ -1,0 +1,132 @@
+"""Calls of kernels: by Python while that costs less than compiling them would, by machine code from then on."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numba
+import numpy as np
+
+from frictionlab.compile.account import Account
+from frictionlab.compile.cache import account_of, compiled, timed
+from frictionlab.compile.interpret import interpreted, limited_to
+from frictionlab.compile.notice import named_while_it_compiles
+from frictionlab.laws.base import FrictionLaw
+
+_config: Any = numba.config
+
+WORTH = 3.0
+"""Processor time [s] that Python may spend on a kernel, in all runs together, before it is compiled: compiling takes
+2 to 20 s, once."""
+
+
+class _Choice:
+    """Whether everything is compiled at once."""
+
+    always_compile = False
+
+
+_choice = _Choice()
+
+
+@contextlib.contextmanager
+def compiling_at_once() -> Iterator[None]:
+    """Meanwhile Python runs no kernel."""
+    before, _choice.always_compile = _choice.always_compile, True
+    try:
+        yield
+    finally:
+        _choice.always_compile = before
+
+
+class KernelCall:
+    """A kernel, and the law that is its first argument; called like a function.
+
+    Where no machine code is kept, Python runs the kernel's text, and what that takes is written down beside the
+    place of the machine code; a kernel that has taken WORTH, or would, is compiled. Both answer the same but for
+    rounding. Raises CannotCompile, when called, where numba cannot compile the law's methods.
+    """
+
+    def __init__(self, kernel: Any, law: FrictionLaw | None = None) -> None:
+        self.kernel, self.law = kernel, law
+        self._machine = compiled(kernel, law)
+        self._decided = bool(_config.DISABLE_JIT) or not _is_our_own(law)
+        self._account: Account | None = None
+
+    def __call__(self, *arguments: Any) -> Any:
+        """What the kernel returns."""
+        return self._machine(*arguments) if self._decided else self.timed(*arguments)[0]
+
+    def timed(self, *arguments: Any, points: int = 1, first: tuple[Any, ...] = ()) -> tuple[Any, float]:
+        """What the kernel returns, and the seconds it took, compiling left out.
+
+        points: how many these arguments are for. first: arguments for the first of them alone, by which Python
+        finds out what one costs; they are written to like the others, and left as they were.
+        """
+        if not self._decided:
+            found = self._by_python(arguments, points, first)
+            if found is not None:
+                return found
+            self._decided = True
+        with named_while_it_compiles(self._name()):
+            return timed(self._machine, *arguments)
+
+    def _name(self) -> str:
+        kernel = self.kernel.__name__.replace("_", " ")
+        return kernel if self.law is None else f"{kernel} for {type(self.law).__name__}"
+
+    def _by_python(
+        self, arguments: tuple[Any, ...], points: int, first: tuple[Any, ...]
+    ) -> tuple[Any, float] | None:
+        """The same where Python is to run the kernel and comes to an end; else None, and nothing is written."""
+        account = self._account = self._account or account_of(self._machine, arguments)
+        if points > 1 and first:
+            start = account.spent
+            with _unwritten(first):
+                found = self._run(first, account)
+            if found is None or account.spent + points * (account.spent - start) > WORTH:
+                return None
+        return self._run(arguments, account)
+
+    def _run(self, arguments: tuple[Any, ...], account: Account) -> tuple[Any, float] | None:
+        if account.compiled or account.spent >= WORTH or _choice.always_compile:
+            return None
+        given = arguments if self.law is None else (self.law, *arguments)
+        begin, start = time.thread_time(), time.perf_counter()
+        with _unwritten(arguments) as keep:
+            try:
+                with limited_to(WORTH - account.spent), np.errstate(all="ignore"):
+                    found = interpreted(self.kernel)(*given)
+                keep()
+            except (
+                Exception
+            ):  # no time left; a number that Python refuses and machine code does not; a mistake
+                account.spend(WORTH)
+                return None
+        account.spend(time.thread_time() - begin)
+        return found, time.perf_counter() - start
+
+
+def _is_our_own(law: FrictionLaw | None) -> bool:
+    """Others' laws are compiled at once: what numba cannot compile is told whatever the number of points."""
+    return law is None or type(law).__module__.partition(".")[0] == "frictionlab"
+
+
+@contextlib.contextmanager
+def _unwritten(arguments: tuple[Any, ...]) -> Iterator[Callable[[], None]]:
+    """Afterwards the arrays among the arguments, records opened, are what they were, unless ``keep`` was called."""
+    before = [(array, array.copy()) for array in _arrays(arguments)]
+    yield before.clear
+    for array, content in before:
+        array[...] = content
+
+
+def _arrays(values: Any) -> Iterator[np.ndarray]:
+    for value in values:
+        if isinstance(value, np.ndarray):
+            yield value
+        elif isinstance(value, tuple):
+            yield from _arrays(value)

@@ -1,0 +1,27 @@
+"""What is compiled at this moment and what has been, for those who wait. Imports nothing, so that asking is free."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+
+compiled_here: list[str] = []
+"""The kernels that this process has compiled, by the names they are kept under."""
+
+_called: list[str] = []
+"""The kernels that machine code is asked for, by the names of their functions; most are compiled already."""
+
+
+@contextlib.contextmanager
+def named_while_it_compiles(name: str) -> Iterator[None]:
+    """Whatever numba compiles meanwhile is told under this name."""
+    _called.append(name)
+    try:
+        yield
+    finally:
+        _called.remove(name)
+
+
+def kernel_at_work() -> str:
+    """The kernel called last; empty where none is."""
+    return _called[-1] if _called else ""

@@ -1,0 +1,237 @@
+"""Python runs a kernel while that costs less than compiling it, and answers the same."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from profiles import deep
+
+import frictionlab as fl
+from frictionlab.compile import account, cache, call, interpret
+from frictionlab.compile.call import KernelCall
+from frictionlab.compile.decorators import inner, njit
+from frictionlab.compile.interpret import TooLong, interpreted, limited_to
+
+
+@pytest.fixture
+def without_kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Nothing compiled, nothing spent."""
+    monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path / "kernels"))
+    monkeypatch.setattr(account, "_spent", {})
+    cache._entry.cache_clear()
+    return tmp_path / "kernels"
+
+
+def suffixes(folder: Path) -> set[str]:
+    """The kinds of files there."""
+    return {file.suffix for file in folder.glob("*")}
+
+
+@inner
+def _halved(x):
+    return 0.5 * x
+
+
+@njit
+def halve_slowly(numbers, times):
+    """Halve every number, in so many loops of nothing."""
+    for i in range(numbers.size):
+        for _ in range(times):
+            numbers[i] = _halved(numbers[i]) * 2.0
+        numbers[i] = _halved(numbers[i])
+    return numbers[0]
+
+
+def test_what_is_called_once_is_run_by_python(without_kernels):
+    numbers = np.array([1.0, 3.0])
+
+    assert KernelCall(halve_slowly)(numbers, 1) == 0.5
+    assert numbers.tolist() == [0.5, 1.5]
+    assert suffixes(without_kernels) <= {account.SPENT}
+
+
+def test_what_has_taken_long_enough_in_all_runs_together_is_compiled(without_kernels, monkeypatch):
+    monkeypatch.setattr(call, "WORTH", 0.15)
+    for _ in range(50):
+        KernelCall(halve_slowly)(np.array([1.0]), 300_000)
+        if ".kernel" in suffixes(without_kernels):
+            break
+        account._spent.clear()  # another process, which knows what was written alone
+
+    assert suffixes(without_kernels) == {account.SPENT, ".kernel"}
+
+
+def test_a_call_that_takes_too_long_is_begun_anew_by_machine_code(without_kernels, monkeypatch):
+    """The interpreted one had already changed what it was given."""
+    monkeypatch.setattr(call, "WORTH", 0.1)
+    monkeypatch.setattr(interpret, "LONG", 0)
+    numbers = np.array([1.0, 3.0, 5.0])
+    KernelCall(give_up_late)(numbers, 60)
+
+    assert numbers.tolist() == [0.5, 1.5, 2.5]
+    assert ".kernel" in suffixes(without_kernels)
+
+
+@inner
+def _work(x):
+    for _ in range(20_000):
+        x = _halved(x) * 2.0
+    return x
+
+
+@njit
+def give_up_late(numbers, times):
+    """The first number is halved at once, the others after much work."""
+    for i in range(numbers.size):
+        numbers[i] = 0.5 * numbers[i]
+        for _ in range(times):
+            numbers[i] = _work(numbers[i])
+    return numbers[0]
+
+
+def test_many_points_are_not_begun_that_would_take_too_long(without_kernels, monkeypatch):
+    monkeypatch.setattr(call, "WORTH", 1.0)
+    numbers, started = np.ones(10_000), time.thread_time()
+    KernelCall(halve_slowly).timed(numbers, 1_000, points=10_000, first=(numbers[:1], 1_000))
+
+    assert np.all(numbers == 0.5)
+    assert ".kernel" in suffixes(without_kernels)
+    assert time.thread_time() - started < 20.0  # ten thousand points would take longer
+    assert next(iter(account._spent.values())) < 0.5
+
+
+@njit
+def root_of(x):
+    """A root that Python refuses."""
+    return math.sqrt(x)
+
+
+def test_what_python_refuses_and_machine_code_does_not_is_compiled(without_kernels):
+    assert math.isnan(KernelCall(root_of)(-1.0))
+
+
+def test_a_law_of_others_is_compiled_at_once(without_kernels):
+    class Mine(fl.Coulomb):
+        """Coulomb friction."""
+
+    assert KernelCall(friction_at, Mine(mu=0.4))(1.0) == 0.4
+    assert suffixes(without_kernels) == {".kernel"}
+    assert KernelCall(friction_at, fl.Coulomb(mu=0.4))(1.0) == 0.4
+    assert len(list(without_kernels.iterdir())) == 1
+
+
+@njit
+def friction_at(law, v):
+    return law.sliding_vector(v)
+
+
+def test_the_account_outlives_damage_and_is_shared(without_kernels, tmp_path):
+    path = tmp_path / "deep" / "kernel.spent"
+    one = account.Account("kernel", path, False)
+    one.spend(0.5)
+    account._spent.clear()
+    path.write_bytes(b"\0" * path.stat().st_size)
+
+    assert account.Account("kernel", path, False).spent == pytest.approx(0.5, abs=account.PER_BYTE)
+
+
+def test_an_account_that_cannot_be_written_serves_its_process(without_kernels, tmp_path):
+    (tmp_path / "file").write_text("")
+    one = account.Account("kernel", tmp_path / "file" / "kernel.spent", False)
+    one.spend(2.0)
+
+    assert account.Account("kernel", None, False).spent == 2.0
+
+
+def test_a_limit_of_time_ends_with_its_block():
+    with limited_to(0.0), pytest.raises(TooLong):
+        interpreted(_work)(1.0)
+    assert interpreted(_work)(1.0) == 1.0
+
+
+def test_a_limit_of_time_is_that_of_one_thread():
+    done = []
+    with limited_to(0.0):
+        other = threading.Thread(target=lambda: done.append(interpreted(_work)(1.0)))
+        other.start()
+        other.join()
+    assert done == [1.0]
+
+
+def test_threads_that_ask_at_once_are_given_whole_functions():
+    """One was given a function whose names another thread had not filled in yet."""
+    for _ in range(20):
+        interpreted.cache_clear()
+        interpret._twins.clear()
+        with ThreadPoolExecutor(8) as pool:
+            assert list(pool.map(lambda _: interpreted(_work)(1.0), range(8))) == [1.0] * 8
+
+
+LINE = fl.Scene(damping_ratio=0.05, normal_load=10, belt_speed=5, drive=fl.Drive(amplitude=30, frequency=1.5))
+PLANE = LINE.with_(
+    transverse=fl.Transverse(natural_frequency=2, damping_ratio=0.05, load={"amplitude": 20, "phase": 90})
+)
+SLIP = fl.Scene(slip=fl.Slip(velocity_amplitude=2, frequency=1), belt_speed=1)
+dear = deep("kernels slow to compile")
+CASES = [
+    (LINE, fl.Coulomb(mu=0.4), "exact"),
+    (LINE, fl.Coulomb(mu=0.4), "shooting"),
+    (LINE, fl.Coulomb(mu=0.4), "harmonic_balance"),
+    (LINE, fl.Stribeck(mu_kinetic=0.4, mu_static=0.5, stribeck_speed=5), "auto"),
+    (LINE, fl.Dahl(mu=0.4, presliding_length=0.1), "shooting"),
+    pytest.param(
+        LINE,
+        fl.LuGre(mu_kinetic=0.4, mu_static=0.5, stribeck_speed=5, presliding_length=0.1),
+        "auto",
+        marks=dear,
+    ),
+    pytest.param(LINE, fl.Jenkins(mu=0.4, presliding_length=0.1), "auto", marks=dear),
+    pytest.param(PLANE, fl.Dahl(mu=0.4, presliding_length=0.1), "auto", marks=dear),
+    (PLANE, fl.Coulomb(mu=0.4), "auto"),
+    (PLANE, fl.Coulomb(mu=0.4), "mdsm"),
+    (SLIP, fl.Dahl(mu=0.4, presliding_length=0.1), "auto"),
+    (SLIP, fl.LuGre(mu_kinetic=0.4, presliding_length=0.1, damping=0.01), "auto"),
+]
+EXACT = 1e-13
+"""On the line both answer the same but for rounding; in the plane other roundings may lead to other steps."""
+
+
+@pytest.mark.parametrize(("scene", "law", "method"), CASES)
+def test_python_and_machine_code_answer_the_same(scene, law, method, monkeypatch):
+    monkeypatch.setattr(call, "WORTH", 0.0)
+    quick = fl.steady_state(scene, law, method=method, tolerance=1e-6)
+    monkeypatch.setattr(call, "WORTH", 1e9)
+    monkeypatch.setattr(call, "account_of", lambda *_: account.Account("never compiled", None, False))
+    slow = fl.steady_state(scene, law, method=method, tolerance=1e-6)
+
+    assert slow.status == quick.status == "ok"
+    assert slow.model == quick.model
+    allowed = EXACT if scene.degrees_of_freedom < 2 else slow.error + quick.error
+    assert abs(slow.mean_friction - quick.mean_friction) <= allowed
+    assert slow.velocity_amplitude == pytest.approx(quick.velocity_amplitude, rel=1e-9, nan_ok=True)
+    assert slow.energy_friction == pytest.approx(quick.energy_friction, rel=1e-7, nan_ok=True)
+
+
+FIRST = """
+import frictionlab as fl
+drive = fl.Drive(amplitude=30, frequency=1.5)
+scene = fl.Scene(damping_ratio=0.05, normal_load=10, belt_speed=5, drive=drive)
+print(fl.steady_state(scene, fl.Coulomb(mu=0.4)).status)
+"""
+
+
+def test_a_first_answer_compiles_nothing(without_kernels):
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", FIRST], capture_output=True, text=True, check=True
+    )
+
+    assert done.stdout == "ok\n"
+    assert suffixes(without_kernels) <= {account.SPENT}

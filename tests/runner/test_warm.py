@@ -1,0 +1,65 @@
+"""Kernels compiled ahead: of every law, for every kind of scene; a run then compiles none."""
+
+from __future__ import annotations
+
+import pytest
+
+import frictionlab as fl
+from frictionlab import cli, registry
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.runner import warm as module
+from frictionlab.runner.warm import SCENES, Warmed, forms, warm
+
+
+@pytest.mark.parametrize("name", registry.law_names())
+def test_every_law_has_a_form(name: str) -> None:
+    found = forms(registry.law_class(name))
+
+    assert found
+    assert len({law.structure() for law in found}) == len(found)
+
+
+def test_a_law_has_all_forms_that_kernels_are_compiled_for() -> None:
+    falling = fl.LuGre(mu_kinetic=0.4, mu_static=0.5, stribeck_speed=1, stiffness=1)
+    constant = fl.LuGre(mu_kinetic=0.4, stiffness=1)
+
+    assert {law.structure() for law in forms(fl.LuGre)} == {falling.structure(), constant.structure()}
+
+
+def test_each_kind_of_scene_is_answered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here by Python: which kernels are compiled ahead is the same."""
+    asked: list[tuple[int, FrictionLaw]] = []
+    monkeypatch.setattr(
+        module, "steady_state", lambda scene, law, tolerance: asked.append((scene.degrees_of_freedom, law))
+    )
+    done = list(warm({"coulomb": fl.Coulomb}))
+
+    assert [each._replace(seconds=0.0) for each in done] == [
+        Warmed("coulomb", scene, 0, 0.0) for scene in SCENES
+    ]
+    assert sorted({freedom for freedom, _ in asked}) == [0, 1, 2]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_its_scenes_have_answers(scene: str) -> None:
+    assert fl.steady_state(SCENES[scene], fl.Coulomb(mu=0.5), tolerance=1e-4).status == "ok"
+
+
+def test_a_kernel_compiled_ahead_serves_the_next_process(
+    tmp_path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path))
+    monkeypatch.setattr(
+        module, "SCENES", {"a mass shaken along the belt": SCENES["a mass shaken along the belt"]}
+    )
+
+    assert cli.main(["warm", "coulomb"]) == 0
+    assert "compiled in" in capsys.readouterr().out
+    assert {file.name.split("_")[1] for file in tmp_path.glob("*.kernel")} == {"continue", "make", "read"}
+    assert cli.main(["warm", "coulomb"]) == 0
+    assert capsys.readouterr().out == "coulomb, a mass shaken along the belt: all kept already\n"
+
+
+def test_an_unknown_law_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["warm", "colomb"]) == 2
+    assert "no law 'colomb'; installed: " in capsys.readouterr().err

@@ -14,6 +14,7 @@ from frictionlab.bench.record import Bench, BenchSetting, Contender, ReferenceMe
 from frictionlab.bench.references import independent, reference_means
 from frictionlab.bench.solvers import SolverAnswers, mean_task, solve_points, whole_task
 from frictionlab.bench.timing import Times, time_task
+from frictionlab.compile.call import compiling_at_once
 from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
 
@@ -64,11 +65,12 @@ def measure(bench: Bench, tell: Callable[[str], None]) -> list[WorkloadResult]:
     """Measure a bench list. Raises Interrupted with what is finished."""
     done: list[WorkloadResult] = []
     try:
-        for work in bench.workloads:
-            tell(f"{work.name}: references")
-            found = reference_means(work)
-            rows = list(_rows(bench, work, found, tell))
-            done.append(WorkloadResult(work, found, rows))
+        with compiling_at_once():  # what is timed is machine code
+            for work in bench.workloads:
+                tell(f"{work.name}: references")
+                found = reference_means(work)
+                rows = list(_rows(bench, work, found, tell))
+                done.append(WorkloadResult(work, found, rows))
     except KeyboardInterrupt:
         raise MeasurementInterrupted(done) from None
     return done

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import time
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -24,9 +25,9 @@ WORTH = 3.0
 
 
 class _Choice:
-    """Whether everything is compiled at once."""
+    """Whether everything is compiled at once, as ``FRICTIONLAB_COMPILE=always`` asks for."""
 
-    always_compile = False
+    always_compile = os.environ.get("FRICTIONLAB_COMPILE") == "always"
 
 
 _choice = _Choice()

@@ -83,7 +83,7 @@ def timed(python: str, name: str) -> dict[str, float]:
     """A case in a process of its own, nothing compiled."""
     with tempfile.TemporaryDirectory() as cache:
         command = [python, __file__, "--serve", name]
-        environment = {**os.environ, "FRICTIONLAB_CACHE": cache}
+        environment = {**os.environ, "FRICTIONLAB_CACHE": cache, "FRICTIONLAB_COMPILE": "always"}
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     if done.returncode:
         raise SystemExit(f"{name} with {python}:\n{done.stderr[-2000:]}")

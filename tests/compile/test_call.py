@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import subprocess
 import sys
 import threading
@@ -235,3 +236,23 @@ def test_a_first_answer_compiles_nothing(without_kernels):
 
     assert done.stdout == "ok\n"
     assert suffixes(without_kernels) <= {account.SPENT}
+
+
+def test_everything_is_compiled_at_once_where_that_is_asked_for(without_kernels):
+    with call.compiling_at_once():
+        assert KernelCall(halve_slowly)(np.array([1.0]), 1) == 0.5
+    assert suffixes(without_kernels) == {".kernel"}
+
+
+def test_everything_is_compiled_at_once_where_the_environment_asks_for_it():
+    asks = "from frictionlab.compile import call; print(call._choice.always_compile)"
+    told = [
+        subprocess.run(
+            [sys.executable, "-c", asks], env=environment, capture_output=True, text=True, check=True
+        ).stdout
+        for environment in (
+            {**os.environ, "FRICTIONLAB_COMPILE": "always"},
+            {**os.environ, "FRICTIONLAB_COMPILE": ""},
+        )
+    ]
+    assert told == ["True\n", "False\n"]

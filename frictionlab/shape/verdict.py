@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.quantities import Floats
+from frictionlab.quantities import EPSILON, Floats
 from frictionlab.shape.interpolant import (
     ABSCISSAE,
     AREA_WEIGHTS,
@@ -147,10 +147,9 @@ def _spacing_errors(curve: FrictionCurve, best: Interpolant) -> _Error:
     columns = {name: getattr(curve, name)[every] for name in ("speed", "friction", "error")}
     coarse = interpolant_of(replace(curve, **columns))
     early = ABSCISSAE < 3.0 * STEP
-    rises = best.range[early][-1] > 0.0 < coarse.range[early][-1]
-    scale = (
-        best.range[early][-1] / coarse.range[early][-1] if rises else 1.0
-    )  # compare the beginnings at the same scale
+    fine_rise, coarse_rise = float(best.range[early][-1]), float(coarse.range[early][-1])
+    rises = min(fine_rise, coarse_rise) > EPSILON  # of the whole rise, which is one
+    scale = fine_rise / coarse_rise if rises else 1.0  # compare the beginnings at the same scale
     away = np.abs(coarse.range - best.range)[np.abs(ABSCISSAE - 0.5) < 2.0 * STEP]
     bent = np.abs(scale * coarse.range - best.range)[early]
     return _Error(

@@ -125,7 +125,7 @@ def _integrated(scene: fl.Scene, law: fl.Dahl, start: fl.SteadyState) -> np.ndar
         y[3:] = 0.0
         before = y.copy()
         y = solve_ivp(slope, (0.0, period), y, "Radau", rtol=1e-9, atol=1e-11 * scale).y[:, -1]
-        if np.abs((y - before)[:3] / scale[:3]).max() < 1e-9:
+        if np.abs((y - before)[:3] / scale[:3]).max() < 1e-6:  # its own noise is up to 4e-7
             return y[3:]
     raise AssertionError("the motion does not repeat")
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from strategies import scenes_on_the_line
@@ -218,6 +218,7 @@ def test_a_curve_that_does_not_rise_has_no_shape() -> None:
 
 
 @given(st.lists(st.floats(-1.0, 1.0), min_size=12, max_size=40), st.booleans(), st.floats(0.0, 0.1))
+@example([1.0, 1.1125369292536007e-308, *[0.0] * 7, 1.0, 0.0, 0.0], True, 0.0)
 def test_whatever_the_points_a_shape_has_finite_numbers_or_a_reason(
     values: list[float], kinked: bool, error: float
 ) -> None:

@@ -16,6 +16,8 @@ from pathlib import Path
 import hypothesis
 from hypothesis.internal.conjecture import providers
 
+# The tests ask so much of every kernel that it is compiled in the end: Python would only run it before that.
+os.environ.setdefault("FRICTIONLAB_COMPILE", "always")
 hypothesis.settings.register_profile("default", max_examples=20, deadline=None, derandomize=True)
 hypothesis.settings.register_profile(
     "deep", max_examples=500, deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]

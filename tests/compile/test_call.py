@@ -27,6 +27,8 @@ def without_kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Nothing compiled, nothing spent."""
     monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path / "kernels"))
     monkeypatch.setattr(account, "_spent", {})
+    monkeypatch.setattr(call._choice, "always_compile", False)
+    monkeypatch.delenv("FRICTIONLAB_COMPILE", raising=False)
     cache._entry.cache_clear()
     return tmp_path / "kernels"
 
@@ -207,8 +209,8 @@ EXACT = 1e-13
 
 @pytest.mark.parametrize(("scene", "law", "method"), CASES)
 def test_python_and_machine_code_answer_the_same(scene, law, method, monkeypatch):
-    monkeypatch.setattr(call, "WORTH", 0.0)
     quick = fl.steady_state(scene, law, method=method, tolerance=1e-6)
+    monkeypatch.setattr(call._choice, "always_compile", False)
     monkeypatch.setattr(call, "WORTH", 1e9)
     monkeypatch.setattr(call, "account_of", lambda *_: account.Account("never compiled", None, False))
     slow = fl.steady_state(scene, law, method=method, tolerance=1e-6)

@@ -319,7 +319,7 @@ def _bristles() -> Iterator[Group]:
                  tolerance=1e-6)  # fmt: skip
     yield _group("W1 on Dahl's exponents", W1, DAHLS[1:4], ["auto"], _speeds(20), tolerance=1e-6)
     yield _group("W1 on bristles, marched", W1, [DAHL, LUGRE, DUPONT], [EXPONENTIAL, SDIRK2, BRISTLE_RK4],
-                 _speeds(20), tolerance=1e-3)  # fmt: skip
+                 _speeds(20), tolerance=1e-3, deep=True)  # fmt: skip
     yield _group("W1 on Jenkins's, marched", W1, [JENKINS], [EXPONENTIAL, SDIRK2, BRISTLE_RK4, MOREAU],
                  _speeds(20), tolerance=1e-3)  # fmt: skip
     yield _group("bristles too stiff for a stepper", W1, [{**DAHL, "presliding_length": 1e-6}], [BRISTLE_RK4],
@@ -327,7 +327,8 @@ def _bristles() -> Iterator[Group]:
     yield _group("two states on Dahl's", {"damping_ratio": 0.0348, "normal_load": 505.75868775, "belt_speed": 40.5,
                  "drive": {"unbalance": 10.0, "frequency": 3.567}}, [{"kind": "dahl", "mu": 0.4,
                  "contact_stiffness": 30.0}], ["auto"], _speeds(35, 40.5), tolerance=1e-6)  # fmt: skip
-    yield _group("the plane on Dupont's", W3, [DUPONT], ["auto"], _speeds(5, 30), tolerance=1e-5)
+    yield _group("the plane on Dupont's", W3, [DUPONT], ["auto"], _speeds(5, 30), tolerance=1e-5,
+                 deep=True)  # fmt: skip
     yield _group("the plane by axis", PLANE, [{**DAHL, "presliding_length": 0.3, "planar": "per-axis"}],
                  ["auto", "exact"], _speeds(0.7, 4), tolerance=1e-6)  # fmt: skip
     yield _group("the plane by axis, held", {**PLANE, "transverse": {**PLANE["transverse"], "load":

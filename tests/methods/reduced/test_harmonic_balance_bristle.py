@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from answered import with_columns
+from profiles import deep
 
 from frictionlab.compile.cache import compiled
 from frictionlab.laws.coulomb import Coulomb
@@ -278,6 +279,7 @@ def test_slip_within_an_elastic_contact_is_refused_for_its_mean_depends_on_the_s
     assert "depends on the start" in refusal_of(one, Jenkins(mu=MU, presliding_length=1.0))
 
 
+@deep("a kernel slow to compile")
 def test_friction_that_falls_too_fast_for_one_steady_state_is_refused() -> None:
     law = LuGre(mu_kinetic=MU, mu_static=0.8, stribeck_speed=5.0, presliding_length=0.1)
     resting = scene(4.0, drive=Drive(amplitude=0.2, frequency=3.0))

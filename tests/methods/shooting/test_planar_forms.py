@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from answered import with_columns
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.bench.peers.bristle_motion import BristleMotion
@@ -99,6 +100,7 @@ def test_a_mass_held_elastically_across_the_belt_has_a_mean_along_it() -> None:
     assert answers.columns["mean_friction"][0] == alone.columns["mean_friction"][0]
 
 
+@deep("a kernel slow to compile")
 def test_a_deflection_along_the_slip_ends_at_its_limit_and_is_forgotten_slowly() -> None:
     here, limit = scene(6.0), 400.0
     row, orbit = solved(here, ALONG_SLIP)

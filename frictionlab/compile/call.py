@@ -6,6 +6,7 @@ import contextlib
 import os
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numba
@@ -43,6 +44,12 @@ def compiling_at_once() -> Iterator[None]:
         _choice.always_compile = before
 
 
+_compiled: set[Any] = set()
+"""Calls, by entry and kinds of arguments, that this process has machine code for: numba takes 2 ms to find it out."""
+_accounts: dict[Any, Account] = {}
+"""Of the others that it has asked about."""
+
+
 class KernelCall:
     """A kernel, and the law that is its first argument; called like a function.
 
@@ -54,12 +61,11 @@ class KernelCall:
     def __init__(self, kernel: Any, law: FrictionLaw | None = None) -> None:
         self.kernel, self.law = kernel, law
         self._machine = compiled(kernel, law)
-        self._decided = bool(_config.DISABLE_JIT) or not _is_our_own(law)
-        self._account: Account | None = None
+        self._always = bool(_config.DISABLE_JIT) or not _is_our_own(law)
 
     def __call__(self, *arguments: Any) -> Any:
         """What the kernel returns."""
-        return self._machine(*arguments) if self._decided else self.timed(*arguments)[0]
+        return self.timed(*arguments)[0]
 
     def timed(self, *arguments: Any, points: int = 1, first: tuple[Any, ...] = ()) -> tuple[Any, float]:
         """What the kernel returns, and the seconds it took, compiling left out.
@@ -67,23 +73,35 @@ class KernelCall:
         points: how many these arguments are for. first: arguments for the first of them alone, by which Python
         finds out what one costs; they are written to like the others, and left as they were.
         """
-        if not self._decided:
-            found = self._by_python(arguments, points, first)
+        key = self._key(arguments)
+        if key in _compiled:
+            start = time.perf_counter()
+            return self._machine(*arguments), time.perf_counter() - start
+        if not (self._always or _choice.always_compile):
+            found = self._by_python(key, arguments, points, first)
             if found is not None:
                 return found
-            self._decided = True
         with named_while_it_compiles(self._name()):
-            return timed(self._machine, *arguments)
+            done = timed(self._machine, *arguments)
+        _compiled.add(key)
+        return done
 
     def _name(self) -> str:
         kernel = self.kernel.__name__.replace("_", " ")
         return kernel if self.law is None else f"{kernel} for {type(self.law).__name__}"
 
+    def _key(self, arguments: tuple[Any, ...]) -> Any:
+        machine: Any = self._machine
+        bound = machine.args if isinstance(machine, partial) else (machine,)
+        return bound[0], _kind(bound[1:]), _kind(arguments)
+
     def _by_python(
-        self, arguments: tuple[Any, ...], points: int, first: tuple[Any, ...]
+        self, key: Any, arguments: tuple[Any, ...], points: int, first: tuple[Any, ...]
     ) -> tuple[Any, float] | None:
         """The same where Python is to run the kernel and comes to an end; else None, and nothing is written."""
-        account = self._account = self._account or account_of(self._machine, arguments)
+        account = _accounts.get(key)
+        if account is None:
+            account = _accounts[key] = account_of(self._machine, arguments)
         if points > 1 and first:
             start = account.spent
             with _unwritten(first):
@@ -93,7 +111,7 @@ class KernelCall:
         return self._run(arguments, account)
 
     def _run(self, arguments: tuple[Any, ...], account: Account) -> tuple[Any, float] | None:
-        if account.compiled or account.spent >= WORTH or _choice.always_compile:
+        if account.compiled or account.spent >= WORTH:
             return None
         given = arguments if self.law is None else (self.law, *arguments)
         begin, start = time.thread_time(), time.perf_counter()
@@ -109,6 +127,15 @@ class KernelCall:
                 return None
         account.spend(time.thread_time() - begin)
         return found, time.perf_counter() - start
+
+
+def _kind(value: Any) -> Any:
+    """What numba tells arguments apart by, found in microseconds."""
+    if isinstance(value, np.ndarray):
+        return value.dtype.char, value.ndim, value.flags.c_contiguous, value.flags.writeable
+    if isinstance(value, tuple):
+        return type(value), *map(_kind, value)
+    return type(value)
 
 
 def _is_our_own(law: FrictionLaw | None) -> bool:

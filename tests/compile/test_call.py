@@ -27,6 +27,8 @@ def without_kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Nothing compiled, nothing spent."""
     monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path / "kernels"))
     monkeypatch.setattr(account, "_spent", {})
+    monkeypatch.setattr(call, "_compiled", set())
+    monkeypatch.setattr(call, "_accounts", {})
     monkeypatch.setattr(call._choice, "always_compile", False)
     monkeypatch.delenv("FRICTIONLAB_COMPILE", raising=False)
     cache._entry.cache_clear()
@@ -68,6 +70,7 @@ def test_what_has_taken_long_enough_in_all_runs_together_is_compiled(without_ker
         if ".kernel" in suffixes(without_kernels):
             break
         account._spent.clear()  # another process, which knows what was written alone
+        call._accounts.clear()
 
     assert suffixes(without_kernels) == {account.SPENT, ".kernel"}
 
@@ -211,6 +214,8 @@ EXACT = 1e-13
 def test_python_and_machine_code_answer_the_same(scene, law, method, monkeypatch):
     quick = fl.steady_state(scene, law, method=method, tolerance=1e-6)
     monkeypatch.setattr(call._choice, "always_compile", False)
+    monkeypatch.setattr(call, "_compiled", set())
+    monkeypatch.setattr(call, "_accounts", {})
     monkeypatch.setattr(call, "WORTH", 1e9)
     monkeypatch.setattr(call, "account_of", lambda *_: account.Account("never compiled", None, False))
     slow = fl.steady_state(scene, law, method=method, tolerance=1e-6)

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
+from frictionlab.compile.call import KernelCall
+from frictionlab.compile.decorators import njit
+from frictionlab.dynamics.contact import resistance
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.laws.memory import PER_AXIS, ROTATED, BristleLaw, bristle_in_the_plane, bristle_on_the_line
+from frictionlab.laws.memory import PER_AXIS, ROTATED, BristleLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.closed_loop_line import ONE_WAY, Along, line_loop
 from frictionlab.methods.prescribed.closed_loop_plane import plane_loop
@@ -88,27 +92,29 @@ class BristlePoint:
         z, law = deflections[0], self.law
         unknown = complex(0.0, math.nan if len(deflections) < len(self.loops) else 0.0)
         if len(deflections) == 2:
-            pairs = zip(slip.real.flat, slip.imag.flat, z.flat, deflections[1].flat, strict=True)
-            values = [
-                complex(bristle_on_the_line(law, v1, z1)[1], bristle_on_the_line(law, v2, z2)[1])
-                for v1, v2, z1, z2 in pairs
-            ]
-        elif self._on_the_line():
-            values = [
-                bristle_on_the_line(law, v, one)[1] + unknown
-                for v, one in zip(slip.real.flat, z.flat, strict=True)
-            ]
-        else:
-            values = [
-                bristle_in_the_plane(law, v, complex(one))[1]
-                for v, one in zip(slip.flat, z.flat, strict=True)
-            ]
-        return np.array(values).reshape(slip.shape)
+            return _resisted(law, slip.real, z) + 1j * _resisted(law, slip.imag, deflections[1])
+        if self._on_the_line():
+            return _resisted(law, slip.real, z) + unknown
+        return _resisted(law, slip, z.astype(complex))
 
     def _on_the_line(self) -> bool:
         """Whether the one loop is that of a line."""
         across = self.motion.transverse_velocity == 0 or self.law.form == PER_AXIS
         return not self.planar or (across and self.law.form != ROTATED)
+
+
+def _resisted(law: BristleLaw, slip: Any, deflection: Any) -> Vectors:
+    """The friction coefficient at every slip velocity and deflection."""
+    rub = np.empty(slip.size, slip.dtype)
+    KernelCall(friction_of_each, law)(slip.ravel(), deflection.ravel(), rub)
+    return rub.reshape(slip.shape)
+
+
+@njit
+def friction_of_each(law: Any, slip: Any, deflection: Any, rub: Any) -> None:
+    """Fill rub with the friction of a bristle law at each slip velocity and deflection."""
+    for i in range(slip.size):
+        rub[i] = resistance(law, slip[i], deflection[i])[1]
 
 
 def _angles(loops: list[Loop]) -> Floats:

@@ -55,6 +55,14 @@ def _settles(law: FrictionLaw) -> bool:
     return abs(law.deflected(-size, 30.0 * size) - size) <= 0.01 * size
 
 
+def _settles_gently(law: FrictionLaw) -> bool:
+    """The same, and no bristle that bends over resists by its damping more than it does when it has."""
+    if not _settles(law):
+        return False
+    bending = law.friction(SWING, 0.0, law.rate(SWING, 0.0)) if isinstance(law, BristleLaw) else 0.0
+    return abs(bending) <= law.sliding_friction(SWING)
+
+
 @make_check(
     "coulomb_limit_of_prescribed_slip",
     change="correct rate and friction: a stiff contact slides; or let constant_sliding_friction() be false",
@@ -89,7 +97,7 @@ def coulomb_limit_of_prescribed_slip(one: Given) -> None:
 )
 def coulomb_limit_of_a_body(one: Given) -> None:
     """The mean friction of a body driven above resonance nears Coulomb's as one over the root of stiffness."""
-    law = one.law(_settles)
+    law = one.law(_settles_gently)  # else it nears Coulomb friction as one over stiffness first
     mu = law.sliding_friction(1.0)
     scene = _body(friction=4.0, mu=mu, belt_speed=15.0, frequency=1.5)
     coulomb = _mean(one, scene, Coulomb(mu=mu), 1e-9 * mu)
@@ -140,6 +148,7 @@ def _body(friction: float, mu: float, belt_speed: float, frequency: float) -> Sc
 
 def _mean(one: Given, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
     answers = Shooting().solve([scene], law, tolerance)
+    assume(answers.status[0] != "not_unique")  # several states, or one that takes too long to be sure of
     ok = answers.status[0] == "ok"
     one.require(ok, f"shooting finds no steady state of the stiff law: {answers.reason[0]}")
     return float(answers.mean[0].real)

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from profiles import deep
 from strategies import sizes
 
 import frictionlab
@@ -42,7 +43,13 @@ def answers(name: str) -> dict[str, tuple[list, list]]:
     return {case: (expected, found) for case, expected, found in map(json.loads, told.stdout.splitlines())}
 
 
-@pytest.mark.parametrize("name", ["load", "normal_load", "belt_velocity"])
+slow = deep("all methods, run by Python")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["load", pytest.param("normal_load", marks=slow), pytest.param("belt_velocity", marks=slow)],
+)
 def test_every_method_answers_as_for_the_changed_scene_where_a_function_is_replaced(name):
     for case, (expected, found) in answers(name).items():
         status, mean, error, put_in, heat = found

@@ -31,7 +31,7 @@ from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
 from frictionlab.compile import collection  # noqa: F401  # listens
 from frictionlab.compile.account import Account
-from frictionlab.compile.dispatch import law_of_numbers, names_used
+from frictionlab.compile.dispatch import FOREIGN, law_of_numbers, names_used
 from frictionlab.compile.kept import KeptEntry
 from frictionlab.faults import cannot_compile
 from frictionlab.laws.base import FrictionLaw
@@ -143,7 +143,7 @@ def _module(name: str, source: str, **given: Any) -> ModuleType:
     return module
 
 
-HOST_ONLY = {"account.py", "call.py", "collection.py", "kept.py", "notice.py"}
+HOST_ONLY = {"account.py", "call.py", "collection.py", "interpret.py", "kept.py", "notice.py"}
 """Files of this folder that decide where machine code is kept and how soon it is there, and nothing in it."""
 # Read once: were these files edited while a process runs, an entry would be named by the new ones and refer to
 # numbers named by the old ones, and no other process could load it.
@@ -163,7 +163,6 @@ def _fingerprint(*roots: Any) -> str:
     return digest.hexdigest()[:24]
 
 
-_FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "typing", "pydantic", "abc"}
 _OF_RECORDS = "frictionlab.quantities"
 """Home of what laws share with all records: it checks what they are given, and no kernel calls it."""
 
@@ -198,7 +197,7 @@ def _pieces(values: Any, seen: set[int]) -> Iterator[str]:
 def _pieces_of_code(value: Any, seen: set[int]) -> Iterator[str]:
     home: str = getattr(value, "__module__", None) or getattr(value, "__name__", None) or ""
     yield f"{home}.{getattr(value, '__qualname__', '')}"
-    if home.partition(".")[0] in _FOREIGN or isinstance(value, ModuleType):
+    if home.partition(".")[0] in FOREIGN or isinstance(value, ModuleType):
         return
     if isinstance(value, type) and home == _OF_RECORDS:
         return
@@ -236,7 +235,7 @@ def _globals_used(function: FunctionType) -> Iterator[Any]:
     opened: set[int] = set()
     for value in waiting:  # grows while modules are opened
         yield value
-        foreign = not isinstance(value, ModuleType) or value.__name__.partition(".")[0] in _FOREIGN
+        foreign = not isinstance(value, ModuleType) or value.__name__.partition(".")[0] in FOREIGN
         if not foreign and id(value) not in opened:
             opened.add(id(value))
             waiting += [getattr(value, attribute) for attribute in names if hasattr(value, attribute)]

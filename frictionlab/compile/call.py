@@ -14,8 +14,9 @@ import numpy as np
 
 from frictionlab.compile.account import Account
 from frictionlab.compile.cache import account_of, compiled, timed
-from frictionlab.compile.interpret import interpreted, limited_to
+from frictionlab.compile.interpret import TooLong, interpreted, limited_to
 from frictionlab.compile.notice import named_while_it_compiles
+from frictionlab.faults import from_outside
 from frictionlab.laws.base import FrictionLaw
 
 _config: Any = numba.config
@@ -61,7 +62,8 @@ class KernelCall:
     def __init__(self, kernel: Any, law: FrictionLaw | None = None) -> None:
         self.kernel, self.law = kernel, law
         self._machine = compiled(kernel, law)
-        self._always = bool(_config.DISABLE_JIT) or not _is_our_own(law)
+        # what numba cannot compile in a law of others is told whatever the number of points
+        self._always = bool(_config.DISABLE_JIT) or (law is not None and from_outside(type(law)))
 
     def __call__(self, *arguments: Any) -> Any:
         """What the kernel returns."""
@@ -120,9 +122,7 @@ class KernelCall:
                 with limited_to(WORTH - account.spent), np.errstate(all="ignore"):
                     found = interpreted(self.kernel)(*given)
                 keep()
-            except (
-                Exception
-            ):  # no time left; a number that Python refuses and machine code does not; a mistake
+            except (TooLong, ArithmeticError, ValueError):  # Python refuses numbers that machine code takes
                 account.spend(WORTH)
                 return None
         account.spend(time.thread_time() - begin)
@@ -136,11 +136,6 @@ def _kind(value: Any) -> Any:
     if isinstance(value, tuple):
         return type(value), *map(_kind, value)
     return type(value)
-
-
-def _is_our_own(law: FrictionLaw | None) -> bool:
-    """Others' laws are compiled at once: what numba cannot compile is told whatever the number of points."""
-    return law is None or type(law).__module__.partition(".")[0] == "frictionlab"
 
 
 @contextlib.contextmanager

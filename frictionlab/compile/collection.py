@@ -10,7 +10,7 @@ import numba.core.event
 _event: Any = numba.core.event
 
 
-class _PausesCollection(_event.Listener):  # type: ignore[misc]
+class _PausesCollection(_event.Listener):  # type: ignore[misc]  # numba has no types
     """Switches the collector off where the outermost function begins to compile, and on again where it ends.
 
     One kernel is compiled at a time: numba holds a lock from before the first of these calls to after the last.

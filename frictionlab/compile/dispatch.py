@@ -231,6 +231,10 @@ def compilable(function: FunctionType) -> FunctionType:
     return twin
 
 
+FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "typing", "pydantic", "abc"}
+"""Packages whose functions kernels name and nobody looks into."""
+
+
 def names_used(code: CodeType) -> Iterator[str]:
     yield from code.co_names
     for constant in code.co_consts:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dis
 import functools
 import math
@@ -13,7 +14,7 @@ from typing import Any
 
 import numba
 
-from frictionlab.compile.dispatch import names_used
+from frictionlab.compile.dispatch import FOREIGN, names_used
 
 _config: Any = numba.config
 
@@ -41,17 +42,14 @@ class _Clock(threading.local):
 _clock = _Clock()
 
 
-class limited_to:  # noqa: N801  # reads as a sentence: with limited_to(seconds)
+@contextlib.contextmanager
+def limited_to(seconds: float) -> Iterator[None]:
     """While it lasts, kernels of this thread that Python runs raise TooLong after so much processor time [s]."""
-
-    def __init__(self, seconds: float) -> None:
-        self.seconds = seconds
-
-    def __enter__(self) -> None:
-        self.before, _clock.until = _clock.until, time.thread_time() + self.seconds
-
-    def __exit__(self, *_: object) -> None:
-        _clock.until = self.before
+    before, _clock.until = _clock.until, time.thread_time() + seconds
+    try:
+        yield
+    finally:
+        _clock.until = before
 
 
 @functools.cache
@@ -71,7 +69,7 @@ def _of_python(kernel: Any) -> Any:
         return _as_python[id(kernel)][1]
     function = getattr(kernel, "py_func", kernel)
     if isinstance(function, FunctionType):
-        return _twin(function) if function.__module__.partition(".")[0] not in _FOREIGN else kernel
+        return _twin(function) if function.__module__.partition(".")[0] not in FOREIGN else kernel
     if isinstance(kernel, list):  # of bodies to choose from
         return [_of_python(each) for each in kernel]
     if type(kernel) is tuple:
@@ -79,9 +77,6 @@ def _of_python(kernel: Any) -> Any:
     if isinstance(kernel, dict):
         return {key: _of_python(each) for key, each in kernel.items()}
     return kernel
-
-
-_FOREIGN = {"numpy", "math", "cmath", "numba", "builtins", "typing"}
 
 
 def _twin(function: FunctionType) -> Any:
@@ -104,7 +99,7 @@ def _twin(function: FunctionType) -> Any:
 
 def _seen_in(function: FunctionType, value: Any) -> Any:
     """What a name stands for in the twin of a function: of frictionlab's modules, what it takes from them."""
-    if not isinstance(value, ModuleType) or value.__name__.partition(".")[0] in _FOREIGN:
+    if not isinstance(value, ModuleType) or value.__name__.partition(".")[0] in FOREIGN:
         return _of_python(value)
     taken = {name for name in names_used(function.__code__) if hasattr(value, name)}
     return SimpleNamespace(**{name: _of_python(getattr(value, name)) for name in taken})

@@ -20,9 +20,9 @@ from pandas.testing import assert_frame_equal
 
 from frictionlab import cli
 from frictionlab.charts import figures  # noqa: F401  # imported once, before the copies
-from frictionlab.methods.exact import method  # noqa: F401
-from frictionlab.report import write_report  # noqa: F401
-from frictionlab.runner import accumulate, api  # noqa: F401
+from frictionlab.methods.exact import method  # noqa: F401  # the same
+from frictionlab.report import write_report  # noqa: F401  # the same
+from frictionlab.runner import accumulate, api  # noqa: F401  # the same
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.saved import read_saved
 

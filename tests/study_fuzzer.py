@@ -249,7 +249,7 @@ def complaint(seed: int, folder: Path) -> str:
     except StudyError as problem:
         said = str(problem)
         wrong = "refused" if said and printable(said) == said else f"not printable: {said!a}"
-    except Exception as problem:
+    except Exception as problem:  # any other is what is looked for
         wrong = f"{type(problem).__name__}: {str(problem)[:200]!a}"
     taken = time.process_time() - before
     return f"took {taken:.1f} s" if taken > LONGEST else wrong

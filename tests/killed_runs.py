@@ -50,7 +50,7 @@ def started(study: Path, out: Path) -> int:
         for stream in (0, 1, 2):
             os.dup2(null, stream)
         accumulate.SAVE_EVERY = 0.0
-        os._exit(cli.main(["run", str(study), "-o", str(out), "-j", "2"]))
+        os._exit(cli.main(["run", str(study), "-o", str(out), "--cache", f"{out}.kept", "-j", "2"]))
     return process
 
 
@@ -110,8 +110,9 @@ def main(kills: int, seed: int) -> int:
         for number in range(kills):
             out = Path(folder) / f"run{number}"
             while not killed(study, out, draw.uniform(0.0, 1.1 * taken)):
-                for path in sorted(out.rglob("*"), reverse=True):
-                    path.rmdir() if path.is_dir() else path.unlink()
+                for written in (out, Path(f"{out}.kept")):
+                    for path in sorted(written.rglob("*"), reverse=True):
+                        path.rmdir() if path.is_dir() else path.unlink()
             stages[stage(out)] += 1
             print(".", end="", flush=True)
             if draw.random() < 0.3:

@@ -119,7 +119,7 @@ OUTSIDE = {
     ],
     "numpy": [
         *("quantities", "compile", "theory", "shape", "orbit", "numerics", "dynamics", "methods", "study"),
-        *("results", "runner", "charts", "bench", "testing"),
+        *("results", "runner", "scene", "charts", "bench", "testing"),
     ],
     "hypothesis": ["testing"],
     "numba": ["compile", "bench.peers"],  # the peers' integrators are called with numba's C functions
@@ -129,6 +129,7 @@ OUTSIDE = {
     "pyarrow": ["results", "runner"],
     "matplotlib": ["charts", "bench.chart"],
     # inside functions alone: nothing imports it before it is needed
+    "distributed": ["runner"],
     "scipy": ["theory", "numerics", "methods.reduced", "bench.peers"],
     "heyoka": ["bench.peers"],
     "numbalsoda": ["bench.peers"],

@@ -24,7 +24,10 @@ def is_for_the_deep_profile(study: Path) -> bool:
     if study.stem in SLOW:
         return True
     plan = load_study(study)
-    long = any(scene.degrees_of_freedom > 0 or scene.transverse_slip is not None for scene in plan.scenes)
+    long = any(
+        along.scene.degrees_of_freedom > 0 or along.scene.transverse_slip is not None
+        for along, _ in plan.scenes_along
+    )
     bristles = any(isinstance(law, BristleLaw) for choice in plan.laws for law in plan.laws_of(choice))
     return long and bristles
 

@@ -14,6 +14,7 @@ from frictionlab.quantities import Floats
 from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.solve import FROM_METHODS, answer, number_columns
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import Scenes
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ def solve_points(
         return _peer_answers(solver, scenes, law, tolerance)
     n = len(scenes)
     found = SolverAnswers.without("failed", "", n)
-    for piece in answer(Chunk(tuple(range(n)), tuple(scenes), law, solver, Task(tolerance))):
+    for piece in answer(Chunk(np.arange(n), Scenes.of(scenes), law, solver, Task(tolerance))):
         for at, place in enumerate(piece.places):
             found.status[place] = piece.answers.status[at]
             found.reason[place] = piece.answers.reason[at]

@@ -87,12 +87,12 @@ def _report(problem: BaseException) -> int:
 def _diagnose(problem: BaseException) -> tuple[int, str]:
     """The exit code and the message of an error: the study's, the disk's, a plugin's or our own."""
     from frictionlab.faults import BrokenPlugin, failing_law
-    from frictionlab.runner.errors import FolderError, SaveError
+    from frictionlab.runner.errors import FolderError, NoScheduler, SaveError
     from frictionlab.study import StudyError
 
     if isinstance(problem, CommandError):
         return problem.code, str(problem)
-    if isinstance(problem, StudyError | FolderError):
+    if isinstance(problem, StudyError | FolderError | NoScheduler):
         return WRONG, str(problem)
     if isinstance(problem, SaveError):
         return FAILED, str(problem)

@@ -25,9 +25,24 @@ from frictionlab.cli.output import (
 )
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
     from frictionlab.results.run import Run
     from frictionlab.runner.batch import Job
+    from frictionlab.runner.workforce import Workforce
     from frictionlab.study import Plugins
+
+
+def _one_of_so_many(
+    context: click.Context, option: click.Parameter, given: str | None
+) -> tuple[int, int] | None:
+    """I and N of I/N. Raises BadParameter."""
+    if given is None:
+        return None
+    first, _, count = given.partition("/")
+    if first.isdecimal() and count.isdecimal() and 1 <= int(first) <= int(count):
+        return int(first), int(count)
+    raise click.BadParameter(f"must be I/N with 1 <= I <= N, such as 3/16, got '{given}'")
 
 
 class RunOptions(NamedTuple):
@@ -40,9 +55,25 @@ class RunOptions(NamedTuple):
     law_files: tuple[Path, ...]
     plugins: Plugins
     workers: int | None
+    processes: int | None
+    scheduler: str | None
+    part: tuple[int, int] | None
+    cache: Path | None
+    cache_size: float
     as_json: bool
     cite: bool
     force: bool
+
+    def check(self) -> None:
+        """Raises UsageError for options that contradict each other."""
+        forces = {"-j": self.workers, "--processes": self.processes, "--scheduler": self.scheduler}
+        given = [name for name, value in forces.items() if value is not None]
+        if len(given) > 1:
+            raise click.UsageError(f"{' and '.join(given)} say who solves the points; give one of them")
+        for first, second in (("--json", "--cite"), ("--part", "--json"), ("--part", "--cite")):
+            chosen = {"--json": self.as_json, "--cite": self.cite, "--part": self.part is not None}
+            if chosen[first] and chosen[second]:
+                raise click.UsageError(f"{first} and {second} print different things; give one of them")
 
     @property
     def changes(self) -> tuple[str, ...]:
@@ -69,6 +100,32 @@ class RunOptions(NamedTuple):
 @click.option(
     "-j", "workers", type=click.IntRange(min=1), metavar="N", help="Threads; all cores if left out."
 )
+@click.option("--processes", type=click.IntRange(min=1), metavar="N", help="Processes instead of threads.")
+@click.option(
+    "--scheduler",
+    metavar="tcp://HOST:PORT",
+    help="Send chunks to the workers of this dask scheduler (needs frictionlab[cluster]).",
+)
+@click.option(
+    "--part",
+    callback=_one_of_so_many,
+    metavar="I/N",
+    help="Solve the I-th of N shares of the chunks, for job arrays; without it the same command gathers them.",
+)
+@click.option(
+    "--cache",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Where solved chunks are kept, and found by other runs; .cache beside the results if left out.",
+)
+@click.option(
+    "--cache-size",
+    type=click.FloatRange(min=0.0),
+    default=4.0,
+    show_default=True,
+    metavar="GB",
+    help="Above it the chunks used longest ago are removed.",
+)
 @options.as_json
 @click.option("--cite", is_flag=True, help="Print the publications to cite, as BibTeX, instead of text.")
 @click.option("--force", is_flag=True, help="Replace the results of another study or version in DIR.")
@@ -81,12 +138,15 @@ def run_command(**given: Any) -> int:
     from frictionlab.runner import batch  # with pandas
 
     asked = RunOptions(**given)
-    if asked.as_json and asked.cite:
-        raise click.UsageError("--json and --cite print different things; give one of them")
+    asked.check()
     jobs = batch.jobs(asked.study, asked.out, asked.changes, asked.law_files, asked.plugins)
     batch.check_folders(jobs, asked.existing)
     index = batch.index_folder(asked.study, asked.out)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+    if asked.part is not None:
+        for job in jobs:
+            _run_part(job, asked, asked.part)
+        return OK
     done = [_run(job, asked) for job in jobs]
     if index is not None:
         _write_index(index, done)
@@ -103,14 +163,22 @@ def _run(job: Job, asked: RunOptions) -> Run:
     """Run one study, print its summary, then draw it: the summary does not wait for the figures."""
     from frictionlab.runner import api
     from frictionlab.runner.progress import Meter
-    from frictionlab.runner.workers import Workers
 
     for line in [] if asked.force else api.run_folder(job.study, job.out).damaged():
         print_message(line)
     meter = Meter(sys.stderr)
-    pool = Workers(asked.workers or os.cpu_count() or 1)
     try:
-        result = api.run(job.study, job.out, asked.changes, asked.existing, executor=pool, progress=meter)
+        with _force(asked) as force:
+            result = api.run(
+                job.study,
+                job.out,
+                asked.changes,
+                asked.existing,
+                executor=force,
+                progress=meter,
+                cache=asked.cache,
+                cache_gigabytes=asked.cache_size,
+            )
     except api.Interrupted as problem:
         raise CommandError(INTERRUPTED, _how_far(problem.run)) from problem
     except api.UnsavedError as problem:
@@ -118,11 +186,39 @@ def _run(job: Job, asked: RunOptions) -> Run:
         raise
     finally:
         meter.close()
-        pool.shutdown(wait=False, cancel_futures=True)
     _show_failed(result) if asked.as_json or asked.cite else _show(result)
     _draw(job, result)
     _report(result)
     return result
+
+
+def _force(asked: RunOptions) -> AbstractContextManager[Workforce]:
+    """Who solves the chunks."""
+    from frictionlab.runner import workforce
+
+    if asked.scheduler is not None:
+        return workforce.cluster(asked.scheduler)
+    if asked.processes is not None:
+        return workforce.processes(asked.processes)
+    return workforce.threads(asked.workers or os.cpu_count() or 1)
+
+
+def _run_part(job: Job, asked: RunOptions, part: tuple[int, int]) -> None:
+    """Solve a share of the chunks of a study and keep them; the table is for the run that gathers them."""
+    from frictionlab.runner.kept_chunks import kept_beside
+    from frictionlab.runner.progress import Meter
+    from frictionlab.runner.share import run_share
+
+    kept, meter = kept_beside(job.out, asked.cache, asked.cache_size), Meter(sys.stderr)
+    try:
+        with _force(asked) as force:
+            done = run_share(job.study, part, kept, force, meter)
+    finally:
+        meter.close()
+    print_result(
+        f"{job.name}, part {part[0]} of {part[1]}: {done.computed} points solved and {done.found} found of "
+        f"{done.points}, kept in {kept.folder}"
+    )
 
 
 def _how_far(result: Run) -> str:

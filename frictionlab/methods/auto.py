@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
+import numpy as np
+
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method
 from frictionlab.methods.exact.method import Exact
@@ -42,6 +44,14 @@ class Auto(Method):
         method, reason = self.choice(scene, law)
         return reason if method is None else None
 
+    def refusals(self, scenes: Sequence[Scene], law: FrictionLaw) -> list[str | None]:
+        """None where one method accepts them all; else one after another."""
+        for method in METHODS_BY_COST:
+            reasons = method.refusals(scenes, law)
+            if not any(reasons):
+                return reasons
+        return super().refusals(scenes, law)
+
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """The cost of the chosen method."""
         method, _reason = self.choice(scene, law)
@@ -53,11 +63,12 @@ class Auto(Method):
         assert method is not None, why
         answers = method.solve(scenes, law, tolerance)
         status, reason = list(answers.status), list(answers.reason)
-        for i, error in enumerate(answers.error):
-            if status[i] == "ok" and not error <= tolerance:
+        for i in np.flatnonzero(~(answers.error <= tolerance)).tolist():
+            if status[i] == "ok":
                 status[i] = "failed"
                 reason[i] = (
-                    f"{method.name} reaches an error of {error:.1e}, above the tolerance {tolerance:.1e}"
+                    f"{method.name} reaches an error of {answers.error[i]:.1e}, above the tolerance {tolerance:.1e}"
                 )
-        model = [f"{model} (auto: {method.name}, {why})" for model in answers.model]
+        named = {model: f"{model} (auto: {method.name}, {why})" for model in set(answers.model)}
+        model = [named[each] for each in answers.model]
         return replace(answers, status=status, reason=reason, model=model)

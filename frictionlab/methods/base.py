@@ -64,6 +64,13 @@ class Method(Record, ABC):
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Why this method cannot do this scene and law, as a sentence; None when it can."""
 
+    def refusals(self, scenes: Sequence[Scene], law: FrictionLaw) -> list[str | None]:
+        """The refusal of each of scenes that differ in belt speed alone.
+
+        Here one after another. A method that knows of them all at once says so sooner.
+        """
+        return [self.refusal(scene, law) for scene in scenes]
+
     @abstractmethod
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone, in ascending order; none of them refused."""

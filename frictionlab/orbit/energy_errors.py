@@ -11,6 +11,7 @@ import numpy as np
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
 
 FOR_ERRORS = "duration", "open_ends", "swing", "misfit_load", "misfit_speed"
 """What is read from an orbit for them: its period, the distance of its end from its beginning in the norm of energy,
@@ -51,7 +52,7 @@ def energy_errors(
     put_in = 2.0 * read["misfit_load"] + load * (wrong + _ROUNDING * swing * period)
     viscous = damping * (4.0 * read["misfit_speed"] + 2.0 * wrong * (swing + wrong / period))
     viscous = viscous + _ROUNDING * damping * swing**2 * period
-    belt = np.array([abs(scene.belt_speed) for scene in scenes])
+    belt = np.abs(belt_speeds_of(scenes))
     force = (
         mass.normal_load * (np.abs(read["mean_friction"] - means.value) + means.error + _ROUNDING) * period
     )

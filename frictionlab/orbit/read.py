@@ -27,6 +27,7 @@ from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
 
 READ = (
     "mean_friction",
@@ -97,7 +98,7 @@ def _mass(scene: Scene) -> Mass:
 
 
 def _read_together(scenes: Sequence[Scene], found: Orbits) -> Floats:
-    out, speeds = np.full((len(scenes), len(READ)), np.nan), np.array([scene.belt_speed for scene in scenes])
+    out, speeds = np.full((len(scenes), len(READ)), np.nan), belt_speeds_of(scenes)
     panels = OrbitPanels(found.tau, found.x, found.v, found.friction, found.stick)
     KernelCall(read_each)(panels, found.ends, _mass(scenes[0]), speeds, out)
     return out

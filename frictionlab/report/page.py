@@ -161,7 +161,7 @@ def _commands(saved: Saved) -> str:
     return "\n".join(
         [
             *([on] if _unfinished(saved) else []),
-            "frictionlab run study.yaml -o again   # compute everything anew, into another folder",
+            "frictionlab run study.yaml -o again --cache again   # compute everything anew, into another folder",
             "frictionlab report .                  # draw the figures and write this page anew; nothing is computed",
         ]
     )

@@ -12,25 +12,25 @@ from frictionlab.columns import SI
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
 
 
 def derived_columns(scenes: Sequence[Scene], law: FrictionLaw, mean_friction: Floats) -> dict[str, Floats]:
     """Mean friction, belt speed, friction force against their natural scales; NaN where a scale is zero.
 
+    scenes: that differ in belt speed alone.
     ``presliding_ratio`` stays empty for laws without a presliding length.
     """
-    free = np.array([friction_free_velocity(scene) for scene in scenes])
-    speed = np.array([scene.belt_speed for scene in scenes])
-    sliding = np.array([law.sliding_friction(abs(scene.belt_speed)) for scene in scenes])
-    limit = np.array(
-        [(scene.normal_load or 0.0) * value for scene, value in zip(scenes, sliding, strict=True)]
-    )
+    scene, speed = scenes[0], belt_speeds_of(scenes)
+    free = np.full(len(speed), friction_free_velocity(scene))
+    sliding = np.array([law.sliding_friction(each) for each in np.abs(speed).tolist()])
+    limit = (scene.normal_load or 0.0) * sliding
     return {
         "normalized_friction": _ratio(mean_friction, sliding * np.sign(speed)),
         "velocity_ratio": _ratio(speed, free),
-        "friction_to_drive": _ratio(limit, np.array([force_amplitude(scene) for scene in scenes])),
-        "presliding_ratio": _ratio(_presliding(law) * np.array([scene.frequency for scene in scenes]), free),
+        "friction_to_drive": _ratio(limit, np.full(len(speed), force_amplitude(scene))),
+        "presliding_ratio": _ratio(np.full(len(speed), _presliding(law) * scene.frequency), free),
     }
 
 

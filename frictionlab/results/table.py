@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
-from frictionlab.columns import RESULTS, SCALED, SI, TEXT, belt_speed, given
+from frictionlab.columns import BELT_SPEEDS, RESULTS, SCALED, SI, TEXT, belt_speed, given
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import si_columns, si_scales
-from frictionlab.results.part import Part
+from frictionlab.results.part import Part, Places
 from frictionlab.scene.dimensional import scaled_parameters
-from frictionlab.scene.scene import Scene
-from frictionlab.study import Study, StudyCase
+from frictionlab.study import StudyCurve
 
 if TYPE_CHECKING:
     from frictionlab.orbit.sample import Samples
@@ -24,65 +24,62 @@ if TYPE_CHECKING:
 FINISHED = ("ok", "refused", "failed", "not_unique")
 
 
-class Heading(NamedTuple):
-    """The inputs of a row: a case without its method, whose import may take longer than a table."""
-
-    law_label: str
-    kind: str
-    given_law: FrictionLaw
-    method_label: str
-    scene: Scene
-
-
-def headings(study: Study) -> list[Heading]:
-    """One heading for each of ``study.cases()``, in the same order."""
-    return [
-        Heading(choice.label, choice.kind, law, method.label, scene)
-        for choice in study.laws
-        for law in study.laws_of(choice)
-        for method in study.methods
-        for scene in study.scenes
-    ]
-
-
 class Inputs(NamedTuple):
     """The input columns of each row; scales: the units of its results, for scenes in SI units."""
 
-    columns: dict[str, list[Any]]
+    columns: dict[str, Column]
     size: int
     scales: dict[str, Floats] | None = None
 
 
-def inputs(rows: Sequence[Heading | StudyCase]) -> Inputs:
-    """law, kind, method, then every value of the scenes and of the laws; None where a row has none."""
-    named = {
-        "law": [row.law_label for row in rows],
-        "kind": [row.kind for row in rows],
-        "method": [row.method_label for row in rows],
-    }
-    # Rows share their scenes and laws: the values of each are read once.
-    scenes = {id(row.scene): row.scene.values() for row in {id(row.scene): row for row in rows}.values()}
-    laws = {id(row.given_law): row.given_law for row in rows}
-    parameters = {key: _values(law) for key, law in laws.items()}
-    columns = _spread("scene.", [scenes[id(row.scene)] for row in rows])
-    columns |= _spread("law.", [parameters[id(row.given_law)] for row in rows])
-    columns |= _spread(SCALED, [_scaled(row) for row in rows])
-    return Inputs(named | columns, len(rows), _scales([row.scene for row in rows]))
+def inputs(curves: Sequence[StudyCurve]) -> Inputs:
+    """law, kind, method, then every value of the scenes and of the laws; empty (NaN, None) where a row has none."""
+    named = [{"law": each.law_label, "kind": each.kind, "method": each.method.label} for each in curves]
+    # Curves share their scenes and laws: the values of each are read once.
+    scenes = _once(curves, lambda each: each.scenes.scene, lambda scene: scene.values())
+    laws = _once(curves, lambda each: each.given_law, _values)
+    rows = [each.rows for each in curves]
+    columns = _spread("", named, rows)
+    columns |= _spread("scene.", scenes, rows)
+    columns |= _spread("law.", laws, rows)
+    columns |= _spread(SCALED, [_scaled(each) for each in curves], rows)
+    for each in curves:
+        for name, speeds in zip(BELT_SPEEDS, (each.scenes.belt_speeds, each.scenes.given), strict=True):
+            if name in columns:
+                columns[name][slice_of(each.rows)] = speeds
+    return Inputs(columns, sum(map(len, rows)), _scales(curves))
 
 
-def _scaled(row: Heading | StudyCase) -> dict[str, Any]:
+Column = NDArray[Any]
+Told = TypeVar("Told")
+
+
+def _once(
+    curves: Sequence[StudyCurve], part: Callable[[StudyCurve], Any], told: Callable[[Any], Told]
+) -> list[Told]:
+    """What is told of a part of each curve, made once of each different one."""
+    found = {id(part(each)): part(each) for each in curves}
+    made = {key: told(one) for key, one in found.items()}
+    return [made[id(part(each))] for each in curves]
+
+
+def slice_of(rows: range) -> slice:
+    """The same places of an array."""
+    return slice(rows.start, rows.stop, rows.step)
+
+
+def _scaled(curve: StudyCurve) -> dict[str, Any]:
     """The parameters of its law that were given in SI units in the scales of the scene."""
-    si = row.scene.dimensional
-    return {} if si is None else _cells(scaled_parameters(row.given_law, si.scales))
+    si = curve.scenes.scene.dimensional
+    return {} if si is None else _cells(scaled_parameters(curve.given_law, si.scales))
 
 
-def _scales(scenes: Sequence[Scene]) -> dict[str, Floats] | None:
-    different = {id(scene): scene for scene in scenes if scene.dimensional is not None}
-    found = {key: si_scales(scene) for key, scene in different.items()}
-    if not found:
+def _scales(curves: Sequence[StudyCurve]) -> dict[str, Floats] | None:
+    if not curves or curves[0].scenes.scene.dimensional is None:
         return None
-    rows = [found[id(scene)] for scene in scenes]
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    found = _once(curves, lambda each: each.scenes.scene, si_scales)
+    columns = _spread("", found, [each.rows for each in curves])
+    return {name: column.astype(float) for name, column in columns.items()}
 
 
 def _values(law: FrictionLaw) -> dict[str, Any]:
@@ -100,11 +97,22 @@ def _cells(values: Mapping[str, Any]) -> dict[str, Any]:
     return cells
 
 
-def _spread(prefix: str, records: list[dict[str, Any]]) -> dict[str, list[Any]]:
+def _spread(prefix: str, records: list[dict[str, Any]], rows: list[range]) -> dict[str, Column]:
+    """A column for each name in the records, each record's value in its rows; numbers with gaps as floats."""
     names = dict.fromkeys(
         name for record in {id(record): record for record in records}.values() for name in record
     )
-    return {f"{prefix}{name}": [record.get(name) for record in records] for name in names}
+    size = sum(map(len, rows))
+    found: dict[str, Column] = {}
+    for name in names:
+        values = [record.get(name) for record in records]
+        numbers = all(value is None or isinstance(value, float | int) for value in values)
+        column = np.full(size, np.nan) if numbers else np.full(size, None, dtype=object)
+        for value, where in zip(values, rows, strict=True):
+            if value is not None:
+                column[slice_of(where)] = value
+        found[f"{prefix}{name}"] = column
+    return found
 
 
 def value_in(cells: Mapping[str, Any], name: str) -> Any:
@@ -196,12 +204,14 @@ def finished_rows(given: Inputs, earlier: pd.DataFrame) -> tuple[list[int], pd.D
         return [], earlier.iloc[:0]
     done = earlier[earlier["status"].isin(FINISHED)]
     places = {key: place for place, key in enumerate(_keys([done[name].tolist() for name in given.columns]))}
-    matches = [(row, places.get(key)) for row, key in enumerate(_keys(given.columns.values()))]
+    keys = _keys(column.tolist() for column in given.columns.values())
+    matches = [(row, places.get(key)) for row, key in enumerate(keys)]
     found = [(row, place) for row, place in matches if place is not None]
     return [row for row, _ in found], done.iloc[[place for _, place in found]]
 
 
 def _keys(columns: Iterable[list[Any]]) -> Iterable[Hashable]:
+    """The cells of each row, None for NaN."""
     return zip(*([None if value != value else value for value in column] for column in columns), strict=True)
 
 
@@ -217,7 +227,7 @@ def _plain(value: Any) -> Any:
 
 
 def orbit_rows(
-    orbits: Mapping[int, Samples], earlier: pd.DataFrame | None, finished: Collection[int]
+    orbits: Mapping[int, Samples], earlier: pd.DataFrame | None, finished: Places
 ) -> pd.DataFrame | None:
     """The kept orbits, one row per sample; ``row`` is the point's place in the table. None without any."""
     frames = [pd.DataFrame({"row": row, **samples._asdict()}) for row, samples in sorted(orbits.items())]

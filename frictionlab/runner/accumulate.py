@@ -9,6 +9,7 @@ from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pandas as pd
 
 from frictionlab.columns import selected
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 ALL = selected(None)
 SAVE_EVERY = 10.0
-"""Most seconds of work that a crash may lose, apart from the chunks in progress."""
+"""Most seconds of work that a crash may lose, apart from the chunks in progress, where chunks are not kept."""
 
 
 class Accumulator:
@@ -52,10 +53,11 @@ class Accumulator:
             "started": datetime.now(UTC).isoformat(timespec="seconds"),
             "overrides": list(overrides),
             "computed": 0,
+            "found": 0,
         }
-        self._saved = 0
+        self._unsaved = 0
         self._verdicts: list[dict[str, Any]] = []
-        self.finished: frozenset[int] = frozenset()
+        self.finished = np.zeros(given.size, np.bool_)
 
     def resume(self, existing: Existing, samples: int) -> None:
         """Take over the rows an earlier run of the same study finished. Raises FolderError."""
@@ -72,24 +74,35 @@ class Accumulator:
                 return
         rows, kept = finished_rows(self._given, earlier)
         self._results.put_earlier(rows, kept)
-        self.finished = frozenset(rows)
+        self.finished[rows] = True
 
-    def take(self, parts: list[Part]) -> None:
-        """Enter answered rows."""
+    def take(self, parts: Sequence[Part], kept: bool = False) -> None:
+        """Enter rows that were solved. kept: whether they are kept already, apart from the table."""
         for part in parts:
-            self._results.put(part)
-            self._orbits |= part.orbits
+            self._put(part)
             self._run["computed"] += len(part.rows)
+            self._unsaved += 0 if kept else len(part.rows)
+
+    def take_found(self, parts: Sequence[Part]) -> None:
+        """Enter rows that are known from an earlier run, of this study or of another."""
+        for part in parts:
+            self._put(part)
+            self._run["found"] += len(part.rows)
+
+    def _put(self, part: Part) -> None:
+        self._results.put(part)
+        self._orbits |= part.orbits
 
     def tick(self) -> None:
         """Tell how far the run is, and save it when that is due."""
-        self._progress(len(self.finished) + self._run["computed"], self._given.size)
-        if time.monotonic() < self._next_save or self.computed == self._saved:
+        done = int(self.finished.sum()) + self._run["found"] + self._run["computed"]
+        self._progress(done, self._given.size)
+        if time.monotonic() < self._next_save or not self._unsaved:
             return
         before = time.monotonic()
         with suppress(SaveError):  # the end of the run tries again and reports the error
             self.save(self.table, self.orbits)
-            self._saved = self.computed
+            self._unsaved = 0
         after = time.monotonic()
         self._next_save = after + max(SAVE_EVERY, 20.0 * (after - before))
 
@@ -104,7 +117,7 @@ class Accumulator:
     @property
     def complete(self) -> bool:
         """Whether an earlier run left nothing to do."""
-        return len(self.finished) == self._given.size
+        return bool(self.finished.all())
 
     @property
     def table(self) -> pd.DataFrame:
@@ -114,7 +127,7 @@ class Accumulator:
     @property
     def orbits(self) -> pd.DataFrame | None:
         """The kept orbits as they stand; None where none are kept."""
-        return orbit_rows(self._orbits, self._earlier_orbits, self.finished)
+        return orbit_rows(self._orbits, self._earlier_orbits, np.flatnonzero(self.finished))
 
     @property
     def computed(self) -> int:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from math import inf
 from os import PathLike
 from pathlib import Path
@@ -25,9 +24,10 @@ from frictionlab.results.expectations import judge
 from frictionlab.results.part import Part
 from frictionlab.results.run import Run
 from frictionlab.results.state import OrbitOf, SteadyState
-from frictionlab.results.table import headings, inputs
+from frictionlab.results.table import inputs
 from frictionlab.runner.accumulate import Accumulator
 from frictionlab.runner.arguments import (
+    check_executor,
     check_ways,
     given_columns,
     given_law,
@@ -37,16 +37,20 @@ from frictionlab.runner.arguments import (
     given_study,
     given_tolerance,
 )
-from frictionlab.runner.chunks import Chunk, Task, chunks
+from frictionlab.runner.chunks import Chunk, Task, task_of
 from frictionlab.runner.code_digest import code_digest
 from frictionlab.runner.errors import SaveError
-from frictionlab.runner.execute import collect
 from frictionlab.runner.folder import Existing, Identity, RunFolder
+from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, KeptChunks, Keys, kept_beside
+from frictionlab.runner.open_chunks import OpenChunk, answered, each_once, open_chunks
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.solve import answer, parts
-from frictionlab.runner.workers import Workers, within
+from frictionlab.runner.workers import within
+from frictionlab.runner.workforce import Workforce, workforce
 from frictionlab.scene.scene import Scene
-from frictionlab.study import Study, StudyCase
+from frictionlab.scene.scenes import Scenes
+from frictionlab.study import MethodChoice, Study, StudyCurve
+from frictionlab.study.study import law_in_scene
 
 
 class Interrupted(KeyboardInterrupt):
@@ -70,15 +74,19 @@ def run(
     out: str | PathLike[str] | None = None,
     overrides: Sequence[str] = (),
     existing: Existing = "reuse",
-    executor: Executor | None = None,
+    executor: Executor | Workforce | None = None,
     progress: Progress = silent,
     columns: Sequence[str] | None = None,
+    cache: str | PathLike[str] | None = None,
+    cache_gigabytes: float = USUAL_GIGABYTES,
 ) -> Run:
     """Solve every case of a study. Writes only with ``out``, the folder for results.
 
     overrides: ``path=value`` as for ``--set``; a ``Study`` holds its own already, they are for the record.
     existing: take over finished points of the same study in ``out``, or replace whatever results it holds.
     executor: any; threads of this process by default.
+    cache: the folder that keeps solved chunks for this and other studies, ``.cache`` beside ``out`` by default; above
+    so many gigabytes those used longest ago are removed. Without ``out`` and ``cache`` nothing is written.
     columns: result columns, in place of those of the study; inputs, mean_friction, error, status and reason always.
     Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin, ValueError or TypeError for what makes no
     sense, such as an unknown column.
@@ -88,13 +96,15 @@ def run(
     folder = run_folder(ready, Path(out)) if out is not None else None
     if folder is not None:
         folder.check(existing)
-    gathering = Accumulator(inputs(headings(ready)), folder, progress, overrides, ready.selected())
-    task = Task(ready.tolerance, ready.keep_orbit or 0, ready.selected(), ready.seconds_per_point)
+    curves = list(ready.curves())
+    gathering = Accumulator(inputs(curves), folder, progress, overrides, ready.selected())
+    task = task_of(ready)
     gathering.resume(existing, task.samples)
-    left = [] if gathering.complete else chunks(ready.cases(), task, gathering.finished)
+    kept = kept_beside(out, cache, cache_gigabytes)
+    left = [] if gathering.complete else list(open_chunks(curves, task, gathering.finished, Keys(ready.code)))
     if folder is not None:
         folder.open(existing)
-    stopped = _solve(gathering, left, executor)
+    stopped = _solve(gathering, left, kept, executor)
     return _finished(ready, gathering, folder, stopped)
 
 
@@ -105,33 +115,59 @@ def run_folder(study: Study, out: Path) -> RunFolder:
     return RunFolder(out, Identity(*told, solver=code_digest(study)))
 
 
-def _solve(gathering: Accumulator, left: list[Chunk], executor: Executor | None) -> bool:
+def _solve(
+    gathering: Accumulator,
+    left: list[OpenChunk],
+    kept: KeptChunks | None,
+    executor: Executor | Workforce | None,
+) -> bool:
     """Solve what is left and put it in the table; True when that was interrupted."""
     if not left:
         return False
     gathering.describe()
     try:
-        with _workers(executor) as pool:
-            collect(left, pool, gathering.take, gathering.tick)
+        unknown = _look_up(left, kept, gathering)
+        with workforce(executor) as force:
+            force.solve(unknown, lambda work, parts: _take(work, parts, kept, gathering), gathering.tick)
     except KeyboardInterrupt:
         gathering.unfinished("interrupted")
         return True
     except BrokenExecutor as problem:
         gathering.unfinished(f"a worker died: {problem}")
+    finally:
+        if kept is not None:
+            kept.trim()
     return False
 
 
-@contextmanager
-def _workers(executor: Executor | None) -> Iterator[Executor]:
-    """The caller's executor, or threads that are not waited for after an interrupt."""
-    if executor is not None:
-        yield executor
+def _look_up(left: Sequence[OpenChunk], kept: KeptChunks | None, gathering: Accumulator) -> list[OpenChunk]:
+    """Enter what is known already; the rest, each once."""
+    unknown = []
+    for work in left:
+        part = kept.found(work.key) if kept is not None and work.key is not None else None
+        if part is None:
+            unknown.append(work)
+        else:
+            gathering.take_found(work.of(part))
+    return each_once(unknown)
+
+
+def _take(work: OpenChunk, parts: list[Part], kept: KeptChunks | None, gathering: Accumulator) -> None:
+    """Keep and enter what was found of a chunk."""
+    part = answered(work, parts)
+    if part is None:
+        gathering.take(parts)
         return
-    pool = Workers(os.cpu_count() or 1)
-    try:
-        yield pool
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+    own, *others = work.of(part)
+    gathering.take([own], kept is not None and _is_kept(work.key, part, kept))
+    gathering.take_found(others)
+
+
+def _is_kept(key: str | None, part: Part, kept: KeptChunks) -> bool:
+    """Keep answers, if they can be; whether they are."""
+    with suppress(SaveError):  # the table is saved all the same, or says why it is not
+        return key is not None and kept.keep(key, part)
+    return False
 
 
 def _finished(study: Study, gathering: Accumulator, folder: RunFolder | None, stopped: bool) -> Run:
@@ -169,24 +205,26 @@ def curve(
     method: str | Method = "auto",
     tolerance: float = 1e-8,
     columns: Sequence[str] | None = None,
+    executor: Executor | None = None,
 ) -> pd.DataFrame:
     """The result table of one law over belt speeds, in the order given.
 
     belt_speed [scene velocity; m/s for a scene given in SI units]: one-dimensional.
     tolerance [-]: absolute, on mean_friction.
     columns: result columns, all by default; inputs, mean_friction, error, status and reason always.
+    executor: any; threads of this process by default.
     Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
+    check_executor(executor)
     kind, wanted = _kind(law), selected(None if columns is None else given_columns(columns, scene))
     task = Task(given_tolerance(tolerance), columns=wanted)
     # a method is never given a belt speed twice
     different, places = np.unique(given_speeds(belt_speed), return_inverse=True)
-    scenes = [scene.at(float(speed)) for speed in different]
-    cases = [StudyCase(kind, kind, law, ready.name, ready, each) for each in scenes]
-    gathering = Accumulator(inputs(cases), columns=wanted)
-    with _workers(None) as pool:
-        collect(chunks(cases, task), pool, gathering.take, gathering.tick)
+    whole = _one_curve(kind, law, ready, Scenes(scene, different))
+    gathering = Accumulator(inputs([whole]), columns=wanted)
+    with workforce(executor) as force:
+        force.solve(list(open_chunks([whole], task)), lambda _, parts: gathering.take(parts), gathering.tick)
     return gathering.table.iloc[places].reset_index(drop=True)
 
 
@@ -198,15 +236,18 @@ def steady_state(
     tolerance [-]: absolute, on mean_friction. Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
-    kind, task = _kind(law), Task(given_tolerance(tolerance))
-    case = StudyCase(kind, kind, law, ready.name, ready, scene)
-    (chunk,) = chunks([case], task)
+    task = Task(given_tolerance(tolerance))
+    chunk = Chunk(np.zeros(1, np.int64), Scenes.of([scene]), law_in_scene(law, scene), ready, task)
     (piece,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
     (part,) = within(inf, parts, chunk, [piece])
     numbers = {name: float(column[0]) for name, column in part.numbers.items()}
     words = {name: column[0] for name, column in part.text.items()}
     motion = OrbitOf(piece.answers.orbit, scene)
     return SteadyState(**words, **numbers, si=_in_si(part, scene), motion=motion)  # type: ignore[arg-type]
+
+
+def _one_curve(kind: str, law: FrictionLaw, method: Method, scenes: Scenes) -> StudyCurve:
+    return StudyCurve(kind, kind, law, MethodChoice.of(method), scenes, range(len(scenes)))
 
 
 def _in_si(part: Part, scene: Scene) -> dict[str, float]:

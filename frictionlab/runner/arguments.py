@@ -20,6 +20,7 @@ from frictionlab.methods.base import Method
 from frictionlab.mistakes.notes import closest, did_you_mean, python_text, unknown_name
 from frictionlab.quantities import Floats, rebuilt
 from frictionlab.runner.folder import Existing
+from frictionlab.runner.workforce import Workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Study, load_study, parse_study
 
@@ -112,12 +113,17 @@ def _checked_study(study: Study) -> Study:
     return replace(study, scene=given_scene(study.scene), tolerance=given_tolerance(study.tolerance))
 
 
-def check_ways(existing: Existing, executor: Executor | None) -> None:
+def check_ways(existing: Existing, executor: Executor | Workforce | None) -> None:
     """Check how to go about a run. Raises ValueError, TypeError."""
     if existing not in get_args(Existing):
         allowed = " or ".join(map(repr, get_args(Existing)))
         raise ValueError(_told(f"existing must be {allowed}", existing))
-    if executor is not None and not isinstance(executor, Executor):
+    check_executor(executor)
+
+
+def check_executor(executor: Executor | Workforce | None) -> None:
+    """Raises TypeError."""
+    if executor is not None and not isinstance(executor, Executor | Workforce):
         raise TypeError(_told("executor must be a concurrent.futures.Executor", executor))
 
 

@@ -1,22 +1,27 @@
-"""Cases into curves, and curves into chunks of neighbouring belt speeds: what a method is given at once."""
+"""Curves into chunks of neighbouring belt speeds: what a method is given at once."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import NamedTuple
+
+import numpy as np
 
 from frictionlab.columns import selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.scene.scene import Scene
-from frictionlab.study import StudyCase
+from frictionlab.results.part import Places
+from frictionlab.scene.scenes import Scenes
+from frictionlab.study import Study, StudyCurve
 
 USUAL_SIZE = 125
 """Points per chunk: pieces of one curve then hold 84 to 187 points. Fewer lose the continuation from the
 neighbour, more leave workers idle. Never made to depend on the number of workers: answers would, too."""
+LONG, LONG_SIZE = 4000, 500
+"""Points of a curve long enough to keep workers busy by larger chunks, and the points of these."""
 
 
 @dataclass(frozen=True)
@@ -30,47 +35,50 @@ class Task:
     seconds_per_point: float = math.inf
 
 
+def task_of(study: Study) -> Task:
+    """What the points of a study share."""
+    return Task(study.tolerance, study.keep_orbit or 0, study.selected(), study.seconds_per_point)
+
+
 @dataclass(frozen=True)
 class Chunk:
     """Neighbouring points of one curve, ascending in belt speed, with the table row of each."""
 
-    rows: tuple[int, ...]
-    scenes: tuple[Scene, ...]
+    rows: Places
+    scenes: Scenes
     law: FrictionLaw
     method: Method
     task: Task
 
-
-def chunk_by_curve(cases: Sequence[StudyCase]) -> list[list[int]]:
-    """The rows of each curve (everything equal but belt speed), ascending in belt speed."""
-    found: dict[Any, list[int]] = {}
-    for row, case in enumerate(cases):
-        found.setdefault(_curve_key(case), []).append(row)
-    return [sorted(rows, key=lambda row: cases[row].scene.belt_speed) for rows in found.values()]
+    def of(self, places: Sequence[int] | slice | Places) -> Chunk:
+        """The points at these places."""
+        scenes = self.scenes[places] if isinstance(places, slice) else self.scenes.taken(places)
+        return replace(self, rows=self.rows[places], scenes=scenes)
 
 
-def _curve_key(case: StudyCase) -> Any:
-    values = case.scene.at(0.0).values()
-    return case.law_label, case.law, case.method_label, case.method, tuple(values.items())
+class Cut(NamedTuple):
+    """Where a chunk is cut out of a study: its curve, the places on that and the rows of the table."""
+
+    curve: StudyCurve
+    places: Places
+    rows: Places
+
+    def chunk(self, task: Task) -> Chunk:
+        """The chunk; the law and the method are made here."""
+        curve = self.curve
+        return Chunk(self.rows, curve.scenes.taken(self.places), curve.law, curve.method.method, task)
 
 
-def chunks(cases: Sequence[StudyCase], task: Task, finished: frozenset[int] = frozenset()) -> list[Chunk]:
-    """The chunks still to solve.
-
-    Curves are cut before finished rows are left out: a run stopped and continued then solves the very chunks
-    of one that went through.
-    """
-    pieces = [piece for curve in chunk_by_curve(cases) for piece in _cut(curve)]
-    left = [[row for row in piece if row not in finished] for piece in pieces]
-    return [_chunk(cases, rows, task) for rows in left if rows]
+def cuts(curves: Iterable[StudyCurve]) -> Iterator[Cut]:
+    """Where curves are cut, whatever of them is already solved."""
+    for curve in curves:
+        rising = np.argsort(curve.scenes.given, kind="stable")
+        rows = np.arange(curve.rows.start, curve.rows.stop, curve.rows.step)
+        for places in _cut(rising):
+            yield Cut(curve, places, rows[places])
 
 
-def _cut(curve: list[int]) -> list[list[int]]:
-    pieces = max(1, round(len(curve) / USUAL_SIZE))
-    ends = [len(curve) * piece // pieces for piece in range(pieces + 1)]
+def _cut(curve: Places) -> list[Places]:
+    count = max(1, round(len(curve) / (USUAL_SIZE if len(curve) < LONG else LONG_SIZE)))
+    ends = [len(curve) * piece // count for piece in range(count + 1)]
     return [curve[start:end] for start, end in pairwise(ends)]
-
-
-def _chunk(cases: Sequence[StudyCase], rows: list[int], task: Task) -> Chunk:
-    first = cases[rows[0]]
-    return Chunk(tuple(rows), tuple(cases[row].scene for row in rows), first.law, first.method, task)

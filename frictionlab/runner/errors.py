@@ -22,3 +22,7 @@ def not_written(path: Path, problem: OSError) -> FolderError | SaveError:
     if isinstance(problem, PermissionError):
         return FolderError(f"{path}: no permission to write in {path.parent}; choose another folder")
     return SaveError(f"cannot write {path}: {problem.strerror}")
+
+
+class NoScheduler(Exception):
+    """There is no cluster to send chunks to; the message says why."""

@@ -2,55 +2,117 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from collections.abc import Callable, Iterable
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import suppress
+from queue import Empty, SimpleQueue
+from time import monotonic
 
+from frictionlab.faults import BrokenPlugin
 from frictionlab.results.part import Part
-from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.limit import solve_within
+from frictionlab.runner.open_chunks import OpenChunk
 
 TICK = 0.1
 """Seconds between two looks at what goes on."""
 GRACE = 2.0
 """Time [s] that an interrupted run waits for chunks in progress; most chunks need far less."""
+MOST_SENT = 256
+"""Chunks that are sent out at once: enough for the workers of a cluster, few enough to be held in memory."""
+MOST_SENDINGS = 5
+"""How often a chunk is sent out whose worker was lost."""
 
-Take = Callable[[list[Part]], None]
-Solving = Future[list[Part]]
+Take = Callable[[OpenChunk, list[Part]], None]
+Renew = Callable[[], Executor]
 
 
-def collect(chunks: Sequence[Chunk], executor: Executor, take: Take, tick: Callable[[], None]) -> None:
+def collect(
+    chunks: Iterable[OpenChunk],
+    executor: Executor,
+    take: Take,
+    tick: Callable[[], None],
+    renew: Renew | None = None,
+) -> None:
     """Solve every chunk, giving each answer to ``take`` on this thread; ``tick`` is called all along.
 
-    Raises what ``solve_within`` raises, BrokenExecutor where workers died, and KeyboardInterrupt: chunks not begun
-    are then dropped and those being solved get ``GRACE`` seconds, in which what they find is taken too.
+    renew: makes an executor in place of one that a lost worker broke. Raises what ``solve_within`` raises,
+    BrokenExecutor where workers are lost for good, and KeyboardInterrupt: chunks not begun are then dropped and those
+    being solved get ``GRACE`` seconds, in which what they find is taken too.
     """
-    futures = [executor.submit(solve_within, chunk) for chunk in chunks]
-    taken: set[Solving] = set()
+    sent = _Sent(executor, renew)
     try:
-        _follow(futures, taken, take, tick)
+        for each in chunks:
+            sent.send(each)
+            while len(sent.waiting) >= MOST_SENT:
+                _take_one(sent, take, tick)
+        while sent.waiting:
+            _take_one(sent, take, tick)
     except BaseException as problem:
-        for future in futures:
+        for future in sent.waiting:
             future.cancel()
         if isinstance(problem, KeyboardInterrupt | BrokenExecutor):
-            _rescue(futures, taken, take)
+            _rescue(sent, take)
         raise
 
 
-def _follow(futures: list[Solving], taken: set[Solving], take: Take, tick: Callable[[], None]) -> None:
-    waiting = set(futures)
-    while waiting:
-        done, waiting = wait(waiting, timeout=TICK, return_when=FIRST_COMPLETED)
-        for future in done:
-            take(future.result())
-            taken.add(future)
-        tick()
+class _Sent:
+    """Chunks that are sent out and have not come back."""
+
+    def __init__(self, executor: Executor, renew: Renew | None) -> None:
+        self._executor, self._renew = executor, renew
+        self._done: SimpleQueue[Future[list[Part]]] = SimpleQueue()
+        self._tries: dict[int, int] = {}
+        self.waiting: dict[Future[list[Part]], OpenChunk] = {}
+
+    def send(self, work: OpenChunk) -> None:
+        """Send a chunk out. Raises BrokenExecutor."""
+        try:
+            future = self._executor.submit(solve_within, work.chunk)
+        except BrokenExecutor:
+            if self._renew is None:
+                raise
+            self._executor = self._renew()
+            future = self._executor.submit(solve_within, work.chunk)
+        self.waiting[future] = work
+        future.add_done_callback(self._done.put)
+
+    def one_done(self, seconds: float) -> Future[list[Part]] | None:
+        """A chunk that came back, within so many seconds."""
+        with suppress(Empty):
+            return self._done.get(timeout=seconds)
+        return None
+
+    def send_again(self, work: OpenChunk, problem: BaseException) -> None:
+        """A chunk whose worker was lost, to another one. Raises BrokenExecutor where that happens again and again."""
+        tries = self._tries[id(work)] = self._tries.get(id(work), 1) + 1
+        if tries > MOST_SENDINGS or (isinstance(problem, BrokenExecutor) and self._renew is None):
+            raise BrokenExecutor(str(problem) or type(problem).__name__) from problem
+        self.send(work)
 
 
-def _rescue(futures: list[Solving], taken: set[Solving], take: Take) -> None:
-    """Take what is done, or about to be. Taking an answer twice does no harm."""
+def _take_one(sent: _Sent, take: Take, tick: Callable[[], None]) -> None:
+    """What comes back next, if that is soon."""
+    future = sent.one_done(TICK)
+    if future is not None and (work := sent.waiting.pop(future, None)) is not None:
+        try:
+            parts = future.result()
+        except (KeyboardInterrupt, BrokenPlugin):
+            raise
+        except (Exception, CancelledError) as problem:  # solving raises nothing else: its worker was lost
+            sent.send_again(work, problem)
+        else:
+            take(work, parts)
+    tick()
+
+
+def _rescue(sent: _Sent, take: Take) -> None:
+    """Take what is done, or about to be."""
+    until = monotonic() + GRACE
+    left = {future for future in sent.waiting if not future.cancelled()}
     with suppress(KeyboardInterrupt):  # a second one: go with what is there
-        wait([future for future in futures if not future.cancelled()], timeout=GRACE)
-    for future in futures:
-        if future.done() and not future.cancelled() and future not in taken and future.exception() is None:
-            take(future.result())
+        while left and monotonic() < until:
+            if (future := sent.one_done(TICK)) is not None:
+                left.discard(future)
+    for future, work in sent.waiting.items():
+        if future.done() and not future.cancelled() and future.exception() is None:
+            take(work, future.result())

@@ -26,17 +26,11 @@ def solve_within(chunk: Chunk) -> list[Part]:
         if size == 1:
             return [_killed(chunk)]
     half = size // 2
-    return [
-        part for where in (slice(half), slice(half, None)) for part in solve_within(_part_of(chunk, where))
-    ]
-
-
-def _part_of(chunk: Chunk, where: slice) -> Chunk:
-    return replace(chunk, rows=chunk.rows[where], scenes=chunk.scenes[where])
+    return [part for where in (slice(half), slice(half, None)) for part in solve_within(chunk.of(where))]
 
 
 def _killed(chunk: Chunk) -> Part:
     seconds = chunk.task.seconds_per_point
     reason = f"over the limit of {seconds:g} s (limit: {{seconds_per_point: {seconds:g}}} in the study)"
     answers = replace(refused([reason]), status=["killed"])
-    return Part(list(chunk.rows), text_columns(answers), {}, {})
+    return Part(chunk.rows, text_columns(answers), {}, {})

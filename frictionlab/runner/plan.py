@@ -8,8 +8,10 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from frictionlab import registry
-from frictionlab.runner.chunks import chunk_by_curve
-from frictionlab.study import Study, StudyCase
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
+from frictionlab.scene.scene import Scene
+from frictionlab.study import Study, StudyCurve
 
 
 @dataclass(frozen=True)
@@ -32,33 +34,39 @@ class Planned:
 
 def plan(study: Study) -> list[Planned]:
     """One entry per law and method, in the order of the study. Raises BrokenPlugin."""
-    cases = study.cases()
-    groups: dict[tuple[str, str], list[StudyCase]] = {}
-    for case in cases:
-        groups.setdefault((case.law_label, case.method_label), []).append(case)
+    groups: dict[tuple[str, str], list[StudyCurve]] = {}
+    for curve in study.curves():
+        groups.setdefault((curve.law_label, curve.method.label), []).append(curve)
     return [_planned(group, study.tolerance) for group in groups.values()]
 
 
-def _planned(cases: Sequence[StudyCase], tolerance: float) -> Planned:
-    first = cases[0]
-    reasons = [case.method.refusal(case.scene, case.law) for case in cases]
-    able = [case for case, reason in zip(cases, reasons, strict=True) if reason is None]
+def _planned(curves: Sequence[StudyCurve], tolerance: float) -> Planned:
+    first, refusals, models, seconds = curves[0], Counter[str](), Counter[str](), 0.0
+    for curve in curves:
+        method, law = curve.method.method, curve.law
+        reasons = method.refusals(curve.scenes, law)
+        refusals.update(reason for reason in reasons if reason is not None)
+        able = [place for place, reason in enumerate(reasons) if reason is None]
+        if able:
+            scene = curve.scenes[able[0]]
+            models[_model(method, scene, law)] += len(able)
+            seconds += len(able) * method.cost(scene, law, tolerance)
     return Planned(
         law=first.law_label,
         kind=first.kind,
-        method=first.method_label,
-        curves=len(chunk_by_curve(cases)),
-        points=len(cases),
-        refused=dict(Counter(reason for reason in reasons if reason is not None)),
-        models=dict(Counter(_model(case) for case in able)),
-        seconds=sum(case.method.cost(case.scene, case.law, tolerance) for case in able),
+        method=first.method.label,
+        curves=len(curves),
+        points=sum(len(curve.rows) for curve in curves),
+        refused=dict(refusals),
+        models=dict(models),
+        seconds=seconds,
     )
 
 
-def _model(case: StudyCase) -> str:
+def _model(method: Method, scene: Scene, law: FrictionLaw) -> str:
     """The model that will compute the number, and why; the name of a method that makes no choice."""
     auto: Any = registry.method_class("auto")
-    if not isinstance(case.method, auto):
-        return case.method.name
-    method, why = auto.choice(case.method, case.scene, case.law)
-    return f"{method.name} ({why})"
+    if not isinstance(method, auto):
+        return method.name
+    chosen, why = auto.choice(method, scene, law)
+    return f"{chosen.name} ({why})"

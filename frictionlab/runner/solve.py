@@ -37,7 +37,7 @@ def answer(chunk: Chunk) -> list[Piece]:
     """The pieces into which refusals and failures divide a chunk. Raises BrokenPlugin."""
     places = list(range(len(chunk.scenes)))
     try:
-        reasons = [chunk.method.refusal(scene, chunk.law) for scene in chunk.scenes]
+        reasons = chunk.method.refusals(chunk.scenes, chunk.law)
     except BrokenPlugin:
         raise
     except (Exception, SystemExit) as problem:
@@ -51,7 +51,7 @@ def _solved(chunk: Chunk, places: list[int]) -> list[Piece]:
     """Solve a piece; on an arithmetic error halve it, so that a point that fails does not affect its neighbours."""
     if not places:
         return []
-    scenes = [chunk.scenes[place] for place in places]
+    scenes = chunk.scenes.taken(places)
     try:
         return [
             Piece(
@@ -145,9 +145,9 @@ def _in_the_plane(scene: Scene) -> bool:
 
 
 def _part(chunk: Chunk, piece: Piece) -> Part:
-    rows = [chunk.rows[place] for place in piece.places]
+    rows = chunk.rows[piece.places]
     try:
-        scenes = [chunk.scenes[place] for place in piece.places]
+        scenes = chunk.scenes.taken(piece.places)
         asked = chunk.task.columns
         numbers = number_columns(piece.answers, scenes, [name for name in FROM_METHODS if name in asked])
         if any(name in asked for name in DERIVED):
@@ -174,7 +174,7 @@ def _orbits(chunk: Chunk, piece: Piece) -> dict[int, Samples]:
 
     found = {place: piece.answers.orbit(at) for at, place in enumerate(piece.places)}
     return {
-        chunk.rows[place]: sample(orbit, chunk.scenes[place], chunk.task.samples)
+        int(chunk.rows[place]): sample(orbit, chunk.scenes[place], chunk.task.samples)
         for place, orbit in found.items()
         if orbit is not None
     }

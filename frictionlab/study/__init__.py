@@ -5,7 +5,7 @@ from __future__ import annotations
 from frictionlab.mistakes.notes import Mistake, StudyError
 from frictionlab.study.law_files import Plugins, laws_of_files
 from frictionlab.study.reader import load_study, parse_study, read_back
-from frictionlab.study.study import Expectation, LawChoice, MethodChoice, Study, StudyCase
+from frictionlab.study.study import Expectation, LawChoice, MethodChoice, Study, StudyCase, StudyCurve
 
 __all__ = [
     "Expectation",
@@ -15,6 +15,7 @@ __all__ = [
     "Plugins",
     "Study",
     "StudyCase",
+    "StudyCurve",
     "StudyError",
     "laws_of_files",
     "load_study",

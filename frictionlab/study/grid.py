@@ -20,7 +20,8 @@ from frictionlab.study.choices import label_of, possible_labels
 from frictionlab.study.ranges import SPACINGS, SweepRange
 from frictionlab.study.study import Study, owner
 
-LARGEST_GRID = 1_000_000
+LARGEST_GRID = 100_000_000
+LARGEST_RANGE = 1_000_000
 LARGEST_CHECK = 20_000
 """Points that are built to check a grid; of a larger one the ends and evenly spaced values of each sweep."""
 MOST_KEPT_SAMPLES = 50_000_000
@@ -227,7 +228,7 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
         )
         return
     study = _thinned(study)
-    _build(lambda: study.scenes, study.sweep, "scene.", notes)
+    _build(lambda: study.scenes_along, study.sweep, "scene.", notes)
     for index, choice in enumerate(study.laws if not notes.all else ()):
         _build(lambda law=choice: study.laws_in_scenes(law), study.sweep, f"laws.{choice.label}.", notes)  # type: ignore[misc]
         if not notes.all and not all(map(_has_a_stiffness, study.laws_in_scenes(choice))):
@@ -302,8 +303,8 @@ def _read_range(given: dict[str, Any], path: Path, notes: Notes) -> SweepRange |
         notes.add((*path, "start"), f"must be > 0 for log spacing, got {number_text(start)}")
     if start is not None and stop is not None and stop <= start:
         notes.add((*path, "stop"), f"must be > start = {number_text(start)}, got {number_text(stop)}")
-    if num is not None and num > LARGEST_GRID:
-        notes.add((*path, "num"), f"must be <= {LARGEST_GRID}, got {num}")
+    if num is not None and num > LARGEST_RANGE:
+        notes.add((*path, "num"), f"must be <= {LARGEST_RANGE}, got {num}")
     if notes.below(path) or start is None or stop is None or num is None or spacing is None:
         return None
     return SweepRange(start, stop, num, spacing)

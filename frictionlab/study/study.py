@@ -5,12 +5,14 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from frictionlab import columns, registry
@@ -20,6 +22,7 @@ from frictionlab.mistakes.notes import Mistake, StudyError, number_text
 from frictionlab.registry.law_file import LawFile
 from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.scene.scene import Scene, with_values
+from frictionlab.scene.scenes import Scenes
 from frictionlab.study.ranges import SweepRange
 
 SCHEMA = 1
@@ -56,6 +59,13 @@ class MethodChoice:
     label: str
     name: str
     parameters: dict[str, Any]
+
+    @classmethod
+    def of(cls, method: Method) -> MethodChoice:
+        """The choice of a method that is there already."""
+        choice = cls(method.name, method.name, {})
+        vars(choice)["method"] = method
+        return choice
 
     @cached_property
     def method(self) -> Method:
@@ -118,8 +128,27 @@ class StudyCase:
     @property
     def law(self) -> FrictionLaw:
         """The law as methods receive it: in the scene's lengths and times, per unit of its normal load."""
-        si = self.scene.dimensional
-        return _in_scene(self.given_law, None if si is None else si.scales, self.scene.normal_load)
+        return law_in_scene(self.given_law, self.scene)
+
+
+@dataclass(frozen=True)
+class StudyCurve:
+    """Rows of the table that differ in belt speed alone: one scene along its belt speeds, a law and a method.
+
+    rows: that of each belt speed. given_law: in SI units if the scene is.
+    """
+
+    law_label: str
+    kind: str
+    given_law: FrictionLaw
+    method: MethodChoice
+    scenes: Scenes
+    rows: range
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law as methods receive it: in the scene's lengths and times, per unit of its normal load."""
+        return law_in_scene(self.given_law, self.scenes.scene)
 
 
 @dataclass(frozen=True)
@@ -150,23 +179,53 @@ class Study:
     path: Path | None = field(default=None, compare=False)
 
     def cases(self) -> list[StudyCase]:
-        """The full grid: every law at every value of its sweeps, by every method, in every scene."""
-        return [
-            StudyCase(choice.label, choice.kind, law, method.label, method.method, scene)
-            for choice in self.laws
-            for law in self.laws_of(choice)
-            for method in self.methods
-            for scene in self.scenes
-        ]
+        """The full grid, a case a row: every law at every value of its sweeps, by every method, in every scene."""
+        found = {
+            row: StudyCase(
+                each.law_label, each.kind, each.given_law, each.method.label, each.method.method, scene
+            )
+            for each in self.curves()
+            for row, scene in zip(each.rows, each.scenes, strict=True)
+        }
+        return [found[row] for row in range(len(found))]
+
+    def curves(self) -> Iterator[StudyCurve]:
+        """The full grid, a curve at a time: every law at every value of its sweeps, by every method, in every scene.
+
+        In a table the belt speed runs where the study has it among its sweeps.
+        """
+        first = 0
+        for choice in self.laws:
+            for law, method in itertools.product(self.laws_of(choice), self.methods):
+                for scenes, rows in self.scenes_along:
+                    own = range(first + rows.start, first + rows.stop, rows.step)
+                    yield StudyCurve(choice.label, choice.kind, law, method, scenes, own)
+                first += sum(len(rows) for _, rows in self.scenes_along)
 
     @cached_property
-    def scenes(self) -> tuple[Scene, ...]:
-        """Every scene of the grid, the last sweep running fastest. Raises StudyError where one cannot be built."""
-        tree = self.scene.given()
+    def scenes_along(self) -> tuple[tuple[Scenes, range], ...]:
+        """Every scene of the grid along its belt speeds, with their places among the rows of one law and method.
+
+        The last sweep runs fastest. Raises StudyError where one cannot be built.
+        """
+        own = self.sweeps_by_owner.get("scene.", {})
+        path = next((name for name in own if f"scene.{name}" in columns.BELT_SPEEDS), "")
+        given = self.scene.dimensional.belt_speed_m_per_s if self.scene.dimensional else self.scene.belt_speed
+        speeds = np.array(own.get(path, [given]), dtype=np.float64)
+        # of the belt speeds the largest: where that makes a scene, all do
+        ones = own | ({path: (float(speeds[np.argmax(np.abs(speeds))]),)} if path else {})
+        names, sizes, tree = list(own), [len(values) for values in own.values()], self.scene.given()
+        within = math.prod(sizes[names.index(path) + 1 :]) if path else 1
         try:
-            return tuple(Scene.model_validate(with_values(tree, point)) for point in self.scene_points())
+            built = [Scene.model_validate(with_values(tree, point)) for point in _grid(ones)]
         except (ValidationError, OverflowError) as problem:
             raise self._impossible(problem) from None
+        block = within * len(speeds)
+        starts = [at // within * block + at % within for at in range(len(built))]
+        return tuple(
+            (Scenes(scene, speeds), range(start, start + block, within))
+            for scene, start in zip(built, starts, strict=True)
+        )
 
     def _impossible(self, problem: ValidationError | OverflowError) -> StudyError:
         what = str(problem)
@@ -174,10 +233,6 @@ class Study:
             what = problem.errors(include_url=False)[0]["msg"]
         name = "study" if self.path is None else str(self.path)
         return StudyError([Mistake(name, None, "sweep", f"a point of the grid cannot be built: {what}")])
-
-    def scene_points(self) -> Iterator[dict[str, float]]:
-        """The swept scene values of each scene, by dotted path without the leading ``scene.``."""
-        return self._grid("scene.")
 
     def laws_of(self, choice: LawChoice) -> tuple[FrictionLaw, ...]:
         """The law at every value of its own sweeps. Raises StudyError where one cannot be built."""
@@ -191,13 +246,13 @@ class Study:
         laws = self.laws_of(choice)
         units = {
             (None if scene.dimensional is None else scene.dimensional.scales, scene.normal_load)
-            for scene in self.scenes
+            for scene in (along.scene for along, _ in self.scenes_along)
         }
         return {_in_scene(law, scales, load) for law in laws for scales, load in units}
 
     def law_points(self, choice: LawChoice) -> Iterator[dict[str, float]]:
         """The swept parameters of this law, one mapping per combination."""
-        return self._grid(f"laws.{choice.label}.")
+        return _grid(self.sweeps_by_owner.get(f"laws.{choice.label}.", {}))
 
     @cached_property
     def sweeps_by_owner(self) -> dict[str, dict[str, tuple[float, ...]]]:
@@ -206,11 +261,6 @@ class Study:
         for path, values in self.sweep.items():
             found.setdefault(owner(path), {})[path.removeprefix(owner(path))] = values
         return found
-
-    def _grid(self, prefix: str) -> Iterator[dict[str, float]]:
-        """Every combination of the sweeps of one owner."""
-        own = self.sweeps_by_owner.get(prefix, {})
-        return (dict(zip(own, point, strict=True)) for point in itertools.product(*own.values()))
 
     def resolved(self) -> dict[str, Any]:
         """The study as plain values; with its ``law_texts`` beside it they load to an equal study."""
@@ -271,6 +321,17 @@ class Study:
     def _fixed(self, law: LawChoice) -> dict[str, Any]:
         swept = self.sweeps_by_owner.get(f"laws.{law.label}.", {})
         return {name: v for name, v in law.parameters.items() if name not in swept}
+
+
+def _grid(sweeps: Mapping[str, tuple[float, ...]]) -> Iterator[dict[str, float]]:
+    """Every combination of the values of sweeps, by their names."""
+    return (dict(zip(sweeps, point, strict=True)) for point in itertools.product(*sweeps.values()))
+
+
+def law_in_scene(law: FrictionLaw, scene: Scene) -> FrictionLaw:
+    """A law in the lengths and times of a scene, per unit of its normal load."""
+    si = scene.dimensional
+    return _in_scene(law, None if si is None else si.scales, scene.normal_load)
 
 
 def _in_scene(law: FrictionLaw, scales: Units | None, normal_load: float | None) -> FrictionLaw:

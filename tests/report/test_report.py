@@ -24,7 +24,7 @@ from frictionlab.report import bibtex, figures, tables, write_index, write_repor
 from frictionlab.report.markup import html, symbol_html
 from frictionlab.report.page import report, wall
 from frictionlab.report.sources import sources
-from frictionlab.runner import api
+from frictionlab.runner import api, workforce
 from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.saved import Saved, read_saved, saved_as
 from frictionlab.scaffold.study import new_study
@@ -68,12 +68,12 @@ def draw_nothing(folder: Path) -> None:
 def stop(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Saved:
     """A run that is interrupted once one of its two chunks is done."""
 
-    def collect_one(left: Any, pool: Any, take: Any, tick: Any) -> None:
-        collect(left[:1], pool, take, tick)
+    def collect_one(left: Any, *others: Any) -> None:
+        collect(list(left)[:1], *others)
         raise KeyboardInterrupt
 
-    collect = api.collect
-    monkeypatch.setattr(api, "collect", collect_one)
+    collect = workforce.collect
+    monkeypatch.setattr(workforce, "collect", collect_one)
     study = {"schema": 1, "scene": SCENE, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["fake"]}
     study |= {"sweep": {"scene.drive.frequency": [1.0, 1.5], "scene.belt_speed": [1.0, 2.0]}}
     study |= {"expect": [{"column": "mean_friction", "below": 1}]}

@@ -28,10 +28,11 @@ from frictionlab import registry
 from frictionlab.columns import RESULTS, TEXT
 from frictionlab.compile.notice import named_while_it_compiles
 from frictionlab.results.summary import summary
-from frictionlab.results.table import headings, inputs, records
+from frictionlab.results.table import inputs, records
 from frictionlab.runner import accumulate, api, folder
-from frictionlab.runner.chunks import Task, chunk_by_curve, chunks
+from frictionlab.runner.chunks import Task, cuts
 from frictionlab.runner.errors import FolderError, SaveError
+from frictionlab.runner.open_chunks import open_chunks
 from frictionlab.runner.progress import Meter
 from frictionlab.runner.solve import solve
 from frictionlab.runner.yaml_text import yaml_text
@@ -97,10 +98,21 @@ def test_rows_are_in_the_order_of_the_cases() -> None:
     assert done.table["scene.belt_speed"].tolist()[:6] == [4, 13, -2, 0, 17, 9]
 
 
-def test_headings_are_those_of_the_cases() -> None:
-    plan = parse_study(study(methods=["fake", "another"], sweep={"laws.coulomb.mu": [0.1, 0.2], **MANY}))
+@pytest.mark.parametrize("place", range(3))
+def test_inputs_are_those_of_the_cases_wherever_the_belt_speed_runs(place: int) -> None:
+    others = [("scene.damping_ratio", [0.1, 0.2]), ("scene.drive.frequency", [1, 1.5, 3])]
+    others.insert(place, ("scene.belt_speed", [4, 13, -2, 0]))
+    sweep = {"laws.coulomb.mu": [0.1, 0.2], **dict(others)}
+    plan = parse_study(study(methods=["fake", "another"], sweep=sweep))
+    told = pd.DataFrame(inputs(list(plan.curves())).columns)
 
-    assert inputs(headings(plan)) == inputs(plan.cases())
+    assert len(told) == len(plan.cases()) == 2 * 2 * 24
+    for row, case in zip(records(told), plan.cases(), strict=True):
+        assert row["method"] == case.method_label
+        assert row["law.mu"] == case.given_law.numbers()["mu"]
+        assert {
+            name.removeprefix("scene."): row[name] for name in row if "scene." in name
+        } == case.scene.values()
 
 
 def test_every_point_is_answered_where_one_is_refused_and_one_has_no_number() -> None:
@@ -176,12 +188,12 @@ def test_a_prescribed_slip_has_no_force_to_tell_friction_against() -> None:
 
 
 def test_chunks_hold_neighbours_of_one_curve_in_rising_belt_speed() -> None:
-    cases = parse_study(study(sweep=MANY)).cases()
-    pieces = chunks(cases, Task(1e-8))
+    curves = list(parse_study(study(sweep=MANY)).curves())
+    pieces = [work.chunk for work in open_chunks(curves, Task(1e-8))]
 
     assert sorted(row for piece in pieces for row in piece.rows) == list(range(800))
     assert all(64 <= len(piece.rows) <= 250 for piece in pieces)
-    assert [len(curve) for curve in chunk_by_curve(cases)] == [400, 400]
+    assert [len(curve.rows) for curve in curves] == [400, 400]
     for piece in pieces:
         assert len({scene.frequency for scene in piece.scenes}) == 1
         speeds = [scene.belt_speed for scene in piece.scenes]
@@ -189,18 +201,18 @@ def test_chunks_hold_neighbours_of_one_curve_in_rising_belt_speed() -> None:
 
 
 def test_a_continued_run_solves_what_is_left_of_the_very_chunks_of_a_whole_one() -> None:
-    cases = parse_study(study(sweep=MANY)).cases()
-    done = frozenset(range(0, 800, 3))
+    curves = list(parse_study(study(sweep=MANY)).curves())
+    done = np.arange(800) % 3 == 0
 
-    whole = [piece.rows for piece in chunks(cases, Task(1e-8))]
-    left = [piece.rows for piece in chunks(cases, Task(1e-8), done)]
-    assert left == [tuple(row for row in rows if row not in done) for rows in whole]
+    whole = [work.chunk.rows for work in open_chunks(curves, Task(1e-8))]
+    left = [work.chunk.rows.tolist() for work in open_chunks(curves, Task(1e-8), done)]
+    assert left == [rows[~done[rows]].tolist() for rows in whole]
 
 
-@pytest.mark.parametrize("points", [2, 64, 187, 188, 250, 251, 312, 313, 1000])
+@pytest.mark.parametrize("points", [2, 64, 187, 188, 250, 251, 312, 313, 1000, 3999])
 def test_no_chunk_is_longer_than_250_points_nor_shorter_than_64_but_for_want_of_points(points: int) -> None:
     speeds = {"scene.belt_speed": {"start": 1, "stop": 40, "num": points}}
-    sizes = [len(piece.rows) for piece in chunks(parse_study(study(sweep=speeds)).cases(), Task(1e-8))]
+    sizes = [len(cut.rows) for cut in cuts(parse_study(study(sweep=speeds)).curves())]
 
     assert sum(sizes) == points
     assert max(sizes) <= 250
@@ -217,7 +229,7 @@ def test_rows_do_not_depend_on_the_number_of_workers() -> None:
 
 
 def test_chunks_and_answers_can_cross_to_another_process() -> None:
-    piece = chunks(parse_study(study(keep={"orbit": 4})).cases(), Task(1e-8, 4))[0]
+    piece = next(open_chunks(parse_study(study(keep={"orbit": 4})).curves(), Task(1e-8, 4))).chunk
     parts = pickle.loads(pickle.dumps(solve(pickle.loads(pickle.dumps(piece)))))
 
     assert sorted(row for part in parts for row in part.rows) == list(range(6))

@@ -457,13 +457,11 @@ def test_a_run_in_si_units_is_taken_over_and_another_body_is_refused(tmp_path: A
 
 
 def test_a_curve_in_si_units_is_solved_as_one_curve() -> None:
-    from frictionlab.runner.chunks import chunk_by_curve
-
     tree = study(
         sweep={"scene.dimensional.belt_speed_m_per_s": [0.1, 0.2, 0.3], "scene.dimensional.mass_kg": [1, 2]}
     )
 
-    assert sorted(map(len, chunk_by_curve(parse_study(tree).cases()))) == [3, 3]
+    assert [len(curve.rows) for curve in parse_study(tree).curves()] == [3, 3]
 
 
 # Mistakes

@@ -305,9 +305,15 @@ def test_loading_a_study_imports_no_compiler_no_tables_and_no_figures(written: A
             lambda study: study.sweep["scene.belt_speed"] == (1.0, 2.0, 3.0),
         ),
         ("sweep.scene.belt_speed.num=2", lambda study: study.sweep["scene.belt_speed"] == (0.5, 60.0)),
-        ("sweep.scene.drive.frequency=[1, 2]", lambda study: len(study.scenes) == 240),
+        (
+            "sweep.scene.drive.frequency=[1, 2]",
+            lambda study: sum(len(rows) for _, rows in study.scenes_along) == 240,
+        ),
         ("methods=[exact,shooting]", lambda study: [m.name for m in study.methods] == ["exact", "shooting"]),
-        ("sweep.scene.drive.phase=[0, 90]", lambda study: len(study.scenes) == 240),
+        (
+            "sweep.scene.drive.phase=[0, 90]",
+            lambda study: sum(len(rows) for _, rows in study.scenes_along) == 240,
+        ),
         ("title=a = b", lambda study: study.title == "a = b"),
         ("keep.orbit=9", lambda study: study.keep_orbit == 9),
         ("expect=[]", lambda study: study.expect == ()),

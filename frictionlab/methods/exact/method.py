@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
@@ -19,12 +20,14 @@ from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
 
 EVENTS = "closed-form legs of slip and stick between events, fixed point of the return map by Newton's method"
 REDUCED = (
     " (one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law)"
 )
+FARTHEST = np.finfo(np.float64).max
 NO_DAMPING = (
     "without damping and without slip reversal the free oscillation does not decay: the friction is mu at every "
     "instant of every motion, but the motion depends on the start; give scene.initial"
@@ -76,6 +79,12 @@ class Exact(Method):
         reason = (_refusal_of_legs if prescribed else _refusal_of_flow)(scene, law)
         return suggest_shooting(reason, scene, law) if reason else None
 
+    def refusals(self, scenes: Sequence[Scene], law: FrictionLaw) -> list[str | None]:
+        """What it accepts hangs on no belt speed; why it refuses may."""
+        if self.refusal(scenes[0], law) is None:
+            return [None] * len(scenes)
+        return super().refusals(scenes, law)
+
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
         if scenes[0].degrees_of_freedom == 0:
@@ -96,7 +105,7 @@ class _Curve:
         self.scenes, self.coefficient, self.tolerance = scenes, coefficient, tolerance
         self.mass = scenes[0].mass()
         self.limit = coefficient * self.mass.normal_load
-        self.belt_speeds = np.array([scene.belt_speed for scene in scenes])
+        self.belt_speeds = belt_speeds_of(scenes)
         n = len(scenes)
         self.status: list[Status] = ["ok"] * n
         self.reason, self.model, self.error_kind = [""] * n, [EVENTS] * n, ["estimated"] * n
@@ -107,10 +116,11 @@ class _Curve:
 
     def answers(self) -> Answers:
         """Solve and judge."""
-        open_points = [i for i in range(len(self.scenes)) if not self._has_no_single_answer(i)]
-        self._solve(np.array(open_points, dtype=np.int64))
-        for i in open_points:
-            self._judge(i)
+        special = np.flatnonzero(self._may_have_no_single_answer())
+        settled = [i for i in special.tolist() if self._has_no_single_answer(i)]
+        open_points = np.delete(np.arange(len(self.scenes)), settled)
+        self._solve(open_points)
+        self._judge(open_points)
         if self.scenes[0].degrees_of_freedom == 2:
             self.model = [text + REDUCED if text else text for text in self.model]
         mean = np.where(self.belt_speeds < 0.0, -1.0, 1.0) * self.rows[:, curve.MEAN]
@@ -132,9 +142,13 @@ class _Curve:
             orbits=lambda: self._orbits(range(len(mean))),
         )
 
+    def _may_have_no_single_answer(self) -> NDArray[np.bool_]:
+        undamped = self.mass.damping == 0.0
+        return (self.belt_speeds == 0.0) | np.full(len(self.scenes), undamped)
+
     def _has_no_single_answer(self, i: int) -> bool:
         """Settle the cases where the steady state depends on the start, or does not exist."""
-        force, speed = abs(self.mass.force), self.belt_speeds[i]
+        force, speed = abs(self.mass.force), float(self.belt_speeds[i])
         undamped = self.mass.damping == 0.0
         if speed == 0.0 and force <= self.limit:
             spread = (self.limit - force) / self.mass.normal_load
@@ -163,10 +177,10 @@ class _Curve:
 
     def _settles(self, i: int) -> bool:
         """Simulate from scene.initial until nothing changes."""
-        initial, side = self.scenes[i].initial, self._side(i)
+        initial, side = self.scenes[i].initial, -1.0 if self.belt_speeds[i] < 0.0 else 1.0
         assert initial is not None
         w = side * (initial.velocity - self.belt_speeds[i])
-        start = np.array([side * initial.x, w, self._shift(i)])
+        start = np.array([side * initial.x, w, self._shift(side)])
         row = np.full(9, np.nan)
         periods = KernelCall(curve.iterate_until_fixed)(
             self.mass, self.coefficient, abs(self.belt_speeds[i]), start, row
@@ -181,12 +195,9 @@ class _Curve:
         )
         return True
 
-    def _side(self, i: int) -> float:
-        return -1.0 if self.belt_speeds[i] < 0.0 else 1.0
-
-    def _shift(self, i: int) -> float:
+    def _shift(self, side: float) -> float:
         """The canonical time of tau = 0: the drive's phase, half a period on for a belt that moves the other way."""
-        force = self._side(i) * self.mass.force
+        force = side * self.mass.force
         return math.atan2(force.imag, force.real) % (2.0 * math.pi) / self.mass.frequency
 
     def _solve(self, places: np.ndarray) -> None:
@@ -200,13 +211,22 @@ class _Curve:
         rows[speeds == 0.0, curve.MEAN] = 0.0  # the orbit is its own mirror image half a period later
         self.rows[places] = rows[back]
 
-    def _judge(self, i: int) -> None:
-        row = self.rows[i]
-        if row[curve.FOUND] == 1.0:
-            v_lin = friction_free_velocity(self.scenes[i])
+    def _judge(self, places: NDArray[np.int64]) -> None:
+        """Say of each of these how it was found, and of those that are not as good as asked, why."""
+        rows = self.rows[places]
+        linear = rows[:, curve.FOUND] == 1.0
+        v_lin = friction_free_velocity(self.scenes[0])
+        for i in places[linear].tolist():
             self.model[i] = f"closed form: slip never reverses (belt speed >= V_lin = {v_lin:.6g})"
             self.error_kind[i] = "guaranteed"
-        elif not row[curve.RESIDUAL] <= 1e3 * row[curve.ROUNDING]:
+        closed = rows[:, curve.RESIDUAL] <= 1e3 * rows[:, curve.ROUNDING]
+        good = closed & (rows[:, curve.ERROR] <= min(self.tolerance, FARTHEST)) & (self.mass.damping > 0.0)
+        for i in places[~linear & ~good].tolist():
+            self._judge_one(i)
+
+    def _judge_one(self, i: int) -> None:
+        row = self.rows[i]
+        if not row[curve.RESIDUAL] <= 1e3 * row[curve.ROUNDING]:
             self._fail(i, f"no fixed point of the return map found: residual {row[curve.RESIDUAL]:.1e}")
         elif self.mass.damping == 0.0 and not row[curve.FLOQUET] < 1.0 - 1e-9:
             self._fail(
@@ -232,9 +252,9 @@ class _Curve:
     def _orbits(self, places: Sequence[int]) -> Orbits:
         """Of the scenes at these places; without panels where there is none."""
         rows, ends = self.rows[list(places)], np.zeros(len(places), np.int64)
-        shifts, legs = [self._shift(i) for i in places], np.nan_to_num(rows[:, curve.LEGS])
+        speeds, legs = self.belt_speeds[list(places)], np.nan_to_num(rows[:, curve.LEGS])
+        shifts = np.where(speeds < 0.0, self._shift(-1.0), self._shift(1.0))
         states = np.column_stack([rows[:, curve.STATE_X], rows[:, curve.STATE_W], legs, shifts])
-        speeds = self.belt_speeds[list(places)]
         track = KernelCall(make_orbits)(self.mass, self.coefficient, speeds, states, ends)
         return Orbits(track.tau, track.x, track.v, track.friction, track.stick, ends)
 

@@ -35,6 +35,7 @@ from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
+from frictionlab.scene.scenes import Scenes, belt_speeds_of
 from frictionlab.theory.saturation import slides_saturated
 from frictionlab.theory.uniqueness import falls_slowly, is_convergent
 
@@ -121,7 +122,7 @@ class PeriodicProblem:
     def _called(
         self, scenes: Sequence[Scene], states: Floats, goal: Goal, wanted: Wanted, periods: float = 1.0
     ) -> tuple[Curve, float]:
-        belt_speeds = np.array([scene.belt_speed for scene in scenes])
+        belt_speeds = belt_speeds_of(scenes)
         body = self.body._replace(periods=float(periods))
         call = KernelCall(self.kernel, self.law)
         first = body, belt_speeds[:1], states[:1], goal, wanted
@@ -130,7 +131,7 @@ class PeriodicProblem:
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
         """The closed orbits from these states, one for each scene; without panels where there is no state."""
         places, known = self._known(states)
-        curve, _ = self._called([scenes[i] for i in places], known, self.goal, RECORDED)
+        curve, _ = self._called(Scenes.of(scenes).taken(places), known, self.goal, RECORDED)
         ends, panels = np.zeros(len(scenes), np.int64), np.diff(curve.ends, prepend=0)
         ends[places] = panels
         n, track = int(panels.sum()), curve.orbits
@@ -142,7 +143,7 @@ class PeriodicProblem:
         places, known = self._known(states)
         found = np.full(len(scenes), np.nan)
         if places:
-            curve, _ = self._called([scenes[i] for i in places], known, self.goal, MULTIPLIERS)
+            curve, _ = self._called(Scenes.of(scenes).taken(places), known, self.goal, MULTIPLIERS)
             found[places] = np.abs(np.linalg.eigvals(curve.matrices)).max(axis=1)
         return found
 

@@ -26,6 +26,7 @@ from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
 
 WIDEST = 0.25
@@ -97,7 +98,7 @@ def answer_line(
     start = time.perf_counter()
     mu, mass = law.sliding_friction(1.0), scenes[0].mass()
     friction = mu * mass.normal_load
-    speeds = np.array([scene.belt_speed for scene in scenes])
+    speeds = belt_speeds_of(scenes)
     found = model(scenes[0], friction, np.abs(speeds))
     free = friction_free_velocity(scenes[0])
     low, high = bounds(Line(0.5 * mass.damping, mass.frequency, friction, free), np.abs(speeds))

@@ -18,6 +18,7 @@ from frictionlab.methods.shooting.attractors import FEWEST, attractors, closed_o
 from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import Scenes, belt_speeds_of
 from frictionlab.theory.rest import can_hold, resting_range, stays_at_rest
 
 Complexes = NDArray[np.complex128]
@@ -49,7 +50,8 @@ MAY_REST = (
 def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer driven scenes that differ in belt speed alone, by continuation."""
     states = SteadyStates(scenes, PeriodicProblem(scenes[0], law, tolerance))
-    resting = [i for i, scene in enumerate(scenes) if stays_at_rest(scene, law)]
+    at_rest = np.flatnonzero(belt_speeds_of(scenes) == 0.0).tolist()
+    resting = [i for i in at_rest if stays_at_rest(scenes[i], law)]
     moving = [i for i in range(len(scenes)) if i not in resting]
     states.close_all(moving)
     for i in moving if not states.problem.goal.contracts else ():
@@ -69,7 +71,8 @@ class SteadyStates:
 
     def __init__(self, scenes: Sequence[Scene], problem: PeriodicProblem) -> None:
         n = len(scenes)
-        self.scenes, self.problem = scenes, problem
+        self.scenes, self.problem = Scenes.of(scenes), problem
+        self.belt_speeds = self.scenes.belt_speeds
         self.status: list[Status] = ["failed"] * n
         self.reason = [""] * n
         self.states: list[Floats | None] = [None] * n
@@ -95,9 +98,9 @@ class SteadyStates:
         if not where:
             return
         problem = by or self.problem
-        curve, seconds = problem.close([self.scenes[i] for i in where], state, wanted=self.wanted)
+        curve, seconds = problem.close(self.scenes.taken(where), state, wanted=self.wanted)
         self.seconds[where] = np.nan_to_num(self.seconds[where]) + seconds / len(where)
-        multipliers = _multipliers(curve)
+        multipliers, undamped = _multipliers(curve), _undamped(self.scenes.scene)
         for row, i in enumerate(where):
             self.reached[i] = bool(curve.reached[row])
             maps = curve.results[row, 3]
@@ -106,7 +109,7 @@ class SteadyStates:
                 steps = "" if problem is self.problem else " of implicit steps"
                 said = f"no closed orbit found in {-maps:.0f} period maps{steps}"
                 self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
-            elif _undamped(self.scenes[i]) and self._repeats(curve, row, multipliers[row], problem):
+            elif undamped and self._repeats(curve, row, multipliers[row], problem):
                 self._leave_open(i, UNDAMPED, curve.results[row, 0], curve.results[row, 0])
             else:
                 self.reason[i] = ""
@@ -115,10 +118,10 @@ class SteadyStates:
 
     def _is_held(self, i: int) -> bool:
         """Whether friction can hold the mass at all times and the belt is too slow to keep it from rest."""
-        near_rest, scene = self.near_rest, self.scenes[i]
-        if near_rest is None or not 0.0 < abs(scene.belt_speed) < near_rest.swing:
+        near_rest = self.near_rest
+        if near_rest is None or not 0.0 < abs(self.belt_speeds[i]) < near_rest.swing:
             return False
-        return can_hold(scene, near_rest.law)
+        return can_hold(self.scenes.scene, near_rest.law)
 
     def _repeats(self, curve: Curve, row: int, multiplier: float, problem: PeriodicProblem) -> bool:
         """Whether a motion beside an orbit goes on beside it: difference quotients know less of that."""
@@ -207,7 +210,7 @@ class SteadyStates:
 
     def _holds_elastically(self, i: int) -> bool:
         """Whether on a belt at rest the bristle only follows the mass: nothing then decides about its mean."""
-        if self.scenes[i].belt_speed != 0.0 or self.problem.law.elastic_deflection() == 0.0:
+        if self.belt_speeds[i] != 0.0 or self.problem.law.elastic_deflection() == 0.0:
             return False
         return self.status[i] != "ok" or bool(self._known(i) > 1.0 - 1e-6)
 

@@ -1,0 +1,213 @@
+"""Solved chunks, each a file named by the hash of what it computes: found again by whatever study asks for it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from functools import cache
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from frictionlab import registry
+from frictionlab.faults import INTERNAL, MARK, from_outside
+from frictionlab.results.part import Part
+from frictionlab.runner.chunks import Chunk
+from frictionlab.runner.code_digest import solving_code
+from frictionlab.runner.files import remove_leftovers, write_whole
+
+if TYPE_CHECKING:
+    from frictionlab.orbit.sample import Samples
+
+FolderName = str | PathLike[str]
+FOLDER = ".cache"
+USUAL_GIGABYTES = 4.0
+_HEAD = b"frictionlab chunk 1 "
+_CHECKSUM = 64
+"""Letters of a checksum."""
+
+
+class Keys:
+    """The hash of what a chunk computes: of everything its numbers hang on.
+
+    law_code: SHA-256 by kind of each law of a study that is not frictionlab's own.
+    """
+
+    def __init__(self, law_code: Mapping[str, str]) -> None:
+        self._law_code, self._code = law_code, solving_code()
+
+    def of(self, chunk: Chunk, kind: str, method: str) -> str | None:
+        """The key of a chunk of a law of this kind by the method of this name; None where their code is not known."""
+        law_code, method_code = self._law_code.get(kind, ""), _code_of_method(method)
+        known = {type(chunk.law): law_code, type(chunk.method): method_code}
+        if any(from_outside(record) and not code for record, code in known.items()):
+            return None
+        task, scenes = chunk.task, chunk.scenes
+        told = [
+            self._code,
+            law_code,
+            method_code,
+            *_told(chunk.law),
+            *_told(chunk.method),
+            repr(sorted(scenes.scene.model_copy(update=_BESIDE).values().items())),
+            repr((task.tolerance, task.samples, task.seconds_per_point, sorted(task.columns))),
+        ]
+        digest = hashlib.sha256("\0".join(told).encode())
+        digest.update(scenes.belt_speeds.tobytes())
+        return digest.hexdigest()
+
+
+_BESIDE = {"belt_speed": 0.0, "dimensional": None}
+"""What of a scene says nothing about the numbers of a chunk, or is told otherwise."""
+_code_of_method = cache(registry.method_code)
+
+
+def _told(record: Any) -> tuple[str, str]:
+    """The class of a law or method, whose code is told apart where it is another's, and its numbers."""
+    kind = type(record)
+    home = "" if from_outside(kind) else kind.__module__
+    return f"{home}.{kind.__qualname__}", str(record.model_dump_json())
+
+
+class KeptChunks:
+    """The chunks kept in a folder. gigabytes: their size in all, above which those used longest ago are removed."""
+
+    def __init__(self, folder: Path, gigabytes: float = USUAL_GIGABYTES) -> None:
+        self.folder, self._most = folder, gigabytes * 1e9
+        self._began = time.time()
+
+    def found(self, key: str) -> Part | None:
+        """The answers kept under a key, by their places in the chunk; None without, or where the file is damaged."""
+        path = self._path(key)
+        try:
+            content = path.read_bytes()
+        except OSError:
+            return None
+        part = _unpacked(content)
+        with suppress(OSError):
+            os.utime(path) if part is not None else path.unlink()
+        return part
+
+    def keep(self, key: str, part: Part) -> bool:
+        """Keep answers, by their places in the chunk, but for those to be tried anew. Raises SaveError."""
+        if not _is_an_answer(part):
+            return False
+        path = self._path(key)
+        with suppress(OSError):  # the file cannot be written then either, and says so
+            path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, _packed(part))
+        return True
+
+    def trim(self) -> None:
+        """Remove those used longest ago until the rest is small enough; none that this run has used."""
+        files = []
+        for folder in self.folder.glob("??"):
+            with suppress(OSError):
+                remove_leftovers(folder)
+        for path in self.folder.glob("??/*.chunk"):
+            with suppress(OSError):  # another process removed it
+                there = path.stat()
+                files.append((there.st_mtime, there.st_size, path))
+        size = sum(bytes_ for _, bytes_, _ in files)
+        for used, bytes_, path in sorted(files):
+            if size <= self._most or used >= self._began:
+                return
+            with suppress(OSError):
+                path.unlink()
+            size -= bytes_
+
+    def _path(self, key: str) -> Path:
+        return self.folder / key[:2] / f"{key[2:]}.chunk"
+
+
+@overload
+def kept_beside(out: FolderName, cache: FolderName | None, gigabytes: float = ...) -> KeptChunks: ...
+
+
+@overload
+def kept_beside(
+    out: FolderName | None, cache: FolderName | None, gigabytes: float = ...
+) -> KeptChunks | None: ...
+
+
+def kept_beside(
+    out: FolderName | None, cache: FolderName | None, gigabytes: float = USUAL_GIGABYTES
+) -> KeptChunks | None:
+    """The chunks kept in ``cache``, beside the results in ``out`` where that is not said; None without either."""
+    if cache is not None:
+        return KeptChunks(Path(cache), gigabytes)
+    return None if out is None else KeptChunks(Path(out).absolute().parent / FOLDER, gigabytes)
+
+
+def _is_an_answer(part: Part) -> bool:
+    """Whether no point was killed or failed by a defect."""
+    defects = any(reason.startswith((INTERNAL, MARK)) for reason in part.text["reason"])
+    return not defects and "killed" not in part.text["status"]
+
+
+def _packed(part: Part) -> bytes:
+    """A head, a checksum, a line that says what follows, the numbers of all columns, then those of the orbits."""
+    words = {name: _indexed(column) for name, column in part.text.items()}
+    places = sorted(part.orbits)
+    told = {
+        "points": len(part.rows),
+        "columns": list(part.numbers),
+        "words": {name: different for name, (different, _) in words.items()},
+        "orbits": places,
+    }
+    numbers = [np.asarray(column, dtype=np.float64).tobytes() for column in part.numbers.values()]
+    indices = [np.array(column, dtype=np.int32).tobytes() for _, column in words.values()]
+    orbits = [
+        np.asarray(values, dtype=np.float64).tobytes() for place in places for values in part.orbits[place]
+    ]
+    content = b"".join([json.dumps(told).encode(), b"\n", *numbers, *indices, *orbits])
+    return _HEAD + hashlib.sha256(content).hexdigest().encode() + b"\n" + content
+
+
+def _indexed(column: list[str]) -> tuple[list[str], list[int]]:
+    """The different words, and for each row which of them."""
+    places: dict[str, int] = {}
+    found = [places.setdefault(word, len(places)) for word in column]
+    return list(places), found
+
+
+def _unpacked(content: bytes) -> Part | None:
+    """The answers of a file; None where it is not what was written."""
+    head = len(_HEAD) + _CHECKSUM + 1
+    if not content.startswith(_HEAD) or content[len(_HEAD) : head - 1] != _checksum(content[head:]):
+        return None
+    line, _, numbers = content[head:].partition(b"\n")
+    told = json.loads(line)
+    n, names = told["points"], told["columns"]
+    floats, integers = 8 * n * len(names), 4 * n * len(told["words"])
+    columns = np.frombuffer(numbers[:floats], np.float64).reshape(len(names), n)
+    indices = np.frombuffer(numbers[floats : floats + integers], np.int32).reshape(len(told["words"]), n)
+    text = {
+        name: [different[k] for k in row]
+        for (name, different), row in zip(told["words"].items(), indices.tolist(), strict=True)
+    }
+    return Part(
+        np.arange(n),
+        text,
+        dict(zip(names, columns, strict=True)),
+        _samples(told["orbits"], numbers[floats + integers :]),
+    )
+
+
+def _samples(places: list[int], content: bytes) -> dict[int, Samples]:
+    if not places:
+        return {}
+    from frictionlab.orbit.sample import Samples  # imports numba: only where it is needed
+
+    numbers = np.frombuffer(content, np.float64).reshape(len(places), len(Samples._fields), -1)
+    return {place: Samples(*values) for place, values in zip(places, numbers, strict=True)}
+
+
+def _checksum(content: bytes) -> bytes:
+    return hashlib.sha256(content).hexdigest().encode()

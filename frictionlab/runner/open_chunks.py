@@ -1,0 +1,82 @@
+"""What a run has to solve: the chunks of its study, each with the hash of what it computes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.results.part import Part, Places, one_part
+from frictionlab.runner.chunks import Chunk, Task, cuts
+from frictionlab.runner.kept_chunks import Keys
+from frictionlab.study import StudyCurve
+
+
+@dataclass(eq=False)
+class OpenChunk:
+    """A chunk to solve, and where its answers go.
+
+    whole: the rows of all its points; of these ``left`` are the places without an answer. key: the hash of what the
+    whole computes, None where that cannot be known. same: other chunks that compute the same.
+    """
+
+    chunk: Chunk
+    whole: Places
+    left: Places
+    key: str | None = None
+    same: list[OpenChunk] = field(default_factory=list)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether every point of the chunk is to be solved."""
+        return len(self.left) == len(self.whole)
+
+    def of(self, part: Part) -> list[Part]:
+        """The rows that are answered by the answers of a whole chunk, by their places."""
+        answered = part.moved(self.whole)
+        own = answered if self.is_whole else answered.only(self.left)
+        return [own, *(each for other in self.same for each in other.of(part))]
+
+
+def open_chunks(
+    curves: Iterable[StudyCurve],
+    task: Task,
+    finished: NDArray[np.bool_] | None = None,
+    keys: Keys | None = None,
+) -> Iterator[OpenChunk]:
+    """The chunks still to solve. finished: whether each row is.
+
+    Curves are cut before finished rows are left out: a run stopped and continued then solves the very chunks
+    of one that went through.
+    """
+    for cut in cuts(curves):
+        places = np.arange(len(cut.rows))
+        left = places if finished is None else np.flatnonzero(~finished[cut.rows])
+        if len(left):
+            chunk = cut.chunk(task)
+            key = None if keys is None else keys.of(chunk, cut.curve.kind, cut.curve.method.name)
+            yield OpenChunk(chunk if len(left) == len(places) else chunk.of(left), cut.rows, left, key)
+
+
+def each_once(found: Iterable[OpenChunk]) -> list[OpenChunk]:
+    """Those that compute the same as another one_part to it: they are solved once."""
+    first: dict[str, OpenChunk] = {}
+    kept: list[OpenChunk] = []
+    for work in found:
+        other = first.get(work.key) if work.key is not None else None
+        if other is not None and other.is_whole:
+            other.same.append(work)
+        else:
+            kept.append(work)
+            if work.key is not None:
+                first[work.key] = work
+    return kept
+
+
+def answered(work: OpenChunk, parts: list[Part]) -> Part | None:
+    """The answers of a chunk that was solved as a whole, by their places in it; None for one solved in part."""
+    if not work.is_whole:
+        return None
+    return one_part(parts, work.whole).moved(np.arange(len(work.whole)))

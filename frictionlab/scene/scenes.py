@@ -1,0 +1,69 @@
+"""One scene at many belt speeds: what a method solves at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
+
+
+class Scenes(Sequence[Scene]):
+    """A scene along an array of belt speeds; a scene of its own is made of one of them where somebody asks for it.
+
+    given: the belt speeds in the units in which the scene was given [scene velocity; m/s for a scene in SI units].
+
+    >>> from frictionlab import Drive
+    >>> scene = Scene(damping_ratio=0.1, normal_load=1, belt_speed=0, drive=Drive(amplitude=1, frequency=2))
+    >>> Scenes(scene, np.array([1.0, 2.0]))[1].belt_speed
+    2.0
+    """
+
+    def __init__(self, scene: Scene, given: Floats) -> None:
+        self.scene, self.given = scene, given
+
+    @classmethod
+    def of(cls, scenes: Sequence[Scene]) -> Scenes:
+        """These scenes, at least one, which differ in belt speed alone."""
+        if isinstance(scenes, Scenes):
+            return scenes
+        si = [each.dimensional.belt_speed_m_per_s for each in scenes if each.dimensional is not None]
+        return cls(scenes[0], np.array(si or [each.belt_speed for each in scenes], dtype=np.float64))
+
+    @property
+    def belt_speeds(self) -> Floats:
+        """Every belt speed [scene velocity]."""
+        si = self.scene.dimensional
+        return self.given if si is None else self.given / si.scales.velocity
+
+    def __len__(self) -> int:
+        return len(self.given)
+
+    @overload
+    def __getitem__(self, place: int) -> Scene: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> Scenes: ...
+
+    def __getitem__(self, place: int | slice) -> Scene | Scenes:
+        if isinstance(place, slice):
+            return Scenes(self.scene, self.given[place])
+        return self.scene.at(float(self.given[place]))
+
+    def __iter__(self) -> Iterator[Scene]:
+        return (self.scene.at(float(speed)) for speed in self.given)
+
+    def taken(self, places: Sequence[int] | NDArray[np.int64]) -> Scenes:
+        """Those at these places."""
+        return Scenes(self.scene, self.given[np.asarray(places, dtype=np.int64)])
+
+
+def belt_speeds_of(scenes: Sequence[Scene]) -> Floats:
+    """The belt speed of each scene [scene velocity]."""
+    return (
+        scenes.belt_speeds if isinstance(scenes, Scenes) else np.array([each.belt_speed for each in scenes])
+    )

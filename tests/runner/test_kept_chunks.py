@@ -1,0 +1,224 @@
+"""Solved chunks are found again by what they compute, and by nothing else."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pandas.testing import assert_frame_equal
+
+import frictionlab as fl
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
+from frictionlab.runner import code_digest
+from frictionlab.runner.chunks import Chunk, Task
+from frictionlab.runner.kept_chunks import KeptChunks, Keys
+from frictionlab.runner.solve import solve
+from frictionlab.scene.scenes import Scenes
+
+SCENE: dict[str, Any] = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
+SCENE |= {"drive": {"unbalance": 10, "frequency": 1}}
+
+
+def study(**changes: Any) -> dict[str, Any]:
+    given = {"schema": 1, "scene": SCENE, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["exact"]}
+    return given | {"sweep": {"scene.belt_speed": {"start": 1, "stop": 30, "num": 300}}} | changes
+
+
+def counts(folder: Path) -> tuple[int, int]:
+    """Points computed and found by the last run in a folder."""
+    last = json.loads((folder / "provenance.json").read_text())["runs"][-1]
+    return last["computed"], last["found"]
+
+
+def test_a_chunk_is_found_by_another_study_with_other_labels_and_order(tmp_path: Path) -> None:
+    first = fl.run(study(), out=tmp_path / "a")
+    laws = [{"kind": "coulomb", "mu": 0.3}, {"kind": "coulomb", "mu": 0.4, "label": "the same"}]
+    other = fl.run(study(laws=laws, title="another", expect=[]), out=tmp_path / "b")
+
+    assert counts(tmp_path / "a") == (300, 0)
+    assert counts(tmp_path / "b") == (300, 300)
+    both = other.table[other.table["law"] == "the same"].reset_index(drop=True)
+    assert_frame_equal(both.drop(columns="law"), first.table.drop(columns="law"), check_exact=True)
+
+
+def test_kept_orbits_are_found_with_their_chunk(tmp_path: Path) -> None:
+    speeds = {"sweep": {"scene.belt_speed": [1.0, 5.0, 9.0]}, "keep": {"orbit": 5}}
+    first = fl.run(study(**speeds), out=tmp_path / "a")
+    again = fl.run(study(**speeds, title="again"), out=tmp_path / "b")
+
+    assert again.computed == 0
+    assert first.orbits is not None
+    assert again.orbits is not None
+    assert_frame_equal(again.orbits, first.orbits, check_exact=True)
+
+
+def test_cases_that_compute_the_same_are_solved_once() -> None:
+    laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "coulomb", "mu": 0.4, "label": "twin"}]
+    done = fl.run(study(laws=laws))
+
+    halves = [done.table[done.table["law"] == law] for law in ("coulomb", "twin")]
+    one, other = (half.drop(columns="law").reset_index(drop=True) for half in halves)
+    assert done.computed == 300
+    assert_frame_equal(one, other, check_exact=True)
+
+
+def chunk(**changes: Any) -> Chunk:
+    scene = fl.Scene.model_validate(SCENE)
+    speeds = np.array([1.0, 2.0])
+    own = {"rows": np.arange(2), "scenes": Scenes(scene, speeds), "law": fl.Coulomb(mu=0.4)}
+    return replace(Chunk(**own, method=fl.Exact(), task=Task(1e-8)), **changes)  # type: ignore[arg-type]
+
+
+def key(given: Chunk, code: str = "") -> str | None:
+    return Keys({"coulomb": code} if code else {}).of(given, "coulomb", "exact")
+
+
+OTHER = fl.Scene.model_validate(SCENE)
+CHANGES: dict[str, dict[str, Any]] = {
+    "law": {"law": fl.Coulomb(mu=0.4000001)},
+    "kind of law": {"law": fl.Stribeck(mu_kinetic=0.4, mu_static=0.4)},
+    "method": {"method": fl.Shooting()},
+    "speeds": {"scenes": Scenes(OTHER, np.array([1.0, np.nextafter(2.0, 3.0)]))},
+    "scene": {"scenes": Scenes(OTHER.with_(damping_ratio=0.2), np.array([1.0, 2.0]))},
+    "start": {"scenes": Scenes(OTHER.with_(initial=fl.Initial()), np.array([1.0, 2.0]))},
+    "tolerance": {"task": Task(1e-9)},
+    "orbits": {"task": Task(1e-8, samples=3)},
+    "columns": {"task": Task(1e-8, columns=frozenset({"mean_friction"}))},
+    "limit": {"task": Task(1e-8, seconds_per_point=1.0)},
+}
+
+
+@pytest.mark.parametrize("what", CHANGES)
+def test_whatever_changes_the_numbers_changes_the_key(what: str) -> None:
+    assert key(chunk()) is not None
+    assert key(chunk(**CHANGES[what])) not in (None, key(chunk()))
+
+
+def test_other_code_changes_the_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = key(chunk())
+    assert key(chunk(), "edited") != plain
+    monkeypatch.setattr(code_digest, "own_code", lambda: "edited")
+    assert key(chunk()) != plain
+
+
+def test_rows_and_a_scale_change_no_key() -> None:
+    si = {"mass_kg": 1.0, "stiffness_N_per_m": 1.0, "damping_N_s_per_m": 0.2, "length_m": 1.0}
+    si |= {"normal_load_N": 10.0, "belt_speed_m_per_s": 1.0}
+    si["drive"] = {"unbalance_kg_m": 10.0, "frequency_rad_per_s": 1.0}
+    scaled = fl.Scene.model_validate({"dimensional": si})
+    plain = fl.Scene.model_validate(SCENE | {"drive": {"unbalance": 10.0, "frequency": 1.0}})
+    speeds = np.array([1.0, 2.0])
+
+    assert key(chunk(rows=np.array([7, 3]))) == key(chunk())
+    assert scaled.with_().belt_speed == 1.0
+    assert key(chunk(scenes=Scenes(scaled, speeds))) == key(chunk(scenes=Scenes(plain, speeds)))
+
+
+class Mine(fl.Coulomb):
+    """A law from somewhere else."""
+
+
+class MyMethod(fl.Exact):
+    """A method from somewhere else."""
+
+
+@pytest.mark.parametrize("own", [{"law": Mine(mu=0.4)}, {"method": MyMethod()}])
+def test_what_is_made_by_code_that_nobody_knows_has_no_key(own: dict[str, FrictionLaw | Method]) -> None:
+    assert key(chunk(**own)) is None
+
+
+def kept_one(folder: Path) -> tuple[KeptChunks, Path]:
+    kept = KeptChunks(folder)
+    (part,) = solve(chunk(task=Task(1e-8, samples=3)))
+    assert kept.keep("ab" + "0" * 62, part)
+    (path,) = folder.rglob("*.chunk")
+    return kept, path
+
+
+def test_a_chunk_comes_back_bit_for_bit(tmp_path: Path) -> None:
+    kept, _ = kept_one(tmp_path)
+    (part,) = solve(chunk(task=Task(1e-8, samples=3)))
+    again = kept.found("ab" + "0" * 62)
+
+    assert again is not None
+    assert again.text == part.text
+    assert again.orbits.keys() == part.orbits.keys() == {0, 1}
+    for name in part.numbers.keys() - {"seconds"}:
+        np.testing.assert_array_equal(again.numbers[name], part.numbers[name])
+    np.testing.assert_array_equal(again.orbits[1], part.orbits[1])
+
+
+def test_a_damaged_chunk_is_solved_again(tmp_path: Path) -> None:
+    for at in range(0, 4000, 37):
+        kept, path = kept_one(tmp_path)
+        content = bytearray(path.read_bytes())
+        content[at % len(content)] ^= 1
+        path.write_bytes(content)
+        assert kept.found("ab" + "0" * 62) is None
+        assert not path.exists()
+    kept, path = kept_one(tmp_path)
+    path.write_bytes(path.read_bytes()[:-1])
+    assert kept.found("ab" + "0" * 62) is None
+    assert kept.found("cd" + "0" * 62) is None
+
+
+def test_a_run_solves_what_was_damaged(tmp_path: Path) -> None:
+    whole = fl.run(study(), out=tmp_path / "a").table
+    damaged, *_ = (tmp_path / ".cache").rglob("*.chunk")
+    damaged.write_bytes(b"")
+    again = fl.run(study(), out=tmp_path / "b")
+
+    assert again.computed == 150
+    assert_frame_equal(again.table.drop(columns="seconds"), whole.drop(columns="seconds"), check_exact=True)
+
+
+def test_those_used_longest_ago_are_removed_above_the_limit(tmp_path: Path) -> None:
+    fl.run(study(), out=tmp_path / "a", cache=tmp_path / "kept")
+    fl.run(study(tolerance=1e-7), out=tmp_path / "b", cache=tmp_path / "kept")
+    files = sorted((tmp_path / "kept").rglob("*.chunk"))
+    old = time.time() - 1000.0
+    for age, path in enumerate(files):
+        os.utime(path, (old + age, old + age))
+    room = sum(path.stat().st_size for path in files[1:]) * 1e-9
+    KeptChunks(tmp_path / "kept", room * 1.0001).trim()
+
+    assert sorted((tmp_path / "kept").rglob("*.chunk")) == files[1:]
+    fl.run(study(tolerance=1e-6), out=tmp_path / "c", cache=tmp_path / "kept", cache_gigabytes=0.0)
+    assert len(list((tmp_path / "kept").rglob("*.chunk"))) == 2  # those of the run itself
+
+
+def test_what_a_killed_process_began_to_keep_is_removed(tmp_path: Path) -> None:
+    kept, path = kept_one(tmp_path)
+    (path.parent / f".{path.name}.999999999").write_bytes(b"half")
+    kept.trim()
+
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_killed_run_goes_on_from_its_chunks(tmp_path: Path) -> None:
+    def dies(done: int, total: int) -> None:
+        if done:
+            raise MemoryError
+
+    with ThreadPoolExecutor(1) as pool, pytest.raises(MemoryError):
+        fl.run(study(), out=tmp_path / "a", executor=pool, progress=dies)
+    assert not (tmp_path / "a" / "results.parquet").exists()
+    again = fl.run(study(), out=tmp_path / "a")
+
+    assert (again.computed, counts(tmp_path / "a")) == (150, (150, 150))
+
+
+def test_a_cache_that_cannot_be_written_costs_nothing_but_itself(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+
+    done = fl.run(study(), out=tmp_path / "a", cache=tmp_path / "file")
+
+    assert done.counts == {"ok": 300}

@@ -137,7 +137,7 @@ EDITS = [
     ("num: 120", "num: 2.5", "19:49: sweep.scene.belt_speed.num: must be a whole number >= 2, got 2.5"),
     ("num: 120", "num: true", "19:49: sweep.scene.belt_speed.num: must be a whole number >= 2, got true"),
     ("num: 120", "num: 100000000", "19:49: sweep.scene.belt_speed.num: must be <= 1000000, got 100000000"),
-    ("num: 120}", "num: 1000000}\n  scene.damping_ratio: {start: 1, stop: 2, num: 200}", "18:1: sweep: the grid has at least 200000000 points, more"),
+    ("num: 120}", "num: 1000000}\n  scene.damping_ratio: {start: 1, stop: 2, num: 200}", "18:1: sweep: the grid has at least 400000000 points, more"),
     (", num: 120", "", "19:3: sweep.scene.belt_speed.num: required key is missing"),
     ("num: 120", "num: 120, space: log", "19:54: sweep.scene.belt_speed.space: unknown key; allowed: start, stop, num"),
     ("num: 120", "num: 120, spacing: logg", "19:63: sweep.scene.belt_speed.spacing: must be one of linear, log; got the"),

@@ -316,15 +316,26 @@ def _lead(harmonic: complex, force: complex) -> float:
     return math.degrees(math.atan2(ratio.imag, ratio.real))
 
 
+OVERSHOOT = 0.6
+"""(L - 1)/2, rounded up, of the Lebesgue constant L of the nodes."""
+
+
 @inner
 def _highest(values: Any, sign: float, stick: Any) -> float:
     """The maximum of sign * the panel polynomials, interior maxima included."""
     highest = -1e300
-    row, slope = np.empty(values.shape[1]), np.empty(values.shape[1])
     for panel in range(values.shape[0]):
         for node in range(values.shape[1]):
+            highest = max(highest, sign * values[panel, node])
+    row, slope = np.empty(values.shape[1]), np.empty(values.shape[1])
+    for panel in range(values.shape[0]):
+        low, high = 1e300, -1e300
+        for node in range(values.shape[1]):
             row[node] = sign * values[panel, node]
-            highest = max(highest, row[node])
+            low, high = min(low, row[node]), max(high, row[node])
+        # Between its nodes a polynomial leaves the range of their values by at most OVERSHOOT of it.
+        if not high + OVERSHOOT * (high - low) > highest:
+            continue
         # An extreme inside a panel lies where its derivative falls through zero between two nodes.
         differentiate_panel(row, slope)
         for node in range(1, values.shape[1]):

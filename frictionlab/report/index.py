@@ -11,7 +11,6 @@ from urllib.parse import quote
 from frictionlab.report.figures import address
 from frictionlab.report.page import rendered, wall
 from frictionlab.report.tables import size
-from frictionlab.results.summary import statuses
 from frictionlab.results.words import counted
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.saved import Saved
@@ -65,7 +64,7 @@ def _entry(folder: Path, run: Saved) -> Entry:
         name=name,
         title=run.title,
         link=f"{quote(name)}/report.html",
-        points=statuses(run.table),
+        points=", ".join(f"{count} {status}" for status, count in run.counts.items()),
         passed=passed,
         failed=len(run.verdicts) - passed,
         error=size(float(run.table["error"].max())),

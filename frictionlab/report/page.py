@@ -66,7 +66,8 @@ def _head(saved: Saved) -> dict[str, Any]:
     verdicts = saved.verdicts
     passed = sum(verdict.passed for verdict in verdicts)
     return {
-        "size": counted(len(saved.table), "point"),
+        "size": counted(saved.size, "point"),
+        "thinned": counted(len(saved.table), "point") if len(saved.table) < saved.size else "",
         "counts": saved.counts,
         "passed": passed,
         "failed": len(verdicts) - passed,
@@ -85,7 +86,7 @@ def wall(seconds: float) -> str:
 
 def _unfinished(saved: Saved) -> str:
     killed = saved.counts.get("killed", 0)
-    return f"{killed} of {counted(len(saved.table), 'point')} were not reached" if killed else ""
+    return f"{killed} of {counted(saved.size, 'point')} were not reached" if killed else ""
 
 
 def _asked(saved: Saved) -> dict[str, Any]:

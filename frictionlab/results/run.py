@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import pandas as pd
@@ -16,16 +18,35 @@ from frictionlab.study import Study
 class Run:
     """A study and what came of it: its tables, its kept orbits, and the verdicts on what it expects.
 
-    curves: one row per curve, with its shape; none where belt speed is not swept or the run was stopped.
+    made, orbits_made: the table and the orbits, or what reads them from their file. curves: one row per curve, with
+    its shape; none where belt speed is not swept or the run was stopped. shown, found: of a table too long to be
+    held, the rows that figures and pages show, and how many of all rows have each status.
     """
 
     study: Study
-    table: pd.DataFrame
-    orbits: pd.DataFrame | None
+    made: Callable[[], pd.DataFrame]
+    orbits_made: Callable[[], pd.DataFrame | None]
     verdicts: tuple[Verdict, ...]
     folder: Path | None
     computed: int
     curves: pd.DataFrame = field(default_factory=pd.DataFrame)
+    shown: pd.DataFrame | None = None
+    found: Mapping[str, int] | None = None
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """One row per scene, law and method."""
+        return self.made()
+
+    @cached_property
+    def orbits(self) -> pd.DataFrame | None:
+        """The kept orbits; None where none are kept."""
+        return self.orbits_made()
+
+    @property
+    def to_show(self) -> pd.DataFrame:
+        """The table, or of a long one the rows that are shown."""
+        return self.table if self.shown is None else self.shown
 
     @property
     def table_file(self) -> Path | None:
@@ -35,4 +56,9 @@ class Run:
     @property
     def counts(self) -> dict[str, int]:
         """How many rows have each status."""
-        return status_counts(self.table)
+        return status_counts(self.table) if self.found is None else dict(self.found)
+
+    @property
+    def size(self) -> int:
+        """How many rows there are."""
+        return sum(self.counts.values())

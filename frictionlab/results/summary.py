@@ -32,10 +32,12 @@ MOST_REASONS = 10
 
 def summary(run: Run) -> str:
     """What a run found, for reading: curves, reasons, verdicts."""
-    table = whole(run.table)
+    table = whole(run.to_show)
+    told = ", ".join(f"{count} {status}" for status, count in run.counts.items())
     parts = [
         [run.study.title] if run.study.title else [],
-        [f"{counted(len(table), 'point')}: {statuses(table)}"],
+        [f"{counted(run.size, 'point')}: {told}"],
+        [f"of {counted(len(table), 'point')} spread over them:"] if run.shown is not None else [],
         ["", *columns([_HEAD, *_curve_lines(table)])],
         _model_lines(table),
         _reasons(table),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -34,20 +34,36 @@ class Inputs(NamedTuple):
 
 def inputs(curves: Sequence[StudyCurve]) -> Inputs:
     """law, kind, method, then every value of the scenes and of the laws; empty (NaN, None) where a row has none."""
-    named = [{"law": each.law_label, "kind": each.kind, "method": each.method.label} for each in curves]
-    # Curves share their scenes and laws: the values of each are read once.
-    scenes = _once(curves, lambda each: each.scenes.scene, lambda scene: scene.values())
-    laws = _once(curves, lambda each: each.given_law, _values)
-    rows = [each.rows for each in curves]
-    columns = _spread("", named, rows)
-    columns |= _spread("scene.", scenes, rows)
-    columns |= _spread("law.", laws, rows)
-    columns |= _spread(SCALED, [_scaled(each) for each in curves], rows)
-    for each in curves:
-        for name, speeds in zip(BELT_SPEEDS, (each.scenes.belt_speeds, each.scenes.given), strict=True):
-            if name in columns:
-                columns[name][slice_of(each.rows)] = speeds
-    return Inputs(columns, sum(map(len, rows)), _scales(curves))
+    return InputColumns(curves).of(range(len(curves)))
+
+
+class InputColumns:
+    """The input columns of a study's curves: of all rows or of some at a time, each time the same columns."""
+
+    def __init__(self, curves: Sequence[StudyCurve]) -> None:
+        self._curves = curves
+        named = [{"law": each.law_label, "kind": each.kind, "method": each.method.label} for each in curves]
+        # Curves share their scenes and laws: the values of each are read once.
+        scenes = _once(curves, lambda each: each.scenes.scene, lambda scene: scene.values())
+        laws = _once(curves, lambda each: each.given_law, _values)
+        scaled = [_scaled(each) for each in curves]
+        self._records = [("", named), ("scene.", scenes), ("law.", laws), (SCALED, scaled)]
+        self._kinds = [_kinds(records) for _, records in self._records]
+
+    def of(self, chosen: range) -> Inputs:
+        """Of the curves at these places, whose rows are all rows from the first of them to the last."""
+        curves = self._curves[chosen.start : chosen.stop]
+        first = min(each.rows.start for each in curves)
+        where = [slice_of(each.rows, first) for each in curves]
+        size = sum(len(each.rows) for each in curves)
+        columns: dict[str, Column] = {}
+        for (prefix, records), kinds in zip(self._records, self._kinds, strict=True):
+            columns |= _spread(prefix, records[chosen.start : chosen.stop], kinds, where, size)
+        for each, places in zip(curves, where, strict=True):
+            for name, speeds in zip(BELT_SPEEDS, (each.scenes.belt_speeds, each.scenes.given), strict=True):
+                if name in columns:
+                    columns[name][places] = speeds
+        return Inputs(columns, size, _scales(curves, where, size))
 
 
 Column = NDArray[Any]
@@ -63,9 +79,9 @@ def _once(
     return [made[id(part(each))] for each in curves]
 
 
-def slice_of(rows: range) -> slice:
-    """The same places of an array."""
-    return slice(rows.start, rows.stop, rows.step)
+def slice_of(rows: range, first: int = 0) -> slice:
+    """Their places in an array that begins with the row ``first``."""
+    return slice(rows.start - first, rows.stop - first, rows.step)
 
 
 def _scaled(curve: StudyCurve) -> dict[str, Any]:
@@ -74,12 +90,11 @@ def _scaled(curve: StudyCurve) -> dict[str, Any]:
     return {} if si is None else _cells(scaled_parameters(curve.given_law, si.scales))
 
 
-def _scales(curves: Sequence[StudyCurve]) -> dict[str, Floats] | None:
+def _scales(curves: Sequence[StudyCurve], where: list[slice], size: int) -> dict[str, Floats] | None:
     if not curves or curves[0].scenes.scene.dimensional is None:
         return None
     found = _once(curves, lambda each: each.scenes.scene, si_scales)
-    columns = _spread("", found, [each.rows for each in curves])
-    return {name: column.astype(float) for name, column in columns.items()}
+    return _spread("", found, _kinds(found), where, size)
 
 
 def _values(law: FrictionLaw) -> dict[str, Any]:
@@ -97,20 +112,25 @@ def _cells(values: Mapping[str, Any]) -> dict[str, Any]:
     return cells
 
 
-def _spread(prefix: str, records: list[dict[str, Any]], rows: list[range]) -> dict[str, Column]:
-    """A column for each name in the records, each record's value in its rows; numbers with gaps as floats."""
-    names = dict.fromkeys(
-        name for record in {id(record): record for record in records}.values() for name in record
-    )
-    size = sum(map(len, rows))
+def _kinds(records: list[dict[str, Any]]) -> dict[str, bool]:
+    """The names in records, and whether all their values are numbers."""
+    found: dict[str, bool] = {}
+    for record in {id(record): record for record in records}.values():
+        for name, value in record.items():
+            found[name] = found.get(name, True) and isinstance(value, float | int)
+    return found
+
+
+def _spread(
+    prefix: str, records: list[dict[str, Any]], kinds: dict[str, bool], where: list[slice], size: int
+) -> dict[str, Column]:
+    """A column for each name, each record's value at its places; numbers with gaps as floats."""
     found: dict[str, Column] = {}
-    for name in names:
-        values = [record.get(name) for record in records]
-        numbers = all(value is None or isinstance(value, float | int) for value in values)
-        column = np.full(size, np.nan) if numbers else np.full(size, None, dtype=object)
-        for value, where in zip(values, rows, strict=True):
-            if value is not None:
-                column[slice_of(where)] = value
+    for name, are_numbers in kinds.items():
+        column = np.full(size, np.nan) if are_numbers else np.full(size, None, dtype=object)
+        for record, places in zip(records, where, strict=True):
+            if name in record:
+                column[places] = record[name]
         found[f"{prefix}{name}"] = column
     return found
 
@@ -120,6 +140,9 @@ def value_in(cells: Mapping[str, Any], name: str) -> Any:
     given = {key: cells[key] for key in cells if key == name or key.startswith(f"{name}[")}
     filled = {key: value for key, value in given.items() if value is not None and value == value}
     return filled[name] if name in filled else [*filled.values()] or None
+
+
+EVERY_ROW = slice(None)
 
 
 class Results:
@@ -160,12 +183,18 @@ class Results:
         names, counts = np.unique(self._words["status"].astype(str), return_counts=True)
         return dict(zip(names.tolist(), counts.tolist(), strict=True))
 
-    def frame(self, given: Inputs) -> pd.DataFrame:
-        """The table: contract order, empty cells where a column does not apply."""
-        told = [name for name in RESULTS if name in self._columns]
+    def frame(
+        self, given: Inputs, rows: slice = EVERY_ROW, names: Collection[str] | None = None
+    ) -> pd.DataFrame:
+        """The table: contract order, empty cells where a column does not apply.
+
+        rows, names: of these rows alone, of the results these columns alone.
+        """
+        told = [name for name in RESULTS if name in self._columns and (names is None or name in names)]
         found = {name: self._words.get(name, self._numbers.get(name)) for name in told}
-        in_si = si_columns(self._numbers, given.scales) if given.scales is not None else {}
-        frame = pd.DataFrame(given.columns | found | in_si)
+        in_si = si_columns(self._numbers, given.scales) if given.scales is not None and names is None else {}
+        columns = given.columns | found | in_si
+        frame = pd.DataFrame({name: column[rows] for name, column in columns.items() if column is not None})
         for name in frame.columns[[kind.kind == "O" for kind in frame.dtypes]]:
             frame[name] = _column_of_words_or_numbers(frame[name])
         return frame

@@ -25,6 +25,7 @@ from frictionlab.results.part import Part
 from frictionlab.results.run import Run
 from frictionlab.results.state import OrbitOf, SteadyState
 from frictionlab.results.table import inputs
+from frictionlab.results.thinned import LONG_TABLE
 from frictionlab.runner.accumulate import Accumulator
 from frictionlab.runner.arguments import (
     check_executor,
@@ -42,6 +43,7 @@ from frictionlab.runner.code_digest import code_digest
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.folder import Existing, Identity, RunFolder
 from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, KeptChunks, Keys, kept_beside
+from frictionlab.runner.long_run import LongRun
 from frictionlab.runner.open_chunks import OpenChunk, answered, each_once, open_chunks
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.solve import answer, parts
@@ -50,6 +52,7 @@ from frictionlab.runner.workforce import Workforce, workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import MethodChoice, Study, StudyCurve
+from frictionlab.study.grid import grid_size
 from frictionlab.study.study import law_in_scene
 
 
@@ -79,6 +82,7 @@ def run(
     columns: Sequence[str] | None = None,
     cache: str | PathLike[str] | None = None,
     cache_gigabytes: float = USUAL_GIGABYTES,
+    as_csv: bool = False,
 ) -> Run:
     """Solve every case of a study. Writes only with ``out``, the folder for results.
 
@@ -87,6 +91,7 @@ def run(
     executor: any; threads of this process by default.
     cache: the folder that keeps solved chunks for this and other studies, ``.cache`` beside ``out`` by default; above
     so many gigabytes those used longest ago are removed. Without ``out`` and ``cache`` nothing is written.
+    as_csv: write a table of more than 1e5 rows as text, too; it is read from its file where ``.table`` is asked for.
     columns: result columns, in place of those of the study; inputs, mean_friction, error, status and reason always.
     Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin, ValueError or TypeError for what makes no
     sense, such as an unknown column.
@@ -96,16 +101,37 @@ def run(
     folder = run_folder(ready, Path(out)) if out is not None else None
     if folder is not None:
         folder.check(existing)
+    kept = kept_beside(out, cache, cache_gigabytes)
+    if folder is not None and kept is not None and grid_size(ready) > LONG_TABLE:
+        return _run_long(
+            LongRun(ready, folder, kept, overrides), folder, existing, executor, progress, as_csv
+        )
     curves = list(ready.curves())
     gathering = Accumulator(inputs(curves), folder, progress, overrides, ready.selected())
     task = task_of(ready)
     gathering.resume(existing, task.samples)
-    kept = kept_beside(out, cache, cache_gigabytes)
     left = [] if gathering.complete else list(open_chunks(curves, task, gathering.finished, Keys(ready.code)))
     if folder is not None:
         folder.open(existing)
     stopped = _solve(gathering, left, kept, executor)
     return _finished(ready, gathering, folder, stopped)
+
+
+def _run_long(
+    long: LongRun,
+    folder: RunFolder,
+    existing: Existing,
+    executor: Executor | Workforce | None,
+    progress: Progress,
+    as_csv: bool,
+) -> Run:
+    folder.open(existing)
+    with workforce(executor) as force:
+        stopped = long.solve(force, progress)
+    done = long.gather(stopped, as_csv)
+    if stopped:
+        raise Interrupted(done)
+    return done
 
 
 def run_folder(study: Study, out: Path) -> RunFolder:
@@ -179,7 +205,7 @@ def _finished(study: Study, gathering: Accumulator, folder: RunFolder | None, st
     gathering.judged(verdicts)
     unsaved = _saved(gathering, table, orbits, curves)
     path = folder.path if folder is not None and unsaved is None else None
-    done = Run(study, table, orbits, verdicts, path, gathering.computed, curves)
+    done = Run(study, lambda: table, lambda: orbits, verdicts, path, gathering.computed, curves)
     if unsaved is not None:
         raise UnsavedError(unsaved, done) from unsaved
     if stopped:

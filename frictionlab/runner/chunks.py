@@ -20,7 +20,7 @@ from frictionlab.study import Study, StudyCurve
 USUAL_SIZE = 125
 """Points per chunk: pieces of one curve then hold 84 to 187 points. Fewer lose the continuation from the
 neighbour, more leave workers idle. Never made to depend on the number of workers: answers would, too."""
-LONG, LONG_SIZE = 4000, 500
+LONG_CURVE, LONG_SIZE = 4000, 500
 """Points of a curve long enough to keep workers busy by larger chunks, and the points of these."""
 
 
@@ -79,6 +79,6 @@ def cuts(curves: Iterable[StudyCurve]) -> Iterator[Cut]:
 
 
 def _cut(curve: Places) -> list[Places]:
-    count = max(1, round(len(curve) / (USUAL_SIZE if len(curve) < LONG else LONG_SIZE)))
+    count = max(1, round(len(curve) / (USUAL_SIZE if len(curve) < LONG_CURVE else LONG_SIZE)))
     ends = [len(curve) * piece // count for piece in range(count + 1)]
     return [curve[start:end] for start, end in pairwise(ends)]

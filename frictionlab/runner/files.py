@@ -60,6 +60,13 @@ def stamp(content: bytes) -> dict[str, Any]:
     return {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
 
 
+def stamp_of_file(path: Path) -> dict[str, Any]:
+    """The stamp of what a file holds, which need not fit into memory. Raises OSError."""
+    with path.open("rb") as file:
+        checksum = hashlib.file_digest(file, "sha256").hexdigest()
+        return {"bytes": file.tell(), "sha256": checksum}
+
+
 def stamps(account: Mapping[str, Any]) -> dict[str, list[dict[str, Any]]]:
     """By file, what it may hold: while it is replaced, old or new. Raises ValueError where the account is damaged."""
     files = account.get("files", {})
@@ -80,7 +87,7 @@ def damage(path: Path, known: Iterable[Mapping[str, Any]]) -> str:
         return ""
     if not path.exists():
         return "is missing"
-    found = stamp(path.read_bytes())
+    found = stamp_of_file(path)
     if found in expected:
         return ""
     size = expected[-1]["bytes"]

@@ -20,7 +20,7 @@ import pandas as pd
 from frictionlab.faults import INTERNAL, MARK
 from frictionlab.printable import printable
 from frictionlab.runner.errors import FolderError, SaveError
-from frictionlab.runner.files import damage, remove_leftovers, stamp, stamps, write_whole
+from frictionlab.runner.files import damage, remove_leftovers, stamp, stamp_of_file, stamps, write_whole
 from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study.study import LAW_COPIES
 
@@ -78,11 +78,13 @@ class RunFolder:
         return self.path / "provenance.json"
 
     @property
-    def _orbits(self) -> Path:
+    def orbits_file(self) -> Path:
+        """Where the kept orbits are."""
         return self.path / "orbits.parquet"
 
     @property
-    def _csv(self) -> Path:
+    def csv_file(self) -> Path:
+        """Where the table is as text."""
         return self.path / "results.csv"
 
     @property
@@ -183,7 +185,7 @@ class RunFolder:
 
     def earlier_orbits(self, existing: Existing) -> pd.DataFrame | None:
         """The orbits kept by an earlier run of this study; None where they are not there or damaged."""
-        return self._earlier(self._orbits, existing)
+        return self._earlier(self.orbits_file, existing)
 
     def _earlier(self, path: Path, existing: Existing) -> pd.DataFrame | None:
         if existing == "replace" or not path.exists() or self._damage(path.name):
@@ -194,7 +196,7 @@ class RunFolder:
         """What is wrong with the files of an earlier run of this study, and what the next run does about it."""
         if not self._account.exists():
             return []
-        what = {self.table.name: "its points are", self._orbits.name: "its points are"}
+        what = {self.table.name: "its points are", self.orbits_file.name: "its points are"}
         found = {name: self._damage(name) for name in self._stamps()}
         return [
             f"{self.path / name} {wrong}; {what.get(name, 'it is')} made again"
@@ -209,7 +211,8 @@ class RunFolder:
             wrong = damage(path, self._stamps().get(name, []))
         except OSError as problem:
             raise FolderError(f"{path} cannot be read ({problem.strerror}); {REMEDY}") from problem
-        if not wrong and path.suffix == ".parquet" and path.exists() and _parquet(path) is None:
+        known = self._stamps().get(name)
+        if not wrong and not known and path.suffix == ".parquet" and path.exists() and _parquet(path) is None:
             return "is damaged: it is no table"
         return wrong
 
@@ -233,7 +236,7 @@ class RunFolder:
             _refuse_folder(self.path, problem)
 
     def _results(self) -> Iterator[Path]:
-        yield from (self.table, self._csv, self._curves, self._orbits)
+        yield from (self.table, self.csv_file, self._curves, self.orbits_file)
         yield self.path / "report.html"
         for pattern in ("*.svg", "*.png"):
             yield from (self.path / "figures").glob(pattern)
@@ -286,20 +289,34 @@ class RunFolder:
 
     def save(self, table: pd.DataFrame, orbits: pd.DataFrame | None) -> None:
         """Write what a run continues from: results.parquet, and orbits.parquet if any. Raises SaveError."""
-        for path in (self._csv, self._curves):  # those of an earlier table
-            try:
-                path.unlink(missing_ok=True)
-            except OSError as problem:
-                raise SaveError(f"cannot replace {path}: {problem.strerror}") from problem
+        self.remove_texts()
         if orbits is not None:
-            self._put(self._orbits, _as_parquet(orbits))
+            self._put(self.orbits_file, _as_parquet(orbits))
         marked = table.copy(deep=False)
         marked.attrs = {SOLVER: self.identity.solver}
         self._put(self.table, _as_parquet(marked))
 
+    def remove_texts(self) -> None:
+        """Remove what was made from an earlier table. Raises SaveError."""
+        for path in (self.csv_file, self._curves):
+            try:
+                path.unlink(missing_ok=True)
+            except OSError as problem:
+                raise SaveError(f"cannot replace {path}: {problem.strerror}") from problem
+
+    def adopt(self, path: Path, written: Path) -> None:
+        """Put a file that is written already in its place, its stamp first. Raises SaveError."""
+        try:
+            name, new = path.relative_to(self.path).as_posix(), stamp_of_file(written)
+            self._know(name, [*self._stamps().get(name, []), new])
+            os.replace(written, path)
+        except OSError as problem:
+            raise SaveError(f"cannot write {path}: {problem.strerror}") from problem
+        self._know(name, [new])
+
     def save_csv(self, table: pd.DataFrame) -> None:
         """Write results.csv; floats in shortest round-trip form. Raises SaveError."""
-        self._put(self._csv, _as_csv(table))
+        self._put(self.csv_file, _as_csv(table))
 
     def save_curves(self, curves: pd.DataFrame) -> None:
         """Write curves.csv, where there are curves. Raises SaveError."""
@@ -309,7 +326,7 @@ class RunFolder:
     @property
     def has_csv(self) -> bool:
         """Whether the table is there as text too, and intact."""
-        return self._csv.exists() and not self._damage(self._csv.name)
+        return self.csv_file.exists() and not self._damage(self.csv_file.name)
 
 
 REMEDY = "choose another folder with -o, or replace what is there with --force"

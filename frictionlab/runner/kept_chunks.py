@@ -94,6 +94,14 @@ class KeptChunks:
             os.utime(path) if part is not None else path.unlink()
         return part
 
+    def has(self, key: str) -> bool:
+        """Whether answers are kept under a key, intact or not; they stay until this run ends."""
+        try:
+            os.utime(self._path(key))
+        except OSError:
+            return False
+        return True
+
     def keep(self, key: str, part: Part) -> bool:
         """Keep answers, by their places in the chunk, but for those to be tried anew. Raises SaveError."""
         if not _is_an_answer(part):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import shlex
 from dataclasses import dataclass
@@ -16,9 +15,11 @@ from frictionlab.columns import INPUTS, RESULTS, TEXT
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
 from frictionlab.results.table import status_counts, whole
+from frictionlab.results.thinned import LONG_TABLE, shown_rows, thinned
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.files import damage, stamps
 from frictionlab.runner.folder import rerun
+from frictionlab.runner.long_files import read_pieces, read_whole, rows_of_file
 from frictionlab.study import Study, StudyError, read_back
 from frictionlab.study.grid import grid_size
 
@@ -33,6 +34,7 @@ MOST_NAMED = 3
 class Saved:
     """A run in its folder. account: provenance.json; curves: curves.csv, None where there is none.
 
+    table: of a long one the rows that are shown; ``rows`` is then the number of all.
     damaged: what is wrong with files that a report does without, and the command that mends them.
     """
 
@@ -42,6 +44,12 @@ class Saved:
     curves: pd.DataFrame | None
     account: dict[str, Any]
     damaged: tuple[str, ...] = ()
+    rows: int | None = None
+
+    @property
+    def size(self) -> int:
+        """How many rows the table has."""
+        return len(self.table) if self.rows is None else self.rows
 
     @property
     def title(self) -> str:
@@ -57,7 +65,7 @@ class Saved:
     @property
     def counts(self) -> dict[str, int]:
         """How many rows have each status, the commonest first."""
-        return status_counts(self.table)
+        return status_counts(self.table) if self.rows is None else dict(self.account["counts"])
 
     @property
     def seconds(self) -> float:
@@ -74,7 +82,9 @@ def read_saved(folder: Path) -> Saved:
     for name in REPORT_FILES & wrong.keys():
         raise FolderError(wrong[name])
     table = _table(folder, study)
-    saved = Saved(folder, study, whole(table), _curves(folder), account, tuple(wrong.values()))
+    rows = rows_of_file(folder / "results.parquet")
+    long = rows if rows > LONG_TABLE else None
+    saved = Saved(folder, study, whole(table), _curves(folder), account, tuple(wrong.values()), long)
     _check_belongs_together(saved)
     return saved
 
@@ -82,7 +92,8 @@ def read_saved(folder: Path) -> Saved:
 def saved_as(run: Run) -> Saved:
     """A run that was just written. Raises FolderError where somebody took its account away meanwhile."""
     assert run.folder is not None
-    return Saved(run.folder, run.study, whole(run.table), _curves(run.folder), _account(run.folder))
+    account, long = _account(run.folder), None if run.shown is None else run.size
+    return Saved(run.folder, run.study, whole(run.to_show), _curves(run.folder), account, (), long)
 
 
 def _check_is_a_run(folder: Path) -> None:
@@ -133,7 +144,9 @@ def _wrong_file(file: Path, known: list[dict[str, Any]]) -> str:
 def _table(folder: Path, study: Study) -> pd.DataFrame:
     file = folder / "results.parquet"
     try:
-        table = pd.read_parquet(io.BytesIO(file.read_bytes()))
+        long = rows_of_file(file) > LONG_TABLE and rows_of_file(file) == grid_size(study)
+        rows = shown_rows(list(study.curves())) if long else None
+        table = read_whole(file) if rows is None else thinned(read_pieces(file), rows)
     except Exception as problem:  # a damaged file makes pyarrow raise whatever it stumbles over
         reason = str(problem).partition("\n")[0]
         raise FolderError(f"{file} cannot be read ({reason}); {_remedy(folder)}") from problem
@@ -188,7 +201,7 @@ def _account(folder: Path) -> dict[str, Any]:
 
 def _check_belongs_together(saved: Saved) -> None:
     """A table beside another study would make a page of lies."""
-    rows, wanted = len(saved.table), grid_size(saved.study)
+    rows, wanted = saved.size, grid_size(saved.study)
     edited = saved.account.get("digest") != saved.study.digest()
     if rows != wanted or (edited and saved.account.get("frictionlab") == __version__):
         raise FolderError(

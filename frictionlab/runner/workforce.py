@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -25,27 +25,31 @@ class Workforce:
     renew: Renew | None = None
     elsewhere: bool = True
 
-    def solve(self, chunks: Sequence[OpenChunk], take: Take, tick: Callable[[], None]) -> None:
+    def solve(self, chunks: Iterable[OpenChunk], take: Take, tick: Callable[[], None]) -> None:
         """Solve chunks, as ``collect`` does.
 
-        In other processes the first chunk of each kind comes back before the others are sent: the kernels it needs
+        In other processes the first chunk of each kind comes back before others of it are sent: the kernels it needs
         are then compiled once.
         """
-        first = _first_of_each_kind(chunks) if self.elsewhere else []
-        if first:
-            collect(first, self.executor, take, tick, self.renew)
-        sent = set(map(id, first))
-        collect((each for each in chunks if id(each) not in sent), self.executor, take, tick, self.renew)
+
+        def first_of_each_kind_solved() -> Iterator[OpenChunk]:
+            kinds: set[Any] = set()
+            for each in chunks:
+                kind = _kernels_of(each)
+                if kind in kinds:
+                    yield each
+                else:
+                    kinds.add(kind)
+                    collect([each], self.executor, take, tick, self.renew)
+
+        sent = first_of_each_kind_solved() if self.elsewhere else chunks
+        collect(sent, self.executor, take, tick, self.renew)
 
 
-def _first_of_each_kind(chunks: Sequence[OpenChunk]) -> list[OpenChunk]:
-    """The first of those that need the same kernels; none where every one needs others."""
-    kinds: dict[Any, OpenChunk] = {}
-    for each in chunks:
-        law, method, scene = each.chunk.law, each.chunk.method, each.chunk.scenes.scene
-        kind = type(law), type(method), scene.degrees_of_freedom, scene.load_along_belt_only
-        kinds.setdefault(kind, each)
-    return list(kinds.values()) if len(kinds) < len(chunks) else []
+def _kernels_of(each: OpenChunk) -> Any:
+    """What decides which kernels a chunk needs."""
+    law, method, scene = each.chunk.law, each.chunk.method, each.chunk.scenes.scene
+    return type(law), type(method), scene.degrees_of_freedom, scene.load_along_belt_only
 
 
 @contextmanager

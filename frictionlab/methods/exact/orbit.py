@@ -76,16 +76,21 @@ def count_panels(body: Oscillator, legs: Any, rows: int) -> int:
 
 
 @inner
-def sample_leg(body: Oscillator, leg: Any, r: float) -> tuple[float, float, float]:
-    """Displacement, velocity and friction force a time r into a leg."""
-    tau = leg[TAU] + r
-    load, _, u, speed = load_and_response(body, tau)
+def free_start(body: Oscillator, leg: Any) -> tuple[float, float]:
+    """Displacement and velocity at the start of a leg of slip, beside those of the response to load and friction."""
+    _, _, u, speed = load_and_response(body, leg[TAU])
+    return leg[X] - u + body.friction * leg[MODE], leg[W] + (body.belt_speed - speed)
+
+
+@inner
+def sample_leg(body: Oscillator, leg: Any, start: Any, r: float) -> tuple[float, float, float]:
+    """Displacement, velocity and friction force a time r into a leg with this free start."""
+    load, _, u, speed = load_and_response(body, leg[TAU] + r)
     if leg[MODE] == STICK:
         x = leg[X] + body.belt_speed * r
         return x, body.belt_speed, load - 2.0 * body.damping * body.belt_speed - x
     friction = body.friction * leg[MODE]
-    _, _, u0, speed0 = load_and_response(body, leg[TAU])
-    y, z = leg[X] - u0 + friction, leg[W] + (body.belt_speed - speed0)
+    y, z = start
     keep, turn, damp = free_motion(body, r)
     return keep * y + turn * z + (u - friction), damp * z - turn * y + speed, friction
 
@@ -109,11 +114,12 @@ def note_orbit(body: Oscillator, table: LegTable, normal_load: float, side: floa
     panel, now = track.filled[0], 0.0
     for place in range(table.rows):
         leg, r = table.legs[(place + table.before) % table.rows], 0.0
+        start = free_start(body, leg)
         while r < leg[DURATION]:
             length = panel_length(body, r, leg[DURATION] - r)
             for node in range(NODES.size):
                 part = 0.5 * (1.0 + NODES[node]) * length
-                a, b, force = sample_leg(body, leg, r + part)
+                a, b, force = sample_leg(body, leg, start, r + part)
                 track.tau[panel, node] = now + part
                 track.x[panel, node], track.v[panel, node] = complex(side * a, 0.0), complex(side * b, 0.0)
                 track.friction[panel, node] = complex(side * force / normal_load, 0.0)

@@ -1,0 +1,165 @@
+"""A table too long to be held is the table of a short run, written piece by piece, and shown thinned."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from pandas.testing import assert_frame_equal
+
+import frictionlab as fl
+from frictionlab import cli
+from frictionlab.results import thinned
+from frictionlab.results.summary import summary
+from frictionlab.runner import api, long_run, saved
+from frictionlab.runner.saved import read_saved
+from frictionlab.runner.yaml_text import yaml_text
+from frictionlab.study import parse_study
+
+SCENE: dict[str, Any] = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
+SCENE |= {"drive": {"unbalance": 10, "frequency": 1}}
+SPEEDS = {"start": 0.5, "stop": 60, "num": 40}
+
+
+def study(**changes: Any) -> dict[str, Any]:
+    laws = [
+        {"kind": "coulomb", "mu": 0.4},
+        {"kind": "coulomb", "mu": 0.3, "mu_static": 0.5, "label": "static"},
+    ]
+    sweep = {"scene.damping_ratio": [0.1, 0.2], "scene.belt_speed": SPEEDS, "scene.drive.frequency": [1, 1.5]}
+    given = {"schema": 1, "scene": SCENE, "laws": laws, "methods": ["exact"], "sweep": sweep}
+    return (
+        given
+        | {"keep": {"orbit": 3}, "expect": [{"where": {"law": "coulomb"}, "column": "error", "below": 1e-8}]}
+        | changes
+    )
+
+
+@pytest.fixture
+def short_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of more than 100 rows are long, and written 60 rows at a time."""
+    for place in (api, saved):
+        monkeypatch.setattr(place, "LONG_TABLE", 100)
+    monkeypatch.setattr(long_run, "ROWS_TOGETHER", 50)
+    monkeypatch.setattr(long_run, "ROWS_AT_ONCE", 60)
+
+
+ORDERS = [
+    ["scene.damping_ratio", "scene.belt_speed", "scene.drive.frequency"],
+    ["scene.belt_speed", "scene.drive.frequency", "scene.damping_ratio"],
+    ["scene.drive.frequency", "scene.damping_ratio", "scene.belt_speed"],
+]
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_its_files_are_those_of_a_short_run(
+    order: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: Any
+) -> None:
+    plan = study(sweep={name: study()["sweep"][name] for name in order})
+    short = fl.run(plan, out=tmp_path / "short" / "run")
+    request.getfixturevalue("short_pieces")
+    long = fl.run(plan, out=tmp_path / "long" / "run", as_csv=True)
+
+    assert long.shown is not None
+    assert short.orbits is not None
+    assert long.orbits is not None
+    assert_frame_equal(_timeless(long.table), _timeless(short.table), check_exact=True)
+    assert_frame_equal(long.curves, short.curves, check_exact=True)
+    assert_frame_equal(long.orbits, short.orbits, check_exact=True)
+    assert long.verdicts == short.verdicts
+    assert long.counts == short.counts
+    for name in ("results.csv", "curves.csv"):
+        one, other = (pd.read_csv(tmp_path / way / "run" / name) for way in ("long", "short"))
+        assert_frame_equal(_timeless(one), _timeless(other), check_exact=True)
+
+
+def _timeless(table: pd.DataFrame) -> pd.DataFrame:
+    return table.drop(columns="seconds", errors="ignore")
+
+
+def test_text_is_written_where_it_is_asked_for(short_pieces: None, tmp_path: Path) -> None:
+    fl.run(study(), out=tmp_path / "run")
+    assert not (tmp_path / "run" / "results.csv").exists()
+    fl.run(study(), out=tmp_path / "run", as_csv=True)
+    assert (tmp_path / "run" / "results.csv").exists()
+    fl.run(study(), out=tmp_path / "run")
+    assert not (tmp_path / "run" / "results.csv").exists()
+
+
+def test_the_same_study_again_finds_its_chunks(short_pieces: None, tmp_path: Path) -> None:
+    first = fl.run(study(), out=tmp_path / "run")
+    again = fl.run(study(), out=tmp_path / "run")
+
+    assert (first.computed, again.computed) == (320, 0)
+    assert_frame_equal(again.table, first.table, check_exact=True)
+    account = json.loads((tmp_path / "run" / "provenance.json").read_text())
+    assert [(run["computed"], run["found"]) for run in account["runs"]] == [(320, 0), (0, 320)]
+    assert account["counts"] == first.counts
+
+
+def test_a_long_run_that_is_interrupted_goes_on(short_pieces: None, tmp_path: Path) -> None:
+    def stop(done: int, total: int) -> None:
+        if done:
+            raise KeyboardInterrupt
+
+    with pytest.raises(api.Interrupted) as caught:
+        fl.run(study(), out=tmp_path / "run", progress=stop)
+    stopped = caught.value.run
+    reasons = stopped.table.loc[stopped.table["status"] == "killed", "reason"]
+    again = fl.run(study(), out=tmp_path / "run")
+
+    assert 0 < stopped.counts["killed"] < 320
+    assert set(reasons) == {"interrupted"}
+    assert stopped.curves.empty
+    assert again.computed == 320 - stopped.computed
+    assert again.counts == {"ok": 160, "refused": 160}
+
+
+def test_a_chunk_that_cannot_be_kept_is_in_the_table_all_the_same(short_pieces: None, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+
+    done = fl.run(study(), out=tmp_path / "run", cache=tmp_path / "file")
+
+    assert done.counts == {"ok": 160, "refused": 160}
+    assert done.table["mean_friction"].notna().sum() == 160
+
+
+def test_the_page_and_the_figures_show_some_and_tell_of_all(
+    short_pieces: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(thinned, "MOST_POINTS", 7)
+    monkeypatch.setattr(thinned, "MOST_ODD", 3)
+    (tmp_path / "long.yaml").write_text(yaml_text(study()))
+    out = tmp_path / "runs" / "long"
+
+    assert cli.main(["run", str(tmp_path / "long.yaml"), "-o", str(out)]) == 0
+    printed = capsys.readouterr().out
+    page = re.sub("<[^>]*>", "", (out / "report.html").read_text())
+
+    assert "320 points: 160 ok, 160 refused\nof 57 points spread over them:" in printed
+    assert "Tables and figures below show 57 points spread over them" in page
+    assert (out / "figures" / "mean_friction.svg").exists()
+    again = read_saved(out)
+    assert (again.size, len(again.table), again.counts) == (320, 57, {"ok": 160, "refused": 160})
+    for command in ("report", "plot"):
+        assert cli.main([command, str(out)]) == 0
+
+
+def test_shown_rows_hold_the_ends_of_the_first_and_the_last_curve() -> None:
+    curves = list(
+        parse_study(study(sweep={"scene.belt_speed": {"start": 1, "stop": 9, "num": 5000}})).curves()
+    )
+    rows = thinned.shown_rows(curves)
+
+    assert {0, 4999, 5000, 9999} <= set(rows.tolist())
+    assert len(rows) == 400
+    assert (np.diff(rows) > 0).all()
+
+
+def test_the_summary_of_a_run_that_is_short_says_nothing_of_points_left_out() -> None:
+    assert "spread over them" not in summary(fl.run(study()))

@@ -1,0 +1,180 @@
+"""Processes, clusters and job arrays give the table of threads, whoever of them is killed meanwhile."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+import subprocess
+import sys
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pandas.testing import assert_frame_equal
+
+import frictionlab as fl
+from frictionlab import cli
+from frictionlab.runner import workforce
+from frictionlab.runner.kept_chunks import KeptChunks
+from frictionlab.runner.share import run_share
+from frictionlab.runner.workforce import Workforce, processes
+from frictionlab.runner.yaml_text import yaml_text
+from frictionlab.study import parse_study
+
+STUDY: dict[str, Any] = {
+    "schema": 1,
+    "scene": {"damping_ratio": 0.1, "normal_load": 10, "drive": {"unbalance": 10, "frequency": 1}},
+    "laws": [{"kind": "coulomb", "mu": 0.4}, {"kind": "coulomb", "mu": 0.3, "label": "weak"}],
+    "methods": ["exact"],
+    "sweep": {"scene.belt_speed": {"start": 0.5, "stop": 12, "num": 500}},
+}
+SCRIPT = Path(__file__).parents[1] / "killed_workers.py"
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+def timeless(run: Any) -> Any:
+    return run.table.drop(columns="seconds")
+
+
+@pytest.mark.parametrize("way", ["processes", "cluster", "parts"])
+def test_workers_that_are_killed_change_nothing(way: str) -> None:
+    if way == "cluster":
+        pytest.importorskip("distributed")
+    done = subprocess.run([sys.executable, str(SCRIPT), way, "1", "6000"], capture_output=True, text=True)
+
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "tables equal" in done.stdout
+
+
+class LosesWorkers(ThreadPoolExecutor):
+    """Threads, the first of whose chunks come back as if a worker had died, so often."""
+
+    def __init__(self, losses: int, problem: type[Exception]) -> None:
+        super().__init__(1)
+        self.left, self.problem = losses, problem
+
+    def submit(self, *given: Any, **named: Any) -> Future[Any]:
+        if not self.left:
+            return super().submit(*given, **named)
+        self.left -= 1
+        lost: Future[Any] = Future()
+        lost.set_exception(self.problem("gone"))
+        return lost
+
+
+@pytest.mark.parametrize("problem", [OSError, BrokenExecutor])
+def test_a_chunk_whose_worker_is_lost_is_sent_again(problem: type[Exception]) -> None:
+    pool = LosesWorkers(4, problem)
+    done = fl.run(STUDY, executor=Workforce(pool, lambda: pool))
+
+    assert done.counts == {"ok": 1000}
+    assert pool.left == 0
+
+
+def test_where_workers_are_lost_for_good_the_rest_is_killed_and_what_is_solved_is_kept(
+    tmp_path: Path,
+) -> None:
+    pool = LosesWorkers(0, OSError)
+    for_good: Executor = pool
+    done_before = fl.run(STUDY | {"laws": STUDY["laws"][:1]}, out=tmp_path / "one")
+    pool.left = 1000
+
+    stopped = fl.run(STUDY, out=tmp_path / "both", executor=for_good)
+
+    assert done_before.computed == 500
+    assert stopped.counts == {"ok": 500, "killed": 500}
+    assert set(stopped.table.loc[500:, "reason"]) == {"a worker died: gone"}
+    again = fl.run(STUDY, out=tmp_path / "both")
+    assert (again.computed, again.counts) == (500, {"ok": 1000})
+
+
+def test_a_pool_that_breaks_without_another_ends_the_run() -> None:
+    done = fl.run(STUDY, executor=LosesWorkers(1, BrokenExecutor))
+
+    assert done.counts.get("ok", 0) < 1000
+    assert set(done.table.loc[done.table["status"] == "killed", "reason"]) == {"a worker died: gone"}
+
+
+def test_processes_give_the_table_of_threads() -> None:
+    with processes(2) as force:
+        assert_frame_equal(timeless(fl.run(STUDY, executor=force)), timeless(fl.run(STUDY)), check_exact=True)
+
+
+def test_parts_share_all_chunks_between_them(tmp_path: Path) -> None:
+    plan, kept = parse_study(STUDY), KeptChunks(tmp_path / "kept")
+    shares = [run_share(plan, (number, 3), kept) for number in (3, 1, 2)]
+    again = run_share(plan, (1, 3), kept)
+    gathered = fl.run(plan, out=tmp_path / "run", cache=tmp_path / "kept")
+
+    assert sum(share.points for share in shares) == 1000
+    assert [share.computed for share in shares] == [share.points for share in shares]
+    assert (again.computed, again.found) == (0, shares[1].points)
+    assert gathered.computed == 0
+    assert_frame_equal(timeless(gathered), timeless(fl.run(plan)), check_exact=True)
+
+
+@pytest.mark.parametrize("part", ["0/3", "4/3", "3", "a/b", "1/0", "-1/2", "1.5/2"])
+def test_a_part_that_is_none_is_refused(
+    part: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "study.yaml").write_text(yaml_text(STUDY))
+
+    assert cli.main(["run", str(tmp_path / "study.yaml"), "--part", part]) == 2
+    assert f"must be I/N with 1 <= I <= N, such as 3/16, got '{part}'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["-j", "2", "--processes", "2"], "-j and --processes say who solves the points; give one of them"),
+        (["--part", "1/2", "--json"], "--part and --json print different things; give one of them"),
+        (["--scheduler", "tcp://127.0.0.1:9"], "scheduler"),
+    ],
+)
+def test_options_that_make_no_sense_are_refused(
+    options: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: Any
+) -> None:
+    monkeypatch.setattr(workforce, "PATIENCE", 1.0)
+    (tmp_path / "study.yaml").write_text(yaml_text(STUDY))
+
+    assert cli.main(["run", str(tmp_path / "study.yaml"), "-o", str(tmp_path / "out"), *options]) == 2
+    assert message in capsys.readouterr().err
+
+
+SBATCH = """#!{python}
+import os, random, re, subprocess, sys
+
+script = open(sys.argv[1]).read()
+first, last = map(int, re.search(r"--array=(\\d+)-(\\d+)", script).groups())
+tasks = list(range(first, last + 1))
+random.Random(0).shuffle(tasks)
+for task in tasks:
+    environment = os.environ | {{"SLURM_ARRAY_TASK_ID": str(task), "SLURM_CPUS_PER_TASK": "1"}}
+    subprocess.run(["bash", sys.argv[1]], check=True, env=environment)
+"""
+
+
+def test_the_job_array_of_the_docs_solves_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (DOCS / "scale.md").read_text()
+    (script,) = re.findall(r"<!-- slurm -->\n```sh\n(.*?)```", text, re.DOTALL)
+    commands = {
+        "sbatch": SBATCH.format(python=sys.executable),
+        "frictionlab": f"#!{sys.executable}\nimport sys\nfrom frictionlab.cli import main\nsys.exit(main())\n",
+    }
+    (tmp_path / "bin").mkdir()
+    for name, content in commands.items():
+        (tmp_path / "bin" / name).write_text(content)
+        (tmp_path / "bin" / name).chmod(stat.S_IRWXU)
+    (tmp_path / "array.sh").write_text(script.replace("1-16", "1-4").replace("/16", "/4"))
+    (tmp_path / "study.yaml").write_text(yaml_text(STUDY))
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}{os.pathsep}{os.environ['PATH']}")
+    done = subprocess.run(["sbatch", "array.sh"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+    gathered = fl.run(tmp_path / "study.yaml", out=tmp_path / "results" / "study")
+
+    assert len(re.findall(r"part \d of 4: \d+ points solved and 0 found of \d+", done.stdout)) == 4
+    assert gathered.computed == 0
+    assert gathered.counts == {"ok": 1000}

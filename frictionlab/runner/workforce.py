@@ -16,7 +16,7 @@ from frictionlab.runner.execute import Renew, Take, collect
 from frictionlab.runner.open_chunks import OpenChunk
 from frictionlab.runner.workers import Workers
 
-PATIENCE = 10.0
+ANSWERS_WITHIN = 10.0
 """Seconds in which a scheduler answers."""
 
 
@@ -117,7 +117,7 @@ def cluster(address: str) -> Iterator[Workforce]:
             "--scheduler needs dask.distributed: pip install 'frictionlab[cluster]'"
         ) from problem
     try:
-        client = Client(address, timeout=PATIENCE)
+        client = Client(address, timeout=ANSWERS_WITHIN)
     except (OSError, ValueError) as problem:
         raise NoScheduler(
             f"no scheduler answers at {address}: {str(problem).partition(chr(10))[0]}"

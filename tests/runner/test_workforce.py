@@ -136,7 +136,7 @@ def test_a_part_that_is_none_is_refused(
 def test_options_that_make_no_sense_are_refused(
     options: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: Any
 ) -> None:
-    monkeypatch.setattr(workforce, "PATIENCE", 1.0)
+    monkeypatch.setattr(workforce, "ANSWERS_WITHIN", 1.0)
     (tmp_path / "study.yaml").write_text(yaml_text(STUDY))
 
     assert cli.main(["run", str(tmp_path / "study.yaml"), "-o", str(tmp_path / "out"), *options]) == 2

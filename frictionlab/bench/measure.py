@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frictionlab.bench.first_run import first_run
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Bench, BenchSetting, Contender, ReferenceMeans, Workload
 from frictionlab.bench.references import independent, reference_means
@@ -34,7 +35,8 @@ class MeasurementInterrupted(Exception):
 class Row:
     """One contender at one setting on one workload; points: those it was given, times: per point that has an answer.
 
-    mean: for the mean friction and its error alone; whole: with every other column. ``covered``: points whose
+    mean: for the mean friction and its error alone; whole: with every other column; first: processor time [s] of the
+    whole curve where no kernel is compiled yet, NaN where that was not measured. ``covered``: points whose
     stated error, with the reference's own, covers their error; None for a peer, which states none.
     """
 
@@ -50,6 +52,7 @@ class Row:
     mean: Times
     whole: Times
     reference: ReferenceMeans | None
+    first: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -61,8 +64,11 @@ class WorkloadResult:
     rows: list[Row]
 
 
-def measure(bench: Bench, tell: Callable[[str], None]) -> list[WorkloadResult]:
-    """Measure a bench list. Raises Interrupted with what is finished."""
+def measure(bench: Bench, tell: Callable[[str], None], first_runs: bool = False) -> list[WorkloadResult]:
+    """Measure a bench list; first_runs: the first setting of each method without kernels, too.
+
+    Raises MeasurementInterrupted with what is finished.
+    """
     done: list[WorkloadResult] = []
     try:
         with compiling_at_once():  # what is timed is machine code
@@ -70,6 +76,7 @@ def measure(bench: Bench, tell: Callable[[str], None]) -> list[WorkloadResult]:
                 tell(f"{work.name}: references")
                 found = reference_means(work)
                 rows = list(_rows(bench, work, found, tell))
+                rows = [_with_first_run(row, work, tell) for row in rows] if first_runs else rows
                 done.append(WorkloadResult(work, found, rows))
     except KeyboardInterrupt:
         raise MeasurementInterrupted(done) from None
@@ -83,6 +90,16 @@ def _rows(
         for setting, solver in contender.solvers:
             tell(f"{work.name}: {contender.label}, {setting}")
             yield _row(bench, work, found, contender, setting, solver)
+
+
+def _with_first_run(row: Row, work: Workload, tell: Callable[[str], None]) -> Row:
+    """The first setting of a method that answers, as it costs without kernels."""
+    setting, solver = row.contender.solvers[0]
+    if isinstance(solver, Peer) or row.setting != setting or not row.counts["ok"]:
+        return row
+    tell(f"{work.name}: {row.contender.label}, first run")
+    scenes = [work.scenes[place] for place in chosen(len(work.scenes), row.contender.points)]
+    return replace(row, first=first_run(solver, scenes, work.law, setting.tolerance))
 
 
 def _row(

@@ -16,7 +16,7 @@ from frictionlab.runner.errors import SaveError
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
 HEAD = (
     "| solver | setting | points | largest error | median error | largest stated error | covered "
-    "| us per point: mean and error (quartiles) | everything | repeats | remark |"
+    "| us per point: mean and error (quartiles) | everything | repeats | first run, s | remark |"
 )
 
 
@@ -62,6 +62,7 @@ def _record(measured: WorkloadResult, row: Row) -> dict[str, Any]:
         names = (f"{name}_us", f"{name}_us_q1", f"{name}_us_q2", f"{name}_us_q3")
         told |= dict(zip(names, (_cell(1e6 * value) for value in values), strict=True))
         told[f"{name}_repeats"] = times.repeats
+    told["first_run_s"] = _cell(row.first)
     told["reference"] = row.reference.label if row.reference else ""
     told["reference_error"] = _cell(_own_error(row.reference))
     return told | {"reason": row.reason}
@@ -128,6 +129,7 @@ def _line(row: Row, setting: str) -> str:
         _spread(row.mean),
         "" if not row.whole.repeats else _short(row.whole.least) if row.whole is not row.mean else "the same",
         str(row.mean.repeats or ""),
+        "" if math.isnan(row.first) else f"{row.first:.2g}",
         point_remark(row),
     ]
     return f"| {' | '.join(cells)} |"

@@ -19,7 +19,12 @@ if TYPE_CHECKING:
 @click.argument("bench_list", metavar="LIST", type=click.Path(path_type=Path))
 @options.folder("runs/bench-<list name>")
 @click.option("--only", multiple=True, metavar="NAME", help="Measure this curve alone; may be repeated.")
-def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...]) -> None:
+@click.option(
+    "--first-runs",
+    is_flag=True,
+    help="Also time the first setting of each method where no kernel is compiled.",
+)
+def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], first_runs: bool) -> None:
     """Measure error against time per point of every method and peer in LIST; one chart and table per curve."""
     from frictionlab import bench
 
@@ -29,7 +34,7 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...]) -> 
         raise click.UsageError(str(problem)) from None
     folder = out or Path("runs") / f"bench-{asked.name}"
     try:
-        done = bench.measure(asked, print_message)
+        done = bench.measure(asked, print_message, first_runs)
     except bench.MeasurementInterrupted as problem:
         _save(problem.done, folder)
         raise CommandError(

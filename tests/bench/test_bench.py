@@ -20,6 +20,7 @@ from frictionlab.bench.measure import Row, WorkloadResult, chosen
 from frictionlab.bench.peers import base
 from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.peers.scipy_bristle import ScipyBristle
+from frictionlab.bench.report import markdown
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.elasto_plastic import ElastoPlastic
@@ -77,6 +78,21 @@ def measured(text: str = LIST) -> WorkloadResult:
     Path("list.yaml").write_text(text)
     (first, *_) = bench.measure(bench.load_bench(Path("list.yaml")), lambda line: None)
     return first
+
+
+def test_a_first_run_is_timed_of_methods_that_answer() -> None:
+    methods = LIST[LIST.index("      - {kind: off") :]
+    plain = """      - {kind: exact, tolerance: [1.0e-6, 1.0e-9]}
+    peers: [{kind: scipy, points: 1, tolerance: 1.0e-2}]
+"""
+    Path("list.yaml").write_text(LIST.replace(methods, plain))
+    (found,) = bench.measure(bench.load_bench(Path("list.yaml")), lambda line: None, first_runs=True)
+
+    first, second, peer = found.rows
+    assert first.first > 0.2  # imports alone take longer
+    assert math.isnan(second.first)
+    assert math.isnan(peer.first)
+    assert f"| {first.first:.2g} |" in markdown(found)
 
 
 def rows_of(found: WorkloadResult, label: str) -> list[Row]:

@@ -77,7 +77,7 @@ def killing(alive: Callable[[], list[int]], kills: int, draw: random.Random) -> 
     done, over = list[int](), threading.Event()
 
     def kill() -> None:
-        while len(done) < kills and not over.wait(draw.uniform(0.3, 1.0)):
+        while len(done) < kills and not over.wait(draw.uniform(0.5, 2.0)):
             if found := alive():
                 os.kill(victim := draw.choice(found), signal.SIGKILL)
                 done.append(victim)

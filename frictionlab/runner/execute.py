@@ -21,6 +21,8 @@ MOST_SENT = 256
 """Chunks that are sent out at once: enough for the workers of a cluster, few enough to be held in memory."""
 MOST_SENDINGS = 5
 """How often a chunk is sent out whose worker was lost."""
+MOST_RENEWALS = 20
+"""How often a pool is made anew that breaks before anything has come back."""
 
 Take = Callable[[OpenChunk, list[Part]], None]
 Renew = Callable[[], Executor]
@@ -62,6 +64,7 @@ class _Sent:
         self._executor, self._renew = executor, renew
         self._done: SimpleQueue[Future[list[Part]]] = SimpleQueue()
         self._tries: dict[int, int] = {}
+        self._renewed = 0
         self.waiting: dict[Future[list[Part]], OpenChunk] = {}
 
     def send(self, work: OpenChunk) -> None:
@@ -71,7 +74,7 @@ class _Sent:
         except BrokenExecutor:
             if self._renew is None:
                 raise
-            self._executor = self._renew()
+            self._executor, self._renewed = self._renew(), self._renewed + 1
             future = self._executor.submit(solve_within, work.chunk)
         self.waiting[future] = work
         future.add_done_callback(self._done.put)
@@ -84,10 +87,18 @@ class _Sent:
 
     def send_again(self, work: OpenChunk, problem: BaseException) -> None:
         """A chunk whose worker was lost, to another one. Raises BrokenExecutor where that happens again and again."""
-        tries = self._tries[id(work)] = self._tries.get(id(work), 1) + 1
-        if tries > MOST_SENDINGS or (isinstance(problem, BrokenExecutor) and self._renew is None):
+        if isinstance(problem, BrokenExecutor):  # of a pool all chunks are lost, with one worker at fault
+            lost_for_good = self._renew is None or self._renewed >= MOST_RENEWALS
+        else:
+            tries = self._tries[id(work)] = self._tries.get(id(work), 1) + 1
+            lost_for_good = tries > MOST_SENDINGS
+        if lost_for_good:
             raise BrokenExecutor(str(problem) or type(problem).__name__) from problem
         self.send(work)
+
+    def came_back(self) -> None:
+        """Something was solved: workers are not lost one after another."""
+        self._renewed = 0
 
 
 def _take_one(sent: _Sent, take: Take, tick: Callable[[], None]) -> None:
@@ -101,6 +112,7 @@ def _take_one(sent: _Sent, take: Take, tick: Callable[[], None]) -> None:
         except (Exception, CancelledError) as problem:  # solving raises nothing else: its worker was lost
             sent.send_again(work, problem)
         else:
+            sent.came_back()
             take(work, parts)
     tick()
 

@@ -64,6 +64,27 @@ class LosesWorkers(ThreadPoolExecutor):
         return lost
 
 
+def test_a_pool_that_breaks_again_and_again_is_made_anew_while_something_comes_back() -> None:
+    class Breaks(ThreadPoolExecutor):
+        """Of every three chunks two come back as if the pool had broken."""
+
+        sent = 0
+
+        def submit(self, *given: Any, **named: Any) -> Future[Any]:
+            self.sent += 1
+            if self.sent % 3 == 0:
+                return super().submit(*given, **named)
+            lost: Future[Any] = Future()
+            lost.set_exception(BrokenExecutor("gone"))
+            return lost
+
+    pool = Breaks(1)
+    many = STUDY | {"sweep": {"scene.belt_speed": {"start": 0.5, "stop": 12, "num": 2000}}}
+
+    assert fl.run(many, executor=Workforce(pool, lambda: pool)).counts == {"ok": 4000}
+    assert pool.sent > 60
+
+
 @pytest.mark.parametrize("problem", [OSError, BrokenExecutor])
 def test_a_chunk_whose_worker_is_lost_is_sent_again(problem: type[Exception]) -> None:
     pool = LosesWorkers(4, problem)

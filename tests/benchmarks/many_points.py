@@ -1,0 +1,113 @@
+"""What a run costs by how many points it has: python tests/benchmarks/many_points.py [LARGEST [FIGURE.svg]].
+
+Coulomb friction on a line, every column, curves of up to 50,000 belt speeds, from 1e2 points to LARGEST (1e6): each
+run is a command of its own into an empty folder, with kernels compiled before. Wall and processor time, the most
+memory it held, and the sizes of what it wrote; then the same command again, which finds everything.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+CURVE = 50_000
+RUN = "import sys; from frictionlab.cli import main; sys.exit(main())"
+
+
+class Cost(NamedTuple):
+    """Wall and processor time [s], memory [MB]."""
+
+    wall: float
+    processor: float
+    memory: float
+
+
+def study(points: int) -> str:
+    """A study of so many points."""
+    curves = max(1, points // CURVE)
+    loads = f"scene.normal_load: {{start: 1, stop: 20, num: {curves}}}, " if curves > 1 else ""
+    speeds = f"scene.belt_speed: {{start: 0.01, stop: 12, num: {points // curves}}}"
+    scene = "{damping_ratio: 0.1, normal_load: 10, drive: {unbalance: 10, frequency: 1}}"
+    return f"schema: 1\nscene: {scene}\nlaws: [{{kind: coulomb, mu: 0.4}}]\nsweep: {{{loads}{speeds}}}\n"
+
+
+def run(file: Path, out: Path) -> Cost:
+    """One command, whose children are waited for."""
+    before = time.perf_counter()
+    command = [sys.executable, "-c", RUN, "run", str(file), "-o", str(out)]
+    environment = os.environ | {"FRICTIONLAB_COMPILE": "always"}
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    assert process.returncode == 0
+    wall = time.perf_counter() - before
+    kilobytes = used.ru_maxrss / (1024.0 if sys.platform == "darwin" else 1.0)
+    return Cost(wall, used.ru_utime + used.ru_stime, kilobytes / 1024.0)
+
+
+def size(folder: Path) -> float:
+    """What the files below a folder hold [MB]."""
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6
+
+
+def measured(points: int) -> tuple[Cost, Cost, float, float]:
+    """A run, the same again, and the sizes of the table and of the kept chunks [MB]."""
+    with tempfile.TemporaryDirectory() as folder:
+        file, out = Path(folder) / "study.yaml", Path(folder) / "runs" / "study"
+        file.write_text(study(points))
+        first, again = run(file, out), run(file, out)
+        return first, again, (out / "results.parquet").stat().st_size / 1e6, size(out.parent / ".cache")
+
+
+def draw(counts: list[int], costs: list[Cost], again: list[Cost], figure: Path) -> None:
+    """Time per point against points."""
+    import matplotlib.pyplot as plt
+
+    chart, axes = plt.subplots(figsize=(4.2, 3.0), layout="constrained")
+    series = {
+        ("processor time", "o-"): [cost.processor for cost in costs],
+        ("wall time", "s--"): [cost.wall for cost in costs],
+        ("wall time, found again", "^:"): [cost.wall for cost in again],
+    }
+    for (name, style), seconds in series.items():
+        each = [1e6 * spent / points for spent, points in zip(seconds, counts, strict=True)]
+        axes.loglog(counts, each, style, label=name, ms=4)
+    axes.set_xlabel("points of the run")
+    axes.set_ylabel("time per point [µs]")
+    axes.grid(True, which="major", alpha=0.3)
+    axes.legend(frameon=False)
+    chart.savefig(figure)
+
+
+def main(largest: int, figure: Path | None) -> None:
+    """Measure and print a row for each number of points."""
+    counts = [10**power for power in range(2, 9) if 10**power <= largest]
+    run_once, _, _, _ = measured(100)  # kernels are compiled here
+    assert run_once.wall > 0.0
+    print(
+        "|  points | wall, s | processor, s | us a point | memory, MB | table, MB | chunks, MB | again, s |"
+    )
+    print("|---|---|---|---|---|---|---|---|")
+    found = []
+    for points in counts:
+        cost, again, table, chunks = measured(points)
+        found.append((cost, again))
+        print(
+            f"| {points:,} | {cost.wall:.1f} | {cost.processor:.1f} | {1e6 * cost.processor / points:.1f} | "
+            f"{cost.memory:.0f} | {table:.1f} | {chunks:.1f} | {again.wall:.1f} |",
+            flush=True,
+        )
+    if figure is not None:
+        draw(counts, [cost for cost, _ in found], [again for _, again in found], figure)
+
+
+if __name__ == "__main__":
+    main(
+        int(float(sys.argv[1])) if len(sys.argv) > 1 else 10**6,
+        Path(sys.argv[2]) if len(sys.argv) > 2 else None,
+    )

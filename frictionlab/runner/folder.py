@@ -374,8 +374,18 @@ def _platform() -> dict[str, Any]:
     return {
         "python": platform.python_version(),
         "platform": platform.platform(),
+        "processor": _processor(),
         "packages": {name: found for name in PACKAGES if (found := _version(name))},
     }
+
+
+def _processor() -> str:
+    """Its name, where the machine tells it."""
+    with suppress(OSError, ValueError):
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+        return next(names, "") or platform.processor() or platform.machine()
+    return platform.processor() or platform.machine()
 
 
 def _version(name: str) -> str | None:

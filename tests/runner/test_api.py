@@ -261,6 +261,7 @@ def test_the_folder_of_a_run_holds_the_table_twice_its_study_and_its_account(tmp
     assert [run["computed"] for run in account["runs"]] == [6]
     assert account["frictionlab"] == fl.__version__
     assert {"numpy", "numba"} <= set(account["packages"])
+    assert account["processor"]
 
 
 def test_the_folder_holds_one_row_per_curve_with_its_shape(tmp_path: Path) -> None:

@@ -14,12 +14,14 @@ from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, UTMOST_WORK
 from frictionlab.methods.periodic.period_map import image_of, rest_of, size_of, start_of, unpack
 from frictionlab.methods.periodic.steady_sliding import NEAR, ends_sliding, never_reverses, write_sliding
-from frictionlab.numerics.linalg import norm, subtract
+from frictionlab.numerics.linalg import copy, multiply, norm, radius_bound, subtract
 from frictionlab.scene.body import Body
 
 MOST_PERIODS = 5000
 PATIENCE = 300
 """Periods within which a motion must come near to an orbit."""
+AGREED, ENOUGH = 0.1, 3
+"""How far a period may be from what the monodromy says of it, and how many such periods in a row are enough."""
 
 
 class Follow(NamedTuple):
@@ -29,11 +31,40 @@ class Follow(NamedTuple):
     constant: bool
 
 
+class KnownOrbit(NamedTuple):
+    """A closed orbit that motions are to end on: its state, its monodromy, and one less the largest multiplier.
+
+    gap: not positive, or NaN, where multipliers are not known to be below one.
+    """
+
+    state: Any
+    monodromy: Any
+    gap: float
+
+
 @inner
-def _arrives(case: Case, start: Any, target: Any, constant: bool) -> bool:
-    """Whether a motion comes near to a closed orbit within some hundred periods."""
+def _obeys(orbit: KnownOrbit, before: Any, after: Any, predicted: Any) -> bool:
+    """Whether a period from ``before`` (as what follows, a distance from the orbit) is as the monodromy says.
+
+    That the distance falls by the largest multiplier is not enough: other attractors do so for some periods. The
+    distance itself must be what is predicted, to a tenth of the change in the period, which another orbit would leave
+    out, and to half of what makes all of them shrink.
+    """
+    multiply(orbit.monodromy, before, predicted)
+    changed, missed = 0.0, 0.0
+    for row in range(before.size):
+        changed = math.hypot(changed, predicted[row] - before[row])
+        missed = math.hypot(missed, predicted[row] - after[row])
+    return missed <= AGREED * changed and missed <= 0.5 * orbit.gap * norm(before)
+
+
+@inner
+def _arrives(case: Case, start: Any, orbit: KnownOrbit, constant: bool) -> bool:
+    """Whether a motion comes near to an orbit within some hundred periods, or nears it as its monodromy says."""
     slides_on = constant and never_reverses(case.body, case.belt_speed)
-    residual, size, steps = np.empty(start.size), 1.0 + norm(target), 0
+    residual, size, steps, obeyed = np.empty(start.size), 1.0 + norm(orbit.state), 0, 0
+    before, after, predicted = np.empty(start.size), np.empty(start.size), np.empty(start.size)
+    subtract(start, orbit.state, before)
     for _ in range(PATIENCE):
         image = image_of(case, start, residual, 1e-5 * case.body.normal_load)
         steps += image.steps
@@ -45,31 +76,35 @@ def _arrives(case: Case, start: Any, target: Any, constant: bool) -> bool:
             start[row] = start[row] + residual[row]
         if slides_on:
             ends_sliding(case, start)
-        subtract(start, target, residual)
-        if norm(residual) < NEAR * size:
+        subtract(start, orbit.state, after)
+        obeyed = obeyed + 1 if _obeys(orbit, before, after, predicted) else 0
+        if obeyed == ENOUGH or norm(after) < NEAR * size:
             return True
+        copy(after, before)
     return False
 
 
-def _reached_without_memory(case: Case, target: Any, constant: bool) -> bool:
+def _reached_without_memory(case: Case, state: Any, matrix: Any, constant: bool) -> bool:
     """Where it is not sure that all motions end there, four starts are followed to their ends instead."""
     return False
 
 
-def _reached_with_memory(case: Case, target: Any, constant: bool) -> bool:
+def _reached_with_memory(case: Case, state: Any, matrix: Any, constant: bool) -> bool:
     """Whether the mass ends on this orbit, set off at rest on the belt and sliding as if it never reversed.
 
     The second is an orbit of its own where the belt is faster than any vibration and sliding friction constant.
+    matrix: the monodromy, NaN where it is not known.
     """
     law, body, belt_speed, like = case
+    orbit = KnownOrbit(state, matrix, 1.0 - radius_bound(matrix))
     # Set off at rest on the belt, where the contact remembers nothing.
-    start = np.empty(target.size)
+    start = np.empty(state.size)
     start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
-    if not _arrives(case, start, target, constant):
+    if not _arrives(case, start, orbit, constant):
         return False
     # Set off as in sliding that never reverses, with the memory of that.
     write_sliding(case, start)
-    return _arrives(case, start, target, constant)
+    return _arrives(case, start, orbit, constant)
 
 
 reached = by_law(_reached_without_memory, _reached_with_memory, None, _reached_with_memory)

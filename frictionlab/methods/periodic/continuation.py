@@ -209,7 +209,7 @@ def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal,
             if wanted.matrices and math.isnan(matrices[i, 0, 0]):
                 monodromy(case, states[i], 1.0, matrices[i], gradient)
             if wanted.closed and goal.asks:
-                ends_there[i] = reached(case, states[i], goal.constant)
+                ends_there[i] = reached(case, states[i], matrices[i], goal.constant)
         else:
             matrices[i] = 0.0
         ends[i] = track.filled[0]

@@ -280,7 +280,7 @@ def _corrected(
     """
     n, body, residual = search.z.size, case.body, search.residual
     gradient, inverse = np.empty(n, np.complex128), np.empty((n, n))
-    monodromy(case, search.z, 1.0, search.monodromy, gradient)
+    monodromy(case, search.z, accuracy, search.monodromy, gradient)
     # On a line of orbits, as under a contact that stays elastic, no step leads to one of them.
     if not inverse_of(search.monodromy, inverse) or np.abs(inverse).max() > ALMOST_SINGULAR:
         return image, before, 2 * n

@@ -11,7 +11,9 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.period_map import image_of
+from frictionlab.methods.periodic.maps.memory import MOST_KEPT, pace_of
+from frictionlab.methods.periodic.maps.sliding import Mapped
+from frictionlab.methods.periodic.period_map import image_of, paced_image
 from frictionlab.numerics.linalg import invert, norm
 from frictionlab.numerics.vectors import dimension
 from frictionlab.scene.body import Body
@@ -71,19 +73,26 @@ shift_of = by_law(_shift_without_memory, _shift_with_a_bristle, None, _shift_wit
 """Relative shift of a state for a difference quotient, and accuracy of the maps relative to the shift."""
 
 
-@inner
-def monodromy(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
-    """The derivatives of the period map [n, n] and of the mean friction [n] by central differences; 2 n maps.
+SMALL = 1e-6
+"""Relative shift of a state where both maps are in error by nearly the same, so that one-sided quotients will do."""
+SLIGHT = 1e-7
+"""Accuracy of such maps relative to the size of a state: what they have wrong is wrong in the quotient too."""
 
-    The shift stays below the way the belt moves in a period: that much slip ends a period that was all stick.
-    The maps are at least as accurate as asked, and always much finer than the shift.
-    """
-    n = z.size
+
+@inner
+def _shift(case: Case, z: Any, relative: float) -> float:
+    """It stays below the way the belt moves in a period: that much slip ends a period that was all stick."""
     carried = abs(case.belt_speed) * span(case.body)
-    relative = shift_of(case.law, n)
     # Large against the error of the maps, small against the way of the belt, on which the pattern of events hangs.
     shift = relative * (1.0 + norm(z))
-    shift = min(shift, max(0.01 * carried, 1e-3 * shift)) if carried > 0.0 else shift
+    return min(shift, max(0.01 * carried, 1e-3 * shift)) if carried > 0.0 else shift
+
+
+@inner
+def _by_central_quotients(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
+    """2 n maps, at least as accurate as asked, and always much finer than the shift."""
+    n, relative = z.size, shift_of(case.law, z.size)
+    shift = _shift(case, z, relative)
     accuracy = min(accuracy, relative * shift)
     ahead, behind, trial = np.empty(n), np.empty(n), np.empty(n)
     for column in range(n):
@@ -96,6 +105,60 @@ def monodromy(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) -
         gradient[column] = mean_friction(above.rubbed - below.rubbed, span(case.body)) / (2.0 * shift)
         for row in range(n):
             matrix[row, column] = (ahead[row] - behind[row]) / (2.0 * shift) + (1.0 if row == column else 0.0)
+
+
+def _central(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
+    _by_central_quotients(case, z, accuracy, matrix, gradient)
+
+
+@inner
+def _column(
+    case: Case, column: int, shift: float, base: Mapped, residual: Any, moved: Mapped, ahead: Any,
+    matrix: Any, gradient: Any,
+) -> None:  # fmt: skip
+    """The derivatives by one coordinate, from the maps of a state and of the state shifted in it."""
+    gradient[column] = mean_friction(moved.rubbed - base.rubbed, span(case.body)) / shift
+    for row in range(residual.size):
+        matrix[row, column] = (ahead[row] - residual[row]) / shift + (1.0 if row == column else 0.0)
+
+
+def _one_sided(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
+    """n + 1 maps."""
+    n, shift = z.size, _shift(case, z, SMALL)
+    accuracy = min(accuracy, SLIGHT * (1.0 + norm(z)))
+    residual, ahead, trial = np.empty(n), np.empty(n), z.copy()
+    base = image_of(case, z, residual, accuracy)
+    for column in range(n):
+        trial[column] = z[column] + shift
+        moved = image_of(case, trial, ahead, accuracy)
+        trial[column] = z[column]
+        _column(case, column, shift, base, residual, moved, ahead, matrix, gradient)
+
+
+def _over_the_same_steps(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
+    """n + 1 maps: of an order that leaves the steps to jump about by more than is shifted, were each free in its own.
+
+    Central quotients where the shift changes the events.
+    """
+    n, shift = z.size, _shift(case, z, SMALL)
+    accuracy = min(accuracy, SLIGHT * (1.0 + norm(z)))
+    residual, ahead, trial, pace = np.empty(n), np.empty(n), z.copy(), pace_of(MOST_KEPT)
+    base = paced_image(case, z, residual, accuracy, pace, False)
+    repeats = base.steps > 0 and pace.taken[0] <= MOST_KEPT
+    for column in range(n):
+        if repeats:
+            trial[column] = z[column] + shift
+            moved = paced_image(case, trial, ahead, accuracy, pace, True)
+            trial[column] = z[column]
+            _column(case, column, shift, base, residual, moved, ahead, matrix, gradient)
+            repeats = moved.steps > 0
+    if not repeats:
+        _by_central_quotients(case, z, accuracy, matrix, gradient)
+
+
+monodromy = by_law(_central, _over_the_same_steps, _one_sided, _over_the_same_steps)
+"""monodromy(case, z, accuracy, matrix, gradient): the derivatives of the period map [n, n] and of the mean friction
+[n] by difference quotients."""
 
 
 @inner

@@ -15,7 +15,7 @@ from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import span
 from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.maps.memory import coarsest, memory_map
+from frictionlab.methods.periodic.maps.memory import Pace, coarsest, memory_map, pace_of
 from frictionlab.methods.periodic.maps.memory_state import (
     coordinates,
     cut_back,
@@ -103,19 +103,26 @@ def _without_memory(case: Case, state: Any, residual: Any, accuracy: float, trac
     return image
 
 
-def _with_memory(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
+@inner
+def _image_with_memory(
+    case: Case, state: Any, residual: Any, accuracy: float, track: Track, pace: Pace, repeats: bool
+) -> Mapped:
     law, body, like = case.law, case.body, case.like
     y, u = unpack(body, state, like)
     work = workspace(law, like)
     measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     cut_back(law, work)
-    image = memory_map(case, y, u, accuracy, work, track)
+    image = memory_map(case, y, u, accuracy, work, track, pace, repeats)
     pack(body, residual, image.y - y, image.u - u)
     pack_memory(law, body, work, residual, like)
     for row in range(2 * dimension(like), residual.size):
         residual[row] = residual[row] - state[row]
     return image
+
+
+def _with_memory(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
+    return _image_with_memory(case, state, residual, accuracy, track, pace_of(0), False)
 
 
 def _by_path(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
@@ -141,6 +148,15 @@ image - state in residual."""
 def image_of(case: Case, state: Any, residual: Any, accuracy: float) -> Mapped:
     """The image of a state after one span of the body; leaves image - state in residual."""
     return period_map(case, state, residual, accuracy, track_of(0))
+
+
+@inner
+def paced_image(case: Case, state: Any, residual: Any, accuracy: float, pace: Pace, repeats: bool) -> Mapped:
+    """``image_of`` for laws with memory, its steps kept in a pace with room, or those of another state repeated.
+
+    steps is -1 where the events of this state are not those of the other one.
+    """
+    return _image_with_memory(case, state, residual, accuracy, track_of(0), pace, repeats)
 
 
 def _rest_without_memory(law: Any, body: Body, belt_speed: float, y: Any) -> float:

@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
@@ -66,6 +68,27 @@ usual_friction = by_law(_at_rest, _at_rest, None, _in_motion)
 def coarsest(law: Any, body: Body) -> float:
     """The coarsest accuracy a map is made with, whatever is asked: two coarser maps are one and the same."""
     return COARSEST * body.normal_load * usual_friction(law, body) / body.frequency
+
+
+MOST_KEPT = 4096
+"""Steps of a map that are kept, to be taken again from other starts."""
+
+
+class Pace(NamedTuple):
+    """The steps of a map: how long each was tried, whether an event ended it earlier, and how many there were [1].
+
+    More than there is room for are counted, and not kept.
+    """
+
+    lengths: Any
+    ends: Any
+    taken: Any
+
+
+@inner
+def pace_of(room: int) -> Pace:
+    """No steps yet; with room for none, none are kept."""
+    return Pace(np.empty(room), np.empty(room, np.bool_), np.zeros(1, np.int64))
 
 
 LAYER = 40.0
@@ -250,11 +273,22 @@ def _arrive(flow: Flow, tau: float, ends: bool, work: Work, like: Any) -> float:
 
 
 @inner
-def follow(flow: Flow, friction: float, accuracy: float, track: Track, work: Work, like: Any) -> Any:
+def _keep(pace: Pace, tried: float, ends: bool) -> None:
+    """Add a step to those of a pace with room."""
+    count = pace.taken[0]
+    if count < pace.lengths.size:
+        pace.lengths[count], pace.ends[count] = tried, ends
+    pace.taken[0] = count + 1
+
+
+@inner
+def follow(
+    flow: Flow, friction: float, accuracy: float, track: Track, pace: Pace, work: Work, like: Any
+) -> Any:
     """One span of the motion from ``work.start``, and back into it; returns the smallest slip speed and the steps.
 
     friction: the usual coefficient; accuracy: each step's, in the norm of energy. Steps are -1 where it gave up. On a
-    track with room every piece of the way is noted.
+    track with room every piece of the way is noted, and in a pace with room every step.
     """
     law, body, belt_speed, end = flow.law, flow.body, flow.belt_speed, span(flow.body)
     longest = longest_step(body, friction, accuracy)
@@ -272,11 +306,13 @@ def follow(flow: Flow, friction: float, accuracy: float, track: Track, work: Wor
             h = h * growth
             continue
         # an event cuts a step short, but says nothing about how long the next may be
-        usual = h * growth
-        ending = _end_of_step(flow, node, h, accuracy, work, like)
+        usual, tried = h * growth, h
+        within = REPEATED * accuracy if pace.lengths.size > 0 else accuracy
+        ending = _end_of_step(flow, node, h, within, work, like)
         h = ending.h
         if ending.repeats:
             continue
+        _keep(pace, tried, ending.ends)
         tau = node.tau + h if end - node.tau > h else end
         # noting a panel takes parts of the step anew and leaves the last of them: the step itself is taken again
         if track.stick.size > 0:
@@ -296,10 +332,45 @@ def follow(flow: Flow, friction: float, accuracy: float, track: Track, work: Wor
 
 
 @inner
-def memory_map(case: Case, y: Any, u: Any, accuracy: float, work: Work, track: Track) -> Mapped:
+def repeat(flow: Flow, pace: Pace, accuracy: float, work: Work, like: Any) -> bool:
+    """One span of the motion from ``work.start``, and back into it, by the steps of another motion close by.
+
+    Steps end at the events of their own motion: the numbers at the end are then a smooth function of those at the
+    start. False where the events are not those of the other motion.
+    """
+    law, body, belt_speed, end = flow.law, flow.body, flow.belt_speed, span(flow.body)
+    last, tau = pace.taken[0] - 1, 0.0
+    _depart(flow, True, work, like)
+    for k in range(last + 1):
+        # where events come earlier or later, the last step makes up for it
+        h = end - tau if k == last else min(pace.lengths[k], end - tau)
+        step(flow, tau, h, work, like)
+        w, a = rates_at_end(flow, tau + h, work, like)
+        if (lowest(flow, w, a, work).value <= 0.0) != pace.ends[k]:
+            return False
+        if pace.ends[k]:
+            h = locate(flow, tau, h, REPEATED * accuracy, work, like)
+        tau = tau + h if end - tau > h else end
+        flow = anchored(law, body, belt_speed, _arrive(flow, tau, pace.ends[k], work, like), tau)
+        if end - tau <= 4e-15 * end:
+            return True
+        _depart(flow, pace.ends[k], work, like)
+    return False
+
+
+REPEATED = 1e-4
+"""Of the accuracy by which events are found: where steps are to be repeated, events are found much more exactly, for
+what is left is divided by a small shift."""
+
+
+@inner
+def memory_map(
+    case: Case, y: Any, u: Any, accuracy: float, work: Work, track: Track, pace: Pace, repeats: bool
+) -> Mapped:
     """One span from the deviation (y, u) and the memory at ``work.start``, which becomes that at its end.
 
-    accuracy is each step's, in the norm of energy. On a track with room every piece of the way is noted.
+    accuracy is each step's, in the norm of energy. On a track with room every piece of the way is noted. In a pace
+    with room every step is kept, or where it repeats those kept are taken; it gives up where they do not fit.
     """
     law, body, like = case.law, case.body, case.like
     usual = usual_friction(law, body)
@@ -309,6 +380,11 @@ def memory_map(case: Case, y: Any, u: Any, accuracy: float, work: Work, track: T
     work.start[U] = held_velocity(start, instant_at(body, 0.0), free * u)
     work.start[IMPULSE] = 0.0 * like
     accuracy = min(accuracy, coarsest(law, body))
-    closest, steps = follow(_flow_of(case, work), usual, accuracy, track, work, like)
+    flow = _flow_of(case, work)
+    if repeats:
+        closest, steps = 0.0, pace.taken[0]
+        steps = steps if repeat(flow, pace, accuracy, work, like) else -1
+    else:
+        closest, steps = follow(flow, usual, accuracy, track, pace, work, like)
     end_u = deviation_held(start, instant_at(body, span(body)), work.start[U])
     return Mapped(work.start[Y], end_u, work.start[IMPULSE], 0.0, closest, -1.0, steps)

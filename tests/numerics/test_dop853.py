@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from frictionlab.compile.decorators import fast, njit
-from frictionlab.numerics.steppers.dop853 import State, stepper
+from frictionlab.numerics.steppers.dop853 import State, interpolant, motion_within, stepper
 
 
 class Power(NamedTuple):
@@ -50,7 +50,7 @@ def _belt_rates(problem, tau, x, v):
     return problem.load * turn - x - 0.2 * v - problem.friction * rub, rub
 
 
-_belt_step = stepper(_belt_rates)
+_belt_step, _belt_dense = stepper(_belt_rates), interpolant(_belt_rates)
 
 
 @njit
@@ -62,6 +62,14 @@ def belt_run(problem, x, v, end, steps):
         taken = _belt_step(problem, i * h, State(x, v, a, f), h)
         x, v, rubbed = taken.x, taken.v, rubbed + taken.rubbed
     return x, v, rubbed
+
+
+@njit
+def belt_within(problem, x, v, h, share):
+    """Position and velocity a share into one step from tau = 0."""
+    a, f = _belt_rates(problem, 0.0, x, v)
+    dense = _belt_dense(problem, 0.0, State(x, v, a, f), h)
+    return motion_within(dense, share * h)
 
 
 @njit
@@ -124,6 +132,26 @@ def test_planar_coulomb_friction_is_integrated_to_order_eight():
         assert errors[-1] > 1e-13
         slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
         assert 7.5 <= slope <= 9.0, part
+
+
+@pytest.mark.parametrize("share", [0.04, 0.3, 0.74])
+def test_a_step_is_known_to_order_seven_between_its_ends(share):
+    problem, start = Belt(10.0, 4.0, 5.0), (0.4 - 9.0j, 9.0 + 1.0j)
+    steps = np.array([0.05, 0.1, 0.15, 0.2])
+    for part in range(2):
+        exact = [belt_run(problem, *start, share * h, 50)[part] for h in steps]
+        found = [belt_within(problem, *start, h, share)[part] for h in steps]
+        errors = np.abs(np.subtract(found, exact))
+        slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+        assert 7.2 <= slope <= 8.7, part
+        assert errors[0] < 1e-12
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0])
+def test_between_its_ends_a_step_ends_where_it_ends(share):
+    problem, start, h = Belt(10.0, 4.0, 5.0), (0.4 - 9.0j, 9.0 + 1.0j), 0.2
+    ended = belt_run(problem, *start, h, 1)[:2] if share else start
+    assert belt_within(problem, *start, h, share) == pytest.approx(ended, rel=1e-14)
 
 
 def test_the_error_estimates_shrink_with_their_order():

@@ -55,7 +55,7 @@ def _obeys(orbit: KnownOrbit, before: Any, after: Any, predicted: Any) -> bool:
     for row in range(before.size):
         changed = math.hypot(changed, predicted[row] - before[row])
         missed = math.hypot(missed, predicted[row] - after[row])
-    return missed <= AGREED * changed and missed <= 0.5 * orbit.gap * norm(before)
+    return orbit.gap > 0.0 and missed <= AGREED * changed and missed <= 0.5 * orbit.gap * norm(before)
 
 
 @inner

@@ -207,7 +207,7 @@ def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal,
             if wanted.orbits:
                 track = record_orbit(case, states[i], accuracy, track)
             if wanted.matrices and math.isnan(matrices[i, 0, 0]):
-                monodromy(case, states[i], accuracy, matrices[i], gradient)
+                monodromy(case, states[i], 1.0, matrices[i], gradient)
             if wanted.closed and goal.asks:
                 ends_there[i] = reached(case, states[i], matrices[i], goal.constant)
         else:

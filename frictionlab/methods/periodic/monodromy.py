@@ -11,7 +11,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.maps.memory import MOST_KEPT, pace_of
+from frictionlab.methods.periodic.maps.pace import MOST_KEPT, pace_of
 from frictionlab.methods.periodic.maps.sliding import Mapped
 from frictionlab.methods.periodic.period_map import image_of, paced_image
 from frictionlab.numerics.linalg import invert, norm
@@ -73,10 +73,20 @@ shift_of = by_law(_shift_without_memory, _shift_with_a_bristle, None, _shift_wit
 """Relative shift of a state for a difference quotient, and accuracy of the maps relative to the shift."""
 
 
-SMALL = 1e-6
-"""Relative shift of a state where both maps are in error by nearly the same, so that one-sided quotients will do."""
-SLIGHT = 1e-7
-"""Accuracy of such maps relative to the size of a state: what they have wrong is wrong in the quotient too."""
+def _quotient_without_memory(law: Any, like: Any) -> Any:
+    return 1e-6, 1e-8
+
+
+def _quotient_with_memory(law: Any, like: Any) -> Any:
+    """Steps of order 5 are many more for finer maps, and where events are found is less exact."""
+    return 3e-6, 3e-8
+
+
+_quotient = by_law(
+    _quotient_without_memory, _quotient_with_memory, _quotient_without_memory, _quotient_with_memory
+)
+"""Over the same steps, where both maps are in error by nearly the same and one-sided quotients will do: the shift of
+a state and the accuracy of the maps, relative to its size. What the maps have wrong is wrong in the quotient too."""
 
 
 @inner
@@ -122,26 +132,13 @@ def _column(
         matrix[row, column] = (ahead[row] - residual[row]) / shift + (1.0 if row == column else 0.0)
 
 
-def _one_sided(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
-    """n + 1 maps."""
-    n, shift = z.size, _shift(case, z, SMALL)
-    accuracy = min(accuracy, SLIGHT * (1.0 + norm(z)))
-    residual, ahead, trial = np.empty(n), np.empty(n), z.copy()
-    base = image_of(case, z, residual, accuracy)
-    for column in range(n):
-        trial[column] = z[column] + shift
-        moved = image_of(case, trial, ahead, accuracy)
-        trial[column] = z[column]
-        _column(case, column, shift, base, residual, moved, ahead, matrix, gradient)
-
-
 def _over_the_same_steps(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
     """n + 1 maps: of an order that leaves the steps to jump about by more than is shifted, were each free in its own.
 
     Central quotients where the shift changes the events.
     """
-    n, shift = z.size, _shift(case, z, SMALL)
-    accuracy = min(accuracy, SLIGHT * (1.0 + norm(z)))
+    n, (relative, fine) = z.size, _quotient(case.law, case.like)
+    shift, accuracy = _shift(case, z, relative), min(accuracy, fine * (1.0 + norm(z)))
     residual, ahead, trial, pace = np.empty(n), np.empty(n), z.copy(), pace_of(MOST_KEPT)
     base = paced_image(case, z, residual, accuracy, pace, False)
     repeats = base.steps > 0 and pace.taken[0] <= MOST_KEPT
@@ -156,7 +153,7 @@ def _over_the_same_steps(case: Case, z: Any, accuracy: float, matrix: Any, gradi
         _by_central_quotients(case, z, accuracy, matrix, gradient)
 
 
-monodromy = by_law(_central, _over_the_same_steps, _one_sided, _over_the_same_steps)
+monodromy = by_law(_central, _over_the_same_steps, None, _over_the_same_steps)
 """monodromy(case, z, accuracy, matrix, gradient): the derivatives of the period map [n, n] and of the mean friction
 [n] by difference quotients."""
 

@@ -15,7 +15,7 @@ from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import span
 from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.maps.memory import Pace, coarsest, memory_map, pace_of
+from frictionlab.methods.periodic.maps.memory import coarsest, memory_map
 from frictionlab.methods.periodic.maps.memory_state import (
     coordinates,
     cut_back,
@@ -24,7 +24,8 @@ from frictionlab.methods.periodic.maps.memory_state import (
     remember_sliding,
     unpack_memory,
 )
-from frictionlab.methods.periodic.maps.path import path_map
+from frictionlab.methods.periodic.maps.pace import Pace, pace_of
+from frictionlab.methods.periodic.maps.path import path_map, repeated_path
 from frictionlab.methods.periodic.maps.rates import MEMORY, workspace
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.maps.stick import periods_at_rest
@@ -125,18 +126,25 @@ def _with_memory(case: Case, state: Any, residual: Any, accuracy: float, track: 
     return _image_with_memory(case, state, residual, accuracy, track, pace_of(0), False)
 
 
-def _by_path(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
-    """Where the way slid says all of a bristle."""
+@inner
+def _image_by_path(
+    case: Case, state: Any, residual: Any, accuracy: float, track: Track, pace: Pace, repeats: bool
+) -> Mapped:
     law, body, like = case.law, case.body, case.like
     y, u = unpack(body, state, like)
     work = workspace(law, like)
     measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     z = work.start[MEMORY]
-    image = path_map(case, y, u, z, accuracy, track)
+    image = repeated_path(case, y, u, z, pace) if repeats else path_map(case, y, u, z, accuracy, track, pace)
     pack(body, residual, image.y - y, image.u - u)
     residual[2] = work.unit[0] * (image.z - z)
     return Mapped(image.y, image.u, image.rubbed, 0.0, image.closest, -1.0, image.steps)
+
+
+def _by_path(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
+    """Where the way slid says all of a bristle."""
+    return _image_by_path(case, state, residual, accuracy, track, pace_of(0), False)
 
 
 period_map = by_law(_without_memory, _with_memory, _by_path, _with_memory)
@@ -150,13 +158,29 @@ def image_of(case: Case, state: Any, residual: Any, accuracy: float) -> Mapped:
     return period_map(case, state, residual, accuracy, track_of(0))
 
 
-@inner
-def paced_image(case: Case, state: Any, residual: Any, accuracy: float, pace: Pace, repeats: bool) -> Mapped:
-    """``image_of`` for laws with memory, its steps kept in a pace with room, or those of another state repeated.
+def _paced_without_memory(
+    case: Case, state: Any, residual: Any, accuracy: float, pace: Pace, repeats: bool
+) -> Mapped:
+    """Steps of sliding laws are not kept."""
+    return image_of(case, state, residual, accuracy)
 
-    steps is -1 where the events of this state are not those of the other one.
-    """
+
+def _paced_with_memory(
+    case: Case, state: Any, residual: Any, accuracy: float, pace: Pace, repeats: bool
+) -> Mapped:
     return _image_with_memory(case, state, residual, accuracy, track_of(0), pace, repeats)
+
+
+def _paced_by_path(
+    case: Case, state: Any, residual: Any, accuracy: float, pace: Pace, repeats: bool
+) -> Mapped:
+    return _image_by_path(case, state, residual, accuracy, track_of(0), pace, repeats)
+
+
+paced_image = by_law(_paced_without_memory, _paced_with_memory, _paced_by_path, _paced_with_memory)
+"""``image_of`` for laws with memory, its steps kept in a pace with room, or those of another state repeated.
+
+steps is -1 where the events of this state are not those of the other one."""
 
 
 def _rest_without_memory(law: Any, body: Body, belt_speed: float, y: Any) -> float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from frictionlab.compile.decorators import fast
+from frictionlab.compile.decorators import fast, fast_embedded
 
 
 # fmt: off
@@ -171,6 +171,128 @@ def _error5(k0: Any, k5: Any, k6: Any, k7: Any, k8: Any, k9: Any, k10: Any, k11:
     )
 
 
+@fast
+def _sum14(k0: Any, k6: Any, k7: Any, k8: Any, k9: Any, k10: Any, k11: Any, k12: Any) -> Any:
+    return (
+        + 0.056167502283047954 * k0
+        + 0.25350021021662483 * k6
+        - 0.2462390374708025 * k7
+        - 0.12419142326381637 * k8
+        + 0.15329179827876568 * k9
+        + 0.00820105229563469 * k10
+        + 0.007567897660545699 * k11
+        - 0.008298 * k12
+    )
+
+
+@fast
+def _sum15(k0: Any, k5: Any, k6: Any, k7: Any, k10: Any, k11: Any, k12: Any, k13: Any) -> Any:
+    return (
+        + 0.03183464816350214 * k0
+        + 0.028300909672366776 * k5
+        + 0.053541988307438566 * k6
+        - 0.05492374857139099 * k7
+        - 0.00010834732869724932 * k10
+        + 0.0003825710908356584 * k11
+        - 0.00034046500868740456 * k12
+        + 0.1413124436746325 * k13
+    )
+
+
+@fast
+def _sum16(k0: Any, k5: Any, k6: Any, k7: Any, k8: Any, k12: Any, k13: Any, k14: Any) -> Any:
+    return (
+        - 0.42889630158379194 * k0
+        - 4.697621415361164 * k5
+        + 7.683421196062599 * k6
+        + 4.06898981839711 * k7
+        + 0.3567271874552811 * k8
+        - 0.0013990241651590145 * k12
+        + 2.9475147891527724 * k13
+        - 9.15095847217987 * k14
+    )
+
+
+@fast
+def _dense4(k: Any, extra: Any) -> Any:
+    k0, k5, k6, k7, k8, k9, k10, k11 = k
+    k12, k13, k14, k15 = extra
+    return (
+        - 8.428938276109013 * k0
+        + 0.5667149535193777 * k5
+        - 3.0689499459498917 * k6
+        + 2.38466765651207 * k7
+        + 2.117034582445028 * k8
+        - 0.871391583777973 * k9
+        + 2.2404374302607883 * k10
+        + 0.6315787787694688 * k11
+        - 0.08899033645133331 * k12
+        + 18.148505520854727 * k13
+        - 9.194632392478356 * k14
+        - 4.436036387594894 * k15
+    )
+
+
+@fast
+def _dense5(k: Any, extra: Any) -> Any:
+    k0, k5, k6, k7, k8, k9, k10, k11 = k
+    k12, k13, k14, k15 = extra
+    return (
+        + 10.427508642579134 * k0
+        + 242.28349177525817 * k5
+        + 165.20045171727028 * k6
+        - 374.5467547226902 * k7
+        - 22.113666853125306 * k8
+        + 7.733432668472264 * k9
+        - 30.674084731089398 * k10
+        - 9.332130526430229 * k11
+        + 15.697238121770845 * k12
+        - 31.139403219565178 * k13
+        - 9.35292435884448 * k14
+        + 35.81684148639408 * k15
+    )
+
+
+@fast
+def _dense6(k: Any, extra: Any) -> Any:
+    k0, k5, k6, k7, k8, k9, k10, k11 = k
+    k12, k13, k14, k15 = extra
+    return (
+        + 19.985053242002433 * k0
+        - 387.0373087493518 * k5
+        - 189.17813819516758 * k6
+        + 527.8081592054236 * k7
+        - 11.57390253995963 * k8
+        + 6.8812326946963 * k9
+        - 1.0006050966910838 * k10
+        + 0.7777137798053443 * k11
+        - 2.778205752353508 * k12
+        - 60.19669523126412 * k13
+        + 84.32040550667716 * k14
+        + 11.99229113618279 * k15
+    )
+
+
+@fast
+def _dense7(k: Any, extra: Any) -> Any:
+    k0, k5, k6, k7, k8, k9, k10, k11 = k
+    k12, k13, k14, k15 = extra
+    return (
+        - 25.69393346270375 * k0
+        - 154.18974869023643 * k5
+        - 231.5293791760455 * k6
+        + 357.6391179106141 * k7
+        + 93.40532418362432 * k8
+        - 37.45832313645163 * k9
+        + 104.0996495089623 * k10
+        + 29.8402934266605 * k11
+        - 43.53345659001114 * k12
+        + 96.32455395918828 * k13
+        - 39.17726167561544 * k14
+        - 149.72683625798564 * k15
+    )
+
+
 # fmt: on
 
 
@@ -195,14 +317,27 @@ class Step(NamedTuple):
     rubbed: Any
 
 
-def stepper(rates: Any) -> Any:
-    """``step(problem, tau, state, h)`` for a kernel function ``rates(problem, tau, x, v)`` = (x'', friction).
+class Stages(NamedTuple):
+    """Velocities, accelerations and friction coefficients of the stages 1 and 6 to 12, which the step sums up."""
 
-    The rates are bound here: numba caches no kernel that is handed a function.
-    """
+    v: Any
+    a: Any
+    f: Any
 
-    @fast
-    def step(problem: Any, tau: float, state: State, h: float) -> Step:
+
+class Dense(NamedTuple):
+    """A step of h as polynomials of degree 7 in the time since it began: their coefficients [8]."""
+
+    h: float
+    x: Any
+    v: Any
+
+
+def _stages_of(rates: Any) -> Any:
+    """``stages(problem, tau, state, h)`` of one step, for the rates of ``stepper``."""
+
+    @fast_embedded
+    def stages(problem: Any, tau: float, state: State, h: float) -> Stages:
         x, v0, a0, f0 = state
         v1 = v0 + h * _sum1(a0)
         a1, _f1 = rates(problem, tau + 0.05260015195876773 * h, x + h * _sum1(v0), v1)
@@ -228,14 +363,92 @@ def stepper(rates: Any) -> Any:
         )
         v11 = v0 + h * _sum11(a0, a3, a4, a5, a6, a7, a8, a9, a10)
         a11, f11 = rates(problem, tau + h, x + h * _sum11(v0, v3, v4, v5, v6, v7, v8, v9, v10), v11)
+        return Stages(
+            (v0, v5, v6, v7, v8, v9, v10, v11),
+            (a0, a5, a6, a7, a8, a9, a10, a11),
+            (f0, f5, f6, f7, f8, f9, f10, f11),
+        )
+
+    return stages
+
+
+def stepper(rates: Any) -> Any:
+    """``step(problem, tau, state, h)`` for a kernel function ``rates(problem, tau, x, v)`` = (x'', friction).
+
+    The rates are bound here: numba caches no kernel that is handed a function.
+    """
+    stages = _stages_of(rates)
+
+    @fast
+    def step(problem: Any, tau: float, state: State, h: float) -> Step:
+        v, a, f = stages(problem, tau, state, h)
         return Step(
-            x + h * _sum12(v0, v5, v6, v7, v8, v9, v10, v11),
-            v0 + h * _sum12(a0, a5, a6, a7, a8, a9, a10, a11),
-            h * _error5(v0, v5, v6, v7, v8, v9, v10, v11),
-            h * _error3(v0, v5, v6, v7, v8, v9, v10, v11),
-            h * _error5(a0, a5, a6, a7, a8, a9, a10, a11),
-            h * _error3(a0, a5, a6, a7, a8, a9, a10, a11),
-            h * _sum12(f0, f5, f6, f7, f8, f9, f10, f11),
+            state.x + h * _sum12(*v),
+            state.v + h * _sum12(*a),
+            h * _error5(*v),
+            h * _error3(*v),
+            h * _error5(*a),
+            h * _error3(*a),
+            h * _sum12(*f),
         )
 
     return step
+
+
+@fast
+def _coefficients(h: float, start: Any, end: Any, k: Any, extra: Any) -> Any:
+    """Of the polynomial with this start, this end and these slopes at the stages and at the four that are added."""
+    rise = end - start
+    return (
+        start,
+        rise,
+        h * k[0] - rise,
+        2.0 * rise - h * (k[0] + extra[0]),
+        h * _dense4(k, extra),
+        h * _dense5(k, extra),
+        h * _dense6(k, extra),
+        h * _dense7(k, extra),
+    )
+
+
+def interpolant(rates: Any) -> Any:
+    """``dense(problem, tau, state, h)``: all of the step that ``stepper`` takes for the same rates."""
+    stages = _stages_of(rates)
+
+    @fast
+    def dense(problem: Any, tau: float, state: State, h: float) -> Dense:
+        v, a, _f = stages(problem, tau, state, h)
+        x, v0, a0, _f0 = state
+        _v0, v5, v6, v7, v8, v9, v10, v11 = v
+        _a0, a5, a6, a7, a8, a9, a10, a11 = a
+        ended, v12 = x + h * _sum12(*v), v0 + h * _sum12(*a)
+        a12, _f12 = rates(problem, tau + h, ended, v12)
+        v13 = v0 + h * _sum14(a0, a6, a7, a8, a9, a10, a11, a12)
+        x13 = x + h * _sum14(v0, v6, v7, v8, v9, v10, v11, v12)
+        a13, _f13 = rates(problem, tau + 0.1 * h, x13, v13)
+        v14 = v0 + h * _sum15(a0, a5, a6, a7, a10, a11, a12, a13)
+        x14 = x + h * _sum15(v0, v5, v6, v7, v10, v11, v12, v13)
+        a14, _f14 = rates(problem, tau + 0.2 * h, x14, v14)
+        v15 = v0 + h * _sum16(a0, a5, a6, a7, a8, a12, a13, a14)
+        x15 = x + h * _sum16(v0, v5, v6, v7, v8, v12, v13, v14)
+        a15, _f15 = rates(problem, tau + 0.7777777777777778 * h, x15, v15)
+        return Dense(
+            h,
+            _coefficients(h, x, ended, v, (v12, v13, v14, v15)),
+            _coefficients(h, v0, v12, a, (a12, a13, a14, a15)),
+        )
+
+    return dense
+
+
+@fast
+def _polynomial(f: Any, s: float) -> Any:
+    r = 1.0 - s
+    return f[0] + s * (f[1] + r * (f[2] + s * (f[3] + r * (f[4] + s * (f[5] + r * (f[6] + s * f[7]))))))
+
+
+@fast
+def motion_within(dense: Dense, part: float) -> Any:
+    """Position and velocity a while into a step."""
+    s = part / dense.h
+    return _polynomial(dense.x, s), _polynomial(dense.v, s)

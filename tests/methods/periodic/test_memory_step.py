@@ -18,7 +18,7 @@ from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import anchored
 from frictionlab.methods.periodic.maps.linearization import linearize
 from frictionlab.methods.periodic.maps.rates import MEMORY, workspace
-from frictionlab.methods.periodic.maps.step import step
+from frictionlab.methods.periodic.maps.step import bend, step, within_step
 from frictionlab.numerics.steppers.rodas5p import COUPLINGS, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
 from frictionlab.scene.body import in_the_plane, on_the_line
 
@@ -47,6 +47,23 @@ def steps(law: Any, body: Any, h: float, many: int, start: Any, jacobian: Any, l
         start[row] = work.start[row]
     for row in range(2 * (3 * n + 1)):
         jacobian[row] = work.jacobian[row]
+
+
+@njit
+def inside(law: Any, body: Any, h: float, share: float, state: Any, like: Any) -> Any:
+    """The state a share into a step of h, from a state and back into it."""
+    work = workspace(law, like)
+    for k in range(count_of(law)):
+        work.unit[k], work.size[k] = 1.0, 1e-2
+    for row in range(state.size):
+        work.start[row] = state[row]
+    flow = anchored(law, body, BELT_SPEED, -1.0, START)
+    linearize(flow, START, work, like)
+    step(flow, START, h, work, like)
+    bend(flow, work)
+    within_step(flow, share, work)
+    for row in range(state.size):
+        state[row] = work.stage[row]
 
 
 class System:
@@ -178,4 +195,19 @@ def test_a_step_is_of_order_five(planar: bool) -> None:
         errors.append(np.abs(state - finest).max())
 
     orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert orders.min() > 4.5
+
+
+@pytest.mark.parametrize("planar", [False, pytest.param(True, marks=compiling)], ids=["line", "plane"])
+@pytest.mark.parametrize("share", [0.2, 0.7])
+def test_a_step_is_known_to_order_four_between_its_ends(planar: bool, share: float) -> None:
+    soft = LUGRE.model_copy(update={"stiffness": 2.0})
+    system, lengths, errors = System(soft, planar), np.array([1e-3, 2e-3, 4e-3]), []
+    for h in lengths:
+        exact, _ = system.compiled(share * h / 64, 64)
+        state = system.start()
+        compiled(inside, soft)(system.body, h, share, state, system.like)
+        errors.append(np.abs(state - exact).max())
+
+    orders = np.diff(np.log(errors)) / np.diff(np.log(lengths))
     assert orders.min() > 4.5

@@ -11,8 +11,6 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
@@ -32,6 +30,7 @@ from frictionlab.methods.periodic.maps.modes import (
     rates_at_end,
     restore,
 )
+from frictionlab.methods.periodic.maps.pace import Pace, keep_step
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
@@ -40,11 +39,12 @@ from frictionlab.methods.periodic.maps.rates import (
     Work,
     Y,
     deviation_held,
+    fill_rates,
     held_velocity,
     velocity_held,
 )
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS, Mapped
-from frictionlab.methods.periodic.maps.step import step
+from frictionlab.methods.periodic.maps.step import bend, step, within_step
 from frictionlab.orbit.recorder import Track, panel_writer
 from frictionlab.scene.body import Body
 
@@ -70,43 +70,19 @@ def coarsest(law: Any, body: Body) -> float:
     return COARSEST * body.normal_load * usual_friction(law, body) / body.frequency
 
 
-MOST_KEPT = 4096
-"""Steps of a map that are kept, to be taken again from other starts."""
-
-
-class Pace(NamedTuple):
-    """The steps of a map: how long each was tried, whether an event ended it earlier, and how many there were [1].
-
-    More than there is room for are counted, and not kept.
-    """
-
-    lengths: Any
-    ends: Any
-    taken: Any
-
-
-@inner
-def pace_of(room: int) -> Pace:
-    """No steps yet; with room for none, none are kept."""
-    return Pace(np.empty(room), np.empty(room, np.bool_), np.zeros(1, np.int64))
-
-
 LAYER = 40.0
 """Bristle lengths slid since a reversal after which its layer is over."""
 
 
 @inner
-def _while_into(part: float, flow: Flow, tau: float, work: Work, like: Any) -> Any:
-    """A while into a step; the step is taken anew to there."""
-    body, now = flow.body, instant_near(flow, tau + part)
-    if part > 0.0:
-        step(flow, tau, part, work, like)
-    else:
-        for place in range(MEMORY + count_of(flow.law)):
-            work.end[place] = work.start[place]
-    rates_at_end(flow, tau + part, work, like)
-    x = work.end[Y] + body.reference_sine * now.sine + body.reference_cosine * now.cosine
-    return x, velocity_held(flow, now, work.end[U]), work.rates[IMPULSE]
+def _while_into(part: float, flow: Flow, h: float, work: Work, like: Any) -> Any:
+    """A while into the last step, of h."""
+    body, now = flow.body, instant_near(flow, flow.anchor + part)
+    within_step(flow, part / h, work)
+    y, u = work.stage[Y], work.stage[U]
+    fill_rates(flow, now, work, like)
+    x = y + body.reference_sine * now.sine + body.reference_cosine * now.cosine
+    return x, velocity_held(flow, now, u), work.rates[IMPULSE]
 
 
 _note = panel_writer(_while_into)
@@ -273,15 +249,6 @@ def _arrive(flow: Flow, tau: float, ends: bool, work: Work, like: Any) -> float:
 
 
 @inner
-def _keep(pace: Pace, tried: float, ends: bool) -> None:
-    """Add a step to those of a pace with room."""
-    count = pace.taken[0]
-    if count < pace.lengths.size:
-        pace.lengths[count], pace.ends[count] = tried, ends
-    pace.taken[0] = count + 1
-
-
-@inner
 def follow(
     flow: Flow, friction: float, accuracy: float, track: Track, pace: Pace, work: Work, like: Any
 ) -> Any:
@@ -307,17 +274,16 @@ def follow(
             continue
         # an event cuts a step short, but says nothing about how long the next may be
         usual, tried = h * growth, h
-        within = REPEATED * accuracy if pace.lengths.size > 0 else accuracy
+        within = EVENTS_FINER * accuracy if pace.lengths.size > 0 else accuracy
         ending = _end_of_step(flow, node, h, within, work, like)
         h = ending.h
         if ending.repeats:
             continue
-        _keep(pace, tried, ending.ends)
+        keep_step(pace, tried, 1 if ending.ends else 0)
         tau = node.tau + h if end - node.tau > h else end
-        # noting a panel takes parts of the step anew and leaves the last of them: the step itself is taken again
         if track.stick.size > 0:
-            _note(track, node.tau, h, False, flow, node.tau, work, like)
-            step(flow, node.tau, h, work, like)
+            bend(flow, work)
+            _note(track, node.tau, h, False, flow, h, work, like)
         # sine and cosine within a step are expanded about its start
         flow = anchored(law, body, belt_speed, _arrive(flow, tau, ending.ends, work, like), tau)
         node = _depart(flow, ending.ends, work, like)
@@ -346,19 +312,19 @@ def repeat(flow: Flow, pace: Pace, accuracy: float, work: Work, like: Any) -> bo
         h = end - tau if k == last else min(pace.lengths[k], end - tau)
         step(flow, tau, h, work, like)
         w, a = rates_at_end(flow, tau + h, work, like)
-        if (lowest(flow, w, a, work).value <= 0.0) != pace.ends[k]:
+        if (lowest(flow, w, a, work).value <= 0.0) != (pace.endings[k] == 1):
             return False
-        if pace.ends[k]:
-            h = locate(flow, tau, h, REPEATED * accuracy, work, like)
+        if pace.endings[k] == 1:
+            h = locate(flow, tau, h, EVENTS_FINER * accuracy, work, like)
         tau = tau + h if end - tau > h else end
-        flow = anchored(law, body, belt_speed, _arrive(flow, tau, pace.ends[k], work, like), tau)
+        flow = anchored(law, body, belt_speed, _arrive(flow, tau, pace.endings[k] == 1, work, like), tau)
         if end - tau <= 4e-15 * end:
             return True
-        _depart(flow, pace.ends[k], work, like)
+        _depart(flow, pace.endings[k] == 1, work, like)
     return False
 
 
-REPEATED = 1e-4
+EVENTS_FINER = 1e-4
 """Of the accuracy by which events are found: where steps are to be repeated, events are found much more exactly, for
 what is left is divided by a small shift."""
 

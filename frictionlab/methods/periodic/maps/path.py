@@ -27,8 +27,9 @@ from frictionlab.dynamics.motion import (
 )
 from frictionlab.dynamics.step_size import growth_of, longest_step, wary_growth_of
 from frictionlab.methods.periodic.case import Case
+from frictionlab.methods.periodic.maps.pace import Pace, keep_step
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
-from frictionlab.numerics.steppers.dop853 import State, stepper
+from frictionlab.numerics.steppers.dop853 import Dense, State, interpolant, motion_within, stepper
 from frictionlab.orbit.recorder import Track, panel_writer
 from frictionlab.scene.body import Body
 
@@ -117,7 +118,7 @@ def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
     return deviation_acceleration(leg.body, now, y, u, rub), rub
 
 
-step = stepper(path_rates)
+step, dense = stepper(path_rates), interpolant(path_rates)
 stop, lowest = slip_events(step, path_rates, slip_at, slip_rate)
 
 
@@ -166,12 +167,12 @@ def _until_way(leg: Leg, tau: float, state: State, high: float, way: float) -> A
 
 
 @inner
-def _slipping(part: float, leg: Leg, tau: float, state: State) -> Any:
-    """A while into a step; the step is taken anew to there."""
-    body, taken, now = leg.body, step(leg, tau, state, part), instant_near(leg, tau + part)
-    _a, rub = path_rates(leg, tau + part, taken.x, taken.v)
-    x = taken.x + body.reference_sine * now.sine + body.reference_cosine * now.cosine
-    return x, taken.v + reference_velocity(body, now.sine, now.cosine), rub
+def _slipping(part: float, leg: Leg, tau: float, taken: Dense) -> Any:
+    """A while into a step."""
+    body, (y, u), now = leg.body, motion_within(taken, part), instant_near(leg, tau + part)
+    _a, rub = path_rates(leg, tau + part, y, u)
+    x = y + body.reference_sine * now.sine + body.reference_cosine * now.cosine
+    return x, u + reference_velocity(body, now.sine, now.cosine), rub
 
 
 _note_slip = panel_writer(_slipping)
@@ -243,22 +244,29 @@ def _until_turn(node: PathNode, taken: Any, h: float) -> PathStep:
 
 
 @inner
-def _attempt(node: PathNode, h: float, in_a_layer: bool, accuracy: float) -> Any:
-    """One step of h from a node: what becomes of it, and how much longer the next one may be."""
+def _until_event(node: PathNode, taken: Any, h: float) -> PathStep:
+    """What becomes of an accurate step of h: whether it ends before that, where slip turns or friction saturates."""
     leg, tau, corner = node.leg, node.tau, node.corner
-    taken = step(leg, tau, node.state, h)
-    growth = wary_growth_of(leg.body, taken, accuracy) if in_a_layer else growth_of(leg.body, taken, accuracy)
-    if growth < 1.0:
-        return PathStep(REPEAT, h * growth, taken), growth
     ending = _until_turn(node, taken, h)
     if ending.verdict == REPEAT:
-        return ending, growth
+        return ending
     # where friction saturates for good it has a corner
     beyond = _slid(leg, tau + ending.h, ending.taken.x) > corner * (1.0 + 1e-14)
     if node.way < corner < math.inf and beyond:
         h, taken = _until_way(leg, tau, node.state, ending.h, corner)
-        return PathStep(SATURATE, h, taken), growth
-    return ending, growth
+        return PathStep(SATURATE, h, taken)
+    return ending
+
+
+@inner
+def _attempt(node: PathNode, h: float, in_a_layer: bool, accuracy: float) -> Any:
+    """One step of h from a node: what becomes of it, and how much longer the next one may be."""
+    leg = node.leg
+    taken = step(leg, node.tau, node.state, h)
+    growth = wary_growth_of(leg.body, taken, accuracy) if in_a_layer else growth_of(leg.body, taken, accuracy)
+    if growth < 1.0:
+        return PathStep(REPEAT, h * growth, taken), growth
+    return _until_event(node, taken, h), growth
 
 
 @inner
@@ -277,17 +285,50 @@ def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> Path
 
 
 @inner
-def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: Track) -> Carried:
+def _first_node(case: Case, y: float, u: float, z: float) -> PathNode:
+    return _node_of(_leg(case, _side(case, 0.0, y, u, z), 0.0, y, z), 0.0, y, u)
+
+
+@inner
+def _deflection_at(node: PathNode) -> float:
+    leg = node.leg
+    return leg.law.deflected(leg.z, leg.side * _slid(leg, node.tau, node.state.x))
+
+
+@inner
+def repeated_path(case: Case, y: float, u: float, z: float, pace: Pace) -> Carried:
+    """``path_map`` by the steps of another motion close by; it gives up where the events are not those of that one.
+
+    Steps end at the events of their own motion: the end is then a smooth function of the start.
+    """
+    end, rubbed, last = span(case.body), 0.0, pace.taken[0] - 1
+    node = _first_node(case, y, u, z)
+    for k in range(last + 1):
+        # where events come earlier or later, the last step makes up for it
+        left = end - node.tau
+        h = left if k == last else min(pace.lengths[k], left)
+        ending = _until_event(node, step(node.leg, node.tau, node.state, h), h)
+        if ending.verdict != pace.endings[k]:
+            return Carried(y, u, z, rubbed, 0.0, -1)
+        rubbed = rubbed + ending.taken.rubbed
+        node = _next_node(case, node, ending, node.tau + ending.h if left > ending.h else end)
+        if end - node.tau <= 4e-15 * end:
+            return Carried(node.state.x, node.state.v, _deflection_at(node), rubbed, 0.0, last + 1)
+    return Carried(y, u, z, rubbed, 0.0, -1)
+
+
+@inner
+def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: Track, pace: Pace) -> Carried:
     """One span from the deviation (y, u) and deflection z at tau = 0; accuracy is each step's, in the energy norm.
 
-    On a track with room every piece of the way is noted.
+    On a track with room every piece of the way is noted, and in a pace with room every step.
     """
     law, body, end = case.law, case.body, span(case.body)
     longest, share = (
         longest_step(body, law.sliding_friction(0.0), accuracy),
         share_of_the_way(law, body, accuracy),
     )
-    node = _node_of(_leg(case, _side(case, 0.0, y, u, z), 0.0, y, z), 0.0, y, u)
+    node = _first_node(case, y, u, z)
     h, steps, rubbed, closest = 0.1 * longest, 0, 0.0, 1e300
     while end - node.tau > 4e-15 * end:
         leg, tau, state = node.leg, node.tau, node.state
@@ -298,15 +339,15 @@ def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: T
         ahead = _longest(leg, node.way, share, w, rate) if layered else 1e300
         h = min(h, ahead, longest, end - tau)
         ending, growth = _attempt(node, h, ahead < 1e300, accuracy)
-        h, steps = ending.h, steps + 1
+        tried, h, steps = h, ending.h, steps + 1
         if steps > MOST_STEPS:
             return Carried(state.x, state.v, z, rubbed, closest, -1)
         if ending.verdict == REPEAT:
             continue
+        keep_step(pace, tried, ending.verdict)
         if track.stick.size > 0:
-            _note_slip(track, tau, h, False, leg, tau, state)
+            _note_slip(track, tau, h, False, leg, tau, dense(leg, tau, state, h))
         rubbed = rubbed + ending.taken.rubbed
         node = _next_node(case, node, ending, tau + h if end - tau > h else end)
         h = h * growth if ending.verdict != TURN else longest
-    z = law.deflected(node.leg.z, node.leg.side * _slid(node.leg, node.tau, node.state.x))
-    return Carried(node.state.x, node.state.v, z, rubbed, closest, steps)
+    return Carried(node.state.x, node.state.v, _deflection_at(node), rubbed, closest, steps)

@@ -46,6 +46,7 @@ class Work(NamedTuple):
     rates: Any
     slope: Any  # derivative of the rates by time
     increments: Any  # of every stage
+    bends: Any  # of the step between its ends
     memory: Any  # [n] as the law sees it
     moving: Any  # [n] its rates
     jacobian: (
@@ -96,6 +97,7 @@ def workspace(law: Any, like: Any) -> Work:
         rates=room(law, 1, 3, like),
         slope=room(law, 1, 3, like),
         increments=room(law, 8, 24, like),
+        bends=room(law, 3, 9, like),
         memory=room(law, 1, 0, kind_of_memory(law, like)),
         moving=room(law, 1, 0, kind_of_memory(law, like)),
         jacobian=room(law, 6, 2, like),

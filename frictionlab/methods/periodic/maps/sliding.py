@@ -34,7 +34,7 @@ from frictionlab.dynamics.motion import (
 from frictionlab.dynamics.step_size import growth_of, longest_step
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.stick import StickPhase, stick_phase
-from frictionlab.numerics.steppers.dop853 import State, stepper
+from frictionlab.numerics.steppers.dop853 import Dense, State, interpolant, motion_within, stepper
 from frictionlab.orbit.recorder import Track, panel_writer
 
 
@@ -53,7 +53,7 @@ class Mapped(NamedTuple):
 MOST_STEPS = 200_000
 
 
-step = stepper(rates)
+step, dense = stepper(rates), interpolant(rates)
 
 
 # --- slip ---------------------------------------------------------------------------------------------------------
@@ -159,13 +159,13 @@ _after = by_dimension(_after_on_the_line, _after_in_the_plane)
 
 
 @inner
-def _slipping(part: float, problem: Flow, node: Node) -> Any:
-    """A while into a step; the step is taken anew to there."""
+def _slipping(part: float, problem: Flow, node: Node, taken: Dense) -> Any:
+    """A while into a step."""
     body, tau = problem.body, node.tau + part
-    taken, now = step(problem, node.tau, node.state, part), instant_near(problem, tau)
-    _a, f = rates(problem, tau, taken.x, taken.v)
-    x = taken.x + body.reference_sine * now.sine + body.reference_cosine * now.cosine
-    return x, taken.v + reference_velocity(body, now.sine, now.cosine), f
+    (y, u), now = motion_within(taken, part), instant_near(problem, tau)
+    _a, f = rates(problem, tau, y, u)
+    x = y + body.reference_sine * now.sine + body.reference_cosine * now.cosine
+    return x, u + reference_velocity(body, now.sine, now.cosine), f
 
 
 @inner
@@ -253,7 +253,8 @@ def _slide(problem: Flow, node: Node, leaving: bool, accuracy: float, h: float, 
     if landing.verdict == REPEAT:
         return Attempt(landing, landing.h, 1)
     if room > 0:
-        _note_slip(track, node.tau, landing.h, False, problem, node)
+        whole = dense(problem, node.tau, state, landing.h)
+        _note_slip(track, node.tau, landing.h, False, problem, node, whole)
     return Attempt(landing, done.h * growth, 1)
 
 

@@ -29,7 +29,7 @@ from frictionlab.methods.periodic.maps.rates import (
     load_on,
 )
 from frictionlab.numerics.blocks import add, apply, block, diagonal, inverse, keep, product, scale
-from frictionlab.numerics.steppers.rodas5p import COUPLINGS, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
+from frictionlab.numerics.steppers.rodas5p import COUPLINGS, DENSE, GAMMA, INCREMENTS, SLOPES, STAGES, TIMES
 from frictionlab.scene.body import Body
 
 SIMULTANEOUS = 6
@@ -213,3 +213,28 @@ def step(flow: Flow, tau: float, h: float, work: Work, like: Any) -> float:
     for row in range(MEMORY + n):
         work.end[row] = work.stage[row] + work.increments[last + row]
     return _error(flow, work, like)
+
+
+@inner
+def bend(flow: Flow, work: Work) -> None:
+    """Leave in ``work.bends`` how the last step runs between its ends, as ``within_step`` reads it."""
+    size = MEMORY + count_of(flow.law)
+    for i in range(3):
+        for row in range(size):
+            total = DENSE[i, 0] * work.increments[row]
+            for j in range(1, STAGES):
+                total = total + DENSE[i, j] * work.increments[size * j + row]
+            work.bends[size * i + row] = total
+
+
+@inner
+def within_step(flow: Flow, share: float, work: Work) -> None:
+    """Leave in ``work.stage`` the state a share into the last step, whose bends are known."""
+    size, rest = MEMORY + count_of(flow.law), 1.0 - share
+    for row in range(size):
+        bent = work.bends[row] + share * (work.bends[size + row] + share * work.bends[2 * size + row])
+        work.stage[row] = rest * work.start[row] + share * (work.end[row] + rest * bent)
+    # a polynomial may leave the set of a scalar's values, a straight line does not
+    if not _within(flow, work):
+        for row in range(size):
+            work.stage[row] = rest * work.start[row] + share * work.end[row]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.maps.pace import MOST_KEPT, pace_of
+from frictionlab.methods.periodic.maps.pace import MOST_KEPT, Pace, pace_of
 from frictionlab.methods.periodic.maps.sliding import Mapped
 from frictionlab.methods.periodic.period_map import image_of, paced_image
 from frictionlab.numerics.linalg import invert, norm
@@ -121,41 +121,68 @@ def _central(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) ->
     _by_central_quotients(case, z, accuracy, matrix, gradient)
 
 
+class PacedMap(NamedTuple):
+    """A map whose steps are kept: its accuracy, the residual it left."""
+
+    image: Mapped
+    residual: Any
+    pace: Pace
+    accuracy: float
+
+
 @inner
-def _column(
-    case: Case, column: int, shift: float, base: Mapped, residual: Any, moved: Mapped, ahead: Any,
-    matrix: Any, gradient: Any,
-) -> None:  # fmt: skip
-    """The derivatives by one coordinate, from the maps of a state and of the state shifted in it."""
-    gradient[column] = mean_friction(moved.rubbed - base.rubbed, span(case.body)) / shift
-    for row in range(residual.size):
-        matrix[row, column] = (ahead[row] - residual[row]) / shift + (1.0 if row == column else 0.0)
+def _accuracy_over_steps(case: Case, z: Any) -> float:
+    _relative, fine = _quotient(case.law, case.like)
+    return fine * (1.0 + norm(z))
+
+
+@inner
+def _over_its_steps(case: Case, z: Any, base: PacedMap, matrix: Any, gradient: Any) -> bool:
+    """n maps; False where the shift changes the events."""
+    (relative, _fine), ahead, trial = _quotient(case.law, case.like), np.empty(z.size), z.copy()
+    shift = _shift(case, z, relative)
+    if base.image.steps < 0 or base.pace.taken[0] > MOST_KEPT:
+        return False
+    for column in range(z.size):
+        trial[column] = z[column] + shift
+        moved = paced_image(case, trial, ahead, base.accuracy, base.pace, True)
+        trial[column] = z[column]
+        if moved.steps < 0:
+            return False
+        gradient[column] = mean_friction(moved.rubbed - base.image.rubbed, span(case.body)) / shift
+        for row in range(z.size):
+            same = 1.0 if row == column else 0.0
+            matrix[row, column] = (ahead[row] - base.residual[row]) / shift + same
+    return True
 
 
 def _over_the_same_steps(case: Case, z: Any, accuracy: float, matrix: Any, gradient: Any) -> None:
-    """n + 1 maps: of an order that leaves the steps to jump about by more than is shifted, were each free in its own.
-
-    Central quotients where the shift changes the events.
-    """
-    n, (relative, fine) = z.size, _quotient(case.law, case.like)
-    shift, accuracy = _shift(case, z, relative), min(accuracy, fine * (1.0 + norm(z)))
-    residual, ahead, trial, pace = np.empty(n), np.empty(n), z.copy(), pace_of(MOST_KEPT)
-    base = paced_image(case, z, residual, accuracy, pace, False)
-    repeats = base.steps > 0 and pace.taken[0] <= MOST_KEPT
-    for column in range(n):
-        if repeats:
-            trial[column] = z[column] + shift
-            moved = paced_image(case, trial, ahead, accuracy, pace, True)
-            trial[column] = z[column]
-            _column(case, column, shift, base, residual, moved, ahead, matrix, gradient)
-            repeats = moved.steps > 0
-    if not repeats:
+    """n + 1 maps, or 2 n more where a shift changes the events."""
+    residual, pace, accuracy = (
+        np.empty(z.size),
+        pace_of(MOST_KEPT),
+        min(accuracy, _accuracy_over_steps(case, z)),
+    )
+    base = PacedMap(paced_image(case, z, residual, accuracy, pace, False), residual, pace, accuracy)
+    if not _over_its_steps(case, z, base, matrix, gradient):
         _by_central_quotients(case, z, accuracy, matrix, gradient)
 
 
 monodromy = by_law(_central, _over_the_same_steps, None, _over_the_same_steps)
 """monodromy(case, z, accuracy, matrix, gradient): the derivatives of the period map [n, n] and of the mean friction
 [n] by difference quotients."""
+
+
+@inner
+def monodromy_of(case: Case, z: Any, base: PacedMap, matrix: Any, gradient: Any) -> int:
+    """The same for a law with memory and a state whose map is known; the maps it took."""
+    n, enough = z.size, _accuracy_over_steps(case, z)
+    # one map less, where steps are not many more than they need be
+    suits = 0.1 * enough <= base.accuracy <= enough
+    if suits and _over_its_steps(case, z, base, matrix, gradient):
+        return n
+    monodromy(case, z, 1.0, matrix, gradient)
+    return n + 1
 
 
 @inner

@@ -70,6 +70,11 @@ def coarsest(law: Any, body: Body) -> float:
     return COARSEST * body.normal_load * usual_friction(law, body) / body.frequency
 
 
+OF_EVENTS = 1e-9
+"""Accuracy by which events are found where steps are to be repeated, for what is left is divided by a small shift.
+
+Not so fine that rounding decides on which side of an event a step ends.
+"""
 LAYER = 40.0
 """Bristle lengths slid since a reversal after which its layer is over."""
 
@@ -274,7 +279,7 @@ def follow(
             continue
         # an event cuts a step short, but says nothing about how long the next may be
         usual, tried = h * growth, h
-        within = EVENTS_FINER * accuracy if pace.lengths.size > 0 else accuracy
+        within = min(accuracy, OF_EVENTS) if pace.lengths.size > 0 else accuracy
         ending = _end_of_step(flow, node, h, within, work, like)
         h = ending.h
         if ending.repeats:
@@ -315,18 +320,13 @@ def repeat(flow: Flow, pace: Pace, accuracy: float, work: Work, like: Any) -> bo
         if (lowest(flow, w, a, work).value <= 0.0) != (pace.endings[k] == 1):
             return False
         if pace.endings[k] == 1:
-            h = locate(flow, tau, h, EVENTS_FINER * accuracy, work, like)
+            h = locate(flow, tau, h, min(accuracy, OF_EVENTS), work, like)
         tau = tau + h if end - tau > h else end
         flow = anchored(law, body, belt_speed, _arrive(flow, tau, pace.endings[k] == 1, work, like), tau)
         if end - tau <= 4e-15 * end:
             return True
         _depart(flow, pace.endings[k] == 1, work, like)
     return False
-
-
-EVENTS_FINER = 1e-4
-"""Of the accuracy by which events are found: where steps are to be repeated, events are found much more exactly, for
-what is left is divided by a small shift."""
 
 
 @inner

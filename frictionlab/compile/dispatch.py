@@ -18,6 +18,7 @@ import numba.core.typing.templates
 import numba.extending
 
 from frictionlab.compile.decorators import INNER, fast
+from frictionlab.compile.lanes import LaneType
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 
@@ -99,20 +100,26 @@ for _method in (
     _open_door(MemoryLaw, _method)
 
 
-def by_dimension(on_the_line: Any, in_the_plane: Any) -> Any:
+def by_dimension(on_the_line: Any, in_the_plane: Any, in_lanes: Any = None) -> Any:
     """A kernel function with two bodies, chosen by the type of its last argument: ``float`` or ``complex``.
 
-    numba types a branch it never takes; this keeps the other dimension's code out. Both bodies are plain
-    functions of the same signature.
+    numba types a branch it never takes; this keeps the other dimension's code out. All bodies are plain functions of
+    the same signature. in_lanes: for planar numbers in lanes; that of the plane where left out.
     """
 
     def chosen(*arguments: Any) -> Any:
         return (in_the_plane if isinstance(arguments[-1], complex) else on_the_line)(*arguments)
 
+    of_lanes = in_lanes or in_the_plane
+
     def resolve(*types: Any) -> Any:
+        if isinstance(types[-1], LaneType) and types[-1].planar:
+            return of_lanes
         return in_the_plane if isinstance(types[-1], numba.types.Complex) else on_the_line
 
-    chosen.bodies = (on_the_line, in_the_plane)  # type: ignore[attr-defined]  # for the fingerprint to find
+    bodies = (on_the_line, in_the_plane) if in_lanes is None else (on_the_line, in_the_plane, in_lanes)
+    chosen.bodies = bodies  # type: ignore[attr-defined]  # for the fingerprint to find
+    chosen.of_lanes = of_lanes  # type: ignore[attr-defined]  # for Python to run on arrays
     resolve.__signature__ = inspect.signature(on_the_line)  # type: ignore[attr-defined]  # numba compares them
     _extending.overload(chosen, jit_options=INNER | {"fastmath": True}, strict=False)(resolve)
     return chosen
@@ -231,7 +238,7 @@ def compilable(function: FunctionType) -> FunctionType:
     return twin
 
 
-FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "typing", "pydantic", "abc"}
+FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "llvmlite", "typing", "pydantic", "abc"}
 """Packages whose functions kernels name and nobody looks into."""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import contextlib
 import dis
 import functools
@@ -13,6 +14,7 @@ from types import CellType, FunctionType, ModuleType, SimpleNamespace
 from typing import Any
 
 import numba
+import numpy as np
 
 from frictionlab.compile.dispatch import FOREIGN, names_used
 
@@ -21,14 +23,26 @@ _config: Any = numba.config
 LONG = 150
 """Instructions from which a function looks at the clock; one with a loop always does."""
 
-_as_python: dict[int, tuple[Any, Any]] = {}
-_twins: dict[int, tuple[Any, Any]] = {}
-
 
 def run_as(intrinsic: Any, body: Callable[..., Any]) -> Any:
     """Tell Python what to run in the place of what only numba can: the intrinsic, returned as it is."""
-    _as_python[id(intrinsic)] = intrinsic, body
+    _OF_NUMBERS.instead[id(intrinsic)] = intrinsic, body
     return intrinsic
+
+
+def run_on_arrays_as(intrinsic: Any, body: Callable[..., Any]) -> Any:
+    """The same for texts that Python runs on arrays."""
+    _OF_ARRAYS.instead[id(intrinsic)] = intrinsic, body
+    return intrinsic
+
+
+def over_lanes(kernel: Any) -> Any:
+    """Mark a kernel whose numbers are lanes: Python runs its text on arrays of any length. Returns the kernel."""
+
+    def on_arrays(*arguments: Any) -> Any:
+        return interpreted_on_arrays(kernel)(*arguments)
+
+    return on_arrays if _config.DISABLE_JIT else run_as(kernel, on_arrays)
 
 
 class TooLong(Exception):
@@ -58,51 +72,89 @@ def interpreted(kernel: Any) -> Any:
     if _config.DISABLE_JIT:
         return kernel  # Python runs everything as it stands
     with _building:  # another thread must not be given a function whose names are not filled in yet
-        return _of_python(kernel)
+        return _OF_NUMBERS.read(kernel)
+
+
+@functools.cache
+def interpreted_on_arrays(kernel: Any) -> Any:
+    """The same for numbers that are planar and arrays of any length."""
+    with _building:
+        return _OF_ARRAYS.read(kernel)
 
 
 _building = threading.RLock()
 
 
-def _of_python(kernel: Any) -> Any:
-    if id(kernel) in _as_python:
-        return _as_python[id(kernel)][1]
-    function = getattr(kernel, "py_func", kernel)
-    if isinstance(function, FunctionType):
-        return _twin(function) if function.__module__.partition(".")[0] not in FOREIGN else kernel
-    if isinstance(kernel, list):  # of bodies to choose from
-        return [_of_python(each) for each in kernel]
-    if type(kernel) is tuple:
-        return tuple(_of_python(each) for each in kernel)
-    if isinstance(kernel, dict):
-        return {key: _of_python(each) for key, each in kernel.items()}
-    return kernel
+class _Reader:
+    """The twins of kernel functions: the same text, every name standing for what Python is to run.
+
+    instead: what Python runs in place of what numba alone can, each beside that. builtins, math: what those names
+    stand for.
+    """
+
+    def __init__(self, builtins: dict[str, Any], math: Any) -> None:
+        self.builtins, self.math = builtins, math
+        self.instead: dict[int, tuple[Any, Any]] = {}
+        self.twins: dict[int, tuple[Any, Any]] = {}
+
+    def read(self, kernel: Any) -> Any:
+        """What stands for a kernel function, or for anything else that a name may stand for."""
+        if id(kernel) in self.instead:
+            return self.instead[id(kernel)][1]
+        function = getattr(kernel, "py_func", kernel)
+        if isinstance(function, FunctionType):
+            return self._twin(function) if function.__module__.partition(".")[0] not in FOREIGN else kernel
+        if isinstance(kernel, list):  # of bodies to choose from
+            return [self.read(each) for each in kernel]
+        if type(kernel) is tuple:
+            return tuple(self.read(each) for each in kernel)
+        if isinstance(kernel, dict):
+            return {key: self.read(each) for key, each in kernel.items()}
+        return kernel
+
+    def _twin(self, function: FunctionType) -> Any:
+        """Made once: a function may name itself, so what it names is filled in afterwards."""
+        if id(function) in self.twins:
+            return self.twins[id(function)][1]
+        scope: dict[str, Any] = {"__builtins__": self.builtins, "__name__": function.__module__}
+        cells = tuple(CellType() for _ in function.__closure__ or ())
+        plain = FunctionType(
+            function.__code__, scope, function.__name__, function.__defaults__, cells or None
+        )
+        plain.__kwdefaults__ = function.__kwdefaults__
+        twin = _looking_at_the_clock(plain) if _may_take_long(function) else plain
+        self.twins[id(function)] = function, twin
+        for name in names_used(function.__code__):
+            if name in function.__globals__:
+                scope[name] = self._seen_in(function, function.__globals__[name])
+        for cell, old in zip(cells, function.__closure__ or (), strict=True):
+            cell.cell_contents = self.read(old.cell_contents)
+        return twin
+
+    def _seen_in(self, function: FunctionType, value: Any) -> Any:
+        """What a name stands for in the twin of a function: of our modules, what it takes from them."""
+        if value is math:
+            return self.math
+        if not isinstance(value, ModuleType) or value.__name__.partition(".")[0] in FOREIGN:
+            return self.read(value)
+        taken = {name for name in names_used(function.__code__) if hasattr(value, name)}
+        return SimpleNamespace(**{name: self.read(getattr(value, name)) for name in taken})
 
 
-def _twin(function: FunctionType) -> Any:
-    """Made once: a function may name itself, so what it names is filled in afterwards."""
-    if id(function) in _twins:
-        return _twins[id(function)][1]
-    scope: dict[str, Any] = {"__builtins__": __builtins__, "__name__": function.__module__}
-    cells = tuple(CellType() for _ in function.__closure__ or ())
-    plain = FunctionType(function.__code__, scope, function.__name__, function.__defaults__, cells or None)
-    plain.__kwdefaults__ = function.__kwdefaults__
-    twin = _looking_at_the_clock(plain) if _may_take_long(function) else plain
-    _twins[id(function)] = function, twin
-    for name in names_used(function.__code__):
-        if name in function.__globals__:
-            scope[name] = _seen_in(function, function.__globals__[name])
-    for cell, old in zip(cells, function.__closure__ or (), strict=True):
-        cell.cell_contents = _of_python(old.cell_contents)
-    return twin
+class _ArrayReader(_Reader):
+    """Twins whose numbers are planar and arrays."""
+
+    def read(self, kernel: Any) -> Any:
+        """Of a function with a body for lanes, that."""
+        return super().read(getattr(kernel, "of_lanes", kernel))
 
 
-def _seen_in(function: FunctionType, value: Any) -> Any:
-    """What a name stands for in the twin of a function: of frictionlab's modules, what it takes from them."""
-    if not isinstance(value, ModuleType) or value.__name__.partition(".")[0] in FOREIGN:
-        return _of_python(value)
-    taken = {name for name in names_used(function.__code__) if hasattr(value, name)}
-    return SimpleNamespace(**{name: _of_python(getattr(value, name)) for name in taken})
+def _paired(re: Any, im: Any) -> Any:
+    return re + 1j * im
+
+
+_OF_NUMBERS = _Reader(vars(builtins), math)
+_OF_ARRAYS = _ArrayReader(vars(builtins) | {"min": np.minimum, "max": np.maximum, "complex": _paired}, np)
 
 
 def _may_take_long(function: FunctionType) -> bool:

@@ -176,7 +176,7 @@ def test_threads_that_ask_at_once_are_given_whole_functions():
     """One was given a function whose names another thread had not filled in yet."""
     for _ in range(20):
         interpreted.cache_clear()
-        interpret._twins.clear()
+        interpret._OF_NUMBERS.twins.clear()
         with ThreadPoolExecutor(8) as pool:
             assert list(pool.map(lambda _: interpreted(_work)(1.0), range(8))) == [1.0] * 8
 

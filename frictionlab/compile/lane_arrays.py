@@ -1,0 +1,204 @@
+"""Numbers in lanes taken from arrays and put into them; one of two select in every lane; functions lane by lane.
+
+Where Python runs a kernel, lanes are numpy arrays of any length, and one number is an array of none.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import llvmlite.ir
+import numba.core.types
+import numba.extending
+import numba.np.arrayobj
+import numpy as np
+
+from frictionlab.compile.interpret import run_as, run_on_arrays_as
+from frictionlab.compile.lanes import (
+    LANE_COUNT,
+    LANES,
+    MASK,
+    VECTOR,
+    LaneType,
+    MaskType,
+    Parts,
+    put_together,
+    taken_apart,
+)
+
+_ir: Any = llvmlite.ir
+_types: Any = numba.core.types  # internals of numba, untyped
+_extending: Any = numba.extending
+_arrays: Any = numba.np.arrayobj
+_config: Any = numba.config
+
+ALIGNED = 8
+"""Of arrays of floats [bytes]: numba promises no more."""
+
+
+def _pointer(context: Any, builder: Any, kind: Any, array: Any) -> Any:
+    data = _arrays.make_array(kind)(context, builder, array).data
+    return builder.bitcast(data, VECTOR.as_pointer())
+
+
+def _is_row(kind: Any) -> bool:
+    return isinstance(kind, _types.Array) and kind.ndim == 1 and kind.dtype == _types.float64
+
+
+def _load(typing: Any, row: Any) -> Any:
+    if not _is_row(row):
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return builder.load(_pointer(context, builder, row, values[0]), align=ALIGNED)
+
+    return LANES(row), code
+
+
+def _read_row(row: Any) -> Any:
+    return row.copy()
+
+
+def _store(typing: Any, row: Any, lanes: Any) -> Any:
+    if not _is_row(row) or lanes != LANES:
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        builder.store(values[1], _pointer(context, builder, row, values[0]), align=ALIGNED)
+        return context.get_dummy_value()
+
+    return _types.none(row, lanes), code
+
+
+def _write_row(row: Any, lanes: Any) -> None:
+    row[:] = lanes
+
+
+def _choose(typing: Any, mask: Any, first: Any, second: Any) -> Any:
+    if mask == _types.boolean:
+        kind = typing.unify_types(first, second)
+
+        def of_one(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            cast = [context.cast(builder, values[i], signature.args[i], kind) for i in (1, 2)]
+            return builder.select(values[0], *cast)
+
+        return kind(mask, first, second), of_one
+    if mask != MASK:
+        return None
+    planar = any(
+        isinstance(kind, _types.Complex) or getattr(kind, "planar", False) for kind in (first, second)
+    )
+
+    def of_lanes(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        a, b = (taken_apart(context, builder, signature.args[i], values[i]) for i in (1, 2))
+        re = builder.select(values[0], a.re, b.re)
+        zero = _ir.Constant(VECTOR, [0.0] * LANE_COUNT)
+        im = builder.select(values[0], a.im or zero, b.im or zero) if planar else None
+        return put_together(builder, Parts(re, im))
+
+    return (LaneType("PlanarLanes", True) if planar else LANES)(mask, first, second), of_lanes
+
+
+def _chosen_in_python(mask: bool, first: Any, second: Any) -> Any:
+    return first if mask else second
+
+
+def _any_of_one(mask: bool) -> bool:
+    return mask
+
+
+def _some(typing: Any, mask: Any) -> Any:
+    if not isinstance(mask, MaskType):
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        bits = builder.bitcast(values[0], _ir.IntType(LANE_COUNT))
+        return builder.icmp_unsigned("!=", bits, _ir.Constant(_ir.IntType(LANE_COUNT), 0))
+
+    return _types.boolean(mask), code
+
+
+def _lane(typing: Any, lanes: Any, place: Any) -> Any:
+    if lanes != LANES:
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return builder.extract_element(values[0], values[1])
+
+    return _types.float64(lanes, place), code
+
+
+def _item(lanes: Any, place: int) -> float:
+    return lanes[place]
+
+
+def _with_lane(typing: Any, lanes: Any, place: Any, number: Any) -> Any:
+    if lanes != LANES:
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return builder.insert_element(values[0], values[2], values[1])
+
+    return LANES(lanes, place, _types.float64), code
+
+
+def _with_item(lanes: Any, place: int, number: float) -> Any:
+    changed = lanes.copy()
+    changed[place] = number
+    return changed
+
+
+def _least(typing: Any, lanes: Any) -> Any:
+    if lanes != LANES:
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        least = values[0]
+        for apart in (1, 2, 4):  # each with the lane next to it, then pairs, then fours
+            places = [k ^ apart for k in range(LANE_COUNT)]
+            order = _ir.Constant(_ir.VectorType(_ir.IntType(32), LANE_COUNT), places)
+            other = builder.shuffle_vector(least, least, order)
+            least = builder.select(builder.fcmp_ordered("<", other, least), other, least)
+        return least
+
+    return LANES(lanes), code
+
+
+def _least_in_python(lanes: Any) -> Any:
+    eights = lanes.reshape(-1, LANE_COUNT).min(axis=1)
+    return np.repeat(eights, LANE_COUNT)
+
+
+def _room_for(typing: Any, count: Any) -> Any:
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return context.get_constant(_types.intp, LANE_COUNT)
+
+    return _types.intp(count), code
+
+
+def _room_in_python(count: int) -> int:
+    return -(-count // LANE_COUNT) * LANE_COUNT
+
+
+def _made(intrinsic: Any, in_python: Any, on_arrays: Any = None) -> Any:
+    """The intrinsic, and what Python runs in its place."""
+    made = in_python if _config.DISABLE_JIT else run_as(_extending.intrinsic(intrinsic), in_python)
+    return made if on_arrays is None else run_on_arrays_as(made, on_arrays)
+
+
+read_lanes = _made(_load, _read_row, _read_row)
+"""read_lanes(row): the lanes that a row of an array holds."""
+write_lanes = _made(_store, _write_row, _write_row)
+"""write_lanes(row, lanes): put them into a row."""
+select = _made(_choose, _chosen_in_python, np.where)
+"""select(mask, first, second): the first where the mask is true, else the second; of one number, or lane by lane."""
+any_lane = _made(_some, _any_of_one, np.any)
+"""any_lane(mask): whether it is true in any lane."""
+lane = _made(_lane, _item, _item)
+"""lane(lanes, place): the number in one lane."""
+with_lane = _made(_with_lane, _with_item, _with_item)
+"""with_lane(lanes, place, number): the lanes with another number in one."""
+least_of_eight = _made(_least, _least_in_python, _least_in_python)
+"""least_of_eight(lanes): in every lane the least of the eight beside each other."""
+room_for = _made(_room_for, _room_in_python)
+"""room_for(count): how many lanes so many numbers are put into at once."""

@@ -11,13 +11,13 @@ from frictionlab.scene.body import Body
 @inner
 def dips(w0: complex, rate0: complex, w1: complex, rate1: complex, h: float) -> bool:
     """Whether the slip comes much closer to rest between two nodes than at either (cubic Hermite, in the plane)."""
-    close = 0.0625 * min(w0.real**2 + w0.imag**2, w1.real**2 + w1.imag**2)
+    close = 0.0625 * min(w0.real * w0.real + w0.imag * w0.imag, w1.real * w1.real + w1.imag * w1.imag)
+    closest = close
     for s in (0.25, 0.5, 0.75):
         r = 1.0 - s
         w = r * r * (1.0 + 2.0 * s) * w0 + s * s * (1.0 + 2.0 * r) * w1 + s * r * h * (r * rate0 - s * rate1)
-        if w.real**2 + w.imag**2 < close:
-            return True
-    return False
+        closest = min(closest, w.real * w.real + w.imag * w.imag)
+    return closest < close
 
 
 @fast

@@ -13,7 +13,8 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, fast_embedded, inner
-from frictionlab.compile.dispatch import by_dimension, compilable
+from frictionlab.compile.dispatch import by_dimension, compilable, length
+from frictionlab.compile.law_lanes import friction_by_lane
 from frictionlab.dynamics.events import reference_acceleration
 from frictionlab.scene import body as _plain
 from frictionlab.scene.body import Body
@@ -319,7 +320,13 @@ def _friction_in_the_plane(problem: Flow, w: complex) -> Any:
     return problem.law.sliding_vector(w)
 
 
-_friction = by_dimension(_friction_on_the_line, _friction_in_the_plane)
+def _friction_in_lanes(problem: Flow, w: Any) -> Any:
+    """Of a law whose vector is that of ``FrictionLaw``: along the slip."""
+    speed = length(w)
+    return (friction_by_lane(problem.law, speed) / speed) * w
+
+
+_friction = by_dimension(_friction_on_the_line, _friction_in_the_plane, _friction_in_lanes)
 
 
 @fast_embedded

@@ -38,9 +38,15 @@ def _pack_line(body: Body, state: Any, y: float, u: float) -> None:
     state[0], state[1] = math.sqrt(body.stiffness_mean) * y, u
 
 
+@inner
+def planar_coordinates(body: Body, y: Any, u: Any) -> Any:
+    """A planar position and velocity in the norm of energy."""
+    along, across = body.stiffness_mean + body.stiffness_split, body.stiffness_mean - body.stiffness_split
+    return math.sqrt(along) * y.real, u.real, math.sqrt(across) * y.imag, u.imag
+
+
 def _pack_plane(body: Body, state: Any, y: complex, u: complex) -> None:
-    state[0], state[1] = math.sqrt(body.stiffness_mean + body.stiffness_split) * y.real, u.real
-    state[2], state[3] = math.sqrt(body.stiffness_mean - body.stiffness_split) * y.imag, u.imag
+    state[0], state[1], state[2], state[3] = planar_coordinates(body, y, u)
 
 
 pack = by_dimension(_pack_line, _pack_plane)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
+from frictionlab.compile.lane_arrays import select
 from frictionlab.dynamics.events import dips, slip_events
 from frictionlab.dynamics.motion import (
     Flow,
@@ -93,6 +94,27 @@ def _state(problem: Flow, tau: float, y: Any, u: Any) -> State:
     return State(y, u, a, f)
 
 
+@inner
+def node_at(problem: Flow, tau: float, state: State) -> Node:
+    """The node with this state, at most one radian from the anchor."""
+    w = slip_at(problem, tau, state.v)
+    return Node(tau, state, w, length(w), slip_rate(problem, tau, state.a))
+
+
+@inner
+def near_rest(accuracy: float, limit: float) -> float:
+    """The speed of planar slip below which steps end; limit: force of friction at rest."""
+    return max(math.sqrt(accuracy * limit), 1e-2 * accuracy)
+
+
+@inner
+def step_towards_rest(node: Node, limit: float, h: float) -> float:
+    """How far a step of planar slip may go: nine tenths of the way to rest, and no farther than is stable."""
+    closing = -(node.rate * node.w.conjugate()).real / node.speed
+    h = min(h, 4.0 * node.speed / limit)  # slip turns towards the force at the rate limit/speed
+    return select(closing > 0.0, min(h, 0.9 * node.speed / max(closing, 1e-300)), h)
+
+
 def _before_on_the_line(problem: Flow, node: Node, accuracy: float, h: float, y: float) -> Landing:
     return Landing(ACCEPT, h, node.state, y)
 
@@ -101,10 +123,9 @@ def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y
     """How far the step may go towards rest; where rest is nearer than the accuracy, go there."""
     body, belt_speed, w = problem.body, problem.belt_speed, node.w
     speed, now = node.speed, instant_near(problem, node.tau)
-    closing = -(node.rate * w.conjugate()).real / speed
     pressed = normal_load(body, now)
     limit = pressed * problem.law.sliding_friction(0.0)
-    if speed < math.sqrt(accuracy * limit) or speed < 1e-2 * accuracy:
+    if speed < near_rest(accuracy, limit):
         x = y + reference_position(body, node.tau)
         held, rate, _bend = holding_force(body, belt_speed, instant_at(body, node.tau), x)
         margin = limit - abs(held)
@@ -116,8 +137,7 @@ def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y
             rubbed = w / pressed + resting_friction(body, belt_speed, node.tau, end, x)
             y = x + belt_path(body, belt_speed, node.tau, end) + path - reference_position(body, end)
             return Landing(REST, wait, State(y, w, w, w), rubbed)
-    h = min(h, 4.0 * speed / limit)  # slip turns towards the force at the rate limit/speed: stay stable
-    return Landing(ACCEPT, min(h, 0.9 * speed / closing) if closing > 0.0 else h, node.state, y)
+    return Landing(ACCEPT, step_towards_rest(node, limit, h), node.state, y)
 
 
 _before = by_dimension(_before_on_the_line, _before_in_the_plane)
@@ -290,8 +310,7 @@ def sliding_map(case: Case, y: Any, u: Any, accuracy: float, track: Track) -> Ma
             continue
         # the sine and cosine of a step are expanded about its start
         problem = anchored(law, body, belt_speed, problem.side, tau)
-        w = slip_at(problem, tau, state.v)
-        node = Node(tau, state, w, length(w), slip_rate(problem, tau, state.a))
+        node = node_at(problem, tau, state)
         closest = min(closest, node.speed)
         done, h, tried = _slide(problem, node, leaving, accuracy, min(h, longest, end - tau), track)
         steps += tried

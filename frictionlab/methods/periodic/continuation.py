@@ -157,6 +157,12 @@ def record_orbit(case: Case, z: Any, accuracy: float, track: Track) -> Track:
     return track
 
 
+@inner
+def recorded_accuracy(body: Body, goal: Goal) -> float:
+    """The recorded motion is a map of its own, as exact as the mean was asked to be."""
+    return max(0.1 * goal.tolerance * body.normal_load, 1e-13)
+
+
 class Wanted(NamedTuple):
     """What of a curve: its orbits closed from a guess, or those of given states; recorded, and their monodromies.
 
@@ -196,8 +202,7 @@ def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal,
         states, results = guess, np.ones((belt_speeds.size, 6))
         matrices = np.full((states.shape[0], states.shape[1], states.shape[1]), np.nan)
     n, size = states.shape
-    # The recorded motion is a map of its own, as exact as the mean was asked to be.
-    accuracy = max(0.1 * goal.tolerance * body.normal_load, 1e-13)
+    accuracy = recorded_accuracy(body, goal)
     ends_there, gradient = np.zeros(n, np.bool_), np.empty(size, np.complex128)
     track, ends = track_of(128 if wanted.orbits else 0), np.zeros(n, np.int64)
     for i in range(n):

@@ -11,6 +11,7 @@ import numpy as np
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
+from frictionlab.compile.law_lanes import takes_lanes
 from frictionlab.dynamics.motion import swing_of
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import (
@@ -20,6 +21,7 @@ from frictionlab.methods.periodic.attraction import (
     write_start,
 )
 from frictionlab.methods.periodic.continuation import (
+    CLOSED,
     DIFFERENTIATED,
     MULTIPLIERS,
     RECORDED,
@@ -28,10 +30,13 @@ from frictionlab.methods.periodic.continuation import (
     answer_curve,
 )
 from frictionlab.methods.periodic.fixed_point import Goal
+from frictionlab.methods.periodic.lane_calls import FEWEST_IN_LANES, LaneCalls
+from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT
 from frictionlab.methods.periodic.near_rest import answer_near_rest
 from frictionlab.methods.periodic.period_map import size_of
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
 from frictionlab.orbit.record import Orbits
+from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
@@ -115,9 +120,35 @@ class PeriodicProblem:
         wanted: Wanted = DIFFERENTIATED,
     ) -> tuple[Curve, float]:
         """The orbits of these scenes, from a known state at the first where there is one; and kernel time [s]."""
+        if state is None and wanted == CLOSED and self.lanes is not None and len(scenes) >= FEWEST_IN_LANES:
+            return self._close_in_lanes(self.lanes, scenes, periods)
         guess = np.empty((0, 0)) if state is None else state[None, :]
         goal = self.goal if state is None else self.goal._replace(asks=False)
         return self._called(scenes, guess, goal, wanted, periods)
+
+    @property
+    def lanes(self) -> LaneCalls | None:
+        """For motions in the plane that converge, without memory."""
+        planar = isinstance(self.like, complex) and self.kernel is answer_curve
+        served = planar and self.goal.contracts and takes_lanes(self.law)
+        return LaneCalls(self.law, self.body, self.goal) if served else None
+
+    def _close_in_lanes(
+        self, lanes: LaneCalls, scenes: Sequence[Scene], periods: float
+    ) -> tuple[Curve, float]:
+        """The orbits of these scenes; those that lanes leave by the search for one."""
+        found, seconds = lanes._replace(body=self.body._replace(periods=float(periods))).close(
+            belt_speeds_of(scenes)
+        )
+        left = np.flatnonzero(found.fate != CLOSED_ORBIT).tolist()
+        if left:
+            others = Scenes.of(scenes).taken(left)
+            rest, more = self._called(others, np.empty((0, 0)), self.goal, CLOSED, periods)
+            found.states[left], found.results[left] = rest.states, rest.results
+            seconds += more
+        n, size = found.states.shape
+        nothing = np.zeros(n, np.bool_), interpreted(track_of)(0), np.zeros(n, np.int64)
+        return Curve(found.states, found.results, np.empty((0, size, size)), *nothing), seconds
 
     def _called(
         self, scenes: Sequence[Scene], states: Floats, goal: Goal, wanted: Wanted, periods: float = 1.0
@@ -131,20 +162,31 @@ class PeriodicProblem:
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
         """The closed orbits from these states, one for each scene; without panels where there is no state."""
         places, known = self._known(states)
-        curve, _ = self._called(Scenes.of(scenes).taken(places), known, self.goal, RECORDED)
-        ends, panels = np.zeros(len(scenes), np.int64), np.diff(curve.ends, prepend=0)
-        ends[places] = panels
-        n, track = int(panels.sum()), curve.orbits
-        parts = track.tau[:n], track.x[:n], track.v[:n], track.friction[:n], track.stick[:n]
-        return Orbits(*parts, np.cumsum(ends))
+        if self.lanes is None or len(places) < FEWEST_IN_LANES:
+            return self._recorded(places, scenes, known)
+        track, ends = self.lanes.record(belt_speeds_of(Scenes.of(scenes).taken(places)), known)
+        found = _orbits_at(places, track, ends, len(scenes))
+        left = np.diff(ends, prepend=0) == 0
+        others = [i for i, is_left in zip(places, left, strict=True) if is_left]
+        return found.and_those_of(self._recorded(others, scenes, known[left])) if others else found
+
+    def _recorded(self, places: list[int], scenes: Sequence[Scene], states: Floats) -> Orbits:
+        """The orbits of the scenes at these places, one by one."""
+        curve, _ = self._called(Scenes.of(scenes).taken(places), states, self.goal, RECORDED)
+        return _orbits_at(places, curve.orbits, curve.ends, len(scenes))
 
     def multipliers(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Floats:
         """The largest modulus of the Floquet multipliers of these orbits; NaN where there is no state."""
         places, known = self._known(states)
         found = np.full(len(scenes), np.nan)
+        if self.lanes is not None and len(places) >= FEWEST_IN_LANES:
+            matrices = self.lanes.differentiate(belt_speeds_of(Scenes.of(scenes).taken(places)), known)
+            regular = ~np.isnan(matrices).any(axis=(1, 2))
+            found[np.array(places)[regular]] = _largest_modulus(matrices[regular])
+            places, known = [i for i in places if math.isnan(found[i])], known[~regular]
         if places:
             curve, _ = self._called(Scenes.of(scenes).taken(places), known, self.goal, MULTIPLIERS)
-            found[places] = np.abs(np.linalg.eigvals(curve.matrices)).max(axis=1)
+            found[places] = _largest_modulus(curve.matrices)
         return found
 
     def _known(self, states: Sequence[Floats | None]) -> tuple[list[int], Floats]:
@@ -186,3 +228,16 @@ class PeriodicProblem:
     def _at(self, start: Initial) -> tuple[complex, complex]:
         x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)
         return (x, v) if isinstance(self.like, complex) else (x.real, v.real)
+
+
+def _largest_modulus(matrices: Floats) -> Floats:
+    """That of the eigenvalues of each matrix."""
+    return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=1))
+
+
+def _orbits_at(places: list[int], track: Track, ends: Any, n: int) -> Orbits:
+    """The orbits of a track as those of the scenes at these places, of n."""
+    panels, filled = np.zeros(n, np.int64), int(ends[-1]) if len(ends) else 0
+    panels[places] = np.diff(ends, prepend=0)
+    parts = track.tau[:filled], track.x[:filled], track.v[:filled], track.friction[:filled]
+    return Orbits(*parts, track.stick[:filled], np.cumsum(panels))

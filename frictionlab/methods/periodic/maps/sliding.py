@@ -179,7 +179,7 @@ _after = by_dimension(_after_on_the_line, _after_in_the_plane)
 
 
 @inner
-def _slipping(part: float, problem: Flow, node: Node, taken: Dense) -> Any:
+def motion_in_slip(part: float, problem: Flow, node: Node, taken: Dense) -> Any:
     """A while into a step."""
     body, tau = problem.body, node.tau + part
     (y, u), now = motion_within(taken, part), instant_near(problem, tau)
@@ -218,7 +218,11 @@ def _hopping(part: float, problem: Flow, hop: Hop) -> Any:
     return x, v, hop.rub
 
 
-_note_slip, note_stick, note_hop = panel_writer(_slipping), panel_writer(_resting), panel_writer(_hopping)
+_note_slip, note_stick, note_hop = (
+    panel_writer(motion_in_slip),
+    panel_writer(_resting),
+    panel_writer(_hopping),
+)
 
 
 @inner

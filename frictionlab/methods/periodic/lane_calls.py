@@ -1,0 +1,56 @@
+"""What lanes answer of a curve: closed orbits, their record and multipliers, but where an orbit meets rest."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.compile.call import KernelCall
+from frictionlab.compile.interpret import interpreted
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.periodic.continuation import recorded_accuracy
+from frictionlab.methods.periodic.fixed_point import Goal
+from frictionlab.methods.periodic.lane_curve import LaneCurve, answer_lanes
+from frictionlab.methods.periodic.lane_monodromy import differentiate_in_lanes
+from frictionlab.methods.periodic.lane_record import record_in_lanes
+from frictionlab.orbit.recorder import Track
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Body
+
+FEWEST_IN_LANES = 4
+"""Points of a curve; fewer are answered one by one."""
+MANY_IN_LANES = 1000
+"""Points from which Python asks first what one costs: on arrays many hundred cost little more than one."""
+
+
+class LaneCalls(NamedTuple):
+    """The kernels of lanes, of one law and body."""
+
+    law: FrictionLaw
+    body: Body
+    goal: Goal
+
+    def close(self, belt_speeds: Floats) -> tuple[LaneCurve, float]:
+        """The orbits, and kernel time [s]."""
+        found, seconds = self._timed(answer_lanes, belt_speeds, None, self.goal)
+        return found, seconds
+
+    def differentiate(self, belt_speeds: Floats, states: Floats) -> Floats:
+        """The monodromies of orbits [n, 4, 4]; NaN where lanes leave one."""
+        matrices: Floats = self._timed(differentiate_in_lanes, belt_speeds, states)[0]
+        return matrices
+
+    def record(self, belt_speeds: Floats, states: Floats) -> tuple[Track, NDArray[np.int64]]:
+        """The track of orbits and the panels before which each ends [n]; without panels where lanes leave one."""
+        accuracy = interpreted(recorded_accuracy)(self.body, self.goal)
+        found: tuple[Track, NDArray[np.int64]]
+        found = self._timed(record_in_lanes, belt_speeds, states, accuracy)[0]
+        return found
+
+    def _timed(self, kernel: Any, belt_speeds: Floats, states: Floats | None, *how: Any) -> tuple[Any, float]:
+        points = len(belt_speeds)
+        given = (belt_speeds,) if states is None else (belt_speeds, states)
+        first = (self.body, *(each[:1] for each in given), *how) if points > MANY_IN_LANES else ()
+        return KernelCall(kernel, self.law).timed(self.body, *given, *how, points=points, first=first)

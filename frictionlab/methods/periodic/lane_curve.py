@@ -1,0 +1,274 @@
+"""The orbits of a curve in the plane, closed eight belt speeds at a time.
+
+The first lanes lie evenly along the curve and start from a harmonic motion. Then come the middles of all gaps, with
+guesses interpolated from both sides, again and again: most of them need one map, which tells their error, too. What
+meets rest, or does not converge by quasi-Newton steps alone, is left to the search for one belt speed.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.lane_arrays import room_for
+from frictionlab.dynamics.motion import mean_friction, span
+from frictionlab.methods.periodic.continuation import first_guess
+from frictionlab.methods.periodic.fixed_point import (
+    FINER,
+    ROUNDING,
+    Goal,
+    broyden,
+    first_accuracy,
+    mean_error,
+)
+from frictionlab.methods.periodic.lane_map import LaneRows, lane_map, rows_for
+from frictionlab.methods.periodic.monodromy import free_inverse
+from frictionlab.numerics.linalg import copy, multiply, norm
+from frictionlab.scene.body import Body
+
+MOST_LANE_MAPS = 12
+BESIDE = 3
+"""Known states on either side that a guess is interpolated from."""
+MAP_NOISE = 0.3
+"""Of a map's accuracy: a residual below that says nothing of the state."""
+NOT_YET, LEFT, CLOSED_ORBIT = 0, 1, 2
+
+
+class LaneCurve(NamedTuple):
+    """States [n, 4], results [n, 6] as those of ``solve_curve``, NaN where left; what became of each point [n]."""
+
+    states: Any
+    results: Any
+    fate: Any
+    inverses: Any
+    first: Any  # residual of each guess
+
+
+class GroupProgress(NamedTuple):
+    """How many maps a group went through, the last one's accuracy, that before, and the coarsest for an error."""
+
+    maps: int
+    accuracy: float
+    before: float
+    enough: float
+
+
+class Group(NamedTuple):
+    """The points that go through maps together [count], their rows, and vectors of each lane [lanes, 4].
+
+    step: the next quasi-Newton step. before: the residual that it comes from. active: what still goes on [lanes].
+    """
+
+    places: Any
+    rows: LaneRows
+    step: Any
+    before: Any
+    fresh: Any
+    work: Any
+    active: Any
+
+
+@inner
+def _middles(fate: Any, places: Any) -> int:
+    """Write the middles of all gaps between points that were tried; returns how many."""
+    count, last = 0, -1
+    for i in range(fate.size):
+        if fate[i] == NOT_YET:
+            continue
+        if last >= 0 and i - last > 1:
+            places[count] = (last + i) // 2
+            count += 1
+        last = i
+    return count
+
+
+@inner
+def _beside(fate: Any, i: int, places: Any) -> int:
+    """Write the nearest points on either side whose orbits are closed, the nearest first; returns how many."""
+    count, below, above = 0, i - 1, i + 1
+    for side in range(2 * BESIDE):
+        if side % 2 == 0:
+            while below >= 0 and fate[below] != CLOSED_ORBIT:
+                below -= 1
+            if below >= 0:
+                places[count] = below
+                count, below = count + 1, below - 1
+        else:
+            while above < fate.size and fate[above] != CLOSED_ORBIT:
+                above += 1
+            if above < fate.size:
+                places[count] = above
+                count, above = count + 1, above + 1
+    return count
+
+
+@inner
+def _interpolate(curve: LaneCurve, belt_speeds: Any, places: Any, count: int, i: int, z: Any) -> None:
+    """The polynomial through the states at the first places, at i."""
+    for row in range(z.size):
+        z[row] = 0.0
+    for a in range(count):
+        weight = 1.0
+        for b in range(count):
+            if a != b:
+                there, here = belt_speeds[places[b]], belt_speeds[places[a]]
+                weight *= (belt_speeds[i] - there) / (here - there) if here != there else 0.0
+        for row in range(z.size):
+            z[row] = z[row] + weight * curve.states[places[a], row]
+
+
+@inner
+def _guess(law: Any, body: Body, belt_speeds: Any, curve: LaneCurve, i: int, z: Any) -> None:
+    """Write a guess of the state at i and of its inverse."""
+    places = np.empty(2 * BESIDE, np.int64)
+    count = _beside(curve.fate, i, places)
+    if count == 0:
+        like = body.reference_sine - body.reference_sine
+        free_inverse(body, first_guess(law, body, belt_speeds[i], z), curve.inverses[i], like)
+        return
+    _interpolate(curve, belt_speeds, places, count, i, z)
+    nearest = curve.inverses[places[0]]
+    for row in range(z.size):
+        copy(nearest[row], curve.inverses[i, row])
+
+
+@inner
+def _judged(
+    law: Any, body: Body, goal: Goal, curve: LaneCurve, group: Group, k: int, now: GroupProgress
+) -> bool:
+    """Look at the map of lane k: keep its orbit, leave it, or move its state; whether it goes on."""
+    i, rows, fresh, step, before = group.places[k], group.rows, group.fresh[k], group.step[k], group.before[k]
+    inverse = curve.inverses[i]
+    for row in range(4):
+        fresh[row] = rows.residual[row, k]
+    length, curve.fate[i] = norm(fresh), LEFT
+    if rows.arrived[k] == 0.0 or not length < 1e300:
+        return False
+    if now.maps == 1:
+        curve.first[i] = length
+    else:
+        if length > 1.5 * norm(before) + now.before:
+            return False
+        if now.before <= 0.05 * norm(before):  # a coarser map's residual would spoil the inverse
+            for row in range(4):
+                step[row], before[row] = -step[row], fresh[row] - before[row]
+            broyden(inverse, step, before, group.work)
+    copy(fresh, before)
+    multiply(inverse, fresh, step)
+    floor = 4e-15 * (1.0 + norm(curve.states[i]) + abs(rows.belt_speed[k]))
+    error = 2.0 * mean_error(body, fresh, norm(step)) + (floor + now.accuracy) / body.normal_load + ROUNDING
+    closes = error <= goal.tolerance and now.accuracy <= now.enough
+    if closes:
+        mean = mean_friction(complex(rows.impulse[0, k], rows.impulse[1, k]), span(body))
+        result, curve.fate[i] = curve.results[i], CLOSED_ORBIT
+        result[0], result[1], result[2], result[3] = mean.real, mean.imag, error, now.maps
+        result[4], result[5] = 0.0, rows.closest[k]
+    if length > MAP_NOISE * now.accuracy:  # what a map has wrong is no reason to move
+        for row in range(4):
+            curve.states[i, row] = curve.states[i, row] - step[row]
+    return not closes
+
+
+@inner
+def _write_rows(belt_speeds: Any, curve: LaneCurve, group: Group, count: int) -> bool:
+    """Write what the next map starts from; a lane with nothing to do repeats another. False where all have none."""
+    other = -1
+    for k in range(count):
+        if group.active[k]:
+            other = k
+    if other < 0:
+        return False
+    rows = group.rows
+    for k in range(rows.belt_speed.size):
+        i = group.places[k if k < count and group.active[k] else other]
+        rows.belt_speed[k] = belt_speeds[i]
+        for row in range(4):
+            rows.state[row, k] = curve.states[i, row]
+    return True
+
+
+@inner
+def _expected(curve: LaneCurve, i: int) -> float:
+    """The residual of a guess at i, from those of the points beside it, whose guesses came from twice as far."""
+    least = 1e300
+    for side in (-1, 1):
+        j = i + side
+        while 0 <= j < curve.fate.size and curve.fate[j] == NOT_YET:
+            j += side
+        if 0 <= j < curve.fate.size and curve.fate[j] == CLOSED_ORBIT:
+            least = min(least, curve.first[j] / 16.0)
+    return least
+
+
+@inner
+def _close_group(
+    law: Any, body: Body, belt_speeds: Any, goal: Goal, curve: LaneCurve, group: Group, count: int
+) -> None:
+    """Close the orbits of the first ``count`` places."""
+    floor, expected = 0.0, 0.0
+    for k in range(count):
+        i = group.places[k]
+        _guess(law, body, belt_speeds, curve, i, curve.states[i])
+        group.active[k], expected = True, max(expected, _expected(curve, i))
+        floor = max(floor, 4e-15 * (1.0 + norm(curve.states[i]) + abs(belt_speeds[i])))
+    finest, _near = first_accuracy(law, body, goal.tolerance)
+    last = max(finest, floor) / FINER
+    accuracy, before = max(last, 1e-4 * min(expected, body.normal_load)), 0.0
+    for maps in range(1, MOST_LANE_MAPS + 1):
+        if not _write_rows(belt_speeds, curve, group, count):
+            break
+        lane_map(law, body, group.rows, accuracy, False)
+        length = 0.0
+        now = GroupProgress(maps, accuracy, before, finest)
+        for k in range(count):
+            if group.active[k]:
+                group.active[k] = _judged(law, body, goal, curve, group, k, now)
+                if group.active[k]:
+                    length = max(length, norm(group.before[k]))
+        before, accuracy = accuracy, max(last, min(accuracy, 1e-4 * length))
+
+
+@inner
+def _first_places(n: int, lanes: int, places: Any) -> int:
+    """Write places evenly along the curve, both ends included, as many as there are lanes; returns how many."""
+    count = min(n, lanes)
+    for k in range(count):
+        places[k] = (k * (n - 1) + (count - 1) // 2) // max(count - 1, 1)
+    return count
+
+
+@inner
+def answer_lanes(law: Any, body: Body, belt_speeds: Any, goal: Goal) -> LaneCurve:
+    """Close the orbits of planar slip that never comes next to rest, of a law whose motions converge."""
+    n = belt_speeds.size
+    lanes = room_for(n)
+    curve = LaneCurve(
+        np.zeros((n, 4)),
+        np.full((n, 6), np.nan),
+        np.zeros(n, np.int64),
+        np.empty((n, 4, 4)),
+        np.full(n, np.nan),
+    )
+    vectors = np.empty((3, lanes, 4))
+    group = Group(
+        np.zeros(lanes, np.int64),
+        rows_for(lanes),
+        vectors[0],
+        vectors[1],
+        vectors[2],
+        np.empty(4),
+        np.zeros(lanes, np.bool_),
+    )
+    places = np.zeros(n, np.int64)
+    count = _first_places(n, lanes, places)
+    while count > 0:
+        for begin in range(0, count, lanes):
+            filled = 0
+            for k in range(begin, min(begin + lanes, count)):
+                group.places[filled] = places[k]
+                filled += 1
+            _close_group(law, body, belt_speeds, goal, curve, group, filled)
+        count = _middles(curve.fate, places)
+    return curve

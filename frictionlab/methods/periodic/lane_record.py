@@ -1,0 +1,124 @@
+"""The orbits of a curve recorded eight at a time: every step of every lane is a panel of its orbit.
+
+All lanes step at once and write into one array of steps; the panels of each are gathered from it afterwards.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.interpret import over_lanes, run_as
+from frictionlab.compile.lane_arrays import any_lane, room_for, write_lanes
+from frictionlab.methods.periodic.lane_map import (
+    LaneRows,
+    LaneWay,
+    advance_lanes,
+    begin_lanes,
+    limits_of,
+    moving,
+    rows_for,
+    write_ends,
+)
+from frictionlab.methods.periodic.maps.sliding import dense, motion_in_slip
+from frictionlab.orbit.panels import NODES
+from frictionlab.orbit.recorder import Track, grown, track_of
+from frictionlab.scene.body import Body
+
+MOST_RECORDED = 600
+"""Steps of an orbit; one that needs more is recorded by itself."""
+MOST_AT_ONCE = 128
+"""Lanes of a record, where Python runs it: a step of each takes 6 kB."""
+NUMBERS = 7
+"""Of a node: time, and position, velocity and friction, each along x1 and across."""
+
+
+@inner
+def _note(before: LaneWay, after: LaneWay, nodes: Any) -> None:
+    """Write the nodes of a step [nodes, numbers, lanes]; of lanes that did not move they mean nothing."""
+    node, h = before.node, after.node.tau - before.node.tau
+    whole = dense(before.problem, node.tau, node.state, h)
+    for k in range(NODES.size):
+        part = 0.5 * h * (1.0 + NODES[k])
+        x, v, f = motion_in_slip(part, before.problem, node, whole)
+        write_lanes(nodes[k, 0], node.tau + part)
+        write_lanes(nodes[k, 1], x.real)
+        write_lanes(nodes[k, 2], x.imag)
+        write_lanes(nodes[k, 3], v.real)
+        write_lanes(nodes[k, 4], v.imag)
+        write_lanes(nodes[k, 5], f.real)
+        write_lanes(nodes[k, 6], f.imag)
+
+
+@over_lanes
+@inner
+def _recorded(law: Any, body: Body, rows: LaneRows, accuracy: float, nodes: Any, stepped: Any) -> int:
+    """As ``lane_map``, its steps written down; stepped [steps, lanes]: 1 where a lane took this step."""
+    limits = limits_of(law, body, accuracy, False)
+    way, steps = begin_lanes(law, body, rows, limits.longest), 0
+    while steps < MOST_RECORDED:
+        going = moving(way, limits)
+        if not any_lane(going):
+            break
+        before = way
+        way = advance_lanes(way, going, limits)
+        write_lanes(stepped[steps], way.node.tau - before.node.tau)
+        _note(before, way, nodes[steps])
+        steps += 1
+    write_ends(way, limits, rows)
+    return steps
+
+
+@inner
+def _write_panel(nodes: Any, lane: int, track: Track, row: int) -> None:
+    for k in range(NODES.size):
+        track.tau[row, k] = nodes[k, 0, lane]
+        track.x[row, k] = complex(nodes[k, 1, lane], nodes[k, 2, lane])
+        track.v[row, k] = complex(nodes[k, 3, lane], nodes[k, 4, lane])
+        track.friction[row, k] = complex(nodes[k, 5, lane], nodes[k, 6, lane])
+
+
+def _write_panel_in_python(nodes: Any, lane: int, track: Track, row: int) -> None:
+    tau, x, x2, v, v2, f, f2 = nodes[:, :, lane].T
+    track.tau[row], track.x[row], track.v[row], track.friction[row] = (
+        tau,
+        x + 1j * x2,
+        v + 1j * v2,
+        f + 1j * f2,
+    )
+
+
+run_as(_write_panel, _write_panel_in_python)
+
+
+@inner
+def record_in_lanes(law: Any, body: Body, belt_speeds: Any, states: Any, accuracy: float) -> Any:
+    """The track of these orbits, one after another, and the panels before which each ends [n].
+
+    Of an orbit that lanes leave there are no panels.
+    """
+    n, lanes = belt_speeds.size, min(room_for(belt_speeds.size), MOST_AT_ONCE)
+    rows, ends = rows_for(lanes), np.zeros(n, np.int64)
+    nodes = np.empty((MOST_RECORDED, NODES.size, NUMBERS, lanes))
+    stepped = np.empty((MOST_RECORDED, lanes))
+    track, row = track_of(64 * n), 0
+    for begin in range(0, n, lanes):
+        for k in range(lanes):
+            i = min(begin + k, n - 1)  # lanes that are left over repeat the last orbit
+            rows.belt_speed[k] = belt_speeds[i]
+            for each in range(4):
+                rows.state[each, k] = states[i, each]
+        steps = _recorded(law, body, rows, accuracy, nodes, stepped)
+        for k in range(min(lanes, n - begin)):
+            for j in range(steps if rows.arrived[k] > 0.0 else 0):
+                if stepped[j, k] > 0.0:
+                    if row == track.stick.size:
+                        track.filled[0] = row
+                        track = grown(track, 2 * row)
+                    _write_panel(nodes[j], k, track, row)
+                    row += 1
+            ends[begin + k] = row
+    track.filled[0] = row
+    return track, ends

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from frictionlab.compile.decorators import inner
+from frictionlab.compile.interpret import run_as
 from frictionlab.quantities import Floats
 
 PER_PANEL = 10
@@ -28,6 +29,13 @@ def differentiate_panel(values: Any, slope: Any) -> None:
         for column in range(values.size):
             total += DERIVATIVE[row, column] * values[column]
         slope[row] = total
+
+
+def _differentiate_in_python(values: Any, slope: Any) -> None:
+    slope[:] = DERIVATIVE @ values
+
+
+run_as(differentiate_panel, _differentiate_in_python)
 
 
 @inner

@@ -11,6 +11,7 @@ import numpy as np
 from frictionlab.columns import FROM_ORBITS
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import inner, njit
+from frictionlab.compile.interpret import interpreted, interpreted_on_arrays, run_as
 from frictionlab.dynamics.motion import (
     SLIP_ROUNDING,
     instant_at,
@@ -178,6 +179,9 @@ class Sums(NamedTuple):
     misfit_speed: float  # the same, times its largest speed
 
 
+NO_SUMS = Sums(0.0, 0j, 0j, 0j, 0j, 0.0, 0.0, 0.0, 0.0, 0.0, 0j, 0j, 0.0, 0.0, 0.0)
+
+
 @inner
 def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
     """The columns ``READ`` of one period."""
@@ -259,46 +263,96 @@ def _across(values: Any, out: Any) -> None:
 @inner
 def _integrals(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
     """What is summed up over the period; leaves the slip velocity of every node in ``slips``."""
-    body, tau, x = planar(mass), panels.tau, panels.x
-    duration, stuck = 0.0, 0.0
+    body, total = planar(mass), NO_SUMS
+    for k in range(panels.tau.shape[0]):
+        stuck = 1.0 if panels.stick[k] else 0.0
+        parts = panels.tau[k], panels.x[k], panels.v[k], panels.friction[k]
+        total = _added(total, _of_a_panel(body, belt_speed, *parts, stuck, slips[k]))
+    return total
+
+
+def _integrals_in_python(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
+    """The same text, all panels at once: node by node, each an array."""
+    stuck = panels.stick.astype(float)
+    parts = panels.tau.T, panels.x.T, panels.v.T, panels.friction.T
+    body = interpreted(planar)(mass)
+    of_panels = interpreted_on_arrays(_of_a_panel)(body, belt_speed, *parts, stuck, slips.T)
+    return Sums(*(each.sum().item() for each in of_panels))
+
+
+run_as(_integrals, _integrals_in_python)
+
+
+@inner
+def _added(a: Sums, b: Sums) -> Sums:
+    return Sums(
+        a.duration + b.duration,
+        a.position + b.position,
+        a.friction + b.friction,
+        a.harmonic_1 + b.harmonic_1,
+        a.harmonic_2 + b.harmonic_2,
+        a.input + b.input,
+        a.viscous + b.viscous,
+        a.by_friction + b.by_friction,
+        a.contact + b.contact,
+        a.stick + b.stick,
+        a.moved + b.moved,
+        a.pressed + b.pressed,
+        a.swing + b.swing,
+        a.misfit_load + b.misfit_load,
+        a.misfit_speed + b.misfit_speed,
+    )
+
+
+@inner
+def _of_a_panel(
+    body: Any, belt_speed: float, tau: Any, x: Any, v: Any, friction: Any, stuck: float, slips: Any
+) -> Sums:
+    """The part of one panel; of numbers at its nodes, or of arrays of them."""
+    half = 0.5 * (tau[NODES.size - 1] - tau[0])
     position, rubbed, harmonic_1, harmonic_2 = 0j, 0j, 0j, 0j
     put_in, viscous, taken, contact = 0.0, 0.0, 0.0, 0.0
-    moved, force, swing, misfit_load, misfit_speed = 0j, 0j, 0.0, 0.0, 0.0
-    for panel in range(tau.shape[0]):
-        half = 0.5 * (tau[panel, -1] - tau[panel, 0])
-        duration += 2.0 * half
-        stuck += 2.0 * half if panels.stick[panel] else 0.0
-        way, strongest, fastest = 0j, 0.0, 0.0
-        for node in range(tau.shape[1]):
-            weight, now = half * WEIGHTS[node], instant_at(body, tau[panel, node])
-            turn = complex(now.cosine, now.sine)
-            velocity, rub = panels.v[panel, node], panels.friction[panel, node]
-            w = slip(body, belt_speed, now, velocity)
-            slips[panel, node] = w
-            # Each direction by itself: of the one across the belt nothing may be known.
-            position += complex(weight * x[panel, node].real, weight * x[panel, node].imag)
-            rubbed += complex(weight * rub.real, weight * rub.imag)
-            harmonic_1 += weight * velocity.real * turn.conjugate()
-            harmonic_2 += weight * velocity.imag * turn.conjugate()
-            # Powers: of the load, of the dashpots (springs give back what they take), and of friction, whose part in
-            # the contact is heat; the rest is the work on the belt.
-            pressed = weight * normal_load(body, now)
-            pushed = load(body, now)
-            put_in += weight * _power(pushed, velocity)
-            viscous += weight * _power(restoring_force(body, 0.0 * velocity, velocity), velocity)
-            taken += pressed * _power(rub, velocity)
-            contact += pressed * _power(rub, w)
-            way += weight * velocity
-            force += pressed * rub
-            swing += weight * _power(velocity, velocity)
-            strongest, fastest = max(strongest, abs(pushed)), max(fastest, abs(velocity))
-        moved += way
-        misfit = abs(way - (x[panel, -1] - x[panel, 0]))
-        misfit_load += strongest * misfit
-        misfit_speed += fastest * misfit
+    way, force, swing, strongest, fastest = 0j, 0j, 0.0, 0.0, 0.0
+    for node in range(NODES.size):
+        weight, now = half * WEIGHTS[node], instant_at(body, tau[node])
+        turn = complex(now.cosine, now.sine)
+        velocity, rub = v[node], friction[node]
+        w = slip(body, belt_speed, now, velocity)
+        slips[node] = w
+        # Each direction by itself: of the one across the belt nothing may be known.
+        position = position + complex(weight * x[node].real, weight * x[node].imag)
+        rubbed = rubbed + complex(weight * rub.real, weight * rub.imag)
+        harmonic_1 = harmonic_1 + weight * velocity.real * turn.conjugate()
+        harmonic_2 = harmonic_2 + weight * velocity.imag * turn.conjugate()
+        # Powers: of the load, of the dashpots (springs give back what they take), and of friction, whose part in
+        # the contact is heat; the rest is the work on the belt.
+        pressed = weight * normal_load(body, now)
+        pushed = load(body, now)
+        put_in = put_in + weight * _power(pushed, velocity)
+        viscous = viscous + weight * _power(restoring_force(body, 0.0 * velocity, velocity), velocity)
+        taken = taken + pressed * _power(rub, velocity)
+        contact = contact + pressed * _power(rub, w)
+        way = way + weight * velocity
+        force = force + pressed * rub
+        swing = swing + weight * _power(velocity, velocity)
+        strongest, fastest = max(strongest, abs(pushed)), max(fastest, abs(velocity))
+    misfit = abs(way - (x[NODES.size - 1] - x[0]))
     return Sums(
-        *(duration, position, rubbed, harmonic_1, harmonic_2, put_in, viscous, taken, contact, stuck),
-        *(moved, force, swing, misfit_load, misfit_speed),
+        2.0 * half,
+        position,
+        rubbed,
+        harmonic_1,
+        harmonic_2,
+        put_in,
+        viscous,
+        taken,
+        contact,
+        2.0 * half * stuck,
+        way,
+        force,
+        swing,
+        strongest * misfit,
+        fastest * misfit,
     )
 
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from frictionlab.compile.call import compiling_at_once
 from frictionlab.compile.notice import compiled_here
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.runner.api import steady_state
+from frictionlab.runner.api import curve, steady_state
 from frictionlab.scene.scene import Drive, Scene, Slip, Transverse, TransverseSlip
 
 _DRIVEN = Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=1.0, drive=Drive(amplitude=2.0, frequency=1.5))
@@ -28,6 +28,7 @@ SCENES = {
     ),
 }
 """One of every kind that has kernels of its own."""
+SPEEDS = 1.0, 1.2, 1.4, 1.6
 _USUAL, _OTHERS = 0.5, (0.25, 1.5)
 
 
@@ -51,6 +52,10 @@ def warm(laws: dict[str, type[FrictionLaw]]) -> Iterator[Warmed]:
             with compiling_at_once():
                 for law in forms(kind):
                     steady_state(scene, law, tolerance=1e-4)
+                    if (
+                        scene.transverse is not None
+                    ):  # several belt speeds are answered by kernels of their own
+                        curve(scene, law, SPEEDS, tolerance=1e-4)
             yield Warmed(name, what, len(compiled_here) - before, time.perf_counter() - start)
 
 

@@ -34,12 +34,17 @@ def test_each_kind_of_scene_is_answered(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(
         module, "steady_state", lambda scene, law, tolerance: asked.append((scene.degrees_of_freedom, law))
     )
+    curves: list[int] = []
+    monkeypatch.setattr(
+        module, "curve", lambda scene, law, speeds, tolerance: curves.append(scene.degrees_of_freedom)
+    )
     done = list(warm({"coulomb": fl.Coulomb}))
 
     assert [each._replace(seconds=0.0) for each in done] == [
         Warmed("coulomb", scene, 0, 0.0) for scene in SCENES
     ]
     assert sorted({freedom for freedom, _ in asked}) == [0, 1, 2]
+    assert set(curves) == {2}
 
 
 @pytest.mark.parametrize("scene", SCENES)

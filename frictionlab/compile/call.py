@@ -15,7 +15,7 @@ import numpy as np
 from frictionlab.compile.account import Account
 from frictionlab.compile.cache import account_of, compiled, timed
 from frictionlab.compile.interpret import TooLong, interpreted, limited_to
-from frictionlab.compile.notice import named_while_it_compiles
+from frictionlab.compile.notice import add_to_compiling, named_while_it_compiles
 from frictionlab.faults import from_outside
 from frictionlab.laws.base import FrictionLaw
 
@@ -83,8 +83,10 @@ class KernelCall:
             found = self._by_python(key, arguments, points, first)
             if found is not None:
                 return found
+        start = time.perf_counter()
         with named_while_it_compiles(self._name()):
             done = timed(self._machine, *arguments)
+        add_to_compiling(time.perf_counter() - start - done[1])
         _compiled.add(key)
         return done
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import threading
 from collections.abc import Iterator
 
 compiled_here: list[str] = []
@@ -10,6 +11,23 @@ compiled_here: list[str] = []
 
 _called: list[str] = []
 """The kernels that machine code is asked for, by the names of their functions; most are compiled already."""
+
+
+class _Compiling(threading.local):
+    seconds = 0.0
+
+
+_compiling = _Compiling()
+
+
+def add_to_compiling(seconds: float) -> None:
+    """This thread has waited so long [s] for machine code."""
+    _compiling.seconds += seconds
+
+
+def seconds_compiling() -> float:
+    """How long this thread has waited for machine code so far [s]."""
+    return _compiling.seconds
 
 
 @contextlib.contextmanager

@@ -263,3 +263,16 @@ def test_everything_is_compiled_at_once_where_the_environment_asks_for_it():
         )
     ]
     assert told == ["True\n", "False\n"]
+
+
+def test_the_columns_of_a_table_count_no_time_of_compiling(without_kernels, monkeypatch):
+    """A kernel of columns that is compiled while they are read; numba takes seconds, the points milliseconds."""
+    monkeypatch.setattr(call._choice, "always_compile", True)
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1)
+    )
+    start = time.perf_counter()
+    table = fl.curve(scene, fl.Coulomb(mu=0.4), [5.0, 6.0])
+
+    assert time.perf_counter() - start > 1.0
+    assert table["seconds"].sum() < 0.5

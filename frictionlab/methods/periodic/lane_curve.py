@@ -16,7 +16,6 @@ from frictionlab.compile.lane_arrays import room_for
 from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.continuation import first_guess
 from frictionlab.methods.periodic.fixed_point import (
-    FINER,
     ROUNDING,
     Goal,
     broyden,
@@ -29,6 +28,8 @@ from frictionlab.numerics.linalg import copy, multiply, norm
 from frictionlab.scene.body import Body
 
 MOST_LANE_MAPS = 12
+FINER_IN_LANES = 4.0
+"""How much finer the last map is than the first that is looked for: its whole accuracy is in the error stated."""
 BESIDE = 3
 """Known states on either side that a guess is interpolated from."""
 MAP_NOISE = 0.3
@@ -214,7 +215,7 @@ def _close_group(
         group.active[k], expected = True, max(expected, _expected(curve, i))
         floor = max(floor, 4e-15 * (1.0 + norm(curve.states[i]) + abs(belt_speeds[i])))
     finest, _near = first_accuracy(law, body, goal.tolerance)
-    last = max(finest, floor) / FINER
+    last = max(finest, floor) / FINER_IN_LANES
     accuracy, before = max(last, 1e-4 * min(expected, body.normal_load)), 0.0
     for maps in range(1, MOST_LANE_MAPS + 1):
         if not _write_rows(belt_speeds, curve, group, count):

@@ -14,6 +14,7 @@ from frictionlab.compile.interpret import interpreted, over_lanes
 from frictionlab.compile.lane_arrays import (
     any_lane,
     lane,
+    least_of_eight,
     read_lanes,
     room_for,
     select,
@@ -139,6 +140,20 @@ def test_rows_may_lie_anywhere():
     numbers, out = np.arange(3.0 + LANE_COUNT), np.empty(1 + LANE_COUNT)
     _one_by_one(numbers[1 : 1 + LANE_COUNT], out[1:])
     np.testing.assert_array_equal(out[1:], 0.5 * numbers[1 : 1 + LANE_COUNT])
+
+
+@njit
+def _least(row, out):
+    write_lanes(out, least_of_eight(read_lanes(row)))
+
+
+def test_the_least_of_eight_is_in_every_lane():
+    """On arrays, of every eight beside each other."""
+    out, longer = np.empty(LANE_COUNT), np.empty(2 * LANE_COUNT)
+    _least(A, out)
+    interpreted(over_lanes(_least))(np.concatenate([A, B]), longer)
+    assert (out == -40.0).all()
+    assert longer.tolist() == [-40.0] * LANE_COUNT + [-7.0] * LANE_COUNT
 
 
 @njit

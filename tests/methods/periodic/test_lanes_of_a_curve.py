@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -99,6 +100,20 @@ def test_a_lane_that_comes_to_rest_leaves_and_stops_no_other():
 
     assert lanes.arrived.tolist() == one.arrived.tolist() == [0.0] + [1.0] * 7
     np.testing.assert_allclose(lanes.residual[:, 1:], one.residual[:, 1:], rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("alike", [False, True])
+def test_lanes_depend_on_each_other_where_they_step_alike_alone(alike):
+    body, company = (
+        problem_of(scene_of()).body,
+        (np.full(8, 60.0), np.array([*np.linspace(5.0, 50.0, 7), 60.0])),
+    )
+    on_arrays = partial(interpreted(mapped_in_lanes), LAW)
+    for run in (compiled(mapped_in_lanes, LAW), on_arrays):
+        rows = [rows_of(speeds) for speeds in company]
+        rows[0].state[:, 7] = rows[1].state[:, 7]
+        last = [run(body, each, 1e-4, alike).residual[:, 7] for each in rows]
+        assert (np.abs(last[0] - last[1]).max() > 1e-12) == alike
 
 
 @pytest.mark.parametrize("omega", [0.5, 4.0, 10.0])

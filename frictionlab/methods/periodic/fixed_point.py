@@ -70,8 +70,8 @@ def _finer_of_order_five(law: Any, like: Any) -> Any:
 
 
 _finer = by_law(_finer_of_order_eight, _finer_of_order_five, _finer_of_order_eight, _finer_of_order_five)
-"""_finer(law, like): how much finer the two maps are that agree in the end; and the share of the error before a Newton
-step to a map finer by ``FINER`` that stands in where two means agree by chance.
+"""_finer(law, like): how much finer the two maps are that agree in the end, and what share of the error before a
+Newton step to a map finer by ``FINER`` stands in where two means agree by chance.
 
 Of order eight it is fitted to 2,500 random rows: of 399 others none was uncovered, and half of the errors stated were
 below 27 times the true. Of order five see tests/benchmarks/random_bristle.py.

@@ -66,7 +66,7 @@ def _finer_of_order_eight(law: Any, like: Any) -> Any:
 
 def _finer_of_order_five(law: Any, like: Any) -> Any:
     """As many steps more: the square root of two times as many."""
-    return 5.7, 0.2
+    return 5.7, 0.15
 
 
 _finer = by_law(_finer_of_order_eight, _finer_of_order_five, _finer_of_order_eight, _finer_of_order_five)

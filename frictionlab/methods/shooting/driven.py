@@ -87,8 +87,8 @@ class SteadyStates:
 
     def close_all(self, where: list[int]) -> None:
         """Close the orbits of the scenes at these places: near rest by implicit steps, or where others fail."""
-        held = [i for i in where if self._is_held(i)]
-        self.close(held, by=self.near_rest)
+        held = self._held(where)
+        self.close(sorted(held), by=self.near_rest)
         self.close([i for i in where if i not in held or self.status[i] == "failed"])
         failed = [i for i in where if i not in held and self.status[i] == "failed"]
         self.close(failed if self.near_rest else [], by=self.near_rest)
@@ -101,27 +101,30 @@ class SteadyStates:
         curve, seconds = problem.close(self.scenes.taken(where), state, wanted=self.wanted)
         self.seconds[where] = np.nan_to_num(self.seconds[where]) + seconds / len(where)
         multipliers, undamped = _multipliers(curve), _undamped(self.scenes.scene)
+        maps = curve.results[:, 3].tolist()
         for row, i in enumerate(where):
             self.reached[i] = bool(curve.reached[row])
-            maps = curve.results[row, 3]
             self.solved_by[i] = problem
-            if maps < 0.0:
+            if maps[row] < 0.0:
                 steps = "" if problem is self.problem else " of implicit steps"
-                said = f"no closed orbit found in {-maps:.0f} period maps{steps}"
+                said = f"no closed orbit found in {-maps[row]:.0f} period maps{steps}"
                 self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
             elif undamped and self._repeats(curve, row, multipliers[row], problem):
                 self._leave_open(i, UNDAMPED, curve.results[row, 0], curve.results[row, 0])
             else:
-                self.reason[i] = ""
-                self._put(i, curve, row)
-                self.multipliers[i] = multipliers[row]
+                self.reason[i], self.status[i], self.states[i] = "", "ok", curve.states[row]
+        found = [row for row, i in enumerate(where) if self.status[i] == "ok"]
+        places = np.array(where)[found]
+        self._put(places, curve, found)
+        self.multipliers[places] = multipliers[found]
 
-    def _is_held(self, i: int) -> bool:
-        """Whether friction can hold the mass at all times and the belt is too slow to keep it from rest."""
+    def _held(self, where: list[int]) -> set[int]:
+        """Where friction can hold the mass at all times and the belt is too slow to keep it from rest."""
         near_rest = self.near_rest
-        if near_rest is None or not 0.0 < abs(self.belt_speeds[i]) < near_rest.swing:
-            return False
-        return can_hold(self.scenes.scene, near_rest.law)
+        if near_rest is None or not can_hold(self.scenes.scene, near_rest.law):
+            return set()
+        speeds = np.abs(self.belt_speeds[where])
+        return set(np.array(where)[(speeds > 0.0) & (speeds < near_rest.swing)].tolist())
 
     def _repeats(self, curve: Curve, row: int, multiplier: float, problem: PeriodicProblem) -> bool:
         """Whether a motion beside an orbit goes on beside it: difference quotients know less of that."""
@@ -163,10 +166,11 @@ class SteadyStates:
 
     def answers(self) -> Answers:
         """As every method gives them."""
+        models = {way: _model(self.scenes.scene, self.problem, way) for way in dict.fromkeys(self.solved_by)}
         return Answers(
             status=self.status,
             reason=self.reason,
-            model=[_model(self.scenes[0], self.problem, problem) for problem in self.solved_by],
+            model=[models[way] for way in self.solved_by],
             error_kind=["estimated" if status == "ok" else "" for status in self.status],
             mean=self.mean,
             error=self.error,
@@ -226,6 +230,7 @@ class SteadyStates:
         self._clear(i)
         if first.period == 1 and first.curve is not None and (unique or scene.initial is not None):
             self._put(i, first.curve, 0)
+            self.status[i], self.states[i] = "ok", first.curve.states[0]
             self.multipliers[i] = multiplier(first.curve)
             self.reason[i] = "" if unique else f"reached from scene.initial; {describe(reached)}"
             return
@@ -258,10 +263,11 @@ class SteadyStates:
         self.status[i], self.reason[i] = "not_unique", reason
         self.low[i], self.high[i] = low, high
 
-    def _put(self, i: int, curve: Curve, row: int) -> None:
-        mean, across, error = curve.results[row, :3]
-        self.mean[i], self.error[i], self.period[i] = complex(mean, across), error, 1.0
-        self.status[i], self.states[i] = "ok", curve.states[row]
+    def _put(self, places: Any, curve: Curve, rows: Any) -> None:
+        """Enter the numbers of these rows at these places."""
+        results = curve.results[rows]
+        self.mean.real[places], self.mean.imag[places] = results[..., 0], results[..., 1]
+        self.error[places], self.period[places] = results[..., 2], 1.0
 
 
 def _undamped(scene: Scene) -> bool:

@@ -81,7 +81,7 @@ def draw(counts: list[int], costs: list[Cost], again: list[Cost], figure: Path) 
     axes.set_ylabel("time per point [µs]")
     axes.grid(True, which="major", alpha=0.3)
     axes.legend(frameon=False)
-    chart.savefig(figure)
+    chart.savefig(figure, metadata={"Date": None} if figure.suffix == ".svg" else None)
 
 
 def main(largest: int, figure: Path | None) -> None:

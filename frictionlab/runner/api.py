@@ -125,6 +125,8 @@ def _run_long(
     progress: Progress,
     as_csv: bool,
 ) -> Run:
+    if existing == "reuse" and long.is_whole(as_csv):
+        return long.taken_over()
     folder.open(existing)
     with workforce(executor) as force:
         stopped = long.solve(force, progress)

@@ -287,6 +287,20 @@ class RunFolder:
         """When and how long earlier runs of this study worked in this folder."""
         return list(self._provenance().get("runs", [])) if self.table.exists() else []
 
+    def counts(self) -> dict[str, int]:
+        """How many rows of an earlier run have each status. Raises FolderError."""
+        return dict(self._provenance().get("counts", {}))
+
+    def is_intact(self, as_csv: bool) -> bool:
+        """Whether the files of an earlier run are there as they were written; as_csv: its table as text, too."""
+        known = self._stamps()
+        wanted = {self.table.name, *([self.csv_file.name] if as_csv else [])}
+        return wanted <= known.keys() and not any(map(self._damage, known))
+
+    def curves(self) -> pd.DataFrame:
+        """The table of curves of an earlier run; empty where it has none."""
+        return pd.read_csv(self._curves) if self._curves.exists() else pd.DataFrame()
+
     def save(self, table: pd.DataFrame, orbits: pd.DataFrame | None) -> None:
         """Write what a run continues from: results.parquet, and orbits.parquet if any. Raises SaveError."""
         self.remove_texts()

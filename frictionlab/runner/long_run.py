@@ -15,18 +15,24 @@ import numpy as np
 import pandas as pd
 
 from frictionlab import registry
-from frictionlab.columns import ALWAYS, INPUTS, OF_SHAPE
+from frictionlab.columns import ALWAYS, INPUTS, OF_SHAPE, RESULTS, SI
 from frictionlab.results.curve_table import curve_table
 from frictionlab.results.expectations import Verdict, judge
 from frictionlab.results.part import Part
 from frictionlab.results.run import Run
 from frictionlab.results.table import InputColumns, Inputs, Results, orbit_rows, status_counts
-from frictionlab.results.thinned import Thinned, shown_rows
+from frictionlab.results.thinned import Thinned, shown_rows, thinned
 from frictionlab.runner.chunks import Task, cuts, task_of
 from frictionlab.runner.errors import SaveError
-from frictionlab.runner.folder import RunFolder
+from frictionlab.runner.folder import SOLVER, RunFolder
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
-from frictionlab.runner.long_files import LongFiles, read_columns_of_file, read_whole
+from frictionlab.runner.long_files import (
+    LongFiles,
+    read_columns_of_file,
+    read_pieces,
+    read_whole,
+    rows_of_file,
+)
 from frictionlab.runner.open_chunks import OpenChunk, answered, open_chunks
 from frictionlab.runner.progress import Progress
 from frictionlab.runner.workforce import Workforce
@@ -60,6 +66,33 @@ class LongRun:
             "computed": 0,
             "found": 0,
         }
+
+    # --- what an earlier run left -----------------------------------------------------------------------------------
+
+    def is_whole(self, as_csv: bool) -> bool:
+        """Whether the folder holds all that this run would write, found by the same code."""
+        if not self._folder.is_intact(as_csv) or rows_of_file(self._folder.table) != self._size:
+            return False
+        first = next(read_pieces(self._folder.table))
+        names = [name for name in first if name in RESULTS or name in SI]
+        asked = [name for name in [*RESULTS, *SI] if name in self._study.selected()]
+        counts = self._folder.counts()
+        tried_again = {"killed", "failed"} & counts.keys()
+        same_code = first.attrs.get(SOLVER) == self._folder.identity.solver
+        return (
+            same_code
+            and not tried_again
+            and [name for name in asked if name not in SI or name in names] == names
+        )
+
+    def taken_over(self) -> Run:
+        """The run as the folder holds it, judged anew."""
+        shown = thinned(read_pieces(self._folder.table), shown_rows(self._curves))
+        shapes = self._folder.curves()
+        verdicts, counts = self._verdicts(shapes), self._folder.counts()
+        told = {"counts": counts, "expect": [asdict(verdict) for verdict in verdicts]}
+        self._folder.describe(told | {"runs": self._earlier_runs})
+        return self._as_run(verdicts, shapes, shown, counts)
 
     # --- solving ----------------------------------------------------------------------------------------------------
 
@@ -126,17 +159,22 @@ class LongRun:
         self._folder.save_curves(shapes)
         verdicts = () if stopped else self._verdicts(shapes)
         self._describe(dict(counts.most_common()), verdicts)
-        table_file, orbit_file = self._folder.table, self._folder.orbits_file
+        return self._as_run(verdicts, shapes, shown.table, dict(counts.most_common()))
+
+    def _as_run(
+        self, verdicts: tuple[Verdict, ...], curves: pd.DataFrame, shown: pd.DataFrame, counts: dict[str, int]
+    ) -> Run:
+        table, orbits = self._folder.table, self._folder.orbits_file
         return Run(
             self._study,
-            lambda: read_whole(table_file),
-            lambda: read_whole(orbit_file) if orbit_file.exists() else None,
+            lambda: read_whole(table),
+            lambda: read_whole(orbits) if orbits.exists() else None,
             verdicts,
             self._folder.path,
             self._run["computed"],
-            shapes,
-            shown.table,
-            dict(counts.most_common()),
+            curves,
+            shown,
+            counts,
         )
 
     def _pieces(self) -> Iterator[_Piece]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -88,6 +89,8 @@ def test_text_is_written_where_it_is_asked_for(short_pieces: None, tmp_path: Pat
     fl.run(study(), out=tmp_path / "run", as_csv=True)
     assert (tmp_path / "run" / "results.csv").exists()
     fl.run(study(), out=tmp_path / "run")
+    assert (tmp_path / "run" / "results.csv").exists()  # of the same table
+    fl.run(study(), out=tmp_path / "run", columns=["floquet"])
     assert not (tmp_path / "run" / "results.csv").exists()
 
 
@@ -98,8 +101,30 @@ def test_the_same_study_again_finds_its_chunks(short_pieces: None, tmp_path: Pat
     assert (first.computed, again.computed) == (320, 0)
     assert_frame_equal(again.table, first.table, check_exact=True)
     account = json.loads((tmp_path / "run" / "provenance.json").read_text())
-    assert [(run["computed"], run["found"]) for run in account["runs"]] == [(320, 0), (0, 320)]
+    assert [(run["computed"], run["found"]) for run in account["runs"]] == [(320, 0)]  # the table was whole
     assert account["counts"] == first.counts
+    assert again.verdicts == first.verdicts
+    assert_frame_equal(again.curves, first.curves, check_dtype=False)
+    other = fl.run(study(title="a copy"), out=tmp_path / "other")
+    assert other.computed == 0
+    assert_frame_equal(other.table, first.table, check_exact=True)
+
+
+def test_a_whole_table_needs_no_chunks_and_a_damaged_one_is_made_again(
+    short_pieces: None, tmp_path: Path
+) -> None:
+    coulomb = study(laws=study()["laws"][:1])
+    first = fl.run(coulomb, out=tmp_path / "run")
+    shutil.rmtree(tmp_path / ".cache")
+    again = fl.run(coulomb, out=tmp_path / "run")
+    fewer = fl.run(coulomb, out=tmp_path / "run", columns=["floquet"])
+    table = tmp_path / "run" / "results.parquet"
+    table.write_bytes(table.read_bytes()[:-9])
+    mended = fl.run(coulomb, out=tmp_path / "run", columns=["floquet"])
+
+    assert (first.computed, again.computed, fewer.computed, mended.computed) == (160, 0, 160, 0)
+    assert "reversals" not in fewer.table
+    assert_frame_equal(mended.table, fewer.table, check_exact=True)
 
 
 def test_a_long_run_that_is_interrupted_goes_on(short_pieces: None, tmp_path: Path) -> None:

@@ -90,7 +90,7 @@ def main(largest: int, figure: Path | None) -> None:
     run_once, _, _, _ = measured(100)  # kernels are compiled here
     assert run_once.wall > 0.0
     print(
-        "|  points | wall, s | processor, s | us a point | memory, MB | table, MB | chunks, MB | again, s |"
+        "|  points | wall, s | processor, s | us a point | memory, MB | table, MB | chunks, MB | found again, s |"
     )
     print("|---|---|---|---|---|---|---|---|")
     found = []

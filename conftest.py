@@ -14,6 +14,7 @@ import tomllib
 from pathlib import Path
 
 import hypothesis
+import pytest
 from hypothesis.internal.conjecture import providers
 
 # The tests ask so much of every kernel that it is compiled in the end: Python would only run it before that.
@@ -51,3 +52,18 @@ def _open_door(folder: Path) -> None:
 for _folder in FOLDERS:
     _open_door(_folder)
 sys.path[:0] = [DOORS.name, *map(str, FOLDERS)]
+
+
+@pytest.fixture
+def without_kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of kernels of a test: nothing compiled, nothing spent."""
+    from frictionlab.compile import account, cache, call
+
+    monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path / "kernels"))
+    monkeypatch.setattr(account, "_spent", {})
+    monkeypatch.setattr(call, "_compiled", set())
+    monkeypatch.setattr(call, "_accounts", {})
+    monkeypatch.setattr(call._choice, "always_compile", False)
+    monkeypatch.delenv("FRICTIONLAB_COMPILE", raising=False)
+    cache._entry.cache_clear()
+    return tmp_path / "kernels"

@@ -42,7 +42,7 @@ class LaneType(_types.Type):  # type: ignore[misc]  # numba has no types
         super().__init__(name)
 
 
-class MaskType(_types.Type):  # type: ignore[misc]
+class MaskType(_types.Type):  # type: ignore[misc]  # the same
     """numba's type of truths in lanes."""
 
 
@@ -50,7 +50,7 @@ LANES, PLANAR_LANES, MASK = LaneType("Lanes", False), LaneType("PlanarLanes", Tr
 
 
 @_extending.register_model(LaneType)
-class _LaneModel(_models.PrimitiveModel):  # type: ignore[misc]
+class _LaneModel(_models.PrimitiveModel):  # type: ignore[misc]  # the same
     """A vector; in the plane one after another, along and across."""
 
     def __init__(self, manager: Any, kind: Any) -> None:
@@ -58,7 +58,7 @@ class _LaneModel(_models.PrimitiveModel):  # type: ignore[misc]
 
 
 @_extending.register_model(MaskType)
-class _MaskModel(_models.PrimitiveModel):  # type: ignore[misc]
+class _MaskModel(_models.PrimitiveModel):  # type: ignore[misc]  # the same
     """A vector of bits."""
 
     def __init__(self, manager: Any, kind: Any) -> None:
@@ -174,7 +174,7 @@ def _pairs(register: Any, code: Any) -> None:
 
 def _define_operator(function: Any, rule: Rule) -> None:
     @_templates.infer_global(function)
-    class _Operator(_templates.AbstractTemplate):  # type: ignore[misc]
+    class _Operator(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
         def generic(self, kinds: Any, _keywords: Any) -> Any:
             if len(kinds) != 2 or not _in_lanes(kinds):
                 return None
@@ -190,7 +190,7 @@ def _define_operator(function: Any, rule: Rule) -> None:
 
 def _define_comparison(function: Any, sign: str) -> None:
     @_templates.infer_global(function)
-    class _Comparison(_templates.AbstractTemplate):  # type: ignore[misc]
+    class _Comparison(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
         def generic(self, kinds: Any, _keywords: Any) -> Any:
             if len(kinds) != 2 or not _in_lanes(kinds) or any(map(_is_planar, kinds)):
                 return None
@@ -206,7 +206,7 @@ def _define_comparison(function: Any, sign: str) -> None:
 
 def _define_extreme(function: Any, sign: str) -> None:
     @_templates.infer_global(function)
-    class _Extreme(_templates.AbstractTemplate):  # type: ignore[misc]
+    class _Extreme(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
         def generic(self, kinds: Any, _keywords: Any) -> Any:
             if len(kinds) != 2 or not _in_lanes(kinds) or any(map(_is_planar, kinds)):
                 return None
@@ -221,7 +221,7 @@ def _define_extreme(function: Any, sign: str) -> None:
 
 def _define_connective(function: Any, method: str) -> None:
     @_templates.infer_global(function)
-    class _Connective(_templates.AbstractTemplate):  # type: ignore[misc]
+    class _Connective(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
         def generic(self, kinds: Any, _keywords: Any) -> Any:
             return _templates.signature(MASK, *kinds) if kinds == (MASK, MASK) else None
 
@@ -245,7 +245,7 @@ for _function, _method in ((operator.and_, "and_"), (operator.or_, "or_")):
 
 
 @_templates.infer_global(operator.neg)
-class _Negation(_templates.AbstractTemplate):  # type: ignore[misc]
+class _Negation(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
     def generic(self, kinds: Any, _keywords: Any) -> Any:
         return _templates.signature(kinds[0], *kinds) if isinstance(kinds[0], LaneType) else None
 
@@ -259,7 +259,7 @@ _extending.lower_builtin(operator.neg, LaneType)(_negative)
 
 
 @_templates.infer_global(math.sqrt)
-class _Root(_templates.AbstractTemplate):  # type: ignore[misc]
+class _Root(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
     def generic(self, kinds: Any, _keywords: Any) -> Any:
         return _templates.signature(LANES, LANES) if kinds == (LANES,) else None
 
@@ -274,7 +274,7 @@ _extending.lower_builtin(math.sqrt, LaneType)(_square_root)
 
 
 @_templates.infer_global(complex)
-class _Joined(_templates.AbstractTemplate):  # type: ignore[misc]
+class _Joined(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
     def generic(self, kinds: Any, _keywords: Any) -> Any:
         return _templates.signature(PLANAR_LANES, LANES, LANES) if kinds == (LANES, LANES) else None
 
@@ -287,7 +287,7 @@ _extending.lower_builtin(complex, LaneType, LaneType)(_joined)
 
 
 @_templates.infer_getattr
-class _LaneAttributes(_templates.AttributeTemplate):  # type: ignore[misc]
+class _LaneAttributes(_templates.AttributeTemplate):  # type: ignore[misc]  # the same
     key = LaneType
 
     def resolve_real(self, kind: Any) -> Any:

@@ -50,5 +50,5 @@ def _serves(law: FrictionLaw) -> bool:
     try:
         found = interpreted_on_arrays(type(law).sliding_friction)(law, speeds)
         return bool(np.allclose(found + 0.0 * speeds, _one_by_one(law, speeds), rtol=1e-13, atol=0.0))
-    except Exception:  # whatever the text of a law may do with an array
+    except (TypeError, ValueError, ArithmeticError, AttributeError, LookupError):  # it takes one number alone
         return False

@@ -187,15 +187,8 @@ def _take(work: OpenChunk, parts: list[Part], kept: KeptChunks | None, gathering
         gathering.take(parts)
         return
     own, *others = work.of(part)
-    gathering.take([own], kept is not None and _is_kept(work.key, part, kept))
+    gathering.take([own], kept is not None and kept.keeps(work.key, part))
     gathering.take_found(others)
-
-
-def _is_kept(key: str | None, part: Part, kept: KeptChunks) -> bool:
-    """Keep answers, if they can be; whether they are."""
-    with suppress(SaveError):  # the table is saved all the same, or says why it is not
-        return key is not None and kept.keep(key, part)
-    return False
 
 
 def _finished(study: Study, gathering: Accumulator, folder: RunFolder | None, stopped: bool) -> Run:

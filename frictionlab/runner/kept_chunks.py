@@ -20,6 +20,7 @@ from frictionlab.faults import INTERNAL, MARK, from_outside
 from frictionlab.results.part import Part
 from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.code_digest import solving_code
+from frictionlab.runner.errors import SaveError
 from frictionlab.runner.files import remove_leftovers, write_whole
 
 if TYPE_CHECKING:
@@ -111,6 +112,12 @@ class KeptChunks:
             path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, _packed(part))
         return True
+
+    def keeps(self, key: str | None, part: Part | None) -> bool:
+        """Keep answers, if there are any, they have a key and the disk takes them; whether they are kept."""
+        with suppress(SaveError):  # the caller has the answers, and says so where it cannot save them either
+            return key is not None and part is not None and self.keep(key, part)
+        return False
 
     def trim(self) -> None:
         """Remove those used longest ago until the rest is small enough; none that this run has used."""

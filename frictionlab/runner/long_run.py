@@ -6,7 +6,6 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor
-from contextlib import suppress
 from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -22,10 +21,10 @@ from frictionlab.results.part import Part
 from frictionlab.results.run import Run
 from frictionlab.results.table import InputColumns, Inputs, Results, orbit_rows, status_counts
 from frictionlab.results.thinned import Thinned, shown_rows, thinned
-from frictionlab.runner.chunks import Task, cuts, task_of
-from frictionlab.runner.errors import SaveError
+from frictionlab.runner.chunks import Cut, cuts, task_of
 from frictionlab.runner.folder import SOLVER, RunFolder
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
+from frictionlab.runner.limit import solve_within
 from frictionlab.runner.long_files import (
     LongFiles,
     read_columns_of_file,
@@ -55,6 +54,7 @@ class LongRun:
         self._curves = list(study.curves())
         self._size = sum(len(each.rows) for each in self._curves)
         self._keys: list[str | None] = []
+        self._there: set[int] = set()
         self._loose: dict[int, list[Part]] = {}
         self._rest = "not finished"
         self._earlier_runs = folder.previous_runs()
@@ -90,20 +90,19 @@ class LongRun:
         shown = thinned(read_pieces(self._folder.table), shown_rows(self._curves))
         shapes = self._folder.curves()
         verdicts, counts = self._verdicts(shapes), self._folder.counts()
-        told = {"counts": counts, "expect": [asdict(verdict) for verdict in verdicts]}
-        self._folder.describe(told | {"runs": self._earlier_runs})
+        self._describe(counts, verdicts, self._earlier_runs)
         return self._as_run(verdicts, shapes, shown, counts)
 
     # --- solving ----------------------------------------------------------------------------------------------------
 
     def solve(self, force: Workforce, progress: Progress) -> bool:
         """Solve and keep every chunk that is not kept yet; True when that was interrupted."""
-        self._describe({}, ())
+        self._describe({}, (), self._runs())
         places: dict[int, int] = {}
 
         def take(chunk: OpenChunk, parts: list[Part]) -> None:
             self._run["computed"] += len(chunk.whole)
-            if not self._is_kept(chunk, parts):
+            if not self._kept.keeps(chunk.key, answered(chunk, parts)):
                 self._loose[places[id(chunk)]] = parts
 
         def unknown() -> Iterator[OpenChunk]:
@@ -111,6 +110,7 @@ class LongRun:
                 self._keys.append(chunk.key)
                 if chunk.key is not None and self._kept.has(chunk.key):
                     self._run["found"] += len(chunk.whole)
+                    self._there.add(place)
                 else:
                     places[id(chunk)] = place
                     yield chunk
@@ -128,17 +128,7 @@ class LongRun:
         return self._rest == "interrupted"
 
     def _open_chunks(self) -> Iterator[OpenChunk]:
-        return open_chunks(self._curves, self._task, keys=Keys(self._study.code))
-
-    @property
-    def _task(self) -> Task:
-        return task_of(self._study)
-
-    def _is_kept(self, chunk: OpenChunk, parts: list[Part]) -> bool:
-        whole = answered(chunk, parts)
-        with suppress(SaveError):  # it is held in memory instead
-            return whole is not None and chunk.key is not None and self._kept.keep(chunk.key, whole)
-        return False
+        return open_chunks(self._curves, task_of(self._study), keys=Keys(self._study.code))
 
     # --- gathering --------------------------------------------------------------------------------------------------
 
@@ -158,7 +148,7 @@ class LongRun:
         shapes = _together(curves)
         self._folder.save_curves(shapes)
         verdicts = () if stopped else self._verdicts(shapes)
-        self._describe(dict(counts.most_common()), verdicts)
+        self._describe(dict(counts.most_common()), verdicts, self._runs())
         return self._as_run(verdicts, shapes, shown.table, dict(counts.most_common()))
 
     def _as_run(
@@ -198,16 +188,19 @@ class LongRun:
         for curve in self._curves:
             parts: list[Part] = []
             for cut in cuts([curve]):
-                parts += self._answer(place, cut.rows)
+                parts += self._answer(place, cut)
                 place += 1
             yield parts
 
-    def _answer(self, place: int, rows: Any) -> list[Part]:
+    def _answer(self, place: int, cut: Cut) -> list[Part]:
+        """What was found of a chunk; one whose file turns out damaged is solved now."""
         if place in self._loose:
             return self._loose[place]
         key = self._keys[place] if place < len(self._keys) else None
         part = None if key is None else self._kept.found(key)
-        return [] if part is None else [part.moved(rows)]
+        if part is not None:
+            return [part.moved(cut.rows)]
+        return solve_within(cut.chunk(task_of(self._study))) if place in self._there else []
 
     def _verdicts(self, curves: pd.DataFrame) -> tuple[Verdict, ...]:
         """What was expected, judged on the columns that it speaks of."""
@@ -219,10 +212,16 @@ class LongRun:
         )
         return tuple(judge(each, table, curves) for each in self._study.expect)
 
-    def _describe(self, counts: dict[str, int], verdicts: Sequence[Verdict]) -> None:
+    def _runs(self) -> list[dict[str, Any]]:
+        """The earlier runs and this one."""
         this = self._run | {"seconds": round(time.monotonic() - self._started, 3)}
-        told = {"counts": counts, "expect": [asdict(verdict) for verdict in verdicts]}
-        self._folder.describe(told | {"runs": [*self._earlier_runs, this]})
+        return [*self._earlier_runs, this]
+
+    def _describe(
+        self, counts: dict[str, int], verdicts: Sequence[Verdict], runs: list[dict[str, Any]]
+    ) -> None:
+        told = [asdict(verdict) for verdict in verdicts]
+        self._folder.describe({"counts": counts, "expect": told, "runs": runs})
 
 
 class _Piece(NamedTuple):

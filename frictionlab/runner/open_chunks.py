@@ -61,7 +61,7 @@ def open_chunks(
 
 
 def each_once(found: Iterable[OpenChunk]) -> list[OpenChunk]:
-    """Those that compute the same as another one_part to it: they are solved once."""
+    """Those that compute the same as another joined to it: they are solved once."""
     first: dict[str, OpenChunk] = {}
     kept: list[OpenChunk] = []
     for work in found:

@@ -18,7 +18,7 @@ LOOK = 0.1
 
 
 class OverLimit(Exception):
-    """OpenChunk that has taken longer than it may, and goes on in a thread of its own until it ends by itself."""
+    """Work that has taken longer than it may, and goes on in a thread of its own until it ends by itself."""
 
 
 def within(seconds: float, work: Callable[..., Found], *arguments: Any) -> Found:

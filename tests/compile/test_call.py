@@ -16,23 +16,10 @@ import pytest
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.compile import account, cache, call, interpret
+from frictionlab.compile import account, call, interpret
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.compile.interpret import TooLong, interpreted, limited_to
-
-
-@pytest.fixture
-def without_kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Nothing compiled, nothing spent."""
-    monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path / "kernels"))
-    monkeypatch.setattr(account, "_spent", {})
-    monkeypatch.setattr(call, "_compiled", set())
-    monkeypatch.setattr(call, "_accounts", {})
-    monkeypatch.setattr(call._choice, "always_compile", False)
-    monkeypatch.delenv("FRICTIONLAB_COMPILE", raising=False)
-    cache._entry.cache_clear()
-    return tmp_path / "kernels"
 
 
 def suffixes(folder: Path) -> set[str]:

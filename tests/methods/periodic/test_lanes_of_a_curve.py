@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import frictionlab as fl
-from frictionlab.compile import account, cache, call
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
@@ -224,18 +222,6 @@ def test_orbits_are_those_of_the_record_of_one():
         # the lengths of steps next to rest magnify what two compilations round differently
         for name, within in (("tau", 1e-6), ("x", 1e-5), ("v", 1e-4), ("friction", 1e-2)):
             assert np.abs(getattr(found, name) - getattr(orbit, name)).max() < within, name
-
-
-@pytest.fixture
-def without_kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Nothing compiled, nothing spent."""
-    monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path / "kernels"))
-    monkeypatch.setattr(account, "_spent", {})
-    monkeypatch.setattr(call, "_compiled", set())
-    monkeypatch.setattr(call, "_accounts", {})
-    monkeypatch.setattr(call._choice, "always_compile", False)
-    cache._entry.cache_clear()
-    return tmp_path / "kernels"
 
 
 def test_without_kernels_a_curve_is_closed_on_arrays(request):

@@ -125,6 +125,27 @@ def by_dimension(on_the_line: Any, in_the_plane: Any, in_lanes: Any = None) -> A
     return chosen
 
 
+def by_variation(of_one_sine: Any, of_varying: Any) -> Any:
+    """A kernel function with two bodies, chosen by the field ``varying`` of its first argument.
+
+    of_one_sine: for a record whose field is empty, or that has none: one sine is all that changes in time in it.
+    """
+
+    def chosen(*arguments: Any) -> Any:
+        return (of_varying if getattr(arguments[0], "varying", ()) else of_one_sine)(*arguments)
+
+    def resolve(*types: Any) -> Any:
+        fields = types[0].fields
+        varies = "varying" in fields and len(types[0].types[fields.index("varying")]) > 0
+        return of_varying if varies else of_one_sine
+
+    bodies = of_one_sine, of_varying
+    chosen.bodies = bodies  # type: ignore[attr-defined]  # for the fingerprint to find
+    resolve.__signature__ = inspect.signature(of_one_sine)  # type: ignore[attr-defined]  # numba compares them
+    _extending.overload(chosen, jit_options=INNER, strict=False)(resolve)
+    return chosen
+
+
 def as_argument(function: Any) -> Any:
     """A kernel function that others may be handed: numba caches no code that is handed a compiled function."""
     body = getattr(function, "py_func", function)

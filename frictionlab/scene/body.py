@@ -5,9 +5,112 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from frictionlab.quantities import Floats
+from frictionlab.scene.signals import Signal, Signals
+
+
+class Waves(NamedTuple):
+    """A function of time for kernels: sums of sine[j]*sin(frequency[j] tau) + cosine[j]*cos(frequency[j] tau), and a
+    line, value + slope*(tau - when the piece began); numbers are real on the line and x1 + i x2 in the plane."""
+
+    frequency: Floats
+    sine: Any
+    cosine: Any
+    value: Any
+    slope: Any
+
+
+class Varying(NamedTuple):
+    """What changes in time otherwise than as one sine, in pieces between corners of any of its functions.
+
+    Within a piece every function is smooth, and beyond its ends it goes on as within. begins: the piece that holds;
+    edges [pieces + 1]: from 0 to the common period; lines [pieces]: value at the beginning of each piece, and slope.
+    periods: of the drive in a common period. quickest: the highest frequency of any wave, at least that of the drive.
+    constant_contact: whether bristles keep the stiffness of the mean normal load.
+    """
+
+    begins: float
+    load: Waves
+    belt: Waves
+    normal_load: Waves
+    edges: Floats
+    load_lines: Any
+    load_slopes: Any
+    belt_lines: Any
+    belt_slopes: Any
+    normal_lines: Floats
+    normal_slopes: Floats
+    periods: float
+    quickest: float
+    constant_contact: bool
+
+
+def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Varying:
+    """The numbers of signals, those along x1 and x2 as x1 + i x2; frequency: of the drive."""
+    edges = np.array([0.0, *(tau for tau in signals.corners() if tau > 0.0), signals.period])
+    middles = 0.5 * (edges[:-1] + edges[1:])
+    half = 0.5 * np.diff(edges)
+    every = (*signals.load, *signals.belt, signals.normal_load)
+    quickest = max((wave.frequency for each in every for wave in each.waves), default=frequency)
+    load, load_lines, load_slopes = _planar_waves(*signals.load, middles, half)
+    belt, belt_lines, belt_slopes = _planar_waves(*signals.belt, middles, half)
+    normal, normal_lines, normal_slopes = _planar_waves(signals.normal_load, Signal(), middles, half)
+    return Varying(
+        begins=0.0,
+        load=load,
+        belt=belt,
+        normal_load=_real(normal),
+        edges=edges,
+        load_lines=load_lines,
+        load_slopes=load_slopes,
+        belt_lines=belt_lines,
+        belt_slopes=belt_slopes,
+        normal_lines=normal_lines.real.copy(),
+        normal_slopes=normal_slopes.real.copy(),
+        periods=float(round(signals.period * frequency / (2.0 * math.pi))),
+        quickest=max(quickest, frequency),
+        constant_contact=constant_contact,
+    )
+
+
+def _planar_waves(along: Signal, across: Signal, middles: Floats, half: Floats) -> tuple[Waves, Any, Any]:
+    """Of the piece that begins at 0; the values at the beginnings of all pieces, and the slopes."""
+    waves = [(each.frequency, each.phasor, 0j) for each in along.waves]
+    waves += [(each.frequency, 0j, each.phasor) for each in across.waves]
+    frequency = np.array([each for each, _, _ in waves])
+    sine = np.array([complex(first.real, second.real) for _, first, second in waves], dtype=np.complex128)
+    cosine = np.array([complex(first.imag, second.imag) for _, first, second in waves], dtype=np.complex128)
+    (first, rise), (second, rise_2) = along.lines_at(middles), across.lines_at(middles)
+    slopes = rise + 1j * rise_2
+    lines = first + 1j * second - half * slopes
+    return Waves(frequency, sine, cosine, complex(lines[0]), complex(slopes[0])), lines, slopes
+
+
+def _real(waves: Waves) -> Waves:
+    sine, cosine = waves.sine.real.copy(), waves.cosine.real.copy()
+    return Waves(waves.frequency, sine, cosine, waves.value.real, waves.slope.real)
+
+
+def _along_the_line(varying: Any) -> Any:
+    """Of what varies, the parts along x1."""
+    if not isinstance(varying, Varying):
+        return varying
+    names = "load_lines", "load_slopes", "belt_lines", "belt_slopes"
+    return varying._replace(
+        load=_real(varying.load),
+        belt=_real(varying.belt),
+        **{name: getattr(varying, name).real.copy() for name in names},
+    )
+
 
 class Mass(NamedTuple):
-    """The numbers of a free scene for kernels; every force is Im(phasor exp(i frequency tau))."""
+    """The numbers of a free scene for kernels; every force is Im(phasor exp(i frequency tau)).
+
+    varying: empty where these forces are all that changes in time; else all of it, and the forces are the harmonics
+    of the loads at this frequency.
+    """
 
     damping: float
     stiffness: float
@@ -17,6 +120,7 @@ class Mass(NamedTuple):
     frequency: float
     force: complex
     transverse_force: complex
+    varying: Any = ()
 
 
 class Body(NamedTuple):
@@ -24,9 +128,9 @@ class Body(NamedTuple):
 
     A constant that differs between x1 and x2 acts as mean*x + split*conj(x), x = x1 + i x2. The motion is the sum of
     a harmonic reference, the friction-free response where that is bounded, and the deviation from it: ``balanced`` is
-    the force that the reference motion takes, all of the ``load`` but at undamped resonance. A sine/cosine pair
-    stands for sine*sin(Omega tau) + cosine*cos(Omega tau). A period map spans ``periods`` periods of the drive. Where
-    ``prescribed``, the motion is the reference and friction does not change it.
+    the force that the reference motion takes, all of the ``load`` but at undamped resonance and where loads are
+    ``varying``. A sine/cosine pair stands for sine*sin(Omega tau) + cosine*cos(Omega tau). A period map spans
+    ``periods`` periods of the drive. Where ``prescribed``, friction does not change the motion, the reference.
 
     ``load`` and ``normal_load`` are the numbers of dynamics/motion.py, where they become functions of time; elsewhere
     ``normal_load``, the mean, only measures accuracies and step sizes.
@@ -46,6 +150,7 @@ class Body(NamedTuple):
     reference_cosine: Any
     periods: float
     prescribed: bool = False
+    varying: Any = ()
 
 
 def on_the_line(mass: Mass, periods: float = 1.0) -> Body:
@@ -66,6 +171,7 @@ def on_the_line(mass: Mass, periods: float = 1.0) -> Body:
         reference_sine=reference.real,
         reference_cosine=reference.imag,
         periods=periods,
+        varying=_along_the_line(mass.varying),
     )
 
 
@@ -91,6 +197,8 @@ def in_the_plane(mass: Mass, periods: float = 1.0) -> Body:
         reference_sine=complex(reference.real, reference_2.real),
         reference_cosine=complex(reference.imag, reference_2.imag),
         periods=periods,
+        prescribed=False,
+        varying=mass.varying,
     )
 
 
@@ -112,9 +220,14 @@ def span(body: Body) -> float:
 
 
 class Motion(NamedTuple):
-    """The numbers of a prescribed slip for kernels: velocities Im(phasor exp(i frequency tau))."""
+    """The numbers of a prescribed slip for kernels: velocities Im(phasor exp(i frequency tau)).
+
+    varying: empty where these are all that changes in time; else all of it, the oscillation of the slip as that of a
+    belt, and the velocities are its harmonics at this frequency.
+    """
 
     normal_load: float
     frequency: float
     velocity: complex
     transverse_velocity: complex
+    varying: Any = ()

@@ -13,14 +13,16 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal
 
 from pydantic import ValidationError, model_validator
 
 from frictionlab.quantities import Finite, NonNegative, Positive, Record, given_values
-from frictionlab.scene.body import Mass, Motion
+from frictionlab.scene.body import Mass, Motion, varying_of
 from frictionlab.scene.dimensional import Dimensional
+from frictionlab.scene.signals import FULL_TURN, Signal, Signals, signal_of
+from frictionlab.scene.waveforms import LONGEST_PERIOD, SINE, Ratio, Waveform, as_fraction
 
 
 class _Part(Record):
@@ -37,11 +39,12 @@ class _Part(Record):
 
 
 class _Force(_Part):
-    """A harmonic force given by an unbalance or by its amplitude."""
+    """A periodic force given by an unbalance or by its amplitude."""
 
     unbalance: NonNegative | None = None
     amplitude: NonNegative | None = None
     phase: Finite = 0.0
+    waveform: Waveform | None = None
 
     @model_validator(mode="after")
     def _one_of_two(self) -> _Force:
@@ -49,28 +52,35 @@ class _Force(_Part):
             raise ValueError("give exactly one of unbalance and amplitude")
         return self
 
-    def phasor(self, frequency: float) -> complex:
-        """F of the force Im(F exp(i frequency tau)) [force scale K_1 L]."""
+    def size(self, frequency: float) -> float:
+        """What the waveform is multiplied by [K_1 L]; frequency: that of the drive."""
         size = self.amplitude if self.unbalance is None else self.unbalance * frequency**2
         assert size is not None
-        return cmath.rect(size, math.radians(self.phase))
+        return size
+
+    def phasor(self, frequency: float) -> complex:
+        """F of the sine Im(F exp(i frequency tau)) [K_1 L]."""
+        return cmath.rect(self.size(frequency), math.radians(self.phase))
 
 
 class Drive(_Force):
-    """The force along x1: unbalance*frequency^2 (or amplitude) times sin(frequency*tau + phase).
+    """The force along x1: unbalance*frequency^2 (or amplitude) times waveform(frequency*tau + phase).
 
-    unbalance [L] or amplitude [K_1 L], >= 0; frequency [omega_1], > 0; phase [degrees].
+    unbalance [L] or amplitude [K_1 L], >= 0; frequency [omega_1], > 0; phase [degrees]; waveform: sine where left
+    out. direction [degrees]: from x1 towards x2, in scenes with ``transverse``.
     """
 
-    not_available_yet: ClassVar[frozenset[str]] = frozenset({"waveform", "direction"})
-
     frequency: Positive
+    direction: Finite | None = None
 
 
 class Load(_Force):
-    """The force along x2, at the frequency of the drive; units as for ``Drive``."""
+    """The force along x2; units as for ``Drive``, of whose frequency an unbalance takes the square.
 
-    not_available_yet: ClassVar[frozenset[str]] = frozenset({"waveform", "frequency"})
+    frequency_ratio: its frequency in shares of the drive's, p/q; 1 where left out.
+    """
+
+    frequency_ratio: Ratio | None = None
 
 
 class Transverse(_Part):
@@ -82,11 +92,16 @@ class Transverse(_Part):
 
 
 class Slip(_Part):
-    """Prescribed oscillation along x1: velocity_amplitude*sin(frequency*tau + phase). Phase in degrees."""
+    """Prescribed oscillation: velocity_amplitude*waveform(frequency*tau + phase). Phase in degrees.
+
+    waveform: sine where left out. direction [degrees]: from x1 towards x2; along x1 where left out.
+    """
 
     velocity_amplitude: NonNegative
     frequency: Positive
     phase: Finite = 0.0
+    waveform: Waveform | None = None
+    direction: Finite | None = None
 
 
 class TransverseSlip(_Part):
@@ -94,6 +109,40 @@ class TransverseSlip(_Part):
 
     velocity_amplitude: NonNegative
     phase: Finite = 0.0
+    frequency: Positive | None = None
+    waveform: Waveform | None = None
+
+
+class BeltVibration(_Part):
+    """The belt's velocity beside belt_speed: velocity_amplitude*waveform(ratio*frequency*tau + phase).
+
+    velocity_amplitude [omega_1 L] >= 0; phase [degrees]; direction [degrees] from x1 towards x2, in scenes with
+    ``transverse``. frequency_ratio: in shares of the drive's frequency, p/q; frequency [omega_1] instead where
+    nothing else has one.
+    """
+
+    velocity_amplitude: NonNegative
+    phase: Finite = 0.0
+    waveform: Waveform = SINE
+    direction: Finite = 0.0
+    frequency_ratio: Ratio | None = None
+    frequency: Positive | None = None
+
+
+class NormalLoadVariation(_Part):
+    """The normal load as normal_load*(1 + amplitude*waveform(ratio*frequency*tau + phase)), always positive.
+
+    amplitude [-] >= 0; phase [degrees]; frequencies as for ``BeltVibration``. contact: ``per_load``, the stiffness
+    and damping of bristles follow the load, as in laws per unit normal load (Canudas de Wit & Tsiotras, 1999);
+    ``constant``, they stay those of the mean load, and the load changes the limit of friction alone (a spring in
+    series with Coulomb friction, as in Teidelt, Starcevic & Popov, 2012).
+    """
+
+    amplitude: NonNegative
+    phase: Finite = 0.0
+    waveform: Waveform = SINE
+    frequency_ratio: Ratio | None = None
+    contact: Literal["per_load", "constant"] = "per_load"
     frequency: Positive | None = None
 
 
@@ -110,8 +159,9 @@ class Scene(_Part):
     """A body on a moving belt, shaken: damping_ratio and drive, or a prescribed slip instead of both.
 
     damping_ratio (>= 0, may exceed 1), normal_load (gamma^2 > 0; 1 by default for prescribed slip), belt_speed.
-    Leave ``transverse`` out for one degree of freedom, ``drive`` for an undriven scene. ``dimensional``
-    gives all of it in SI units instead; every other field is then filled from it (Eq. 2).
+    Leave ``transverse`` out for one degree of freedom, ``drive`` for a scene that nothing drives, or that
+    ``belt_vibration`` or ``normal_load_variation`` shakes. ``dimensional`` gives all of it in SI units instead; every
+    other field is then filled from it (Eq. 2).
     """
 
     damping_ratio: NonNegative | None = None
@@ -121,6 +171,8 @@ class Scene(_Part):
     transverse: Transverse | None = None
     slip: Slip | None = None
     transverse_slip: TransverseSlip | None = None
+    belt_vibration: BeltVibration | None = None
+    normal_load_variation: NormalLoadVariation | None = None
     initial: Initial | None = None
     dimensional: Dimensional | None = None
 
@@ -150,14 +202,57 @@ class Scene(_Part):
     def _one_kind_of_scene(self) -> Scene:
         prescribed = self.slip is not None or self.transverse_slip is not None
         problems = self._prescribed_problems() if prescribed else self._free_problems()
+        if not problems:
+            problems = [*self._frequency_problems()]
+        if not problems:
+            problems = [*self._period_problems(), *self._normal_load_problems()]
         if problems:
             raise ValueError("; ".join(problems))
         return self
 
+    def _frequency_problems(self) -> Iterator[str]:
+        """Of the belt's vibration and of the normal load's, which take the drive's frequency or give one."""
+        given = "drive" if self.drive is not None else "slip" if self.degrees_of_freedom == 0 else ""
+        for name in ("belt_vibration", "normal_load_variation"):
+            part = getattr(self, name)
+            if part is None:
+                continue
+            if part.frequency is not None and given:
+                yield f"{name}.frequency: leave it out, {given}.frequency holds; give frequency_ratio for another"
+            elif part.frequency is not None and part.frequency_ratio is not None:
+                yield f"{name}.frequency_ratio: leave it out where frequency is given"
+            elif part.frequency is not None:
+                given = name
+            elif not given and self._frequency_of_normal_load is None:
+                yield f"{name}.frequency: required where drive is left out"
+
+    @property
+    def _frequency_of_normal_load(self) -> float | None:
+        return None if self.normal_load_variation is None else self.normal_load_variation.frequency
+
+    def _period_problems(self) -> Iterator[str]:
+        if self.periods > LONGEST_PERIOD:
+            yield (
+                f"these frequency ratios repeat after {self.periods} periods of the drive, more than {LONGEST_PERIOD}"
+            )
+
+    def _normal_load_problems(self) -> Iterator[str]:
+        part = self.normal_load_variation
+        if part is None:
+            return
+        least = signal_of(part.waveform, 1.0, 0.0).extremes(FULL_TURN)[0]
+        if not 1.0 + part.amplitude * least > 1e-9:
+            yield (
+                "normal_load_variation.amplitude: the normal load must stay positive over the whole period, here "
+                f"for amplitudes below {-1.0 / least:.6g}, got {part.amplitude:.6g}"
+            )
+
     def _prescribed_problems(self) -> list[str]:
-        for name in ("damping_ratio", "drive", "transverse", "initial"):
+        for name in ("damping_ratio", "drive", "transverse", "initial", "belt_vibration"):
             if getattr(self, name) is not None:
                 return [f"{name}: leave it out with a prescribed slip"]
+        if self.transverse_slip is not None and self.slip is not None and self.slip.direction is not None:
+            return ["slip.direction: leave it out with transverse_slip"]
         own = self.transverse_slip.frequency if self.transverse_slip is not None else None
         if self.slip is not None and own is not None:
             return ["transverse_slip.frequency: leave it out, slip.frequency holds for both"]
@@ -173,6 +268,15 @@ class Scene(_Part):
         if self.initial is not None and self.transverse is None:
             stray = {"x2", "velocity2"} & self.initial.model_fields_set
             problems += [f"initial.{name}: needs transverse" for name in sorted(stray)]
+        if self.transverse is None:
+            turned = {"drive": self.drive, "belt_vibration": self.belt_vibration}
+            problems += [
+                f"{name}.direction: needs transverse"
+                for name, part in turned.items()
+                if part is not None and part.direction
+            ]
+        elif self.transverse.load is not None and self.drive is not None and self.drive.direction is not None:
+            problems.append("drive.direction: leave it out with transverse.load")
         return problems
 
     @property
@@ -185,7 +289,8 @@ class Scene(_Part):
     @property
     def undriven(self) -> bool:
         """Whether no load drives the mass: the period of its motion is then unknown."""
-        return self.degrees_of_freedom > 0 and self.drive is None
+        shaken = self.drive or self.belt_vibration or self.normal_load_variation
+        return self.degrees_of_freedom > 0 and shaken is None
 
     @property
     def start(self) -> Initial:
@@ -194,49 +299,116 @@ class Scene(_Part):
 
     @property
     def frequency(self) -> float:
-        """Of the drive, or of the prescribed slip [omega_1]; 1, the unit, for an undriven scene."""
-        part = self.drive or self.slip or self.transverse_slip
-        if part is None:
-            return 1.0
-        assert part.frequency is not None
-        return part.frequency
+        """Of the drive, of the prescribed slip or of what else gives it [omega_1]; 1 for an undriven scene."""
+        slips = self.slip or self.transverse_slip
+        for part in (self.drive, slips, self.belt_vibration, self.normal_load_variation):
+            if part is not None and part.frequency is not None:
+                return part.frequency
+        return 1.0
+
+    @property
+    def periods(self) -> int:
+        """The periods of the drive after which everything that changes in time has repeated."""
+        load = self.transverse.load if self.transverse is not None else None
+        parts = load, self.belt_vibration, self.normal_load_variation
+        ratios = [part.frequency_ratio for part in parts if part is not None and part.frequency_ratio]
+        return math.lcm(*(as_fraction(each).denominator for each in ratios)) if ratios else 1
+
+    @property
+    def is_harmonic(self) -> bool:
+        """Whether loads, or a prescribed slip, are sines of one frequency and nothing else changes in time."""
+        load = self.transverse.load if self.transverse is not None else None
+        shapes = [
+            part.waveform
+            for part in (self.drive, load, self.slip, self.transverse_slip)
+            if part is not None and part.waveform is not None
+        ]
+        constant = all(
+            part is None or _size(part) == 0.0 for part in (self.belt_vibration, self.normal_load_variation)
+        )
+        one = load is None or load.frequency_ratio in (None, 1.0)
+        return constant and one and all(shape == SINE for shape in shapes)
+
+    def signals(self) -> Signals:
+        """Everything that changes in time."""
+        omega = self.frequency
+        period = FULL_TURN * self.periods / omega
+        belt, normal = self.belt_vibration, self.normal_load_variation
+        if self.degrees_of_freedom == 0:
+            along, across = self._slips(omega)
+        else:
+            along, across = _turned(_varying(belt, omega), belt.direction if belt is not None else 0.0)
+        assert self.normal_load is not None
+        variation = _varying(normal, omega).scaled(self.normal_load)
+        return Signals(period, self._loads(omega), (along, across), variation)
+
+    def _loads(self, omega: float) -> tuple[Signal, Signal]:
+        drive, load = self.drive, self.transverse.load if self.transverse is not None else None
+        if drive is None:
+            return Signal(), Signal()
+        whole = signal_of(drive.waveform or SINE, omega, drive.phase).scaled(drive.size(omega))
+        along, across = _turned(whole, drive.direction or 0.0)
+        if load is not None:
+            own = signal_of(load.waveform or SINE, omega * (load.frequency_ratio or 1.0), load.phase)
+            across = own.scaled(load.size(omega))
+        return along, across
+
+    def _slips(self, omega: float) -> tuple[Signal, Signal]:
+        parts = [
+            signal_of(part.waveform or SINE, omega, part.phase).scaled(part.velocity_amplitude)
+            if part is not None
+            else Signal()
+            for part in (self.slip, self.transverse_slip)
+        ]
+        if self.slip is not None and self.slip.direction is not None:
+            return _turned(parts[0], self.slip.direction)
+        return parts[0], parts[1]
 
     @property
     def load_along_belt_only(self) -> bool:
-        """Whether no load acts across the belt: with isotropic friction x2 then decays from every start."""
-        if self.degrees_of_freedom == 0:
-            return self.transverse_slip is None or self.transverse_slip.velocity_amplitude == 0
-        load = self.transverse.load if self.transverse is not None else None
-        return load is None or load.phasor(self.frequency) == 0
+        """Whether nothing shakes across the belt: with isotropic friction x2 then decays from every start."""
+        if self.degrees_of_freedom == 1:
+            return True
+        signals = self.signals()
+        return signals.load[1] == Signal() and signals.belt[1] == Signal()
 
     def mass(self) -> Mass:
         """The numbers of a free scene."""
         assert self.damping_ratio is not None
         assert self.normal_load is not None
         across = self.transverse or Transverse(natural_frequency=1.0, damping_ratio=0.0)
-        omega_r = across.natural_frequency
+        omega_r, omega = across.natural_frequency, self.frequency
+        signals = self.signals()
+        along, aside = (each.harmonic(omega, signals.period) for each in signals.load)
         return Mass(
             damping=2.0 * self.damping_ratio,
             stiffness=1.0,
             transverse_damping=2.0 * across.damping_ratio * omega_r,
             transverse_stiffness=omega_r**2,
             normal_load=self.normal_load,
-            frequency=self.frequency,
-            force=self.drive.phasor(self.frequency) if self.drive is not None else 0j,
-            transverse_force=across.load.phasor(self.frequency) if across.load is not None else 0j,
+            frequency=omega,
+            force=along,
+            transverse_force=aside,
+            varying=self._varying(signals),
         )
 
     def motion(self) -> Motion:
         """The numbers of a prescribed slip."""
         assert self.normal_load is not None
-        phasors = [
-            cmath.rect(part.velocity_amplitude, math.radians(part.phase)) if part is not None else 0j
-            for part in (self.slip, self.transverse_slip)
-        ]
-        return Motion(self.normal_load, self.frequency, *phasors)
+        signals = self.signals()
+        phasors = [each.harmonic(self.frequency, signals.period) for each in signals.belt]
+        along, aside = phasors
+        return Motion(self.normal_load, self.frequency, along, aside, self._varying(signals))
 
-    def values(self) -> dict[str, float]:
-        """Every number of the scene by its dotted path, without the leading ``scene.``; SI numbers included."""
+    def _varying(self, signals: Signals) -> Any:
+        """What kernels are told of what changes in time otherwise than as one sine; nothing where nothing does."""
+        if self.is_harmonic:
+            return ()
+        part = self.normal_load_variation
+        return varying_of(signals, self.frequency, part is not None and part.contact == "constant")
+
+    def values(self) -> dict[str, float | str]:
+        """Every value of the scene by its dotted path, without the leading ``scene.``; SI numbers included."""
         return _flat(self.model_dump(exclude_none=True))
 
     def given(self) -> dict[str, Any]:
@@ -251,7 +423,7 @@ class Scene(_Part):
             tree["dimensional"]["initial"] = self.dimensional.initial.model_dump(exclude_unset=True)
         return {"dimensional": tree["dimensional"]}
 
-    def given_values(self) -> dict[str, float]:
+    def given_values(self) -> dict[str, float | str]:
         """Those of ``values`` that were given: only the SI ones where the scene is in SI units."""
         kept = "" if self.dimensional is None else "dimensional."
         return {path: value for path, value in self.values().items() if path.startswith(kept)}
@@ -297,8 +469,33 @@ def with_values(tree: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str,
     return new
 
 
-def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, float]:
-    flat: dict[str, float] = {}
+def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, float | str]:
+    flat: dict[str, float | str] = {}
     for key, value in tree.items():
-        flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+        if isinstance(value, list):
+            flat |= _flat({f"{key}[{place}]": each for place, each in enumerate(value)}, prefix)
+        else:
+            flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
     return flat
+
+
+def _size(part: BeltVibration | NormalLoadVariation) -> float:
+    return part.velocity_amplitude if isinstance(part, BeltVibration) else part.amplitude
+
+
+def _varying(part: BeltVibration | NormalLoadVariation | None, omega: float) -> Signal:
+    """Its waveform, as large as it says; omega: the frequency of the drive."""
+    if part is None:
+        return Signal()
+    return signal_of(part.waveform, omega * (part.frequency_ratio or 1.0), part.phase).scaled(_size(part))
+
+
+def _turned(signal: Signal, direction: float) -> tuple[Signal, Signal]:
+    """Its parts along x1 and x2, where it acts at an angle [degrees] to x1; right angles to the last digit."""
+    quarters, rest = divmod(direction, 90.0)
+    along, across = (
+        (1.0, 0.0) if rest == 0.0 else (math.cos(math.radians(rest)), math.sin(math.radians(rest)))
+    )
+    for _ in range(int(quarters) % 4):
+        along, across = -across, along
+    return signal.scaled(along), signal.scaled(across)

@@ -44,7 +44,7 @@ EIGHT: list[tuple[Callable[[], object], str]] = [
     (
         lambda: fl.Scene(**GIVEN, initail={"x": 1}),
         "Scene: initail: unknown key; allowed: damping_ratio, normal_load, belt_speed, drive, transverse, slip, "
-        "transverse_slip, initial, dimensional\n    did you mean 'initial'?",
+        "transverse_slip, belt_vibration, normal_load_variation, initial, dimensional\n    did you mean 'initial'?",
     ),
     (
         lambda: fl.steady_state(SCENE, LAW, method="shoting"),

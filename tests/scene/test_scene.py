@@ -99,13 +99,6 @@ def test_an_unknown_key_is_refused_by_its_name(path):
     assert list(complaints(put(values, f"{path}wobble", 1.0))) == [f"{path}wobble"]
 
 
-@pytest.mark.parametrize(
-    "path", ["drive.waveform", "drive.direction", "transverse.load.waveform", "transverse.load.frequency"]
-)
-def test_a_key_whose_time_has_not_come_is_said_to_be_just_that(path):
-    assert complaints(put(PLANAR, path, "sine")) == {path: "not available yet"}
-
-
 @pytest.mark.parametrize("path", ["drive", "transverse.load"])
 def test_a_force_needs_exactly_one_of_unbalance_and_amplitude(path):
     twice = put(put(PLANAR, f"{path}.unbalance", 1.0), f"{path}.amplitude", 1.0)

@@ -393,7 +393,7 @@ def test_a_mistake_shows_its_place_its_line_a_caret_and_a_likely_meaning(written
 
     assert str(caught.value).splitlines() == [
         "study.yaml:7:3: scene.belt_sped: unknown key; allowed: damping_ratio, normal_load, belt_speed, "
-        "drive, transverse, slip, transverse_slip, initial, dimensional",
+        "drive, transverse, slip, transverse_slip, belt_vibration, normal_load_variation, initial, dimensional",
         "      belt_sped: 5",
         "      ^",
         "    did you mean 'belt_speed'?",
@@ -457,7 +457,7 @@ def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) ->
         "study.yaml:8:3: scene.drive.frequency: required key is missing",
         "study.yaml:8:3: scene.drive: give exactly one of unbalance and amplitude",
         "study.yaml:8:25: scene.drive.unbalanse: unknown key; allowed: unbalance, amplitude, phase, "
-        "frequency",
+        "waveform, frequency, direction",
         "study.yaml:8:36: scene.drive.unbalanse: must be a number, got the text '10' (remove the quotes)",
         "study.yaml:14:25: laws[0].mu: must be a number, got true",
         "study.yaml:17:12: tolerance: must be a finite number, got .inf",
@@ -717,6 +717,8 @@ def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene
         "transverse": {"zzz": 1, "load": {"zzz": 1}},
         "slip": {"zzz": 1},
         "transverse_slip": {"zzz": 1},
+        "belt_vibration": {"zzz": 1},
+        "normal_load_variation": {"zzz": 1},
         "initial": {"zzz": 1},
     }
     parts = {
@@ -732,7 +734,7 @@ def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene
     both = ["", "drive.", "transverse.", "transverse.load.", "initial."]
     found = {
         part + key
-        for part in [*both, "slip.", "transverse_slip."]
+        for part in [*both, "slip.", "transverse_slip.", "belt_vibration.", "normal_load_variation."]
         for key in _allowed(probe, f"scene.{part}zzz")
     }
     ours = [f"dimensional.{part}" for part in both]

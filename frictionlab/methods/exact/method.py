@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method, Status
+from frictionlab.methods.base import Answers, Method, Status, against_varying
 from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.orbit import make_orbits
 from frictionlab.methods.prescribed.bristle import along_one_line
@@ -75,6 +75,8 @@ class Exact(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
+        if reason := against_varying(self.name, scene):
+            return suggest_shooting(reason, scene, law)
         prescribed = scene.degrees_of_freedom == 0 and law.memory_kind == "bristle"
         reason = (_refusal_of_legs if prescribed else _refusal_of_flow)(scene, law)
         return suggest_shooting(reason, scene, law) if reason else None

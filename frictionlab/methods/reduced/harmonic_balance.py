@@ -9,7 +9,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method
+from frictionlab.methods.base import Answers, Method, against_varying
 from frictionlab.methods.reduced.bristle import answer_bristle, bristle_refusal
 from frictionlab.methods.reduced.common import Harmonic, answer_line, line_refusal
 from frictionlab.methods.refusals import suggest_shooting
@@ -44,6 +44,8 @@ class HarmonicBalance(Method):
         if scene.degrees_of_freedom == 0:
             reason = "harmonic_balance needs a mass: with a prescribed slip there is no motion to solve for"
             return suggest_shooting(reason, scene, law)
+        if varies := against_varying(self.name, scene):
+            return suggest_shooting(varies, scene, law)
         return _balance(law).refusal(self.name, scene, law)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method
+from frictionlab.methods.base import Answers, Method, against_varying
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.prescribed.quadrature import integrals, slip_edges
 from frictionlab.methods.reduced.common import (
@@ -57,6 +57,8 @@ class Mdsm(Method):
         """Friction with memory, no drive, no one steady state; what cannot be bounded is refused by ``solve``."""
         if law.memory_kind != "none":
             return "mdsm needs friction without memory (a sliding law)"
+        if reason := against_varying(self.name, scene):
+            return reason
         if scene.degrees_of_freedom == 0:
             return None
         if scene.undriven:

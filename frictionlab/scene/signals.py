@@ -1,0 +1,202 @@
+"""Functions of time that repeat: sums of sines, and between corners straight lines."""
+
+from __future__ import annotations
+
+import cmath
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from frictionlab.quantities import Floats
+from frictionlab.scene.waveforms import Form
+
+FULL_TURN = 2.0 * math.pi
+
+
+class Segment(NamedTuple):
+    """A straight line from one corner to the next, again in every period: its value there, and its slope."""
+
+    start: float  # in [0, period)
+    value: float
+    slope: float
+
+
+class Segments(NamedTuple):
+    """A function that is straight between its corners; period in time, lines in the order of their starts."""
+
+    period: float
+    lines: tuple[Segment, ...]
+
+    def at(self, tau: Floats) -> tuple[Floats, Floats]:
+        """Values and slopes; at a corner those after it."""
+        starts = np.array([line.start for line in self.lines])
+        phase = np.mod(tau, self.period)
+        # Before the first corner of a period its last line is still going on.
+        k = np.searchsorted(starts, phase, side="right") - 1
+        since = np.where(k < 0, phase + self.period, phase) - starts[k]
+        values, slopes = (np.array([line[field] for line in self.lines])[k] for field in (1, 2))
+        return values + slopes * since, slopes
+
+
+class Wave(NamedTuple):
+    """Im(phasor exp(i frequency tau))."""
+
+    frequency: float
+    phasor: complex
+
+
+class Signal(NamedTuple):
+    """The sum of waves and of lines with corners; zero where it has neither."""
+
+    waves: tuple[Wave, ...] = ()
+    pieces: tuple[Segments, ...] = ()
+
+    def __call__(self, tau: ArrayLike) -> Floats:
+        """The value at these times; at a jump that after it."""
+        at = np.asarray(tau, dtype=np.float64)
+        total = sum((each.at(at)[0] for each in self.pieces), np.zeros(at.shape))
+        return sum((_wave(each, at) for each in self.waves), total)
+
+    def lines_at(self, tau: Floats) -> tuple[Floats, Floats]:
+        """Value and slope of the lines alone."""
+        nothing = np.zeros(tau.shape)
+        found = [each.at(tau) for each in self.pieces]
+        return sum((value for value, _ in found), nothing), sum((slope for _, slope in found), nothing)
+
+    def scaled(self, factor: float) -> Signal:
+        """So many times it; nothing at all for zero."""
+        if factor == 0.0:
+            return Signal()
+        waves = tuple(Wave(each.frequency, factor * each.phasor) for each in self.waves)
+        pieces = tuple(
+            Segments(each.period, tuple(Segment(a, factor * b, factor * c) for a, b, c in each.lines))
+            for each in self.pieces
+        )
+        return Signal(waves, pieces)
+
+    def plus(self, other: Signal) -> Signal:
+        """The sum of two signals."""
+        return Signal(self.waves + other.waves, self.pieces + other.pieces)
+
+    def corners(self, end: float) -> list[float]:
+        """Its corners in [0, end)."""
+        found = (
+            line.start + k * each.period
+            for each in self.pieces
+            for line in each.lines
+            for k in range(round(end / each.period) + 1)
+        )
+        return sorted(tau for tau in found if tau < end)
+
+    def harmonic(self, frequency: float, end: float) -> complex:
+        """Phasor of its harmonic of this frequency, over a period ``end`` of everything."""
+        total = sum((each.phasor for each in self.waves if math.isclose(each.frequency, frequency)), 0j)
+        edges = [0.0, *self.corners(end), end]
+        for start, stop in itertools.pairwise(edges):
+            if stop > start:
+                total += _line_in_harmonic(self, frequency, start, stop) * 2.0 / end
+        return total
+
+    def extremes(self, end: float) -> tuple[float, float]:
+        """The least and the largest value over a period ``end``."""
+        quickest = max((each.frequency for each in self.waves), default=0.0)
+        edges = [0.0, *self.corners(end), end]
+        low, high = math.inf, -math.inf
+        for start, stop in itertools.pairwise(edges):
+            if stop <= start:
+                continue
+            n = 3 + 2 * math.ceil(1000.0 * quickest * (stop - start) / FULL_TURN)
+            tau = np.linspace(start, stop, n)
+            value, slope = (float(each[0]) for each in self.lines_at(np.array([0.5 * (start + stop)])))
+            values = sum(
+                (_wave(each, tau) for each in self.waves), value + slope * (tau - 0.5 * (start + stop))
+            )
+            low, high = min(low, -_highest(-values)), max(high, _highest(values))
+        return low, high
+
+
+def _wave(wave: Wave, tau: Floats) -> Floats:
+    angle = wave.frequency * tau
+    return wave.phasor.real * np.sin(angle) + wave.phasor.imag * np.cos(angle)
+
+
+def _highest(values: Floats) -> float:
+    """The largest value; inside, the top of the parabola through it and its neighbours."""
+    at = int(np.argmax(values))
+    if not 0 < at < len(values) - 1:
+        return float(values[at])
+    left, top, right = values[at - 1 : at + 2]
+    bend = left - 2.0 * top + right
+    return float(top - 0.125 * (right - left) ** 2 / bend) if bend < 0.0 else float(top)
+
+
+def _line_in_harmonic(signal: Signal, frequency: float, start: float, stop: float) -> complex:
+    """Integral of the lines times i exp(-i frequency tau), where they are straight."""
+    middle = 0.5 * (start + stop)
+    value, slope = (float(each[0]) for each in signal.lines_at(np.array([middle])))
+    half, turn = 0.5 * frequency * (stop - start), cmath.exp(-1j * frequency * middle)
+    even = 2.0 * math.sin(half) / frequency
+    odd = -2j * (math.sin(half) - half * math.cos(half)) / frequency**2
+    return 1j * turn * (value * even + slope * odd)
+
+
+def signal_of(form: Form, frequency: float, phase: float) -> Signal:
+    """The waveform of unit size at this circular frequency; phase in degrees."""
+    start = math.radians(phase)
+    if form.shape == "sine":
+        return Signal((Wave(frequency, cmath.rect(1.0, start)),))
+    if form.terms:
+        return Signal(
+            tuple(
+                Wave(
+                    each.order * frequency,
+                    cmath.rect(each.amplitude, math.radians(each.phase) + each.order * start),
+                )
+                for each in form.terms
+            )
+        )
+    corners = _CORNERS[form.shape]
+    lines = sorted(
+        Segment(_wrapped((angle - start) / frequency, FULL_TURN / frequency), value, slope * frequency)
+        for angle, value, slope in corners
+    )
+    return Signal((), (Segments(FULL_TURN / frequency, tuple(lines)),))
+
+
+def _wrapped(tau: float, period: float) -> float:
+    """Within [0, period); a rounding error below its end is its beginning."""
+    rest = math.fmod(math.fmod(tau, period) + period, period)
+    return 0.0 if period - rest <= 1e-14 * period else rest
+
+
+_CORNERS: dict[str, tuple[tuple[float, float, float], ...]] = {
+    "square": ((0.0, 1.0, 0.0), (math.pi, -1.0, 0.0)),
+    "triangle": ((0.5 * math.pi, 1.0, -2.0 / math.pi), (1.5 * math.pi, -1.0, 2.0 / math.pi)),
+    "sawtooth": ((math.pi, -1.0, 1.0 / math.pi),),
+}
+"""Of each shape: theta at its corners, the value after them, and the slope by theta."""
+
+
+class Signals(NamedTuple):
+    """What changes in time in a scene, along x1 and x2.
+
+    period: after which all of it repeats [1/omega_1]. load [K_1 L]; belt: the vibration of its velocity, for a
+    prescribed slip the oscillation of the slip instead [omega_1 L]; normal_load: its variation [K_1 L].
+    """
+
+    period: float
+    load: tuple[Signal, Signal]
+    belt: tuple[Signal, Signal]
+    normal_load: Signal
+
+    def corners(self) -> list[float]:
+        """The times in [0, period) at which any of them has a corner; those a rounding error apart are one."""
+        every = (*self.load, *self.belt, self.normal_load)
+        found: list[float] = []
+        for tau in sorted({tau for each in every for tau in each.corners(self.period)}):
+            if not found or tau - found[-1] > 1e-13 * self.period:
+                found.append(tau)
+        return found

@@ -1,10 +1,10 @@
 """The equation of motion: what pushes, presses and carries the mass at an instant; slip, acceleration, force at rest.
 
 Every map, march and reading of energies calls these functions. Load, normal load and belt are functions of time here
-and nowhere else. One that changes otherwise (a waveform, a load that pulsates, a belt that swings) is written into
-its group below: the function, and the rates, bounds and integrals beside it, which the time at rest asks for. Body
-and Mass may get more numbers for it; ``body`` may be the numbers of a prescribed slip, too, for the belt. Maps follow
-the deviation (y, u = y') from the body's harmonic reference.
+and nowhere else: each in its group below, with the rates, bounds and integrals that the time at rest asks for. The
+first of two functions is for a body on which one sine is all that changes in time, the second for one that is
+``varying``, within the piece between two corners that holds. ``body`` may be the numbers of a prescribed slip, too,
+for the belt. Maps follow the deviation (y, u = y') from the body's harmonic reference.
 """
 
 from __future__ import annotations
@@ -13,11 +13,18 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, fast_embedded, inner
-from frictionlab.compile.dispatch import by_dimension, compilable, length
+from frictionlab.compile.dispatch import by_dimension, by_variation, compilable, length
 from frictionlab.compile.law_lanes import friction_by_lane
 from frictionlab.dynamics.events import reference_acceleration
+from frictionlab.dynamics.waves import (
+    wave_at,
+    wave_bound,
+    wave_impulse,
+    wave_path_integral,
+    wave_rate,
+)
 from frictionlab.scene import body as _plain
-from frictionlab.scene.body import Body
+from frictionlab.scene.body import Body, Varying, Waves
 
 restoring_force = fast(_plain.restoring_force)
 span = fast(_plain.span)
@@ -44,92 +51,329 @@ START = Instant(0.0, 0.0, 1.0)
 """tau = 0, where whatever does not change may be asked for."""
 
 
-# --- the load: of one harmonic ------------------------------------------------------------------------------------
+# --- the load -----------------------------------------------------------------------------------------------------
 
 
-@inner
-def load(body: Any, now: Instant) -> Any:
-    """What drives the mass; on the line a number, in the plane x1 + i x2.
-
-    Not ``fast``: less what the reference balances it is zero to the last bit where that is all of it.
-    """
+def _load_of_one_sine(body: Any, now: Instant) -> Any:
     return body.load_sine * now.sine + body.load_cosine * now.cosine
 
 
-@inner
-def load_rates(body: Any, now: Instant) -> Any:
-    """First and second derivative of the load: of a harmonic, what it is a quarter and half of a period later."""
+def _load_of_waves(body: Any, now: Instant) -> Any:
+    return wave_at(body.varying.load, body.varying.begins, now.tau)
+
+
+load = by_variation(_load_of_one_sine, _load_of_waves)
+"""load(body, now): what drives the mass; on the line a number, in the plane x1 + i x2.
+
+Not ``fast``: less what the reference balances it is zero to the last bit where that is all of it."""
+
+
+def _rates_of_one_sine(body: Any, now: Instant) -> Any:
+    """What it is a quarter and half of a period later."""
     later = Instant(now.tau + 0.5 * math.pi / body.frequency, now.cosine, -now.sine)
     return body.frequency * load(body, later), -(body.frequency**2) * load(body, now)
 
 
-@inner
-def load_curvature(body: Any) -> float:
-    """A bound on the second derivative of the load, at any time."""
+def _rates_of_waves(body: Any, now: Instant) -> Any:
+    return wave_rate(body.varying.load, now.tau, 1), wave_rate(body.varying.load, now.tau, 2)
+
+
+load_rates = by_variation(_rates_of_one_sine, _rates_of_waves)
+"""load_rates(body, now): first and second derivative of the load."""
+
+
+def _curvature_of_one_sine(body: Any) -> float:
     quarter = Instant(0.5 * math.pi / body.frequency, 1.0, 0.0)
     return body.frequency**2 * (abs(load(body, quarter)) + abs(load(body, START)))
 
 
-@inner
-def load_impulse(body: Any, start: float, end: float) -> Any:
-    """The integral of the load: of a harmonic, its value half way, less the more of a period is passed."""
+def _curvature_of_waves(body: Any) -> float:
+    return wave_bound(body.varying.load, 2)
+
+
+load_curvature = by_variation(_curvature_of_one_sine, _curvature_of_waves)
+"""load_curvature(body): a bound on the second derivative of the load, at any time."""
+
+
+def _impulse_of_one_sine(body: Any, start: float, end: float) -> Any:
+    """Its value half way, less the more of a period is passed."""
     half_angle = 0.5 * body.frequency * (end - start)
     mean = math.sin(half_angle) / half_angle if half_angle > 0.0 else 1.0
     return (end - start) * (mean * load(body, instant_at(body, 0.5 * (start + end))))
 
 
-# --- the normal load: constant ------------------------------------------------------------------------------------
+def _impulse_of_waves(body: Any, start: float, end: float) -> Any:
+    return wave_impulse(body.varying.load, body.varying.begins, start, end)
 
 
-@fast
-def normal_load(body: Any, now: Instant) -> float:
-    """What presses the mass on the belt: friction is this times its coefficient."""
+load_impulse = by_variation(_impulse_of_one_sine, _impulse_of_waves)
+"""load_impulse(body, start, end): the integral of the load."""
+
+
+# --- the normal load ----------------------------------------------------------------------------------------------
+
+
+def _mean_load(body: Any, now: Instant) -> float:
     return body.normal_load
 
 
-@fast
-def normal_load_rate(body: Any, now: Instant) -> float:
-    """Its derivative."""
+def _varying_load(body: Any, now: Instant) -> float:
+    return body.normal_load + wave_at(body.varying.normal_load, body.varying.begins, now.tau)
+
+
+normal_load = by_variation(_mean_load, _varying_load)
+"""normal_load(body, now): what presses the mass on the belt: friction is this times its coefficient."""
+
+
+def _one(body: Any, now: Instant) -> float:
+    return 1.0
+
+
+def _varying_share(body: Any, now: Instant) -> float:
+    return 1.0 + wave_at(body.varying.normal_load, body.varying.begins, now.tau) / body.normal_load
+
+
+load_share = by_variation(_one, _varying_share)
+"""load_share(body, now): the normal load over its mean."""
+
+
+def _no_rate(body: Any, now: Instant) -> float:
     return 0.0
 
 
-@fast
-def normal_load_curvature(body: Any) -> float:
-    """A bound on its second derivative, at any time."""
+def _rate_of_load(body: Any, now: Instant) -> float:
+    return wave_rate(body.varying.normal_load, now.tau, 1)
+
+
+normal_load_rate = by_variation(_no_rate, _rate_of_load)
+"""normal_load_rate(body, now): its derivative."""
+
+
+def _bend_of_load(body: Any, now: Instant) -> float:
+    return wave_rate(body.varying.normal_load, now.tau, 2)
+
+
+normal_load_bend = by_variation(_no_rate, _bend_of_load)
+"""normal_load_bend(body, now): its second derivative."""
+
+
+def _no_bound(body: Any) -> float:
     return 0.0
 
 
-# --- the belt: of constant velocity -------------------------------------------------------------------------------
+def _curvature_of_load(body: Any) -> float:
+    return wave_bound(body.varying.normal_load, 2)
 
 
-@fast
-def belt_velocity(body: Any, belt_speed: float, now: Instant) -> float:
-    """Of the belt, along x1; belt_speed: its mean."""
+normal_load_curvature = by_variation(_no_bound, _curvature_of_load)
+"""normal_load_curvature(body): a bound on its second derivative, at any time."""
+
+
+# --- the belt -----------------------------------------------------------------------------------------------------
+
+
+def _steady_speed(body: Any, belt_speed: float, now: Instant) -> float:
     return belt_speed
 
 
-@fast
-def belt_acceleration(body: Any, belt_speed: float, now: Instant) -> float:
-    """Derivative of its velocity."""
+def _vibrating_speed(body: Any, belt_speed: float, now: Instant) -> Any:
+    return belt_speed + wave_at(body.varying.belt, body.varying.begins, now.tau)
+
+
+belt_velocity = by_variation(_steady_speed, _vibrating_speed)
+"""belt_velocity(body, belt_speed, now): of the belt; belt_speed: its mean, along x1."""
+
+
+def _steady_belt(body: Any, belt_speed: float, now: Instant) -> float:
     return 0.0
 
 
-@fast
-def belt_jerk(body: Any, belt_speed: float, now: Instant) -> float:
-    """Derivative of its acceleration."""
-    return 0.0
+def _belt_acceleration(body: Any, belt_speed: float, now: Instant) -> Any:
+    return wave_rate(body.varying.belt, now.tau, 1)
 
 
-@fast
-def belt_path(body: Any, belt_speed: float, start: float, end: float) -> float:
-    """How far the belt goes between two times."""
+def _belt_jerk(body: Any, belt_speed: float, now: Instant) -> Any:
+    return wave_rate(body.varying.belt, now.tau, 2)
+
+
+def _belt_snap(body: Any, belt_speed: float, now: Instant) -> Any:
+    return wave_rate(body.varying.belt, now.tau, 3)
+
+
+belt_acceleration = by_variation(_steady_belt, _belt_acceleration)
+"""belt_acceleration(body, belt_speed, now): derivative of its velocity."""
+
+belt_jerk = by_variation(_steady_belt, _belt_jerk)
+"""belt_jerk(body, belt_speed, now): derivative of its acceleration."""
+
+belt_snap = by_variation(_steady_belt, _belt_snap)
+"""belt_snap(body, belt_speed, now): derivative of its jerk."""
+
+
+def _even_path(body: Any, belt_speed: float, start: float, end: float) -> float:
     return (end - start) * belt_velocity(body, belt_speed, START)
 
 
-@fast
-def belt_path_integral(body: Any, belt_speed: float, start: float, end: float) -> float:
-    """The integral of the way it has gone since the start."""
+def _vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
+    return (end - start) * belt_speed + wave_impulse(body.varying.belt, body.varying.begins, start, end)
+
+
+belt_path = by_variation(_even_path, _vibrating_path)
+"""belt_path(body, belt_speed, start, end): how far the belt goes between two times of one piece."""
+
+
+def _integral_of_even_path(body: Any, belt_speed: float, start: float, end: float) -> float:
     return 0.5 * (end - start) * belt_path(body, belt_speed, start, end)
+
+
+def _integral_of_vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
+    swung = wave_path_integral(body.varying.belt, body.varying.begins, start, end)
+    return 0.5 * (end - start) * ((end - start) * belt_speed) + swung
+
+
+belt_path_integral = by_variation(_integral_of_even_path, _integral_of_vibrating_path)
+"""belt_path_integral(body, belt_speed, start, end): the integral of the way it has gone since the start."""
+
+
+def _even_advance(body: Any, belt_speed: float) -> float:
+    return belt_path(body, belt_speed, 0.0, span(body))
+
+
+def _mean_advance(body: Any, belt_speed: float) -> float:
+    return span(body) * belt_speed
+
+
+belt_advance = by_variation(_even_advance, _mean_advance)
+"""belt_advance(body, belt_speed): how far the belt goes in a span; a vibration leads nowhere."""
+
+
+def _no_swing(body: Any) -> float:
+    return 0.0
+
+
+def _belt_swing(body: Any) -> float:
+    return body.varying.belt_swing
+
+
+belt_swing = by_variation(_no_swing, _belt_swing)
+"""belt_swing(body): how much faster or slower than its mean the belt goes at most."""
+
+
+# --- pieces between corners ---------------------------------------------------------------------------------------
+
+
+def _one_piece(body: Any) -> int:
+    return 1
+
+
+def _pieces_of_a_span(body: Any) -> int:
+    laps = math.floor(body.periods / body.varying.periods + 0.5)
+    return laps * (body.varying.edges.size - 1)
+
+
+pieces_of = by_variation(_one_piece, _pieces_of_a_span)
+"""pieces_of(body): how many pieces one span of the body has; within a piece everything is smooth in time."""
+
+
+def _whole_span(body: Any, k: int) -> Any:
+    return 0.0, span(body)
+
+
+@inner
+def _common_period(body: Any) -> float:
+    return body.varying.edges[body.varying.edges.size - 1]
+
+
+def _piece_between_corners(body: Any, k: int) -> Any:
+    pieces, count = body.varying.edges.size - 1, pieces_of(body)
+    lap, at = k // pieces, k % pieces
+    begins = lap * _common_period(body) + body.varying.edges[at]
+    return begins, span(body) if k == count - 1 else lap * _common_period(body) + body.varying.edges[at + 1]
+
+
+piece_ends = by_variation(_whole_span, _piece_between_corners)
+"""piece_ends(body, k): when the k-th piece of a span begins, and when it ends."""
+
+
+def _itself(body: Any, k: int) -> Any:
+    return body
+
+
+@inner
+def _on_line(waves: Waves, value: Any, slope: Any) -> Waves:
+    return Waves(waves.frequency, waves.sine, waves.cosine, value, slope)
+
+
+def _body_of_piece(body: Body, k: int) -> Body:
+    old, at = body.varying, k % (body.varying.edges.size - 1)
+    varying = Varying(
+        piece_ends(body, k)[0],
+        _on_line(old.load, old.load_lines[at], old.load_slopes[at]),
+        _on_line(old.belt, old.belt_lines[at], old.belt_slopes[at]),
+        _on_line(old.normal_load, old.normal_lines[at], old.normal_slopes[at]),
+        old.edges,
+        old.load_lines,
+        old.load_slopes,
+        old.belt_lines,
+        old.belt_slopes,
+        old.normal_lines,
+        old.normal_slopes,
+        old.periods,
+        old.quickest,
+        old.belt_swing,
+        old.constant_contact,
+    )
+    return Body(
+        body.damping_mean,
+        body.damping_split,
+        body.stiffness_mean,
+        body.stiffness_split,
+        body.normal_load,
+        body.frequency,
+        body.load_sine,
+        body.load_cosine,
+        body.balanced_sine,
+        body.balanced_cosine,
+        body.reference_sine,
+        body.reference_cosine,
+        body.periods,
+        body.prescribed,
+        varying,
+    )
+
+
+in_piece = by_variation(_itself, _body_of_piece)
+"""in_piece(body, k): the body as the k-th piece of its span has it."""
+
+
+def _still_itself(body: Any, tau: float) -> Any:
+    return body
+
+
+def _body_at(body: Body, tau: float) -> Body:
+    edges = body.varying.edges
+    pieces = edges.size - 1
+    lap = math.floor(tau / _common_period(body))
+    at, rest = 0, tau - lap * _common_period(body)
+    while at < pieces - 1 and rest >= edges[at + 1]:
+        at += 1
+    return in_piece(body, int(lap) * pieces + at)
+
+
+body_at = by_variation(_still_itself, _body_at)
+"""body_at(body, tau): the body as the piece at this time has it."""
+
+
+def _drive_frequency(body: Any) -> float:
+    return body.frequency
+
+
+def _quickest_wave(body: Any) -> float:
+    return body.varying.quickest
+
+
+quickest_of = by_variation(_drive_frequency, _quickest_wave)
+"""quickest_of(body): the highest circular frequency of all that changes in time."""
 
 
 # --- the motion ---------------------------------------------------------------------------------------------------
@@ -168,10 +412,7 @@ def mean_friction(impulse: Any, time: float) -> Any:
 
 @inner
 def holding_force(body: Body, belt_speed: float, now: Instant, x: Any) -> Any:
-    """The force of friction that keeps a mass at x with the belt, its rate and the rate of that.
-
-    The second rate takes the belt's jerk as constant.
-    """
+    """The force of friction that keeps a mass at x with the belt, its rate and the rate of that."""
     carried = belt_velocity(body, belt_speed, now) + 0.0 * x
     pushed = belt_acceleration(body, belt_speed, now) + 0.0 * x
     jerk = belt_jerk(body, belt_speed, now) + 0.0 * x
@@ -179,14 +420,26 @@ def holding_force(body: Body, belt_speed: float, now: Instant, x: Any) -> Any:
     return (
         load(body, now) - restoring_force(body, x, carried) - pushed,
         rate - restoring_force(body, carried, pushed) - jerk,
-        bend - restoring_force(body, pushed, jerk),
+        bend - restoring_force(body, pushed, jerk) - belt_snap(body, belt_speed, now),
     )
 
 
-@inner
-def holding_curvature(body: Body, belt_speed: float) -> float:
-    """A bound on the second derivative of that force; of a belt that swings it has a part, too."""
+def _bound_on_a_steady_belt(body: Body, belt_speed: float) -> float:
     return load_curvature(body)
+
+
+def _bound_on_a_vibrating_belt(body: Body, belt_speed: float) -> float:
+    first, second, third = (
+        wave_bound(body.varying.belt, 1),
+        wave_bound(body.varying.belt, 2),
+        wave_bound(body.varying.belt, 3),
+    )
+    springs = (body.stiffness_mean + abs(body.stiffness_split)) * first
+    return load_curvature(body) + springs + (body.damping_mean + abs(body.damping_split)) * second + third
+
+
+holding_curvature = by_variation(_bound_on_a_steady_belt, _bound_on_a_vibrating_belt)
+"""holding_curvature(body, belt_speed): a bound on the second derivative of that force."""
 
 
 @inner
@@ -201,8 +454,8 @@ def holding_impulse(body: Body, belt_speed: float, start: float, end: float, x: 
 
 @inner
 def resting_friction(body: Body, belt_speed: float, start: float, end: float, x: Any) -> Any:
-    """Integral of the coefficient at rest; of a normal load that changes it is a quadrature."""
-    return holding_impulse(body, belt_speed, start, end, x) / normal_load(body, instant_at(body, start))
+    """Integral of friction at rest, in shares of the mean normal load."""
+    return holding_impulse(body, belt_speed, start, end, x) / body.normal_load
 
 
 # --- the deviation from the friction-free response ----------------------------------------------------------------
@@ -268,8 +521,10 @@ def reference_velocity(body: Body, sine: float, cosine: float) -> Any:
 
 @inner
 def swing_of(body: Body) -> float:
-    """The speed of the friction-free response; 1 where it has no bound."""
-    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine))
+    """The speed of the friction-free response against the belt's mean; 1 where it has no bound."""
+    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine)) + belt_swing(
+        body
+    )
     return swing if swing > 0.0 else 1.0
 
 
@@ -331,10 +586,10 @@ _friction = by_dimension(_friction_on_the_line, _friction_in_the_plane, _frictio
 
 @fast_embedded
 def rates(problem: Flow, tau: float, y: Any, u: Any) -> Any:
-    """Acceleration of the deviation, and the friction coefficient of a law without memory."""
+    """Acceleration of the deviation, and friction of a law without memory in shares of the mean normal load."""
     now = instant_near(problem, tau)
     rub = _friction(problem, deviation_slip(problem, now, u))
-    return deviation_acceleration(problem.body, now, y, u, rub), rub
+    return deviation_acceleration(problem.body, now, y, u, rub), load_share(problem.body, now) * rub
 
 
 @fast

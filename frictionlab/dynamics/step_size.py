@@ -7,6 +7,7 @@ from typing import Any
 
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.lane_arrays import select
+from frictionlab.dynamics.motion import quickest_of
 from frictionlab.scene.body import Body
 
 
@@ -62,5 +63,5 @@ def longest_step(body: Body, sliding: float, accuracy: float) -> float:
     Were it the same for all, two maps could agree because both are limited by it, and neither be accurate.
     """
     stiffest = body.stiffness_mean + abs(body.stiffness_split)
-    radian = min(1.0 / body.frequency, 1.0 / math.sqrt(stiffest))
+    radian = min(1.0 / quickest_of(body), 1.0 / math.sqrt(stiffest))
     return radian * min(1.0, 2.4 * (accuracy / (body.normal_load * sliding)) ** 0.125)

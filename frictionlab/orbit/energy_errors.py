@@ -47,7 +47,7 @@ def energy_errors(
     period, swing = read["duration"], read["swing"]
     wrong = _REACH * read["open_ends"] * _reach(scenes[0], mass, period)
     wrong = wrong + _SHARE * mass.normal_load * means.error * period  # integral of the velocity's error
-    load = abs(mass.force) + abs(mass.transverse_force)
+    load = _largest_load(scenes[0], mass)
     damping = max(mass.damping, mass.transverse_damping if scenes[0].degrees_of_freedom == 2 else 0.0)
     put_in = 2.0 * read["misfit_load"] + load * (wrong + _ROUNDING * swing * period)
     viscous = damping * (4.0 * read["misfit_speed"] + 2.0 * wrong * (swing + wrong / period))
@@ -66,6 +66,13 @@ def energy_errors(
     return {
         f"energy_{name}_error": error + (0.0 if means.balanced else np.nan) for name, error in found.items()
     }
+
+
+def _largest_load(scene: Scene, mass: Mass) -> float:
+    if scene.is_harmonic or not scene.degrees_of_freedom:
+        return abs(mass.force) + abs(mass.transverse_force)
+    signals = scene.signals()
+    return sum(max(map(abs, each.extremes(signals.period))) for each in signals.load)
 
 
 def _reach(scene: Scene, mass: Mass, period: Floats) -> Floats:

@@ -14,10 +14,10 @@ from frictionlab.compile.decorators import inner, njit
 from frictionlab.compile.interpret import interpreted, interpreted_on_arrays, run_as
 from frictionlab.dynamics.motion import (
     SLIP_ROUNDING,
+    body_at,
     instant_at,
     load,
     mean_friction,
-    normal_load,
     planar,
     restoring_force,
     slip,
@@ -91,7 +91,7 @@ def _not_there(scene: Scene) -> list[bool]:
 
 
 def _mass(scene: Scene) -> Mass:
-    """Of a prescribed slip its load and frequency are all there is."""
+    """Of a prescribed slip its mean load and frequency are all there is, and the belt is steady."""
     if scene.degrees_of_freedom:
         return scene.mass()
     motion = scene.motion()
@@ -261,18 +261,27 @@ def _across(values: Any, out: Any) -> None:
 
 
 @inner
-def _integrals(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
+def _by_panels(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
     """What is summed up over the period; leaves the slip velocity of every node in ``slips``."""
-    body, total = planar(mass), NO_SUMS
+    body, total, last = planar(mass), NO_SUMS, NODES.size - 1
     for k in range(panels.tau.shape[0]):
         stuck = 1.0 if panels.stick[k] else 0.0
         parts = panels.tau[k], panels.x[k], panels.v[k], panels.friction[k]
-        total = _added(total, _of_a_panel(body, belt_speed, *parts, stuck, slips[k]))
+        here = body_at(body, 0.5 * (panels.tau[k, 0] + panels.tau[k, last]))
+        total = _added(total, _of_a_panel(here, belt_speed, *parts, stuck, slips[k]))
     return total
+
+
+@inner
+def _integrals(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
+    """The same; Python adds up all panels at once."""
+    return _by_panels(panels, mass, belt_speed, slips)
 
 
 def _integrals_in_python(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
     """The same text, all panels at once: node by node, each an array."""
+    if mass.varying:  # every panel has a body of its own
+        return interpreted(_by_panels)(panels, mass, belt_speed, slips)
     stuck = panels.stick.astype(float)
     parts = panels.tau.T, panels.x.T, panels.v.T, panels.friction.T
     body = interpreted(planar)(mass)
@@ -326,7 +335,7 @@ def _of_a_panel(
         harmonic_2 = harmonic_2 + weight * velocity.imag * turn.conjugate()
         # Powers: of the load, of the dashpots (springs give back what they take), and of friction, whose part in
         # the contact is heat; the rest is the work on the belt.
-        pressed = weight * normal_load(body, now)
+        pressed = weight * body.normal_load
         pushed = load(body, now)
         put_in = put_in + weight * _power(pushed, velocity)
         viscous = viscous + weight * _power(restoring_force(body, 0.0 * velocity, velocity), velocity)

@@ -28,6 +28,7 @@ class Varying(NamedTuple):
     Within a piece every function is smooth, and beyond its ends it goes on as within. begins: the piece that holds;
     edges [pieces + 1]: from 0 to the common period; lines [pieces]: value at the beginning of each piece, and slope.
     periods: of the drive in a common period. quickest: the highest frequency of any wave, at least that of the drive.
+    belt_swing: the largest velocity of the belt's vibration.
     constant_contact: whether bristles keep the stiffness of the mean normal load.
     """
 
@@ -44,6 +45,7 @@ class Varying(NamedTuple):
     normal_slopes: Floats
     periods: float
     quickest: float
+    belt_swing: float
     constant_contact: bool
 
 
@@ -71,6 +73,7 @@ def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Va
         normal_slopes=normal_slopes.real.copy(),
         periods=float(round(signals.period * frequency / (2.0 * math.pi))),
         quickest=max(quickest, frequency),
+        belt_swing=math.hypot(*(max(map(abs, each.extremes(signals.period))) for each in signals.belt)),
         constant_contact=constant_contact,
     )
 

@@ -110,6 +110,7 @@ masses = st.builds(
     frequency=sizes(3e-1, 3.0),
     force=amplitudes,
     transverse_force=amplitudes,
+    varying=st.just(()),
 )
 times, speeds = st.floats(0.5, 9.0), st.floats(-3.0, 3.0)
 STEP = 1e-4

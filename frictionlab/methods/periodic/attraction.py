@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
-from frictionlab.dynamics.motion import belt_path, mean_friction, span
+from frictionlab.dynamics.motion import belt_advance, mean_friction, span
 from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, UTMOST_WORK
 from frictionlab.methods.periodic.period_map import image_of, rest_of, size_of, start_of, unpack
@@ -168,7 +168,7 @@ def _periods_alike(case: Case, state: Any, image: Any) -> float:
     if belt_speed == 0.0 or image.stuck < period * (1.0 - 1e-9):
         return 1.0
     y, _u = unpack(body, state, like)
-    many = 1.0 + rest_of(law, body, belt_speed, y + belt_path(body, belt_speed, 0.0, period))
+    many = 1.0 + rest_of(law, body, belt_speed, y + belt_advance(body, belt_speed))
     return many if many > MANY else 1.0
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import mean_friction, span, swing_of
+from frictionlab.dynamics.motion import belt_swing, mean_friction, span, swing_of
 from frictionlab.methods.periodic.attraction import reached
 from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.fixed_point import ROUNDING, FixedPoint, Goal, fixed_point
@@ -23,7 +23,9 @@ from frictionlab.scene.body import Body
 @inner
 def first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
     """The spring deflection by the mean friction of a harmonic slip; returns friction's coefficient as a dashpot."""
-    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine))
+    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine)) + belt_swing(
+        body
+    )
     # As if slip were the belt speed and one harmonic of the free motion: the closed form of prescribed slip.
     ratio = abs(belt_speed) / (swing + 1e-300)
     mean = law.sliding_friction(swing + abs(belt_speed)) * (

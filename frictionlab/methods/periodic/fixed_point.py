@@ -14,7 +14,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
-from frictionlab.dynamics.motion import belt_path, span
+from frictionlab.dynamics.motion import belt_advance, span
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.pace import MOST_KEPT, pace_of
 from frictionlab.methods.periodic.maps.sliding import Mapped
@@ -414,7 +414,7 @@ _work_of = by_dimension(_work_on_the_line, _work_in_the_plane)
 def _carried_by_the_belt(case: Case, search: Iterate, now: Progress) -> Progress:
     """The mass rests on the belt all the time: go on by as many periods at once as it surely does."""
     y, _u = unpack(case.body, search.z, case.like)
-    way = belt_path(case.body, case.belt_speed, 0.0, span(case.body))
+    way = belt_advance(case.body, case.belt_speed)
     # The belt carries the mass until the spring overcomes friction: all whole periods before that are alike.
     many = rest_of(case.law, case.body, case.belt_speed, y + way)
     for i in range(search.z.size):

@@ -13,7 +13,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.lane_arrays import room_for
-from frictionlab.dynamics.motion import belt_path, span
+from frictionlab.dynamics.motion import belt_advance
 from frictionlab.methods.periodic.lane_map import LaneRows, lane_map, rows_for
 from frictionlab.numerics.linalg import norm
 from frictionlab.scene.body import Body
@@ -58,7 +58,7 @@ def differentiate_in_lanes(law: Any, body: Body, belt_speeds: Any, states: Any) 
         for k in range(orbits):
             i = min(begin + k, n - 1)  # lanes that are left over repeat the last orbit
             z, belt_speed = states[i], belt_speeds[i]
-            way = abs(belt_path(body, belt_speed, 0.0, span(body)))
+            way = abs(belt_advance(body, belt_speed))
             # the pattern of events hangs on the way of the belt
             shifts[k], size = min(SHIFT * (1.0 + norm(z)), max(0.01 * way, 1e-3 * SHIFT)), max(size, norm(z))
             _write_shifted(rows, belt_speed, z, shifts[k], LANES_OF_AN_ORBIT * k)

@@ -41,6 +41,7 @@ from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
+from frictionlab.scene.signals import Signal
 from frictionlab.theory.saturation import slides_saturated
 from frictionlab.theory.uniqueness import falls_slowly, is_convergent
 
@@ -50,11 +51,21 @@ def along_the_belt(scene: Scene, law: FrictionLaw) -> bool:
 
     A law damps motion across the slip up to some speed: here the largest that the loads could drive.
     """
-    if scene.degrees_of_freedom < 2:
+    if scene.degrees_of_freedom < 2 or not scene.load_along_belt_only:
         return scene.load_along_belt_only
     mass = scene.mass()
     swing = abs(mass.force) / mass.damping if mass.damping > 0.0 else math.inf  # at resonance
-    return scene.load_along_belt_only and law.damps_across(abs(scene.belt_speed) + swing)
+    if not scene.is_harmonic:
+        # a dashpot alone answers no load with more than 4/pi of what it does at resonance to the largest sine
+        signals = scene.signals()
+        load, belt = (_largest(each[0], signals.period) for each in (signals.load, signals.belt))
+        swing = (4.0 / math.pi * load / mass.damping if mass.damping > 0.0 else math.inf) + belt
+    return law.damps_across(abs(scene.belt_speed) + swing)
+
+
+def _largest(signal: Signal, period: float) -> float:
+    """Its largest size."""
+    return max(map(abs, signal.extremes(period)))
 
 
 def map_kind(law: FrictionLaw, planar: bool) -> str:
@@ -63,7 +74,8 @@ def map_kind(law: FrictionLaw, planar: bool) -> str:
 
 
 class Transient(NamedTuple):
-    """A motion followed until it repeats: after how many periods (0: never), its one-period means, its end."""
+    """A motion followed until it repeats: after how many periods of all that changes in time (0: never), its
+    one-period means, its end."""
 
     period: int
     means: Floats
@@ -94,14 +106,17 @@ class PeriodicProblem:
             self.body, self.like = on_the_line(self.mass), 0.0
         else:
             self.body, self.like = in_the_plane(self.mass), 0j
-        constant = not isinstance(self.like, complex) and slides_saturated(law)
+        # after how many periods of the drive everything repeats
+        self.common = float(scene.periods)
+        self.body = self.body._replace(periods=self.common)
+        constant = scene.is_harmonic and not isinstance(self.like, complex) and slides_saturated(law)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), asks, constant)
         self.size = interpreted(size_of)(law, self.like)  # of a state
 
     @property
     def by_implicit_steps(self) -> Self | None:
         """The same problem solved next to rest: a sliding law's in the plane whose motions converge; else None."""
-        if not (isinstance(self.like, complex) and self.goal.contracts):
+        if not (isinstance(self.like, complex) and self.goal.contracts) or self.body.varying:
             return None
         other = copy.copy(self)
         other.kernel = answer_near_rest
@@ -119,7 +134,10 @@ class PeriodicProblem:
         periods: float = 1.0,
         wanted: Wanted = DIFFERENTIATED,
     ) -> tuple[Curve, float]:
-        """The orbits of these scenes, from a known state at the first where there is one; and kernel time [s]."""
+        """The orbits of these scenes, from a known state at the first where there is one; and kernel time [s].
+
+        periods: of everything that changes in time, in one orbit.
+        """
         if state is None and wanted == CLOSED and self.lanes is not None and len(scenes) >= FEWEST_IN_LANES:
             return self._close_in_lanes(self.lanes, scenes, periods)
         guess = np.empty((0, 0)) if state is None else state[None, :]
@@ -128,8 +146,8 @@ class PeriodicProblem:
 
     @property
     def lanes(self) -> LaneCalls | None:
-        """For motions in the plane that converge, without memory."""
-        planar = isinstance(self.like, complex) and self.kernel is answer_curve
+        """For motions in the plane that converge, without memory, under loads of one sine."""
+        planar = isinstance(self.like, complex) and self.kernel is answer_curve and not self.body.varying
         served = planar and self.goal.contracts and takes_lanes(self.law)
         return LaneCalls(self.law, self.body, self.goal) if served else None
 
@@ -154,7 +172,7 @@ class PeriodicProblem:
         self, scenes: Sequence[Scene], states: Floats, goal: Goal, wanted: Wanted, periods: float = 1.0
     ) -> tuple[Curve, float]:
         belt_speeds = belt_speeds_of(scenes)
-        body = self.body._replace(periods=float(periods))
+        body = self.body._replace(periods=periods * self.common)
         call = KernelCall(self.kernel, self.law)
         first = body, belt_speeds[:1], states[:1], goal, wanted
         return call.timed(body, belt_speeds, states, goal, wanted, points=len(belt_speeds), first=first)

@@ -78,8 +78,9 @@ def starts(scene: Scene, limit: float) -> list[Initial | None]:
 
 def force_swing(scene: Scene) -> float:
     """The deflection that the load along the belt would hold, or shakes a free mass through, if that is larger."""
-    mass = scene.mass()
-    return max(abs(mass.force), friction_free_velocity(scene) / mass.frequency)
+    signals, frequency = scene.signals(), scene.frequency
+    largest = max(map(abs, signals.load[0].extremes(signals.period)))
+    return max(largest, friction_free_velocity(scene) / frequency)
 
 
 def attractors(

@@ -245,7 +245,7 @@ class SteadyStates:
         low, high = min(one.low for one in reached), max(one.high for one in reached)
         self._leave_open(i, f"{why}: {describe(reached)}", low, high)
         if unique and first.curve is not None:
-            self.period[i] = first.period
+            self.period[i] = first.period * problem.common
             self.multipliers[i] = multiplier(first.curve)
 
     def _known(self, i: int) -> float:
@@ -267,7 +267,7 @@ class SteadyStates:
         """Enter the numbers of these rows at these places."""
         results = curve.results[rows]
         self.mean.real[places], self.mean.imag[places] = results[..., 0], results[..., 1]
-        self.error[places], self.period[places] = results[..., 2], 1.0
+        self.error[places], self.period[places] = results[..., 2], self.problem.common
 
 
 def _undamped(scene: Scene) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import ClassVar, NamedTuple
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method, against_varying
+from frictionlab.methods.base import Answers, Method
 from frictionlab.methods.periodic.problem import along_the_belt, map_kind
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
@@ -45,6 +45,7 @@ COSTS = {
     "deflections": MEMORY,
     "scalars": MEMORY,
 }
+CONSTANT_CONTACT = "shooting cannot keep the stiffness of bristles while the normal load changes"
 INSTEAD = {"bristle": "use march, or give a drive"}
 
 
@@ -73,8 +74,9 @@ class Shooting(Method):
         """Memory where nothing drives; an undriven start across the belt; a law of none of the kinds known."""
         if law.memory_kind not in COSTS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
-        if reason := against_varying(self.name, scene):
-            return reason
+        part = scene.normal_load_variation
+        if part is not None and part.contact == "constant" and law.count() > 0:
+            return CONSTANT_CONTACT
         if scene.undriven and law.count() > 0:
             instead = INSTEAD.get(law.memory_kind, "give a drive")
             return f"for undriven scenes shooting needs friction without memory: {instead}"

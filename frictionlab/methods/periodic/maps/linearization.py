@@ -20,6 +20,8 @@ from frictionlab.dynamics.motion import (
     belt_acceleration,
     belt_jerk,
     instant_near,
+    load_share,
+    normal_load_rate,
     reference_velocity,
     restoring_force,
     swing_of,
@@ -41,6 +43,7 @@ from frictionlab.methods.periodic.maps.rates import (
 )
 from frictionlab.numerics.blocks import apply, block, from_columns, keep, multiple
 from frictionlab.numerics.vectors import dimension, unit
+from frictionlab.scene.body import Body
 
 NUDGE = 1e-5
 """Of a deflection in steady sliding, of a scalar or of a creeping slip, for a difference quotient."""
@@ -245,34 +248,43 @@ _by_memory = by_law(_bristle, _bristle, None, _deflection, _scalar)
 
 
 @inner
-def _slope_of_deviation(flow: Flow, now: Instant, work: Work, like: Any) -> None:
-    """In time the loads change, and the slip of a mass whose deviation stays as it is."""
+def _swell(body: Body, now: Instant) -> float:
+    """Rate of the normal load by which friction moves the mass."""
+    return 0.0 if body.prescribed else normal_load_rate(body, now)
+
+
+@inner
+def _slope_of_deviation(flow: Flow, now: Instant, rub: Any, work: Work, like: Any) -> None:
+    """In time the loads change, and the slip of a mass whose deviation stays as it is; rub: the coefficient."""
     body, n = flow.body, count_of(flow.law)
     turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
     turn = turn + 0.0 * like
     load, pressed = unbalanced_rate(body, now), load_on(body, now)
     friction = apply(block(work.jacobian, 3 * n, like), turn)
-    work.slope[Y], work.slope[U], work.slope[IMPULSE] = 0.0 * like, load - pressed * friction, friction
+    work.slope[Y], work.slope[U] = 0.0 * like, load - pressed * friction - _swell(body, now) * rub
+    swollen = normal_load_rate(body, now) / body.normal_load
+    work.slope[IMPULSE] = load_share(body, now) * friction + swollen * rub
     for k in range(n):
         work.slope[MEMORY + k] = apply(block(work.jacobian, 3 * k, like), turn)
 
 
 @inner
-def _slope_of_slip(flow: Flow, now: Instant, work: Work, like: Any) -> None:
+def _slope_of_slip(flow: Flow, now: Instant, rub: Any, work: Work, like: Any) -> None:
     """In time the loads change, and the deviation of a mass whose slip stays as it is."""
     body = flow.body
     turn = reference_acceleration(body, now.sine, now.cosine) - belt_acceleration(body, flow.belt_speed, now)
     turn = turn + 0.0 * like
     jerk = -(body.frequency**2) * reference_velocity(body, now.sine, now.cosine)
     jerk = jerk - belt_jerk(body, flow.belt_speed, now)
-    work.slope[Y], work.slope[IMPULSE] = -turn, 0.0 * like
-    work.slope[U] = unbalanced_rate(body, now) + jerk + restoring_force(body, 0.0 * turn, turn)
+    work.slope[Y], work.slope[IMPULSE] = -turn, (normal_load_rate(body, now) / body.normal_load) * rub
+    load = unbalanced_rate(body, now) - _swell(body, now) * rub
+    work.slope[U] = load + jerk + restoring_force(body, 0.0 * turn, turn)
     for k in range(count_of(flow.law)):
         work.slope[MEMORY + k] = 0.0 * like
 
 
 _slope = by_law(_slope_of_deviation, _slope_of_deviation, None, _slope_of_deviation, _slope_of_slip)
-"""_slope(flow, now, work, like): fill ``work.slope`` by the state that is held fixed."""
+"""_slope(flow, now, rub, work, like): fill ``work.slope`` by the state that is held fixed."""
 
 
 @inner
@@ -282,7 +294,7 @@ def linearize(flow: Flow, tau: float, work: Work, like: Any) -> None:
     for k in range(n):
         work.memory[k] = as_memory(flow.law, work.start[MEMORY + k])
     w = _by_slip(flow, slip_held(flow, now, work.start[U]), work, like)
-    friction_in_mode(flow.law, work, w)  # the rates of all, which the quotients by one leave alone
+    rub = friction_in_mode(flow.law, work, w)  # and the rates of all, which the quotients by one leave alone
     for k in range(n):
         _by_memory(flow, w, k, work, like)
-    _slope(flow, now, work, like)
+    _slope(flow, now, rub, work, like)

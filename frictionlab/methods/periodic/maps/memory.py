@@ -15,9 +15,19 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.events import dips
-from frictionlab.dynamics.motion import Flow, anchored, belt_path, instant_at, instant_near, span, swing_of
+from frictionlab.dynamics.motion import (
+    Flow,
+    anchored,
+    belt_path,
+    instant_at,
+    instant_near,
+    piece_ends,
+    pieces_of,
+    quickest_of,
+    swing_of,
+)
 from frictionlab.dynamics.step_size import growth_factor, longest_step
-from frictionlab.methods.periodic.case import Case
+from frictionlab.methods.periodic.case import Case, case_in_piece
 from frictionlab.methods.periodic.maps.linearization import linearize
 from frictionlab.methods.periodic.maps.modes import (
     OPEN,
@@ -67,7 +77,7 @@ usual_friction = by_law(_at_rest, _at_rest, None, _in_motion)
 @inner
 def coarsest(law: Any, body: Body) -> float:
     """The coarsest accuracy a map is made with, whatever is asked: two coarser maps are one and the same."""
-    return COARSEST * body.normal_load * usual_friction(law, body) / body.frequency
+    return COARSEST * body.normal_load * usual_friction(law, body) / quickest_of(body)
 
 
 OF_EVENTS = 1e-9
@@ -136,7 +146,7 @@ _dip = by_law(_deflections_dip, _deflections_dip, None, _deflections_dip, _scala
 
 
 def _position_on_the_line(flow: Flow, y: float) -> float:
-    """Of the mass against the belt, at the anchor."""
+    """Of the mass against the belt, at the anchor; of use for differences within a piece."""
     body = flow.body
     swung = body.reference_sine * flow.sine + body.reference_cosine * flow.cosine
     return y + swung - belt_path(body, flow.belt_speed, 0.0, flow.anchor)
@@ -178,13 +188,13 @@ def _at_start(flow: Flow, work: Work, like: Any) -> Any:
 
 
 @inner
-def _flow_of(case: Case, work: Work) -> Flow:
-    """The flow at tau = 0 with the modes and the side that the state in ``work.start`` has."""
-    flow = anchored(case.law, case.body, case.belt_speed, 1.0, 0.0)
+def _flow_of(case: Case, tau: float, work: Work) -> Flow:
+    """The flow at this time with the modes and the side that the state in ``work.start`` has."""
+    flow = anchored(case.law, case.body, case.belt_speed, 1.0, tau)
     # the side of slip is needed for the rates, and they for the side of a slip that is zero
     w, a = _at_start(flow, work, case.like)
     begin(flow, a, w, work)
-    return anchored(case.law, case.body, case.belt_speed, _side(w, a), 0.0)
+    return anchored(case.law, case.body, case.belt_speed, _side(w, a), tau)
 
 
 class MemoryNode(NamedTuple):
@@ -254,15 +264,15 @@ def _arrive(flow: Flow, tau: float, ends: bool, work: Work, like: Any) -> float:
 
 
 @inner
-def follow(
-    flow: Flow, friction: float, accuracy: float, track: Track, pace: Pace, work: Work, like: Any
-) -> Any:
-    """One span of the motion from ``work.start``, and back into it; returns the smallest slip speed and the steps.
+def follow(flow: Flow, end: float, accuracy: float, track: Track, pace: Pace, work: Work, like: Any) -> Any:
+    """The motion from ``work.start``, and back into it, until ``end``, all between two corners of what changes in
+    time; returns the smallest slip speed and the steps.
 
-    friction: the usual coefficient; accuracy: each step's, in the norm of energy. Steps are -1 where it gave up. On a
-    track with room every piece of the way is noted, and in a pace with room every step.
+    accuracy: each step's, in the norm of energy. Steps are -1 where it gave up. On a track with room every piece of
+    the way is noted, and in a pace with room every step.
     """
-    law, body, belt_speed, end = flow.law, flow.body, flow.belt_speed, span(flow.body)
+    law, body, belt_speed = flow.law, flow.body, flow.belt_speed
+    friction = usual_friction(law, body)
     longest = longest_step(body, friction, accuracy)
     began, share = OPEN, min(1.0, 2.0 * (accuracy / (body.normal_load * friction)) ** 0.0625)
     node, h, steps = _depart(flow, True, work, like), 0.1 * longest, 0
@@ -284,8 +294,9 @@ def follow(
         h = ending.h
         if ending.repeats:
             continue
-        keep_step(pace, tried, 1 if ending.ends else 0)
         tau = node.tau + h if end - node.tau > h else end
+        # a step to the end goes there whenever it is repeated
+        keep_step(pace, OPEN if tau == end and not ending.ends else tried, 1 if ending.ends else 0)
         if track.stick.size > 0:
             bend(flow, work)
             _note(track, node.tau, h, False, flow, h, work, like)
@@ -303,30 +314,31 @@ def follow(
 
 
 @inner
-def repeat(flow: Flow, pace: Pace, accuracy: float, work: Work, like: Any) -> bool:
-    """One span of the motion from ``work.start``, and back into it, by the steps of another motion close by.
+def repeat(flow: Flow, end: float, first: int, pace: Pace, accuracy: float, work: Work, like: Any) -> int:
+    """The motion from ``work.start``, and back into it, until ``end`` by the steps of another motion close by.
 
-    Steps end at the events of their own motion: the numbers at the end are then a smooth function of those at the
-    start. False where the events are not those of the other motion.
+    first: the number of the first of them. Steps end at the events of their own motion: the numbers at the end are
+    then a smooth function of those at the start. Returns the number of the step after the last; -1 where the events
+    are not those of the other motion.
     """
-    law, body, belt_speed, end = flow.law, flow.body, flow.belt_speed, span(flow.body)
-    last, tau = pace.taken[0] - 1, 0.0
+    law, body, belt_speed = flow.law, flow.body, flow.belt_speed
+    last, tau = pace.taken[0] - 1, flow.anchor
     _depart(flow, True, work, like)
-    for k in range(last + 1):
+    for k in range(first, last + 1):
         # where events come earlier or later, the last step makes up for it
         h = end - tau if k == last else min(pace.lengths[k], end - tau)
         step(flow, tau, h, work, like)
         w, a = rates_at_end(flow, tau + h, work, like)
         if (lowest(flow, w, a, work).value <= 0.0) != (pace.endings[k] == 1):
-            return False
+            return -1
         if pace.endings[k] == 1:
             h = locate(flow, tau, h, min(accuracy, OF_EVENTS), work, like)
         tau = tau + h if end - tau > h else end
         flow = anchored(law, body, belt_speed, _arrive(flow, tau, pace.endings[k] == 1, work, like), tau)
         if end - tau <= 4e-15 * end:
-            return True
+            return k + 1
         _depart(flow, pace.endings[k] == 1, work, like)
-    return False
+    return -1
 
 
 @inner
@@ -339,18 +351,23 @@ def memory_map(
     with room every step is kept, or where it repeats those kept are taken; it gives up where they do not fit.
     """
     law, body, like = case.law, case.body, case.like
-    usual = usual_friction(law, body)
-    start = anchored(law, body, case.belt_speed, 1.0, 0.0)
     free = 0.0 if body.prescribed else 1.0  # the reference is the motion
     work.start[Y] = free * y
-    work.start[U] = held_velocity(start, instant_at(body, 0.0), free * u)
     work.start[IMPULSE] = 0.0 * like
     accuracy = min(accuracy, coarsest(law, body))
-    flow = _flow_of(case, work)
-    if repeats:
-        closest, steps = 0.0, pace.taken[0]
-        steps = steps if repeat(flow, pace, accuracy, work, like) else -1
-    else:
-        closest, steps = follow(flow, usual, accuracy, track, pace, work, like)
-    end_u = deviation_held(start, instant_at(body, span(body)), work.start[U])
-    return Mapped(work.start[Y], end_u, work.start[IMPULSE], 0.0, closest, -1.0, steps)
+    u, closest, steps = free * u, OPEN, 0
+    for k in range(pieces_of(body)):
+        here, (tau, end) = case_in_piece(case, k), piece_ends(body, k)
+        # beside scalars a state holds slip, which jumps where the belt's velocity does
+        start = anchored(law, here.body, case.belt_speed, 1.0, tau)
+        work.start[U] = held_velocity(start, instant_at(body, tau), u)
+        flow = _flow_of(here, tau, work)
+        if repeats:
+            closest, steps = 0.0, repeat(flow, end, steps, pace, accuracy, work, like)
+        else:
+            near, taken = follow(flow, end, accuracy, track, pace, work, like)
+            closest, steps = min(closest, near), steps + taken if taken >= 0 else -1
+        u = deviation_held(start, instant_at(body, end), work.start[U])
+        if steps < 0:
+            break
+    return Mapped(work.start[Y], u, work.start[IMPULSE], 0.0, closest, -1.0, steps)

@@ -19,14 +19,16 @@ from frictionlab.dynamics.motion import (
     deviation_acceleration,
     deviation_slip,
     instant_near,
+    load_share,
+    piece_ends,
+    pieces_of,
     reference_position,
     reference_velocity,
     slip_at,
     slip_rate,
-    span,
 )
 from frictionlab.dynamics.step_size import growth_of, longest_step, wary_growth_of
-from frictionlab.methods.periodic.case import Case
+from frictionlab.methods.periodic.case import Case, case_in_piece
 from frictionlab.methods.periodic.maps.pace import Pace, keep_step
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
 from frictionlab.numerics.steppers.dop853 import Dense, State, interpolant, motion_within, stepper
@@ -56,7 +58,7 @@ class Carried(NamedTuple):
     y: Any
     u: Any
     z: Any
-    rubbed: Any  # integral of the friction coefficient
+    rubbed: Any  # integral of friction, in shares of the mean normal load
     closest: float  # smallest slip speed at a node
     steps: int  # -1: gave up
 
@@ -109,13 +111,13 @@ def _way(leg: Leg, now: Instant, y: float) -> float:
 
 @fast_embedded
 def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
-    """Acceleration of the deviation, and the friction coefficient."""
+    """Acceleration of the deviation, and friction in shares of the mean normal load."""
     side, law, now = leg.side, leg.law, instant_near(leg, tau)
     # Trial steps go beyond the end of the leg: there its law is continued as at rest, so that it stays smooth.
     w = side * max(side * deviation_slip(leg, now, u), 0.0)
     z = law.deflected(leg.z, side * _way(leg, now, y))
     rub = law.friction(w, z, law.rate(w, z))
-    return deviation_acceleration(leg.body, now, y, u, rub), rub
+    return deviation_acceleration(leg.body, now, y, u, rub), load_share(leg.body, now) * rub
 
 
 step, dense = stepper(path_rates), interpolant(path_rates)
@@ -285,8 +287,8 @@ def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> Path
 
 
 @inner
-def _first_node(case: Case, y: float, u: float, z: float) -> PathNode:
-    return _node_of(_leg(case, _side(case, 0.0, y, u, z), 0.0, y, z), 0.0, y, u)
+def _first_node(case: Case, tau: float, y: float, u: float, z: float) -> PathNode:
+    return _node_of(_leg(case, _side(case, tau, y, u, z), tau, y, z), tau, y, u)
 
 
 @inner
@@ -301,9 +303,21 @@ def repeated_path(case: Case, y: float, u: float, z: float, pace: Pace) -> Carri
 
     Steps end at the events of their own motion: the end is then a smooth function of the start.
     """
-    end, rubbed, last = span(case.body), 0.0, pace.taken[0] - 1
-    node = _first_node(case, y, u, z)
-    for k in range(last + 1):
+    image = Carried(y, u, z, 0.0, 0.0, 0)
+    for k in range(pieces_of(case.body)):
+        tau, end = piece_ends(case.body, k)
+        image = _repeated_piece(case_in_piece(case, k), tau, end, image, pace)
+        if image.steps < 0:
+            break
+    return image
+
+
+@inner
+def _repeated_piece(case: Case, tau: float, end: float, image: Carried, pace: Pace) -> Carried:
+    """Between two corners of what changes in time; image: the state at the first, and the steps so far."""
+    y, u, z, rubbed, last = image.y, image.u, image.z, image.rubbed, pace.taken[0] - 1
+    node = _first_node(case, tau, y, u, z)
+    for k in range(image.steps, last + 1):
         # where events come earlier or later, the last step makes up for it
         left = end - node.tau
         h = left if k == last else min(pace.lengths[k], left)
@@ -313,7 +327,7 @@ def repeated_path(case: Case, y: float, u: float, z: float, pace: Pace) -> Carri
         rubbed = rubbed + ending.taken.rubbed
         node = _next_node(case, node, ending, node.tau + ending.h if left > ending.h else end)
         if end - node.tau <= 4e-15 * end:
-            return Carried(node.state.x, node.state.v, _deflection_at(node), rubbed, 0.0, last + 1)
+            return Carried(node.state.x, node.state.v, _deflection_at(node), rubbed, 0.0, k + 1)
     return Carried(y, u, z, rubbed, 0.0, -1)
 
 
@@ -323,13 +337,28 @@ def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: T
 
     On a track with room every piece of the way is noted, and in a pace with room every step.
     """
-    law, body, end = case.law, case.body, span(case.body)
+    image = Carried(y, u, z, 0.0, 1e300, 0)
+    for k in range(pieces_of(case.body)):
+        tau, end = piece_ends(case.body, k)
+        image = _path_piece(case_in_piece(case, k), tau, end, image, accuracy, track, pace)
+        if image.steps < 0:
+            break
+    return image
+
+
+@inner
+def _path_piece(
+    case: Case, tau: float, end: float, image: Carried, accuracy: float, track: Track, pace: Pace
+) -> Carried:
+    """Between two corners of what changes in time; image: the state at the first, and what was met so far."""
+    law, body = case.law, case.body
     longest, share = (
         longest_step(body, law.sliding_friction(0.0), accuracy),
         share_of_the_way(law, body, accuracy),
     )
-    node = _first_node(case, y, u, z)
-    h, steps, rubbed, closest = 0.1 * longest, 0, 0.0, 1e300
+    y, u, z, rubbed, closest, steps = image
+    node = _first_node(case, tau, y, u, z)
+    h = 0.1 * longest
     while end - node.tau > 4e-15 * end:
         leg, tau, state = node.leg, node.tau, node.state
         w, rate = slip_at(leg, tau, state.v), slip_rate(leg, tau, state.a)
@@ -344,7 +373,9 @@ def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: T
             return Carried(state.x, state.v, z, rubbed, closest, -1)
         if ending.verdict == REPEAT:
             continue
-        keep_step(pace, tried, ending.verdict)
+        # a step to the end goes there whenever it is repeated
+        last = ending.verdict == ACCEPT and end - tau <= h
+        keep_step(pace, 1e300 if last else tried, ending.verdict)
         if track.stick.size > 0:
             _note_slip(track, tau, h, False, leg, tau, dense(leg, tau, state, h))
         rubbed = rubbed + ending.taken.rubbed

@@ -23,6 +23,7 @@ from frictionlab.dynamics.motion import (
     belt_velocity,
     deviation_slip,
     deviation_slip_rate,
+    load_share,
     normal_load,
     reference_velocity,
     unbalanced_load,
@@ -30,8 +31,8 @@ from frictionlab.dynamics.motion import (
 from frictionlab.scene.body import Body
 
 Y, U, IMPULSE, MEMORY = 0, 1, 2, 3
-"""Places of the mass: its deviation, the velocity of that (beside scalars: slip), the integral of the friction
-coefficient; then memory."""
+"""Places of the mass: its deviation, the velocity of that (beside scalars: slip), the integral of friction in shares
+of the mean normal load; then memory."""
 
 FOLLOWS, SMOOTH, YIELDS = -1.0, 0.0, 1.0
 """Modes of a deflection: it moves with the slip; by its law's rate; on its yield surface, or gives way before it."""
@@ -264,7 +265,8 @@ def fill_rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
     # friction first: it may depend on the rates of what is remembered
     friction = friction_in_mode(flow.law, work, w)
     a = acceleration_under(body, unbalanced_load(body, now), load_on(body, now), y, u, friction)
-    work.rates[Y], work.rates[U], work.rates[IMPULSE] = u, rate_held(flow, now, a), friction
+    work.rates[Y], work.rates[U] = u, rate_held(flow, now, a)
+    work.rates[IMPULSE] = load_share(body, now) * friction
     for k in range(n):
         work.rates[MEMORY + k] = work.moving[k] + 0.0 * like
     return w, deviation_slip_rate(flow, now, a)

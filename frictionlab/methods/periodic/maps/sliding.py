@@ -24,16 +24,17 @@ from frictionlab.dynamics.motion import (
     instant_at,
     instant_near,
     normal_load,
+    piece_ends,
+    pieces_of,
     rates,
     reference_position,
     reference_velocity,
     resting_friction,
     slip_at,
     slip_rate,
-    span,
 )
 from frictionlab.dynamics.step_size import growth_of, longest_step
-from frictionlab.methods.periodic.case import Case
+from frictionlab.methods.periodic.case import Case, case_in_piece
 from frictionlab.methods.periodic.maps.stick import StickPhase, stick_phase
 from frictionlab.numerics.steppers.dop853 import Dense, State, interpolant, motion_within, stepper
 from frictionlab.orbit.recorder import Track, panel_writer
@@ -44,7 +45,7 @@ class Mapped(NamedTuple):
 
     y: Any
     u: Any
-    rubbed: Any  # integral of the friction coefficient
+    rubbed: Any  # integral of friction, in shares of the mean normal load
     stuck: float  # time at rest
     closest: float  # smallest slip speed at a node
     released: float  # when rest ended last; -1: never
@@ -134,7 +135,7 @@ def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y
             wait = speed / (limit - (held * w.conjugate()).real / speed) if sure else 0.0
             end = node.tau + wait
             path = 0.5 * wait * w
-            rubbed = w / pressed + resting_friction(body, belt_speed, node.tau, end, x)
+            rubbed = w / body.normal_load + resting_friction(body, belt_speed, node.tau, end, x)
             y = x + belt_path(body, belt_speed, node.tau, end) + path - reference_position(body, end)
             return Landing(REST, wait, State(y, w, w, w), rubbed)
     return Landing(ACCEPT, step_towards_rest(node, limit, h), node.state, y)
@@ -195,7 +196,7 @@ def _resting(part: float, problem: Flow, tau: float, x: Any) -> Any:
     now = instant_at(body, tau + part)
     x = x + belt_path(body, belt_speed, tau, tau + part)
     held, _rate, _bend = holding_force(body, belt_speed, now, x)
-    return x, belt_velocity(body, belt_speed, now) + 0.0 * x, held / normal_load(body, now)
+    return x, belt_velocity(body, belt_speed, now) + 0.0 * x, held / body.normal_load
 
 
 class Hop(NamedTuple):
@@ -288,13 +289,27 @@ def sliding_map(case: Case, y: Any, u: Any, accuracy: float, track: Track) -> Ma
 
     On a track with room every piece of the way is noted.
     """
-    law, body, belt_speed, end = case.law, case.body, case.belt_speed, span(case.body)
+    image = Mapped(y, u, 0.0 * y, 0.0, 1e300, -1.0, 0)
+    for k in range(pieces_of(case.body)):
+        tau, end = piece_ends(case.body, k)
+        image = _sliding_piece(case_in_piece(case, k), tau, end, image, accuracy, track)
+        if image.steps < 0:
+            break
+    return image
+
+
+@inner
+def _sliding_piece(
+    case: Case, tau: float, end: float, image: Mapped, accuracy: float, track: Track
+) -> Mapped:
+    """From one corner of what changes in time to the next; image: the state at the first, and what was met so far."""
+    law, body, belt_speed = case.law, case.body, case.belt_speed
+    y, u, rubbed, stuck, closest, released, steps = image
     # the side of the first slip; a slip within the accuracy of zero is rest
     longest = longest_step(body, law.sliding_friction(0.0), accuracy)
-    tau, h, steps = 0.0, 0.1 * longest, 0
-    rubbed, stuck, closest, released = 0.0 * y, 0.0, 1e300, -1.0
-    w = slip_at(anchored(law, body, belt_speed, 1.0, 0.0), 0.0, u)
-    problem = anchored(law, body, belt_speed, 1.0 if w.real > 0.0 else -1.0, 0.0)
+    h = 0.1 * longest
+    w = slip_at(anchored(law, body, belt_speed, 1.0, tau), tau, u)
+    problem = anchored(law, body, belt_speed, 1.0 if w.real > 0.0 else -1.0, tau)
     resting, leaving = abs(w) <= 1e-2 * accuracy, False
     state = State(y, u, u, u) if resting else _state(problem, tau, y, u)
     while end - tau > 4e-15 * end:  # slip cannot get away from rest in less

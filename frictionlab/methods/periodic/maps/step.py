@@ -17,7 +17,7 @@ from typing import Any
 from frictionlab.compile.decorators import fast, inner
 from frictionlab.compile.dispatch import by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.motion import Flow, instant_near
+from frictionlab.dynamics.motion import Flow, instant_near, load_share
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
@@ -116,7 +116,8 @@ def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
         - load_on(body, instant_near(flow, flow.anchor)) * alone
     )
     u = apply(block(work.factors, 2 * n, like), right)
-    friction = work.rates[IMPULSE] + alone + apply(block(work.factors, 2 * n + 1, like), u)
+    share = load_share(body, instant_near(flow, flow.anchor))
+    friction = work.rates[IMPULSE] + share * (alone + apply(block(work.factors, 2 * n + 1, like), u))
     work.increments[first + Y] = GAMMA * h * (work.rates[Y] + u)
     work.increments[first + U] = u
     work.increments[first + IMPULSE] = GAMMA * h * friction

@@ -10,12 +10,19 @@ from frictionlab.compile.dispatch import by_dimension
 from frictionlab.dynamics.motion import (
     Instant,
     belt_path,
+    belt_swing,
+    belt_velocity,
     holding_curvature,
     holding_force,
+    in_piece,
     instant_at,
     normal_load,
+    normal_load_bend,
     normal_load_curvature,
     normal_load_rate,
+    piece_ends,
+    pieces_of,
+    quickest_of,
     resting_friction,
     restoring_force,
     span,
@@ -53,18 +60,41 @@ def _stick_end(law: Any, body: Body, belt_speed: float, tau: float, x: Any, end:
 @inner
 def periods_at_rest(law: Any, body: Body, belt_speed: float, y: Any) -> float:
     """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
-    holds, period = law.static_friction(), span(body)
-    x, room, samples = y + body.reference_cosine, 1e300, int(128 * max(1.0, body.periods))
+    x, way, room, pieces = y + body.reference_cosine, 0.0 * y, 1e300, pieces_of(body)
+    last = _velocity_at(in_piece(body, pieces - 1), belt_speed, span(body))
+    for k in range(pieces):
+        piece = in_piece(body, k)
+        start, end = piece_ends(body, k)
+        # a belt whose velocity jumps leaves the mass behind
+        if abs(_velocity_at(piece, belt_speed, start) - last) > 1e-12 * (abs(last) + belt_swing(body)):
+            return 1.0
+        room = min(room, _room_at_rest(law, piece, belt_speed, x + way, start, end))
+        way, last = way + belt_path(piece, belt_speed, start, end), _velocity_at(piece, belt_speed, end)
+    return max(1.0, math.floor(room / abs(restoring_force(body, way, 0.0 * way))))
+
+
+@inner
+def _velocity_at(body: Body, belt_speed: float, tau: float) -> Any:
+    return belt_velocity(body, belt_speed, instant_at(body, tau))
+
+
+@inner
+def _room_at_rest(law: Any, body: Body, belt_speed: float, x: Any, start: float, end: float) -> float:
+    """By how much static friction exceeds, all the time between two corners, what holds a mass at x at the first."""
+    holds, period, room, samples = (
+        law.static_friction(),
+        end - start,
+        1e300,
+        int(128 * max(1.0, body.periods)),
+    )
     for k in range(samples):
-        tau = k * period / samples
+        tau = start + k * period / samples
         now = instant_at(body, tau)
-        held, _rate, _bend = holding_force(body, belt_speed, now, x + belt_path(body, belt_speed, 0.0, tau))
+        held, _rate, _bend = holding_force(body, belt_speed, now, x + belt_path(body, belt_speed, start, tau))
         room = min(room, holds * normal_load(body, now) - abs(held))
     # Between two samples the held force may exceed the straight line by so much.
     curvature = holding_curvature(body, belt_speed) + holds * normal_load_curvature(body)
-    room -= 0.125 * curvature * (period / samples) ** 2
-    way = belt_path(body, belt_speed, 0.0, period) + 0.0 * y
-    return max(1.0, math.floor(room / abs(restoring_force(body, way, 0.0 * way))))
+    return room - 0.125 * curvature * (period / samples) ** 2
 
 
 class Start(NamedTuple):
@@ -97,21 +127,24 @@ def _start_in_the_plane(
     excess = abs(held) - limit
     along = held / abs(held)
     # beyond the limit friction leaves a net force at once: slip grows evenly
+    holds = law.sliding_friction(0.0)
+    rise, swell = holds * normal_load_rate(body, now), holds * normal_load_bend(body, now)
     if excess > 1e-6 * limit:
-        t = min(1e-3, math.sqrt(0.01 * accuracy * excess) / (excess + abs(rate) + limit * body.frequency))
+        brisk = excess + abs(rate) + abs(rise) + limit * quickest_of(body)
+        t = min(1e-3, math.sqrt(0.01 * accuracy * excess) / brisk)
         while t > 1e-12 and t * abs(limit - pressed * law.sliding_friction(excess * t)) > 0.1 * accuracy:
             t *= 0.5
         return Start(t, along * excess * t, 0.5 * along * excess * t * t)
     # at the limit the force must first grow: the series in time, turned so that the held force is real
     first = rate * along.conjugate()
-    b2 = 0.5 * first.real
+    b2 = 0.5 * (first.real - rise)
     if not b2 > 0.0:  # the force falls back below the limit at once: what slip there is stays below rounding
         return Start(1e-6 / body.frequency, along * 1e-3 * accuracy, 0.0 * held)
     turn = first.imag / limit
     second = (0.5 * bend - restoring_force(body, 0.0 * held, b2 * along)) * along.conjugate()
-    b3 = complex((second.real + 0.5 * limit * turn * turn) / 3.0, b2 * turn)
-    b4 = complex(0.0, b2 * (second.imag - 3.0 * b3.imag) / limit + b3.real * turn)
-    quick = body.frequency + math.sqrt(body.stiffness_mean + abs(body.stiffness_split))
+    b3 = complex((second.real - 0.5 * swell + 0.5 * limit * turn * turn) / 3.0, b2 * turn)
+    b4 = complex(0.0, b2 * (second.imag - 3.0 * b3.imag - rise * turn) / limit + b3.real * turn)
+    quick = quickest_of(body) + math.sqrt(body.stiffness_mean + abs(body.stiffness_split))
     t = min(0.01 / quick, (0.1 * accuracy / (b2 * quick**2)) ** 0.25)
     while t > 1e-12 and t * abs(limit - pressed * law.sliding_friction(b2 * t * t)) > 0.1 * accuracy:
         t *= 0.5
@@ -167,6 +200,6 @@ def stick_phase(case: Case, tau: float, x: Any, accuracy: float, end: float) -> 
     t, w, path = _start(case, now, accuracy, rate, bend, held)
     # The balance of momentum over the start: what neither spring nor slip has taken of the impulse, friction has.
     pulled = resting_friction(body, belt_speed, tau, tau + t, x)
-    pulled = pulled - (restoring_force(body, 0.0 * x, path) + w) / normal_load(body, now)
+    pulled = pulled - (restoring_force(body, 0.0 * x, path) + w) / body.normal_load
     x = x + belt_path(body, belt_speed, tau, tau + t) + path
     return StickPhase(tau + t, x, w, side, rubbed + pulled, stuck, pulled)

@@ -15,8 +15,10 @@ from typing import Any, NamedTuple
 from frictionlab.compile.decorators import fast, fast_embedded, inner
 from frictionlab.compile.dispatch import by_dimension, by_variation, compilable, length
 from frictionlab.compile.law_lanes import friction_by_lane
+from frictionlab.compile.stack import items_of
 from frictionlab.dynamics.events import reference_acceleration
 from frictionlab.dynamics.waves import (
+    number_at,
     wave_at,
     wave_bound,
     wave_impulse,
@@ -24,7 +26,8 @@ from frictionlab.dynamics.waves import (
     wave_rate,
 )
 from frictionlab.scene import body as _plain
-from frictionlab.scene.body import Body, Varying, Waves
+from frictionlab.scene.body import Body
+from frictionlab.scene.packed import PER_PIECE, Course, Packed
 
 restoring_force = fast(_plain.restoring_force)
 span = fast(_plain.span)
@@ -59,7 +62,7 @@ def _load_of_one_sine(body: Any, now: Instant) -> Any:
 
 
 def _load_of_waves(body: Any, now: Instant) -> Any:
-    return wave_at(body.varying.load, body.varying.begins, now.tau)
+    return wave_at(body.varying.table, body.varying.load, body.varying.begins, now.tau)
 
 
 load = by_variation(_load_of_one_sine, _load_of_waves)
@@ -75,7 +78,9 @@ def _rates_of_one_sine(body: Any, now: Instant) -> Any:
 
 
 def _rates_of_waves(body: Any, now: Instant) -> Any:
-    return wave_rate(body.varying.load, now.tau, 1), wave_rate(body.varying.load, now.tau, 2)
+    return wave_rate(body.varying.table, body.varying.load, now.tau, 1), wave_rate(
+        body.varying.table, body.varying.load, now.tau, 2
+    )
 
 
 load_rates = by_variation(_rates_of_one_sine, _rates_of_waves)
@@ -88,7 +93,7 @@ def _curvature_of_one_sine(body: Any) -> float:
 
 
 def _curvature_of_waves(body: Any) -> float:
-    return wave_bound(body.varying.load, 2)
+    return wave_bound(body.varying.table, body.varying.load, 2)
 
 
 load_curvature = by_variation(_curvature_of_one_sine, _curvature_of_waves)
@@ -103,7 +108,7 @@ def _impulse_of_one_sine(body: Any, start: float, end: float) -> Any:
 
 
 def _impulse_of_waves(body: Any, start: float, end: float) -> Any:
-    return wave_impulse(body.varying.load, body.varying.begins, start, end)
+    return wave_impulse(body.varying.table, body.varying.load, body.varying.begins, start, end)
 
 
 load_impulse = by_variation(_impulse_of_one_sine, _impulse_of_waves)
@@ -118,7 +123,9 @@ def _mean_load(body: Any, now: Instant) -> float:
 
 
 def _varying_load(body: Any, now: Instant) -> float:
-    return body.normal_load + wave_at(body.varying.normal_load, body.varying.begins, now.tau)
+    return body.normal_load + wave_at(
+        body.varying.table, body.varying.normal_load, body.varying.begins, now.tau
+    )
 
 
 normal_load = by_variation(_mean_load, _varying_load)
@@ -130,7 +137,11 @@ def _one(body: Any, now: Instant) -> float:
 
 
 def _varying_share(body: Any, now: Instant) -> float:
-    return 1.0 + wave_at(body.varying.normal_load, body.varying.begins, now.tau) / body.normal_load
+    return (
+        1.0
+        + wave_at(body.varying.table, body.varying.normal_load, body.varying.begins, now.tau)
+        / body.normal_load
+    )
 
 
 load_share = by_variation(_one, _varying_share)
@@ -142,7 +153,7 @@ def _no_rate(body: Any, now: Instant) -> float:
 
 
 def _rate_of_load(body: Any, now: Instant) -> float:
-    return wave_rate(body.varying.normal_load, now.tau, 1)
+    return wave_rate(body.varying.table, body.varying.normal_load, now.tau, 1)
 
 
 normal_load_rate = by_variation(_no_rate, _rate_of_load)
@@ -150,7 +161,7 @@ normal_load_rate = by_variation(_no_rate, _rate_of_load)
 
 
 def _bend_of_load(body: Any, now: Instant) -> float:
-    return wave_rate(body.varying.normal_load, now.tau, 2)
+    return wave_rate(body.varying.table, body.varying.normal_load, now.tau, 2)
 
 
 normal_load_bend = by_variation(_no_rate, _bend_of_load)
@@ -162,7 +173,7 @@ def _no_bound(body: Any) -> float:
 
 
 def _curvature_of_load(body: Any) -> float:
-    return wave_bound(body.varying.normal_load, 2)
+    return wave_bound(body.varying.table, body.varying.normal_load, 2)
 
 
 normal_load_curvature = by_variation(_no_bound, _curvature_of_load)
@@ -177,7 +188,7 @@ def _steady_speed(body: Any, belt_speed: float, now: Instant) -> float:
 
 
 def _vibrating_speed(body: Any, belt_speed: float, now: Instant) -> Any:
-    return belt_speed + wave_at(body.varying.belt, body.varying.begins, now.tau)
+    return belt_speed + wave_at(body.varying.table, body.varying.belt, body.varying.begins, now.tau)
 
 
 belt_velocity = by_variation(_steady_speed, _vibrating_speed)
@@ -189,15 +200,15 @@ def _steady_belt(body: Any, belt_speed: float, now: Instant) -> float:
 
 
 def _belt_acceleration(body: Any, belt_speed: float, now: Instant) -> Any:
-    return wave_rate(body.varying.belt, now.tau, 1)
+    return wave_rate(body.varying.table, body.varying.belt, now.tau, 1)
 
 
 def _belt_jerk(body: Any, belt_speed: float, now: Instant) -> Any:
-    return wave_rate(body.varying.belt, now.tau, 2)
+    return wave_rate(body.varying.table, body.varying.belt, now.tau, 2)
 
 
 def _belt_snap(body: Any, belt_speed: float, now: Instant) -> Any:
-    return wave_rate(body.varying.belt, now.tau, 3)
+    return wave_rate(body.varying.table, body.varying.belt, now.tau, 3)
 
 
 belt_acceleration = by_variation(_steady_belt, _belt_acceleration)
@@ -215,7 +226,9 @@ def _even_path(body: Any, belt_speed: float, start: float, end: float) -> float:
 
 
 def _vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
-    return (end - start) * belt_speed + wave_impulse(body.varying.belt, body.varying.begins, start, end)
+    return (end - start) * belt_speed + wave_impulse(
+        body.varying.table, body.varying.belt, body.varying.begins, start, end
+    )
 
 
 belt_path = by_variation(_even_path, _vibrating_path)
@@ -227,7 +240,7 @@ def _integral_of_even_path(body: Any, belt_speed: float, start: float, end: floa
 
 
 def _integral_of_vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
-    swung = wave_path_integral(body.varying.belt, body.varying.begins, start, end)
+    swung = wave_path_integral(body.varying.table, body.varying.belt, body.varying.begins, start, end)
     return 0.5 * (end - start) * ((end - start) * belt_speed) + swung
 
 
@@ -268,7 +281,7 @@ def _one_piece(body: Any) -> int:
 
 def _pieces_of_a_span(body: Any) -> int:
     laps = math.floor(body.periods / body.varying.periods + 0.5)
-    return laps * (body.varying.edges.size - 1)
+    return laps * body.varying.pieces
 
 
 pieces_of = by_variation(_one_piece, _pieces_of_a_span)
@@ -280,15 +293,15 @@ def _whole_span(body: Any, k: int) -> Any:
 
 
 @inner
-def _common_period(body: Any) -> float:
-    return body.varying.edges[body.varying.edges.size - 1]
+def _edge(varying: Any, k: int) -> float:
+    """When the k-th piece since the start begins."""
+    lap, at, first = k // varying.pieces, k % varying.pieces, varying.edges
+    return lap * varying.table[first + varying.pieces] + varying.table[first + at]
 
 
 def _piece_between_corners(body: Any, k: int) -> Any:
-    pieces, count = body.varying.edges.size - 1, pieces_of(body)
-    lap, at = k // pieces, k % pieces
-    begins = lap * _common_period(body) + body.varying.edges[at]
-    return begins, span(body) if k == count - 1 else lap * _common_period(body) + body.varying.edges[at + 1]
+    last = k == pieces_of(body) - 1
+    return _edge(body.varying, k), span(body) if last else _edge(body.varying, k + 1)
 
 
 piece_ends = by_variation(_whole_span, _piece_between_corners)
@@ -300,29 +313,15 @@ def _itself(body: Any, k: int) -> Any:
 
 
 @inner
-def _on_line(waves: Waves, value: Any, slope: Any) -> Waves:
-    return Waves(waves.frequency, waves.sine, waves.cosine, value, slope)
+def _course_on_line(varying: Any, course: Course, place: int) -> Course:
+    """The function on the line whose numbers are there."""
+    value = number_at(varying.table, place, course.value)
+    slope = number_at(varying.table, place + 2, course.value)
+    return Course(course.first, course.terms, value, slope)
 
 
-def _body_of_piece(body: Body, k: int) -> Body:
-    old, at = body.varying, k % (body.varying.edges.size - 1)
-    varying = Varying(
-        piece_ends(body, k)[0],
-        _on_line(old.load, old.load_lines[at], old.load_slopes[at]),
-        _on_line(old.belt, old.belt_lines[at], old.belt_slopes[at]),
-        _on_line(old.normal_load, old.normal_lines[at], old.normal_slopes[at]),
-        old.edges,
-        old.load_lines,
-        old.load_slopes,
-        old.belt_lines,
-        old.belt_slopes,
-        old.normal_lines,
-        old.normal_slopes,
-        old.periods,
-        old.quickest,
-        old.belt_swing,
-        old.constant_contact,
-    )
+@inner
+def _with_varying(body: Body, varying: Any) -> Body:
     return Body(
         body.damping_mean,
         body.damping_split,
@@ -342,6 +341,27 @@ def _body_of_piece(body: Body, k: int) -> Body:
     )
 
 
+def _body_of_piece(body: Body, k: int) -> Body:
+    old = body.varying
+    at = old.lines + PER_PIECE * (k % old.pieces)
+    normal = Course(old.normal_load.first, old.normal_load.terms, old.table[at + 8], old.table[at + 9])
+    varying = Packed(
+        old.table,
+        _edge(old, k),
+        _course_on_line(old, old.load, at),
+        _course_on_line(old, old.belt, at + 4),
+        normal,
+        old.lines,
+        old.edges,
+        old.pieces,
+        old.periods,
+        old.quickest,
+        old.belt_swing,
+        old.constant_contact,
+    )
+    return _with_varying(body, varying)
+
+
 in_piece = by_variation(_itself, _body_of_piece)
 """in_piece(body, k): the body as the k-th piece of its span has it."""
 
@@ -351,17 +371,42 @@ def _still_itself(body: Any, tau: float) -> Any:
 
 
 def _body_at(body: Body, tau: float) -> Body:
-    edges = body.varying.edges
-    pieces = edges.size - 1
-    lap = math.floor(tau / _common_period(body))
-    at, rest = 0, tau - lap * _common_period(body)
-    while at < pieces - 1 and rest >= edges[at + 1]:
-        at += 1
-    return in_piece(body, int(lap) * pieces + at)
+    varying = body.varying
+    k = varying.pieces * math.floor(tau / varying.table[varying.edges + varying.pieces])
+    while tau >= _edge(varying, k + 1):
+        k += 1
+    return in_piece(body, k)
 
 
 body_at = by_variation(_still_itself, _body_at)
 """body_at(body, tau): the body as the piece at this time has it."""
+
+
+def _as_it_is(body: Any) -> Any:
+    return body
+
+
+def _with_bare_table(body: Any) -> Any:
+    old = body.varying
+    varying = Packed(
+        items_of(old.table),
+        old.begins,
+        old.load,
+        old.belt,
+        old.normal_load,
+        old.lines,
+        old.edges,
+        old.pieces,
+        old.periods,
+        old.quickest,
+        old.belt_swing,
+        old.constant_contact,
+    )
+    return _with_varying(body, varying)
+
+
+bare = by_variation(_as_it_is, _with_bare_table)
+"""bare(body): the body with a bare pointer in the place of the table, which lives as long as what Python holds."""
 
 
 def _drive_frequency(body: Any) -> float:
@@ -430,9 +475,9 @@ def _bound_on_a_steady_belt(body: Body, belt_speed: float) -> float:
 
 def _bound_on_a_vibrating_belt(body: Body, belt_speed: float) -> float:
     first, second, third = (
-        wave_bound(body.varying.belt, 1),
-        wave_bound(body.varying.belt, 2),
-        wave_bound(body.varying.belt, 3),
+        wave_bound(body.varying.table, body.varying.belt, 1),
+        wave_bound(body.varying.table, body.varying.belt, 2),
+        wave_bound(body.varying.table, body.varying.belt, 3),
     )
     springs = (body.stiffness_mean + abs(body.stiffness_split)) * first
     return load_curvature(body) + springs + (body.damping_mean + abs(body.damping_split)) * second + third

@@ -6,64 +6,94 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import inner
-from frictionlab.scene.body import Waves
+from frictionlab.compile.dispatch import by_dimension
+from frictionlab.scene.packed import PER_WAVE, Course
+
+
+def _on_the_line(table: Any, place: int, like: float) -> float:
+    return table[place]
+
+
+def _in_the_plane(table: Any, place: int, like: complex) -> complex:
+    return complex(table[place], table[place + 1])
+
+
+number_at = by_dimension(_on_the_line, _in_the_plane)
+"""number_at(table, place, like): the number there, of the kind of like."""
 
 
 @inner
-def wave_at(waves: Waves, begins: float, tau: float) -> Any:
+def _turned(table: Any, place: int, angle: float, like: Any) -> Any:
+    """The wave whose numbers begin at this place, at this angle."""
+    sine, cosine = number_at(table, place + 1, like), number_at(table, place + 3, like)
+    return sine * math.sin(angle) + cosine * math.cos(angle)
+
+
+@inner
+def wave_at(table: Any, course: Course, begins: float, tau: float) -> Any:
     """The value; begins: when the line has its value."""
-    total = waves.value + (tau - begins) * waves.slope
-    for j in range(waves.frequency.size):
-        angle = waves.frequency[j] * tau
-        total = total + waves.sine[j] * math.sin(angle) + waves.cosine[j] * math.cos(angle)
+    total = course.value + (tau - begins) * course.slope
+    for j in range(course.terms):
+        place = course.first + PER_WAVE * j
+        total = total + _turned(table, place, table[place] * tau, course.value)
     return total
 
 
 @inner
-def wave_rate(waves: Waves, tau: float, order: int) -> Any:
+def wave_rate(table: Any, course: Course, tau: float, order: int) -> Any:
     """The derivative of this order, 1 or higher."""
-    total = waves.slope if order == 1 else 0.0 * waves.slope
-    for j in range(waves.frequency.size):
+    total = course.slope if order == 1 else 0.0 * course.slope
+    for j in range(course.terms):
         # every derivative is the wave a quarter of a period later
-        angle = waves.frequency[j] * tau + 0.5 * math.pi * order
-        turned = waves.sine[j] * math.sin(angle) + waves.cosine[j] * math.cos(angle)
-        total = total + waves.frequency[j] ** order * turned
+        place = course.first + PER_WAVE * j
+        angle = table[place] * tau + 0.5 * math.pi * order
+        total = total + table[place] ** order * _turned(table, place, angle, course.value)
     return total
 
 
 @inner
-def wave_bound(waves: Waves, order: int) -> float:
+def wave_bound(table: Any, course: Course, order: int) -> float:
     """A bound on the size of the derivative of this order, 1 or higher, at any time."""
-    total = abs(waves.slope) if order == 1 else 0.0
-    for j in range(waves.frequency.size):
-        size = abs(waves.sine[j]) + abs(waves.cosine[j])
-        total = total + waves.frequency[j] ** order * size
+    total = abs(course.slope) if order == 1 else 0.0
+    for j in range(course.terms):
+        place = course.first + PER_WAVE * j
+        sine, cosine = (
+            number_at(table, place + 1, course.value),
+            number_at(table, place + 3, course.value),
+        )
+        total = total + table[place] ** order * (abs(sine) + abs(cosine))
     return total
 
 
 @inner
-def wave_impulse(waves: Waves, begins: float, start: float, end: float) -> Any:
+def wave_impulse(table: Any, course: Course, begins: float, start: float, end: float) -> Any:
     """The integral."""
     lasts, middle = end - start, 0.5 * (start + end)
-    total = lasts * (waves.value + (middle - begins) * waves.slope)
-    for j in range(waves.frequency.size):
-        half, angle = 0.5 * waves.frequency[j] * lasts, waves.frequency[j] * middle
+    total = lasts * (course.value + (middle - begins) * course.slope)
+    for j in range(course.terms):
+        place = course.first + PER_WAVE * j
+        half = 0.5 * table[place] * lasts
         mean = math.sin(half) / half if half > 0.0 else 1.0
-        total = total + (lasts * mean) * (waves.sine[j] * math.sin(angle) + waves.cosine[j] * math.cos(angle))
+        total = total + (lasts * mean) * _turned(table, place, table[place] * middle, course.value)
     return total
 
 
 @inner
-def wave_path_integral(waves: Waves, begins: float, start: float, end: float) -> Any:
+def wave_path_integral(table: Any, course: Course, begins: float, start: float, end: float) -> Any:
     """The integral of the integral since the start."""
     lasts = end - start
-    total = 0.5 * lasts * lasts * (waves.value + (start + lasts / 3.0 - begins) * waves.slope)
-    for j in range(waves.frequency.size):
-        frequency = waves.frequency[j]
+    total = 0.5 * lasts * lasts * (course.value + (start + lasts / 3.0 - begins) * course.slope)
+    for j in range(course.terms):
+        place = course.first + PER_WAVE * j
+        frequency = table[place]
         first, half = frequency * start, 0.5 * frequency * lasts
         # of a sine: what is left of lasts*cos(first) by the mean of the cosines on the way
         mean = math.sin(half) / half if half > 0.0 else 1.0
         by_sine = lasts * (math.cos(first) - mean * math.cos(first + half)) / frequency
         by_cosine = lasts * (mean * math.sin(first + half) - math.sin(first)) / frequency
-        total = total + waves.sine[j] * by_sine + waves.cosine[j] * by_cosine
+        sine, cosine = (
+            number_at(table, place + 1, course.value),
+            number_at(table, place + 3, course.value),
+        )
+        total = total + sine * by_sine + cosine * by_cosine
     return total

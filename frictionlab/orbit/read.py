@@ -14,6 +14,7 @@ from frictionlab.compile.decorators import inner, njit
 from frictionlab.compile.interpret import interpreted, interpreted_on_arrays, run_as
 from frictionlab.dynamics.motion import (
     SLIP_ROUNDING,
+    bare,
     body_at,
     instant_at,
     load,
@@ -27,6 +28,7 @@ from frictionlab.orbit.panels import NODES, WEIGHTS, differentiate_panel, interp
 from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
+from frictionlab.scene.packed import packed
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 
@@ -93,7 +95,8 @@ def _not_there(scene: Scene) -> list[bool]:
 def _mass(scene: Scene) -> Mass:
     """Of a prescribed slip its mean load and frequency are all there is, and the belt is steady."""
     if scene.degrees_of_freedom:
-        return scene.mass()
+        mass = scene.mass()
+        return mass._replace(varying=packed(mass.varying, True))
     motion = scene.motion()
     return Mass(0.0, 1.0, 0.0, 1.0, motion.normal_load, motion.frequency, 0j, 0j)
 
@@ -263,7 +266,7 @@ def _across(values: Any, out: Any) -> None:
 @inner
 def _by_panels(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
     """What is summed up over the period; leaves the slip velocity of every node in ``slips``."""
-    body, total, last = planar(mass), NO_SUMS, NODES.size - 1
+    body, total, last = bare(planar(mass)), NO_SUMS, NODES.size - 1
     for k in range(panels.tau.shape[0]):
         stuck = 1.0 if panels.stick[k] else 0.0
         parts = panels.tau[k], panels.x[k], panels.v[k], panels.friction[k]

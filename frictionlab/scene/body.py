@@ -96,18 +96,6 @@ def _real(waves: Waves) -> Waves:
     return Waves(waves.frequency, sine, cosine, waves.value.real, waves.slope.real)
 
 
-def _along_the_line(varying: Any) -> Any:
-    """Of what varies, the parts along x1."""
-    if not isinstance(varying, Varying):
-        return varying
-    names = "load_lines", "load_slopes", "belt_lines", "belt_slopes"
-    return varying._replace(
-        load=_real(varying.load),
-        belt=_real(varying.belt),
-        **{name: getattr(varying, name).real.copy() for name in names},
-    )
-
-
 class Mass(NamedTuple):
     """The numbers of a free scene for kernels; every force is Im(phasor exp(i frequency tau)).
 
@@ -174,7 +162,7 @@ def on_the_line(mass: Mass, periods: float = 1.0) -> Body:
         reference_sine=reference.real,
         reference_cosine=reference.imag,
         periods=periods,
-        varying=_along_the_line(mass.varying),
+        varying=mass.varying,
     )
 
 

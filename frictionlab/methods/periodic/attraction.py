@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
-from frictionlab.dynamics.motion import belt_advance, mean_friction, span
+from frictionlab.dynamics.motion import bare, belt_advance, mean_friction, span
 from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, UTMOST_WORK
 from frictionlab.methods.periodic.period_map import image_of, rest_of, size_of, start_of, unpack
@@ -116,7 +116,7 @@ def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
 
     Periods: negative where the mass still creeps after so many.
     """
-    case, period, steps = case_of(law, body, 0.0), span(body), 0
+    case, period, steps = case_of(law, bare(body), 0.0), span(body), 0
     z, residual = np.empty(size_of(law, x)), np.empty(size_of(law, x))
     start_of(law, body, z, x, v, case.like)
     for count in range(1, MOST_PERIODS):
@@ -150,7 +150,7 @@ def _apart(states: Any, a: int, b: int) -> float:
 def write_start(law: Any, body: Body, start: Any, state: Any) -> None:
     """Fill the state of a start (x, v, deflection); see ``start_of``."""
     x, v, deflection = start
-    start_of(law, body, state, x, v, deflection)
+    start_of(law, bare(body), state, x, v, deflection)
 
 
 MANY = 8.0
@@ -183,6 +183,7 @@ def iterate_until_periodic(
     Fills the one-period means [n] and the states [n + 1, size]; returns after how many periods it repeats (0 where
     it has not after n), and how many it was followed.
     """
+    body = bare(body)
     case, steps = case_of(law, body, belt_speed), 0
     # Coarse maps wander on by their own error: what they repeat is less exact.
     alike = 1e-7 if how.accuracy <= 1e-8 * body.normal_load else 1e-5

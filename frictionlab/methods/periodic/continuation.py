@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import belt_swing, mean_friction, span, swing_of
+from frictionlab.dynamics.motion import bare, belt_swing, mean_friction, span, swing_of
 from frictionlab.methods.periodic.attraction import reached
 from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.fixed_point import ROUNDING, FixedPoint, Goal, fixed_point
@@ -198,6 +198,7 @@ def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal,
 
     guess: a state to start from [0 or 1, size]; where nothing is to be closed, the states of all orbits [n, size].
     """
+    body = bare(body)
     if wanted.closed:
         states, results, matrices = solve_curve(law, body, belt_speeds, guess, goal)
     else:

@@ -6,10 +6,7 @@ Coulomb friction, falling friction and bristles. ``SCENES``: name -> scene, law.
 
 from __future__ import annotations
 
-import math
 from typing import Any
-
-import numpy as np
 
 Keys = dict[str, Any]
 

@@ -332,24 +332,45 @@ def end_of_phase(body, law, now, phase, t, h, y, size, stages):
 
 
 @numba.njit
-def set_off(body, law, now, t, left, y, size, stages, quick):
-    """A first moment of slip in the plane from rest, along the force: the state after it, and its duration."""
-    h = min(1e-3 / body.quickest, left)
-    while True:
-        gain1, gain2 = 0.0, 0.0
-        for part, weight in ((0.0, 1.0), (0.5, 4.0), (1.0, 1.0)):
-            one, two, n = needed(body, now, t + part * h, y)
-            force = math.hypot(one, two)
-            beyond = max(1.0 - sliding(law, 0.0) * n / force, 0.0) * weight * h / 6.0
-            gain1, gain2 = gain1 + beyond * one, gain2 + beyond * two
-        if math.hypot(gain1, gain2) <= 1e-7 * quick or h < 1e-9:
-            break
-        h *= 0.5
-    there, _ = step(body, law, now, Phase(0, False), t, h, y, size, stages)
-    there[W1], there[W2] = gain1, gain2
-    there[IMPULSE1] -= gain1
-    there[IMPULSE2] -= gain2
-    return there, h
+def beyond_rest(body, law, now, t, y, duration, gain, growth):
+    """After a first moment of slip from y: what is left of the force over friction, and its direction."""
+    there = y.copy()
+    for axis in range(2):
+        there[W1 + 2 * axis] = gain[axis]
+        there[X1 + 2 * axis] += duration / growth * gain[axis]
+    one, two, n = needed(body, now, t, there)
+    force = math.hypot(one, two)
+    return force - n * sliding(law, math.hypot(gain[0], gain[1])), np.array([one, two]) / force
+
+
+@numba.njit
+def set_off(body, law, now, t, left, y, size, stages, tolerance):
+    """A first moment of slip in the plane from rest: the state after it, and its duration.
+
+    The speed is the integral of the force over friction; slip follows the force, behind it by speed/friction times
+    the rate at which it turns. A force that exceeds friction by a jump leaves that lag open: the moment is shorter.
+    """
+    gain = np.zeros((3, 2))
+    excess, _ = beyond_rest(body, law, now, t, y, 0.0, gain[0], 3.0)
+    _, _, n = needed(body, now, t, y)
+    sudden = excess > 1e-9 * n * law.mu
+    growth = 2.0 if sudden else 3.0
+    h = min((0.3 * tolerance**0.5 if sudden else 0.5 * tolerance**0.25) / body.quickest, left)
+    middle, _ = step(body, law, now, Phase(0, False), t, 0.5 * h, y, size, stages)
+    end, _ = step(body, law, now, Phase(0, False), t, h, y, size, stages)
+    for _ in range(5):
+        f0, d0 = beyond_rest(body, law, now, t, y, 0.0, gain[0], growth)
+        f1, d1 = beyond_rest(body, law, now, t + 0.5 * h, middle, 0.5 * h, gain[1], growth)
+        f2, d2 = beyond_rest(body, law, now, t + h, end, h, gain[2], growth)
+        speed1, speed2 = h / 24.0 * (5.0 * f0 + 8.0 * f1 - f2), h / 6.0 * (f0 + 4.0 * f1 + f2)
+        turn = (3.0 * d2 - 4.0 * d1 + d0) / h
+        gain[1] = max(speed1, 0.0) * (d1 - speed1 / (n * law.mu) * turn)
+        gain[2] = max(speed2, 0.0) * (d2 - speed2 / (n * law.mu) * turn)
+    for axis in range(2):
+        end[W1 + 2 * axis] = gain[2, axis]
+        end[X1 + 2 * axis] += h / growth * gain[2, axis]
+        end[IMPULSE1 + axis] -= gain[2, axis]
+    return end, h
 
 
 @numba.njit
@@ -372,7 +393,7 @@ def span(body, law, now, end, y, side, tolerance, largest, longest, tally, signs
             one, two, n = needed(body, now, t, y)
             speed = math.hypot(y[W1], y[W2])
             if speed == 0.0:
-                y, done = set_off(body, law, now, t, left, y, size, stages, largest[W1])
+                y, done = set_off(body, law, now, t, left, y, size, stages, tolerance)
                 t = end if done >= left else t + done
                 continue
             if speed < 1e-13 * largest[W1] and math.hypot(one, two) < law.mu_static * n:

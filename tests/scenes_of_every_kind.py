@@ -62,7 +62,10 @@ def load(amplitude: float, **more: Any) -> Keys:
 
 ON_THE_LINE: dict[str, tuple[Keys, Keys]] = {
     "square drive": (line(3.0, {"waveform": "square"}), COULOMB),
-    "square drive, slow belt that sticks": (line(0.2, {"waveform": "square", "amplitude": 5.0}), COULOMB),
+    "square drive that sticks": (
+        line(0.2, {"waveform": "square", "amplitude": 4.5, "frequency": 0.5}),
+        COULOMB,
+    ),
     "square drive, phase": (line(2.0, {"waveform": "square", "phase": 40.0, "frequency": 0.7}), COULOMB),
     "triangle drive": (line(3.0, {"waveform": "triangle"}), COULOMB),
     "triangle drive that sticks": (line(0.5, {"waveform": "triangle", "amplitude": 6.0}), COULOMB),
@@ -70,7 +73,10 @@ ON_THE_LINE: dict[str, tuple[Keys, Keys]] = {
     "sawtooth drive, belt backwards": (line(-2.0, {"waveform": "sawtooth", "frequency": 0.8}), COULOMB),
     "harmonics": (line(3.0, {"waveform": BEATS}), COULOMB),
     "harmonics without the first": (line(1.0, {"waveform": TWO_TONES, "amplitude": 8.0}), COULOMB),
-    "square drive, static friction": (line(0.6, {"waveform": "square", "amplitude": 7.0}), STICKY),
+    "square drive, static friction": (
+        line(0.6, {"waveform": "square", "amplitude": 5.0, "frequency": 0.6}),
+        STICKY,
+    ),
     "triangle drive, Stribeck": (line(4.0, {"waveform": "triangle", "amplitude": 14.0}), STRIBECK),
     "square drive, little damping": (
         line(1.5, {"waveform": "square", "frequency": 2.3}) | {"damping_ratio": 0.02},
@@ -140,8 +146,14 @@ IN_THE_PLANE: dict[str, tuple[Keys, Keys]] = {
         plane(2.0, None, None, **belt(5.0, direction=40.0, frequency=1.4)),
         COULOMB,
     ),
-    "belt in a square, askew": (plane(3.0, {}, {}, **belt(2.0, direction=60.0, waveform="square")), COULOMB),
-    "load in the plane": (plane(4.0, {}, {"phase": 90.0}, **load(0.5, phase=45.0)), COULOMB),
+    "belt in a square, askew, that sticks": (
+        plane(3.0, {}, {}, **belt(2.0, direction=60.0, waveform="square")) | {"normal_load": 40.0},
+        COULOMB,
+    ),
+    "load in the plane, static friction": (
+        plane(1.0, {}, {"phase": 90.0}, **load(0.5, phase=45.0)) | {"normal_load": 30.0},
+        STICKY,
+    ),
     "direction, Dahl": (plane(3.0, {"direction": 60.0}, None), DAHL),
     "square across, LuGre": (plane(3.0, {}, {"waveform": "square"}, **belt(2.0, direction=90.0)), LUGRE),
     "constant contact in the plane, elasto-plastic": (

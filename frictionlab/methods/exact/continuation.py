@@ -6,7 +6,8 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import inner, njit
-from frictionlab.methods.exact.legs import Oscillator, canonical
+from frictionlab.compile.dispatch import by_variation
+from frictionlab.methods.exact.oscillator import ForcedOscillator, canonical, count_pieces, free_rate
 from frictionlab.methods.exact.return_map import (
     LEGS_IN_ALL,
     Fixed,
@@ -27,30 +28,68 @@ MOST_PERIODS = 100_000
 
 @njit
 def continue_in_speed(mass: Mass, coefficient: float, belt_speeds: Any, out: Any) -> None:
-    """Row i of ``out``: MEAN to FOUND for belt_speeds[i] >= 0, ascending; FOUND: 1 without slip reversal, else 2."""
+    """Row i of ``out``: MEAN to FOUND for belt_speeds[i], ascending; FOUND: 1 without slip reversal, else 2.
+
+    One sine: for belt speeds >= 0. Else mass.varying is a ``Forcing``.
+    """
     x, w, last = 0.0, 0.0, math.inf
     for i in range(belt_speeds.size):
         body = body_at(mass, coefficient, belt_speeds[i])
-        x_free, w_free = friction_free_start(body)
         # Above V_lin slip never reverses and the motion is linear: no search. Without damping a free oscillation
         # would remain.
-        if belt_speeds[i] >= friction_free_speed(mass) and body.damping > 0.0:
-            x, w = x_free, w_free
+        if exceeds_friction_free_speed(mass, belt_speeds[i]) and body.damping > 0.0:
+            x, w = friction_free_start(body)
             write_reversal_free(body, coefficient, x, w, out[i])
         else:
             # Start from the neighbour's state with the same velocity: w = x' - belt_speed.
-            x, w = (x_free, w_free) if last == math.inf else (x, w + (last - belt_speeds[i]))
+            x, w = friction_free_start(body) if last == math.inf else (x, w + (last - belt_speeds[i]))
             fixed = periodic_state(body, x, w, MOST_MAPS)
             x, w = fixed.x, fixed.w
-            write_fixed(body, fixed, mass.normal_load, out[i])
+            if slips_one_way(body, fixed):
+                write_reversal_free(body, coefficient, x, w, out[i])
+            else:
+                write_fixed(body, fixed, mass.normal_load, out[i])
         last = belt_speeds[i]
 
 
-@inner
-def body_at(mass: Mass, coefficient: float, belt_speed: float) -> Oscillator:
-    """The canonical scene at this belt speed (>= 0)."""
+def _body_of_one_sine(mass: Mass, coefficient: float, belt_speed: float) -> Any:
     friction = coefficient * mass.normal_load
     return canonical(0.5 * mass.damping, mass.frequency, abs(mass.force), friction, belt_speed)
+
+
+def _body_of_pieces(mass: Mass, coefficient: float, belt_speed: float) -> Any:
+    forcing, damping = mass.varying, 0.5 * mass.damping
+    rate = free_rate(damping)
+    numbers = damping, rate, forcing.period, coefficient * mass.normal_load, belt_speed
+    return ForcedOscillator(*numbers, forcing.size, forcing.load, forcing.jolt, 0, forcing)
+
+
+body_at = by_variation(_body_of_one_sine, _body_of_pieces)
+"""(mass, coefficient, belt_speed): the canonical scene at this belt speed."""
+
+
+def _above_kink(mass: Mass, belt_speed: float) -> bool:
+    return belt_speed >= friction_free_speed(mass)
+
+
+def _unknown(mass: Mass, belt_speed: float) -> bool:
+    return False
+
+
+exceeds_friction_free_speed = by_variation(_above_kink, _unknown)
+"""(mass, belt_speed): whether the belt is known to be so fast that slip never reverses."""
+
+
+def _reverses(body: Any, fixed: Fixed) -> bool:
+    return False
+
+
+def _found_alike(body: Any, fixed: Fixed) -> bool:
+    return fixed.map.alike != 0.0 and fixed.residual <= 16.0 * rounding(body, fixed.x, fixed.w)
+
+
+slips_one_way = by_variation(_reverses, _found_alike)
+"""(body, fixed): whether this fixed point turns out to have slip of one sign, which no step can have passed."""
 
 
 @inner
@@ -61,17 +100,17 @@ def friction_free_speed(mass: Mass) -> float:
 
 
 @inner
-def write_reversal_free(body: Oscillator, coefficient: float, x: float, w: float, row: Any) -> None:
+def write_reversal_free(body: Any, coefficient: float, x: float, w: float, row: Any) -> None:
     """The results where slip never reverses: friction is constant, the motion linear."""
     rate = body.damping if body.damping <= 1.0 else 1.0 / (body.damping + body.rate)
-    row[MEAN], row[ERROR] = coefficient, 8.0 * EPSILON * coefficient
+    row[MEAN], row[ERROR] = math.copysign(coefficient, body.belt_speed), 8.0 * EPSILON * coefficient
     row[FLOQUET] = math.exp(-rate * body.period)
-    row[STATE_X], row[STATE_W], row[LEGS] = x, w, 2.0
+    row[STATE_X], row[STATE_W], row[LEGS] = x, w, 1.0 + count_pieces(body)
     row[RESIDUAL], row[ROUNDING], row[FOUND] = 0.0, rounding(body, x, w), 1.0
 
 
 @inner
-def write_fixed(body: Oscillator, fixed: Fixed, normal_load: float, row: Any) -> None:
+def write_fixed(body: Any, fixed: Fixed, normal_load: float, row: Any) -> None:
     """The results at a fixed point of the return map."""
     unit = normal_load * body.period
     row[MEAN], row[ERROR] = -fixed.map.friction / unit, impulse_error(body, fixed) / unit

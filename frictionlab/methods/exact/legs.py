@@ -1,9 +1,9 @@
 """One mass on a moving belt under Coulomb friction: closed-form legs of slip and stick between events.
 
-The canonical scene: x'' + 2 damping x' + x + friction Sgn(w) = load sin(frequency tau), with the slip velocity w =
-x' - belt_speed and belt_speed >= 0. In slip of constant sign, x is the friction-free response plus a free
-oscillation about -friction*sign; in stick it moves with the belt. An event is the first zero of a function whose
-third derivative is bounded over the whole leg: every step goes at most to the first zero of a cubic below the
+In slip of constant sign, the position x of the canonical scene (oscillator.py) is the response to the loads plus a
+free oscillation about -friction*sign; in stick it moves with the belt. A leg ends at the latest at the next corner of
+a load, normal load or belt velocity, which may make the mass slide or stick. An event is the first zero of a function
+whose third derivative is bounded over the whole leg: every step goes at most to the first zero of a cubic below the
 function. It therefore cannot pass an event, not even a grazing pair of zeros, and converges to the event from the
 left with third order.
 """
@@ -14,6 +14,15 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_variation
+from frictionlab.methods.exact.forcing import JUMP, START
+from frictionlab.methods.exact.oscillator import (
+    holding_at,
+    in_piece,
+    largest_push,
+    largest_swing,
+    response_at,
+)
 from frictionlab.quantities import EPSILON
 
 TINY = 1e-300
@@ -24,38 +33,18 @@ STEPS_IN_A_LEG = 1_000_000
 """Most steps of any size in a leg; more give NaN."""
 
 
-class Oscillator(NamedTuple):
-    """The canonical scene and its friction-free response in_phase sin + quadrature cos.
-
-    rate: |1 - damping^2|^(1/2); size: bound on the response; jolt: bound on its fourth derivative; resonant: 1.0
-    where the response from rest at tau = 0 replaces it (near undamped resonance the periodic one is too large).
-    """
-
-    damping: float
-    rate: float
-    frequency: float
-    period: float
-    load: float
-    friction: float
-    belt_speed: float
-    in_phase: float
-    quadrature: float
-    size: float
-    jolt: float
-    resonant: float
-
-
 class LegEnd(NamedTuple):
     """The end of a leg: how long it lasted, the state there, the net force, the leg that follows.
 
-    event: 1.0 if it ended in an event. keep, turn, damp: those of ``free_motion``, which are the entries of the
-    derivative by the state at the start.
+    limit: of friction there. event: 1.0 if it ended in an event. keep, turn, damp: those of ``free_motion``, which
+    are the entries of the derivative by the state at the start.
     """
 
     duration: float
     x: float
     w: float
     net: float
+    limit: float
     following: float
     event: float
     keep: float
@@ -63,93 +52,8 @@ class LegEnd(NamedTuple):
     damp: float
 
 
-RESONANT = 1e-3
-
-
 @inner
-def canonical(
-    damping: float, frequency: float, load: float, friction: float, belt_speed: float
-) -> Oscillator:
-    """The record of a canonical scene."""
-    # Written with (1 - a)(1 + a), which keeps the digits that 1 - a^2 loses near critical damping and resonance.
-    rate = math.sqrt(abs((1.0 - damping) * (1.0 + damping)))
-    stiffness = (1.0 - frequency) * (1.0 + frequency)
-    viscous = 2.0 * damping * frequency
-    square = stiffness * stiffness + viscous * viscous
-    period = 2.0 * math.pi / frequency
-    # Near undamped resonance the periodic response is the small difference of large numbers: the growing response
-    # from rest is used instead, bounded over one period by the force times the time.
-    if square < RESONANT * RESONANT:
-        return Oscillator(
-            damping,
-            rate,
-            frequency,
-            period,
-            load,
-            friction,
-            belt_speed,
-            0.0,
-            0.0,
-            4.0 * load,
-            8.0 * load,
-            1.0,
-        )
-    size = load / math.sqrt(square)
-    in_phase, quadrature = load * stiffness / square, -load * viscous / square
-    jolt = size * frequency**4
-    return Oscillator(
-        damping, rate, frequency, period, load, friction, belt_speed, in_phase, quadrature, size, jolt, 0.0
-    )
-
-
-@inner
-def load_and_response(body: Oscillator, tau: float) -> tuple[float, float, float, float]:
-    """The load and its rate, the friction-free displacement and its velocity."""
-    angle = body.frequency * tau
-    sine, cosine = math.sin(angle), math.cos(angle)
-    load, rate = body.load * sine, body.load * body.frequency * cosine
-    if body.resonant != 0.0:
-        u, speed = _growing_response(body, tau, sine, cosine)
-        return load, rate, u, speed
-    u = body.in_phase * sine + body.quadrature * cosine
-    speed = body.frequency * (body.in_phase * cosine - body.quadrature * sine)
-    return load, rate, u, speed
-
-
-@inner
-def _growing_response(body: Oscillator, tau: float, sine: float, cosine: float) -> tuple[float, float]:
-    """The response from rest at tau = 0, without the cancellation of the periodic one near resonance.
-
-    With lambda = -b + i rate and zeta = u' - conj(lambda) u, zeta' = lambda zeta + load sin(frequency tau); in real
-    numbers, since complex ones take numba a second to compile.
-    """
-    # The load is made of exp(i frequency tau) and its conjugate. One of them is nearly in resonance with lambda:
-    # its integral ("near") is written as free * tau * (exp(z) - 1)/z with small z, which loses no digits.
-    b, both = body.damping, body.frequency + body.rate
-    size = math.exp(-b * tau)
-    free, free_i = size * math.cos(body.rate * tau), size * math.sin(body.rate * tau)
-    detuning = (body.frequency - 1.0) + b * b / (1.0 + body.rate)
-    quotient, quotient_i = _exponential_quotient(b * tau, detuning * tau)
-    near = tau * (free * quotient - free_i * quotient_i)
-    near_i = tau * (free * quotient_i + free_i * quotient)
-    gap, gap_i = (cosine - free) / (b * b + both * both), (-sine - free_i) / (b * b + both * both)
-    far, far_i = gap * b - gap_i * both, gap_i * b + gap * both
-    u = -0.5 * body.load * (near - far) / body.rate
-    return u, 0.5 * body.load * (near_i - far_i) - b * u
-
-
-@inner
-def _exponential_quotient(z: float, z_i: float) -> tuple[float, float]:
-    """Real and imaginary part of (exp(z) - 1)/z for small complex z."""
-    total, total_i, term, term_i = 1.0, 0.0, 1.0, 0.0
-    for n in range(2, 9):
-        term, term_i = (term * z - term_i * z_i) / n, (term * z_i + term_i * z) / n
-        total, total_i = total + term, total_i + term_i
-    return total, total_i
-
-
-@inner
-def free_motion(body: Oscillator, r: float) -> tuple[float, float, float]:
+def free_motion(body: Any, r: float) -> tuple[float, float, float]:
     """C + b S, S and C - b S, which lead from the state of the free motion to that a time r later.
 
     C and S: exp(-b r) times cos and sin/rate (cosh and sinh where overdamped), critical damping included.
@@ -232,14 +136,12 @@ def _zero_beyond(base: float, g: float, g1: float, g2: float, bound: float) -> f
 
 
 @inner
-def _slip_cubic(
-    body: Oscillator, sign: float, y: float, z: float, response: Any
-) -> tuple[float, float, float]:
+def _slip_cubic(body: Any, sign: float, y: float, z: float, response: Any) -> tuple[float, float, float]:
     """Of the slip velocity, positive in its direction: its rate, the rate of that, a bound on the third derivative.
 
-    response: of ``load_and_response`` here.
+    response: of ``response_at`` here.
     """
-    load, load_rate, u, speed = response
+    load, load_rate, u, speed, _ = response
     b = body.damping
     free = -2.0 * b * z - y
     forced = load - 2.0 * b * speed - u
@@ -253,10 +155,10 @@ def _slip_cubic(
 
 
 @inner
-def slip_leg(body: Oscillator, tau: float, x: float, w: float, sign: float, left: float) -> LegEnd:
+def slip_leg(body: Any, tau: float, x: float, w: float, sign: float, left: float) -> LegEnd:
     """Slip of one sign from (x, w) at tau until it stops, for at most ``left``."""
-    friction, response = body.friction * sign, load_and_response(body, tau)
-    load, _, u, speed = response
+    friction, response = body.friction * sign, response_at(body, tau, sign)
+    load, _, u, speed, limit = response
     # (y, z): the free oscillation, what is left of x and x' without the response and the static shift by friction.
     y0, z0 = x - u + friction, w + (body.belt_speed - speed)
     noise = slip_noise(body, y0, z0)
@@ -284,55 +186,53 @@ def slip_leg(body: Oscillator, tau: float, x: float, w: float, sign: float, left
             break
         r = min(r + step, left)
         # Always from the start of the leg, so that rounding does not accumulate over its steps.
-        response = load_and_response(body, tau + r)
-        load, _, u, speed = response
+        response = response_at(body, tau + r, sign)
+        load, _, u, speed, limit = response
         keep, turn, damp = free_motion(body, r)
         y, z = keep * y0 + turn * z0, damp * z0 - turn * y0
     x = y + (u - friction)
     if event == 0.0:
-        return LegEnd(r, x, z + (speed - body.belt_speed), 0.0, sign, 0.0, keep, turn, damp)
+        return LegEnd(r, x, z + (speed - body.belt_speed), 0.0, 0.0, sign, 0.0, keep, turn, damp)
     # At zero slip velocity the net force without friction decides between stick and slip to either side.
-    net = load - 2.0 * body.damping * body.belt_speed - x
-    return LegEnd(r, x, 0.0, net, after_rest(body, net), 1.0, keep, turn, damp)
+    net = load + sign * (limit - body.friction) - 2.0 * body.damping * body.belt_speed - x
+    return LegEnd(r, x, 0.0, net, limit, after_rest(net, limit), 1.0, keep, turn, damp)
 
 
 @inner
-def slip_noise(body: Oscillator, y: float, z: float) -> float:
+def slip_noise(body: Any, y: float, z: float) -> float:
     """Bound on the rounding error of a slip velocity."""
     return (
-        4.0
-        * EPSILON
-        * (abs(z) + min(body.period, 1.0) * abs(y) + body.frequency * body.size + body.belt_speed)
+        4.0 * EPSILON * (abs(z) + min(body.period, 1.0) * abs(y) + largest_swing(body) + abs(body.belt_speed))
     )
 
 
 @inner
-def after_rest(body: Oscillator, net: float) -> float:
+def after_rest(net: float, limit: float) -> float:
     """The leg after slip velocity zero under this net force: stick, or slip along the force."""
-    if abs(net) <= body.friction:
+    if abs(net) <= limit:
         return STICK
     return math.copysign(1.0, net)
 
 
 @inner
-def stick_leg(body: Oscillator, tau: float, x: float, left: float) -> LegEnd:
+def stick_leg(body: Any, tau: float, x: float, left: float) -> LegEnd:
     """Rest on the belt from x at tau until the net force exceeds friction, for at most ``left``."""
-    noise = 4.0 * EPSILON * (body.friction + body.load + abs(x) + 2.0 * body.damping * body.belt_speed)
-    bound = max(body.load * body.frequency**3, TINY)
+    carried = 2.0 * body.damping * body.belt_speed
+    noise = 4.0 * EPSILON * (body.friction + body.load + abs(x) + abs(carried))
+    bound = max(largest_push(body), TINY)
     r, event, side, net, crept, steps = 0.0, 0.0, 1.0, 0.0, 0, 0
     lost = False
     while True:
-        angle = body.frequency * (tau + r)
-        sine, cosine = math.sin(angle), math.cos(angle)
-        net = body.load * sine - 2.0 * body.damping * body.belt_speed - (x + body.belt_speed * r)
+        load, load_rate, load_bend, limit, limit_rate, limit_bend = holding_at(body, tau + r)
+        net = load - carried - (x + body.belt_speed * r)
         if r >= left:
             break
-        slope = body.load * body.frequency * cosine - body.belt_speed
-        bend = -body.load * body.frequency**2 * sine
+        slope = load_rate - body.belt_speed
         step = left
         # Friction can be exceeded to either side; the step goes to the first zero of the nearer cubic.
         for direction in (1.0, -1.0):
-            margin, rise, curve = body.friction - direction * net, -direction * slope, -direction * bend
+            margin, rise = limit - direction * net, limit_rate - direction * slope
+            curve = limit_bend - direction * load_bend
             if margin <= noise and (rise < 0.0 or (rise == 0.0 and curve < 0.0)):
                 event, side = 1.0, direction
                 break
@@ -347,13 +247,32 @@ def stick_leg(body: Oscillator, tau: float, x: float, left: float) -> LegEnd:
         lost = crept > MOST_CREEPING or steps > STEPS_IN_A_LEG
         r = left if lost else min(r + max(step, least), left)
     x = math.nan if lost else x + body.belt_speed * r
-    return LegEnd(r, x, 0.0, net, side * event, event, 1.0, 0.0, 0.0)
+    return LegEnd(r, x, 0.0, net, limit, side * event, event, 1.0, 0.0, 0.0)
 
 
 @inner
-def starting_mode(body: Oscillator, tau: float, x: float, w: float) -> float:
+def starting_mode(body: Any, tau: float, x: float, w: float) -> float:
     """Slip of either sign, or stick, at an arbitrary state; a slip velocity of rounding size is zero."""
-    load, _, u, _ = load_and_response(body, tau)
+    load, _, u, _, limit = response_at(body, tau, 0.0)
     if abs(w) > slip_noise(body, x - u, w):
         return math.copysign(1.0, w)
-    return after_rest(body, load - 2.0 * body.damping * body.belt_speed - x)
+    return after_rest(load - 2.0 * body.damping * body.belt_speed - x, limit)
+
+
+def _no_corner(body: Any, x: float, w: float, mode: float) -> tuple[Any, float, float, float]:
+    return body, w, mode, 1.0
+
+
+def _corner(body: Any, x: float, w: float, mode: float) -> tuple[Any, float, float, float]:
+    pieces = body.varying.pieces
+    following = (body.piece + 1) % pieces.shape[0]
+    body = in_piece(body, following)
+    w = w - pieces[following, JUMP]
+    after = starting_mode(body, pieces[following, START], x, w)
+    # Every velocity near zero becomes zero where the mass comes to rest here, as at the end of a leg of slip.
+    return body, w, after, 0.0 if after == STICK and mode != STICK else 1.0
+
+
+cross_corner = by_variation(_no_corner, _corner)
+"""(body, x, w, mode): at the end of a piece, the body in the next one, the slip velocity and the mode there; the
+derivative of that velocity by the one before."""

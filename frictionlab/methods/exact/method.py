@@ -13,7 +13,9 @@ from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method, Status, against_varying
 from frictionlab.methods.exact import continuation as curve
+from frictionlab.methods.exact.forcing import forcing_of, resonates
 from frictionlab.methods.exact.orbit import make_orbits
+from frictionlab.methods.exact.oscillator import RESONANT
 from frictionlab.methods.prescribed.bristle import along_one_line
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.refusals import suggest_shooting
@@ -21,6 +23,7 @@ from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
+from frictionlab.scene.signals import Signal
 from frictionlab.theory import friction_free_velocity
 
 EVENTS = "closed-form legs of slip and stick between events, fixed point of the return map by Newton's method"
@@ -57,7 +60,14 @@ def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
     if scene.undriven:
         return "exact needs a drive, whose period is that of the motion"
     if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
-        return "exact works along one line: this scene has a transverse load"
+        what = (
+            "has a transverse load"
+            if scene.signals().load[1] != Signal()
+            else "has a belt that vibrates across"
+        )
+        return f"exact works along one line: this scene {what}"
+    if scene.degrees_of_freedom > 0 and not scene.is_harmonic and resonates(scene.mass(), RESONANT):
+        return "exact needs more damping for a sine within 1e-3 of resonance, unless it is all that changes in time"
     return None
 
 
@@ -75,7 +85,7 @@ class Exact(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
-        if reason := against_varying(self.name, scene):
+        if scene.degrees_of_freedom == 0 and (reason := against_varying(self.name, scene)):
             return suggest_shooting(reason, scene, law)
         prescribed = scene.degrees_of_freedom == 0 and law.memory_kind == "bristle"
         reason = (_refusal_of_legs if prescribed else _refusal_of_flow)(scene, law)
@@ -91,7 +101,8 @@ class Exact(Method):
         """Answer scenes that differ in belt speed alone."""
         if scenes[0].degrees_of_freedom == 0:
             return solve_prescribed(scenes, law, tolerance)
-        return _Curve(scenes, law.sliding_friction(1.0), tolerance).answers()
+        curve_of = _Curve if scenes[0].is_harmonic else _VaryingCurve
+        return curve_of(scenes, law.sliding_friction(1.0), tolerance).answers()
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """A few period maps of two legs or more; slow drives meet the free motion many times."""
@@ -101,13 +112,17 @@ class Exact(Method):
 
 
 class _Curve:
-    """The scenes of one curve on their way to answers."""
+    """The scenes of one curve on their way to answers.
+
+    sides: -1 where the mirror image of a scene is solved, so that the belt moves ahead.
+    """
 
     def __init__(self, scenes: Sequence[Scene], coefficient: float, tolerance: float) -> None:
         self.scenes, self.coefficient, self.tolerance = scenes, coefficient, tolerance
         self.mass = scenes[0].mass()
         self.limit = coefficient * self.mass.normal_load
         self.belt_speeds = belt_speeds_of(scenes)
+        self.sides = np.where(self.belt_speeds < 0.0, -1.0, 1.0)
         n = len(scenes)
         self.status: list[Status] = ["ok"] * n
         self.reason, self.model, self.error_kind = [""] * n, [EVENTS] * n, ["estimated"] * n
@@ -122,10 +137,11 @@ class _Curve:
         settled = [i for i in special.tolist() if self._has_no_single_answer(i)]
         open_points = np.delete(np.arange(len(self.scenes)), settled)
         self._solve(open_points)
+        self._use_symmetry(open_points)
         self._judge(open_points)
         if self.scenes[0].degrees_of_freedom == 2:
             self.model = [text + REDUCED if text else text for text in self.model]
-        mean = np.where(self.belt_speeds < 0.0, -1.0, 1.0) * self.rows[:, curve.MEAN]
+        mean = self.sides * self.rows[:, curve.MEAN]
         low, high = self.bounds.T
         return Answers(
             status=self.status,
@@ -134,7 +150,7 @@ class _Curve:
             error_kind=self.error_kind,
             mean=mean,
             error=self.rows[:, curve.ERROR],
-            period=np.where(np.isfinite(mean), 1.0, np.nan),
+            period=np.where(np.isfinite(mean), float(self.scenes[0].periods), np.nan),
             floquet=self._floquet,
             mean_low=low,
             mean_high=high,
@@ -154,38 +170,33 @@ class _Curve:
         undamped = self.mass.damping == 0.0
         if speed == 0.0 and force <= self.limit:
             spread = (self.limit - force) / self.mass.normal_load
-            self._depends_on_start(i, spread, _permanent_stick(spread))
+            self._depends_on_start(i, (0.0 - spread, spread), _permanent_stick(0.0 - spread, spread))
         elif undamped and (force == 0.0 or abs(speed) >= friction_free_velocity(self.scenes[i])):
-            self._depends_on_start(i, math.nan, NO_DAMPING)
+            self._depends_on_start(i, self._mean_without_reversal(i), NO_DAMPING)
         elif undamped and self.mass.frequency == 1.0 and self.limit < 0.25 * math.pi * force:
             self.status[i], self.reason[i], self.model[i], self.error_kind[i] = "failed", UNBOUNDED, "", ""
         else:
             return False
         return True
 
-    def _depends_on_start(self, i: int, spread: float, reason: str) -> None:
-        """Not unique, unless the scene says where it starts; spread NaN: mu for every start."""
+    def _mean_without_reversal(self, i: int) -> tuple[float, float]:
+        return (math.copysign(self.coefficient, self.belt_speeds[i]),) * 2
+
+    def _depends_on_start(self, i: int, bounds: tuple[float, float], reason: str) -> None:
+        """Not unique, unless the scene says where it starts; bounds: of the mean over all starts."""
         if self.scenes[i].initial is not None and self._settles(i):
             return
-        low, high = (
-            (0.0 - spread, spread)
-            if spread == spread
-            else (math.copysign(self.coefficient, self.belt_speeds[i]),) * 2
-        )
         self.status[i], self.reason[i], self.error_kind[i] = "not_unique", reason, ""
         self.model[i] = "closed form"
-        self.bounds[i], self.window[i] = (low, high), 1.0
+        self.bounds[i], self.window[i] = bounds, float(self.scenes[i].periods)
         self.rows[i, curve.LEGS] = 0.0
 
     def _settles(self, i: int) -> bool:
         """Simulate from scene.initial until nothing changes."""
-        initial, side = self.scenes[i].initial, -1.0 if self.belt_speeds[i] < 0.0 else 1.0
-        assert initial is not None
-        w = side * (initial.velocity - self.belt_speeds[i])
-        start = np.array([side * initial.x, w, self._shift(side)])
         row = np.full(9, np.nan)
+        speed = self.sides[i] * self.belt_speeds[i] + 0.0
         periods = KernelCall(curve.iterate_until_fixed)(
-            self.mass, self.coefficient, abs(self.belt_speeds[i]), start, row
+            self.mass, self.coefficient, speed, self._start(i), row
         )
         if periods < 0:
             return False
@@ -197,34 +208,47 @@ class _Curve:
         )
         return True
 
+    def _start(self, i: int) -> Floats:
+        """Canonical position, slip velocity and time of scene.initial."""
+        initial, side = self.scenes[i].initial, self.sides[i]
+        assert initial is not None
+        w = side * (initial.velocity - self.belt_speeds[i])
+        return np.array([side * initial.x, w, self._shift(side)])
+
     def _shift(self, side: float) -> float:
         """The canonical time of tau = 0: the drive's phase, half a period on for a belt that moves the other way."""
         force = side * self.mass.force
         return math.atan2(force.imag, force.real) % (2.0 * math.pi) / self.mass.frequency
 
     def _solve(self, places: np.ndarray) -> None:
-        """Both directions of the belt share one solution: the mean is exactly odd."""
-        speeds, back = np.unique(np.abs(self.belt_speeds[places]), return_inverse=True)
+        """Each belt speed once: both directions share one solution where the mean is exactly odd."""
+        speeds, back = np.unique(self.sides[places] * self.belt_speeds[places] + 0.0, return_inverse=True)
         rows = np.full((len(speeds), 9), np.nan)
         first = self.mass, self.coefficient, speeds[:1], rows[:1]
         _, self.seconds = KernelCall(curve.continue_in_speed).timed(
             self.mass, self.coefficient, speeds, rows, points=len(speeds), first=first
         )
-        rows[speeds == 0.0, curve.MEAN] = 0.0  # the orbit is its own mirror image half a period later
         self.rows[places] = rows[back]
+
+    def _use_symmetry(self, places: NDArray[np.int64]) -> None:
+        """On a belt at rest the orbit is its own mirror image half a period later."""
+        self.rows[places[self.belt_speeds[places] == 0.0], curve.MEAN] = 0.0
 
     def _judge(self, places: NDArray[np.int64]) -> None:
         """Say of each of these how it was found, and of those that are not as good as asked, why."""
         rows = self.rows[places]
         linear = rows[:, curve.FOUND] == 1.0
-        v_lin = friction_free_velocity(self.scenes[0])
+        model = self._model_without_reversal()
         for i in places[linear].tolist():
-            self.model[i] = f"closed form: slip never reverses (belt speed >= V_lin = {v_lin:.6g})"
-            self.error_kind[i] = "guaranteed"
+            self.model[i], self.error_kind[i] = model, "guaranteed"
         closed = rows[:, curve.RESIDUAL] <= 1e3 * rows[:, curve.ROUNDING]
         good = closed & (rows[:, curve.ERROR] <= min(self.tolerance, FARTHEST)) & (self.mass.damping > 0.0)
         for i in places[~linear & ~good].tolist():
             self._judge_one(i)
+
+    def _model_without_reversal(self) -> str:
+        v_lin = friction_free_velocity(self.scenes[0])
+        return f"closed form: slip never reverses (belt speed >= V_lin = {v_lin:.6g})"
 
     def _judge_one(self, i: int) -> None:
         row = self.rows[i]
@@ -255,14 +279,63 @@ class _Curve:
         """Of the scenes at these places; without panels where there is none."""
         rows, ends = self.rows[list(places)], np.zeros(len(places), np.int64)
         speeds, legs = self.belt_speeds[list(places)], np.nan_to_num(rows[:, curve.LEGS])
-        shifts = np.where(speeds < 0.0, self._shift(-1.0), self._shift(1.0))
+        shifts = [self._shift(side) for side in self.sides[list(places)]]
         states = np.column_stack([rows[:, curve.STATE_X], rows[:, curve.STATE_W], legs, shifts])
         track = KernelCall(make_orbits)(self.mass, self.coefficient, speeds, states, ends)
         return Orbits(track.tau, track.x, track.v, track.friction, track.stick, ends)
 
 
-def _permanent_stick(spread: float) -> str:
+class _VaryingCurve(_Curve):
+    """The same where forces are not one sine: no scene is the mirror image of another."""
+
+    def __init__(self, scenes: Sequence[Scene], coefficient: float, tolerance: float) -> None:
+        super().__init__(scenes, coefficient, tolerance)
+        self.forcing = forcing_of(self.mass, coefficient)
+        self.mass = self.mass._replace(varying=self.forcing)
+        self.sides = np.ones(len(scenes))
+
+    def _may_have_no_single_answer(self) -> NDArray[np.bool_]:
+        return (self.belt_speeds == 0.0) & (not self.forcing.belt_jumps())
+
+    def _has_no_single_answer(self, i: int) -> bool:
+        """Settle the scenes in which the mass stays at rest on a belt of mean velocity zero."""
+        # At rest the force of friction is the load less the position; of the load the mean is zero.
+        low, high = self.forcing.highest - self.limit, self.forcing.lowest + self.limit
+        if low > high:
+            return False
+        bounds = low / self.mass.normal_load, high / self.mass.normal_load
+        self._depends_on_start(i, bounds, _permanent_stick(*bounds))
+        return True
+
+    def _start(self, i: int) -> Floats:
+        initial, (path, vibration) = self.scenes[i].initial, self.forcing.belt_at_start()
+        assert initial is not None
+        return np.array([initial.x - path, initial.velocity - self.belt_speeds[i] - vibration, 0.0])
+
+    def _shift(self, side: float) -> float:
+        return 0.0
+
+    def _use_symmetry(self, places: NDArray[np.int64]) -> None:
+        """Nothing: what returns after a period need not be its own mirror image."""
+
+    def _judge(self, places: NDArray[np.int64]) -> None:
+        """The same, after the scenes whose free oscillation does not decay."""
+        if self.mass.damping > 0.0:
+            super()._judge(places)
+            return
+        free = self.rows[places, curve.FOUND] == 1.0
+        for i in places[free].tolist():
+            self.rows[i] = np.nan
+            self._depends_on_start(i, self._mean_without_reversal(i), NO_DAMPING)
+        super()._judge(places[~free])
+
+    def _model_without_reversal(self) -> str:
+        return "closed form: slip never reverses (belt speed >= V_lin)"
+
+
+def _permanent_stick(low: float, high: float) -> str:
+    within = f"within {high:.6g} of zero" if math.isclose(low, -high) else f"between {low:.6g} and {high:.6g}"
     return (
         "the belt is at rest and the load never exceeds friction: the mass stays where it starts, "
-        f"with any mean friction within {spread:.6g} of zero; give scene.initial"
+        f"with any mean friction {within}; give scene.initial"
     )

@@ -8,21 +8,29 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner, njit
+from frictionlab.compile.dispatch import by_variation
 from frictionlab.methods.exact.continuation import body_at
 from frictionlab.methods.exact.legs import (
     STICK,
-    Oscillator,
+    cross_corner,
     free_motion,
-    load_and_response,
     slip_leg,
     starting_mode,
     stick_leg,
+)
+from frictionlab.methods.exact.oscillator import (
+    in_piece,
+    next_corner,
+    piece_of,
+    response_at,
+    shortest_period,
+    vibration_at,
 )
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.recorder import Track, grown, track_of
 from frictionlab.scene.body import Mass
 
-TAU, DURATION, X, W, MODE, FACTS = 0, 1, 2, 3, 4, 5
+TAU, DURATION, X, W, MODE, PIECE, FACTS = 0, 1, 2, 3, 4, 5, 6
 
 
 class LegTable(NamedTuple):
@@ -34,24 +42,27 @@ class LegTable(NamedTuple):
 
 
 @inner
-def tabulate_legs(body: Oscillator, state: Any, start: float, end: float, legs: Any, first: int) -> Any:
+def tabulate_legs(body: Any, state: Any, start: float, end: float, legs: Any, first: int) -> Any:
     """Write every leg from ``start`` to ``end`` to rows from ``first`` on; return the end state and the row after."""
     x, w = state
     tau, mode, row = start, starting_mode(body, start, x, w), first
     # The same legs as in the return map, so that orbit and fixed point agree to rounding.
     while tau < end and row < legs.shape[0]:
-        left = end - tau
+        stop = next_corner(body, end)
+        left = stop - tau
         leg = stick_leg(body, tau, x, left) if mode == STICK else slip_leg(body, tau, x, w, mode, left)
         legs[row, TAU], legs[row, DURATION] = tau, leg.duration
-        legs[row, X], legs[row, W], legs[row, MODE] = x, w, mode
+        legs[row, X], legs[row, W], legs[row, MODE], legs[row, PIECE] = x, w, mode, piece_of(body)
         row = row + 1
-        tau = tau + leg.duration if leg.event != 0.0 else end
+        tau = tau + leg.duration if leg.event != 0.0 else stop
         x, w, mode = leg.x, leg.w, leg.following
+        if tau >= stop:
+            body, w, mode, _ = cross_corner(body, x, w, mode)
     return (x, w), row
 
 
 @inner
-def panel_length(body: Oscillator, r: float, left: float) -> float:
+def panel_length(body: Any, r: float, left: float) -> float:
     """Length of the next panel, r into a leg: short against drive and free motion, graded where a part decays."""
     # Overdamped motion has a fast and a slow exponential: panels start at 1/fast and grow in proportion to r. Once
     # the free motion has decayed (r * slow > 40) only the drive limits them.
@@ -60,11 +71,11 @@ def panel_length(body: Oscillator, r: float, left: float) -> float:
         fast = body.damping + body.rate
         slow = 1.0 / fast
     free = 0.25 * math.pi if r * slow < 40.0 else body.period
-    return min(min(0.125 * body.period, free), min(max(1.0 / fast, 0.5 * r), left))
+    return min(min(0.125 * shortest_period(body), free), min(max(1.0 / fast, 0.5 * r), left))
 
 
 @inner
-def count_panels(body: Oscillator, legs: Any, rows: int) -> int:
+def count_panels(body: Any, legs: Any, rows: int) -> int:
     """The number of panels of the legs; a leg of no duration has none."""
     panels = 0
     for row in range(rows):
@@ -76,27 +87,29 @@ def count_panels(body: Oscillator, legs: Any, rows: int) -> int:
 
 
 @inner
-def free_start(body: Oscillator, leg: Any) -> tuple[float, float]:
+def free_start(body: Any, leg: Any) -> tuple[float, float]:
     """Displacement and velocity at the start of a leg of slip, beside those of the response to load and friction."""
-    _, _, u, speed = load_and_response(body, leg[TAU])
+    _, _, u, speed, _ = response_at(body, leg[TAU], leg[MODE])
     return leg[X] - u + body.friction * leg[MODE], leg[W] + (body.belt_speed - speed)
 
 
 @inner
-def sample_leg(body: Oscillator, leg: Any, start: Any, r: float) -> tuple[float, float, float]:
+def sample_leg(body: Any, leg: Any, start: Any, r: float) -> tuple[float, float, float]:
     """Displacement, velocity and friction force a time r into a leg with this free start."""
-    load, _, u, speed = load_and_response(body, leg[TAU] + r)
+    load, _, u, speed, limit = response_at(body, leg[TAU] + r, leg[MODE])
+    path, vibration = vibration_at(body, leg[TAU] + r)
     if leg[MODE] == STICK:
         x = leg[X] + body.belt_speed * r
-        return x, body.belt_speed, load - 2.0 * body.damping * body.belt_speed - x
-    friction = body.friction * leg[MODE]
+        force = load - 2.0 * body.damping * body.belt_speed - x
+        return x + path, body.belt_speed + vibration, force
     y, z = start
     keep, turn, damp = free_motion(body, r)
-    return keep * y + turn * z + (u - friction), damp * z - turn * y + speed, friction
+    x = keep * y + turn * z + (u - body.friction * leg[MODE])
+    return x + path, damp * z - turn * y + speed + vibration, limit * leg[MODE]
 
 
 @inner
-def legs_of(body: Oscillator, x: float, w: float, shift: float, legs: int) -> LegTable:
+def legs_of(body: Any, x: float, w: float, shift: float, legs: int) -> LegTable:
     """A period from canonical time 0, as legs; the orbit starts at ``shift``."""
     # The state is known at canonical time 0, the orbit starts at ``shift``: the legs before it follow those after it.
     table = np.empty((2 * legs + 8, FACTS))
@@ -106,7 +119,7 @@ def legs_of(body: Oscillator, x: float, w: float, shift: float, legs: int) -> Le
 
 
 @inner
-def note_orbit(body: Oscillator, table: LegTable, normal_load: float, side: float, track: Track) -> None:
+def note_orbit(body: Any, table: LegTable, normal_load: float, side: float, track: Track) -> None:
     """The panels of one period from the end of the first ``before`` legs on, on a track with room for them.
 
     side: -1.0 turns it round, for a belt that moves the other way.
@@ -114,6 +127,7 @@ def note_orbit(body: Oscillator, table: LegTable, normal_load: float, side: floa
     panel, now = track.filled[0], 0.0
     for place in range(table.rows):
         leg, r = table.legs[(place + table.before) % table.rows], 0.0
+        body = in_piece(body, int(leg[PIECE]))
         start = free_start(body, leg)
         while r < leg[DURATION]:
             length = panel_length(body, r, leg[DURATION] - r)
@@ -128,6 +142,18 @@ def note_orbit(body: Oscillator, table: LegTable, normal_load: float, side: floa
     track.filled[0] = panel
 
 
+def _mirrored(mass: Mass, belt_speed: float) -> float:
+    return -1.0 if belt_speed < 0.0 else 1.0
+
+
+def _as_given(mass: Mass, belt_speed: float) -> float:
+    return 1.0
+
+
+side_solved = by_variation(_mirrored, _as_given)
+"""(mass, belt_speed): -1.0 where the mirror image of the scene was solved."""
+
+
 @njit
 def make_orbits(mass: Mass, coefficient: float, belt_speeds: Any, states: Any, ends: Any) -> Track:
     """The panels of every orbit, one orbit after another, that of belt speed i before panel ends[i].
@@ -138,8 +164,8 @@ def make_orbits(mass: Mass, coefficient: float, belt_speeds: Any, states: Any, e
     for i in range(belt_speeds.size):
         x, w, legs, shift = states[i, 0], states[i, 1], int(states[i, 2]), states[i, 3]
         if legs > 0:
-            body = body_at(mass, coefficient, abs(belt_speeds[i]))
-            side = -1.0 if belt_speeds[i] < 0.0 else 1.0
+            side = side_solved(mass, belt_speeds[i])
+            body = body_at(mass, coefficient, side * belt_speeds[i])
             table = legs_of(body, x, w, shift, legs)
             needed = track.filled[0] + count_panels(body, table.legs, table.rows)
             if needed > room:

@@ -1,30 +1,39 @@
-"""The return map of a mass under Coulomb friction over one drive period, its derivative and its fixed point.
+"""The return map of a mass under Coulomb friction over the period of its forces, its derivative and its fixed point.
 
-State (x, w) at a whole number of periods, w = x' - belt_speed. In the energy norm sqrt(x^2 + w^2) the distance of
-two orbits of one scene never grows (Leine & van de Wouw, 2008), so an iteration of the map never increases the
-residual: Newton's method falls back to it. Derivatives through events: saltation (Leine & Nijmeijer, 2004, ch. 7).
+State (x, w) of the canonical scene at a whole number of periods, after a corner there; w = x' - belt_speed. In the
+energy norm sqrt(x^2 + w^2) the distance of two orbits of one scene never grows (Leine & van de Wouw, 2008), so an
+iteration of the map never increases the residual: Newton's method falls back to it. Derivatives through events:
+saltation (Leine & Nijmeijer, 2004, ch. 7).
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_variation
 from frictionlab.methods.exact.legs import (
     STICK,
-    Oscillator,
-    load_and_response,
+    cross_corner,
     slip_leg,
     starting_mode,
     stick_leg,
 )
+from frictionlab.methods.exact.oscillator import (
+    impulse_of_limit,
+    impulse_of_load,
+    largest_swing,
+    next_corner,
+    response_at,
+    with_belt_speed,
+)
 from frictionlab.quantities import EPSILON
 
 MOST_LEGS = 1_000_000
+"""Most legs in a period; a period with more is not solved, since its motion is below the rounding of its position."""
 LEGS_IN_ALL = 20_000_000
 """Legs of all maps, some ten seconds, after which a periodic state is no longer looked for."""
-"""Most legs in a period; a period with more is not solved, since its motion is below the rounding of its position."""
 SHORTEST = 1e-6
 
 
@@ -32,7 +41,8 @@ class Passage(NamedTuple):
     """The end of a stretch of motion.
 
     xx .. ww: derivative of the end by the start; friction: integral of the friction force (it resists); by_x,
-    by_w: its derivative by the start; legs: their number; stick: time at rest on the belt.
+    by_w: its derivative by the start; legs: their number; stick: time at rest on the belt; alike: 1.0 where all legs
+    are slip of one sign.
     """
 
     x: float
@@ -46,17 +56,24 @@ class Passage(NamedTuple):
     by_w: float
     legs: int
     stick: float
+    alike: float
 
 
 @inner
-def passage(body: Oscillator, x: float, w: float, start: float, end: float) -> Passage:
-    """Follow the motion from (x, w) at ``start`` to ``end``, both within one period."""
+def passage(body: Any, x: float, w: float, start: float, end: float) -> Passage:
+    """Follow the motion from (x, w) at ``start`` to ``end``, both within one period.
+
+    What has corners starts at 0, in its first piece.
+    """
     tau, mode = start, starting_mode(body, start, x, w)
+    first, alike = mode, 1.0
     xx, xw, wx, ww = 1.0, 0.0, 0.0, 1.0
     friction, by_x, by_w, stick, legs = 0.0, 0.0, 0.0, 0.0, 0
     while tau < end and legs < MOST_LEGS:
-        left = end - tau
+        stop = next_corner(body, end)
+        left = stop - tau
         leg = stick_leg(body, tau, x, left) if mode == STICK else slip_leg(body, tau, x, w, mode, left)
+        alike = alike if mode == first and mode != STICK else 0.0
         # The derivative of the free motion. In stick keep is 1 and the rest 0: a change of x stays, one of w is gone.
         xx, wx = leg.keep * xx + leg.turn * wx, leg.damp * wx - leg.turn * xx
         xw, ww = leg.keep * xw + leg.turn * ww, leg.damp * ww - leg.turn * xw
@@ -65,20 +82,24 @@ def passage(body: Oscillator, x: float, w: float, start: float, end: float) -> P
             by_x, by_w = by_x - leg.duration * xx, by_w - leg.duration * xw
             stick = stick + leg.duration
         else:
-            # The force of slip is constant: only the time of the event at its end depends on the state.
-            friction = friction + mode * body.friction * leg.duration
+            # The force of slip is a function of time: only the time of the event at its end depends on the state.
+            friction = friction + mode * impulse_of_limit(body, tau, leg.duration)
             if leg.event != 0.0:
-                kept, jump = saltation(body, leg.net, mode, leg.following)
+                kept, jump = saltation(leg.net, leg.limit, mode, leg.following)
                 by_x, by_w = by_x + jump * wx, by_w + jump * ww
                 wx, ww = kept * wx, kept * ww
         x, w, mode = leg.x, leg.w, leg.following
-        tau = tau + leg.duration if leg.event != 0.0 else end
+        tau = tau + leg.duration if leg.event != 0.0 else stop
         legs = legs + 1
-    return Passage(x, w, xx, xw, wx, ww, friction, by_x, by_w, legs, stick)
+        if tau >= stop:
+            body, w, mode, kept = cross_corner(body, x, w, mode)
+            by_x, by_w = by_x + (1.0 - kept) * wx, by_w + (1.0 - kept) * ww
+            wx, ww = kept * wx, kept * ww
+    return Passage(x, w, xx, xw, wx, ww, friction, by_x, by_w, legs, stick, alike)
 
 
 @inner
-def saltation(body: Oscillator, net: float, before: float, after: float) -> tuple[float, float]:
+def saltation(net: float, limit: float, before: float, after: float) -> tuple[float, float]:
     """Derivatives at the end of slip of sign ``before``: of the slip velocity after it by that before it, and of the
     friction impulse by the slip velocity."""
     # Stick: every velocity near zero becomes zero. Its friction balances the net force from the event on, so that a
@@ -86,15 +107,14 @@ def saltation(body: Oscillator, net: float, before: float, after: float) -> tupl
     if after == STICK:
         return 0.0, 1.0
     # Reversal: orbits that differ by dw arrive |dw/fall| apart, a time in which only one of them has reversed.
-    fall = net - body.friction * before
-    return (net - body.friction * after) / fall, body.friction * (after - before) / fall
+    fall = net - limit * before
+    return (net - limit * after) / fall, limit * (after - before) / fall
 
 
 @inner
-def stuck_impulse(body: Oscillator, tau: float, x: float, r: float) -> float:
+def stuck_impulse(body: Any, tau: float, x: float, r: float) -> float:
     """Integral of the net force over a time r of stick that starts at tau."""
-    half = 0.5 * body.frequency * r
-    pushed = 2.0 * body.load / body.frequency * math.sin(half) * math.sin(body.frequency * tau + half)
+    pushed = impulse_of_load(body, tau, r)
     return pushed - r * (2.0 * body.damping * body.belt_speed + x + 0.5 * body.belt_speed * r)
 
 
@@ -109,7 +129,7 @@ class Fixed(NamedTuple):
 
 
 @inner
-def periodic_state(body: Oscillator, x: float, w: float, most: int) -> Fixed:
+def periodic_state(body: Any, x: float, w: float, most: int) -> Fixed:
     """The periodic state near (x, w): damped Newton's method, with iterations of the map where it does not converge.
 
     Where the map is smooth the residual decreases along a Newton step, so a step that is too long is shortened first:
@@ -146,7 +166,7 @@ def periodic_state(body: Oscillator, x: float, w: float, most: int) -> Fixed:
 @inner
 def unknown(x: float, w: float) -> Passage:
     """A passage of no time: the state before the first map."""
-    return Passage(x, w, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0, 0.0)
+    return Passage(x, w, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0)
 
 
 @inner
@@ -160,35 +180,49 @@ def newton_correction(here: Passage, x: float, w: float) -> tuple[float, float]:
     return (d * rx - b * rw) / determinant, (a * rw - c * rx) / determinant
 
 
+def _room_under_one_sine(body: Any, x: float) -> float:
+    return body.friction - body.load - 2.0 * body.damping * body.belt_speed - x
+
+
+def _room_in_pieces(body: Any, x: float) -> float:
+    drawn = 2.0 * body.damping * body.belt_speed + x
+    if body.belt_speed > 0.0:
+        return body.friction + body.varying.lowest - drawn
+    return body.friction - body.varying.highest + drawn
+
+
+room_to_stick = by_variation(_room_under_one_sine, _room_in_pieces)
+"""(body, x): how far the belt may still draw the spring before the worst instant of the loads overcomes friction."""
+
+
 @inner
-def whole_periods_of_stick(body: Oscillator, here: Passage) -> float:
+def whole_periods_of_stick(body: Any, here: Passage) -> float:
     """Displacement of a mass that sticks for a whole period, over all whole periods until friction is exceeded."""
     if here.stick < body.period or body.belt_speed == 0.0:
         return 0.0
-    # Room: how far the spring may still be drawn before the worst instant of the load overcomes friction.
-    carried = body.belt_speed * body.period
-    room = body.friction - body.load - 2.0 * body.damping * body.belt_speed - here.x - carried
-    return max(math.floor(room / carried), 0.0) * carried
+    carried = abs(body.belt_speed) * body.period
+    room = room_to_stick(body, here.x) - carried
+    return math.copysign(max(math.floor(room / carried), 0.0) * carried, body.belt_speed)
 
 
 @inner
-def scales(body: Oscillator, x: float, w: float) -> tuple[float, float]:
+def scales(body: Any, x: float, w: float) -> tuple[float, float]:
     """The magnitudes of the numbers whose rounding errors enter x and w over one period."""
     length = body.size + body.friction + abs(x)
-    speed = body.frequency * body.size + body.belt_speed + abs(w)
+    speed = largest_swing(body) + abs(body.belt_speed) + abs(w)
     reach = min(body.period, 1.0)
     return length + reach * speed, speed + reach * length
 
 
 @inner
-def rounding(body: Oscillator, x: float, w: float) -> float:
+def rounding(body: Any, x: float, w: float) -> float:
     """A residual that rounding alone can explain."""
     sx, sw = scales(body, x, w)
     return 4.0 * EPSILON * (sx + sw)
 
 
 @inner
-def impulse_error(body: Oscillator, fixed: Fixed) -> float:
+def impulse_error(body: Any, fixed: Fixed) -> float:
     """Error of the friction impulse over one period: residual and rounding of the map, times the sensitivity of the
     steady state to them, from the adjoint of the map."""
     # (of_x, of_w) = (by_x, by_w) (I - M)^-1: the change of the impulse when the map is perturbed in x or w and the
@@ -218,8 +252,24 @@ def largest_multiplier(here: Passage) -> float:
     return abs(half) + math.sqrt(square)
 
 
-@inner
-def friction_free_start(body: Oscillator) -> tuple[float, float]:
-    """The steady state at tau = 0 if slip never reverses: the friction-free response shifted by constant friction."""
-    _, _, u, speed = load_and_response(body, 0.0)
+def _start_of_one_sine(body: Any) -> tuple[float, float]:
+    _, _, u, speed, _ = response_at(body, 0.0, 0.0)
     return u + body.friction, speed - body.belt_speed
+
+
+def _start_of_pieces(body: Any) -> tuple[float, float]:
+    # On a belt so fast that slip keeps its sign the map is linear: one step of Newton's method solves it.
+    far = with_belt_speed(body, math.copysign(FAR_ABOVE * (body.size + largest_swing(body)), body.belt_speed))
+    side = math.copysign(1.0, body.belt_speed)
+    _, _, u, speed, _ = response_at(body, 0.0, -side)
+    x, w = u + side * body.friction, speed - far.belt_speed
+    dx, dw = newton_correction(passage(far, x, w, 0.0, body.period), x, w)
+    if abs(dx) + abs(dw) < math.inf:
+        x, w = x + dx, w + dw
+    return x, w + (far.belt_speed - body.belt_speed)
+
+
+FAR_ABOVE = 100.0
+
+friction_free_start = by_variation(_start_of_one_sine, _start_of_pieces)
+"""(body): the steady state at tau = 0 if slip never reverses: the response to the loads and to friction."""

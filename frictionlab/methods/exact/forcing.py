@@ -109,6 +109,8 @@ def _waves(varying: Varying, b: float, coefficient: float) -> Floats:
     load, belt, press = (_phasors(each, frequency) for each in every)
     press = coefficient * press
     path, dynamic = belt / (1j * frequency), _stiffness(frequency, b)
+    # A belt that swings in undamped resonance pushes the mass through friction alone.
+    dynamic[(load == 0.0) & (press == 0.0)] = 1.0
     columns = [
         load - (2.0 * b + 1j * frequency) * belt - path,
         load / dynamic - path,

@@ -236,9 +236,10 @@ def stick_leg(body: Any, tau: float, x: float, left: float) -> LegEnd:
             if margin <= noise and (rise < 0.0 or (rise == 0.0 and curve < 0.0)):
                 event, side = 1.0, direction
                 break
-            # At the limit to rounding but moving away from it: look for the next zero.
+            # At the limit to rounding but moving away from it: look for the next zero. Where it stays there, a load
+            # that is constant between corners, rounding is no event.
             if margin <= noise:
-                margin, rise = 0.0, max(rise, 0.0)
+                margin, rise = noise if rise == 0.0 and curve == 0.0 else 0.0, max(rise, 0.0)
             step = min(step, first_zero(margin, rise, curve, bound))
         if event != 0.0:
             break

@@ -253,7 +253,12 @@ class _Curve:
     def _judge_one(self, i: int) -> None:
         row = self.rows[i]
         if not row[curve.RESIDUAL] <= 1e3 * row[curve.ROUNDING]:
-            self._fail(i, f"no fixed point of the return map found: residual {row[curve.RESIDUAL]:.1e}")
+            undamped = "; a load in undamped resonance may let it grow without bound" * (
+                self.mass.damping == 0.0
+            )
+            self._fail(
+                i, f"no fixed point of the return map found: residual {row[curve.RESIDUAL]:.1e}{undamped}"
+            )
         elif self.mass.damping == 0.0 and not row[curve.FLOQUET] < 1.0 - 1e-9:
             self._fail(
                 i,

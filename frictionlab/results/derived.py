@@ -23,7 +23,7 @@ def derived_columns(scenes: Sequence[Scene], law: FrictionLaw, mean_friction: Fl
     ``presliding_ratio`` stays empty for laws without a presliding length.
     """
     scene, speed = scenes[0], belt_speeds_of(scenes)
-    free = np.full(len(speed), friction_free_velocity(scene))
+    free = _friction_free(scenes, law)
     sliding = np.array([law.sliding_friction(each) for each in np.abs(speed).tolist()])
     limit = (scene.normal_load or 0.0) * sliding
     return {
@@ -32,6 +32,16 @@ def derived_columns(scenes: Sequence[Scene], law: FrictionLaw, mean_friction: Fl
         "friction_to_drive": _ratio(limit, np.full(len(speed), force_amplitude(scene))),
         "presliding_ratio": _ratio(np.full(len(speed), _presliding(law) * scene.frequency), free),
     }
+
+
+def _friction_free(scenes: Sequence[Scene], law: FrictionLaw) -> Floats:
+    """V_lin of each; another on a belt that runs backward, and at every speed where friction that varies pulsates."""
+    first, speed = scenes[0], belt_speeds_of(scenes)
+    if first.is_harmonic:
+        return np.full(len(speed), friction_free_velocity(first))
+    pulsates = first.normal_load_variation is not None and not law.constant_sliding_friction()
+    _, places, back = np.unique(speed if pulsates else np.sign(speed), return_index=True, return_inverse=True)
+    return np.array([friction_free_velocity(scenes[i], law) for i in places.tolist()])[back]
 
 
 def _presliding(law: Any) -> float:

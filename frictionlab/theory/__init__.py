@@ -37,6 +37,7 @@ from frictionlab.theory.one_harmonic import (
 from frictionlab.theory.prescribed import (
     mean_prescribed_circular,
     mean_prescribed_longitudinal,
+    mean_prescribed_pulsating,
     mean_prescribed_transverse,
 )
 from frictionlab.theory.reversal import reversal_kick
@@ -59,6 +60,7 @@ __all__ = [
     "jenkins_describing_function",
     "mean_prescribed_circular",
     "mean_prescribed_longitudinal",
+    "mean_prescribed_pulsating",
     "mean_prescribed_transverse",
     "mean_soft_circular",
     "mean_soft_dahl",

@@ -3,22 +3,143 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+import numpy as np
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.signals import Segments, Signal, Wave
+from frictionlab.theory.piecewise import FreeMotion, Piecewise, edges_of, oscillation, piecewise
+
+_SINGULAR = 64.0 * EPSILON
+"""Of the determinant of what a free motion loses in a period; below it an oscillator is at undamped resonance."""
 
 
-def friction_free_velocity(scene: Scene) -> float:
-    """V_lin: the velocity amplitude of x1 without friction [omega_1 L], infinite at undamped resonance.
+def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> float:
+    """V_lin: the largest velocity of x1 over the belt's vibration without friction [omega_1 L].
 
-    Amplitude of the linear response to the load along x1; for a prescribed slip its own amplitude along x1.
-    At belt speeds above it a body of one degree of freedom under constant sliding friction never reverses its slip;
-    the curve of the mean has its kink there.
+    The maximum over time of x1' minus the belt's vibration along x1, of the linear response to the loads and, where
+    the normal load varies, to the alternating part of the friction of steady sliding, which asks for the law; for a
+    prescribed slip that of its oscillation. On a belt that runs backward: of the opposite velocity. For one sine the
+    velocity amplitude. Infinite at undamped resonance. At belt speeds above it a body of one degree of freedom under
+    constant sliding friction never reverses its slip; the curve of the mean has its kink there.
 
+    Raises ValueError for a normal load that varies without a law.
     Source: Sulollari, van Dalen & Cabboi, Eq. 6 (there the response where friction is a small perturbation).
     """
+    if not scene.is_harmonic:
+        return _largest(friction_free_slip(scene, law), scene.belt_speed)
     if scene.degrees_of_freedom == 0:
         return abs(scene.motion().velocity)
     mass = scene.mass()
     stiffness = complex(mass.stiffness - mass.frequency**2, mass.damping * mass.frequency)
     force = abs(mass.force) * mass.frequency
     return force / abs(stiffness) if stiffness else math.inf
+
+
+def velocity_scale(scene: Scene) -> float:
+    """V_lin as if the normal load did not vary: a scale of velocities that asks for no law [omega_1 L]."""
+    if scene.is_harmonic:
+        return friction_free_velocity(scene)
+    return _largest(_free_slip(scene, 0.0), scene.belt_speed)
+
+
+def _largest(slip: Piecewise | None, belt_speed: float) -> float:
+    return math.inf if slip is None else (slip if belt_speed >= 0.0 else slip.negative()).maximum()
+
+
+def friction_free_slip(scene: Scene, law: FrictionLaw | None = None) -> Piecewise | None:
+    """Its x1' minus the belt's vibration along x1, over the period of the scene; None where it has no bound.
+
+    Raises ValueError as ``friction_free_velocity``.
+    """
+    if scene.degrees_of_freedom == 0 or scene.signals().normal_load == Signal():
+        return _free_slip(scene, 0.0)
+    if law is None:
+        raise ValueError("friction_free_velocity: where the normal load varies, give the law of friction")
+    return _free_slip(scene, math.copysign(law.sliding_friction(abs(scene.belt_speed)), scene.belt_speed))
+
+
+def _free_slip(scene: Scene, coefficient: float) -> Piecewise | None:
+    """coefficient: that with which the normal load pushes the body along x1."""
+    signals = scene.signals()
+    edges = edges_of(signals.corners(), signals.period)
+    if scene.degrees_of_freedom == 0:
+        return piecewise(signals.belt[0], edges)
+    mass = scene.mass()
+    push = signals.load[0].plus(signals.normal_load.scaled(coefficient))
+    response = LinearOscillator(mass.damping, mass.stiffness).response(push, edges, 1)
+    return None if response is None else _less(response, piecewise(signals.belt[0], edges))
+
+
+def _less(first: Piecewise, second: Piecewise) -> Piecewise:
+    """The difference of two functions on the same pieces, the second without free motion."""
+    other = second.negative()
+    return first._replace(
+        middle=first.middle + other.middle,
+        slope=first.slope + other.slope,
+        waves=first.waves + other.waves,
+    )
+
+
+class LinearOscillator(NamedTuple):
+    """x'' + damping x' + stiffness x = load; damping >= 0, stiffness > 0."""
+
+    damping: float
+    stiffness: float
+
+    def response(self, load: Signal, edges: Floats, order: int) -> Piecewise | None:
+        """The periodic x, or its derivative of order 1, under a load; None where it has no bound.
+
+        edges: of pieces within which the load has no corner.
+        """
+        waves = []
+        for frequency, phasor in load.waves:
+            dynamic = complex(self.stiffness - frequency**2, self.damping * frequency)
+            if dynamic == 0 and phasor != 0:
+                return None
+            if phasor != 0:
+                waves.append(Wave(frequency, (1j * frequency) ** order * phasor / dynamic))
+        x, v = np.zeros(len(edges) - 1), np.zeros(len(edges) - 1)
+        for each in load.pieces:
+            found = self._free(each, edges[:-1])
+            if found is None:
+                return None
+            x, v = x + found[0], v + found[1]
+        value, slope = load.lines_at(0.5 * (edges[:-1] + edges[1:]))
+        steady = value / self.stiffness - slope * self.damping / self.stiffness**2, slope / self.stiffness
+        middle, slope = (*steady, np.zeros(len(value)))[order : order + 2]
+        return Piecewise(
+            edges, middle, slope, tuple(waves), FreeMotion(self.damping, self.stiffness, x, v, order)
+        )
+
+    def _free(self, load: Segments, at: Floats) -> tuple[Floats, Floats] | None:
+        """Position and velocity at these times of the free motion that joins the responses to the lines.
+
+        At every corner those jump, and the free motion the other way; in a period it loses what the jumps bring.
+        """
+        lines, period, k, c = load.lines, load.period, self.stiffness, self.damping
+        starts = np.array([line.start for line in lines])
+        length = np.diff([*starts, starts[0] + period])
+        value, slope = np.array([line.value for line in lines]), np.array([line.slope for line in lines])
+        after = np.array([value / k - slope * c / k**2, slope / k])
+        before = np.roll(after + np.array([slope / k * length, np.zeros(len(lines))]), 1, axis=1)
+        kept = self._flow(np.array([period]))[:, :, 0]
+        lost = np.eye(2) - kept
+        if abs(np.linalg.det(lost)) <= _SINGULAR:
+            return None
+        kicks = np.linalg.solve(lost, before - after)
+        since = np.mod(at[:, None] - starts, period)
+        since = np.where(period - since <= 1e-12 * period, 0.0, since)
+        x, v = np.einsum("abij,bj->ai", self._flow(since), kicks)
+        return x, v
+
+    def _flow(self, since: Floats) -> Floats:
+        """What a free motion does in so much time: the matrix from (x, v) to (x, v), on the first two axes."""
+        cosine, sine = oscillation(self.damping, self.stiffness, since)
+        half = 0.5 * self.damping
+        return np.array(
+            [[cosine + half * sine, sine], [-self.stiffness * sine, cosine - half * sine]], dtype=np.float64
+        )

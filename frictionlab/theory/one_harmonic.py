@@ -21,6 +21,7 @@ def one_harmonic_velocity(scene: Scene, friction: float, ratio: ArrayLike) -> Fl
     friction = mu*normal_load [K_1 L]; ratio [-] in [0, 1]. Zero where the load cannot overcome the friction's first
     harmonic, P <= c s. Source: Sulollari, van Dalen & Cabboi, Eqs. 8-9, solved for V.
     """
+    _needs_one_sine("one_harmonic_velocity", scene)
     mass = scene.mass()
     stiffness, damping = mass.stiffness - mass.frequency**2, mass.damping * mass.frequency
     force = abs(mass.force)
@@ -36,10 +37,16 @@ def one_harmonic_least_ratio(scene: Scene, friction: float) -> float:
 
     Below that load the first harmonic of friction holds the mass at a vanishing belt speed, and the curve of the
     mean starts at (2/pi) arcsin of sqrt(1 - (pi P/(4 friction))^2). friction = mu*normal_load [K_1 L].
-    Source: Sulollari, van Dalen & Cabboi, Eq. 8 at V -> 0.
+    Raises ValueError as ``one_harmonic_velocity``. Source: Sulollari, van Dalen & Cabboi, Eq. 8 at V -> 0.
     """
+    _needs_one_sine("one_harmonic_least_ratio", scene)
     share = 0.25 * math.pi * abs(scene.mass().force) / friction
     return math.sqrt(max(0.0, (1.0 - share) * (1.0 + share)))
+
+
+def _needs_one_sine(name: str, scene: Scene) -> None:
+    if not scene.is_harmonic:
+        raise ValueError(f"{name}: for loads of one sine on a steady belt under a constant normal load")
 
 
 CONCAVE_BY_INITIAL_CURVATURE = math.pi / 16.0
@@ -67,7 +74,8 @@ def initial_concavity(scene: Scene, friction: float) -> float:
     velocity amplitude on a belt at rest. At resonance the sign changes at friction = (pi/16) unbalance, whatever
     the damping. NaN where the body then sticks, P <= c.
 
-    friction [K_1 L]: friction force, coefficient times normal_load. Raises ValueError without a drive.
+    friction [K_1 L]: friction force, coefficient times normal_load. Raises ValueError without a drive, and as
+    ``one_harmonic_velocity``.
     Source: expansion of Sulollari, van Dalen & Cabboi, Eqs. 5, 8 and 9, for small v_b.
     """
     if scene.degrees_of_freedom == 0 or not scene.mass().force:

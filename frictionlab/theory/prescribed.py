@@ -2,19 +2,82 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike
 
-from frictionlab.quantities import Floats
+from frictionlab.quantities import EPSILON, Floats
+from frictionlab.theory.piecewise import Piecewise
 
 
-def mean_prescribed_longitudinal(ratio: ArrayLike) -> Floats:
-    """Mean Coulomb friction under a sinusoidal slip along the belt: (2/pi) arcsin(ratio), then 1.
+def mean_prescribed_longitudinal(ratio: ArrayLike, waveform: str = "sine") -> Floats:
+    """Mean Coulomb friction under a slip along the belt of this waveform; 1 from ratio 1 on.
+
+    Sine (2/pi) arcsin(ratio); triangle and sawtooth, whose velocity is spread evenly, ratio; parabola, the integral
+    of a triangle, 1 - sqrt(1 - ratio); square 0, at ratio 1 NaN: slip then rests for half of the period. Of any
+    velocity oscillation 1 - 2 CDF(-v_b), CDF(v) the share of time below v.
 
     ratio [-]: belt speed over the amplitude of the slip velocity, any sign.
-    Source: Sulollari, van Dalen & Cabboi, Eq. 5.
+    Source: Sulollari, van Dalen & Cabboi, Eq. 5; of waveforms Michaux, Ferri & Cunefare (2008).
     """
-    return np.asarray(2.0 / np.pi * np.arcsin(np.clip(ratio, -1.0, 1.0)))
+    size = np.abs(np.asarray(ratio, dtype=np.float64))
+    if waveform == "square":
+        return np.copysign(np.where(size < 1.0, 0.0, np.where(size > 1.0, 1.0, np.nan)), ratio)
+    return np.copysign(_OF_WAVEFORM[waveform](np.minimum(size, 1.0)), ratio)
+
+
+_OF_WAVEFORM: dict[str, Callable[[Floats], Floats]] = {
+    "sine": lambda size: 2.0 / np.pi * np.arcsin(size),
+    "triangle": lambda size: size,
+    "sawtooth": lambda size: size,
+    "parabola": lambda size: size / (1.0 + np.sqrt(1.0 - size)),
+}
+
+
+def mean_prescribed_pulsating(ratio: ArrayLike, amplitude: ArrayLike, phase: ArrayLike) -> Floats:
+    """Mean Coulomb friction under a sine along the belt and a normal load 1 + amplitude*sin that leads it by phase.
+
+    (2/pi) [arcsin(ratio) - amplitude sqrt(1 - ratio^2) cos(phase)] up to ratio 1: a load that presses while slip goes
+    forward pushes the body back. amplitude: of the load, in shares of its mean; phase [rad] of the load against the
+    oscillation of the slip velocity.
+
+    ratio [-]: belt speed over the amplitude of the slip velocity, any sign.
+    Source: -<n(t) sgn(w(t))>, the integral of n between the instants at which the slip w reverses.
+    """
+    size = np.clip(np.asarray(ratio, dtype=np.float64), -1.0, 1.0)
+    pushed = np.asarray(amplitude) * np.sqrt((1.0 - size) * (1.0 + size)) * np.cos(phase)
+    return np.asarray(2.0 / np.pi * (np.arcsin(size) - pushed))
+
+
+class MeanDirection(NamedTuple):
+    """-<n sgn(w)>, its error by rounding, and the share of the normal load that acts while slip rests."""
+
+    mean: float
+    error: float
+    at_rest: float
+
+
+def mean_direction(slip: Piecewise, normal_load: Piecewise) -> MeanDirection:
+    """Mean Coulomb friction, relative to its coefficient, under any slip along the belt and any normal load.
+
+    -<n(t) sgn(w(t))>: the normal load n, of mean 1, integrated in closed form between the instants at which the slip
+    velocity w changes its sign: its corners and its zeros. Both on the same pieces.
+    """
+    zeros, edges = slip.crossings(), slip.edges
+    cuts = np.unique(np.concatenate([edges, zeros.tau]))
+    start, stop = cuts[:-1], cuts[1:]
+    middle = 0.5 * (start + stop)
+    k = np.clip(np.searchsorted(edges, middle, side="right") - 1, 0, len(edges) - 2)
+    share = normal_load.integral(start, stop, k) / slip.period
+    rests = slip.at_rest()[k]
+    side = np.where(rests, 0.0, np.sign(slip.at(middle, k)[0]))
+    heavy = float(np.abs(normal_load.middle).max() + normal_load.size())
+    unsure = heavy * float(zeros.unsure.sum()) / slip.period
+    mean = -math.fsum((side * share).tolist())
+    return MeanDirection(mean, 2.0 * unsure + 16.0 * EPSILON, math.fsum(share[rests].tolist()))
 
 
 def mean_prescribed_transverse(ratio: ArrayLike) -> Floats:

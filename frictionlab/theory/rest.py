@@ -1,14 +1,18 @@
-"""Static equilibrium of the mass on a belt at rest."""
+"""Static equilibrium of the mass on a belt of mean speed 0."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.signals import Signal
+from frictionlab.theory.piecewise import PieceNumbers, edges_of, piecewise
 
 CREEP = 1e-9
 """Slip speed at which the friction of slow slip is evaluated."""
@@ -23,7 +27,10 @@ def friction_at_rest(law: Any) -> float:
 
 
 def can_hold(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether static friction can balance the loads at all times where the spring is not bent."""
+    """Whether static friction can keep a mass with the belt at all times where its spring is not bent on average."""
+    if not scene.is_harmonic:
+        held = _held_with_the_belt(scene)
+        return held is not None and bool(np.all(np.abs(held.force) <= held.pressed * friction_at_rest(law)))
     mass = scene.mass()
     along, across = mass.force, mass.transverse_force
     # the longer half axis of the ellipse of loads
@@ -32,31 +39,104 @@ def can_hold(scene: Scene, law: FrictionLaw) -> bool:
 
 
 def stays_at_rest(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether static friction balances the loads at all times on a belt at rest; bristles always deflect: False."""
-    return law.memory_kind == "none" and scene.belt_speed == 0.0 and resting_range(scene, law) >= 0.0
+    """Whether static friction balances the loads at all times on a belt of mean speed 0, which may vibrate.
 
-
-def resting_range(scene: Scene, law: FrictionLaw) -> float:
-    """The largest mean friction coefficient of a mass at rest on a belt at rest; negative where rest is impossible.
-
-    The spring force k and friction balance the load: |load - k| <= limit at all times, a convex set of k symmetric
-    about zero; the mean is k1/normal_load.
+    The mass then never slips, wherever in a range it stays. Bristles always deflect: False.
     """
-    mass = scene.mass()
-    limit = mass.normal_load * friction_at_rest(law)
-    angle = np.linspace(0.0, np.pi, 721)  # the other half of the ellipse of loads follows by symmetry
-    turn = np.exp(1j * angle)
-    load = (mass.force * turn).imag + 1j * (mass.transverse_force * turn).imag
-    load = np.concatenate([load, -load])
-    low, high, best = -limit, limit, -np.inf
+    return law.memory_kind == "none" and scene.belt_speed == 0.0 and resting_range(scene, law) > -math.inf
+
+
+def resting_range(scene: Scene, law: FrictionLaw, side: float = 1.0) -> float:
+    """The largest mean friction coefficient of a mass that never slips on a belt of mean speed 0, times ``side``.
+
+    -inf where it must slip. The spring force k and friction balance the force that keeps the mass with the belt:
+    |force - k| <= limit at all times, a convex set of k; the mean is k1/normal_load. side -1: of the least mean.
+    """
+    held = _held_with_the_belt(scene)
+    if held is None:
+        return -math.inf
+    return _largest_spring_force(side * held.force, held.pressed * friction_at_rest(law)) / held.mean
+
+
+def _largest_spring_force(load: NDArray[np.complex128], limit: Floats) -> float:
+    """Along x1, of the set of spring forces that friction up to the limit balances together with the load."""
+    if not load.imag.any():
+        upper, lower = float((load.real + limit).min()), float((load.real - limit).max())
+        return upper if lower <= upper else -math.inf
+    most = float(limit.max())
+    low, high, best = -most, most, -math.inf
     for _ in range(6):
         across = np.linspace(low, high, 201)
-        room = limit**2 - (load.imag[:, None] - across) ** 2
+        room = limit[:, None] ** 2 - (load.imag[:, None] - across) ** 2
         half = np.sqrt(np.maximum(room, 0.0))
-        upper, lower = (load.real[:, None] + half).min(axis=0), (load.real[:, None] - half).max(axis=0)
-        reach = np.where((room >= 0.0).all(axis=0) & (lower <= upper), upper, -np.inf)
+        uppers, lowers = (load.real[:, None] + half).min(axis=0), (load.real[:, None] - half).max(axis=0)
+        reach = np.where((room >= 0.0).all(axis=0) & (lowers <= uppers), uppers, -np.inf)
         at = int(reach.argmax())
         best = max(best, float(reach[at]))
         width = (high - low) / 50.0
         low, high = across[at] - width, across[at] + width
-    return best / mass.normal_load
+    return best
+
+
+class _Held(NamedTuple):
+    """The force of friction that keeps the mass with the belt, x1 + i x2, and the normal load, over a period.
+
+    mean: of the normal load.
+    """
+
+    force: NDArray[np.complex128]
+    pressed: Floats
+    mean: float
+
+
+def _held_with_the_belt(scene: Scene) -> _Held | None:
+    """At many times; None where the belt's velocity jumps, which no force can follow."""
+    mass = scene.mass()
+    if scene.is_harmonic:
+        turn = np.exp(1j * np.linspace(0.0, np.pi, 721))  # the other half of the ellipse follows by symmetry
+        load = (mass.force * turn).imag + 1j * (mass.transverse_force * turn).imag
+        return _Held(
+            np.concatenate([load, -load]), np.full(2 * len(load), mass.normal_load), mass.normal_load
+        )
+    signals = scene.signals()
+    edges = edges_of(signals.corners(), signals.period)
+    tau, k = _times(edges, mass.varying.quickest)
+    along, across = (
+        _against_the_belt(*parts, edges, tau, k)
+        for parts in (
+            (signals.load[0], signals.belt[0], mass.damping, mass.stiffness),
+            (signals.load[1], signals.belt[1], mass.transverse_damping, mass.transverse_stiffness),
+        )
+    )
+    if along is None or across is None:
+        return None
+    pressed = piecewise(signals.normal_load, edges, mass.normal_load).at(tau, k)[0]
+    return _Held(along + 1j * across, pressed, mass.normal_load)
+
+
+def _times(edges: Floats, quickest: float) -> tuple[Floats, PieceNumbers]:
+    """Times on every piece, both ends included, and the pieces they are on."""
+    dense = min(quickest * 1440.0 / (2.0 * math.pi), 20000.0 / edges[-1])
+    counts = 3 + np.ceil(np.diff(edges) * dense).astype(int)
+    pairs = zip(edges[:-1], edges[1:], counts.tolist(), strict=True)
+    tau = np.concatenate([np.linspace(start, stop, n) for start, stop, n in pairs])
+    return tau, np.repeat(np.arange(len(counts)), counts)
+
+
+def _against_the_belt(
+    load: Signal, belt: Signal, damping: float, stiffness: float, edges: Floats, tau: Floats, k: PieceNumbers
+) -> Floats | None:
+    """Load less inertia, dashpot and spring of a mass that goes with the belt along one direction."""
+    path = piecewise(belt, edges)
+    places = np.arange(len(edges) - 1)
+    first, last = path.at(edges[:-1], places)[0], path.at(edges[1:], places)[0]
+    if np.abs(np.roll(first, -1) - last).max() > 1e-9 * path.size():
+        return None
+    gone = path.integral(edges[:-1], edges[1:], places)
+    before = np.concatenate([[0.0], np.cumsum(gone)])
+    x = before[k] + path.integral(edges[k], tau, k)
+    # less its mean over the period: by the trapezoids of these times
+    x = x - float(np.trapezoid(x, tau)) / path.period
+    velocity, acceleration = path.at(tau, k)
+    pushed = piecewise(load, edges).at(tau, k)[0]
+    return np.asarray(pushed - acceleration - damping * velocity - stiffness * x)

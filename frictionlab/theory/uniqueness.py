@@ -1,4 +1,17 @@
-"""When every motion converges to one periodic motion (convergent systems)."""
+"""When every motion converges to one periodic motion (convergent systems).
+
+Two motions of one scene, e their difference, obey e'' + c e' + k e = -N(tau) (T - T'), with T and T' the friction
+coefficients at their slip velocities w and w': loads and the motion of the belt are the same for both and cancel,
+whatever their waveforms. With energy E = (e'^2 + k e^2)/2 and w - w' = e',
+
+    E' = -c e'^2 - N(tau) (T - T')(w - w') <= -(c - N_max fall) e'^2,
+
+for N > 0 and a coefficient that falls by at most ``fall`` per velocity (0 where it never does). Where the bracket is
+positive E never grows, and two periodic motions have e' = 0 throughout: they have the same slip, at a constant
+distance e. Where that slips, T = T' and k e = 0. So they differ only if the mass never slips, which it cannot on a
+belt of mean speed other than 0: it would be carried off. In the plane the same holds by vectors, with the lesser
+damping.
+"""
 
 from __future__ import annotations
 
@@ -6,19 +19,44 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
 
 
-def is_convergent(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether any two motions converge: damping outweighs the steepest fall of friction with speed.
+def is_unique(scene: Scene, law: FrictionLaw) -> bool:
+    """Whether the scene has exactly one periodic motion, which attracts every start (theorem T1).
 
-    The steady state of a law without memory is then unique and attracts every start (Leine & van de Wouw, 2008).
-    Without a load across the belt the motion across decays under every isotropic law, and only the damping along
-    the belt matters. The theorem does not cover laws with memory.
+    For every periodic load, motion of the belt and positive normal load: of a law without memory on a mass with
+    damping above ``largest normal load * steepest fall``, where the mean belt speed is not 0.
+    Source: Leine & van de Wouw (2008).
+    """
+    free = scene.degrees_of_freedom > 0 and not scene.undriven
+    return free and scene.belt_speed != 0.0 and _damping(scene) > 0.0 and is_convergent(scene, law)
+
+
+def is_convergent(scene: Scene, law: FrictionLaw) -> bool:
+    """Whether no two motions part: damping outweighs the steepest fall of friction with speed.
+
+    The steady state of a law without memory is then unique and attracts every start (Leine & van de Wouw, 2008),
+    under the further conditions of ``is_unique``. Without a load across the belt the motion across decays under every
+    isotropic law, and only the damping along the belt matters. The theorem does not cover laws with memory.
     """
     return law.memory_kind == "none" and (law.monotone() or falls_slowly(scene, law))
 
 
 def falls_slowly(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether damping outweighs the steepest fall of steady sliding friction."""
+    """Whether damping outweighs the steepest fall of steady sliding friction under the largest normal load."""
+    fall = law.steepest_fall()
+    return fall == 0.0 or largest_normal_load(scene) * fall < _damping(scene)
+
+
+def largest_normal_load(scene: Scene) -> float:
+    """Of a period [K_1 L]."""
+    assert scene.normal_load is not None
+    if scene.is_harmonic:
+        return scene.normal_load
+    signals = scene.signals()
+    return scene.normal_load + max(0.0, signals.normal_load.extremes(signals.period)[1])
+
+
+def _damping(scene: Scene) -> float:
+    """Of the directions in which the body moves, the lesser."""
     mass = scene.mass()
-    along, across = mass.damping, mass.transverse_damping
-    damping = along if scene.load_along_belt_only else min(along, across)
-    return law.steepest_fall() == 0.0 or mass.normal_load * law.steepest_fall() < damping
+    along = mass.damping
+    return along if scene.load_along_belt_only else min(along, mass.transverse_damping)

@@ -40,13 +40,13 @@ class MarchedPoint:
         self.reason, self.model = "", ""
         self.orbit: Callable[[], Orbit | None] = nowhere
         if stays_at_rest(scene, law) and scene.initial is None and not scene.undriven:
-            self._leave_open(resting_range(scene, law))
+            self._leave_open(-resting_range(scene, law, -1.0), resting_range(scene, law))
         else:
             self._judge(march_mean(self.march, plan, tolerance), tolerance)
         self.seconds = self.march.seconds
 
-    def _leave_open(self, highest: float) -> None:
-        self._range(-highest, highest)
+    def _leave_open(self, low: float, high: float) -> None:
+        self._range(low, high)
         self.reason = (
             "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range; "
             "give scene.initial to choose a start"

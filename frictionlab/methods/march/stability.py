@@ -13,7 +13,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.numerics.steppers import exponential, rk4
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
-from frictionlab.theory import friction_free_velocity
+from frictionlab.theory.linear import velocity_scale
 
 MARGIN = 1.02
 """Steps used over the steps that a stability limit requires."""
@@ -28,7 +28,7 @@ SLOW = np.geomspace(1e-30, 1.0, 241)
 
 def expected_slip(scene: Scene) -> float:
     """The largest slip speed of the friction-free motion, and at ``scene.initial`` [scene velocity]."""
-    along = friction_free_velocity(scene) + abs(scene.belt_speed)
+    along = velocity_scale(scene) + abs(scene.belt_speed)
     if scene.degrees_of_freedom == 0:
         return math.hypot(along, abs(scene.motion().transverse_velocity))
     mass, start = scene.mass(), scene.start if scene.undriven else scene.initial

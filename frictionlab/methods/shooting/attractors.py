@@ -14,7 +14,7 @@ from frictionlab.methods.periodic.continuation import Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Initial, Scene
-from frictionlab.theory import friction_free_velocity
+from frictionlab.theory.linear import velocity_scale
 from frictionlab.theory.rest import friction_at_rest
 
 STABLE = 1.0 - 1e-7
@@ -80,7 +80,7 @@ def force_swing(scene: Scene) -> float:
     """The deflection that the load along the belt would hold, or shakes a free mass through, if that is larger."""
     signals, frequency = scene.signals(), scene.frequency
     largest = max(map(abs, signals.load[0].extremes(signals.period)))
-    return max(largest, friction_free_velocity(scene) / frequency)
+    return max(largest, velocity_scale(scene) / frequency)
 
 
 def attractors(

@@ -145,8 +145,8 @@ class SteadyStates:
         """The state in which a mass that friction can hold comes to rest from scene.initial; else a range."""
         start = self.scenes[i].initial
         if start is None:
-            highest = resting_range(self.scenes[i], self.problem.law)
-            self._leave_open(i, MAY_REST, -highest, highest)
+            scene, law = self.scenes[i], self.problem.law
+            self._leave_open(i, MAY_REST, -resting_range(scene, law, -1.0), resting_range(scene, law))
             return
         state, periods = self.problem.settle(start)
         if periods < 0:

@@ -1,0 +1,184 @@
+"""Closed forms of waveforms, vibrating belts and changing normal loads: means, the linear response, V_lin."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.stribeck import Stribeck
+from frictionlab.scene.scene import Scene
+from frictionlab.scene.signals import FULL_TURN, signal_of
+from frictionlab.scene.waveforms import Form, Term
+from frictionlab.theory import (
+    friction_free_velocity,
+    mean_prescribed_longitudinal,
+    mean_prescribed_pulsating,
+)
+from frictionlab.theory.linear import LinearOscillator
+from frictionlab.theory.piecewise import edges_of, piecewise
+from frictionlab.theory.prescribed import mean_direction
+
+angles = st.floats(0.0, 360.0)
+terms = st.builds(Term, st.integers(1, 6), st.floats(-1.0, 1.0), angles)
+forms = st.sampled_from([Form(name) for name in ("sine", "square", "triangle", "sawtooth")]) | st.lists(
+    terms, min_size=1, max_size=4
+).map(lambda found: Form("harmonics", tuple(found)))
+NAMED = ["sine", "square", "triangle", "sawtooth"]
+LAW = Coulomb(mu=0.4)
+
+
+def direction(
+    waveform: Any, phase: float, ratio: float, load: Any = "sine", amplitude: float = 0.0, lead: float = 0.0
+) -> Any:
+    """Of a slip of amplitude 1 on a belt of speed ``ratio``, in periods of 1, the load ahead by ``lead``."""
+    form, other = (each if isinstance(each, Form) else Form(each) for each in (waveform, load))
+    slip = signal_of(form, FULL_TURN, phase)
+    normal = signal_of(other, FULL_TURN, phase + lead).scaled(amplitude)
+    edges = edges_of(sorted({*slip.corners(1.0), *normal.corners(1.0)}), 1.0)
+    return mean_direction(piecewise(slip, edges).minus(ratio), piecewise(normal, edges, 1.0))
+
+
+@pytest.mark.parametrize("waveform", NAMED)
+@given(phase=angles, ratio=st.floats(-0.99, 0.99) | st.sampled_from([0.0, 1.5, -2.0]))
+def test_the_mean_is_that_of_the_instants_at_which_slip_turns(
+    waveform: str, phase: float, ratio: float
+) -> None:
+    closed = float(mean_prescribed_longitudinal(ratio, waveform))
+
+    assert direction(waveform, phase, ratio).mean == pytest.approx(closed, abs=1e-13)
+
+
+@given(ratio=st.floats(-0.99, 0.99), amplitude=st.floats(0.0, 0.99), lead=angles, phase=angles)
+def test_a_load_that_pulsates_with_the_slip_drives_the_body(
+    ratio: float, amplitude: float, lead: float, phase: float
+) -> None:
+    closed = float(mean_prescribed_pulsating(ratio, amplitude, math.radians(lead)))
+
+    assert direction("sine", phase, ratio, "sine", amplitude, lead).mean == pytest.approx(closed, abs=1e-13)
+
+
+@given(slip=forms, load=forms, phase=angles, lead=angles, ratio=st.floats(-1.5, 1.5), share=st.floats(0, 0.9))
+def test_the_mean_of_any_waveform_is_that_of_samples(
+    slip: Form, load: Form, phase: float, lead: float, ratio: float, share: float
+) -> None:
+    tau = (np.arange(20000) + 0.5) / 20000
+    w = signal_of(slip, FULL_TURN, phase)(tau) - ratio
+    n = signal_of(load, FULL_TURN, phase + lead)(tau)
+    amplitude = share / max(1.0, -float(n.min()))
+    found = direction(slip, phase, ratio, load, amplitude, lead)
+
+    near = np.abs(w) < 1e-3  # where samples may miss a reversal
+    assert found.mean == pytest.approx(
+        -float(np.mean((1 + amplitude * n) * np.sign(w))), abs=5e-3 + 2 * found.at_rest + 4 * near.mean()
+    )
+
+
+@given(ratio=st.floats(0.01, 0.99), phase=angles)
+def test_the_mean_under_a_parabola_is_that_of_its_time_below_the_belt_speed(
+    ratio: float, phase: float
+) -> None:
+    # the parabola of unit height: the integral of a triangle
+    tau = (np.arange(40000) + 0.5) / 40000
+    rise = np.where(tau < 0.5, 1 - (4 * tau - 1) ** 2, (4 * tau - 3) ** 2 - 1)
+
+    assert float(mean_prescribed_longitudinal(ratio, "parabola")) == pytest.approx(
+        2 * np.mean(rise < ratio) - 1, abs=1e-4
+    )
+
+
+def test_a_square_slip_of_the_belts_speed_rests_for_half_of_the_period() -> None:
+    found = direction("square", 30.0, 1.0)
+
+    assert found.at_rest == pytest.approx(0.5, abs=1e-14)
+    assert found.mean == pytest.approx(0.5, abs=1e-14)
+    assert math.isnan(float(mean_prescribed_longitudinal(1.0, "square")))
+
+
+@given(
+    form=forms,
+    phase=angles,
+    damping=st.sampled_from([0.0, 0.02, 1.0, 2.0, 7.0]),
+    stiffness=st.floats(0.1, 9.0),
+)
+def test_the_linear_response_obeys_its_equation_and_repeats(
+    form: Form, phase: float, damping: float, stiffness: float
+) -> None:
+    load, oscillator = signal_of(form, 1.3, phase), LinearOscillator(damping, stiffness)
+    period = FULL_TURN / 1.3
+    edges = edges_of(load.corners(period), period)
+    position, velocity = (oscillator.response(load, edges, order) for order in (0, 1))
+    if position is None or velocity is None:
+        assert damping == 0.0
+        return
+    k = np.repeat(np.arange(len(edges) - 1), 5)
+    tau = (edges[:-1, None] + np.diff(edges)[:, None] * np.linspace(0.0, 1.0, 5)).ravel()
+    (x, v), (same, a) = position.at(tau, k), velocity.at(tau, k)
+    force = piecewise(load, edges).at(tau, k)[0]
+    size = 1e-12 * max(1.0, position.size() * (1.0 + stiffness), velocity.size() * (1.0 + damping))
+
+    assert v == pytest.approx(same, abs=size)
+    assert a + damping * v + stiffness * x == pytest.approx(force, abs=size)
+    for of in (x, v):  # at every corner, the end of the period among them
+        assert of.reshape(-1, 5)[:, 4] == pytest.approx(np.roll(of.reshape(-1, 5)[:, 0], -1), abs=size)
+
+
+def scene(**keys: Any) -> Scene:
+    given = {"damping_ratio": 0.1, "normal_load": 2.0, "belt_speed": 1.0}
+    return Scene(**{**given, "drive": {"amplitude": 3.0, "frequency": 1.3}, **keys})
+
+
+def test_v_lin_of_a_sine_on_a_belt_that_vibrates_with_it_is_that_of_the_sum() -> None:
+    vibration = {"velocity_amplitude": 0.7, "phase": 50.0}
+    response = 1.3 * 3.0 * 1j / (1 - 1.3**2 + 2j * 0.1 * 1.3)
+    sum_ = response - 0.7 * np.exp(1j * math.radians(50.0))
+
+    assert friction_free_velocity(scene(belt_vibration=vibration)) == pytest.approx(abs(sum_), rel=1e-14)
+
+
+@given(form=forms, phase=angles, lead=angles)
+@settings(max_examples=10)
+def test_v_lin_is_the_largest_velocity_over_the_belts(form: Form, phase: float, lead: float) -> None:
+    shaken = scene(
+        drive={"amplitude": 3.0, "frequency": 1.3, "waveform": form.plain(), "phase": phase},
+        belt_vibration={"velocity_amplitude": 0.5, "waveform": "triangle", "frequency_ratio": 0.5},
+        normal_load_variation={"amplitude": 0.3, "waveform": "sawtooth", "phase": lead},
+    )
+    for side in (1.0, -1.0):
+        signals, n = shaken.signals(), 2**15
+        tau = (np.arange(n) + 0.5) * signals.period / n
+        push = signals.load[0](tau) + side * 0.4 * signals.normal_load(tau)
+        rate = 2.0 * math.pi * np.fft.rfftfreq(n, signals.period / n)
+        v = np.fft.irfft(np.fft.rfft(push) * 1j * rate / (1.0 - rate**2 + 0.2j * rate), n) - signals.belt[0](
+            tau
+        )
+
+        found = friction_free_velocity(shaken.at(side), LAW)
+        assert found == pytest.approx(float((side * v).max()), rel=2e-3)
+
+
+def test_v_lin_of_a_slip_is_its_largest_velocity_along_the_belt() -> None:
+    slip = {"velocity_amplitude": 2.0, "frequency": 1.0, "waveform": "triangle", "direction": 60.0}
+
+    assert friction_free_velocity(Scene(belt_speed=1, slip=slip)) == pytest.approx(1.0, rel=1e-14)
+
+
+def test_v_lin_under_a_changing_normal_load_asks_for_the_law() -> None:
+    pulsating = scene(normal_load_variation={"amplitude": 0.3})
+
+    with pytest.raises(ValueError, match="give the law"):
+        friction_free_velocity(pulsating)
+    falls = Stribeck(mu_kinetic=0.2, mu_static=0.6, stribeck_speed=1.0)
+    slow, fast = (friction_free_velocity(pulsating.at(speed), falls) for speed in (0.1, 10.0))
+    assert slow != pytest.approx(fast, rel=1e-3)  # friction at the belt's speed pulsates
+
+
+def test_v_lin_is_infinite_where_any_harmonic_of_the_load_is_at_undamped_resonance() -> None:
+    drive = {"amplitude": 1.0, "frequency": 1.0 / 3.0, "waveform": "square"}
+
+    assert friction_free_velocity(scene(damping_ratio=0.0, drive=drive)) == math.inf

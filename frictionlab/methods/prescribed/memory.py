@@ -15,9 +15,11 @@ from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, 
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.period_map import size_of
 from frictionlab.methods.prescribed.motion import PrescribedMean
+from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, Motion
+from frictionlab.scene.packed import packed
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
 
@@ -36,11 +38,18 @@ class MemoryPoint:
         self.law = law.under_load(self.motion.normal_load)
         self.like: complex = 0.0 if scene.load_along_belt_only else 0j
         self.body = driven(self.motion, self.like)
+        self.slip = None if scene.is_harmonic else VaryingSlip.of(scene.signals(), self.motion.normal_load)
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind, self.seconds = "", MODEL, "estimated", 0.0
         self.curve: Curve | None = None
-        moves = self.belt_speed != 0.0 or self.motion.velocity != 0 or self.motion.transverse_velocity != 0
+        moves = self.belt_speed != 0.0 or self._swing() > 0.0
         self.found = self._answer(tolerance) if moves else self._left_open([], "no slip")
+
+    def _swing(self) -> float:
+        """The speed of the oscillation, at most."""
+        if self.slip is not None:
+            return self.slip.along.size() + self.slip.across.size()
+        return abs(self.motion.velocity) + abs(self.motion.transverse_velocity)
 
     def _answer(self, tolerance: float) -> PrescribedMean:
         guess = np.zeros((1, interpreted(size_of)(self.law, self.like)))
@@ -62,7 +71,7 @@ class MemoryPoint:
     def _followed(self, state: Floats) -> PrescribedMean:
         """Where the memory goes from rest, and from steady sliding in either direction."""
         means = []
-        swing = abs(self.motion.velocity) + abs(self.motion.transverse_velocity) + abs(self.belt_speed)
+        swing = self._swing() + abs(self.belt_speed)
         for side in (0.0, 1.0, -1.0):
             start = 0.0 * self.like, 0.0 * self.like, side * swing + 0.0 * self.like
             KernelCall(write_start, self.law)(self.body, start, state)
@@ -88,14 +97,21 @@ class MemoryPoint:
             return None
         found = self._called(self.curve.states, RECORDED)
         track, end = found.orbits, found.ends[0]
-        return Orbit(*(part[:end] for part in (track.tau, track.x, track.v, track.friction, track.stick)))
+        tau, x, v, friction, stick = (
+            part[:end] for part in (track.tau, track.x, track.v, track.friction, track.stick)
+        )
+        return Orbit(tau, x, v, friction, stick) if self.slip is None else self.slip.orbit(tau, friction)
 
 
 def driven(motion: Motion, like: complex) -> Body:
-    """A body that does what is prescribed; its spring and dashpot only tell a state's units."""
-    omega, across = motion.frequency, motion.transverse_velocity
-    sine = complex(motion.velocity.imag, across.imag) / omega
-    cosine = -complex(motion.velocity.real, across.real) / omega
+    """A body that does what is prescribed; its spring and dashpot only tell a state's units.
+
+    A sine is its reference motion. Of any other slip the body stays where it is, and the belt goes the other way.
+    """
+    omega, across, varying = motion.frequency, motion.transverse_velocity, _moved_belt(motion.varying, like)
+    share = 0.0 if varying else 1.0 / omega
+    sine = share * complex(motion.velocity.imag, across.imag)
+    cosine = -share * complex(motion.velocity.real, across.real)
     parts: Any = (sine, cosine, 0j) if isinstance(like, complex) else (sine.real, cosine.real, 0.0)
     return Body(
         damping_mean=2.0,
@@ -110,6 +126,17 @@ def driven(motion: Motion, like: complex) -> Body:
         balanced_cosine=parts[2],
         reference_sine=parts[0],
         reference_cosine=parts[1],
-        periods=1.0,
+        periods=varying.periods if varying else 1.0,
         prescribed=True,
+        varying=varying,
     )
+
+
+def _moved_belt(varying: Any, like: complex) -> Any:
+    """What varies, where the belt moves instead of the body."""
+    if not varying:
+        return varying
+    belt = varying.belt
+    belt = belt._replace(sine=-belt.sine, cosine=-belt.cosine, value=-belt.value, slope=-belt.slope)
+    moved = varying._replace(belt=belt, belt_lines=-varying.belt_lines, belt_slopes=-varying.belt_slopes)
+    return packed(moved, isinstance(like, complex))

@@ -25,6 +25,7 @@ from frictionlab.methods.prescribed.quadrature import (
     orbit_of_slip,
     slip_edges,
 )
+from frictionlab.methods.prescribed.varying_slip import VaryingPoint
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON
 from frictionlab.scene.scene import Scene
@@ -39,7 +40,8 @@ class SlidingPoint:
     def __init__(self, scene: Scene, law: FrictionLaw) -> None:
         self.motion, self.belt_speed, self.law = scene.motion(), scene.belt_speed, law
         self.along, self.across = self.motion.velocity, self.motion.transverse_velocity
-        self.size = scene.slip.velocity_amplitude if scene.slip is not None else 0.0
+        one = scene.slip
+        self.size = one.velocity_amplitude if one is not None and not one.direction else abs(self.along)
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind = "", "", "guaranteed"
         start = time.perf_counter()
@@ -100,16 +102,20 @@ class SlidingPoint:
         return orbit_of_slip(self.motion, self.belt_speed, self.law, 0j) if self.status == "ok" else None
 
 
-POINTS: dict[str, Callable[[Scene, Any, float], SlidingPoint | BristlePoint | MemoryPoint]] = {
-    "none": lambda scene, law, _tolerance: SlidingPoint(scene, law),
-    "bristle": BristlePoint,
+Point = SlidingPoint | VaryingPoint | BristlePoint | MemoryPoint
+
+POINTS: dict[str, Callable[[Scene, Any, float], Point]] = {
+    "none": lambda scene, law, _tolerance: (SlidingPoint if scene.is_harmonic else VaryingPoint)(scene, law),
+    "bristle": lambda scene, law, tolerance: (BristlePoint if scene.is_harmonic else MemoryPoint)(
+        scene, law, tolerance
+    ),
     "deflections": MemoryPoint,
     "scalars": MemoryPoint,
 }
 """What answers a scene of prescribed slip, by what the law remembers."""
 
 
-def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> SlidingPoint | BristlePoint | MemoryPoint:
+def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:
     slides_on = not along_one_line(scene, law) and saturates(law.under_load(scene.motion().normal_load))
     return POINTS["none" if slides_on else law.memory_kind](scene, law, tolerance)
 
@@ -130,7 +136,7 @@ def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
         error_kind=[row.error_kind for row in rows],
         mean=np.array([each.mean for each in found]),
         error=np.array([each.error for each in found]),
-        period=np.where(ok, 1.0, np.nan),
+        period=np.where(ok, float(scenes[0].periods), np.nan),
         mean_low=low,
         mean_high=np.array([each.high for each in found]),
         window=np.where(np.isnan(low), np.nan, 1.0),

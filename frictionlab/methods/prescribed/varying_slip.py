@@ -1,0 +1,190 @@
+"""A prescribed slip of any waveform under a normal load that may change, and friction without memory along it."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Status
+from frictionlab.methods.prescribed.motion import PrescribedMean
+from frictionlab.methods.prescribed.quadrature import nodes, sliding_vectors
+from frictionlab.orbit.panels import WEIGHTS
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import EPSILON, Floats
+from frictionlab.scene.scene import Scene
+from frictionlab.scene.signals import Signals
+from frictionlab.theory.piecewise import PieceNumbers, Piecewise, edges_of, piecewise
+from frictionlab.theory.prescribed import MeanDirection, mean_direction
+from frictionlab.theory.rest import friction_at_rest
+
+Vectors = NDArray[np.complex128]
+
+ALONG = "closed form: slip prescribed along the belt, the normal load integrated between its reversals"
+PLANE = "prescribed slip: Gauss-Lobatto quadrature, panels between corners graded towards slow slip"
+RESTS = "the slip rests for a part of the period: friction there is any value up to mu"
+WIDEST = math.pi / 16.0
+"""Half width of a panel, in radians of the quickest harmonic."""
+CLOSEST = 1e-16
+"""Half width of the panels, in shares of the period, at which the refinement towards rest ends."""
+
+
+class VaryingSlip(NamedTuple):
+    """A prescribed oscillation, its parts along and across the belt, and the normal load over its mean."""
+
+    along: Piecewise
+    across: Piecewise
+    normal_load: Piecewise
+    quickest: float
+
+    @classmethod
+    def of(cls, signals: Signals, normal_load: float) -> VaryingSlip:
+        """That of a scene."""
+        edges = edges_of(signals.corners(), signals.period)
+        share = signals.normal_load.scaled(1.0 / normal_load)
+        every = (*signals.belt, share)
+        quickest = max((wave.frequency for each in every for wave in each.waves), default=0.0)
+        along, across = (piecewise(each, edges) for each in signals.belt)
+        return cls(along, across, piecewise(share, edges, 1.0), quickest)
+
+    @property
+    def on_the_line(self) -> bool:
+        """Whether nothing oscillates across the belt."""
+        return self.across.size() == 0.0
+
+    def velocity(self, tau: Floats, k: PieceNumbers) -> Vectors:
+        """x1' + i x2' at times on the pieces k."""
+        return np.asarray(self.along.at(tau, k)[0] + 1j * self.across.at(tau, k)[0])
+
+    def position(self, tau: Floats, k: PieceNumbers) -> Vectors:
+        """x1 + i x2, from 0 at tau = 0."""
+        return np.asarray(_path(self.along, tau, k) + 1j * _path(self.across, tau, k))
+
+    def orbit(self, tau: Floats, friction: Vectors) -> Orbit:
+        """One period of the oscillation about its mean position at the nodes of panels, with friction along it."""
+        k = piece_at(self.along.edges, 0.5 * (tau[:, :1] + tau[:, -1:]))
+        x, weights = self.position(tau, k), 0.5 * (tau[:, -1:] - tau[:, :1]) * WEIGHTS
+        x = x - complex((weights * x).sum()) / self.along.period
+        return Orbit(tau, x, self.velocity(tau, k), friction, np.zeros(len(tau), np.bool_))
+
+    def panels(self, belt_speed: float, cuts: Floats) -> tuple[Floats, PieceNumbers]:
+        """Edges of panels, and the pieces they are on: within half the way to the next slow slip of each they are
+        analytic, and they end at the cuts."""
+        along, across = self.along.minus(belt_speed), self.across
+        edges = np.unique(np.concatenate([along.edges, cuts]))
+        start, stop = edges[:-1], edges[1:]
+        bend, done = along.curvature() + across.curvature(), []
+        widest = WIDEST / self.quickest if self.quickest else math.inf
+        while len(start):
+            middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
+            k = piece_at(along.edges, middle)
+            (first, rate), (second, rate_2) = along.at(middle, k), across.at(middle, k)
+            moved = np.hypot(rate, rate_2) * 2.0 * half + 0.5 * bend[k] * (2.0 * half) ** 2
+            narrow = (np.hypot(first, second) >= moved) & (half <= widest)
+            kept = narrow | (half <= CLOSEST * along.period)
+            done.append(start[kept])
+            start, stop = (
+                np.concatenate([start[~kept], middle[~kept]]),
+                np.concatenate([middle[~kept], stop[~kept]]),
+            )
+        edges = np.append(np.sort(np.concatenate(done)), along.period)
+        return edges, piece_at(along.edges, 0.5 * (edges[:-1] + edges[1:]))
+
+
+def _path(velocity: Piecewise, tau: Floats, k: PieceNumbers) -> Floats:
+    numbers = np.arange(len(velocity.middle))
+    gone = velocity.integral(velocity.edges[:-1], velocity.edges[1:], numbers)
+    before = np.concatenate([[0.0], np.cumsum(gone)[:-1]])
+    return np.asarray(before[k] + velocity.integral(velocity.edges[k], tau, k))
+
+
+def piece_at(edges: Floats, tau: Floats) -> PieceNumbers:
+    """The pieces on which these times are, inside."""
+    return np.clip(np.searchsorted(edges, tau, side="right") - 1, 0, len(edges) - 2)
+
+
+class VaryingPoint:
+    """One scene of such a slip, a law without memory, and the answer."""
+
+    def __init__(self, scene: Scene, law: FrictionLaw) -> None:
+        assert scene.normal_load is not None
+        self.slip = VaryingSlip.of(scene.signals(), scene.normal_load)
+        self.belt_speed, self.law, self.periods = scene.belt_speed, law, float(scene.periods)
+        self.status: Status = "ok"
+        self.reason, self.model, self.error_kind = "", "", "guaranteed"
+        start = time.perf_counter()
+        self.cuts = self.slip.along.minus(self.belt_speed).crossings().tau if self.slip.on_the_line else None
+        self.found = self._answer()
+        self.seconds = time.perf_counter() - start
+
+    def _answer(self) -> PrescribedMean:
+        turns = self._turns()
+        if turns is not None and self.law.constant_sliding_friction():
+            most = self.law.sliding_friction(1.0)
+            mean, error, self.model = complex(most * turns.mean, 0.0), most * turns.error, ALONG
+        else:
+            mean, error, self.model = *self._by_quadrature(turns), PLANE
+            self.error_kind = "estimated"
+        resting = self._resting()
+        if resting > 0.0:
+            return self._left_open(mean.real, resting * friction_at_rest(self.law))
+        return PrescribedMean(mean, error)
+
+    def _turns(self) -> MeanDirection | None:
+        """The mean direction of a slip along the belt."""
+        if not self.slip.on_the_line:
+            return None
+        return mean_direction(self.slip.along.minus(self.belt_speed), self.slip.normal_load)
+
+    def _resting(self) -> float:
+        """The share of the normal load that acts while slip rests."""
+        along, load = self.slip.along.minus(self.belt_speed), self.slip.normal_load
+        k = np.flatnonzero(along.at_rest() & self.slip.across.at_rest())
+        return float(load.integral(along.edges[k], along.edges[k + 1], k).sum()) / along.period
+
+    def _by_quadrature(self, turns: MeanDirection | None) -> tuple[complex, float]:
+        """Mean and error; along the belt, the share of friction at vanishing speed in closed form.
+
+        What is left to quadrature then vanishes where slip does, and near V_lin nothing hangs on its sign there.
+        """
+        first = self.law.sliding_friction(0.0) if turns is not None else 0.0
+        edges, k = self._panels()
+        halves = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])]))
+        coarse, _ = self._mean(edges, k, first)
+        fine, largest = self._mean(halves, np.repeat(k, 2), first)
+        error = 4.0 * abs(fine - coarse) + 64.0 * EPSILON * largest
+        if turns is None:
+            return fine, error
+        return fine + first * turns.mean, error + first * turns.error
+
+    def _panels(self) -> tuple[Floats, PieceNumbers]:
+        return self.slip.panels(self.belt_speed, np.empty(0) if self.cuts is None else self.cuts)
+
+    def _mean(self, edges: Floats, k: PieceNumbers, less: float) -> tuple[complex, float]:
+        """Of friction less a constant coefficient, and the largest friction met."""
+        tau, weights = nodes(edges)
+        slip = self.slip.velocity(tau, k[:, None]) - self.belt_speed
+        load = self.slip.normal_load.at(tau, k[:, None])[0]
+        friction = load * sliding_vectors(self.law, slip)
+        largest = float(np.abs(friction).max())
+        if less:
+            friction = friction - load * less * slip / np.maximum(np.abs(slip), 1e-300)
+        return -complex((weights * friction).sum()) / self.slip.along.period, largest
+
+    def _left_open(self, mean: float, spread: float) -> PrescribedMean:
+        self.status, self.error_kind, self.reason = "not_unique", "", RESTS
+        return PrescribedMean(low=mean - spread, high=mean + spread)
+
+    def orbit(self) -> Orbit | None:
+        """The prescribed motion and the friction along it."""
+        if self.status != "ok":
+            return None
+        edges, k = self._panels()
+        tau, _ = nodes(edges)
+        slip = self.slip.velocity(tau, k[:, None]) - self.belt_speed
+        load = self.slip.normal_load.at(tau, k[:, None])[0]
+        return self.slip.orbit(tau, load * sliding_vectors(self.law, slip))

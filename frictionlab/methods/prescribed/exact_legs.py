@@ -93,10 +93,13 @@ def _deflected(law: Any, z: float, side: float, path: float) -> float:
 
 
 @inner
-def _gained(law: Any, legs: Legs, z: float, side: float, path: float) -> float:
-    """The change of deflection over a leg, with full relative accuracy for soft contacts, too."""
+def gained(law: Any, length: float, z: float, side: float, path: float) -> float:
+    """The change of deflection over a leg, with full relative accuracy for soft contacts, too.
+
+    length: as in ``Legs``.
+    """
     # Far along, or saturated, the difference of deflections keeps its digits; else the rate is integrated.
-    if path > SOFT * legs.length or path >= law.saturation_path(z, side):
+    if path > SOFT * length or path >= law.saturation_path(z, side):
         return _deflected(law, z, side, path) - z
     total = 0.0
     for node in range(POINTS.size):
@@ -109,8 +112,8 @@ def _gained(law: Any, legs: Legs, z: float, side: float, path: float) -> float:
 def _opened(law: Any, legs: Legs, z: float, forward: float, back: float) -> float:
     """The change of deflection over both legs; it decreases as the deflection at the start increases."""
     # The second leg starts where the first ends.
-    up = _gained(law, legs, z, 1.0, forward)
-    return up + _gained(law, legs, z + up, -1.0, back)
+    up = gained(law, legs.length, z, 1.0, forward)
+    return up + gained(law, legs.length, z + up, -1.0, back)
 
 
 @inner
@@ -182,7 +185,7 @@ def closed_legs(law: Any, legs: Legs) -> Any:
     forward, back = _path(legs, 1.0, long), _path(legs, -1.0, short)
     z = _closed(law, legs, forward, back)
     edges = np.empty((2, ROOM))
-    top = z + _gained(law, legs, z, 1.0, forward)
+    top = z + gained(law, legs.length, z, 1.0, forward)
     count = _edges(law, legs, z, 1.0, long, edges[0])
     both = count + _edges(law, legs, top, -1.0, short, edges[1])
     starts, widths = np.empty(both), np.empty(both)

@@ -25,6 +25,7 @@ from frictionlab.methods.prescribed.quadrature import (
     orbit_of_slip,
     slip_edges,
 )
+from frictionlab.methods.prescribed.varying_legs import LegsPoint
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON
@@ -102,17 +103,23 @@ class SlidingPoint:
         return orbit_of_slip(self.motion, self.belt_speed, self.law, 0j) if self.status == "ok" else None
 
 
-Point = SlidingPoint | VaryingPoint | BristlePoint | MemoryPoint
+Point = SlidingPoint | VaryingPoint | BristlePoint | LegsPoint | MemoryPoint
 
 POINTS: dict[str, Callable[[Scene, Any, float], Point]] = {
     "none": lambda scene, law, _tolerance: (SlidingPoint if scene.is_harmonic else VaryingPoint)(scene, law),
-    "bristle": lambda scene, law, tolerance: (BristlePoint if scene.is_harmonic else MemoryPoint)(
-        scene, law, tolerance
-    ),
+    "bristle": lambda scene, law, tolerance: _bristle_point(scene, law, tolerance),
     "deflections": MemoryPoint,
     "scalars": MemoryPoint,
 }
 """What answers a scene of prescribed slip, by what the law remembers."""
+
+
+def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
+    if scene.is_harmonic:
+        return BristlePoint(scene, law, tolerance)
+    if along_one_line(scene, law) and law.exact_path():
+        return LegsPoint(scene, law)
+    return MemoryPoint(scene, law, tolerance)
 
 
 def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:

@@ -9,6 +9,7 @@ __version__: str
 
 _HOMES = {
     "Auto": "frictionlab.methods.auto",
+    "BeltVibration": "frictionlab.scene.scene",
     "BristleLaw": "frictionlab.laws.memory",
     "CompliantLaw": "frictionlab.laws.compliant",
     "Coulomb": "frictionlab.laws.coulomb",
@@ -16,9 +17,11 @@ _HOMES = {
     "DampedLaw": "frictionlab.laws.compliant",
     "Dimension": "frictionlab.laws.base",
     "Dimensional": "frictionlab.scene.dimensional",
+    "DimensionalBeltVibration": "frictionlab.scene.dimensional",
     "DimensionalDrive": "frictionlab.scene.dimensional",
     "DimensionalInitial": "frictionlab.scene.dimensional",
     "DimensionalLoad": "frictionlab.scene.dimensional",
+    "DimensionalNormalLoadVariation": "frictionlab.scene.dimensional",
     "DimensionalTransverse": "frictionlab.scene.dimensional",
     "Drive": "frictionlab.scene.scene",
     "ElastoPlastic": "frictionlab.laws.elasto_plastic",
@@ -35,6 +38,7 @@ _HOMES = {
     "Mdsm": "frictionlab.methods.reduced.mdsm",
     "MemoryLaw": "frictionlab.laws.memory",
     "NonNegative": "frictionlab.laws.base",
+    "NormalLoadVariation": "frictionlab.scene.scene",
     "PerSpeed": "frictionlab.laws.base",
     "Positive": "frictionlab.laws.base",
     "Scene": "frictionlab.scene.scene",

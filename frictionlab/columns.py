@@ -192,17 +192,36 @@ _NAMES = {
     "scene.drive.unbalance": ("unbalance", r"\alpha"),
     "scene.drive.amplitude": ("load amplitude", "P"),
     "scene.drive.phase": ("load phase [deg]", r"\varphi_1"),
+    "scene.drive.waveform": ("drive waveform", ""),
+    "scene.drive.direction": ("drive direction", r"\chi", "deg"),
     "scene.transverse.natural_frequency": ("transverse natural frequency", r"\omega_r"),
     "scene.transverse.damping_ratio": ("transverse damping ratio", r"\beta_2"),
     "scene.transverse.load.unbalance": ("transverse unbalance", r"\alpha_2"),
     "scene.transverse.load.amplitude": ("transverse load amplitude", "P_2"),
     "scene.transverse.load.phase": ("transverse load phase [deg]", r"\varphi_2"),
+    "scene.transverse.load.waveform": ("transverse load waveform", ""),
+    "scene.transverse.load.frequency_ratio": ("transverse load frequency ratio", "r_2"),
     "scene.slip.velocity_amplitude": ("slip velocity amplitude", "V_1"),
     "scene.slip.frequency": ("slip frequency", r"\Omega"),
     "scene.slip.phase": ("slip phase [deg]", r"\varphi_1"),
+    "scene.slip.waveform": ("slip waveform", ""),
+    "scene.slip.direction": ("slip direction", r"\chi", "deg"),
     "scene.transverse_slip.velocity_amplitude": ("transverse slip velocity amplitude", "V_2"),
     "scene.transverse_slip.frequency": ("transverse slip frequency", r"\Omega"),
     "scene.transverse_slip.phase": ("transverse slip phase [deg]", r"\varphi_2"),
+    "scene.transverse_slip.waveform": ("transverse slip waveform", ""),
+    "scene.belt_vibration.velocity_amplitude": ("belt vibration amplitude", r"\hat v_b"),
+    "scene.belt_vibration.phase": ("belt vibration phase", r"\varphi_b", "deg"),
+    "scene.belt_vibration.waveform": ("belt vibration waveform", ""),
+    "scene.belt_vibration.direction": ("belt vibration direction", r"\chi_b", "deg"),
+    "scene.belt_vibration.frequency_ratio": ("belt vibration frequency ratio", "r_b"),
+    "scene.belt_vibration.frequency": ("belt vibration frequency", r"\Omega"),
+    "scene.normal_load_variation.amplitude": ("varying share of the normal load", "n"),
+    "scene.normal_load_variation.phase": ("normal load phase", r"\varphi_n", "deg"),
+    "scene.normal_load_variation.waveform": ("normal load waveform", ""),
+    "scene.normal_load_variation.frequency_ratio": ("normal load frequency ratio", "r_n"),
+    "scene.normal_load_variation.frequency": ("normal load frequency", r"\Omega"),
+    "scene.normal_load_variation.contact": ("contact under a varying load", ""),
     "law.mu": ("friction coefficient", r"\mu"),
     "law.mu_kinetic": ("kinetic friction coefficient", r"\mu_k"),
     "law.mu_static": ("static friction coefficient", r"\mu_s"),
@@ -242,20 +261,26 @@ _IN_SI = {  # words, symbol, unit; inputs without the "scene.dimensional." befor
     "transverse.load.unbalance_kg_m": ("transverse unbalance", "m_2 r_2", "kg m"),
     "transverse.load.amplitude_N": ("transverse load amplitude", "F_2", "N"),
     "transverse.load.phase": ("transverse load phase", r"\varphi_2", "deg"),
+    "belt_vibration.velocity_amplitude_m_per_s": ("belt vibration amplitude", r"\hat V_b", "m/s"),
+    "belt_vibration.frequency_rad_per_s": ("belt vibration frequency", r"\omega", "rad/s"),
+    "normal_load_variation.frequency_rad_per_s": ("normal load frequency", r"\omega", "rad/s"),
 }
 
 
 def symbol(name: str) -> str:
-    """The symbol of an input or column in mathtext; for one without a symbol the last part of its path."""
-    return f"${_entry(name)[1]}$" if _entry(name) else name.rpartition(".")[2].replace("_", " ")
+    """The symbol of an input or column in mathtext; its words where it has none, else the last part of its path."""
+    entry = _entry(name)
+    if not entry:
+        return name.rpartition(".")[2].replace("_", " ")
+    return f"${entry[1]}$" if entry[1] else entry[0]
 
 
 def word(name: str, longest: int = 80) -> str:
     """Name, symbol and unit of an input or column, wrapped to lines of at most ``longest`` letters.
 
-    For one without a symbol: the last part of its path.
+    For one without a symbol its words, or the last part of its path.
     """
-    if not (entry := _entry(name)):
+    if not (entry := _entry(name)) or not entry[1]:
         return symbol(name)
     unit = f" [{entry[2]}]" if len(entry) > 2 else ""
     return f"{textwrap.fill(entry[0], longest)} {symbol(name)}{unit}"
@@ -267,4 +292,5 @@ def _entry(name: str) -> tuple[str, ...]:
         return _LAWS[parameter] if parameter in _LAWS else _entry(f"law.{parameter}")
     plain = {f"law.{parameter}": entry[:2] for parameter, entry in _LAWS.items()}
     known: dict[str, tuple[str, ...]] = {**_IN_SI, **_NAMES, **plain}
-    return known.get(name.removeprefix("scene.dimensional."), ())
+    inside = name.removeprefix(_GIVEN_IN_SI)
+    return known.get(inside) or (known.get(f"scene.{inside}", ()) if inside != name else ())

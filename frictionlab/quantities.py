@@ -19,7 +19,7 @@ def _a_number(value: object) -> object:
     if type(value) is float:  # by far the most, and asking for a Real takes as long as all the rest
         return value
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise ValueError(f"must be a number, not {value!r}")
+        raise ValueError("must be a number")
     return float(value)
 
 

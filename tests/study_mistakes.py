@@ -29,6 +29,9 @@ expect:
   - {where: {law: coulomb, scene.belt_speed: 5}, column: error, below: 1, because: Fig. 9b}
 """
 
+BODY = GOOD[GOOD.index("damping_ratio") : GOOD.index("\nlaws:")]
+"""The values of its scene."""
+
 # fmt: off
 EDITS = [
     # top level
@@ -76,7 +79,7 @@ EDITS = [
     ("drive: {unbalance: 10, frequency: 1}", "drive: 5", "8:10: scene.drive: must be a mapping (key: value), got 5"),
     ("drive: {unbalance: 10, frequency: 1}", "drive:", "8:3: scene.drive: must be a mapping, got null"),
     ("drive: {unbalance: 10, frequency: 1}", "drive: {unbalance: 10, frequency: 1, waveform: sinus}",
-     "8:50: scene.drive.waveform: must be sine, square, triangle, sawtooth or {harmonics: [...]}, got 'sinus'"),
+     "8:50: scene.drive.waveform: must be 'sine', 'square', 'triangle', 'sawtooth' or {harmonics: [...]}, got the text 'sinus'"),
     ("  drive: {unbalance: 10, frequency: 1}\n", "",
      "11:5: scene.transverse.load: leave it out where drive is left out (an undriven scene)"),
     ("load: {unbalance: 10}", "load: {unbalance: 10, frequency: 2}", "12:27: scene.transverse.load.frequency: unknown key"),
@@ -190,5 +193,51 @@ EDITS = [
     ("column: error, below: 1", "max_difference: [auto, second]", "23:5: expect[0].below: required key is missing"),
     ("because: Fig. 9b}", "becaus: Fig. 9b}", "23:75: expect[0].becaus: unknown key; allowed: where, column"),
     ("because: Fig. 9b}", "because: 9}", "23:84: expect[0].because: must be text, got 9 (put it in quotes)"),
+    # waveforms, directions, belt vibration, varying normal load
+    ("frequency: 1}", "frequency: 1, waveform: 3}",
+     "8:50: scene.drive.waveform: must be 'sine', 'square', 'triangle', 'sawtooth' or {harmonics: [...]}, got 3"),
+    ("frequency: 1}", "frequency: 1, waveform: }", "8:40: scene.drive.waveform: must be a value, got null"),
+    ("frequency: 1}", "frequency: 1, waveform: {harmonics: []}}",
+     "8:51: scene.drive.waveform.harmonics: must be 1 to 64 terms, got 0; a sum of harmonics is {harmonics: [{order: 1, amp"),
+    ("frequency: 1}", "frequency: 1, waveform: {harmonic: []}}",
+     "8:51: scene.drive.waveform.harmonic: unknown key; a sum of harmonics is {harmonics: [{order: 1, amplitude: 1, phase:"),
+    ("frequency: 1}", "frequency: 1, waveform: {harmonics: [{order: 1, amplitude: 1}, {order: 0, amplitude: 1}]}}",
+     "8:97: scene.drive.waveform.harmonics[1].order: must be a whole number from 1 to 64, got 0"),
+    ("frequency: 1}", "frequency: 1, waveform: {harmonics: [{order: 1}]}}",
+     "8:63: scene.drive.waveform.harmonics[0].amplitude: required key is missing"),
+    ("frequency: 1}", "frequency: 1, direction: 30}",
+     "8:51: scene.drive.direction: leave it out with transverse.load, which gives the force across the belt"),
+    ("frequency: 1}\n  transverse:\n    natural_frequency: 0.5\n    damping_ratio: 0.1\n    load: {unbalance: 10}",
+     "frequency: 1, direction: 30}",
+     "8:51: scene.drive.direction: needs transverse, without which nothing moves across the belt"),
+    (BODY, "belt_speed: 5\n  slip: {velocity_amplitude: 1, frequency: 1, direction: 30}\n  transverse_slip: {velocity_amplitude: 1}",
+     "6:58: scene.slip.direction: leave it out with transverse_slip"),
+    (BODY, "belt_speed: 5\n  slip: {velocity_amplitude: 1, frequency: 1}\n  belt_vibration: {velocity_amplitude: 1}",
+     "7:3: scene.belt_vibration: leave it out with a prescribed slip"),
+    (BODY, "belt_speed: 5\n  normal_load: 1\n  damping_ratio: 1\n  belt_vibration: {velocity_amplitude: 1}",
+     "8:3: scene.belt_vibration.frequency: required key is missing where drive is left out"),
+    ("load: {unbalance: 10}\n", "load: {unbalance: 10}\n  belt_vibration: {velocity_amplitude: 1, frequency: 2}\n",
+     "13:54: scene.belt_vibration.frequency: leave it out, drive.frequency holds for all (frequency_ratio gives another"),
+    (BODY, "belt_speed: 5\n  normal_load: 1\n  damping_ratio: 1\n  belt_vibration: {velocity_amplitude: 1, frequency: 2, frequency_ratio: 2}",
+     "8:74: scene.belt_vibration.frequency_ratio: leave it out where frequency is given"),
+    ("load: {unbalance: 10}\n", "load: {unbalance: 10, frequency_ratio: 1.4142}\n",
+     '12:44: scene.transverse.load.frequency_ratio: must be p/q in whole numbers, q at most 64 and p/q from 1/64 to 1000, such as 2, 0.5 or "3/2", got 1.4142'),
+    ("load: {unbalance: 10}\n", "load: {unbalance: 10, frequency_ratio: 1/61}\n  belt_vibration: {velocity_amplitude: 1, frequency_ratio: 1/2}\n",
+     "12:44: scene.transverse.load.frequency_ratio: with it everything repeats after 122 periods of the drive only, more"),
+    ("load: {unbalance: 10}\n", "load: {unbalance: 10}\n  normal_load_variation: {amplitude: 1.2}\n",
+     "13:38: scene.normal_load_variation.amplitude: the normal load must stay positive over the whole period, here for amplitudes below 1, got 1.2"),
+    ("load: {unbalance: 10}\n", "load: {unbalance: 10}\n  normal_load_variation: {amplitude: 0.2, contact: perload}\n",
+     "13:52: scene.normal_load_variation.contact: must be 'per_load' or 'constant'; got the text 'perload'"),
+    ("  scene.belt_speed: {start: 0.5, stop: 60, num: 120}", "  scene.drive.waveform: [sine, square]\n  scene.drive.waveform: 3",
+     "20:3: sweep.scene.drive.waveform: given twice, first in line 19"),
+    ("  laws.soft.mu", "  scene.drive.waveform: [sine, sqare]\n  laws.soft.mu",
+     "20:32: sweep.scene.drive.waveform[1]: must be 'sine', 'square', 'triangle', 'sawtooth' or {harmonics: [...]}, got the"),
+    ("  laws.soft.mu", "  scene.drive.waveform: {start: 1, stop: 2, num: 3}\n  laws.soft.mu",
+     "20:3: sweep.scene.drive.waveform: must be a list, got a mapping"),
+    ("  laws.soft.mu", "  scene.drive.waveform: [sine, square, sine]\n  laws.soft.mu",
+     "20:40: sweep.scene.drive.waveform[2]: sine is in the list twice"),
+    ("  laws.soft.mu", "  scene.transverse.load.frequency_ratio: [1, 3/2, 1.5]\n  laws.soft.mu",
+     "20:51: sweep.scene.transverse.load.frequency_ratio[2]: 1.5 is in the list twice"),
+    ("  laws.soft.mu", "  scene.drive.wavform: [sine, square]\n  laws.soft.mu", "20:3: sweep.scene.drive.wavform: no such value in"),
 ]
 # fmt: on

@@ -14,7 +14,7 @@ import frictionlab as fl
 from frictionlab import registry
 from frictionlab.charts.figures import FIGURES
 from frictionlab.columns import CURVES, RESULTS, SI, TEXT
-from frictionlab.mistakes.validation import number_paths
+from frictionlab.mistakes.validation import number_paths, value_paths
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
 from frictionlab.study import load_study
@@ -135,7 +135,7 @@ PARAMETERS = {
     for name in ("coulomb", "stribeck", "dahl", "lugre", "elasto-plastic", "jenkins")
     for key in registry.law_class(name).model_fields
 }
-VALUES = [f"scene.{path}" for path in number_paths(Scene) if not path.startswith("dimensional.")]
+VALUES = [f"scene.{path}" for path in value_paths(Scene) if not path.startswith("dimensional.")]
 VALUES += number_paths(Dimensional)
 NUMBERS = [column for column in RESULTS if column not in TEXT and column != "seconds"]
 

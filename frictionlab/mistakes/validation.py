@@ -50,6 +50,15 @@ def number_paths(record: type[BaseModel], prefix: str = "") -> list[str]:
     return paths
 
 
+def value_paths(record: type[BaseModel], prefix: str = "") -> list[str]:
+    """The dotted paths of every value, number or not, a record and those inside it can hold."""
+    paths: list[str] = []
+    for key in record.model_fields:
+        part = nested(record, key)
+        paths += value_paths(part, f"{prefix}{key}.") if part else [prefix + key]
+    return paths
+
+
 def _alternatives(annotation: Any) -> list[Any]:
     if get_origin(annotation) in (Union, types.UnionType):
         return [kind for part in get_args(annotation) for kind in _alternatives(part)]
@@ -58,11 +67,25 @@ def _alternatives(annotation: Any) -> list[Any]:
 
 def wrong_value(record: type[BaseModel], key: str, value: Any) -> str | None:
     """The mistake in a value for one field, by itself; None if there is none."""
+    return checked_value(record, key, value)[1]
+
+
+def checked_value(record: type[BaseModel], key: str, value: Any) -> tuple[Any, str | None, str]:
+    """The value as a field holds it, the mistake in it and what was meant; no mistake if there is none."""
     try:
-        _field(record, key).validate_python(value)
+        return _field(record, key).validate_python(value), None, ""
     except ValidationError as problem:
-        return _value_mistake(problem.errors(include_url=False)[0], value_text)
-    return None
+        error = problem.errors(include_url=False)[0]
+        return None, _value_mistake(error, value_text), _meant(error)
+
+
+def placed(path: Path, what: str, value: Any) -> tuple[Path, str]:
+    """Where and what a mistake is; in a value that is itself a mapping it is written ``path: what``."""
+    found = re.fullmatch(r"([\w.\[\]]+): (.*)", what, re.DOTALL)
+    if not found or not isinstance(value, Mapping):
+        return path, what
+    steps = re.findall(r"\[(\d+)\]|(\w+)", found[1])
+    return (*path, *(int(place) if place else name for place, name in steps)), found[2]
 
 
 @cache
@@ -153,7 +176,8 @@ class _Check:
         for key in [key for key in tree if key in record.model_fields]:
             part = nested(record, key)
             if tree[key] is None:
-                self._note((*inside, key), f"must be {'a mapping' if part else 'a number'}, got null")
+                wanted = "a mapping" if part else "a number" if key in number_paths(record) else "a value"
+                self._note((*inside, key), f"must be {wanted}, got null")
                 if part is None:
                     del tree[key]
                 else:
@@ -176,13 +200,9 @@ class _Check:
             return self._replaced(inside)
         if error["type"] == "value_error" and record_at(self._record, inside) is not None:
             return any([self._rule(inside, part, what) for part, what in self._said(inside, _message(error))])
-        if error["type"] == "literal_error":
-            names = re.findall("'([^']*)'", error["ctx"]["expected"])
-            hint = did_you_mean(error["input"], names) if isinstance(error["input"], str) else ""
-            self._note(inside, _value_mistake(error, self._notes.notation.text_of), hint)
-            return self._dropped(inside)
-        self._note(inside, _value_mistake(error, self._notes.notation.text_of))
-        return self._filled(inside)
+        what = _value_mistake(error, self._notes.notation.text_of)
+        self._note(*placed(inside, what, error["input"]), _meant(error))
+        return self._filled(inside) if self._is_number(inside) else self._dropped(inside)
 
     def _no_part(self, error: Any) -> str:
         given = self._notes.notation.text_of(error["input"])
@@ -232,12 +252,15 @@ class _Check:
             tree = tree.get(step) if isinstance(tree, dict) else None
         return tree
 
+    def _is_number(self, inside: Path) -> bool:
+        """Whether the field at this path holds a number."""
+        record = record_at(self._record, inside[:-1])
+        return bool(inside) and record is not None and str(inside[-1]) in number_paths(record)
+
     def _filled(self, inside: Path) -> bool:
         """Insert a valid number, if the field holds a number."""
         record, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
-        if not inside or record is None or not isinstance(tree, dict):
-            return False
-        if str(inside[-1]) not in number_paths(record):
+        if record is None or not self._is_number(inside) or not isinstance(tree, dict):
             return False
         filler = valid_number(record, str(inside[-1]))
         held = tree.get(inside[-1])
@@ -277,6 +300,14 @@ def _message(error: Any) -> str:
     return str(error["ctx"]["error"]) if "error" in error.get("ctx", {}) else str(error["msg"])
 
 
+def _meant(error: Any) -> str:
+    """Which of the quoted names that are allowed a wrong name was meant to be."""
+    if not isinstance(error["input"], str):
+        return ""
+    allowed = _value_mistake(error, value_text).partition("got the text")[0]
+    return did_you_mean(error["input"], re.findall("'([^']*)'", allowed))
+
+
 _BOUNDS = {"greater_than": (">", "gt"), "greater_than_equal": (">=", "ge")}
 _BOUNDS |= {"less_than": ("<", "lt"), "less_than_equal": ("<=", "le")}
 
@@ -296,6 +327,8 @@ def _value_mistake(error: Any, text_of: Callable[[Any], str]) -> str:
     if error["type"] == "too_short":
         return f"must be a list of at least {error['ctx']['min_length']}, got {error['ctx']['actual_length']}"
     message = _message(error)
-    if message.startswith("must be a number") or error["type"].startswith(("float", "int")):
+    if error["type"].startswith(("float", "int")):
         return f"must be a number, got {given}"
+    if message.startswith("must be "):
+        return f"{message}, got {given}"
     return message[:1].lower() + message[1:]

@@ -10,11 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import cache, lru_cache
-from typing import Any, NamedTuple, TypeVar, get_args
+from typing import Any, Literal, NamedTuple, TypeVar, get_args
 
 from pydantic import Field, model_validator
 
 from frictionlab.quantities import Dimension, Finite, NonNegative, Positive, Record
+from frictionlab.scene.rules import SHAKEN, problems_of_parts
+from frictionlab.scene.waveforms import SINE, Ratio, Waveform
 
 STANDARD_GRAVITY = 9.81
 
@@ -44,11 +46,12 @@ class Units(NamedTuple):
 
 
 class _Force(Record):
-    """A harmonic force by its unbalance [kg m] or its amplitude [N]; phase in degrees."""
+    """A periodic force by its unbalance [kg m] or its amplitude [N]; phase in degrees."""
 
     unbalance_kg_m: NonNegative | None = None
     amplitude_N: NonNegative | None = None
     phase: Finite = 0.0
+    waveform: Waveform | None = None
 
     @model_validator(mode="after")
     def _one_of_two(self) -> _Force:
@@ -56,25 +59,79 @@ class _Force(Record):
             raise ValueError("give exactly one of unbalance_kg_m and amplitude_N")
         return self
 
-    def scaled(self, mass: float, scales: Units) -> dict[str, float]:
-        """unbalance/(M L) or amplitude/(K_1 L), and the phase."""
+    def scaled(self, mass: float, scales: Units) -> dict[str, Any]:
+        """unbalance/(M L) or amplitude/(K_1 L), and what has no unit."""
         if self.unbalance_kg_m is not None:
-            return {"unbalance": self.unbalance_kg_m / (mass * scales.length), "phase": self.phase}
+            return {"unbalance": self.unbalance_kg_m / (mass * scales.length), **_without_unit(self)}
         assert self.amplitude_N is not None
-        return {"amplitude": self.amplitude_N / scales.force, "phase": self.phase}
+        return {"amplitude": self.amplitude_N / scales.force, **_without_unit(self)}
 
 
 class DimensionalDrive(_Force):
-    """The force along x1: unbalance_kg_m*omega^2 (or amplitude_N) times sin(omega t + phase).
+    """The force along x1: unbalance_kg_m*omega^2 (or amplitude_N) times waveform(omega t + phase).
 
-    frequency_rad_per_s > 0: omega.
+    frequency_rad_per_s > 0: omega. waveform, direction: as for ``Drive``.
     """
 
     frequency_rad_per_s: Positive
+    direction: Finite | None = None
 
 
 class DimensionalLoad(_Force):
-    """The force along x2, at the frequency of the drive."""
+    """The force along x2, at the frequency of the drive or, with ``frequency_ratio``, at p/q times that."""
+
+    frequency_ratio: Ratio | None = None
+
+
+class DimensionalBeltVibration(Record):
+    """The belt's velocity beside belt_speed_m_per_s: velocity_amplitude_m_per_s times the waveform.
+
+    phase, waveform, direction, frequency_ratio: as for ``BeltVibration``; frequency_rad_per_s in place of the ratio
+    where nothing else has a frequency.
+    """
+
+    velocity_amplitude_m_per_s: NonNegative
+    phase: Finite = 0.0
+    waveform: Waveform = SINE
+    direction: Finite = 0.0
+    frequency_ratio: Ratio | None = None
+    frequency_rad_per_s: Positive | None = None
+
+    def scaled(self, scales: Units) -> dict[str, Any]:
+        """The nondimensional one."""
+        size = {"velocity_amplitude": self.velocity_amplitude_m_per_s / scales.velocity}
+        return size | _without_unit(self) | _scaled_frequency(self, scales)
+
+
+class DimensionalNormalLoadVariation(Record):
+    """The normal load as its mean times 1 + amplitude*waveform; all as for ``NormalLoadVariation``.
+
+    amplitude [-] >= 0: a share of the mean load. frequency_rad_per_s: where nothing else has a frequency.
+    """
+
+    amplitude: NonNegative
+    phase: Finite = 0.0
+    waveform: Waveform = SINE
+    frequency_ratio: Ratio | None = None
+    contact: Literal["per_load", "constant"] = "per_load"
+    frequency_rad_per_s: Positive | None = None
+
+    def scaled(self, scales: Units) -> dict[str, Any]:
+        """The nondimensional one."""
+        return {"amplitude": self.amplitude} | _without_unit(self) | _scaled_frequency(self, scales)
+
+
+_WITHOUT_UNIT = "phase", "waveform", "direction", "frequency_ratio", "contact"
+
+
+def _without_unit(part: Record) -> dict[str, Any]:
+    """The values of a part that are the same in all units."""
+    return {name: value for name, value in part if name in _WITHOUT_UNIT and value is not None}
+
+
+def _scaled_frequency(part: Any, scales: Units) -> dict[str, float]:
+    omega: float | None = part.frequency_rad_per_s
+    return {} if omega is None else {"frequency": omega * scales.time}
 
 
 class DimensionalTransverse(Record):
@@ -113,6 +170,8 @@ class Dimensional(Record):
     belt_speed_m_per_s: Finite
     drive: DimensionalDrive | None = None
     transverse: DimensionalTransverse | None = None
+    belt_vibration: DimensionalBeltVibration | None = None
+    normal_load_variation: DimensionalNormalLoadVariation | None = None
     initial: DimensionalInitial | None = None
 
     @model_validator(mode="before")
@@ -132,11 +191,7 @@ class Dimensional(Record):
     def _parts_that_do_not_go_together(self) -> Iterator[str]:
         if self.gravity_m_per_s2 is not None and self.normal_load_N is not None:
             yield "gravity_m_per_s2: leave it out where normal_load_N is given"
-        if self.drive is None and self.transverse is not None and self.transverse.load is not None:
-            yield "transverse.load: leave it out where drive is left out (an undriven scene)"
-        if self.initial is not None and self.transverse is None:
-            stray = {"x2_m", "velocity2_m_per_s"} & self.initial.model_fields_set
-            yield from (f"initial.{name}: needs transverse" for name in sorted(stray))
+        yield from problems_of_parts(self, "frequency_rad_per_s")
 
     def _out_of_range(self) -> Iterator[str]:
         """Values in wrong units whose nondimensional numbers overflow or vanish."""
@@ -169,10 +224,13 @@ class Dimensional(Record):
             "belt_speed": self.belt_speed_m_per_s / self.scales.velocity,
         }
         if self.drive is not None:
-            frequency = {"frequency": self.drive.frequency_rad_per_s * self.scales.time}
+            frequency = _scaled_frequency(self.drive, self.scales)
             found["drive"] = self.drive.scaled(self.mass_kg, self.scales) | frequency
         if self.transverse is not None:
             found["transverse"] = self._scaled_transverse(self.transverse)
+        for name in SHAKEN:
+            if (part := getattr(self, name)) is not None:
+                found[name] = part.scaled(self.scales)
         if self.initial is not None:
             found["initial"] = self._scaled_initial(self.initial)
         return found
@@ -199,7 +257,10 @@ class Dimensional(Record):
 
 def _numbers(tree: dict[str, Any]) -> Iterator[float]:
     for value in tree.values():
-        yield from _numbers(value) if isinstance(value, dict) else (value,)
+        if isinstance(value, dict):
+            yield from _numbers(value)
+        elif isinstance(value, float):
+            yield value
 
 
 @cache

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
 from pydantic import ValidationError, model_validator
@@ -21,8 +21,14 @@ from pydantic import ValidationError, model_validator
 from frictionlab.quantities import Finite, NonNegative, Positive, Record, given_values
 from frictionlab.scene.body import Mass, Motion, varying_of
 from frictionlab.scene.dimensional import Dimensional
+from frictionlab.scene.rules import (
+    periods_of,
+    problems_of_frequencies,
+    problems_of_parts,
+    problems_of_variation,
+)
 from frictionlab.scene.signals import FULL_TURN, Signal, Signals, signal_of
-from frictionlab.scene.waveforms import LONGEST_PERIOD, SINE, Ratio, Waveform, as_fraction
+from frictionlab.scene.waveforms import SINE, Form, Ratio, Waveform
 
 
 class _Part(Record):
@@ -202,50 +208,9 @@ class Scene(_Part):
     def _one_kind_of_scene(self) -> Scene:
         prescribed = self.slip is not None or self.transverse_slip is not None
         problems = self._prescribed_problems() if prescribed else self._free_problems()
-        if not problems:
-            problems = [*self._frequency_problems()]
-        if not problems:
-            problems = [*self._period_problems(), *self._normal_load_problems()]
         if problems:
             raise ValueError("; ".join(problems))
         return self
-
-    def _frequency_problems(self) -> Iterator[str]:
-        """Of the belt's vibration and of the normal load's, which take the drive's frequency or give one."""
-        given = "drive" if self.drive is not None else "slip" if self.degrees_of_freedom == 0 else ""
-        for name in ("belt_vibration", "normal_load_variation"):
-            part = getattr(self, name)
-            if part is None:
-                continue
-            if part.frequency is not None and given:
-                yield f"{name}.frequency: leave it out, {given}.frequency holds; give frequency_ratio for another"
-            elif part.frequency is not None and part.frequency_ratio is not None:
-                yield f"{name}.frequency_ratio: leave it out where frequency is given"
-            elif part.frequency is not None:
-                given = name
-            elif not given and self._frequency_of_normal_load is None:
-                yield f"{name}.frequency: required where drive is left out"
-
-    @property
-    def _frequency_of_normal_load(self) -> float | None:
-        return None if self.normal_load_variation is None else self.normal_load_variation.frequency
-
-    def _period_problems(self) -> Iterator[str]:
-        if self.periods > LONGEST_PERIOD:
-            yield (
-                f"these frequency ratios repeat after {self.periods} periods of the drive, more than {LONGEST_PERIOD}"
-            )
-
-    def _normal_load_problems(self) -> Iterator[str]:
-        part = self.normal_load_variation
-        if part is None:
-            return
-        least = signal_of(part.waveform, 1.0, 0.0).extremes(FULL_TURN)[0]
-        if not 1.0 + part.amplitude * least > 1e-9:
-            yield (
-                "normal_load_variation.amplitude: the normal load must stay positive over the whole period, here "
-                f"for amplitudes below {-1.0 / least:.6g}, got {part.amplitude:.6g}"
-            )
 
     def _prescribed_problems(self) -> list[str]:
         for name in ("damping_ratio", "drive", "transverse", "initial", "belt_vibration"):
@@ -258,26 +223,12 @@ class Scene(_Part):
             return ["transverse_slip.frequency: leave it out, slip.frequency holds for both"]
         if self.slip is None and own is None:
             return ["transverse_slip.frequency: required where slip is left out"]
-        return []
+        given = "slip" if self.slip is not None else "transverse_slip"
+        return [*problems_of_frequencies(self, "frequency", given)] or problems_of_variation(self)
 
     def _free_problems(self) -> list[str]:
         missing = [name for name in ("damping_ratio", "normal_load") if getattr(self, name) is None]
-        problems = [f"{name}: required" for name in missing]
-        if self.drive is None and self.transverse is not None and self.transverse.load is not None:
-            problems.append("transverse.load: leave it out where drive is left out (an undriven scene)")
-        if self.initial is not None and self.transverse is None:
-            stray = {"x2", "velocity2"} & self.initial.model_fields_set
-            problems += [f"initial.{name}: needs transverse" for name in sorted(stray)]
-        if self.transverse is None:
-            turned = {"drive": self.drive, "belt_vibration": self.belt_vibration}
-            problems += [
-                f"{name}.direction: needs transverse"
-                for name, part in turned.items()
-                if part is not None and part.direction
-            ]
-        elif self.transverse.load is not None and self.drive is not None and self.drive.direction is not None:
-            problems.append("drive.direction: leave it out with transverse.load")
-        return problems
+        return [*(f"{name}: required" for name in missing), *problems_of_parts(self, "frequency")]
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -309,10 +260,7 @@ class Scene(_Part):
     @property
     def periods(self) -> int:
         """The periods of the drive after which everything that changes in time has repeated."""
-        load = self.transverse.load if self.transverse is not None else None
-        parts = load, self.belt_vibration, self.normal_load_variation
-        ratios = [part.frequency_ratio for part in parts if part is not None and part.frequency_ratio]
-        return math.lcm(*(as_fraction(each).denominator for each in ratios)) if ratios else 1
+        return periods_of(self)
 
     @property
     def is_harmonic(self) -> bool:
@@ -409,7 +357,7 @@ class Scene(_Part):
 
     def values(self) -> dict[str, float | str]:
         """Every value of the scene by its dotted path, without the leading ``scene.``; SI numbers included."""
-        return _flat(self.model_dump(exclude_none=True))
+        return _flat(self)
 
     def given(self) -> dict[str, Any]:
         """Nested plain values from which the same scene can be built; in SI units if the scene was given in them."""
@@ -469,13 +417,14 @@ def with_values(tree: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str,
     return new
 
 
-def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, float | str]:
+def _flat(record: Record, prefix: str = "") -> dict[str, float | str]:
+    """The values of a record and of those inside it, by dotted path; a waveform as one text."""
     flat: dict[str, float | str] = {}
-    for key, value in tree.items():
-        if isinstance(value, list):
-            flat |= _flat({f"{key}[{place}]": each for place, each in enumerate(value)}, prefix)
-        else:
-            flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+    for name, value in record:
+        if isinstance(value, Record):
+            flat |= _flat(value, f"{prefix}{name}.")
+        elif value is not None:
+            flat[f"{prefix}{name}"] = str(value) if isinstance(value, Form) else value
     return flat
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
-from difflib import get_close_matches
 from fractions import Fraction
 from numbers import Real
 from typing import Annotated, Any, Literal, NamedTuple, get_args
@@ -17,6 +17,8 @@ MOST_TERMS = 64
 """Of a sum of harmonics, and the largest order among them."""
 LONGEST_PERIOD = 64
 """Periods of the drive after which everything must have repeated."""
+LARGEST_RATIO = 1000
+"""Of a frequency to the drive's."""
 
 
 class Term(NamedTuple):
@@ -25,6 +27,18 @@ class Term(NamedTuple):
     order: int
     amplitude: float
     phase: float
+
+    def __str__(self) -> str:
+        """The term as a formula: 0.5 sin(3 theta + 90 deg)."""
+        size = "" if self.amplitude == 1.0 else f"{_short(self.amplitude)} "
+        angle = "theta" if self.order == 1 else f"{self.order} theta"
+        shift = f" + {_short(self.phase)} deg" if self.phase else ""
+        return f"{size}sin({angle}{shift})"
+
+
+def _short(number: float) -> str:
+    """A number that reads back the same."""
+    return repr(number).removesuffix(".0")
 
 
 class Form(NamedTuple):
@@ -37,44 +51,57 @@ class Form(NamedTuple):
         """As a study gives it."""
         return {"harmonics": [term._asdict() for term in self.terms]} if self.terms else self.shape
 
+    def __str__(self) -> str:
+        """In one cell of a table: the name, or the sum as a formula."""
+        return " + ".join(map(str, self.terms)) if self.terms else self.shape
+
 
 SINE = Form("sine")
 
 
 def _form(value: Any) -> Form:
-    """Raises ValueError for what is neither a shape nor a sum of harmonics."""
+    """Raises ValueError for what is neither a shape nor a sum of harmonics, with the path of what is wrong in it."""
     if isinstance(value, Form):
         return value
     if isinstance(value, str) and value in WAVEFORMS:
         return Form(value)
     if isinstance(value, Mapping):
         return _sum_of_harmonics(value)
-    near = get_close_matches(value, WAVEFORMS, 1) if isinstance(value, str) else []
-    meant = f"; did you mean '{near[0]}'?" if near else ""
-    raise ValueError(f"must be {', '.join(WAVEFORMS)} or {{harmonics: [...]}}, got {value!r}{meant}")
+    raise ValueError(f"must be {', '.join(map(repr, WAVEFORMS))} or {{harmonics: [...]}}")
+
+
+_SUM = "a sum of harmonics is {harmonics: [{order: 1, amplitude: 1, phase: 0}, ...]}"
 
 
 def _sum_of_harmonics(value: Mapping[str, Any]) -> Form:
+    for key in value:
+        if key != "harmonics":
+            raise ValueError(f"{key}: unknown key; {_SUM}")
     terms = value.get("harmonics")
-    if set(value) != {"harmonics"} or not isinstance(terms, list | tuple) or not terms:
-        raise ValueError("a sum of harmonics is {harmonics: [{order: 1, amplitude: 1, phase: 0}, ...]}")
-    if len(terms) > MOST_TERMS:
-        raise ValueError(f"harmonics are at most {MOST_TERMS}, got {len(terms)}")
-    return Form("harmonics", tuple(_term(place, each) for place, each in enumerate(terms)))
+    if not isinstance(terms, list | tuple):
+        raise ValueError(f"harmonics: must be a list; {_SUM}" if "harmonics" in value else _SUM)
+    if not 1 <= len(terms) <= MOST_TERMS:
+        raise ValueError(f"harmonics: must be 1 to {MOST_TERMS} terms, got {len(terms)}; {_SUM}")
+    return Form("harmonics", tuple(_term(f"harmonics[{place}]", each) for place, each in enumerate(terms)))
 
 
-def _term(place: int, value: Any) -> Term:
+def _term(where: str, value: Any) -> Term:
     if isinstance(value, Term):
         return value
-    where = f"harmonics[{place}]"
-    if not isinstance(value, Mapping) or not {"order", "amplitude"} <= set(value) <= set(Term._fields):
-        raise ValueError(f"{where} must be a mapping of order, amplitude and phase, got {value!r}")
+    if not isinstance(value, Mapping):
+        raise ValueError(f"{where}: must be a mapping such as {{order: 1, amplitude: 1}}, got {value!r}")
+    for key in value:
+        if key not in Term._fields:
+            raise ValueError(f"{where}.{key}: unknown key; allowed: {', '.join(Term._fields)}")
+    for key in ("order", "amplitude"):
+        if key not in value:
+            raise ValueError(f"{where}.{key}: required key is missing")
     order, amplitude, phase = value["order"], value["amplitude"], value.get("phase", 0.0)
     if not _is_number(order) or order != round(order) or not 1 <= order <= MOST_TERMS:
-        raise ValueError(f"{where}.order must be a whole number from 1 to {MOST_TERMS}, got {order!r}")
+        raise ValueError(f"{where}.order: must be a whole number from 1 to {MOST_TERMS}, got {order!r}")
     for name, number in (("amplitude", amplitude), ("phase", phase)):
         if not _is_number(number):
-            raise ValueError(f"{where}.{name} must be a finite number, got {number!r}")
+            raise ValueError(f"{where}.{name}: must be a finite number, got {number!r}")
     return Term(int(order), float(amplitude), float(phase))
 
 
@@ -117,25 +144,34 @@ def as_fraction(ratio: float) -> Fraction:
 
 def _ratio(value: Any) -> float:
     """Of numbers and of texts such as 3/2. Raises ValueError where it is no ratio of small whole numbers."""
-    wanted = f'must be p/q with whole numbers, q up to {LONGEST_PERIOD}, such as 2, 0.5 or "3/2"'
-    try:
-        exact = Fraction(value) if isinstance(value, str) else None
-    except (ValueError, ZeroDivisionError):
-        exact = Fraction(-1)
-    if exact is None and not _is_number(value):
-        raise ValueError(f"{wanted}, got {value!r}")
-    near = as_fraction(float(value if exact is None else exact))
-    if near <= 0 or abs(near - (Fraction(value) if exact is None else exact)) > 1e-9 * near:
-        raise ValueError(f"{wanted}, got {value!r}")
+    wanted = (
+        f"must be p/q in whole numbers, q at most {LONGEST_PERIOD} and p/q from 1/{LONGEST_PERIOD} to "
+        f'{LARGEST_RATIO}, such as 2, 0.5 or "3/2"'
+    )
+    if isinstance(value, str) and _FRACTION.fullmatch(value):
+        exact = Fraction(value)
+    elif _is_number(value):
+        exact = Fraction(float(value))
+    else:
+        raise ValueError(wanted)
+    near = as_fraction(float(exact))
+    if not 0 < near <= LARGEST_RATIO or abs(near - exact) > 1e-9 * near:
+        raise ValueError(wanted)
     return near.numerator / near.denominator
 
 
+_FRACTION = re.compile(r"[0-9]{1,9}(/0*[1-9][0-9]{0,8})?")
 Ratio = Annotated[
     float,
     BeforeValidator(_ratio),
     Field(gt=0),
     WithJsonSchema(
-        {"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "string", "pattern": r"^\d+(/\d+)?$"}]}
+        {
+            "anyOf": [
+                {"type": "number", "exclusiveMinimum": 0, "maximum": LARGEST_RATIO},
+                {"type": "string", "pattern": r"^[0-9]+(/[0-9]+)?$"},
+            ]
+        }
     ),
 ]
 """A frequency in shares of the drive's, p/q."""

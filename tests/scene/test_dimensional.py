@@ -593,7 +593,9 @@ def test_every_si_value_has_its_word_its_symbol_and_its_unit() -> None:
     from frictionlab.columns import word
     from frictionlab.mistakes.validation import number_paths
 
-    starts = "initial."
+    starts, without_unit = "initial.", ("frequency_ratio", "variation.amplitude")
     for path in number_paths(fl.Dimensional):
-        if not path.startswith(starts):
+        if path.endswith(without_unit):
+            assert word(f"scene.dimensional.{path}").endswith("$"), path
+        elif not path.startswith(starts):
             assert word(f"scene.dimensional.{path}").endswith("]"), path

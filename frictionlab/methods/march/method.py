@@ -21,13 +21,13 @@ from frictionlab.scene.scene import Scene
 
 def _whole(given: object) -> object:
     if isinstance(given, bool) or not isinstance(given, int | float) or given != int(given):
-        raise ValueError(f"must be a whole number, not {given!r}")
+        raise ValueError("must be a whole number")
     return int(given)
 
 
 def _half_or_one(given: object) -> object:
     if isinstance(given, bool) or given not in (0.5, 1):
-        raise ValueError(f"must be 0.5 or 1, not {given!r}")
+        raise ValueError("must be 0.5 or 1")
     return 1.0 if given == 1 else 0.5
 
 

@@ -1,0 +1,100 @@
+"""Which parts of a scene go together, in whatever units: each problem as ``path: what``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from frictionlab.scene.signals import FULL_TURN, signal_of
+from frictionlab.scene.waveforms import LONGEST_PERIOD, as_fraction
+
+SHAKEN = "belt_vibration", "normal_load_variation"
+"""The parts that take the drive's frequency, or give one where there is no drive."""
+
+
+def problems_of_parts(scene: Any, frequency: str) -> list[str]:
+    """Of a body's loads and of what shakes it otherwise. frequency: the name of that key in the scene's units."""
+    found = [*_missing_parts(scene), *_directions(scene)]
+    found = found or [*problems_of_frequencies(scene, frequency)]
+    return found or problems_of_variation(scene)
+
+
+def problems_of_variation(scene: Any) -> list[str]:
+    """Of the least common period, and of a normal load that does not stay positive."""
+    return [*_period(scene), *_normal_load(scene)]
+
+
+def _missing_parts(scene: Any) -> Iterator[str]:
+    if scene.drive is None and scene.transverse is not None and scene.transverse.load is not None:
+        yield "transverse.load: leave it out where drive is left out (an undriven scene)"
+    if scene.initial is not None and scene.transverse is None:
+        stray = [name for name in scene.initial.model_fields_set if name.startswith(("x2", "velocity2"))]
+        yield from (f"initial.{name}: needs transverse" for name in sorted(stray))
+
+
+def _directions(scene: Any) -> Iterator[str]:
+    if scene.transverse is None:
+        for name in ("drive", "belt_vibration"):
+            part = getattr(scene, name)
+            if part is not None and part.direction:
+                yield f"{name}.direction: needs transverse, without which nothing moves across the belt"
+    elif scene.transverse.load is not None and scene.drive is not None and scene.drive.direction is not None:
+        yield "drive.direction: leave it out with transverse.load, which gives the force across the belt"
+
+
+def problems_of_frequencies(scene: Any, frequency: str, given: str = "") -> Iterator[str]:
+    """Of what takes a frequency or gives one. given: the part that gives it, the drive where there is one."""
+    given = "drive" if scene.drive is not None else given
+    parts = {name: getattr(scene, name) for name in SHAKEN if getattr(scene, name) is not None}
+    own = {name for name, part in parts.items() if getattr(part, frequency) is not None}
+    for name, part in parts.items():
+        if name in own and given:
+            yield (
+                f"{name}.{frequency}: leave it out, {given}.{frequency} holds for all "
+                "(frequency_ratio gives another in shares of it)"
+            )
+        elif name in own and part.frequency_ratio is not None:
+            yield f"{name}.frequency_ratio: leave it out where {frequency} is given"
+        elif name in own:
+            given = name
+        elif not given and not own:
+            yield f"{name}.{frequency}: required where drive is left out"
+            given = name
+
+
+def periods_of(scene: Any) -> int:
+    """The periods of the drive after which everything that changes in time has repeated."""
+    return math.lcm(*_denominators(scene).values())
+
+
+def _denominators(scene: Any) -> dict[str, int]:
+    """Of every frequency ratio, by the part that has it."""
+    load = scene.transverse.load if scene.transverse is not None else None
+    parts = {"transverse.load": load, **{name: getattr(scene, name) for name in SHAKEN}}
+    return {
+        name: as_fraction(part.frequency_ratio).denominator
+        for name, part in parts.items()
+        if part is not None and part.frequency_ratio is not None
+    }
+
+
+def _period(scene: Any) -> Iterator[str]:
+    periods, denominators = periods_of(scene), _denominators(scene)
+    if periods > LONGEST_PERIOD:
+        yield (
+            f"{max(denominators, key=denominators.__getitem__)}.frequency_ratio: with it everything repeats after "
+            f"{periods} periods of the drive only, more than {LONGEST_PERIOD}: choose smaller denominators"
+        )
+
+
+def _normal_load(scene: Any) -> Iterator[str]:
+    part = scene.normal_load_variation
+    if part is None:
+        return
+    least = signal_of(part.waveform, 1.0, 0.0).extremes(FULL_TURN)[0]
+    if not 1.0 + part.amplitude * least > 1e-9:
+        yield (
+            "normal_load_variation.amplitude: the normal load must stay positive over the whole period, here "
+            f"for amplitudes below {-1.0 / least:.6g}, got {part.amplitude:.6g}"
+        )

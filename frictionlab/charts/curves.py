@@ -9,12 +9,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from pandas.api.types import is_numeric_dtype
 
 from frictionlab.columns import SCALED, belt_speed, given
 
 MOST_CURVES_IN_A_PICTURE = 12  # of several laws; more cannot be distinguished
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
-SweptValue = tuple[str, float | None]  # a swept input and its value; None where a law has no such parameter
+SweptValue = tuple[
+    str, float | str | None
+]  # a swept input and its value; None where a law has no such parameter
 
 
 @dataclass(frozen=True)
@@ -54,17 +57,18 @@ class Family:
 
 
 def family_of(table: pd.DataFrame) -> Family | None:
-    """The curves of a table; None where nothing is swept.
+    """The curves of a table; None where no number is swept.
 
-    Along the axis: belt speed, or the swept input of most values where belt speed takes too few for a curve.
+    Along the axis: belt speed, or the swept number of most values where belt speed takes too few for a curve.
     Of the others the one of most values tells neighbours apart, unless it is one of the scene and several laws
     have too many curves then; each further one sets up panels.
     """
     table = table.rename(columns=_names_in_si(table.columns))
     swept = sorted(_swept_inputs(table), key=lambda name: table[name].nunique())
-    if not swept:
+    numbers = [name for name in swept if is_numeric_dtype(table[name])]
+    if not numbers:
         return None
-    abscissa = _along_the_axis(table, swept)
+    abscissa = _along_the_axis(table, numbers)
     others = [name for name in swept if name != abscissa]
     member = others.pop() if others and not _merge_crowded(table, others[-1]) else None
     return Family(abscissa, member, _curves(table, abscissa, others, member))
@@ -92,15 +96,17 @@ def _names_in_si(columns: Iterable[str]) -> dict[str, str]:
 
 def _swept_inputs(table: pd.DataFrame) -> list[str]:
     """Inputs of more than one value, as given; a law's parameter counts only where it varies within one law."""
-    numbers = given(table.select_dtypes("number").columns)
-    scene = [name for name in numbers if name.startswith("scene.") and table[name].nunique() > 1]
-    parameters = [name for name in numbers if name.startswith("law.")]
+    names = given(table.columns)
+    scene = [name for name in names if name.startswith("scene.") and table[name].nunique() > 1]
+    parameters = [name for name in names if name.startswith("law.") and is_numeric_dtype(table[name])]
     return scene + [name for name in parameters if table.groupby("law")[name].nunique().max() > 1]
 
 
 def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str | None) -> list[CurveData]:
     laws, methods = table["law"].unique().tolist(), table["method"].unique().tolist()
-    members = sorted(table[member].dropna().unique().tolist()) if member else []
+    members = table[member].dropna().unique().tolist() if member else []
+    if member and is_numeric_dtype(table[member]):
+        members = sorted(members)
     names = [*panels, member] if member else panels
     curves = []
     for (law, method, *values), rows in table.groupby(["law", "method", *names], sort=False, dropna=False):
@@ -108,19 +114,22 @@ def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str |
         own = settings.pop() if member else None
         place = laws.index(law), _index(members, own), methods.index(method)
         curves.append(CurveData(law, method, tuple(settings), own, place, rows.sort_values(abscissa)))
-    return sorted(curves, key=_order)
+    seen = list(dict.fromkeys(curve.panel for curve in curves))
+    return sorted(curves, key=lambda curve: (_heights(curve), seen.index(curve.panel), curve.place))
 
 
 def _setting(name: str, value: Any) -> SweptValue:
-    return name, None if pd.isna(value) else float(value)
+    return name, None if pd.isna(value) else value if isinstance(value, str) else float(value)
 
 
-def _index(members: list[float], member: SweptValue | None) -> int:
+def _index(members: list[Any], member: SweptValue | None) -> int:
     return 0 if member is None or member[1] is None else members.index(member[1])
 
 
-def _order(curve: CurveData) -> tuple[Any, ...]:
-    return [(value is not None, value or 0.0) for _, value in curve.panel], curve.place
+def _heights(curve: CurveData) -> list[tuple[bool, float]]:
+    """By which pictures are ordered: swept numbers by their size; those of words stay in the order of the table."""
+    numbers = [None if isinstance(value, str) else value for _, value in curve.panel]
+    return [(value is not None, value or 0.0) for value in numbers]
 
 
 def kinks(curve: CurveData) -> list[float]:

@@ -1,9 +1,9 @@
 """Figures of a result table: mean friction, velocity response and energies, for the page of a journal.
 
-One colour per law, from dark to light along a swept input; one line style per method; a marker per law and
+One colour per law, from dark to light along a swept number; one line style per method; a marker per law and
 swept value, so that black and white print tells curves apart too. More than two methods have markers of their
-own, staggered where curves coincide, and colours of their own where there is one law without a sweep. A point
-without a number is a mark on the axis and a line in the legend: nothing is dropped in silence.
+own, staggered where curves coincide, and colours of their own where there is one law without a sweep; so have swept
+words. A point without a number is a mark on the axis and a line in the legend: nothing is dropped in silence.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ COLUMN, PAGE = 85 / 25.4, 170 / 25.4  # widths of a journal's column and page [i
 PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
 SHADES = ("Blues", "Oranges", "Greens", "Purples", "Reds", "Greys")
 MARKERS = "os^Dvph<>d"
-METHOD_COLORS = "tab10"
+COLORS = "tab10"
 LINES = (
     "solid",
     *((0, dashes) for dashes in [(4, 2), (1, 1.5), (6, 2, 1, 2), (2, 1), (4, 1, 1, 1, 1, 1), (7, 3)]),
@@ -227,7 +227,9 @@ def _color(family: Family, curve: CurveData) -> Any:
     law, member, method = curve.place
     laws, members, _ = family.sizes
     if laws * members == 1 and _methods_have_markers(family):
-        return mpl.colormaps[METHOD_COLORS](method % mpl.colormaps[METHOD_COLORS].N)
+        return mpl.colormaps[COLORS](method % mpl.colormaps[COLORS].N)
+    if laws == 1 and curve.member is not None and isinstance(curve.member[1], str):
+        return mpl.colormaps[COLORS](member % mpl.colormaps[COLORS].N)  # words are no steps of a scale
     shade = 0.8 if members == 1 else 1.0 - 0.6 * member / (members - 1)
     return mpl.colormaps[SHADES[law % len(SHADES)]](shade)
 
@@ -353,7 +355,7 @@ def _label(family: Family, curve: CurveData) -> str:
     value = curve.member[1] if curve.member is not None else None
     room = LONGEST_LABEL if laws == 1 or methods == 1 else BESIDE
     law, method = [_name(curve.law, room)] * (laws > 1), [_name(curve.method, room)] * (methods > 1)
-    return ", ".join(law + method + [f"{value:.5g}"] if value is not None else law + method)
+    return ", ".join(law + method + [_value(value)] if value is not None else law + method)
 
 
 def _status_entries(family: Family) -> list[Line2D]:
@@ -384,4 +386,8 @@ def _name(label: str, room: int) -> str:
 
 def _sentence(setting: SweptValue) -> str:
     name, value = setting
-    return f"no {word(name)}" if value is None else f"{word(name)} = {value:.5g}"
+    return f"no {word(name)}" if value is None else f"{word(name)} = {_value(value)}"
+
+
+def _value(value: float | str) -> str:
+    return _name(value, LONGEST_LABEL) if isinstance(value, str) else f"{value:.5g}"

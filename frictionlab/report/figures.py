@@ -93,9 +93,12 @@ def _lines(family: Family) -> list[Markup]:
     sentence = Markup("; ").join(told)
     if family.member is None:
         return [sentence]
-    members = sorted(
-        {curve.member[1] for curve in family.curves if curve.member and curve.member[1] is not None}
-    )
+    swept = {
+        curve.place[1]: curve.member[1]
+        for curve in family.curves
+        if curve.member is not None and curve.member[1] is not None
+    }
+    members = [swept[place] for place in sorted(swept)]
     name, unit = symbol_html(family.member), unit_html(family.member)
     return [sentence, Markup("A curve for each {} = {}{}").format(name, values_listed(members), unit)]
 

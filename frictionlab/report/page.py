@@ -92,7 +92,7 @@ def _unfinished(saved: Saved) -> str:
 def _asked(saved: Saved) -> dict[str, Any]:
     study = saved.study
     return {
-        "scene_sentence": question.scene_sentence(study.scene),
+        "scene_sentence": question.scene_sentences(study),
         "units_sentence": question.units_sentence(study.scene),
         "source": study.source,
         "scene": question.scene_grid(study),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -14,26 +14,103 @@ from frictionlab.report.sources import law_text, method_text
 from frictionlab.report.tables import Cell, Grid, grid, number
 from frictionlab.results.words import in_words
 from frictionlab.scene.scene import Scene
-from frictionlab.study import LawChoice, Study
+from frictionlab.scene.signals import Signal
+from frictionlab.scene.waveforms import SINE, as_fraction
+from frictionlab.study import GridValue, LawChoice, Study
 
 MOST_LISTED = 8
 """Values of a sweep that are listed one by one; of more, the ends and how many."""
 
 
-def scene_sentence(scene: Scene) -> str:
-    """What kind of scene it is."""
-    if scene.degrees_of_freedom == 0:
+def scene_sentences(study: Study) -> str:
+    """What kind of scene it is, and what in it is no sine at the drive's frequency."""
+    return " ".join([_kind(study), *_shapes(study)])
+
+
+def _kind(study: Study) -> str:
+    degrees = study.scene.degrees_of_freedom
+    if degrees == 0:
         return "Prescribed slip: a body whose slip over the belt is given, not computed."
-    kind = (
-        "one degree of freedom" if scene.degrees_of_freedom == 1 else "two degrees of freedom, in the plane"
-    )
-    return f"A body with {kind}, on a moving belt, {_shaken(scene)}."
+    kind = "one degree of freedom" if degrees == 1 else "two degrees of freedom, in the plane"
+    return f"A body with {kind}, on a moving belt, {_shaken(study)}."
 
 
-def _shaken(scene: Scene) -> str:
+def _shaken(study: Study) -> str:
+    scene = study.scene
     if scene.undriven:
         return "which nothing shakes"
-    return "shaken along it" if scene.load_along_belt_only else "shaken along and across it"
+    if scene.drive is None:
+        return "without a load"
+    if _turned(study, "drive", scene.drive):
+        return f"shaken {_direction(study, 'drive', scene.drive)}"
+    return "shaken along it" if scene.signals().load[1] == Signal() else "shaken along and across it"
+
+
+def _shapes(study: Study) -> Iterator[str]:
+    """A sentence for every load, slip, belt vibration and normal load that is more than a sine along the belt."""
+    scene = study.scene
+    load = scene.transverse.load if scene.transverse is not None else None
+    if scene.drive is not None and _told(study, "drive", scene.drive):
+        yield f"The load along x1 is {_wave(study, 'drive', scene.drive)}."
+    if load is not None and _told(study, "transverse.load", load):
+        yield f"The load across the belt is {_wave(study, 'transverse.load', load)}."
+    for name, where in (("slip", "x1"), ("transverse_slip", "x2")):
+        part = getattr(scene, name)
+        if part is not None and (_told(study, name, part) or _turned(study, name, part)):
+            along = _direction(study, name, part) if _turned(study, name, part) else f"along {where}"
+            yield f"The slip velocity {along} is {_wave(study, name, part)}."
+    if (belt := scene.belt_vibration) is not None:
+        where = _direction(study, "belt_vibration", belt)
+        yield f"The belt vibrates {where}, its velocity {_wave(study, 'belt_vibration', belt)}."
+    if (normal := scene.normal_load_variation) is not None:
+        name = "normal_load_variation"
+        contact = _CONTACTS["" if _is_swept(study, f"{name}.contact") else normal.contact]
+        yield f"The normal load varies, {_wave(study, name, normal)}; {contact}."
+
+
+_CONTACTS = {
+    "per_load": "the stiffness of bristles follows it",
+    "constant": "the stiffness of bristles stays that of its mean",
+    "": "the stiffness of bristles follows it or stays that of its mean",
+}
+_WAVES = {
+    "sine": "a sine",
+    "square": "a square wave",
+    "triangle": "a triangle wave",
+    "sawtooth": "a sawtooth",
+}
+
+
+def _is_swept(study: Study, path: str) -> bool:
+    return f"scene.{path}" in study.sweep or f"scene.dimensional.{path}" in study.sweep
+
+
+def _told(study: Study, name: str, part: Any) -> bool:
+    """Whether it has a waveform or a frequency of its own."""
+    own = part.waveform not in (None, SINE) or getattr(part, "frequency_ratio", None) is not None
+    return own or _is_swept(study, f"{name}.waveform")
+
+
+def _turned(study: Study, name: str, part: Any) -> bool:
+    return bool(getattr(part, "direction", None)) or _is_swept(study, f"{name}.direction")
+
+
+def _direction(study: Study, name: str, part: Any) -> str:
+    if _is_swept(study, f"{name}.direction"):
+        return "in several directions"
+    return f"at {number(part.direction)}° to its motion" if part.direction else "along its motion"
+
+
+def _wave(study: Study, name: str, part: Any) -> str:
+    """Its waveform, and its frequency where that is not the drive's."""
+    form = part.waveform or SINE
+    wave = (
+        "of several waveforms" if _is_swept(study, f"{name}.waveform") else _WAVES.get(form.shape, str(form))
+    )
+    ratio = getattr(part, "frequency_ratio", None)
+    if _is_swept(study, f"{name}.frequency_ratio"):
+        return f"{wave} at several frequencies"
+    return wave if ratio in (None, 1.0) else f"{wave} at {as_fraction(ratio)} times the drive's frequency"
 
 
 def units_sentence(scene: Scene) -> str:
@@ -72,11 +149,12 @@ def _value(study: Study, name: str, value: Any) -> Cell:
     return number(value) if swept is None else Markup("swept: {}").format(values_listed(swept))
 
 
-def values_listed(values: Sequence[float]) -> str:
-    """The values of a sweep: all of a few, else the ends and how many."""
-    if len(values) <= MOST_LISTED:
-        return ", ".join(map(number, values))
-    return f"{number(values[0])} … {number(values[-1])}, {len(values)} values{_spacing(values)}"
+def values_listed(values: Sequence[GridValue]) -> str:
+    """The values of a sweep: all words, all of a few numbers, else the ends and how many."""
+    numbers = [value for value in values if isinstance(value, float | int)]
+    if len(values) <= MOST_LISTED or len(numbers) < len(values):
+        return ", ".join(number(value) if isinstance(value, float | int) else str(value) for value in values)
+    return f"{number(values[0])} … {number(values[-1])}, {len(values)} values{_spacing(numbers)}"
 
 
 def _spacing(values: Sequence[float]) -> str:

@@ -5,10 +5,19 @@ from __future__ import annotations
 from frictionlab.mistakes.notes import Mistake, StudyError
 from frictionlab.study.law_files import Plugins, laws_of_files
 from frictionlab.study.reader import load_study, parse_study, read_back
-from frictionlab.study.study import Expectation, LawChoice, MethodChoice, Study, StudyCase, StudyCurve
+from frictionlab.study.study import (
+    Expectation,
+    GridValue,
+    LawChoice,
+    MethodChoice,
+    Study,
+    StudyCase,
+    StudyCurve,
+)
 
 __all__ = [
     "Expectation",
+    "GridValue",
     "LawChoice",
     "MethodChoice",
     "Mistake",

@@ -8,6 +8,8 @@ from typing import Any
 
 from frictionlab import columns
 from frictionlab.mistakes.notes import Notes, Path, did_you_mean, value_text
+from frictionlab.mistakes.validation import checked_value, placed, record_at
+from frictionlab.scene.scene import Scene
 from frictionlab.study.study import Expectation
 
 EXPECTATION_KEYS = (
@@ -21,13 +23,14 @@ _COMPARISONS = ("equals", "below", "above")
 class Table:
     """The columns of the table of a study: text inputs with their values, number inputs, results, swept inputs.
 
-    The values of a text column are None where mistakes leave them uncertain; belt_speed: the column of the belt
-    speed, nondimensional or in SI units.
+    words: the words and waveforms of the scene, with their values. The values of a text column are None where
+    mistakes leave them uncertain; belt_speed: the column of the belt speed, nondimensional or in SI units.
     """
 
     texts: Mapping[str, tuple[str, ...] | None]
     numbers: tuple[str, ...]
     results: tuple[str, ...]
+    words: Mapping[str, tuple[str, ...] | None]
     swept: tuple[str, ...] = ()
     belt_speed: str = columns.BELT_SPEED
 
@@ -60,16 +63,49 @@ def _where(given: Any, path: Path, table: Table, notes: Notes) -> dict[str, str 
     for key, value in (notes.mapping(given, path) or {}).items():
         if key in table.texts:
             found: str | float | None = _known_text(value, (*path, key), table.texts[key], notes)
+        elif key in table.words:
+            found = _word_of_scene(value, (*path, key), table.words[key], notes)
         elif key in table.numbers:
-            found = notes.number(value, (*path, key))
+            found = _number(value, (*path, key), notes)
         else:
-            names = (*table.texts, *table.numbers)
+            names = (*table.texts, *table.numbers, *table.words)
             hint = did_you_mean(key, names)
             notes.on_key((*path, key), "is no input column of this study's table", hint)
             continue
         if found is not None:
             where[key] = found
     return where
+
+
+def _word_of_scene(value: Any, path: Path, known: tuple[str, ...] | None, notes: Notes) -> str | None:
+    """A word of the scene, or a waveform as the scene gives it or as the table does: as it stands in the table."""
+    if isinstance(value, str) and value in (known or ()):
+        return value
+    held, what, hint = _as_in_scene(str(path[-1]), value)
+    if what is not None:
+        notes.add(*placed(path, what, value), hint)
+        return None
+    if known is not None and str(held) not in known:
+        notes.add(path, f"the table has {', '.join(known)} alone, got {held}")
+    return str(held)
+
+
+def _number(value: Any, path: Path, notes: Notes) -> float | None:
+    """A number, or what the scene takes for one, such as the ratio 3/2."""
+    column = str(path[-1])
+    if isinstance(value, str) and column.startswith("scene."):
+        held, what, _ = _as_in_scene(column, value)
+        if what is None:
+            return float(held)
+    return notes.number(value, path)
+
+
+def _as_in_scene(column: str, value: Any) -> tuple[Any, str | None, str]:
+    """The value as the scene holds it in the field of this column, what is wrong with it and what was meant."""
+    *steps, key = column.removeprefix("scene.").split(".")
+    record = record_at(Scene, tuple(steps))
+    assert record is not None
+    return checked_value(record, key, value)
 
 
 def _known_text(value: Any, path: Path, known: tuple[str, ...] | None, notes: Notes) -> str | None:

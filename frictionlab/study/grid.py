@@ -13,12 +13,20 @@ from pydantic import BaseModel
 
 from frictionlab import registry
 from frictionlab.mistakes.notes import Notes, Path, StudyError, did_you_mean, number_text, value_text
-from frictionlab.mistakes.validation import number_paths, record_at, valid_number, wrong_value
+from frictionlab.mistakes.validation import (
+    checked_value,
+    number_paths,
+    placed,
+    record_at,
+    valid_number,
+    value_paths,
+    wrong_value,
+)
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import label_of, possible_labels
 from frictionlab.study.ranges import SPACINGS, SweepRange
-from frictionlab.study.study import Study, owner
+from frictionlab.study.study import GridValue, Study, owner
 
 LARGEST_GRID = 100_000_000
 LARGEST_RANGE = 1_000_000
@@ -42,7 +50,7 @@ _GROUPS = (
 class Sweeps:
     """The sweeps of a study, the ranges among them, and where first values stand in for what the study left out."""
 
-    sweep: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    sweep: dict[str, tuple[GridValue, ...]] = field(default_factory=dict)
     ranges: dict[str, SweepRange] = field(default_factory=dict)
     stand_ins: dict[Path, Path] = field(default_factory=dict)
 
@@ -55,43 +63,58 @@ class _Target:
     key: str
     record: type[BaseModel]
 
+    @property
+    def is_number(self) -> bool:
+        """Whether it is a number, of which ranges are made, and no word."""
+        return self.key in number_paths(self.record)
+
 
 def read_sweeps(tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> Sweeps:
     """Read the sweeps; a swept value that the study leaves out is put into the tree."""
     found = Sweeps()
     given = notes.mapping(tree.get("sweep", {}), ("sweep",)) or {}
-    read = {key: _read_values(values, ("sweep", key), notes) for key, values in given.items()}
-    found.ranges = {key: values for key, values in read.items() if isinstance(values, SweepRange)}
-    too_large = _note_too_large(read, notes)
+    too_large = _note_too_large(given, notes)
     targets = _Targets(tree, laws, notes)
-    for key, values in read.items():
-        built = _ends(values) if too_large else _built(values, ("sweep", key), notes)
-        if target := targets.target(key):
-            _check_values(_ends(values) if key in found.ranges else built, target, ("sweep", key), notes)
+    for key, values in given.items():
+        target = targets.target(key)
+        read = _read_values(values, target, ("sweep", key), notes)
+        if isinstance(read, SweepRange):
+            found.ranges[key] = read
+            if target is not None:
+                _check_ends(read, target, ("sweep", key), notes)
+        built = _ends(read) if too_large else _built(read, ("sweep", key), notes)
+        if target is not None:
             _stand_in(tree, target, built, found.stand_ins, key)
         found.sweep[key] = built
     return found
 
 
-def _ends(read: tuple[float, ...] | SweepRange) -> tuple[float, ...]:
+def _ends(read: tuple[GridValue, ...] | SweepRange) -> tuple[GridValue, ...]:
     """The ends of a range, which decide whether its values are allowed; of a list the first value."""
     return (read.start, read.stop) if isinstance(read, SweepRange) else read[:1]
 
 
-def _note_too_large(read: Mapping[str, tuple[float, ...] | SweepRange], notes: Notes) -> bool:
+def _note_too_large(given: Mapping[str, Any], notes: Notes) -> bool:
     """Whether the sweeps alone give too large a grid, noted before their values are built."""
     sizes: dict[str, int] = {}
-    for key, values in read.items():
-        size = values.num if isinstance(values, SweepRange) else len(values)
-        sizes[owner(key)] = sizes.get(owner(key), 1) * max(1, size)
+    for key, values in given.items():
+        sizes[owner(key)] = sizes.get(owner(key), 1) * max(1, _size(values))
     size = sizes.pop("scene.", 1) * max(1, sum(sizes.values()))
     if size > LARGEST_GRID:
         notes.add(("sweep",), f"the grid has at least {size} points, more than {LARGEST_GRID}")
     return size > LARGEST_GRID
 
 
+def _size(given: Any) -> int:
+    """How many values a list or a range gives; 1 where it is mistaken."""
+    if isinstance(given, list):
+        return len(given)
+    num = given.get("num") if isinstance(given, dict) else None
+    return num if isinstance(num, int) and 2 <= num <= LARGEST_RANGE else 1
+
+
 class _Targets:
-    """What sweeps can vary: the numbers of a scene and of its laws, by label."""
+    """What sweeps can vary: the values of a scene, and the numbers of its laws by label."""
 
     def __init__(self, tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> None:
         self._tree, self._laws, self._notes = tree, laws, notes
@@ -105,7 +128,7 @@ class _Targets:
 
     @cached_property
     def _sweepable(self) -> list[str]:
-        paths = [f"scene.{path}" for path in number_paths(Scene)]
+        paths = [f"scene.{path}" for path in value_paths(Scene)]
         for label, index in self._labels.items():
             kind = self._tree["laws"][index].get("kind")
             if kind in self._laws.names():
@@ -119,7 +142,7 @@ class _Targets:
     def target(self, key: str) -> _Target | None:
         """What a sweep of this name varies; None, noted, where it is nothing."""
         head, *steps = key.split(".")
-        if head == "scene" and key.removeprefix("scene.") in number_paths(Scene):
+        if head == "scene" and key.removeprefix("scene.") in value_paths(Scene):
             return self._of_scene(steps, ("sweep", key))
         if head == "laws":
             return self._of_law(key)
@@ -131,7 +154,7 @@ class _Targets:
     def _of_scene(self, steps: list[str], path: Path) -> _Target | None:
         parent: Path = ("scene", *steps[:-1])
         if steps[0] != "dimensional" and isinstance(_at(self._tree, ("scene", "dimensional")), dict):
-            known = [f"scene.{value}" for value in number_paths(Dimensional, "dimensional.")]
+            known = [f"scene.{value}" for value in value_paths(Dimensional, "dimensional.")]
             hint = did_you_mean(f"scene.{'.'.join(steps)}", known)
             what = "the scene is given in SI units: sweep its values under scene.dimensional"
             self._notes.on_key(path, what, hint)
@@ -197,20 +220,26 @@ def _at(tree: Any, path: Path) -> Any:
     return tree
 
 
-def _check_values(values: tuple[float, ...], target: _Target, path: Path, notes: Notes) -> None:
-    """Check each value by itself, so that a mistake refers to the value and not to a point of the grid."""
-    for index, value in enumerate(values):
+def _check_ends(values: SweepRange, target: _Target, path: Path, notes: Notes) -> None:
+    """Check the ends of a range, which decide whether its values are allowed."""
+    for index, value in enumerate(_ends(values)):
         if what := wrong_value(target.record, target.key, value):
             notes.add((*path, index), what)
 
 
 def _stand_in(
-    tree: dict[str, Any], target: _Target, values: tuple[float, ...], stand_ins: dict[Path, Path], key: str
+    tree: dict[str, Any],
+    target: _Target,
+    values: tuple[GridValue, ...],
+    stand_ins: dict[Path, Path],
+    key: str,
 ) -> None:
     """Complete a scene or law with the first of the swept values, which need not be given a second time."""
     within = _at(tree, target.parent)
-    if isinstance(within, dict) and target.key not in within:
-        good = [value for value in values if wrong_value(target.record, target.key, value) is None]
+    if not isinstance(within, dict) or target.key in within:
+        return
+    good = [value for value in values if wrong_value(target.record, target.key, value) is None]
+    if good or target.is_number:
         within[target.key] = good[0] if good else valid_number(target.record, target.key)
         stand_ins[(*target.parent, target.key)] = ("sweep", key)
 
@@ -269,25 +298,44 @@ def _build(build: Callable[[], Any], sweep: Mapping[str, Any], prefix: str, note
         notes.on_key(path, problem.mistakes[0].what)
 
 
-def _read_values(given: Any, path: Path, notes: Notes) -> tuple[float, ...] | SweepRange:
+def _read_values(
+    given: Any, target: _Target | None, path: Path, notes: Notes
+) -> tuple[GridValue, ...] | SweepRange:
     """The values of one sweep, from a list or a range not yet built; empty, noted, where there is a mistake."""
+    words = target is not None and not target.is_number
     if isinstance(given, list):
-        return _list_values(given, path, notes)
-    if isinstance(given, dict):
+        return _list_values(given, target, path, notes)
+    if isinstance(given, dict) and not words:
         return _read_range(given, path, notes) or ()
-    notes.add(path, f"must be a list or {{start, stop, num, spacing}}, got {value_text(given)}")
+    wanted = "must be a list" if words else "must be a list or {start, stop, num, spacing}"
+    notes.add(path, f"{wanted}, got {value_text(given)}")
     return ()
 
 
-def _list_values(given: list[Any], path: Path, notes: Notes) -> tuple[float, ...]:
+def _list_values(given: list[Any], target: _Target | None, path: Path, notes: Notes) -> tuple[GridValue, ...]:
     if not given:
         notes.add(path, "the list is empty; give at least one value")
-    values = [notes.number(item, (*path, index)) for index, item in enumerate(given)]
-    seen: dict[float, int] = {}
+    values = [_list_value(item, target, (*path, index), notes) for index, item in enumerate(given)]
+    seen: dict[GridValue, int] = {}
     for index, value in enumerate(values):
         if value is not None and seen.setdefault(value, index) != index:
-            notes.add((*path, index), f"{number_text(value)} is in the list twice")
+            told = number_text(value) if isinstance(value, float) else str(value)
+            notes.add((*path, index), f"{told} is in the list twice")
     return tuple(value for value in values if value is not None)
+
+
+def _list_value(item: Any, target: _Target | None, path: Path, notes: Notes) -> GridValue | None:
+    """One value as the scene or law holds it; None, noted, where it cannot."""
+    if target is None:  # the mistake is in the key
+        return item if isinstance(item, float | int | str) else None
+    if item is None:
+        notes.add(path, f"must be a {'number' if target.is_number else 'value'}, got null")
+        return None
+    value: GridValue | None
+    value, what, hint = checked_value(target.record, target.key, item)
+    if what is not None:
+        notes.add(*placed(path, what, item), hint)
+    return value
 
 
 def _read_range(given: dict[str, Any], path: Path, notes: Notes) -> SweepRange | None:
@@ -310,7 +358,7 @@ def _read_range(given: dict[str, Any], path: Path, notes: Notes) -> SweepRange |
     return SweepRange(start, stop, num, spacing)
 
 
-def _built(read: tuple[float, ...] | SweepRange, path: Path, notes: Notes) -> tuple[float, ...]:
+def _built(read: tuple[GridValue, ...] | SweepRange, path: Path, notes: Notes) -> tuple[GridValue, ...]:
     if not isinstance(read, SweepRange):
         return read
     values = read.values()

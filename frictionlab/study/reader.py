@@ -10,7 +10,7 @@ from typing import Any
 
 from frictionlab import columns, registry
 from frictionlab.mistakes.notes import Notes, Path, StudyError
-from frictionlab.mistakes.validation import build_record, number_paths
+from frictionlab.mistakes.validation import build_record, number_paths, value_paths
 from frictionlab.scene.dimensional import dimensions
 from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import (
@@ -35,7 +35,7 @@ from frictionlab.study.law_files import (
 )
 from frictionlab.study.mapping_source import read_mapping
 from frictionlab.study.overrides import apply_overrides
-from frictionlab.study.study import LIMIT_KEY, SCHEMA, LawChoice, MethodChoice, Study
+from frictionlab.study.study import LIMIT_KEY, SCHEMA, GridValue, LawChoice, MethodChoice, Study
 from frictionlab.study.yaml_source import SAVED, Source, read_file
 
 STUDY_KEYS = (
@@ -123,7 +123,7 @@ class _StudyReader:
             else None
         )
         told = self._plain_values()
-        told["expect"] = self._expect(scene)
+        told["expect"] = self._expect(scene, sweep)
         told["columns"] = self._columns(scene)
         if self._notes.all or scene is None:
             return None
@@ -193,30 +193,48 @@ class _StudyReader:
         if "columns" not in self._tree:
             return None
         given = items(self._tree["columns"], ("columns",), "[floquet, stick_fraction]", self._notes)
-        known = self._table(scene).results
+        known = self._table(scene, Sweeps()).results
         read = [result_column(name, ("columns", i), known, self._notes) for i, name in enumerate(given)]
         return tuple(dict.fromkeys(name for name in read if name is not None))
 
-    def _expect(self, scene: Scene | None) -> Any:
+    def _expect(self, scene: Scene | None, sweep: Sweeps) -> Any:
         given = self._tree.get("expect", [])
-        return expectations(given, self._table(scene), self._notes)
+        return expectations(given, self._table(scene, sweep), self._notes)
 
-    def _table(self, scene: Scene | None) -> Table:
+    def _table(self, scene: Scene | None, sweep: Sweeps) -> Table:
         """The columns that ``where`` may name; all possible ones where the scene or a law has mistakes."""
-        paths = list(scene.values()) if scene is not None else number_paths(Scene)
+        values = dict.fromkeys(value_paths(Scene)) if scene is None else scene.values()
         laws = certain_law_labels(self._tree.get("laws"), self._known)
         methods = certain_labels(self._tree.get("methods", list(DEFAULT_METHODS)), registry.method_names())
         kinds = tuple(dict.fromkeys(law["kind"] for law in self._tree["laws"])) if laws else None
         known = self._known.usable() if kinds is None else kinds
         classes = [self._known.named(kind) for kind in known]
         parameters = {f"law.{name}": None for law in classes for name in number_paths(law)}
-        inputs = [*(f"scene.{path}" for path in paths), *parameters]
+        inputs = [*(f"scene.{path}" for path in values), *parameters]
         if columns.belt_speed(inputs) != columns.BELT_SPEED:
             inputs += dict.fromkeys(f"{columns.SCALED}{name}" for law in classes for name in dimensions(law))
         texts = dict(zip(columns.INPUTS, (laws, kinds, methods), strict=True))
-        sweep = self._tree.get("sweep")
-        swept = tuple(sweep) if isinstance(sweep, Mapping) else ()
+        words = _words(values, sweep.sweep)
+        numbers = tuple(name for name in inputs if name not in words)
+        swept = self._tree.get("sweep")
+        swept = tuple(swept) if isinstance(swept, Mapping) else ()
         given = self._tree.get("scene")
         in_si = isinstance(given, Mapping) and "dimensional" in given
         speed = columns.belt_speed(inputs) if in_si else columns.BELT_SPEED
-        return Table(texts, tuple(inputs), tuple(columns.results(inputs)), swept, speed)
+        return Table(texts, numbers, tuple(columns.results(inputs)), words, swept, speed)
+
+
+def _words(
+    values: Mapping[str, Any], sweep: Mapping[str, tuple[GridValue, ...]]
+) -> dict[str, tuple[str, ...] | None]:
+    """The columns of a scene's words and waveforms, and what each can hold: None where that is uncertain."""
+    numbers = number_paths(Scene)
+    found: dict[str, tuple[str, ...] | None] = {}
+    for path, value in values.items():
+        if path not in numbers:
+            # a scene in SI units has its words in both scales
+            names = (f"scene.{path}", f"scene.dimensional.{path}")
+            swept = next((sweep[name] for name in names if name in sweep), None)
+            told = tuple(map(str, swept)) if swept else (str(value),)
+            found[f"scene.{path}"] = None if value is None else told
+    return found

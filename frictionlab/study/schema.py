@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, TypeAdapter
 
 from frictionlab import columns, registry
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
 from frictionlab.study.grid import LARGEST_GRID
 from frictionlab.study.study import LIMIT_KEY, SCHEMA, SECONDS_PER_POINT
 
 _NUMBER = {"type": "number"}
+_WORD_OR_NUMBER: dict[str, Any] = {
+    "anyOf": [_NUMBER, {"type": "string"}, TypeAdapter(Waveform).json_schema()]
+}
+"""What a sweep of a scene runs over, and what selects rows of its table."""
 _TEXT = {"type": "string"}
 _TIME = {"type": "number", "exclusiveMinimum": 0, "default": SECONDS_PER_POINT}
 # Behind a validator defined here a bound keeps pydantic's name.
@@ -68,6 +73,8 @@ def _study_schema(schema: Any) -> Any:
         return [_study_schema(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
+    if "oneOf" in schema:  # a waveform, which a sweep gives whole
+        return schema | ({"default": SINE.plain()} if schema.get("default") else {})
     kept = {
         _BOUNDS.get(key, key) if isinstance(item, (int, float)) else key: _study_schema(item)
         for key, item in schema.items()
@@ -95,7 +102,7 @@ def _kind(name: str, record: dict[str, Any]) -> dict[str, Any]:
 
 
 def _sweep() -> dict[str, Any]:
-    listed = {"type": "array", "minItems": 1, "uniqueItems": True, "items": _NUMBER}
+    listed = {"type": "array", "minItems": 1, "uniqueItems": True, "items": _WORD_OR_NUMBER}
     ranged = _closed_object(
         {
             "start": _NUMBER,
@@ -111,7 +118,7 @@ def _sweep() -> dict[str, Any]:
 
 def _expectations() -> list[dict[str, Any]]:
     """A column against a number, a status, the difference of two methods, or the shape of a curve."""
-    where = {"type": "object", "additionalProperties": {"type": ["string", "number"]}}
+    where = {"type": "object", "additionalProperties": _WORD_OR_NUMBER}
     shared: dict[str, Any] = {"where": where, "because": _TEXT}
     numeric = [name for name in (*columns.RESULTS, *columns.SI) if name not in columns.TEXT]
     positive = {"type": "number", "exclusiveMinimum": 0}

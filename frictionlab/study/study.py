@@ -23,6 +23,7 @@ from frictionlab.registry.law_file import LawFile
 from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.scene.scene import Scene, with_values
 from frictionlab.scene.scenes import Scenes
+from frictionlab.scene.waveforms import Form
 from frictionlab.study.ranges import SweepRange
 
 SCHEMA = 1
@@ -31,6 +32,8 @@ LAW_COPIES = "laws"
 LIMIT_KEY = "seconds_per_point"
 SECONDS_PER_POINT = 300.0
 """The time [s] that a point may take where a study does not say."""
+GridValue = float | str | Form
+"""What a sweep runs over: numbers, words or waveforms."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ class LawChoice:
     parameters: dict[str, Any]
     law_class: type[FrictionLaw] = field(compare=False, repr=False)
 
-    def law(self, values: Mapping[str, float] | None = None) -> FrictionLaw:
+    def law(self, values: Mapping[str, GridValue] | None = None) -> FrictionLaw:
         """The law, with some parameters replaced by these values."""
         return self.law_class.model_validate(self.parameters | dict(values or {}))
 
@@ -155,7 +158,8 @@ class StudyCurve:
 class Study:
     """Scenes, laws and methods, their full grid, and the expectations of the table.
 
-    scene: the scene without sweeps. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values.
+    scene: the scene without sweeps. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values, in a scene
+    words and waveforms, too.
     ranges: those of the sweeps that were given as ranges.
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
     columns: result columns asked for, None for all. seconds_per_point: the time a point may take [s].
@@ -166,7 +170,7 @@ class Study:
     laws: tuple[LawChoice, ...]
     methods: tuple[MethodChoice, ...]
     tolerance: float
-    sweep: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    sweep: dict[str, tuple[GridValue, ...]] = field(default_factory=dict)
     expect: tuple[Expectation, ...] = ()
     keep_orbit: int | None = None
     columns: tuple[str, ...] | None = None
@@ -250,14 +254,14 @@ class Study:
         }
         return {_in_scene(law, scales, load) for law in laws for scales, load in units}
 
-    def law_points(self, choice: LawChoice) -> Iterator[dict[str, float]]:
+    def law_points(self, choice: LawChoice) -> Iterator[dict[str, GridValue]]:
         """The swept parameters of this law, one mapping per combination."""
         return _grid(self.sweeps_by_owner.get(f"laws.{choice.label}.", {}))
 
     @cached_property
-    def sweeps_by_owner(self) -> dict[str, dict[str, tuple[float, ...]]]:
+    def sweeps_by_owner(self) -> dict[str, dict[str, tuple[GridValue, ...]]]:
         """The sweeps of the scene, ``scene.``, and of each law, ``laws.<label>.``, by what comes after that."""
-        found: dict[str, dict[str, tuple[float, ...]]] = {}
+        found: dict[str, dict[str, tuple[GridValue, ...]]] = {}
         for path, values in self.sweep.items():
             found.setdefault(owner(path), {})[path.removeprefix(owner(path))] = values
         return found
@@ -323,7 +327,7 @@ class Study:
         return {name: v for name, v in law.parameters.items() if name not in swept}
 
 
-def _grid(sweeps: Mapping[str, tuple[float, ...]]) -> Iterator[dict[str, float]]:
+def _grid(sweeps: Mapping[str, tuple[GridValue, ...]]) -> Iterator[dict[str, GridValue]]:
     """Every combination of the values of sweeps, by their names."""
     return (dict(zip(sweeps, point, strict=True)) for point in itertools.product(*sweeps.values()))
 
@@ -350,6 +354,8 @@ def _natural(value: Any) -> Any:
     """The value with whole floats as integers, as a person would write them (and -0.0 as 0)."""
     if isinstance(value, dict):
         return {key: _natural(item) for key, item in value.items()}
+    if isinstance(value, Form):
+        return _natural(value.plain())
     if isinstance(value, list):
         return [_natural(item) for item in value]
     if isinstance(value, float) and "." not in (text := number_text(value)) and "e" not in text:

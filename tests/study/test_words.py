@@ -1,0 +1,240 @@
+"""Sweeps over words and waveforms: from the file to the table, its digest, its figures and its page."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import frictionlab as fl
+from frictionlab.charts.curves import family_of
+from frictionlab.report.question import scene_sentences
+from frictionlab.results.table import inputs
+from frictionlab.runner.chunks import cuts, task_of
+from frictionlab.runner.kept_chunks import Keys
+from frictionlab.runner.yaml_text import yaml_text
+from frictionlab.scene.waveforms import Form, Term
+from frictionlab.study import Study, load_study, parse_study
+from frictionlab.study.schema import schema
+
+SUM = {"harmonics": [{"order": 1, "amplitude": 1}, {"order": 3, "amplitude": 0.5, "phase": 90}]}
+FORMULA = "sin(theta) + 0.5 sin(3 theta + 90 deg)"
+SCENE: dict[str, Any] = {
+    "damping_ratio": 0.1,
+    "normal_load": 1,
+    "belt_speed": 1,
+    "drive": {"amplitude": 1, "frequency": 2},
+    "normal_load_variation": {"amplitude": 0.3},
+}
+SWEEP: dict[str, Any] = {
+    "scene.belt_speed": [0.5, 1.0],
+    "scene.drive.waveform": ["sine", "square", SUM],
+    "scene.normal_load_variation.contact": ["per_load", "constant"],
+    "scene.normal_load_variation.frequency_ratio": [1, "3/2"],
+}
+
+
+def study(sweep: Any = SWEEP, **changes: Any) -> dict[str, Any]:
+    return {
+        "schema": 1,
+        "scene": SCENE,
+        "laws": [{"kind": "coulomb", "mu": 0.4}],
+        "sweep": sweep,
+        **changes,
+    }
+
+
+def columns(plan: Study) -> pd.DataFrame:
+    """The input columns of its table."""
+    return pd.DataFrame(inputs(list(plan.curves())).columns)
+
+
+def test_every_combination_of_words_is_a_point_and_stands_in_the_table() -> None:
+    table = columns(parse_study(study()))
+
+    assert len(table) == 2 * 3 * 2 * 2
+    assert table["scene.drive.waveform"].unique().tolist() == ["sine", "square", FORMULA]
+    assert table["scene.normal_load_variation.contact"].unique().tolist() == ["per_load", "constant"]
+    assert sorted(table["scene.normal_load_variation.frequency_ratio"].unique()) == [1.0, 1.5]
+
+
+def test_the_scenes_of_a_grid_have_the_waveforms_of_their_rows() -> None:
+    plan = parse_study(study())
+    table = columns(plan)
+
+    for case, waveform in zip(plan.cases(), table["scene.drive.waveform"], strict=True):
+        assert case.scene.drive is not None
+        assert str(case.scene.drive.waveform) == waveform
+    forms = {case.scene.drive.waveform for case in plan.cases() if case.scene.drive is not None}
+    assert Form("harmonics", (Term(1, 1.0, 0.0), Term(3, 0.5, 90.0))) in forms
+
+
+def test_a_resolved_study_with_words_is_the_same_study(tmp_path: Path) -> None:
+    where = {"scene.drive.waveform": SUM, "scene.normal_load_variation.frequency_ratio": "3/2"}
+    once = parse_study(study(expect=[{"where": where, "column": "error", "below": 1, "because": "x"}]))
+    file = tmp_path / "study.yaml"
+    file.write_text(yaml_text(once.resolved()))
+
+    again = load_study(file)
+    assert again == once
+    assert again.digest() == once.digest()
+    assert once.expect[0].where == {
+        "scene.drive.waveform": FORMULA,
+        "scene.normal_load_variation.frequency_ratio": 1.5,
+    }
+
+
+CHANGES = [
+    {"drive": {**SCENE["drive"], "waveform": "square"}},
+    {"drive": {**SCENE["drive"], "waveform": SUM}},
+    {"normal_load_variation": {"amplitude": 0.3, "contact": "constant"}},
+    {"normal_load_variation": {"amplitude": 0.3, "frequency_ratio": "3/2"}},
+    {"belt_vibration": {"velocity_amplitude": 1}},
+]
+
+
+def test_each_change_of_a_word_gives_another_digest_and_another_key_of_its_chunks() -> None:
+    plans = [parse_study(study({}, scene=SCENE | change)) for change in [{}, *CHANGES]]
+    keys = Keys({})
+    chunks = [[cut.chunk(task_of(plan)) for cut in cuts(plan.curves())] for plan in plans]
+    found = [keys.of(each, "coulomb", "auto") for several in chunks for each in several]
+
+    assert None not in found
+    assert len(set(found)) == len(plans)
+    assert len({plan.digest() for plan in plans}) == len(plans)
+    words = [parse_study(study({"scene.drive.waveform": ["sine", each]})) for each in ("square", SUM)]
+    assert words[0].digest() != words[1].digest()
+
+
+def test_words_are_set_from_the_command_line() -> None:
+    plan = parse_study(
+        study({}), ["scene.drive.waveform=square", "scene.belt_vibration.velocity_amplitude=2"]
+    )
+    swept = parse_study(
+        study({}), ["sweep.scene.drive.waveform=[sine, {harmonics: [{order: 2, amplitude: 1}]}]"]
+    )
+
+    assert plan.scene.drive is not None
+    assert plan.scene.drive.waveform == Form("square")
+    assert [str(each) for each in swept.sweep["scene.drive.waveform"]] == ["sine", "sin(2 theta)"]
+
+
+def test_the_schema_takes_words_waveforms_and_ratios_and_gives_defaults_as_a_study_does() -> None:
+    made = schema()
+    parts = made["$defs"]
+
+    assert parts["BeltVibration"]["properties"]["waveform"]["default"] == "sine"
+    term = parts["Drive"]["properties"]["waveform"]["oneOf"][1]["properties"]["harmonics"]["items"]
+    assert term["required"] == ["order", "amplitude"]
+    kinds = made["properties"]["sweep"]["additionalProperties"]["oneOf"][0]["items"]["anyOf"]
+    assert [kind.get("type") for kind in kinds] == ["number", "string", None]
+    json.dumps(made)
+
+
+def found(plan: Study) -> pd.DataFrame:
+    """A table of it, filled with a number of its own for each row."""
+    table = columns(plan)
+    table["status"] = "ok"
+    table["mean_friction"] = 0.01 * np.arange(len(table))
+    return table
+
+
+def test_words_tell_curves_apart_and_never_lie_along_the_axis() -> None:
+    family = family_of(found(parse_study(study())))
+    alone = family_of(found(parse_study(study({"scene.drive.waveform": ["square", "sine"]}))))
+
+    assert alone is None
+    assert family is not None
+    assert family.abscissa == "scene.belt_speed"
+    assert family.member == "scene.drive.waveform"
+    assert [curve.member for curve in family.curves[:3]] == [
+        ("scene.drive.waveform", each) for each in ("sine", "square", FORMULA)
+    ]
+    assert len(family.panels) == 4
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({}, "The normal load varies, a sine; the stiffness of bristles follows it."),
+        (
+            {"drive": {"amplitude": 1, "frequency": 2, "waveform": "square"}},
+            "on a moving belt, shaken along it. The load along x1 is a square wave.",
+        ),
+        (
+            {"belt_vibration": {"velocity_amplitude": 1, "waveform": SUM, "frequency_ratio": "3/2"}},
+            f"The belt vibrates along its motion, its velocity {FORMULA} at 3/2 times the drive's frequency.",
+        ),
+        (
+            {
+                "drive": {"amplitude": 1, "frequency": 2, "direction": 30},
+                "transverse": {"natural_frequency": 1, "damping_ratio": 0.1},
+            },
+            "in the plane, on a moving belt, shaken at 30° to its motion.",
+        ),
+    ],
+)
+def test_the_page_tells_in_words_what_is_no_sine(change: dict[str, Any], said: str) -> None:
+    assert said in scene_sentences(parse_study(study({}, scene=SCENE | change)))
+
+
+def test_the_page_says_what_is_swept_over_words() -> None:
+    sweep = SWEEP | {"scene.drive.direction": [0, 45]}
+    scene = SCENE | {"transverse": {"natural_frequency": 1, "damping_ratio": 0.1}}
+    said = scene_sentences(parse_study(study(sweep, scene=scene)))
+
+    assert "shaken in several directions. The load along x1 is of several waveforms." in said
+    assert (
+        "a sine at several frequencies; the stiffness of bristles follows it or stays that of its mean."
+        in said
+    )
+
+
+SI: dict[str, Any] = {
+    "mass_kg": 2.0,
+    "stiffness_N_per_m": 800.0,
+    "damping_N_s_per_m": 8.0,
+    "length_m": 1e-3,
+    "belt_speed_m_per_s": 0.02,
+    "drive": {"amplitude_N": 3.0, "frequency_rad_per_s": 25.0, "waveform": "square", "direction": 30},
+    "transverse": {"stiffness_N_per_m": 500.0, "damping_N_s_per_m": 5.0},
+    "belt_vibration": {"velocity_amplitude_m_per_s": 0.05, "phase": 20, "waveform": SUM, "direction": 60},
+    "normal_load_variation": {"amplitude": 0.3, "frequency_ratio": "3/2", "contact": "constant"},
+}
+
+
+def test_a_scene_in_si_units_has_every_key_in_its_own_scales() -> None:
+    scene = fl.Scene(dimensional=SI)
+    plain = fl.Scene(  # omega_1 = 20 rad/s, omega_1 L = 0.02 m/s, K_1 L = 0.8 N
+        damping_ratio=0.1,
+        normal_load=2 * 9.81 / 0.8,
+        belt_speed=1.0,
+        drive={"amplitude": 3.0 / 0.8, "frequency": 1.25, "waveform": "square", "direction": 30},
+        transverse=scene.transverse,
+        belt_vibration={"velocity_amplitude": 2.5, "phase": 20, "waveform": SUM, "direction": 60},
+        normal_load_variation={"amplitude": 0.3, "frequency_ratio": 1.5, "contact": "constant"},
+    )
+
+    names = [name for name in fl.Scene.model_fields if name != "dimensional"]
+    assert {name: getattr(scene, name) for name in names} == {name: getattr(plain, name) for name in names}
+    assert fl.Scene(**scene.given()) == scene
+    tau = np.linspace(0.0, 7.0, 50)
+    for one, other in zip(scene.signals().belt, plain.signals().belt, strict=True):
+        np.testing.assert_allclose(one(tau), other(tau), atol=1e-13)
+
+
+def test_words_are_swept_in_si_units_too_and_stand_in_both_columns() -> None:
+    sweep = {
+        "scene.dimensional.drive.waveform": ["square", "triangle"],
+        "scene.dimensional.belt_speed_m_per_s": [0.01, 0.02],
+    }
+    where = {"scene.drive.waveform": "triangle", "scene.dimensional.drive.waveform": "triangle"}
+    expect = [{"where": where, "column": "error", "below": 1}]
+    table = columns(parse_study(study(sweep, scene={"dimensional": SI}, expect=expect)))
+
+    assert table["scene.dimensional.drive.waveform"].tolist() == ["square"] * 2 + ["triangle"] * 2
+    assert table["scene.drive.waveform"].tolist() == table["scene.dimensional.drive.waveform"].tolist()

@@ -15,7 +15,8 @@ from frictionlab.scene.scene import Scene
 class Samples(NamedTuple):
     """One period of a steady state at n equally spaced times [nondimensional, scales of ``scene``].
 
-    friction [-] is the coefficient that resists slip; load [K_1 L] is the force that drives the mass.
+    friction [-] is the force that resists slip over the mean normal load; load [K_1 L] is the force that drives the
+    mass, at a jump that after it.
     """
 
     tau: Floats
@@ -36,9 +37,5 @@ def sample(orbit: Orbit, scene: Scene, n: int) -> Samples:
     start, end = orbit.tau[panels, 0], orbit.tau[panels, -1]
     weights = interpolation_weights((2.0 * times - start - end) / (end - start))
     x, v, rub = ((weights * part[panels]).sum(axis=1) for part in (orbit.x, orbit.v, orbit.friction))
-    turn = np.exp(1j * scene.frequency * times)
-    force, force_2 = (
-        (scene.mass().force, scene.mass().transverse_force) if scene.degrees_of_freedom else (0j, 0j)
-    )
-    loads = (force * turn).imag, (force_2 * turn).imag
-    return Samples(times, x.real, v.real, x.imag, v.imag, rub.real, rub.imag, *loads)
+    along, across = (load(times) for load in scene.signals().load)
+    return Samples(times, x.real, v.real, x.imag, v.imag, rub.real, rub.imag, along, across)

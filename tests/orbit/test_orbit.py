@@ -209,6 +209,46 @@ def test_samples_are_the_motion_at_equally_spaced_times(n):
     assert not at.friction.any()
 
 
+def test_the_samples_of_loads_are_their_waveforms_and_at_a_jump_the_value_after_it():
+    scene = Scene(
+        damping_ratio=0.1,
+        normal_load=10.0,
+        belt_speed=5.0,
+        drive=Drive(amplitude=3.0, frequency=1.0, waveform="square"),
+        transverse=Transverse(
+            natural_frequency=2.0,
+            damping_ratio=0.2,
+            load=Load(amplitude=0.5, waveform="triangle", frequency_ratio=2),
+        ),
+    )
+    at = sample(motion(1.0, 12, harmonic(1.0, 2.0 + 0j, 1j)), scene, 8)
+    turned = scene.with_(
+        **{"drive.direction": 60, "drive.waveform": None, "transverse.load": None, "drive.phase": 90}
+    )
+    aslant = sample(motion(1.0, 12, harmonic(1.0, 2.0 + 0j, 1j)), turned, 8)
+
+    np.testing.assert_allclose(at.load, [3, 3, 3, 3, -3, -3, -3, -3], atol=1e-12)
+    np.testing.assert_allclose(at.load_transverse, [0, 0.5, 0, -0.5] * 2, atol=1e-12)
+    np.testing.assert_allclose(aslant.load, 1.5 * np.cos(at.tau), atol=1e-12)
+    np.testing.assert_allclose(
+        aslant.load_transverse, 3.0 * math.sin(math.pi / 3) * np.cos(at.tau), atol=1e-12
+    )
+
+
+def test_an_orbit_under_a_changing_load_has_the_force_over_the_mean_load():
+    scene = Scene(
+        damping_ratio=0.1,
+        normal_load=2.0,
+        belt_speed=9.0,
+        drive=Drive(amplitude=1.0, frequency=2.0),
+        normal_load_variation={"amplitude": 0.5, "frequency_ratio": "3/2"},
+    )
+    at = sample(with_columns(Shooting(), [scene], LAW, 1e-9).orbit(0), scene, 16)
+
+    np.testing.assert_allclose(at.tau[1:], 2.0 * math.pi * np.arange(1, 16) / 16, rtol=1e-12)
+    np.testing.assert_allclose(at.friction, -MU * (1.0 + 0.5 * np.sin(3.0 * at.tau)), atol=1e-9)
+
+
 def test_the_samples_of_a_prescribed_slip_have_no_load():
     scene = Scene(
         belt_speed=1.0,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -36,3 +38,23 @@ class SteadySliding:
         second = 1.0 + damped * self.lag + self.slope * self.lead
         first = damped + self.slope + stiffness * self.lag
         return second > 0.0 and first > 0.0 and second * first > stiffness * self.lag
+
+
+def steady_deflection(law: Any, v: float) -> float:
+    """The deflection [scene length] of a bristle in steady sliding at slip velocity v (not zero).
+
+    From the undeflected bristle, which slip bends, up to where its rate is zero or turns round.
+    """
+    direction, still = math.copysign(1.0, v), 1e-12 * abs(v)
+    low, high = 0.0, law.largest_deflection()
+    if not math.isfinite(high):
+        high = 1.0
+        while direction * law.rate(v, direction * high) > still and high < 1e9:
+            high = 2.0 * high
+    while high - low > 4e-16 * high:
+        middle = 0.5 * (low + high)
+        if direction * law.rate(v, direction * middle) > still:
+            low = middle
+        else:
+            high = middle
+    return direction * high

@@ -46,7 +46,15 @@ COSTS = {
     "scalars": MEMORY,
 }
 CONSTANT_CONTACT = "shooting cannot keep the stiffness of bristles while the normal load changes"
-INSTEAD = {"bristle": "use march, or give a drive"}
+CREEPS = (
+    "on a belt at rest a contact whose memory has no direction creeps as long as its spring pulls: no state is steady "
+    "but that of the unstretched spring; leave initial out, or give a belt speed"
+)
+
+
+def starts_to_creep(scene: Scene) -> bool:
+    """Whether the mass moves, or its spring pulls, on a belt at rest."""
+    return scene.belt_speed == 0.0 and (scene.start.x != 0.0 or scene.start.velocity != 0.0)
 
 
 class Shooting(Method):
@@ -62,8 +70,9 @@ class Shooting(Method):
     Along the belt a bristle whose path is exact is put in as a function of the way slid; otherwise mass and bristle
     are solved for together by Rodas5P, as mass and any other memory are. In the plane, friction by axis leaves two
     bodies of one direction, and a deflection along the slip ends at its limit: friction is then without memory.
-    Without a drive the period is an unknown too, and the answer is the state reached from scene.initial. A prescribed
-    slip leaves a mass nothing to close: the mean is quadrature, or that of the closed loop of the memory.
+    Without a drive the period is an unknown too, and the answer is the state reached from scene.initial: steady
+    sliding, a cycle or rest. A prescribed slip leaves a mass nothing to close: the mean is quadrature, or that of the
+    closed loop of the memory.
 
     Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023).
     """
@@ -71,17 +80,16 @@ class Shooting(Method):
     name: ClassVar[str] = "shooting"
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Memory where nothing drives; an undriven start across the belt; a law of none of the kinds known."""
+        """An undriven start across the belt, or of a contact that creeps; a law of none of the kinds known."""
         if law.memory_kind not in COSTS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         part = scene.normal_load_variation
         if part is not None and part.contact == "constant" and law.count() > 0:
             return CONSTANT_CONTACT
-        if scene.undriven and law.count() > 0:
-            instead = INSTEAD.get(law.memory_kind, "give a drive")
-            return f"for undriven scenes shooting needs friction without memory: {instead}"
         if scene.undriven and (scene.start.x2 != 0.0 or scene.start.velocity2 != 0.0):
             return "undriven scenes are solved along the belt only: leave initial.x2 and velocity2 at 0"
+        if scene.undriven and law.memory_kind == "scalars" and starts_to_creep(scene):
+            return CREEPS
         if law.planar_form() == "vectorial" and not along_the_belt(scene, law):
             return law.no_vector_form() or None
         return None

@@ -8,11 +8,10 @@ map from one largest deflection to the next. The period is an unknown of both.
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -36,6 +35,17 @@ from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING, UTMOST_WOR
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.period_map import pack, size_of
 from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.methods.shooting.undriven_memory import UndrivenMemory
+from frictionlab.methods.shooting.undriven_motion import (
+    AT_REST,
+    FREE,
+    SLIDING,
+    TURN,
+    Effort,
+    Follower,
+    NotFound,
+    PeriodicMotion,
+)
 from frictionlab.orbit.record import Orbit
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.scene.body import Body, Mass, on_the_line
@@ -43,11 +53,10 @@ from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
 
 PIECE = 1.0 / 32.0
-"""Of 2 pi, the period of the free mass: how far the motion is followed between looks at it."""
+"""Of a turn: how far the motion is followed between looks at it."""
 MOST_PIECES = 200_000
 WORK_OF_A_PIECE = 3
 """What following one costs beside its steps [steps]."""
-TURN = 2.0 * math.pi
 ALWAYS = Instant(0.0, 0.0, 1.0)
 """Nothing shakes the mass: what acts on it is the same at every instant."""
 
@@ -66,47 +75,26 @@ def record_flow(law: Any, body: Body, belt_speed: float, x: float, v: float, acc
     return record_orbit(case_of(law, body, belt_speed), z, accuracy, track_of(128))
 
 
-class PeriodicMotion(NamedTuple):
-    """A periodic motion from x, v: its period, mean friction, error and largest multiplier, and what it is."""
-
-    x: float
-    v: float
-    period: float
-    mean: float
-    error: float
-    multiplier: float
-    kind: str
-
-
-@dataclass
-class Effort:
-    """What following a motion has taken so far [steps], and how far it has led [pieces]."""
-
-    work: int = 0
-    pieces: int = 0
-
-
-class NotFound(Exception):
-    """No periodic motion; the message says why."""
-
-
 def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer undriven scenes, each by the state it reaches from its start."""
     numbers = np.full((5, len(scenes)), np.nan)
     mean, error, period, multipliers, seconds = numbers
     status: list[Status] = ["failed"] * len(scenes)
     reason, model, kind = [""] * len(scenes), [""] * len(scenes), [""] * len(scenes)
-    found: dict[int, tuple[_Undriven, PeriodicMotion]] = {}
+    found: dict[int, tuple[Follower, PeriodicMotion]] = {}
     for i, scene in enumerate(scenes):
-        undriven = _Undriven(scene, law, tolerance)
-        begin = time.perf_counter()
+        undriven: Follower
+        if law.count() > 0:
+            undriven = UndrivenMemory(scene, law, tolerance)
+        else:
+            undriven = _Undriven(scene, law, tolerance)
         try:
             motion = undriven.motion()
         except NotFound as problem:
             reason[i] = str(problem)
             continue
         finally:
-            seconds[i] = time.perf_counter() - begin
+            seconds[i] = undriven.effort.seconds
         found[i] = undriven, motion
         status[i], model[i], kind[i] = "ok", f"undriven: {motion.kind}", "estimated"
         mean[i], error[i] = motion.mean, motion.error
@@ -155,7 +143,7 @@ class _Undriven:
         return interpreted(normal_load)(self._body, ALWAYS)
 
     @cached_property
-    def _kernel(self) -> Callable[..., Mapped]:
+    def _kernel(self) -> KernelCall:
         return KernelCall(flow, self.law)
 
     @property
@@ -186,16 +174,18 @@ class _Undriven:
             peaks += 1 if v > 0.0 >= image.u else 0
             # the belt carries what rests to where slip begins
             x, v = (self._release, self._speed) if rests else (image.y, image.u)
-            self.effort.pieces = count
+            self.effort.turns = count * PIECE
         raise NotFound(f"no steady state within {MOST_PIECES * PIECE:.0f} periods of the free mass")
 
     def _follow(self, x: float, v: float, turns: float, accuracy: float) -> Mapped:
         body = self._body._replace(periods=turns)
-        image: Mapped = self._kernel(body, self.scene.belt_speed, x, v, accuracy)
+        image: Mapped
+        image, seconds = self._kernel.timed(body, self.scene.belt_speed, x, v, accuracy)
+        self.effort.seconds += seconds
         self.effort.work += WORK_OF_A_PIECE + image.steps
         if image.steps < 0 or self.effort.work > UTMOST_WORK:
             raise NotFound(
-                f"no steady state within {UTMOST_WORK:,} steps: after {self.effort.pieces * PIECE:.3g} periods of "
+                f"no steady state within {UTMOST_WORK:,} steps: after {self.effort.turns:.3g} periods of "
                 f"the free mass it is at x = {x:.6g} with velocity {v:.6g}"
             )
         return image
@@ -227,8 +217,7 @@ class _Undriven:
 
     def _free(self, x: float, v: float) -> PeriodicMotion:
         mean = math.copysign(self.law.sliding_friction(1.0), self._speed)
-        kind = "a free oscillation in slip, which does not decay without damping"
-        return PeriodicMotion(x, v, TURN, mean, ROUNDING, 1.0, kind)
+        return PeriodicMotion(np.array([x, v]), TURN, mean, ROUNDING, 1.0, FREE)
 
     def _at_rest(self) -> PeriodicMotion:
         state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settle(self.scene.start)
@@ -236,15 +225,7 @@ class _Undriven:
             raise NotFound(f"the mass still creeps towards rest after {-periods} periods of the free mass")
         mean = state[0] / self._pressed
         error = 1e-11 * periods + ROUNDING
-        return PeriodicMotion(
-            state[0],
-            0.0,
-            math.nan,
-            mean,
-            error,
-            math.nan,
-            "at rest, where the motion from scene.initial ends",
-        )
+        return PeriodicMotion(np.array([state[0], 0.0]), math.nan, mean, error, math.nan, AT_REST)
 
     def _deflection(self) -> float:
         """Of the spring in steady sliding."""
@@ -275,9 +256,8 @@ class _Undriven:
     def _sliding(self) -> PeriodicMotion:
         speed = self._speed
         mean = math.copysign(self.law.sliding_friction(abs(speed)), speed)
-        return PeriodicMotion(
-            self._deflection(), 0.0, math.nan, mean, ROUNDING, math.nan, "steady sliding, which attracts"
-        )
+        still = np.array([self._deflection(), 0.0])
+        return PeriodicMotion(still, math.nan, mean, ROUNDING, math.nan, SLIDING)
 
     @property
     def _release(self) -> float:
@@ -298,15 +278,8 @@ class _Undriven:
         if rough is None or fine is None:
             return None
         error = 2.0 * abs(fine[1] - rough[1]) + self._of_a_step
-        return PeriodicMotion(
-            x,
-            speed,
-            fine[0],
-            fine[1],
-            error,
-            0.0,
-            "stick-slip, from the end of one stick phase to the next",
-        )
+        kind = "stick-slip, from the end of one stick phase to the next"
+        return PeriodicMotion(np.array([x, speed]), fine[0], fine[1], error, 0.0, kind)
 
     def _cycle_from(self, x: float, accuracy: float) -> tuple[float, float] | None:
         """Period and mean friction from release at x to the next; None where the mass does not come to rest.
@@ -356,7 +329,8 @@ class _Undriven:
         error = (
             2.0 * abs(means[1] - means[0]) + 2.0 * abs(fine - rough) / (1.0 - abs(slope)) + self._of_a_step
         )
-        return PeriodicMotion(x, 0.0, period, means[0], error, abs(slope), "a cycle of slip without rest")
+        kind = "a cycle of slip without rest"
+        return PeriodicMotion(np.array([x, 0.0]), period, means[0], error, abs(slope), kind)
 
     def _next_peak(self, x: float, accuracy: float) -> tuple[float, float]:
         """The next largest deflection after one at x, and the time it takes. Raises NotFound."""
@@ -391,7 +365,7 @@ class _Undriven:
         turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
         body = self._body._replace(periods=turns)
         speed, accuracy = self.scene.belt_speed, self._accuracy / FINER
-        track = KernelCall(record_flow, self.law)(body, speed, motion.x, motion.v, accuracy)
+        track = KernelCall(record_flow, self.law)(body, speed, *motion.state.tolist(), accuracy)
         parts = track.tau, track.x, track.v, track.friction, track.stick
         return Orbit(*(part[: track.filled[0]] for part in parts))
 

@@ -27,7 +27,7 @@ from frictionlab.dynamics.waves import (
 )
 from frictionlab.scene import body as _plain
 from frictionlab.scene.body import Body
-from frictionlab.scene.packed import PER_PIECE, Course, Packed
+from frictionlab.scene.varying import PER_PIECE, Course, Packed
 
 restoring_force = fast(_plain.restoring_force)
 span = fast(_plain.span)

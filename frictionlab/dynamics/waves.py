@@ -7,7 +7,7 @@ from typing import Any
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension
-from frictionlab.scene.packed import PER_WAVE, Course
+from frictionlab.scene.varying import PER_WAVE, Course
 
 
 def _on_the_line(table: Any, place: int, like: float) -> float:

@@ -27,8 +27,7 @@ from frictionlab.orbit.energy_errors import FOR_ERRORS, Means, energy_errors
 from frictionlab.orbit.panels import NODES, WEIGHTS, differentiate_panel, interpolate, zero_between
 from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Mass
-from frictionlab.scene.packed import packed
+from frictionlab.scene.body import Mass, for_kernels
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 
@@ -95,8 +94,7 @@ def _not_there(scene: Scene) -> list[bool]:
 def _mass(scene: Scene) -> Mass:
     """Of a prescribed slip its mean load and frequency are all there is, and the belt is steady."""
     if scene.degrees_of_freedom:
-        mass = scene.mass()
-        return mass._replace(varying=packed(mass.varying, True))
+        return for_kernels(scene.mass())
     motion = scene.motion()
     return Mass(0.0, 1.0, 0.0, 1.0, motion.normal_load, motion.frequency, 0j, 0j)
 

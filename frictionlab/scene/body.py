@@ -5,95 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from frictionlab.quantities import Floats
-from frictionlab.scene.signals import Signal, Signals
-
-
-class Waves(NamedTuple):
-    """A function of time for kernels: sums of sine[j]*sin(frequency[j] tau) + cosine[j]*cos(frequency[j] tau), and a
-    line, value + slope*(tau - when the piece began); numbers are real on the line and x1 + i x2 in the plane."""
-
-    frequency: Floats
-    sine: Any
-    cosine: Any
-    value: Any
-    slope: Any
-
-
-class Varying(NamedTuple):
-    """What changes in time otherwise than as one sine, in pieces between corners of any of its functions.
-
-    Within a piece every function is smooth, and beyond its ends it goes on as within. begins: the piece that holds;
-    edges [pieces + 1]: from 0 to the common period; lines [pieces]: value at the beginning of each piece, and slope.
-    periods: of the drive in a common period. quickest: the highest frequency of any wave, at least that of the drive.
-    belt_swing: the largest velocity of the belt's vibration.
-    constant_contact: whether bristles keep the stiffness of the mean normal load.
-    """
-
-    begins: float
-    load: Waves
-    belt: Waves
-    normal_load: Waves
-    edges: Floats
-    load_lines: Any
-    load_slopes: Any
-    belt_lines: Any
-    belt_slopes: Any
-    normal_lines: Floats
-    normal_slopes: Floats
-    periods: float
-    quickest: float
-    belt_swing: float
-    constant_contact: bool
-
-
-def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Varying:
-    """The numbers of signals, those along x1 and x2 as x1 + i x2; frequency: of the drive."""
-    edges = np.array([0.0, *(tau for tau in signals.corners() if tau > 0.0), signals.period])
-    middles = 0.5 * (edges[:-1] + edges[1:])
-    half = 0.5 * np.diff(edges)
-    every = (*signals.load, *signals.belt, signals.normal_load)
-    quickest = max((wave.frequency for each in every for wave in each.waves), default=frequency)
-    load, load_lines, load_slopes = _planar_waves(*signals.load, middles, half)
-    belt, belt_lines, belt_slopes = _planar_waves(*signals.belt, middles, half)
-    normal, normal_lines, normal_slopes = _planar_waves(signals.normal_load, Signal(), middles, half)
-    return Varying(
-        begins=0.0,
-        load=load,
-        belt=belt,
-        normal_load=_real(normal),
-        edges=edges,
-        load_lines=load_lines,
-        load_slopes=load_slopes,
-        belt_lines=belt_lines,
-        belt_slopes=belt_slopes,
-        normal_lines=normal_lines.real.copy(),
-        normal_slopes=normal_slopes.real.copy(),
-        periods=float(round(signals.period * frequency / (2.0 * math.pi))),
-        quickest=max(quickest, frequency),
-        belt_swing=math.hypot(*(max(map(abs, each.extremes(signals.period))) for each in signals.belt)),
-        constant_contact=constant_contact,
-    )
-
-
-def _planar_waves(along: Signal, across: Signal, middles: Floats, half: Floats) -> tuple[Waves, Any, Any]:
-    """Of the piece that begins at 0; the values at the beginnings of all pieces, and the slopes."""
-    waves = [(each.frequency, each.phasor, 0j) for each in along.waves]
-    waves += [(each.frequency, 0j, each.phasor) for each in across.waves]
-    frequency = np.array([each for each, _, _ in waves])
-    sine = np.array([complex(first.real, second.real) for _, first, second in waves], dtype=np.complex128)
-    cosine = np.array([complex(first.imag, second.imag) for _, first, second in waves], dtype=np.complex128)
-    (first, rise), (second, rise_2) = along.lines_at(middles), across.lines_at(middles)
-    slopes = rise + 1j * rise_2
-    lines = first + 1j * second - half * slopes
-    return Waves(frequency, sine, cosine, complex(lines[0]), complex(slopes[0])), lines, slopes
-
-
-def _real(waves: Waves) -> Waves:
-    sine, cosine = waves.sine.real.copy(), waves.cosine.real.copy()
-    return Waves(waves.frequency, sine, cosine, waves.value.real, waves.slope.real)
+from frictionlab.scene.varying import packed
 
 
 class Mass(NamedTuple):
@@ -112,6 +24,11 @@ class Mass(NamedTuple):
     force: complex
     transverse_force: complex
     varying: Any = ()
+
+
+def for_kernels(mass: Mass) -> Mass:
+    """The mass with what varies in one table, its numbers x1 + i x2."""
+    return mass._replace(varying=packed(mass.varying, True))
 
 
 class Body(NamedTuple):
@@ -162,12 +79,12 @@ def on_the_line(mass: Mass, periods: float = 1.0) -> Body:
         reference_sine=reference.real,
         reference_cosine=reference.imag,
         periods=periods,
-        varying=mass.varying,
+        varying=packed(mass.varying, False),
     )
 
 
 def in_the_plane(mass: Mass, periods: float = 1.0) -> Body:
-    """The body with both motions."""
+    """The body with both motions, of a mass as kernels have it."""
     along = mass.damping, mass.stiffness, mass.frequency, mass.force
     across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
     reference, reference_2 = _friction_free(*along), _friction_free(*across)

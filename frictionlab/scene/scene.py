@@ -19,7 +19,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import ValidationError, model_validator
 
 from frictionlab.quantities import Finite, NonNegative, Positive, Record, given_values
-from frictionlab.scene.body import Mass, Motion, varying_of
+from frictionlab.scene.body import Mass, Motion
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.rules import (
     periods_of,
@@ -28,6 +28,7 @@ from frictionlab.scene.rules import (
     problems_of_variation,
 )
 from frictionlab.scene.signals import FULL_TURN, Signal, Signals, signal_of
+from frictionlab.scene.varying import varying_of
 from frictionlab.scene.waveforms import SINE, Form, Ratio, Waveform
 
 

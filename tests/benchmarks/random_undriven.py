@@ -81,7 +81,9 @@ def _law(rng: np.random.Generator, kind: str, load: float, speed: float) -> Fric
     length = load * mu * _log(rng, 1e-5, 1)
     if kind == "maxwell-slip":
         share = rng.uniform(0.1, 1, 3)
-        return MaxwellSlip(mu=(mu * share / share.sum()).tolist(), stiffness=[mu / length * 3.0**k for k in range(3)])
+        return MaxwellSlip(
+            mu=(mu * share / share.sum()).tolist(), stiffness=[mu / length * 3.0**k for k in range(3)]
+        )
     if kind == "dahl":
         return fl.Dahl(mu=mu, presliding_length=length, exponent=float(rng.choice([1.0, 0.5, 1.5])))
     if kind == "jenkins":
@@ -191,7 +193,11 @@ def _repeated(peaks: list[tuple[float, float]]) -> float | None:
             lengths.append(at - begun)
         changes, stretches = np.abs(np.diff(means)), np.abs(np.diff(lengths))
         # and what changes in the same way for long may change on
-        if changes.max() < REPEATS and stretches.max() < 1e3 * REPEATS and changes[0] <= max(0.5 * changes[2], 1e-11):
+        if (
+            changes.max() < REPEATS
+            and stretches.max() < 1e3 * REPEATS
+            and changes[0] <= max(0.5 * changes[2], 1e-11)
+        ):
             return float(means[0])
     return None
 
@@ -225,7 +231,11 @@ def main(scenes: int, compared: int, seed: int) -> int:
         if count(tally, number, one):
             answered.append(number)
         if (spent := time.perf_counter() - begun) > SLOW:
-            print(f"{number}: {spent:.1f} s, compiling included: {one[0]}, {one[3]:g}", file=sys.stderr, flush=True)
+            print(
+                f"{number}: {spent:.1f} s, compiling included: {one[0]}, {one[3]:g}",
+                file=sys.stderr,
+                flush=True,
+            )
     print(f"{scenes} scenes, {time.perf_counter() - start:.0f} s, kernels per scene [ms]:", end=" ")
     print(*(f"{1e3 * part:.2f}" for part in np.nanquantile(tally.seconds, [0.1, 0.5, 0.9, 0.99, 1.0])))
     for line in sorted(tally.found.items()):

@@ -38,8 +38,7 @@ from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state
 from frictionlab.orbit.record import Orbits
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Body, in_the_plane, on_the_line
-from frictionlab.scene.packed import packed
+from frictionlab.scene.body import Body, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
 from frictionlab.scene.signals import Signal
@@ -106,9 +105,7 @@ class PeriodicProblem:
         if along_the_belt(scene, law):
             self.body, self.like = on_the_line(self.mass), 0.0
         else:
-            self.body, self.like = in_the_plane(self.mass), 0j
-        planar = isinstance(self.like, complex)
-        self.body = self.body._replace(varying=packed(self.mass.varying, planar))
+            self.body, self.like = in_the_plane(for_kernels(self.mass)), 0j
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
         self.body = self.body._replace(periods=self.common)

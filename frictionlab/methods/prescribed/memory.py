@@ -19,8 +19,8 @@ from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, Motion
-from frictionlab.scene.packed import packed
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.varying import packed
 from frictionlab.theory.rest import friction_at_rest
 
 PERIODS = 100

@@ -387,7 +387,9 @@ class UndrivenMemory:
         Its mean is that of three closed cycles, each of maps FINER times finer than the one before.
         """
         accuracy, means, error = max(min(self.tolerance, COARSE), FINEST), list[float](), math.inf
-        at = Loop(np.where(np.arange(self._size) == 1, 0.0, state), turns, math.nan, math.inf, np.empty((0, 0)))
+        at = Loop(
+            np.where(np.arange(self._size) == 1, 0.0, state), turns, math.nan, math.inf, np.empty((0, 0))
+        )
         linear = self._linearized(at)
         while True:
             found, linear = self._newton(at, linear, accuracy)
@@ -467,7 +469,11 @@ class UndrivenMemory:
             ways.append(way)
             self.effort.turns += 1.0
             # what is left shrinks, turn by turn, as it did over the last ones
-            rate = (ways[-1] / ways[-1 - RESTING]) ** (1.0 / RESTING) if len(ways) > RESTING and way > 0.0 else 1.0
+            rate = (
+                (ways[-1] / ways[-1 - RESTING]) ** (1.0 / RESTING)
+                if len(ways) > RESTING and way > 0.0
+                else 1.0
+            )
             left = way * rate / (1.0 - rate) if rate < 1.0 else math.inf
             if way <= 1e-15 or left <= enough:
                 return state, min(left, enough)

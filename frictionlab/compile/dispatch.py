@@ -130,20 +130,47 @@ def by_variation(of_one_sine: Any, of_varying: Any) -> Any:
 
     of_one_sine: for a record whose field is empty, or that has none: one sine is all that changes in time in it.
     """
+    return _by_field("varying", of_one_sine, of_varying)
+
+
+def by_contact(of_any_load: Any, of_constant_stiffness: Any) -> Any:
+    """The same, chosen by the field ``keeps_stiffness``: of_constant_stiffness is for a contact that keeps its stiffness while
+    the normal load changes."""
+    return _by_field("keeps_stiffness", of_any_load, of_constant_stiffness)
+
+
+def _by_field(name: str, of_empty: Any, of_filled: Any) -> Any:
+    """By whether a field of the first argument is filled: its own, or that of what varies or of the body it holds."""
 
     def chosen(*arguments: Any) -> Any:
-        return (of_varying if getattr(arguments[0], "varying", ()) else of_one_sine)(*arguments)
+        return (of_filled if _held(arguments[0], name) else of_empty)(*arguments)
 
     def resolve(*types: Any) -> Any:
-        fields = types[0].fields
-        varies = "varying" in fields and len(types[0].types[fields.index("varying")]) > 0
-        return of_varying if varies else of_one_sine
+        return of_filled if _is_filled(types[0], name) else of_empty
 
-    bodies = of_one_sine, of_varying
-    chosen.bodies = bodies  # type: ignore[attr-defined]  # for the fingerprint to find
-    resolve.__signature__ = inspect.signature(of_one_sine)  # type: ignore[attr-defined]  # numba compares them
+    of_empty, of_filled = (getattr(body, "py_func", body) for body in (of_empty, of_filled))
+    chosen.bodies = of_empty, of_filled  # type: ignore[attr-defined]  # for the fingerprint to find
+    resolve.__signature__ = inspect.signature(of_empty)  # type: ignore[attr-defined]  # numba compares them
     _extending.overload(chosen, jit_options=INNER, strict=False)(resolve)
     return chosen
+
+
+def _held(record: Any, name: str) -> Any:
+    if not isinstance(record, tuple):
+        return ()
+    if hasattr(record, name):
+        return getattr(record, name)
+    inside = (getattr(record, part, ()) for part in ("varying", "body"))
+    return next((held for part in inside if part and (held := _held(part, name))), ())
+
+
+def _is_filled(record: Any, name: str) -> bool:
+    if not hasattr(record, "fields"):
+        return False
+    held = dict(zip(record.fields, record, strict=True))
+    if name in held:
+        return len(held[name]) > 0
+    return any(_is_filled(held[part], name) for part in ("varying", "body") if part in held)
 
 
 def as_argument(function: Any) -> Any:
@@ -190,8 +217,8 @@ def by_law(
 
     The first argument is a law, or a record with a law in the field ``law``.
 
-    of_path is for bristle laws on the line (no argument is complex) whose path is exact, of_deflections for memory
-    laws, of_scalars for those whose memories have no direction; the choice is made when kernels are compiled, so that
+    of_path is for bristle laws on the line (no argument is complex) whose path is exact, in a contact that follows the
+    normal load, of_deflections for memory laws, of_scalars for those whose memories have no direction; the choice is made when kernels are compiled, so that
     what a law does not need is never compiled for it.
     """
     deflections = of_deflections or of_sliding
@@ -202,12 +229,15 @@ def by_law(
         law, first = getattr(arguments[0], "law", arguments[0]), arguments[0]
         inside = first if isinstance(first, tuple) else ()
         planar = any(isinstance(argument, complex) for argument in (*arguments, *inside))
-        return bodies[_which(type(law), law.structure(), planar)](*arguments)
+        pathless = planar or any(_held(argument, "keeps_stiffness") for argument in arguments)
+        return bodies[_which(type(law), law.structure(), pathless)](*arguments)
 
     def resolve(*types: Any) -> Any:
         law, structure = law_of_numbers[_numbers_in(types[0]).instance_class]
-        kinds = *types, *types[0].types
-        return bodies[_which(law, structure, any(isinstance(kind, numba.types.Complex) for kind in kinds))]
+        planar = any(isinstance(kind, numba.types.Complex) for kind in (*types, *types[0].types))
+        return bodies[
+            _which(law, structure, planar or any(_is_filled(kind, "keeps_stiffness") for kind in types))
+        ]
 
     chosen.bodies = tuple(bodies)  # type: ignore[attr-defined]  # for the fingerprint to find
     resolve.__signature__ = inspect.signature(bodies[0])  # type: ignore[attr-defined]  # numba compares them
@@ -222,12 +252,12 @@ def _numbers_in(first: Any) -> Any:
     return first.types[first.fields.index("law")]
 
 
-def _which(law: type[FrictionLaw], structure: tuple[str, ...], planar: bool) -> int:
+def _which(law: type[FrictionLaw], structure: tuple[str, ...], pathless: bool) -> int:
     if issubclass(law, MemoryLaw):
         return 4 if law.memory_kind == "scalars" else 3
     if not issubclass(law, BristleLaw):
         return 0
-    return 2 if "exact path" in structure and not planar else 1
+    return 2 if "exact path" in structure and not pathless else 1
 
 
 def _length_on_the_line(v: float) -> float:

@@ -358,6 +358,7 @@ def _body_of_piece(body: Body, k: int) -> Body:
         old.quickest,
         old.belt_swing,
         old.constant_contact,
+        old.keeps_stiffness,
     )
     return _with_varying(body, varying)
 
@@ -401,6 +402,7 @@ def _with_bare_table(body: Any) -> Any:
         old.quickest,
         old.belt_swing,
         old.constant_contact,
+        old.keeps_stiffness,
     )
     return _with_varying(body, varying)
 

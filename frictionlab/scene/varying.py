@@ -119,6 +119,7 @@ class Course(NamedTuple):
 class Packed(NamedTuple):
     """``Varying`` for kernels; begins: when the piece that holds does.
 
+    keeps_stiffness: filled where the contact does while the normal load changes, a type of its own for kernels.
     table: an array, in kernels a pointer to its items: the waves of the load, the belt and the normal load, then from
     ``lines`` on the numbers of every piece, then from ``edges`` on their ends.
     """
@@ -135,6 +136,7 @@ class Packed(NamedTuple):
     quickest: float
     belt_swing: float
     constant_contact: bool
+    keeps_stiffness: Any
 
 
 def packed(varying: Any, planar: bool) -> Any:
@@ -184,6 +186,7 @@ def packed(varying: Any, planar: bool) -> Any:
         quickest=varying.quickest,
         belt_swing=varying.belt_swing,
         constant_contact=varying.constant_contact,
+        keeps_stiffness=(1.0,) if varying.constant_contact else (),
     )
 
 

@@ -316,7 +316,7 @@ def _corrected(case: Case, search: Iterate, last: PacedMap, floor: float, before
         copy(inverse[row], search.inverse[row])
     multiply(search.inverse, residual, search.step)
     subtract(search.z, search.step, search.z)
-    _ratio, small = _finer(case.law, case.like)
+    _ratio, small = _finer(case, case.like)
     finer = max(accuracy / FINER, floor)
     better = image_of(case, search.z, residual, finer)
     multiply(search.inverse, residual, search.step)
@@ -338,7 +338,7 @@ def _check_with_memory(case: Case, search: Iterate, goal: Goal, now: Progress, f
     """
     z, residual, fresh, step = search.z, search.residual, search.fresh, search.step
     body, period, coarse, accuracy, maps = case.body, span(case.body), now.image, now.accuracy, now.maps
-    ratio, _small = _finer(case.law, case.like)
+    ratio, _small = _finer(case, case.like)
     if accuracy <= floor:  # two maps of one accuracy agree however wrong they are
         coarse = image_of(case, z, residual, ratio * floor)
         maps += 1

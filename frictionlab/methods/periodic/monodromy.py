@@ -132,14 +132,14 @@ class PacedMap(NamedTuple):
 
 @inner
 def _accuracy_over_steps(case: Case, z: Any) -> float:
-    _relative, fine = _quotient(case.law, case.like)
+    _relative, fine = _quotient(case, case.like)
     return fine * (1.0 + norm(z))
 
 
 @inner
 def _over_its_steps(case: Case, z: Any, base: PacedMap, matrix: Any, gradient: Any) -> bool:
     """n maps; False where the shift changes the events."""
-    (relative, _fine), ahead, trial = _quotient(case.law, case.like), np.empty(z.size), z.copy()
+    (relative, _fine), ahead, trial = _quotient(case, case.like), np.empty(z.size), z.copy()
     shift = _shift(case, z, relative)
     if base.image.steps < 0 or base.pace.taken[0] > MOST_KEPT:
         return False

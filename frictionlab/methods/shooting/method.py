@@ -45,7 +45,10 @@ COSTS = {
     "deflections": MEMORY,
     "scalars": MEMORY,
 }
-CONSTANT_CONTACT = "shooting cannot keep the stiffness of bristles while the normal load changes"
+CONSTANT_CONTACT = (
+    "normal_load_variation.contact: constant keeps the stiffness of one bristle; a law with another memory has none "
+    "of its own: give per_load"
+)
 CREEPS = (
     "on a belt at rest a contact whose memory has no direction creeps as long as its spring pulls: no state is steady "
     "but that of the unstretched spring; leave initial out, or give a belt speed"
@@ -84,7 +87,7 @@ class Shooting(Method):
         if law.memory_kind not in COSTS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         part = scene.normal_load_variation
-        if part is not None and part.contact == "constant" and law.count() > 0:
+        if part is not None and part.contact == "constant" and law.memory_kind in ("deflections", "scalars"):
             return CONSTANT_CONTACT
         if scene.undriven and (scene.start.x2 != 0.0 or scene.start.velocity2 != 0.0):
             return "undriven scenes are solved along the belt only: leave initial.x2 and velocity2 at 0"

@@ -10,7 +10,7 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.compile.dispatch import by_dimension, by_law, length
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.contact import friction_of
 from frictionlab.dynamics.events import reference_acceleration
@@ -38,10 +38,12 @@ from frictionlab.methods.periodic.maps.rates import (
     as_memory,
     friction_in_mode,
     load_on,
+    note_share,
     rate_in_mode,
     slip_held,
+    stretching,
 )
-from frictionlab.numerics.blocks import apply, block, from_columns, keep, multiple
+from frictionlab.numerics.blocks import add, apply, block, diagonal, from_columns, keep, multiple
 from frictionlab.numerics.vectors import dimension, unit
 from frictionlab.scene.body import Body
 
@@ -287,10 +289,41 @@ _slope = by_law(_slope_of_deviation, _slope_of_deviation, None, _slope_of_deviat
 """_slope(flow, now, rub, work, like): fill ``work.slope`` by the state that is held fixed."""
 
 
+def _no_share(work: Work, flow: Flow, now: Instant, w: Any, like: Any) -> None:
+    """The contact follows the load."""
+
+
+@inner
+def _by_share(work: Work, flow: Flow, now: Instant, w: Any, like: Any) -> None:
+    """What a changing load adds where the contact keeps its stiffness: its share is a part of every deflection."""
+    law, body, n = flow.law, flow.body, count_of(flow.law)
+    share, rate, bend = work.share[0], work.share[1], work.share[2]
+    strain = rate / share
+    turn = bend / share - strain * strain  # its rate
+    for k in range(n):
+        stretched = add(block(work.jacobian, 3 * k + 1, like), diagonal(-strain, 0.0, like), like)
+        keep(work.jacobian, 3 * k + 1, stretched, like)
+    # z'/n of a deflection that yields is its turning and what keeps up with the load, of any other the law's over n
+    here = friction_of(law, work.memory, work.moving, w)
+    for k in range(n):
+        z, yields = work.memory[k], 1.0 if work.mode[k] == YIELDS and work.radius[k] > 0.0 else 0.0
+        change = -strain * (work.moving[k] - yields * stretching(work, z))
+        work.slope[MEMORY + k] = work.slope[MEMORY + k] + change - (1.0 - yields) * turn * z + 0.0 * like
+        work.moving[k] = work.moving[k] + change + yields * turn * z
+    more = friction_of(law, work.memory, work.moving, w) - here
+    pressed = load_on(body, now)
+    work.slope[U] = work.slope[U] - pressed * more
+    work.slope[IMPULSE] = work.slope[IMPULSE] + load_share(body, now) * more
+
+
+_slope_of_share = by_contact(_no_share, _by_share)
+
+
 @inner
 def linearize(flow: Flow, tau: float, work: Work, like: Any) -> None:
     """Fill ``work.jacobian`` and the slopes in time at ``work.start``."""
     n, now = count_of(flow.law), instant_near(flow, tau)
+    note_share(work, flow.body, now)
     for k in range(n):
         work.memory[k] = as_memory(flow.law, work.start[MEMORY + k])
     w = _by_slip(flow, slip_held(flow, now, work.start[U]), work, like)
@@ -298,3 +331,4 @@ def linearize(flow: Flow, tau: float, work: Work, like: Any) -> None:
     for k in range(n):
         _by_memory(flow, w, k, work, like)
     _slope(flow, now, rub, work, like)
+    _slope_of_share(work, flow, now, w, like)

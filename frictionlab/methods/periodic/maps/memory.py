@@ -12,7 +12,7 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, by_law, length
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.events import dips
 from frictionlab.dynamics.motion import (
@@ -21,6 +21,7 @@ from frictionlab.dynamics.motion import (
     belt_path,
     instant_at,
     instant_near,
+    load_share,
     piece_ends,
     pieces_of,
     quickest_of,
@@ -341,6 +342,32 @@ def repeat(flow: Flow, end: float, first: int, pace: Pace, accuracy: float, work
     return -1
 
 
+def _as_it_was(work: Work, law: Any, before: float, after: float) -> None:
+    """A deflection is what it is under any load."""
+
+
+@inner
+def _per_new_share(work: Work, law: Any, before: float, after: float) -> None:
+    """The deflection stays, and its part of the new load changes; beyond yield it springs back at once."""
+    for k in range(count_of(law)):
+        z = (before / after) * work.start[MEMORY + k]
+        far = length(z)
+        beyond = work.radius[k] > 0.0 and far > work.radius[k]
+        work.start[MEMORY + k] = (work.radius[k] / far) * z if beyond else z
+
+
+_over_jump = by_contact(_as_it_was, _per_new_share)
+"""_over_jump(work, law, before, after): carry the memory over a corner at which the normal load, over its mean, goes
+from one value to another."""
+
+
+@inner
+def _share_at(case: Case, k: int, tau: float) -> float:
+    """The normal load over its mean, as the k-th piece of the span has it."""
+    body = case_in_piece(case, k).body
+    return load_share(body, instant_at(body, tau))
+
+
 @inner
 def memory_map(
     case: Case, y: Any, u: Any, accuracy: float, work: Work, track: Track, pace: Pace, repeats: bool
@@ -370,4 +397,8 @@ def memory_map(
         u = deviation_held(start, instant_at(body, end), work.start[U])
         if steps < 0:
             break
+        # the last piece ends where the first of the next span begins
+        last = k == pieces_of(body) - 1
+        after = _share_at(case, 0, 0.0) if last else _share_at(case, k + 1, end)
+        _over_jump(work, law, _share_at(case, k, end), after)
     return Mapped(work.start[Y], u, work.start[IMPULSE], 0.0, closest, -1.0, steps)

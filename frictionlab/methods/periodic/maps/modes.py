@@ -13,7 +13,7 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.compile.dispatch import by_dimension, by_law
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import Flow, instant_near, swing_of
 from frictionlab.methods.periodic.maps.rates import (
@@ -25,6 +25,8 @@ from frictionlab.methods.periodic.maps.rates import (
     fill_rates,
     on_circle,
     remembers_stick,
+    slip_rate_to_yield,
+    slip_to_yield,
 )
 from frictionlab.methods.periodic.maps.step import step
 
@@ -79,15 +81,32 @@ def _reversal_in_the_plane(flow: Flow, a: complex, w: complex) -> Guard:
 _reversal = by_dimension(_reversal_on_the_line, _reversal_in_the_plane)
 
 
-def _unloading_on_the_line(k: int, a: float, work: Work, w: float) -> Guard:
-    """On the line it is the slip's reversal that unloads."""
-    return Guard(k, OPEN, 0.0)
-
-
-def _unloading_in_the_plane(k: int, a: complex, work: Work, w: complex) -> Guard:
+@inner
+def _unloaded(k: int, a: Any, work: Work, w: Any) -> Guard:
     """Positive until slip begins to unload what gives way, or to load what follows it."""
     z, share = work.memory[k], work.mode[k] / work.size[k]
     return Guard(k, share * along(z, w), share * (along(z, a) + along(work.moving[k], w)))
+
+
+def _by_reversal(work: Work, k: int, a: Any, w: Any) -> Guard:
+    return Guard(k, OPEN, 0.0)
+
+
+def _by_load(work: Work, k: int, a: Any, w: Any) -> Guard:
+    """A growing load may unload what yields before slip reverses."""
+    return _unloaded(k, a, work, w)
+
+
+_unloaded_on_the_line = by_contact(_by_reversal, _by_load)
+
+
+def _unloading_on_the_line(k: int, a: float, work: Work, w: float) -> Guard:
+    """On the line it is the slip's reversal that unloads, where the contact follows the load."""
+    return _unloaded_on_the_line(work, k, a, w)
+
+
+def _unloading_in_the_plane(k: int, a: complex, work: Work, w: complex) -> Guard:
+    return _unloaded(k, a, work, w)
 
 
 _unloading = by_dimension(_unloading_on_the_line, _unloading_in_the_plane)
@@ -123,6 +142,8 @@ def _guard_of_deflections(flow: Flow, number: int, w: Any, a: Any, work: Work) -
     if remembers_stick(flow.law) and work.mode[number] == FOLLOWS:
         return breakaway(flow, number, w, a, work)
     z, radius = work.memory[number], work.radius[number]
+    if radius > 0.0:
+        w, a = slip_to_yield(work, number, w), slip_rate_to_yield(work, number, a)
     if work.mode[number] == YIELDS or (work.mode[number] == FOLLOWS and radius == 0.0):
         return _unloading(number, a, work, w)
     if work.mode[number] == FOLLOWS and radius > 0.0:
@@ -176,7 +197,9 @@ def _begin_by_state(flow: Flow, a: Any, w: Any, work: Work) -> None:
         radius, z = work.radius[k], work.start[MEMORY + k]
         work.mode[k] = SMOOTH
         if radius > 0.0 or work.unloads[k] > 0.0:
-            loaded = along(z, w) > 0.0 or (along(z, w) == 0.0 and along(z, a) >= 0.0)
+            work.memory[k] = z
+            against = slip_to_yield(work, k, w) if radius > 0.0 else w
+            loaded = along(z, against) > 0.0 or (along(z, against) == 0.0 and along(z, a) >= 0.0)
             work.mode[k] = YIELDS if loaded and size(z) >= radius * (1.0 - 1e-13) else FOLLOWS
 
 
@@ -241,6 +264,18 @@ def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, lik
     return high
 
 
+def _surely(work: Work) -> bool:
+    return True
+
+
+def _not_surely(work: Work) -> bool:
+    """A falling load may drag on what yields although slip reverses."""
+    return False
+
+
+_unloads_by_reversal = by_contact(_surely, _not_surely)
+
+
 @inner
 def change(flow: Flow, w: Any, a: Any, work: Work) -> float:
     """Change every mode whose guard has been passed at ``work.memory``; returns the side of slip."""
@@ -249,7 +284,7 @@ def change(flow: Flow, w: Any, a: Any, work: Work) -> float:
     for k in range(n):
         # slip that reverses on the line unloads every deflection that yields at once
         passed = guard_of(flow, k, w, a, work).value <= 0.0
-        if work.mode[k] == YIELDS and (passed or reverses):
+        if work.mode[k] == YIELDS and (passed or (reverses and _unloads_by_reversal(work))):
             work.mode[k] = FOLLOWS
         elif work.mode[k] == FOLLOWS and passed:
             work.mode[k] = YIELDS

@@ -13,7 +13,7 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, inlined
-from frictionlab.compile.dispatch import by_dimension, by_law
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law
 from frictionlab.compile.stack import count_of, room
 from frictionlab.dynamics.contact import friction_of, rate_of
 from frictionlab.dynamics.motion import (
@@ -25,6 +25,8 @@ from frictionlab.dynamics.motion import (
     deviation_slip_rate,
     load_share,
     normal_load,
+    normal_load_bend,
+    normal_load_rate,
     reference_velocity,
     unbalanced_load,
 )
@@ -62,6 +64,8 @@ class Work(NamedTuple):
     radius: Any  # [n] of its yield surface, 0 for none
     unloads: Any  # [n] 1 for a deflection without one that follows the slip wherever that makes it smaller
     mode: Any  # [n] FOLLOWS, SMOOTH or YIELDS
+    keeps_stiffness: Any  # filled where the contact keeps its stiffness while the normal load changes
+    share: Any  # [3] there: the normal load over its mean, and its first and second derivative
 
 
 def _like_slip(law: Any, like: Any) -> Any:
@@ -88,9 +92,21 @@ as_memory = by_law(_itself, _itself, None, _itself, _real_part)
 """as_memory(law, value): a number of a state as the law sees it."""
 
 
+def _follows_load(body: Any) -> Any:
+    return ()
+
+
+def _keeps_stiffness(body: Any) -> Any:
+    return (1.0,)
+
+
+contact_of = by_contact(_follows_load, _keeps_stiffness)
+"""contact_of(body): what ``workspace`` is told of the contact."""
+
+
 @inlined
-def workspace(law: Any, like: Any) -> Work:
-    """Room on the caller's stack, at zero: it lives as long as the caller."""
+def workspace(law: Any, like: Any, contact: Any) -> Work:
+    """Room on the caller's stack, at zero: it lives as long as the caller; contact: that of the body."""
     return Work(
         start=room(law, 1, 3, like),
         end=room(law, 1, 3, like),
@@ -111,6 +127,8 @@ def workspace(law: Any, like: Any) -> Work:
         radius=room(law, 1, 0, 0.0),
         unloads=room(law, 1, 0, 0.0),
         mode=room(law, 1, 0, 0.0),
+        keeps_stiffness=contact,
+        share=room(law, 0, 3, 0.0),
     )
 
 
@@ -187,6 +205,75 @@ remembers_stick = by_law(_never, _never, None, _remembers_stick, _never)
 """remembers_stick(law): whether the modes of its deflections, to follow the slip or to give way, are a memory."""
 
 
+# --- a contact that keeps its stiffness ---------------------------------------------------------------------------
+#
+# Under n times the mean normal load a bristle of that stiffness is to its law one deflected by z/n: this is what a
+# state remembers, and what moves at z'/n - (n'/n) (z/n). The law is asked for z' and gives it n times too large.
+
+
+def _no_share(work: Work, body: Body, now: Instant) -> None:
+    """The contact follows the load."""
+
+
+def _share_at(work: Work, body: Body, now: Instant) -> None:
+    mean = body.normal_load
+    work.share[0] = load_share(body, now)
+    work.share[1], work.share[2] = normal_load_rate(body, now) / mean, normal_load_bend(body, now) / mean
+
+
+note_share = by_contact(_no_share, _share_at)
+"""note_share(work, body, now): keep the normal load of this instant where the contact hangs on it."""
+
+
+def _as_told(work: Work, rate: Any) -> Any:
+    return rate
+
+
+def _per_share(work: Work, rate: Any) -> Any:
+    return rate / work.share[0]
+
+
+_of_contact = by_contact(_as_told, _per_share)
+"""_of_contact(work, rate): z'/n from the rate that a law tells."""
+
+
+def _still(work: Work, z: Any) -> Any:
+    return 0.0 * z
+
+
+def _stretched(work: Work, z: Any) -> Any:
+    return (work.share[1] / work.share[0]) * z
+
+
+stretching = by_contact(_still, _stretched)
+"""stretching(work, z): by how much z'/n of a deflection that stays at z/n exceeds zero."""
+
+
+def _as_slip(work: Work, k: int, w: Any) -> Any:
+    return w
+
+
+def _slip_of_yield(work: Work, k: int, w: Any) -> Any:
+    return w - work.share[1] * work.memory[k]
+
+
+slip_to_yield = by_contact(_as_slip, _slip_of_yield)
+"""slip_to_yield(work, k, w): the slip against the yield surface of a deflection, which a growing load takes away."""
+
+
+def _as_slip_rate(work: Work, k: int, a: Any) -> Any:
+    return a
+
+
+def _slip_rate_of_yield(work: Work, k: int, a: Any) -> Any:
+    moves = work.moving[k] - stretching(work, work.memory[k])
+    return a - work.share[1] * moves - work.share[2] * work.memory[k]
+
+
+slip_rate_to_yield = by_contact(_as_slip_rate, _slip_rate_of_yield)
+"""slip_rate_to_yield(work, k, a): its rate."""
+
+
 # --- rates --------------------------------------------------------------------------------------------------------
 
 
@@ -219,11 +306,12 @@ _yielding = by_dimension(_yielding_on_the_line, _yielding_in_the_plane)
 @fast
 def _deflection_rate(law: Any, work: Work, k: int, w: Any) -> Any:
     if work.mode[k] < 0.0:  # difference quotients at a corner must not see what comes after
-        return w
+        return _of_contact(work, w)
     if work.radius[k] > 0.0 and work.mode[k] > 0.0:
         work.memory[k] = on_circle(work.radius[k], work.memory[k])
-        return _yielding(law, work.memory, k, w)
-    return rate_of(law, work.memory, k, w)
+        turns = _of_contact(work, _yielding(law, work.memory, k, w))
+        return turns + stretching(work, work.memory[k])
+    return _of_contact(work, rate_of(law, work.memory, k, w))
 
 
 def _rate_of_a_deflection(law: Any, work: Work, k: int, w: Any) -> Any:
@@ -258,6 +346,7 @@ def load_on(body: Body, now: Instant) -> float:
 def fill_rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
     """Fill ``work.rates`` at ``work.stage``; returns slip and its rate."""
     body, n = flow.body, count_of(flow.law)
+    note_share(work, body, now)
     for k in range(n):
         work.memory[k] = as_memory(flow.law, work.stage[MEMORY + k])
     y, held = work.stage[Y], work.stage[U]
@@ -268,5 +357,5 @@ def fill_rates(flow: Flow, now: Instant, work: Work, like: Any) -> Any:
     work.rates[Y], work.rates[U] = u, rate_held(flow, now, a)
     work.rates[IMPULSE] = load_share(body, now) * friction
     for k in range(n):
-        work.rates[MEMORY + k] = work.moving[k] + 0.0 * like
+        work.rates[MEMORY + k] = work.moving[k] - stretching(work, work.memory[k]) + 0.0 * like
     return w, deviation_slip_rate(flow, now, a)

@@ -34,7 +34,7 @@ def continue_in_speed(mass: Mass, coefficient: float, belt_speeds: Any, out: Any
     """
     x, w, last = 0.0, 0.0, math.inf
     for i in range(belt_speeds.size):
-        body = body_at(mass, coefficient, belt_speeds[i])
+        body = oscillator_at(mass, coefficient, belt_speeds[i])
         # Above V_lin slip never reverses and the motion is linear: no search. Without damping a free oscillation
         # would remain.
         if exceeds_friction_free_speed(mass, belt_speeds[i]) and body.damping > 0.0:
@@ -64,7 +64,7 @@ def _body_of_pieces(mass: Mass, coefficient: float, belt_speed: float) -> Any:
     return ForcedOscillator(*numbers, forcing.size, forcing.load, forcing.jolt, 0, forcing)
 
 
-body_at = by_variation(_body_of_one_sine, _body_of_pieces)
+oscillator_at = by_variation(_body_of_one_sine, _body_of_pieces)
 """(mass, coefficient, belt_speed): the canonical scene at this belt speed."""
 
 
@@ -125,7 +125,7 @@ def iterate_until_fixed(mass: Mass, coefficient: float, belt_speed: float, start
 
     Writes MEAN to ROUNDING (ERROR: rounding alone) and returns the number of periods.
     """
-    body = body_at(mass, coefficient, belt_speed)
+    body = oscillator_at(mass, coefficient, belt_speed)
     first = passage(body, start[0], start[1], start[2], body.period)
     x, w, work = first.x, first.w, 0
     for periods in range(MOST_PERIODS):

@@ -18,10 +18,10 @@ from frictionlab.compile.dispatch import by_variation
 from frictionlab.methods.exact.forcing import JUMP, START
 from frictionlab.methods.exact.oscillator import (
     holding_at,
-    in_piece,
     largest_push,
     largest_swing,
     response_at,
+    with_piece,
 )
 from frictionlab.quantities import EPSILON
 
@@ -267,7 +267,7 @@ def _no_corner(body: Any, x: float, w: float, mode: float) -> tuple[Any, float, 
 def _corner(body: Any, x: float, w: float, mode: float) -> tuple[Any, float, float, float]:
     pieces = body.varying.pieces
     following = (body.piece + 1) % pieces.shape[0]
-    body = in_piece(body, following)
+    body = with_piece(body, following)
     w = w - pieces[following, JUMP]
     after = starting_mode(body, pieces[following, START], x, w)
     # Every velocity near zero becomes zero where the mass comes to rest here, as at the end of a leg of slip.

@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.compile.decorators import inner, njit
 from frictionlab.compile.dispatch import by_variation
-from frictionlab.methods.exact.continuation import body_at
+from frictionlab.methods.exact.continuation import oscillator_at
 from frictionlab.methods.exact.legs import (
     STICK,
     cross_corner,
@@ -19,12 +19,12 @@ from frictionlab.methods.exact.legs import (
     stick_leg,
 )
 from frictionlab.methods.exact.oscillator import (
-    in_piece,
     next_corner,
     piece_of,
     response_at,
     shortest_period,
     vibration_at,
+    with_piece,
 )
 from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.recorder import Track, grown, track_of
@@ -127,7 +127,7 @@ def note_orbit(body: Any, table: LegTable, normal_load: float, side: float, trac
     panel, now = track.filled[0], 0.0
     for place in range(table.rows):
         leg, r = table.legs[(place + table.before) % table.rows], 0.0
-        body = in_piece(body, int(leg[PIECE]))
+        body = with_piece(body, int(leg[PIECE]))
         start = free_start(body, leg)
         while r < leg[DURATION]:
             length = panel_length(body, r, leg[DURATION] - r)
@@ -165,7 +165,7 @@ def make_orbits(mass: Mass, coefficient: float, belt_speeds: Any, states: Any, e
         x, w, legs, shift = states[i, 0], states[i, 1], int(states[i, 2]), states[i, 3]
         if legs > 0:
             side = side_solved(mass, belt_speeds[i])
-            body = body_at(mass, coefficient, side * belt_speeds[i])
+            body = oscillator_at(mass, coefficient, side * belt_speeds[i])
             table = legs_of(body, x, w, shift, legs)
             needed = track.filled[0] + count_panels(body, table.legs, table.rows)
             if needed > room:

@@ -326,7 +326,7 @@ def _in_piece(body: Any, piece: int) -> Any:
     return _forced(body, body.belt_speed, piece)
 
 
-in_piece = by_variation(_same, _in_piece)
+with_piece = by_variation(_same, _in_piece)
 """(body, piece): the body where this piece holds."""
 
 

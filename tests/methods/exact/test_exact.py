@@ -18,7 +18,7 @@ from frictionlab.compile.decorators import njit
 from frictionlab.laws.base import SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact import continuation as curve
-from frictionlab.methods.exact.continuation import body_at
+from frictionlab.methods.exact.continuation import oscillator_at
 from frictionlab.methods.exact.legs import first_zero
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.exact.return_map import Fixed, impulse_error, passage
@@ -254,7 +254,7 @@ def test_a_step_never_passes_the_first_zero_and_stays_close_to_it(g, g1, g2, bou
 @njit
 def one_period_from(mass, coefficient, belt_speed, x, w):
     """Mean friction over one period that starts anywhere, and the error that its failure to close gives it."""
-    body = body_at(mass, coefficient, belt_speed)
+    body = oscillator_at(mass, coefficient, belt_speed)
     here = passage(body, x, w, 0.0, body.period)
     unit = mass.normal_load * body.period
     return -here.friction / unit, impulse_error(body, Fixed(x, w, here, 0.0, 1)) / unit

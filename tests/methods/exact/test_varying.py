@@ -1,0 +1,277 @@
+"""The exact method where forces are not one sine: waveforms, vibrating belts, changing normal loads."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+from event_driven import follow, waves_of
+from profiles import deep
+from varying_scenes import draw_varying
+
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.methods.exact.method import Exact
+from frictionlab.orbit.panels import DERIVATIVE, WEIGHTS
+from frictionlab.scene.scene import Scene
+
+LAW = Coulomb(mu=0.4)
+SPEEDS = [-30.0, -3.0, 0.7, 12.0, 40.0]
+DRIVE = {"unbalance": 10.0, "frequency": 1.0}
+SAW = {"amplitude": 0.6, "phase": 70.0, "waveform": "sawtooth"}
+SHAKE = {"velocity_amplitude": 6.0, "phase": 20.0, "waveform": "square"}
+
+
+def scene(belt_speed, drive=DRIVE, **changes):
+    """Workload W1 at this belt speed, but for the changes."""
+    given = {"damping_ratio": 0.1, "normal_load": 10.0, **changes}
+    return Scene(belt_speed=belt_speed, **given, **({"drive": drive} if drive else {}))
+
+
+def shaped(waveform, **changes):
+    """The drive in this waveform."""
+    return {"drive": {**DRIVE, "waveform": waveform}, **changes}
+
+
+def harmonics(*terms):
+    return {"harmonics": [{"order": n, "amplitude": a, "phase": p} for n, a, p in terms]}
+
+
+def solve(scenes, tolerance=1e-11, law=LAW):
+    assert all(Exact().refusal(one, law) is None for one in scenes)
+    return Exact().solve(scenes, law, tolerance)
+
+
+def means(speeds=SPEEDS, **changes):
+    """Mean friction at these belt speeds, each to 1e-11."""
+    answers = solve([scene(v, **changes) for v in speeds])
+    assert answers.status == ["ok"] * len(speeds)
+    assert np.all(answers.error <= 1e-11)
+    return answers.mean.real
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (shaped(harmonics((1, 1.0, 0.0))), {}),
+        (
+            {"drive": {**DRIVE, "phase": 10.0, "waveform": harmonics((1, 1.0, 25.0), (3, 0.2, 0.0))}},
+            {"drive": {**DRIVE, "phase": 35.0, "waveform": harmonics((1, 1.0, 0.0), (3, 0.2, -75.0))}},
+        ),
+        (shaped("triangle", normal_load_variation={**SAW, "amplitude": 0.0}), shaped("triangle")),
+        (
+            shaped("triangle", normal_load_variation={"amplitude": 0.0, "frequency_ratio": 0.5}),
+            shaped("triangle"),
+        ),
+        (
+            {"normal_load_variation": {**SAW, "frequency_ratio": 1.0}, "belt_vibration": SHAKE},
+            {"normal_load_variation": SAW, "belt_vibration": {**SHAKE, "frequency_ratio": 1.0}},
+        ),
+        (
+            {"belt_vibration": {**SHAKE, "frequency_ratio": 2.0}, "drive": {**DRIVE, "unbalance": 0.0}},
+            {"belt_vibration": {**SHAKE, "frequency": 2.0}, "drive": None},
+        ),
+        (
+            {"belt_vibration": SHAKE, "transverse": {"natural_frequency": 0.5, "damping_ratio": 0.1}},
+            {"belt_vibration": SHAKE},
+        ),
+    ],
+    ids=["order one", "phases", "no variation", "in two periods", "ratio one", "twice", "plane"],
+)
+def test_two_ways_to_say_a_scene_have_one_mean(one, other):
+    np.testing.assert_allclose(means(**one), means(**other), atol=2e-13)
+
+
+@pytest.mark.parametrize("drive", [None, DRIVE], ids=["belt alone", "with a drive"])
+def test_a_sine_of_the_belt_is_a_drive_in_the_position_against_its_path(drive):
+    b, omega, belt = 0.1, 1.0, cmath.rect(7.0, math.radians(40.0))
+    load = (10.0 if drive else 0.0) - (2.0 * b + 1j * omega + 1.0 / (1j * omega)) * belt
+    same = {"amplitude": abs(load), "phase": math.degrees(cmath.phase(load)), "frequency": omega}
+    given = {"velocity_amplitude": 7.0, "phase": 40.0, **({} if drive else {"frequency": omega})}
+    np.testing.assert_allclose(means(drive=drive, belt_vibration=given), means(drive=same), atol=2e-13)
+
+
+def test_a_belt_that_turns_round_turns_the_mean_round_with_loads_and_vibration():
+    lopsided, negated = (harmonics((1, a, 0.0), (2, 0.3 * a, 15.0)) for a in (1.0, -1.0))
+    shake, counter = ({**SHAKE, "waveform": "triangle", "phase": p} for p in (20.0, 200.0))
+    ahead = means(**shaped(lopsided, belt_vibration=shake, normal_load_variation=SAW))
+    back = means([-v for v in SPEEDS], **shaped(negated, belt_vibration=counter, normal_load_variation=SAW))
+    np.testing.assert_allclose(back, -ahead, atol=2e-13)
+    assert np.abs(ahead + means([-v for v in SPEEDS], **shaped(lopsided))).max() > 1e-3
+
+
+def test_a_square_is_what_its_harmonics_tend_to():
+    exact = means(**shaped("square"))
+    steepest = 0.4 / 30.0  # of the mean against the belt speed
+    for count in (2, 8, 32):
+        terms = [(n, 4.0 / (math.pi * n), 0.0) for n in range(1, 2 * count, 2)]
+        lost = 40.0 / math.pi * sum(1.0 / n**2 for n in range(2 * count + 1, 10_000, 2))  # of the velocity
+        gap = np.abs(means(**shaped(harmonics(*terms))) - exact).max()
+        assert 1e-2 * steepest * lost < gap < steepest * lost
+
+
+def v_lin_of_a_square(load, b, half):
+    """Half a period of free motion about the load leads from (x, v) to (-x, -v); the largest speed on the way."""
+    rate = math.sqrt(1.0 - b * b)
+    e, c, s = math.exp(-b * half), math.cos(rate * half), math.sin(rate * half) / rate
+    flow = e * np.array([[c + b * s, s], [-s, c - b * s]])
+    x, v = np.linalg.solve(np.eye(2) + flow, flow @ [load, 0.0] - [load, 0.0])
+    tau = np.linspace(0.0, half, 100_001)
+    turned = np.exp(-b * tau) * (v * np.cos(rate * tau) - (x - load + b * v) * np.sin(rate * tau) / rate)
+    return np.abs(turned).max()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_above_v_lin_of_a_square_drive_the_mean_is_the_coefficient(sign):
+    v_lin = v_lin_of_a_square(10.0, 0.1, math.pi)
+    above, below = (solve([scene(sign * k * v_lin, **shaped("square"))]) for k in (1.0 + 1e-8, 1.0 - 1e-4))
+    assert above.mean[0] == sign * 0.4
+    assert above.error_kind == ["guaranteed"]
+    assert "never reverses" in above.model[0]
+    assert 0.0 < 0.4 - sign * below.mean[0].real < 1e-3
+    assert below.error_kind == ["estimated"]
+
+
+def test_without_reversal_a_changing_normal_load_leaves_the_mean_at_the_coefficient():
+    answers = solve([scene(v, normal_load_variation=SAW) for v in (-70.0, 70.0)])
+    assert list(answers.mean) == [-0.4, 0.4]
+    orbit = answers.orbit(1)
+    half = 0.5 * (orbit.tau[:, -1:] - orbit.tau[:, :1])
+    assert (half * WEIGHTS * orbit.friction.real).sum() == pytest.approx(-0.8 * math.pi, abs=1e-12)
+    assert np.ptp(orbit.friction.real) > 0.4
+
+
+@pytest.mark.parametrize("belt_speed", [0.3, 30.0])
+def test_a_square_in_undamped_resonance_is_bounded_where_friction_reaches_the_load(belt_speed):
+    drive = {"amplitude": 1.0, "frequency": 1.0, "waveform": "square"}
+    below, above = (
+        solve([scene(belt_speed, drive, damping_ratio=0.0, normal_load=friction / 0.4)])
+        for friction in (0.99, 1.01)
+    )
+    assert below.status == ["failed"]
+    assert "without bound" in below.reason[0]
+    assert above.status == ["ok"]
+    assert above.error[0] <= 1e-10
+
+
+STILL = {
+    "drive": {"amplitude": 1.0, "frequency": 0.7, "waveform": "square"},
+    "normal_load_variation": {"amplitude": 0.5, "waveform": "square"},
+}
+
+
+def test_a_mass_that_loads_leave_at_rest_stays_where_it_starts():
+    # Held where the load is 1 and the limit 6 from -5 to 7, where they are -1 and 2 from -3 to 1.
+    answers = solve([scene(0.0, **STILL)])
+    assert answers.status == ["not_unique"]
+    assert answers.mean_low[0] == pytest.approx(-0.3)
+    assert answers.mean_high[0] == pytest.approx(0.1)
+    for x in (-3.0, -1.7, 1.0):
+        told = solve([scene(0.0, initial={"x": x}, **STILL)])
+        assert told.status == ["ok"]
+        assert abs(told.mean[0].real - x / 10.0) <= told.error[0] <= 1e-11
+
+
+def test_a_belt_that_jumps_leaves_no_mass_at_rest():
+    answers = solve([scene(0.0, belt_vibration=SHAKE, **STILL)])
+    assert answers.status == ["ok"]
+
+
+VARIED = {
+    "square": scene(3.0, **shaped("square")),
+    "belt jumps": scene(0.5, None, normal_load=100.0, belt_vibration={**SHAKE, "frequency": 0.6}),
+    "three periods": scene(
+        4.0,
+        belt_vibration={**SHAKE, "frequency_ratio": 1.5, "waveform": "sawtooth"},
+        normal_load_variation={**SAW, "frequency_ratio": 2.0 / 3.0},
+    ),
+    "lines and waves": scene(
+        -2.0,
+        belt_vibration={**SHAKE, "waveform": "triangle"},
+        normal_load_variation={**SAW, "waveform": "sine"},
+    ),
+    "overdamped": scene(1.0, damping_ratio=2.5, belt_vibration=SHAKE, normal_load_variation=SAW),
+    "pulsating alone": scene(
+        3.0, None, normal_load_variation={**SAW, "waveform": "triangle", "frequency": 0.8}
+    ),
+}
+
+
+@pytest.mark.parametrize("one", VARIED.values(), ids=VARIED)
+def test_orbits_obey_the_equation_of_motion_and_close(one):
+    answers = solve([one])
+    orbit = answers.orbit(0)
+    tau, x, v, friction = orbit.tau, orbit.x.real, orbit.v.real, orbit.friction.real
+    half = 0.5 * (tau[:, -1:] - tau[:, :1])
+    size, speed = 1.0 + np.abs(x).max(), 1.0 + np.abs(v).max()
+    assert tau[-1, -1] == pytest.approx(2.0 * math.pi / one.frequency * one.periods)
+    for values in (tau, x, v):
+        np.testing.assert_allclose(values[1:, 0], values[:-1, -1], atol=1e-12 * (size + speed))
+    assert abs(x[0, 0] - x[-1, -1]) + abs(v[0, 0] - v[-1, -1]) <= 1e-11 * (size + speed)
+    load, belt, limit = forces(one, tau)
+    v_belt, a = one.belt_speed + belt, v @ DERIVATIVE.T / half
+    stick = orbit.stick[:, None] & np.ones(tau.shape, bool)
+    np.testing.assert_allclose(x @ DERIVATIVE.T, v * half, atol=1e-9 * size)
+    balance = a + 2.0 * one.damping_ratio * v + x + one.normal_load * friction - load
+    assert np.abs(balance * half).max() <= 1e-9 * (size + speed)
+    np.testing.assert_allclose(v[stick], v_belt[stick], atol=1e-12 * speed)
+    assert np.all(np.abs(friction[stick]) <= limit[stick] + 1e-11)
+    slip = np.where(np.abs(v - v_belt) > 1e-9, np.sign(v - v_belt), np.sign(friction))
+    np.testing.assert_allclose(friction[~stick], (slip * limit)[~stick], atol=1e-12)
+    mean = -(half * WEIGHTS * friction).sum() / tau[-1, -1]
+    assert mean == pytest.approx(answers.mean[0].real, abs=1e-12)
+    assert one.normal_load * mean == pytest.approx((half * WEIGHTS * x).sum() / tau[-1, -1], abs=1e-11 * size)
+
+
+def forces(one, tau):
+    """At the nodes of every panel: load, velocity of the belt's vibration, and limit of friction over normal_load."""
+    found = np.empty((3, *tau.shape))
+    for panel, times in enumerate(tau):
+        load, belt, press = (wave.near(0.5 * (times[0] + times[-1])) for wave in waves_of(one))
+        found[:, panel] = [[wave(t)[0] for t in times] for wave in (load, belt, press)]
+    return found[0], found[1], LAW.mu * (1.0 + found[2])
+
+
+def difference(one, law):
+    """Of our mean from that of one period followed from our state by an unrelated integration, and our error."""
+    answers = solve([one], 1e-9, law)
+    if answers.status == ["not_unique"]:
+        return 0.0, 0.0
+    assert answers.status == ["ok"], (one, answers.reason)
+    orbit = answers.orbit(0)
+    start = orbit.x[0, 0].real, orbit.v[0, 0].real
+    for fineness in (100, 400):  # the coarser one steps over short events
+        found = follow(one, law.mu, start, 1, fineness)
+        off = max(
+            abs(found.mean - answers.mean[0].real), found.closing / (1.0 + abs(start[0]) + abs(start[1]))
+        )
+        if off <= 1e-10:
+            break
+    return off, answers.error[0]
+
+
+@pytest.mark.parametrize(
+    "seed", [pytest.param(k, marks=() if k < 8 else deep("an integration in Python")) for k in range(100)]
+)
+def test_random_scenes_agree_with_an_unrelated_integration(seed):
+    off, error = difference(*draw_varying(np.random.default_rng(seed)))
+    assert off <= 1e-10 + error
+
+
+@pytest.mark.parametrize("one", VARIED.values(), ids=VARIED)
+def test_chosen_scenes_agree_with_an_unrelated_integration(one):
+    off, _ = difference(one, LAW)
+    assert off <= 1e-11
+
+
+def test_what_it_cannot_do_is_refused_with_the_way_out():
+    across = {"natural_frequency": 2.0, "damping_ratio": 0.1}
+    for changes, reason in (
+        ({"drive": {**DRIVE, "direction": 30.0}, "transverse": across}, "has a transverse load"),
+        ({"belt_vibration": {**SHAKE, "direction": 90.0}, "transverse": across}, "belt that vibrates across"),
+        ({"damping_ratio": 1e-4, "belt_vibration": SHAKE}, "within 1e-3 of resonance"),
+    ):
+        refusal = Exact().refusal(scene(3.0, **changes), LAW)
+        assert reason in refusal
+        assert "shooting" in refusal

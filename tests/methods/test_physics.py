@@ -17,7 +17,7 @@ from strategies import MU, angles, scenes_in_the_plane, scenes_on_the_line, sign
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.laws.coulomb import Coulomb
-from frictionlab.methods.exact.continuation import body_at
+from frictionlab.methods.exact.continuation import oscillator_at
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.exact.return_map import passage
 from frictionlab.methods.periodic.case import Case
@@ -97,7 +97,7 @@ def friction_of(scene):
 @njit
 def followed(mass, mu, belt_speed, state, end, small, most):
     """Period after period (the part up to ``end``) until one changes less than ``small``; and its impulse."""
-    body, x, w, impulse = body_at(mass, mu, belt_speed), state[0], state[1], np.nan
+    body, x, w, impulse = oscillator_at(mass, mu, belt_speed), state[0], state[1], np.nan
     for _ in range(most):
         there = passage(body, x, w, 0.0, end * body.period)
         change = math.hypot(there.x - x, there.w - w)

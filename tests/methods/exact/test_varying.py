@@ -265,6 +265,15 @@ def test_chosen_scenes_agree_with_an_unrelated_integration(one):
     assert off <= 1e-11
 
 
+def test_the_neighbours_a_curve_comes_from_do_not_change_a_point():
+    speeds = np.linspace(-60.0, 60.0, 31)
+    changes = shaped("triangle", belt_vibration=SHAKE, normal_load_variation=SAW)
+    curve = solve([scene(v, **changes) for v in speeds])
+    for v, mean, error in zip(speeds, curve.mean, curve.error, strict=True):
+        alone = solve([scene(v, **changes)])
+        assert abs(mean - alone.mean[0]) <= error + alone.error[0] <= 1e-11
+
+
 def test_what_it_cannot_do_is_refused_with_the_way_out():
     across = {"natural_frequency": 2.0, "damping_ratio": 0.1}
     for changes, reason in (

@@ -107,6 +107,8 @@ def _stiffness(frequency: Floats, b: float) -> Any:
 def _waves(varying: Varying, b: float, coefficient: float) -> Floats:
     every = varying.load, varying.belt, varying.normal_load
     frequency = np.unique(np.concatenate([each.frequency for each in every]))
+    if len(frequency) == 0:
+        return np.zeros((0, WAVE_COLUMNS))
     load, belt, press = (_phasors(each, frequency) for each in every)
     press = coefficient * press
     path, dynamic = belt / (1j * frequency), _stiffness(frequency, b)
@@ -175,9 +177,10 @@ def _lengths(pieces: Floats) -> Floats:
 
 def _reach(pieces: Floats, column: int, terms: int) -> Floats:
     """A bound in every piece on the polynomial whose derivatives at its start begin in this column."""
-    length = _lengths(pieces)
-    parts = (np.abs(pieces[:, column + k]) * length**k / math.factorial(k) for k in range(terms))
-    return sum(parts, np.zeros(len(pieces)))
+    length, bound = _lengths(pieces), np.abs(pieces[:, column])
+    for k in range(1, terms):
+        bound = bound + np.abs(pieces[:, column + k]) * length**k / math.factorial(k)
+    return bound
 
 
 SAMPLES_A_WAVE = 16
@@ -185,11 +188,17 @@ SAMPLES_A_WAVE = 16
 
 
 def _least(waves: Floats, pieces: Floats, side: float) -> float:
-    """The least value of press + side * load over a period: of many, improved by Newton's method."""
-    length, quickest = _lengths(pieces), waves[:, FREQUENCY].max(initial=0.0)
-    count = 9 + math.ceil(SAMPLES_A_WAVE * length.max() * quickest / (2.0 * math.pi))
+    """The least value of press + side * load over a period."""
+    length, every = _lengths(pieces), np.arange(len(pieces))
+    if len(waves) == 0:
+        _, rate, bend = _combined(waves, pieces, side, every, 0.0 * length)
+        bottom = np.clip(-rate / np.where(bend > 0.0, bend, np.inf), 0.0, length)
+        places = np.array([0.0 * length, bottom, length])
+        return float(_combined(waves, pieces, side, every, places)[0].min())
+    # Of many values, those below their neighbours improved by Newton's method.
+    count = 9 + math.ceil(SAMPLES_A_WAVE * length.max() * waves[:, FREQUENCY].max() / (2.0 * math.pi))
     place = np.linspace(0.0, 1.0, count) * length[:, None]
-    values = _combined(waves, pieces, side, np.arange(len(pieces))[:, None], place)[0]
+    values = _combined(waves, pieces, side, every[:, None], place)[0]
     least = values.min()
     low = (values[:, 1:-1] <= values[:, :-2]) & (values[:, 1:-1] <= values[:, 2:])
     piece, column = np.nonzero(low)

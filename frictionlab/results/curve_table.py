@@ -5,15 +5,17 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
 
 from frictionlab import registry
 from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS, OF_SHAPE, SCALED
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.quantities import Floats
+from frictionlab.results.loads_in_time import loads_of, scene_of, varies
 from frictionlab.results.table import value_in
 from frictionlab.shape.ends import Loads, Rows, end_of_reversal, start_friction
 from frictionlab.shape.shakedown import Shakedown, Value, shakedown_of_body, shakedown_of_slip
@@ -75,6 +77,8 @@ def _loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
         found = given.get(name)
         return 0.0 if found is None or found != found else float(found)
 
+    if varies(given):
+        return loads_of(scene_of(given), _law(given, laws))
     frequency = value("scene.drive.frequency")
 
     def force(path: str) -> complex:
@@ -110,16 +114,22 @@ def _shakedown(
 
 
 def _bristle_law(given: Mapping[str, Any], laws: registry.Laws) -> BristleLaw | None:
-    """The law of a row as methods received it, rebuilt from its inputs; None if it is no known bristle law."""
-    law: Any = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
-    if law is None or law.memory_kind != "bristle":
+    """That of a row; None if it is no known bristle law."""
+    law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
+    known = law is not None and law.memory_kind == "bristle"
+    return cast("BristleLaw", _law(given, laws)) if known else None
+
+
+def _law(given: Mapping[str, Any], laws: registry.Laws) -> FrictionLaw | None:
+    """The law of a row as methods received it, rebuilt from its inputs; None if it is no known law."""
+    law = laws.named(given["kind"]) if given.get("kind") in laws.names() else None
+    if law is None:
         return None
     written = {name: value_in(given, f"law.{name}") for name in law.model_fields}
     scaled = {name: value_in(given, f"{SCALED}{name}") for name in written}
     values = {name: value for name, value in written.items() if value is not None}
     values |= {name: value for name, value in scaled.items() if value is not None}
-    bristles: BristleLaw = law.model_validate(values).under_load(float(given["scene.normal_load"]))
-    return bristles
+    return law.model_validate(values).under_load(float(given["scene.normal_load"]))
 
 
 def _measures(rows: Rows, loads: Loads) -> dict[str, Any]:

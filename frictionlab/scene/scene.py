@@ -278,6 +278,12 @@ class Scene(_Part):
         one = load is None or load.frequency_ratio in (None, 1.0)
         return constant and one and all(shape == SINE for shape in shapes)
 
+    @property
+    def constant_contact(self) -> bool:
+        """Whether bristles keep their stiffness while the normal load changes."""
+        part = self.normal_load_variation
+        return part is not None and part.amplitude > 0.0 and part.contact == "constant"
+
     def signals(self) -> Signals:
         """Everything that changes in time."""
         omega = self.frequency
@@ -353,8 +359,7 @@ class Scene(_Part):
         """What kernels are told of what changes in time otherwise than as one sine; nothing where nothing does."""
         if self.is_harmonic:
             return ()
-        part = self.normal_load_variation
-        return varying_of(signals, self.frequency, part is not None and part.contact == "constant")
+        return varying_of(signals, self.frequency, self.constant_contact)
 
     def values(self) -> dict[str, float | str]:
         """Every value of the scene by its dotted path, without the leading ``scene.``; SI numbers included."""

@@ -21,6 +21,8 @@ class Loads(NamedTuple):
     along, across: phasors of the forces along and across the belt. static_limit: the largest friction force at
     rest if the law defines one, else NaN. prescribed: whether the slip is prescribed. shakedown: for bristles, their
     state on a belt of vanishing speed. unknown_start: why the start of the curve is not known, '' where it is.
+    symmetric: whether what varies in time moves the body back and forth alike on a belt at rest. lags: whether the
+    friction of bristles lags behind the normal load.
     """
 
     along: complex
@@ -30,6 +32,8 @@ class Loads(NamedTuple):
     prescribed: bool
     shakedown: Shakedown | None = None
     unknown_start: str = ""
+    symmetric: bool = False
+    lags: bool = False
 
     @property
     def along_belt_only(self) -> bool:
@@ -74,10 +78,11 @@ def end_of_reversal(rows: Rows, loads: Loads) -> tuple[Estimate, bool]:
     the last point with reversal or stick and the next. Raises UnreadableCurve.
     """
     ratio = rows.velocity_ratio[np.isfinite(rows.velocity_ratio) & (rows.velocity_ratio > 0.0)]
-    kinked = loads.along_belt_only and (rows.constant_friction or loads.prescribed)
+    constant = rows.constant_friction and not loads.lags
+    kinked = loads.along_belt_only and (constant or loads.prescribed)
     if ratio.size and (kinked or loads.prescribed):
         speed = float((rows.belt_speed / rows.velocity_ratio)[-1])
-        return Estimate(speed, _ROUNDING * speed), kinked and rows.constant_friction
+        return Estimate(speed, _ROUNDING * speed), kinked and constant
     return _bracket_end(rows), False
 
 
@@ -109,7 +114,7 @@ def start_friction(rows: Rows, loads: Loads) -> Estimate:
         raise UnreadableCurve(loads.unknown_start)
     if loads.shakedown is not None:
         return _bristle_start(rows, loads.shakedown, loads.prescribed)
-    if loads.prescribed:
+    if loads.prescribed or loads.symmetric:
         return Estimate(0.0, 0.0)
     force = abs(loads.along) or abs(loads.across)
     if force == 0.0:

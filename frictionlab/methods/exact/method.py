@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method, Status, against_varying
+from frictionlab.methods.base import Answers, Method, Status
 from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.forcing import forcing_of, resonates
 from frictionlab.methods.exact.orbit import make_orbits
@@ -44,6 +44,8 @@ def _refusal_of_legs(scene: Scene, law: Any) -> str | None:
     """Why a prescribed slip has no two legs along which the deflection is known."""
     if not law.exact_path():
         return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction)"
+    if scene.constant_contact:
+        return "exact needs bristles whose stiffness follows the normal load (contact: per_load)"
     if not along_one_line(scene, law):
         return "exact works along one line: this slip has a component across the belt"
     return None
@@ -85,8 +87,6 @@ class Exact(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
-        if scene.degrees_of_freedom == 0 and (reason := against_varying(self.name, scene)):
-            return suggest_shooting(reason, scene, law)
         prescribed = scene.degrees_of_freedom == 0 and law.memory_kind == "bristle"
         reason = (_refusal_of_legs if prescribed else _refusal_of_flow)(scene, law)
         return suggest_shooting(reason, scene, law) if reason else None

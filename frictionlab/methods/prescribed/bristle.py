@@ -37,7 +37,7 @@ class BristlePoint:
     def __init__(self, scene: Scene, law: BristleLaw, tolerance: float) -> None:
         self.motion, self.belt_speed = scene.motion(), scene.belt_speed
         self.law = law.under_load(self.motion.normal_load)
-        self.planar = scene.transverse_slip is not None
+        self.planar = scene.transverse_slip is not None or self.motion.transverse_velocity != 0
         self.loops = self._loops(along_one_line(scene, law), tolerance)
         self.seconds = sum(loop.seconds for loop in self.loops)
         self.status: Status = "ok"

@@ -123,7 +123,8 @@ def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
 
 
 def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:
-    slides_on = not along_one_line(scene, law) and saturates(law.under_load(scene.motion().normal_load))
+    turns = not along_one_line(scene, law) and not scene.constant_contact
+    slides_on = turns and saturates(law.under_load(scene.motion().normal_load))
     return POINTS["none" if slides_on else law.memory_kind](scene, law, tolerance)
 
 

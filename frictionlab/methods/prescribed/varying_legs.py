@@ -8,6 +8,7 @@ as it is, where the stiffness of the bristles follows it.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -100,16 +101,7 @@ class ExactPath:
         return self._where_it_gains(noise), self._where_it_gains(-noise)
 
     def _where_it_gains(self, gain: float) -> float:
-        from scipy.optimize import brentq
-
-        def excess(z: float) -> float:
-            return self.opened(z) - gain
-
-        if excess(-self.reach) <= 0.0:
-            return -self.reach
-        if excess(self.reach) >= 0.0:
-            return self.reach
-        return float(brentq(excess, -self.reach, self.reach, xtol=2.0 * EPSILON * self.reach))
+        return root(lambda z: gain - self.opened(z), -self.reach, self.reach)
 
     def loop(self, z: float, cuts: int = 1) -> LegLoop:
         """From this deflection at tau = 0; cuts: the parts into which panels are divided."""
@@ -160,12 +152,26 @@ class ExactPath:
         return abs(leg.side) * np.abs(self.slip.integral(begin, tau, k))
 
     def _time_of(self, leg: Leg, way: float) -> float:
-        from scipy.optimize import brentq
+        return root(lambda tau: float(self._way(leg, np.array([tau]))[0]) - way, leg.start, leg.stop)
 
-        def excess(tau: float) -> float:
-            return float(self._way(leg, np.array([tau]))[0]) - way
 
-        return float(brentq(excess, leg.start, leg.stop, xtol=1e-300, rtol=4.0 * EPSILON))
+def root(rising: Callable[[float], float], low: float, high: float) -> float:
+    """Where a rising function crosses zero, by regula falsi (Illinois); the nearer end where it does not."""
+    at_low, at_high, side = rising(low), rising(high), 0
+    if at_low >= 0.0 or at_high <= 0.0:
+        return low if at_low >= 0.0 else high
+    for turn in range(300):
+        middle = (low * at_high - high * at_low) / (at_high - at_low)
+        # every third step is a bisection, which bounds the number of steps
+        middle = middle if turn % 3 < 2 and low < middle < high else 0.5 * (low + high)
+        here = rising(middle)
+        if here == 0.0 or not low < middle < high:
+            return middle
+        if here < 0.0:
+            low, at_low, at_high, side = middle, here, 0.5 * at_high if side < 0 else at_high, -1
+        else:
+            high, at_high, at_low, side = middle, here, 0.5 * at_low if side > 0 else at_low, 1
+    return 0.5 * (low + high)
 
 
 @njit

@@ -86,8 +86,7 @@ class Shooting(Method):
         """An undriven start across the belt, or of a contact that creeps; a law of none of the kinds known."""
         if law.memory_kind not in COSTS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
-        part = scene.normal_load_variation
-        if part is not None and part.contact == "constant" and law.memory_kind in ("deflections", "scalars"):
+        if scene.constant_contact and law.memory_kind in ("deflections", "scalars"):
             return CONSTANT_CONTACT
         if scene.undriven and (scene.start.x2 != 0.0 or scene.start.velocity2 != 0.0):
             return "undriven scenes are solved along the belt only: leave initial.x2 and velocity2 at 0"

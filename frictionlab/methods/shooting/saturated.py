@@ -49,9 +49,7 @@ class Saturated(SlidingLaw):
 
 def saturates_in_the_plane(scene: Scene, law: FrictionLaw) -> bool:
     """Whether bristles end at their limit, moved by the length of the way slid, with one friction at every speed."""
-    part = scene.normal_load_variation
-    follows = part is None or part.contact == "per_load"
-    return scene.degrees_of_freedom == 2 and follows and saturates(law)
+    return scene.degrees_of_freedom == 2 and not scene.constant_contact and saturates(law)
 
 
 def solve_saturated(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

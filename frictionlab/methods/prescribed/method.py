@@ -25,6 +25,7 @@ from frictionlab.methods.prescribed.quadrature import (
     orbit_of_slip,
     slip_edges,
 )
+from frictionlab.methods.prescribed.varying_axes import AxesPoint
 from frictionlab.methods.prescribed.varying_legs import LegsPoint
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint
 from frictionlab.orbit.record import Orbit
@@ -103,7 +104,7 @@ class SlidingPoint:
         return orbit_of_slip(self.motion, self.belt_speed, self.law, 0j) if self.status == "ok" else None
 
 
-Point = SlidingPoint | VaryingPoint | BristlePoint | LegsPoint | MemoryPoint
+Point = SlidingPoint | VaryingPoint | BristlePoint | AxesPoint | LegsPoint | MemoryPoint
 
 POINTS: dict[str, Callable[[Scene, Any, float], Point]] = {
     "none": lambda scene, law, _tolerance: (SlidingPoint if scene.is_harmonic else VaryingPoint)(scene, law),
@@ -117,9 +118,17 @@ POINTS: dict[str, Callable[[Scene, Any, float], Point]] = {
 def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
     if scene.is_harmonic:
         return BristlePoint(scene, law, tolerance)
-    if along_one_line(scene, law) and law.exact_path():
-        return LegsPoint(scene, law)
+    if not along_one_line(scene, law) and law.planar_form() == "per-axis":
+        return AxesPoint(scene, lambda axis: _bristle_on_a_line(axis, law, tolerance))
+    if along_one_line(scene, law):
+        return _bristle_on_a_line(scene, law, tolerance)
     return MemoryPoint(scene, law, tolerance)
+
+
+def _bristle_on_a_line(scene: Scene, law: Any, tolerance: float) -> LegsPoint | BristlePoint | MemoryPoint:
+    if scene.is_harmonic:
+        return BristlePoint(scene, law, tolerance)
+    return LegsPoint(scene, law) if law.exact_path() else MemoryPoint(scene, law, tolerance)
 
 
 def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:

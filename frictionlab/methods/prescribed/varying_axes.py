@@ -1,0 +1,77 @@
+"""Friction by axis under a prescribed slip in the plane: each axis slips along one line, whatever the other does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from frictionlab.methods.base import Status
+from frictionlab.methods.prescribed.motion import PrescribedMean
+from frictionlab.methods.prescribed.varying_slip import VaryingSlip
+from frictionlab.orbit.panels import NODES, interpolation_weights
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene, Slip
+
+
+class AxesPoint:
+    """One scene of such a slip, a law by axis, and the answer; solve: answers a scene of slip along the belt."""
+
+    def __init__(self, scene: Scene, solve: Callable[[Scene], Any]) -> None:
+        self.along, self.across = (solve(each) for each in _axes(scene))
+        self.slip = VaryingSlip.of(scene.signals(), scene.motion().normal_load)
+        first, second = self.along.found, self.across.found
+        self.status: Status = self.along.status
+        self.reason, self.model = self.along.reason, self.along.model
+        self.error_kind, self.seconds = self.along.error_kind, self.along.seconds + self.across.seconds
+        known = second.mean.real if self.across.status == "ok" else math.nan
+        self.found = PrescribedMean(complex(first.mean.real, known), first.error, first.low, first.high)
+
+    def orbit(self) -> Orbit | None:
+        """The prescribed motion and the friction along it; NaN across the belt where the mean there is open."""
+        one, other = self.along.orbit(), self.across.orbit()
+        if one is None:
+            return None
+        if other is None:
+            return self.slip.orbit(one.tau, one.friction.real + complex(0.0, math.nan))
+        end = one.tau[-1, -1]
+        edges = np.unique(np.concatenate([one.tau[:, 0], other.tau[:, 0]]))
+        edges = edges[np.diff(edges, append=end) > 1e-12 * end]
+        half = 0.5 * np.diff(edges, append=end)[:, None]
+        tau: Floats = edges[:, None] + half * (1.0 + NODES)
+        return self.slip.orbit(tau, _friction_on(one, tau) + 1j * _friction_on(other, tau))
+
+
+def _axes(scene: Scene) -> tuple[Scene, Scene]:
+    """The slip along the belt alone, and that across as one along a belt at rest."""
+    slip, across = scene.slip, scene.transverse_slip
+    still = Slip(velocity_amplitude=0.0, frequency=scene.frequency)
+    first, second = slip or still, still
+    if across is not None:
+        own = across.model_dump(exclude={"frequency"}, exclude_none=True)
+        second = Slip(frequency=scene.frequency, **own)
+    elif slip is not None and slip.direction is not None:
+        turn = math.radians(slip.direction)
+        first, second = _directed(slip, math.cos(turn)), _directed(slip, math.sin(turn))
+    changes = {"slip": first, "transverse_slip": None}
+    return scene.model_copy(update=changes), scene.model_copy(
+        update={**changes, "slip": second, "belt_speed": 0.0}
+    )
+
+
+def _directed(slip: Slip, share: float) -> Slip:
+    """A share of a slip, along the belt."""
+    size, direction = slip.velocity_amplitude * abs(share), 180.0 if share < 0.0 else 0.0
+    return slip.model_copy(update={"velocity_amplitude": size, "direction": direction})
+
+
+def _friction_on(orbit: Orbit, tau: Floats) -> Floats:
+    """Its friction along x1 on panels, each inside one of the orbit's."""
+    inside = np.searchsorted(orbit.tau[:, 0], 0.5 * (tau[:, 0] + tau[:, -1]), side="right") - 1
+    start, end = orbit.tau[inside, :1], orbit.tau[inside, -1:]
+    weights = interpolation_weights(((2.0 * tau - start - end) / (end - start)).ravel())
+    weights = weights.reshape(*tau.shape, len(NODES))
+    return np.asarray((weights * orbit.friction.real[inside, None, :]).sum(axis=2))

@@ -86,9 +86,8 @@ def read_columns(
 def _not_there(scene: Scene) -> list[bool]:
     """Which numbers a scene has no place for: across the belt on a line, and of loads and dashpots without a mass."""
     given = scene.degrees_of_freedom == 0
-    planar = scene.transverse_slip is not None if given else scene.degrees_of_freedom == 2
     without = ("energy_input", "energy_viscous") if given else ()
-    return [name in without or (not planar and "transverse" in name) for name in READ]
+    return [name in without or (not scene.planar and "transverse" in name) for name in READ]
 
 
 def _mass(scene: Scene) -> Mass:

@@ -21,7 +21,10 @@ LOPSIDED = (
     "speed is not known"
 )
 STICKS = "the body sticks to a belt of vanishing speed: the start of its curve is known for one sine along the belt"
-ELASTIC = "the body may stick elastically to a slow belt: the start of its curve is known for sines on a steady belt"
+STICKS_ELASTICALLY = (
+    "the body may stick elastically to a slow belt: the start of its curve is known for sines on a belt of steady "
+    "speed"
+)
 
 
 def varies(given: Mapping[str, Any]) -> bool:
@@ -74,7 +77,7 @@ def _unknown_start(scene: Scene, law: FrictionLaw | None) -> str:
     if not repeats_mirrored(scene):
         return LOPSIDED
     if law is not None and (law.memory_kind == "deflections" or law.elastic_deflection() > 0.0):
-        return ELASTIC
+        return STICKS_ELASTICALLY
     remembers = law is not None and law.memory_kind != "none"
     if scene.degrees_of_freedom > 0 and not remembers and (law is None or can_hold(scene, law)):
         return STICKS

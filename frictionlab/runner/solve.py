@@ -122,7 +122,7 @@ def number_columns(answers: Answers, scenes: Sequence[Scene], wanted: Collection
     """
     nothing, start = np.full(len(scenes), np.nan), time.perf_counter() - seconds_compiling()
     found = {"mean_friction": answers.mean.real, "error": answers.error}
-    if _in_the_plane(scenes[0]):
+    if scenes[0].planar:
         found["mean_friction_transverse"] = np.where(np.isnan(answers.mean.real), np.nan, answers.mean.imag)
     found |= {name: _given(getattr(answers, name), nothing) for name in OWN}
     if "floquet" in wanted and answers.floquet is not None:
@@ -140,10 +140,6 @@ def number_columns(answers: Answers, scenes: Sequence[Scene], wanted: Collection
 
 def _given(numbers: Floats | None, nothing: Floats) -> Floats:
     return nothing if numbers is None else numbers
-
-
-def _in_the_plane(scene: Scene) -> bool:
-    return scene.transverse_slip is not None or scene.degrees_of_freedom == 2
 
 
 def _part(chunk: Chunk, piece: Piece) -> Part:

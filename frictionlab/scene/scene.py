@@ -239,6 +239,13 @@ class Scene(_Part):
         return 1 if self.transverse is None else 2
 
     @property
+    def planar(self) -> bool:
+        """Whether there is an x2, across the belt."""
+        if self.degrees_of_freedom > 0:
+            return self.transverse is not None
+        return self.transverse_slip is not None or bool(self.slip and self.slip.direction)
+
+    @property
     def undriven(self) -> bool:
         """Whether no load drives the mass: the period of its motion is then unknown."""
         shaken = self.drive or self.belt_vibration or self.normal_load_variation

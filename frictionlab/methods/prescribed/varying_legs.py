@@ -23,7 +23,7 @@ from frictionlab.methods.prescribed.closed_loop_line import ELASTIC, NOTHING_MOV
 from frictionlab.methods.prescribed.exact_legs import gained
 from frictionlab.methods.prescribed.motion import PrescribedMean
 from frictionlab.methods.prescribed.quadrature import nodes
-from frictionlab.methods.prescribed.varying_slip import WIDEST, VaryingSlip, piece_at
+from frictionlab.methods.prescribed.varying_slip import WIDEST_PANEL, VaryingSlip, piece_at
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.scene import Scene
@@ -33,7 +33,7 @@ ANY_LEGS = "prescribed slip along a line: deflection exact along every leg, Gaus
 FORGETS_NOTHING = (
     "in a period the bristle forgets less of its start than rounding hides: the mean depends on the start"
 )
-APART = 1e-6
+_APART = 1e-6
 """Share of the largest deflection by which the deflections that repeat may differ."""
 BEND_OVER = 40.0
 """Lengths of a bristle slid since a reversal after which its layer is over."""
@@ -43,7 +43,7 @@ _NEAREST = 1e-14
 """Of the panels next to the corner where friction saturates, in lengths of a bristle."""
 
 
-class Leg(NamedTuple):
+class OneWay(NamedTuple):
     """Slip in one direction between two times, on one piece; side 0 where it rests. path: the way slid, >= 0."""
 
     start: float
@@ -53,7 +53,7 @@ class Leg(NamedTuple):
     path: float
 
 
-def legs_of(slip: Piecewise) -> list[Leg]:
+def one_way_legs(slip: Piecewise) -> list[OneWay]:
     """Those of a period."""
     cuts = np.unique(np.concatenate([slip.edges, slip.crossings().tau]))
     start, stop = cuts[:-1], cuts[1:]
@@ -62,7 +62,7 @@ def legs_of(slip: Piecewise) -> list[Leg]:
     side = np.where(slip.at_rest()[k], 0.0, np.sign(slip.at(middle, k)[0]))
     path = np.abs(slip.integral(start, stop, k))
     rows = zip(*(each.tolist() for each in (start, stop, k, side, path)), strict=True)
-    return [Leg(*row) for row in rows]
+    return [OneWay(*row) for row in rows]
 
 
 class LegLoop(NamedTuple):
@@ -79,7 +79,7 @@ class ExactPath:
 
     def __init__(self, law: BristleLaw, slip: Piecewise, load: Piecewise, widest: float) -> None:
         self.law, self.slip, self.load, self.widest = law, slip, load, widest
-        self.legs, self.seconds = legs_of(slip), 0.0
+        self.legs, self.seconds = one_way_legs(slip), 0.0
         self.reach, fastest = law.largest_deflection(), law.largest_rate(1.0)
         self.length = min(self.reach, 1.0 / fastest) if 0.0 < fastest < math.inf else self.reach
 
@@ -122,7 +122,7 @@ class ExactPath:
         mean = -math.fsum((weights * force).ravel().tolist()) / self.slip.period
         return LegLoop(mean, float(np.abs(force).max()), tau, force)
 
-    def _edges(self, leg: Leg, z: float, cuts: int) -> Floats:
+    def _edges(self, leg: OneWay, z: float, cuts: int) -> Floats:
         """Of panels of a leg that begins at z: they grow with the way slid, and shrink towards the corner of friction
         where that saturates."""
         corner = self.law.saturation_path(z, leg.side) if leg.side else math.inf
@@ -147,11 +147,11 @@ class ExactPath:
         parts = whole[:-1, None] + np.diff(whole)[:, None] * (np.arange(cuts) / cuts)
         return np.append(parts.ravel(), leg.stop)
 
-    def _way(self, leg: Leg, tau: Floats) -> Floats:
+    def _way(self, leg: OneWay, tau: Floats) -> Floats:
         k, begin = np.full(tau.shape, leg.piece), np.full(tau.shape, leg.start)
         return abs(leg.side) * np.abs(self.slip.integral(begin, tau, k))
 
-    def _time_of(self, leg: Leg, way: float) -> float:
+    def _time_of(self, leg: OneWay, way: float) -> float:
         return root(lambda tau: float(self._way(leg, np.array([tau]))[0]) - way, leg.start, leg.stop)
 
 
@@ -188,7 +188,7 @@ class LegsPoint:
         motion = scene.motion()
         self.slip = VaryingSlip.of(scene.signals(), motion.normal_load)
         moved = self.slip.along.minus(scene.belt_speed)
-        widest = WIDEST / self.slip.quickest if self.slip.quickest else math.inf
+        widest = WIDEST_PANEL / self.slip.quickest if self.slip.quickest else math.inf
         self.path = ExactPath(law.under_load(motion.normal_load), moved, self.slip.normal_load, widest)
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind, self.start = "", ANY_LEGS, "estimated", math.nan
@@ -202,8 +202,8 @@ class LegsPoint:
         low, high = path.closed()
         # where a period forgets next to nothing of its start, rounding says what repeats
         lost = (path.opened(low) - path.opened(high) if high > low else 0.0) / max(high - low, 1e-300)
-        if high - low > APART * path.reach:
-            return self._left_open(low, high, ELASTIC if lost <= APART else FORGETS_NOTHING)
+        if high - low > _APART * path.reach:
+            return self._left_open(low, high, ELASTIC if lost <= _APART else FORGETS_NOTHING)
         self.start = 0.5 * (low + high)
         coarse, fine = path.loop(self.start), path.loop(self.start, 2)
         stiffness = abs(path.law.friction(0.0, 1.0, 0.0))

@@ -7,10 +7,10 @@ import time
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Status
+from frictionlab.methods.prescribed.loop import Vectors
 from frictionlab.methods.prescribed.motion import PrescribedMean
 from frictionlab.methods.prescribed.quadrature import nodes, sliding_vectors
 from frictionlab.orbit.panels import WEIGHTS
@@ -22,14 +22,14 @@ from frictionlab.theory.piecewise import PieceNumbers, Piecewise, edges_of, piec
 from frictionlab.theory.prescribed import MeanDirection, mean_direction
 from frictionlab.theory.rest import friction_at_rest
 
-Vectors = NDArray[np.complex128]
-
-ALONG = "closed form: slip prescribed along the belt, the normal load integrated between its reversals"
-PLANE = "prescribed slip: Gauss-Lobatto quadrature, panels between corners graded towards slow slip"
+BETWEEN_REVERSALS = (
+    "closed form: slip prescribed along the belt, the normal load integrated between its reversals"
+)
+BETWEEN_CORNERS = "prescribed slip: Gauss-Lobatto quadrature, panels between corners graded towards slow slip"
 RESTS = "the slip rests for a part of the period: friction there is any value up to mu"
-WIDEST = math.pi / 16.0
+WIDEST_PANEL = math.pi / 16.0
 """Half width of a panel, in radians of the quickest harmonic."""
-CLOSEST = 1e-16
+_CLOSEST = 1e-16
 """Half width of the panels, in shares of the period, at which the refinement towards rest ends."""
 
 
@@ -78,14 +78,14 @@ class VaryingSlip(NamedTuple):
         edges = np.unique(np.concatenate([along.edges, cuts]))
         start, stop = edges[:-1], edges[1:]
         bend, done = along.curvature() + across.curvature(), []
-        widest = WIDEST / self.quickest if self.quickest else math.inf
+        widest = WIDEST_PANEL / self.quickest if self.quickest else math.inf
         while len(start):
             middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
             k = piece_at(along.edges, middle)
             (first, rate), (second, rate_2) = along.at(middle, k), across.at(middle, k)
             moved = np.hypot(rate, rate_2) * 2.0 * half + 0.5 * bend[k] * (2.0 * half) ** 2
             narrow = (np.hypot(first, second) >= moved) & (half <= widest)
-            kept = narrow | (half <= CLOSEST * along.period)
+            kept = narrow | (half <= _CLOSEST * along.period)
             done.append(start[kept])
             start, stop = (
                 np.concatenate([start[~kept], middle[~kept]]),
@@ -125,9 +125,9 @@ class VaryingPoint:
         turns = self._turns()
         if turns is not None and self.law.constant_sliding_friction():
             most = self.law.sliding_friction(1.0)
-            mean, error, self.model = complex(most * turns.mean, 0.0), most * turns.error, ALONG
+            mean, error, self.model = complex(most * turns.mean, 0.0), most * turns.error, BETWEEN_REVERSALS
         else:
-            mean, error, self.model = *self._by_quadrature(turns), PLANE
+            mean, error, self.model = *self._by_quadrature(turns), BETWEEN_CORNERS
             self.error_kind = "estimated"
         resting = self._resting()
         if resting > 0.0:

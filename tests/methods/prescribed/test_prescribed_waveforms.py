@@ -1,0 +1,264 @@
+"""Prescribed slip of any waveform and direction under a normal load that may change."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from answered import with_columns
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from profiles import deep
+from scipy.integrate import quad
+
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.elasto_plastic import ElastoPlastic
+from frictionlab.laws.jenkins import Jenkins
+from frictionlab.laws.lugre import LuGre
+from frictionlab.laws.stribeck import Stribeck
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Scene
+from frictionlab.theory import mean_prescribed_longitudinal, mean_prescribed_pulsating
+
+LAW = Coulomb(mu=0.4)
+FALLING = Stribeck(mu_kinetic=0.3, mu_static=0.5, stribeck_speed=0.4, stribeck_exponent=1.5, viscosity=0.02)
+DAHL = Dahl(mu=0.4, presliding_length=0.1)
+A_SINE = {"harmonics": [{"order": 1, "amplitude": 1.0}]}  # not solved as one
+ONE_SIDED = {"harmonics": [{"order": 1, "amplitude": 1.0}, {"order": 2, "amplitude": 0.5, "phase": 50.0}]}
+angles = st.floats(0.0, 360.0)
+waveforms = st.sampled_from(["sine", "square", "triangle", "sawtooth", ONE_SIDED])
+
+
+def scene(ratio: float, waveform: Any = "sine", phase: float = 0.0, **keys: Any) -> Scene:
+    parts = {"velocity_amplitude": 1.0, "frequency": 1.3, "phase": phase, "waveform": waveform}
+    return Scene(belt_speed=ratio, slip={**parts, **keys.pop("slip", {})}, normal_load=2.0, **keys)
+
+
+def answer(one: Scene, law: Any, method: Any = None, tolerance: float = 1e-9) -> Any:
+    method = method or Shooting()
+    assert method.refusal(one, law) is None
+    return with_columns(method, [one], law, tolerance)
+
+
+def mean(one: Scene, law: Any, method: Any = None) -> float:
+    found = answer(one, law, method)
+    assert found.status == ["ok"], found.reason
+    assert found.error[0] <= 1e-9
+    return float(found.mean[0].real)
+
+
+@pytest.mark.parametrize("method", [Exact(), Shooting()], ids=lambda method: method.name)
+@given(
+    waveform=st.sampled_from(["sine", "square", "triangle", "sawtooth"]),
+    ratio=st.floats(-0.98, 0.98) | st.sampled_from([1.2, -3.0]),
+    phase=angles,
+)
+@settings(max_examples=20)
+def test_friction_along_the_belt_has_the_closed_form_of_its_waveform(
+    method: Any, waveform: str, ratio: float, phase: float
+) -> None:
+    closed = 0.4 * float(mean_prescribed_longitudinal(ratio, waveform))
+
+    assert mean(scene(ratio, waveform, phase), LAW, method) == pytest.approx(closed, abs=1e-13)
+
+
+@given(ratio=st.floats(-0.98, 0.98), amplitude=st.floats(0.05, 0.95), lead=angles, phase=angles)
+@settings(max_examples=20)
+def test_a_normal_load_that_pulsates_with_slip_moves_the_mean(
+    ratio: float, amplitude: float, lead: float, phase: float
+) -> None:
+    one = scene(ratio, "sine", phase, normal_load_variation={"amplitude": amplitude, "phase": phase + lead})
+    closed = 0.4 * float(mean_prescribed_pulsating(ratio, amplitude, math.radians(lead)))
+
+    assert mean(one, LAW) == pytest.approx(closed, abs=1e-13)
+
+
+@given(
+    law=st.sampled_from([FALLING, DAHL, Dahl(mu=0.4, presliding_length=0.02, exponent=0.5)])
+    | st.sampled_from([Jenkins(mu=0.4, stiffness=3.0), LuGre(mu_kinetic=0.4, stiffness=9.0, damping=0.3)]),
+    ratio=st.floats(-1.5, 1.5).filter(lambda ratio: abs(ratio) > 1e-3),
+    phase=angles,
+)
+@settings(max_examples=15)
+def test_a_sine_given_as_a_sum_of_harmonics_is_a_sine(law: Any, ratio: float, phase: float) -> None:
+    one, sine = answer(scene(ratio, A_SINE, phase), law), answer(scene(ratio, "sine", phase), law)
+
+    assert one.mean[0].real == pytest.approx(sine.mean[0].real, abs=one.error[0] + sine.error[0] + 1e-13)
+
+
+@given(ratio=st.floats(-1.5, 1.5), direction=st.floats(5.0, 85.0), phase=angles)
+@settings(max_examples=15)
+def test_in_the_plane_too(ratio: float, direction: float, phase: float) -> None:
+    turned = {"slip": {"direction": direction}}
+    for law in (LAW, FALLING, Dahl(mu=0.4, presliding_length=0.1, planar="per-axis")):
+        one, sine = (answer(scene(ratio, form, phase, **turned), law) for form in (A_SINE, "sine"))
+        if one.status != ["ok"]:
+            assert one.status == sine.status
+            continue
+        for column in ("mean_friction", "mean_friction_transverse", "energy_contact", "energy_friction"):
+            assert one.columns[column][0] == pytest.approx(sine.columns[column][0], abs=1e-9), (law, column)
+
+
+def test_a_direction_is_two_slips() -> None:
+    for waveform in ("square", "sawtooth", "sine"):
+        turned = scene(0.3, waveform, 20.0, slip={"direction": 30.0})
+        along, across = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))
+        two = scene(
+            0.3,
+            waveform,
+            20.0,
+            slip={"velocity_amplitude": along},
+            transverse_slip={"velocity_amplitude": across, "phase": 20.0, "waveform": waveform},
+        )
+        for law in (LAW, FALLING):
+            assert mean(turned, law) == pytest.approx(mean(two, law), abs=1e-13)
+        assert answer(turned, LAW).columns["mean_friction_transverse"][0] == pytest.approx(
+            answer(two, LAW).columns["mean_friction_transverse"][0], abs=1e-13
+        )
+
+
+def test_a_sine_straight_against_the_belt_is_one_half_a_period_later() -> None:
+    back, later = scene(0.3, "sine", 10.0, slip={"direction": 180.0}), scene(0.3, "sine", 190.0)
+
+    assert mean(back, LAW) == pytest.approx(mean(later, LAW), abs=1e-15)
+    assert mean(back, DAHL) == pytest.approx(mean(later, DAHL), abs=1e-12)
+
+
+@given(waveform=waveforms, load=waveforms, phase=angles, ratio=st.floats(0.05, 0.9), size=st.floats(0.1, 0.4))
+@settings(max_examples=6)
+def test_the_mean_in_the_plane_is_that_of_an_adaptive_quadrature(
+    waveform: Any, load: Any, phase: float, ratio: float, size: float
+) -> None:
+    one = scene(
+        ratio,
+        waveform,
+        phase,
+        transverse_slip={"velocity_amplitude": 0.8, "phase": 60.0, "waveform": "triangle"},
+        normal_load_variation={"amplitude": size, "waveform": load, "phase": 33.0, "frequency_ratio": 2},
+    )
+    signals = one.signals()
+
+    def friction(tau: float) -> float:
+        at = np.array(tau)
+        slip = complex(float(signals.belt[0](at)) - ratio, float(signals.belt[1](at)))
+        share = 1.0 + float(signals.normal_load(at)) / 2.0
+        return -share * FALLING.sliding_friction(abs(slip)) * slip.real / max(abs(slip), 1e-300)
+
+    ends = [0.0, *signals.corners(), signals.period]
+    total = sum(
+        quad(friction, start, stop, limit=400, epsabs=1e-10)[0] for start, stop in itertools.pairwise(ends)
+    )
+    assert mean(one, FALLING) == pytest.approx(total / signals.period, abs=2e-8)
+
+
+def followed(one: Scene, law: Any, steps: int = 30000) -> float:
+    """The mean by the law's own path, in small steps of constant slip; three periods, the last one counts."""
+    signals = one.signals()
+    h = signals.period / steps
+    tau = (np.arange(steps) + 0.5) * h
+    slips = (signals.belt[0](tau) - one.belt_speed).tolist()
+    shares = (1.0 + signals.normal_load(tau) / 2.0).tolist()
+    z, total = 0.0, 0.0
+    for _ in range(3):
+        total = 0.0
+        for w, share in zip(slips, shares, strict=True):
+            half = law.deflected(z, 0.5 * w * h)
+            total += share * law.friction(w, half, law.rate(w, half))
+            z = law.deflected(z, w * h)
+    return -total / steps
+
+
+@pytest.mark.parametrize("waveform", ["square", "sawtooth", ONE_SIDED])
+@pytest.mark.parametrize("law", [DAHL, Jenkins(mu=0.4, stiffness=4.0)], ids=lambda law: type(law).__name__)
+def test_a_bristle_follows_any_waveform(law: Any, waveform: Any) -> None:
+    load = {"amplitude": 0.4, "waveform": "triangle", "phase": 20.0, "frequency_ratio": 2}
+    one = scene(0.3, waveform, 40.0, normal_load_variation=load)
+
+    for method in (Exact(), Shooting()):
+        assert mean(one, law, method) == pytest.approx(followed(one, law.under_load(2.0)), abs=3e-5)
+
+
+def test_stiff_bristles_tend_to_coulomb_friction_as_the_root_of_their_length() -> None:
+    # the sawtooth turns round slowly once and jumps back: the two layers do not cancel as those of a sine
+    load = {"amplitude": 0.4, "waveform": "sawtooth", "phase": 20.0}
+    one = scene(0.3, "sawtooth", 40.0, normal_load_variation=load)
+    off = [
+        mean(one, Dahl(mu=0.4, presliding_length=length)) - mean(one, LAW) for length in (1e-4, 1e-6, 1e-8)
+    ]
+
+    assert off[0] == pytest.approx(10 * off[1], rel=0.02)
+    assert off[1] == pytest.approx(10 * off[2], rel=0.002)
+    assert off[2] < 1e-4
+
+
+def test_a_square_slip_as_fast_as_the_belt_leaves_friction_open() -> None:
+    sticky = Coulomb(mu=0.4, mu_static=0.6)
+    found = answer(scene(1.0, "square", 30.0), sticky)
+
+    assert found.status == ["not_unique"]
+    # .4 for the half in which it slips, and anything up to .6 either way for the other
+    assert found.columns["mean_low"][0] == pytest.approx(0.5 * 0.4 - 0.5 * 0.6, abs=1e-13)
+    assert found.columns["mean_high"][0] == pytest.approx(0.5 * 0.4 + 0.5 * 0.6, abs=1e-13)
+    assert mean(scene(1.0, "square", 30.0), DAHL) == pytest.approx(0.4, abs=1e-12)  # bristles stay bent
+
+
+def test_an_elastic_contact_on_a_belt_at_rest_keeps_its_mean() -> None:
+    law, load = Jenkins(mu=0.4, presliding_length=1.0), {"amplitude": 0.5, "waveform": "square"}
+    one = scene(0.0, "triangle", 90.0, normal_load_variation=load)  # 90 degrees: forward where it is heavy
+    found = answer(one, law)
+
+    assert found.status == ["not_unique"]
+    swing = math.pi / 4.0 / 1.3  # half of the way that the slip goes back and forth
+    room = 0.4 * (1.0 - swing)
+    middle = 0.5 * (found.columns["mean_low"][0] + found.columns["mean_high"][0])
+    assert found.columns["mean_high"][0] - found.columns["mean_low"][0] == pytest.approx(2 * room, abs=1e-9)
+    assert middle != pytest.approx(0.0, abs=1e-3)  # the contact is bent forward while it is heavy
+
+
+def test_columns_keep_their_meaning() -> None:
+    load = {"amplitude": 0.3, "frequency_ratio": 1.5}
+    found = answer(scene(0.4, "triangle", 25.0, normal_load_variation=load), LAW).columns
+    slower = answer(scene(0.4, "triangle", 25.0), LAW).columns
+
+    assert found["period"][0] == 2.0
+    assert found["reversals"][0] == pytest.approx(2 * slower["reversals"][0])
+    assert slower["reversals"][0] == 2.0
+    assert slower["velocity_amplitude"][0] == pytest.approx(1.0, abs=1e-12)
+    assert slower["velocity_harmonic"][0] == pytest.approx(8 / math.pi**2, abs=1e-9)
+    assert math.isnan(slower["velocity_phase"][0])  # no load to lead
+    assert math.isnan(slower["energy_input"][0])
+    # heat: friction 2*.4 times the mean size of the slip, .5 (1 + .4^2), and the period
+    heat = 2.0 * 0.4 * 0.5 * (1 + 0.4**2) * 2 * math.pi / 1.3
+    assert slower["energy_contact"][0] == pytest.approx(heat, rel=1e-12)
+    taken = heat - 0.4 * 2.0 * slower["mean_friction"][0] * 2 * math.pi / 1.3
+    assert slower["energy_friction"][0] == pytest.approx(taken, rel=1e-12)
+
+
+@deep("two kernels to compile")
+@pytest.mark.parametrize(
+    "law",
+    [
+        LuGre(mu_kinetic=0.4, mu_static=0.6, stribeck_speed=0.3, stiffness=40, damping=0.1),
+        ElastoPlastic(mu_kinetic=0.4, stiffness=40),
+    ],
+    ids=lambda law: type(law).__name__,
+)
+@pytest.mark.parametrize("planar", [False, True])
+def test_memory_without_an_exact_path_follows_waveforms(law: Any, planar: bool) -> None:
+    across = {"transverse_slip": {"velocity_amplitude": 0.7, "phase": 60.0}} if planar else {}
+    one, sine = (answer(scene(0.3, form, 20.0, **across), law) for form in (A_SINE, "sine"))
+    assert one.mean[0] == pytest.approx(sine.mean[0], abs=one.error[0] + sine.error[0])
+    for column in ("mean_friction_transverse", "energy_contact", "energy_friction", "velocity_amplitude"):
+        assert one.columns[column][0] == pytest.approx(sine.columns[column][0], abs=1e-7, nan_ok=True)
+
+
+def test_exact_says_what_it_cannot_do() -> None:
+    constant = {"amplitude": 0.3, "contact": "constant"}
+    assert "per_load" in (Exact().refusal(scene(0.3, "square", normal_load_variation=constant), DAHL) or "")
+    assert Exact().refusal(scene(0.3, "square", normal_load_variation=constant), LAW) is None
+    assert "across the belt" in (Exact().refusal(scene(0.3, "square", slip={"direction": 30.0}), DAHL) or "")

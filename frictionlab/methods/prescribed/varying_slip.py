@@ -78,6 +78,7 @@ class VaryingSlip(NamedTuple):
         edges = np.unique(np.concatenate([along.edges, cuts]))
         start, stop = edges[:-1], edges[1:]
         bend, done = along.curvature() + across.curvature(), []
+        rounding = along.size() + across.size()
         widest = WIDEST_PANEL / self.quickest if self.quickest else math.inf
         while len(start):
             middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
@@ -85,7 +86,8 @@ class VaryingSlip(NamedTuple):
             (first, rate), (second, rate_2) = along.at(middle, k), across.at(middle, k)
             moved = np.hypot(rate, rate_2) * 2.0 * half + 0.5 * bend[k] * (2.0 * half) ** 2
             narrow = (np.hypot(first, second) >= moved) & (half <= widest)
-            kept = narrow | (half <= _CLOSEST * along.period)
+            # where slip only touches rest, panels end at the width that rounding leaves of the way there
+            kept = narrow | (half <= _CLOSEST * along.period) | (moved <= EPSILON * rounding)
             done.append(start[kept])
             start, stop = (
                 np.concatenate([start[~kept], middle[~kept]]),

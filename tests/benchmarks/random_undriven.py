@@ -1,7 +1,7 @@
-"""Undriven scenes on contacts with memory, counted: python tests/benchmarks/random_undriven.py [SCENES] [COMPARED] [SEED].
+"""Undriven contacts with memory, counted: python tests/benchmarks/random_undriven.py [SCENES] [COMPARED] [SEED].
 
-SCENES (default 400) scenes go through ``curve`` and ``auto`` at one of the tolerances 1e-4, 1e-6 and 1e-8: normal load
-0.1 ... 10, belt speed 1e-2 ... 3 and damping 1e-3 ... 1 or none, friction that falls or is the same at every speed,
+SCENES (default 400) scenes go through ``auto`` at one of the tolerances 1e-4, 1e-6 and 1e-8: normal load 0.1 ... 10,
+belt speed 1e-2 ... 3 and damping 1e-3 ... 1 or none, friction that falls or is the same at every speed,
 presliding length 1e-5 ... 1 of what friction deflects the spring by, all log-uniform; a third set off somewhere else
 than at rest on the belt. COMPARED (default 150) answers are compared with scipy's LSODA on the interpreted law, from
 the scene's own start until the mean from one largest deflection to the next repeats; a scene that takes more than
@@ -85,7 +85,7 @@ def _law(rng: np.random.Generator, kind: str, load: float, speed: float) -> Fric
             mu=(mu * share / share.sum()).tolist(), stiffness=[mu / length * 3.0**k for k in range(3)]
         )
     if kind == "dahl":
-        return fl.Dahl(mu=mu, presliding_length=length, exponent=float(rng.choice([1.0, 0.5, 1.5])))
+        return fl.Dahl(mu=mu, presliding_length=length, exponent=float(rng.choice([1.0, 0.5])))
     if kind == "jenkins":
         return fl.Jenkins(mu=mu, presliding_length=length)
     common: dict[str, Any] = {"mu_kinetic": mu, "presliding_length": length}
@@ -149,7 +149,7 @@ class Motion:
             rates = [self.law.rate(w, memory[0])]
             rub = self.law.friction(w, memory[0], rates[0])
         else:
-            if not self.law.within([0.999999 * each for each in memory]):
+            if self.law.memory_kind == "scalars" and not self.law.within(memory):
                 raise TooSlow("scipy left the set of memories")
             rates = [self.law.rate(w, memory, k) for k in range(self.count)]
             rub = self.law.friction(w, memory, rates)

@@ -43,7 +43,7 @@ class KnownOrbit(NamedTuple):
 
 
 @inner
-def _obeys(orbit: KnownOrbit, before: Any, after: Any, predicted: Any) -> bool:
+def obeys(orbit: KnownOrbit, before: Any, after: Any, predicted: Any) -> bool:
     """Whether a period from ``before`` (as what follows, a distance from the orbit) is as the monodromy says.
 
     That the distance falls by the largest multiplier is not enough: other attractors do so for some periods. The
@@ -77,7 +77,7 @@ def _arrives(case: Case, start: Any, orbit: KnownOrbit, constant: bool) -> bool:
         if slides_on:
             ends_sliding(case, start)
         subtract(start, orbit.state, after)
-        obeyed = obeyed + 1 if _obeys(orbit, before, after, predicted) else 0
+        obeyed = obeyed + 1 if obeys(orbit, before, after, predicted) else 0
         if obeyed == ENOUGH or norm(after) < NEAR * size:
             return True
         copy(after, before)

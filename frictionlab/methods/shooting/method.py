@@ -50,8 +50,8 @@ CONSTANT_CONTACT = (
     "of its own: give per_load"
 )
 CREEPS = (
-    "on a belt at rest a contact whose memory has no direction creeps as long as its spring pulls: no state is steady "
-    "but that of the unstretched spring; leave initial out, or give a belt speed"
+    "on a belt at rest a contact whose memory has no direction creeps as long as its spring pulls: no state is "
+    "steady but that of the unstretched spring; leave initial out, or give a belt speed"
 )
 
 

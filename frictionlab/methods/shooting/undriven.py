@@ -37,9 +37,9 @@ from frictionlab.methods.periodic.period_map import pack, size_of
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.undriven_memory import UndrivenMemory
 from frictionlab.methods.shooting.undriven_motion import (
-    AT_REST,
-    FREE,
-    SLIDING,
+    RESTS,
+    SLIDES,
+    SLIDES_FREELY,
     TURN,
     Effort,
     Follower,
@@ -83,11 +83,8 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
     reason, model, kind = [""] * len(scenes), [""] * len(scenes), [""] * len(scenes)
     found: dict[int, tuple[Follower, PeriodicMotion]] = {}
     for i, scene in enumerate(scenes):
-        undriven: Follower
-        if law.count() > 0:
-            undriven = UndrivenMemory(scene, law, tolerance)
-        else:
-            undriven = _Undriven(scene, law, tolerance)
+        following: type[_Undriven | UndrivenMemory] = UndrivenMemory if law.count() > 0 else _Undriven
+        undriven: Follower = following(scene, law, tolerance)
         try:
             motion = undriven.motion()
         except NotFound as problem:
@@ -217,7 +214,7 @@ class _Undriven:
 
     def _free(self, x: float, v: float) -> PeriodicMotion:
         mean = math.copysign(self.law.sliding_friction(1.0), self._speed)
-        return PeriodicMotion(np.array([x, v]), TURN, mean, ROUNDING, 1.0, FREE)
+        return PeriodicMotion(np.array([x, v]), TURN, mean, ROUNDING, 1.0, SLIDES_FREELY)
 
     def _at_rest(self) -> PeriodicMotion:
         state, periods = PeriodicProblem(self.scene, self.law, self.tolerance).settle(self.scene.start)
@@ -225,7 +222,7 @@ class _Undriven:
             raise NotFound(f"the mass still creeps towards rest after {-periods} periods of the free mass")
         mean = state[0] / self._pressed
         error = 1e-11 * periods + ROUNDING
-        return PeriodicMotion(np.array([state[0], 0.0]), math.nan, mean, error, math.nan, AT_REST)
+        return PeriodicMotion(np.array([state[0], 0.0]), math.nan, mean, error, math.nan, RESTS)
 
     def _deflection(self) -> float:
         """Of the spring in steady sliding."""
@@ -257,7 +254,7 @@ class _Undriven:
         speed = self._speed
         mean = math.copysign(self.law.sliding_friction(abs(speed)), speed)
         still = np.array([self._deflection(), 0.0])
-        return PeriodicMotion(still, math.nan, mean, ROUNDING, math.nan, SLIDING)
+        return PeriodicMotion(still, math.nan, mean, ROUNDING, math.nan, SLIDES)
 
     @property
     def _release(self) -> float:

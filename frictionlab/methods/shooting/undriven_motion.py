@@ -11,9 +11,9 @@ from frictionlab.quantities import Floats
 
 TURN = 2.0 * math.pi
 """The period of the free mass."""
-AT_REST = "at rest, where the motion from scene.initial ends"
-SLIDING = "steady sliding, which attracts"
-FREE = "a free oscillation in slip, which does not decay without damping"
+RESTS = "at rest, where the motion from scene.initial ends"
+SLIDES = "steady sliding, which attracts"
+SLIDES_FREELY = "a free oscillation in slip, which does not decay without damping"
 
 
 class PeriodicMotion(NamedTuple):

@@ -1,0 +1,114 @@
+"""The cycle next to a largest deflection, by Newton's method on the map from one largest deflection to the next.
+
+The velocity is zero there, and what the motion lacks of it after a period is made up for by a change of the period.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.interpret import interpreted
+from frictionlab.dynamics.motion import mean_friction
+from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
+from frictionlab.methods.shooting.undriven_motion import TURN
+from frictionlab.methods.shooting.undriven_path import LEAST, Return, UndrivenPath
+from frictionlab.quantities import Floats
+
+COARSEST_CLOSED = 1e-6
+"""The coarsest accuracy, per normal load, of maps that close a cycle."""
+INSTANT = 1e-7
+"""Turns over which rates of a state are quotients."""
+MOST_NEWTON = 16
+CHANCE = 0.15
+"""Of the difference between the two coarser means, stands in where the two finer agree by chance."""
+
+
+class Cycle(NamedTuple):
+    """A cycle from a largest deflection: its period [turns], mean friction and the error of that, and the derivative
+    from each largest deflection to the next."""
+
+    state: Floats
+    turns: float
+    mean: float
+    error: float
+    matrix: Floats
+
+    @property
+    def multiplier(self) -> float:
+        """The largest modulus of the multipliers, without the trivial one."""
+        return radius(self.matrix)
+
+
+class Linear(NamedTuple):
+    """Rates of a largest deflection, the derivative from each to the next, and Newton's inverse of that."""
+
+    rates: Floats
+    matrix: Floats
+    inverse: Floats
+
+
+def radius(matrix: Floats) -> float:
+    """The largest modulus of the eigenvalues."""
+    return float(np.abs(np.linalg.eigvals(matrix)).max())
+
+
+def close_cycle(path: UndrivenPath, guess: Return, tolerance: float) -> Cycle | None:
+    """The cycle near a largest deflection that comes back after about so many turns; None where none is found.
+
+    Its mean is that of the last of three or more closed cycles, each of maps FINER times finer than the one before.
+    Raises NotFound.
+    """
+    accuracy, means, error = max(min(tolerance, COARSEST_CLOSED), LEAST), list[float](), math.inf
+    state = guess.state.copy()
+    state[1] = 0.0
+    at = Cycle(state, guess.turns, math.nan, math.inf, np.empty((0, 0)))
+    linear = _linearize(path, at)
+    while True:
+        found, linear = _newton(path, at, linear, accuracy)
+        if found is None:
+            return None
+        means.append(found.mean)
+        if len(means) > 2:
+            error = 2.0 * max(abs(means[-1] - means[-2]), CHANCE * abs(means[-2] - means[-3])) + found.error
+            error += 10.0 * accuracy / (found.turns * TURN) + ROUNDING
+        if error <= tolerance or accuracy <= LEAST:
+            return found._replace(error=error)
+        at, accuracy = found, max(accuracy / FINER, LEAST)
+
+
+def _newton(path: UndrivenPath, at: Cycle, linear: Linear, accuracy: float) -> tuple[Cycle | None, Linear]:
+    """The cycle by maps of one accuracy, its error what the last step has moved the mean by; the derivatives used."""
+    (state, turns, mean, _, _), size = at, math.inf
+    for count in range(MOST_NEWTON):
+        span = path.follow(state, turns, accuracy)
+        before, mean = mean, float(interpreted(mean_friction)(span.impulse, turns * TURN))
+        # along the motion, until the velocity is zero
+        late = -float(span.end[1] / linear.rates[1])
+        step = linear.inverse @ (span.end + late * linear.rates - state)
+        step[1] = 0.0
+        last, size = size, float(np.abs(step).max()) + abs(late)
+        if not size < 1.0 + np.abs(state).max():
+            break
+        # steps that shrink no more are what the steps of a map jump about by
+        if count > 0 and size <= 1e3 * accuracy and (size <= accuracy or size > 0.3 * last):
+            # steady sliding comes back after any time, and motions next to it nearly do
+            apart = path.from_sliding(state) > 1e3 * (size + accuracy)
+            return Cycle(state, turns, mean, abs(mean - before), linear.matrix) if apart else None, linear
+        state, turns = state + step, turns + late / TURN
+        if not turns > 0.0:
+            break
+        if size > 0.3 * last:
+            linear = _linearize(path, at._replace(state=state, turns=turns))
+    return None, linear
+
+
+def _linearize(path: UndrivenPath, at: Cycle) -> Linear:
+    rates: Floats = (path.follow(at.state, INSTANT, LEAST).end - at.state) / (INSTANT * TURN)
+    whole = path.quotients(at.state, at.turns)
+    # from one largest deflection to the next, not from one instant to another: along the motion
+    matrix = whole - np.outer(rates, whole[1]) / rates[1]
+    matrix[:, 1] = 0.0
+    return Linear(rates, matrix, np.linalg.pinv(np.eye(path.size) - matrix))

@@ -1,0 +1,213 @@
+"""The motion of an undriven mass on a contact with memory, span by span, and its largest deflections."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.call import KernelCall
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.interpret import interpreted
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.periodic.case import case_of
+from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
+from frictionlab.methods.periodic.period_map import period_map, size_of, start_of
+from frictionlab.methods.shooting.undriven_motion import TURN, Effort, NotFound
+from frictionlab.orbit.recorder import Track, track_of
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Body, Mass, on_the_line
+from frictionlab.scene.scene import Scene
+from frictionlab.theory.sliding_stability import steady_deflection
+
+FOLLOWED, QUOTIENTS, LEAST = 1e-8, 1e-11, 1e-14
+"""Accuracies of maps, per normal load: of those that follow the motion, of those for difference quotients, and the
+one beyond which rounding decides."""
+SHIFTED = 1e-4
+"""Share of a state by which it is shifted for a difference quotient."""
+SPEEDING_UP = 1e-12
+"""Time after which a start is seen that has no acceleration: slip has a direction by then."""
+MOST_WORK = 2_000_000
+"""Steps after which no motion is followed any longer, some seconds of them."""
+PANELS_AT_FIRST = 128
+"""Panels that a track has room for at first."""
+MOST_PEAKS = 8
+"""Largest deflections that are looked for in one span."""
+
+
+class Span(NamedTuple):
+    """One span of the motion: its end, the integral of friction, the slowest slip, the steps (-1: it gave up), and
+    where there is room the track."""
+
+    end: Any
+    impulse: float
+    slowest: float
+    steps: int
+    track: Track
+
+
+@inner
+def follow_undriven(law: Any, body: Body, belt_speed: float, state: Any, accuracy: float, room: int) -> Span:
+    """The motion from a state over the span of the body, on a track with so much room at first."""
+    case, end, track = case_of(law, body, belt_speed), np.empty(state.size), track_of(room)
+    image = period_map(case, state, end, accuracy, track)
+    # how many panels there are is known once they are written: a full track may lack some
+    while 0 < track.stick.size == track.filled[0]:
+        track = track_of(4 * track.stick.size)
+        image = period_map(case, state, end, accuracy, track)
+    for row in range(state.size):
+        end[row] = state[row] + end[row]
+    return Span(end, image.rubbed, image.closest, image.steps, track)
+
+
+class Return(NamedTuple):
+    """A largest deflection, and when it was reached [turns]."""
+
+    state: Floats
+    turns: float
+
+
+@dataclass(frozen=True)
+class UndrivenPath:
+    """An undriven scene and a law with memory; states are those of ``period_map``, times turns of the free mass."""
+
+    scene: Scene
+    law: FrictionLaw
+    effort: Effort = field(default_factory=Effort)
+
+    @cached_property
+    def mass(self) -> Mass:
+        """The numbers of the scene."""
+        return self.scene.mass()
+
+    @property
+    def speed(self) -> float:
+        """Of the belt."""
+        return self.scene.belt_speed
+
+    @property
+    def side(self) -> float:
+        """1 or -1: the direction in which the belt moves."""
+        return math.copysign(1.0, self.speed)
+
+    @cached_property
+    def _body(self) -> Body:
+        return on_the_line(self.mass)
+
+    @cached_property
+    def _kernel(self) -> KernelCall:
+        return KernelCall(follow_undriven, self.law)
+
+    @cached_property
+    def size(self) -> int:
+        """Of a state."""
+        return int(interpreted(size_of)(self.law, 0.0))
+
+    # --- states ---
+
+    def _state(self, x: float, v: float, memory: float) -> Floats:
+        """Memory: the deflection of a bristle, else the slip velocity of the steady sliding that is remembered."""
+        state = np.empty(self.size)
+        interpreted(start_of)(self.law, self._body, state, x, v, memory)
+        return state
+
+    @cached_property
+    def start(self) -> Floats:
+        """Bristles and springs undeflected; scalars as in steady sliding on this belt."""
+        start = self.scene.start
+        slides = -self.speed if self.law.memory_kind == "scalars" else 0.0
+        # what neither slips nor accelerates is looked at a moment later, when the belt has stretched its spring
+        moment = SPEEDING_UP if start.x == 0.0 and start.velocity == self.speed else 0.0
+        return self._state(start.x + moment * self.speed, start.velocity, slides)
+
+    @cached_property
+    def sliding_friction(self) -> float:
+        """Its mean coefficient along x1, on this belt."""
+        return math.copysign(self.law.sliding_friction(abs(self.speed)), self.speed)
+
+    @cached_property
+    def sliding(self) -> Floats:
+        """Steady sliding."""
+        x = self.mass.normal_load * self.sliding_friction / self.mass.stiffness
+        bristle = self.law.memory_kind == "bristle"
+        return self._state(x, 0.0, steady_deflection(self.law, -self.speed) if bristle else -self.speed)
+
+    def from_sliding(self, state: Floats) -> float:
+        """Distance to steady sliding."""
+        return float(np.linalg.norm(state - self.sliding))
+
+    # --- the motion ---
+
+    def follow(self, state: Floats, turns: float, accuracy: float = FOLLOWED, room: int = 0) -> Span:
+        """So many turns, on a track with so much room. Raises NotFound."""
+        body = self._body._replace(periods=turns)
+        span: Span
+        arguments = body, self.speed, state, accuracy * self.mass.normal_load, room
+        span, seconds = self._kernel.timed(*arguments)
+        self.effort.seconds += seconds
+        self.effort.work += span.steps
+        if span.steps < 0 or not np.isfinite(span.end).all():
+            raise NotFound(
+                f"friction is too steep near rest for {MOST_STEPS:,} steps: {self.whereabouts(state)}"
+            )
+        if self.effort.work > MOST_WORK:
+            raise NotFound(f"no steady state within {MOST_WORK:,} steps: {self.whereabouts(state)}")
+        return span
+
+    def whereabouts(self, state: Floats) -> str:
+        """How far the motion has come."""
+        x = state[0] / math.sqrt(self.mass.stiffness)
+        return (
+            f"after {self.effort.turns:.3g} periods of the free mass it is at x = {x:.6g} "
+            f"with velocity {state[1]:.6g}"
+        )
+
+    def quotients(self, state: Floats, turns: float) -> Floats:
+        """The derivative of the state after so many turns by the one before. Raises NotFound."""
+        columns = []
+        for row, shift in enumerate(self._shifts(state)):
+            step = np.zeros(self.size)
+            step[row] = shift
+            ahead, behind = (self.follow(state + part, turns, QUOTIENTS).end for part in (step, -step))
+            columns.append((ahead - behind) / (2.0 * shift))
+        return np.array(columns).T
+
+    def _shifts(self, state: Floats) -> Floats:
+        """Small against what a state is, and against what it is away from steady sliding."""
+        far = np.abs(self.sliding) + np.abs(state - self.sliding) + SHIFTED * abs(self.speed)
+        far[1] = abs(self.speed)
+        shifts: Floats = SHIFTED * far
+        return shifts
+
+    # --- largest deflections ---
+
+    def peaks(self, state: Floats, track: Track, middle: float) -> Iterator[Return]:
+        """The largest deflections in the motion from a state, those beyond the middle. Raises NotFound."""
+        filled = track.filled[0]
+        tau, v = track.tau[:filled].ravel() / TURN, self.side * track.v.real[:filled].ravel()
+        beyond = self.side * (track.x.real[:filled].ravel() - middle) > 0.0
+        for i in np.flatnonzero((v[:-1] > 0.0) & (v[1:] <= 0.0) & beyond[1:])[:MOST_PEAKS]:
+            first = self.follow(state, tau[i]).end if tau[i] > 0.0 else state
+            peak = self._peak(first, tau[i + 1] - tau[i])
+            yield Return(peak.state, float(tau[i]) + peak.turns)
+
+    def _peak(self, first: Floats, within: float) -> Return:
+        """The largest deflection within so many turns from a state that nears it."""
+        # Illinois: of the false positions, the end that stays is given half its weight
+        low, high, below, above = 0.0, within, self.side * first[1], math.nan
+        at, end = within, first
+        for _ in range(30):
+            end = self.follow(first, at).end
+            if abs(end[1]) <= FOLLOWED * abs(self.speed) or high - low < 1e-12:
+                break
+            if self.side * end[1] > 0.0:
+                low, below, above = at, self.side * end[1], 0.5 * above
+                high = max(high, 1.01 * at)  # the end of the track was that of other steps
+            else:
+                high, above, below = at, self.side * end[1], 0.5 * below
+            at = (low * above - high * below) / (above - below) if above < 0.0 else high
+        return Return(end, float(at))

@@ -152,3 +152,21 @@ def _caught_in_the_plane(law: Any, z: complex) -> complex:
 
 project_to_yield = by_dimension(_caught_on_the_line, _caught_in_the_plane)
 """project_to_yield(law, z): the deflection, projected onto the yield surface if a step has left it outside."""
+
+
+# --- a contact of constant stiffness under a changing load ---------------------------------------------------------
+
+
+@inner
+def resistance_at_share(law: Any, w: Any, z: Any, n: float) -> Any:
+    """Rate of one bristle and friction coefficient where the normal load is n times its mean, and the contact has the
+    stiffness and damping of the mean: the law, per unit normal load, sees z/n."""
+    bent = project_to_yield(law, z / n)
+    rate = rate_of(law, (bent,), 0, w)
+    return rate, friction_of(law, (bent,), (rate / n,), w)
+
+
+@inner
+def advance_at_share(law: Any, h: float, w: Any, z: Any, n: float) -> Any:
+    """Its deflection after slip velocity w for the time h."""
+    return n * advance_bristle(law, h / n, w, project_to_yield(law, z / n))

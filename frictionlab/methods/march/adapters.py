@@ -8,12 +8,30 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from frictionlab.compile.decorators import embedded, inner
-from frictionlab.compile.dispatch import as_argument, by_law, by_stepper, length
+from frictionlab.compile.decorators import embedded, fast, inner
+from frictionlab.compile.dispatch import as_argument, by_law, by_stepper, by_variation, length
 from frictionlab.compile.stack import count_of, room
 from frictionlab.dynamics import smoothing
-from frictionlab.dynamics.contact import advance_bristle, friction_of, project_to_yield, rate_of, resistance
-from frictionlab.dynamics.motion import acceleration, acceleration_under, instant_at, restoring_force, slip
+from frictionlab.dynamics.contact import (
+    advance_at_share,
+    advance_bristle,
+    friction_of,
+    project_to_yield,
+    rate_of,
+    resistance,
+    resistance_at_share,
+)
+from frictionlab.dynamics.motion import (
+    START,
+    acceleration,
+    acceleration_under,
+    belt_swing,
+    instant_at,
+    load_share,
+    normal_load,
+    restoring_force,
+    slip,
+)
 from frictionlab.dynamics.step_size import growth_of
 from frictionlab.methods.periodic.maps.memory_state import pulled
 from frictionlab.numerics.steppers import dop853, exponential, rk4
@@ -21,7 +39,15 @@ from frictionlab.numerics.steppers.exponential import exponential_step
 from frictionlab.numerics.steppers.moreau import moreau_step
 from frictionlab.numerics.steppers.rk4 import rk4_step
 from frictionlab.numerics.steppers.sdirk2 import sdirk2_step
-from frictionlab.numerics.steppers.step import StepEnd, StepStart, belt_at, load_at, normal_load_at
+from frictionlab.numerics.steppers.step import (
+    LAST,
+    MIDDLE,
+    StepEnd,
+    StepStart,
+    belt_at,
+    load_at,
+    normal_load_at,
+)
 from frictionlab.orbit.recorder import panel_writer
 from frictionlab.scene.body import Body
 
@@ -81,17 +107,80 @@ class SmoothedFriction(NamedTuple):
     shape: float
 
 
+# --- a normal load that changes -----------------------------------------------------------------------------------
+
+
+def _constant_share(body: Any, pressed: float) -> float:
+    return load_share(body, START)
+
+
+def _share_of_mean(body: Any, pressed: float) -> float:
+    return pressed / body.normal_load
+
+
+_share = by_variation(_constant_share, _share_of_mean)
+"""_share(body, pressed): a normal load in shares of its mean."""
+
+
+@fast
+def in_shares(body: Body, pressed: float, mu: Any) -> Any:
+    """Friction in shares of the mean normal load, from its coefficient."""
+    return _share(body, pressed) * mu
+
+
+def _resists_per_load(body: Any, law: Any, w: Any, z: Any, pressed: float) -> Any:
+    return resistance(law, w, z)
+
+
+def _resists_under_load(body: Any, law: Any, w: Any, z: Any, pressed: float) -> Any:
+    if not body.varying.constant_contact:
+        return resistance(law, w, z)
+    return resistance_at_share(law, w, z, _share(body, pressed))
+
+
+bristle_resistance = by_variation(_resists_per_load, _resists_under_load)
+"""bristle_resistance(body, law, w, z, pressed): rate of one bristle, and friction coefficient."""
+
+
+def _advances_per_load(body: Any, law: Any, h: float, w: Any, z: Any, pressed: float) -> Any:
+    return advance_bristle(law, h, w, z)
+
+
+def _advances_under_load(body: Any, law: Any, h: float, w: Any, z: Any, pressed: float) -> Any:
+    if not body.varying.constant_contact:
+        return advance_bristle(law, h, w, z)
+    return advance_at_share(law, h, w, z, _share(body, pressed))
+
+
+bristle_advance = by_variation(_advances_per_load, _advances_under_load)
+"""bristle_advance(body, law, h, w, z, pressed): the deflection after slip w that lasts h, under a normal load."""
+
+
+def _yields_per_load(body: Any, law: Any, z: Any, pressed: float) -> Any:
+    return project_to_yield(law, z)
+
+
+def _yields_under_load(body: Any, law: Any, z: Any, pressed: float) -> Any:
+    n = _share(body, pressed) if body.varying.constant_contact else 1.0
+    return n * project_to_yield(law, z / n)
+
+
+bristle_within_yield = by_variation(_yields_per_load, _yields_under_load)
+"""bristle_within_yield(body, law, z, pressed): the deflection, not beyond yield."""
+
+
 # --- friction of a stage ------------------------------------------------------------------------------------------
 
 
-def _of_slip_alone(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
+def _of_slip_alone(problem: MarchProblem, w: Any, memory: Any, moving: Any, pressed: float) -> Any:
     """Blind to stick: friction is along the slip wherever there is any."""
     return problem.law.sliding_vector(w) if length(w) > 0.0 else 0.0 * w
 
 
-def _of_a_bristle(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
-    moving[0] = rate_of(problem.law, memory, 0, w)
-    return friction_of(problem.law, memory, moving, w)
+def _of_a_bristle(problem: MarchProblem, w: Any, memory: Any, moving: Any, pressed: float) -> Any:
+    rate, mu = bristle_resistance(problem.body, problem.law, w, memory[0], pressed)
+    moving[0] = rate
+    return mu
 
 
 @inner
@@ -102,11 +191,11 @@ def _of_several(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
     return friction_of(law, memory, moving, w)
 
 
-def _of_deflections(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
+def _of_deflections(problem: MarchProblem, w: Any, memory: Any, moving: Any, pressed: float) -> Any:
     return _of_several(problem, w, memory, moving)
 
 
-def _of_scalars(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
+def _of_scalars(problem: MarchProblem, w: Any, memory: Any, moving: Any, pressed: float) -> Any:
     # A scalar that has left its set makes the motion not a number: the march ends as one that is lost.
     if not problem.law.within(memory):
         return math.nan * w
@@ -114,25 +203,27 @@ def _of_scalars(problem: MarchProblem, w: Any, memory: Any, moving: Any) -> Any:
 
 
 contact_friction = by_law(_of_slip_alone, _of_a_bristle, None, _of_deflections, _of_scalars)
-"""contact_friction(problem, w, memory, moving): the coefficient at a slip velocity; writes the memory's rates."""
+"""contact_friction(problem, w, memory, moving, pressed): the coefficient at a slip velocity under a normal load;
+writes the memory's rates."""
 
 
-def _nothing_to_project(problem: MarchProblem) -> None:
+def _nothing_to_project(problem: MarchProblem, pressed: float) -> None:
     return
 
 
-def _project_bristle(problem: MarchProblem) -> None:
-    problem.ahead[0] = project_to_yield(problem.law, problem.ahead[0])
+def _project_bristle(problem: MarchProblem, pressed: float) -> None:
+    problem.ahead[0] = bristle_within_yield(problem.body, problem.law, problem.ahead[0], pressed)
 
 
-def _project_deflections(problem: MarchProblem) -> None:
+def _project_deflections(problem: MarchProblem, pressed: float) -> None:
     pulled(problem.law, problem.ahead, room(problem.law, 1, 0, problem.ahead[0]))
 
 
 project_memory = by_law(
     _nothing_to_project, _project_bristle, None, _project_deflections, _nothing_to_project
 )
-"""project_memory(problem): bring back what a step has left beyond the deflections that slip can lead to."""
+"""project_memory(problem, pressed): bring back what a step that ends under a normal load has left beyond the
+deflections that slip can lead to."""
 
 
 # --- steps --------------------------------------------------------------------------------------------------------
@@ -140,29 +231,48 @@ project_memory = by_law(
 
 @as_argument
 @embedded
-def _rates_of_the_grid(problem: MarchProblem, j: int, x: Any, v: Any, memory: Any, moving: Any) -> Any:
-    """Acceleration and friction coefficient at a half step."""
-    mu = contact_friction(problem, v - belt_at(problem, j), memory, moving)
-    push, pressed = load_at(problem, j), normal_load_at(problem, j)
-    return acceleration_under(problem.body, push, pressed, x, v, mu), mu
+def _rates_of_the_grid(
+    problem: MarchProblem, k: int, part: int, x: Any, v: Any, memory: Any, moving: Any
+) -> Any:
+    """Acceleration and friction at a node of a step."""
+    body, push, pressed = problem.body, load_at(problem, k, part), normal_load_at(problem, k, part)
+    mu = contact_friction(problem, v - belt_at(problem, k, part), memory, moving, pressed)
+    return acceleration_under(body, push, pressed, x, v, mu), in_shares(body, pressed, mu)
 
 
 @embedded
 def _smooth_rates(problem: MarchProblem, tau: float, x: Any, v: Any) -> Any:
-    """Acceleration and coefficient of smoothed friction at any time."""
+    """Acceleration and smoothed friction at any time."""
     body, now, stepper = problem.body, instant_at(problem.body, tau), problem.stepper
     smooth = SmoothedFriction(problem.law, stepper.width, stepper.shape)
     mu = smoothing.friction(smooth, slip(body, problem.belt_speed, now, v))
-    return acceleration(body, now, x, v, mu), mu
+    return acceleration(body, now, x, v, mu), in_shares(body, normal_load(body, now), mu)
 
 
 @as_argument
 @embedded
 def _rates_with_a_bristle(problem: MarchProblem, tau: float, x: Any, v: Any, z: Any) -> Any:
-    """Acceleration, friction coefficient and rate of deflection at any time."""
+    """Acceleration, friction and rate of deflection at any time."""
     body, now = problem.body, instant_at(problem.body, tau)
-    rate, mu = resistance(problem.law, slip(body, problem.belt_speed, now, v), z)
-    return acceleration(body, now, x, v, mu), mu, rate
+    pressed = normal_load(body, now)
+    rate, mu = bristle_resistance(body, problem.law, slip(body, problem.belt_speed, now, v), z, pressed)
+    return acceleration(body, now, x, v, mu), in_shares(body, pressed, mu), rate
+
+
+@as_argument
+@embedded
+def _resistance_in_the_middle(problem: MarchProblem, k: int, w: Any, z: Any) -> Any:
+    """The friction coefficient in the middle of a step."""
+    pressed = normal_load_at(problem, k, MIDDLE)
+    return bristle_resistance(problem.body, problem.law, w, z, pressed)[1]
+
+
+@as_argument
+@embedded
+def _advance_over_half(problem: MarchProblem, k: int, part: int, h: float, w: Any, z: Any) -> Any:
+    """The deflection half a step later, under the mean of the normal loads at its ends."""
+    pressed = 0.5 * (normal_load_at(problem, k, part) + normal_load_at(problem, k, part + 1))
+    return bristle_advance(problem.body, problem.law, h, w, z, pressed)
 
 
 _restoring_force, _acceleration_under = as_argument(restoring_force), as_argument(acceleration_under)
@@ -176,7 +286,7 @@ def _by_moreau(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
 def _by_rk4(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
     # A step may leave a deflection beyond the set that slip leads to, where it would stay: it is brought back.
     end = rk4_step(_rates_of_the_grid, problem, start, h)
-    project_memory(problem)
+    project_memory(problem, normal_load_at(problem, start.k, LAST))
     return end
 
 
@@ -195,12 +305,17 @@ def _by_dop853(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
 
 
 def _by_exponential(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
-    return exponential_step(_acceleration_under, resistance, advance_bristle, problem, start, h)
+    end = exponential_step(
+        _acceleration_under, _resistance_in_the_middle, _advance_over_half, problem, start, h
+    )
+    rub = in_shares(problem.body, normal_load_at(problem, start.k, MIDDLE), end.impulse)
+    return StepEnd(end.x, end.v, rub, False, 1.0)
 
 
 def _by_sdirk2(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
-    end = sdirk2_step(_rates_with_a_bristle, problem, start, h)
-    project_memory(problem)
+    body = problem.body
+    end = sdirk2_step(_rates_with_a_bristle, problem, start, h, belt_swing(body))
+    project_memory(problem, normal_load(body, instant_at(body, start.tau + h)))
     return end
 
 
@@ -248,7 +363,7 @@ state_within = by_stepper(
 
 @inner
 def _state_at(part: float, problem: MarchProblem, start: StepStart, end: StepEnd, h: float) -> Any:
-    """Position, velocity and friction coefficient a while into a step."""
+    """Position, velocity and friction a while into a step."""
     return state_within(problem, part, start, end, h)
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from frictionlab.methods.march.laps import CLOSED, LATE, STALLED, TIRED, TOO_FAST, TOO_STIFF
 from frictionlab.methods.march.run import MarchResult, MarchRun, Resolution
-from frictionlab.methods.march.stability import MARGIN
+from frictionlab.methods.march.stability import MARGIN, lightest_contact, quickest_wave
 from frictionlab.numerics.richardson import FEWEST, REVERSING, SMOOTH, STICKING, bias, first_error, richardson
 
 COARSEST, WORK = 64, 16_000_000
@@ -148,6 +148,7 @@ def _next_run(
     share = max(0.05 * tolerance, 0.02 * _expected(march, runs, steps))
     pace = Resolution(
         steps=steps,
+        refined=steps // runs[0].pace.steps if runs else 1,
         theta=plan.theta,
         enough=0.25 * share * march.mass.normal_load,
         most=plan.periods,
@@ -171,24 +172,25 @@ def crossing(march: MarchRun, run: MarchResult) -> float:
     A release costs the drop of friction from rest to slip in the same way. Several grids in a row can round either
     the same way, and then no change between them tells of it.
     """
-    per_period = run.pace.steps * run.period / march.lap
+    per_period = run.pace.steps * run.period / march.drive_period
     slip = march.slipping
     if march.law.count() > 0:
-        return slip * run.crossings / per_period * _unresolved(march.law.presliding(), run)
+        return slip * run.crossings / per_period * _unresolved(march, run)
     release = march.at_rest - slip if run.stuck > 0.0 else 0.0
     return (slip * run.crossings + release * run.stride) / per_period
 
 
-def _unresolved(presliding: float, run: MarchResult) -> float:
+def _unresolved(march: MarchRun, run: MarchResult) -> float:
     """How much of the impulse of the step in which slip reverses is in doubt: bristles take time to bend back.
 
     Until slip that gathers speed at the rate a has covered the presliding length d: sqrt(2 d/a). A step h misplaces
     a path of at most a h^2/8 to either side, a part (h/time)^2/4 of that length, and for as long as that time the
     friction is off by this part of its jump, 2 at most.
     """
-    step = run.period / run.stride / run.pace.steps if run.pace.steps else 0.0
+    step = run.period / run.stride / march.periods / run.pace.steps if run.pace.steps else 0.0
     if run.turn == 0.0:
         return 0.0
+    presliding = lightest_contact(march.scene) * march.law.presliding()
     bending = math.sqrt(2.0 * presliding / run.turn)
     return min(1.0, 0.5 * step / bending) if bending > 0.0 else 1.0
 
@@ -208,7 +210,7 @@ def _unseen(march: MarchRun, runs: Sequence[MarchResult]) -> float:
     *earlier, fine = runs
     missed = [run.dip for run in earlier if run.dip < NONE]
     if fine.dip < NONE:
-        node = fine.period / fine.stride / fine.pace.steps
+        node = fine.period / fine.stride / march.periods / fine.pace.steps
         depth = 1.5 * max([abs(dip - fine.dip) for dip in missed] or [fine.dip])
         depth += 0.125 * fine.bend * node**2 - fine.dip
         bend = fine.bend
@@ -230,6 +232,8 @@ def _slowness(march: MarchRun) -> int:
     """Steps are counted per period; a slow drive needs more of them for the body's own motion."""
     mass = march.mass
     quickest = max(1.0, mass.damping)
+    if not march.scene.is_harmonic:
+        quickest = max(quickest, quickest_wave(march.scene))
     if not march.straight:
         quickest = max(quickest, math.sqrt(mass.transverse_stiffness), mass.transverse_damping)
     return max(1, math.ceil(quickest / mass.frequency))

@@ -123,7 +123,7 @@ class MarchedPoint:
             why = "the motion is not periodic at any step: "
         self.reason = why + describe(arrivals, 6)
         if one_motion(arrivals):
-            self.answer = replace(self.answer, period=float(arrivals[0].period))
+            self.answer = replace(self.answer, period=self.march.periods * arrivals[0].period)
 
     def _lost_in_chatter(self, mean: MarchMean) -> float:
         """All that the mean may be off by, where the belt is slower than the jumps that rk4 makes about rest."""
@@ -146,8 +146,9 @@ class MarchedPoint:
         error = max(mean.error, self._lost_in_chatter(mean))
         self.answer = PointAnswer(mean.mean, error, self._period(mean, last))
         if last.verdict == STALLED:
+            averaged = self.march.window * self.march.periods
             self._remark(
-                f"rounding to time steps makes the motion aperiodic: averaged over {self.march.window} periods"
+                f"rounding to time steps makes the motion aperiodic: averaged over {averaged:.0f} periods"
             )
         if not (self.march.converges or self._may_depend_on_start() or self._moves_on()):
             start = "scene.initial" if self.scene.initial else "the default start"
@@ -161,7 +162,7 @@ class MarchedPoint:
 
     def _period(self, mean: MarchMean, last: MarchResult) -> float:
         if not self.scene.undriven:
-            return 1.0
+            return self.march.periods
         swing = read_columns([self.scene], lambda i: self.orbit())["velocity_amplitude"][0]
         still = swing <= 2.0 * last.pace.enough
         return math.nan if last.verdict == RESTING or still else mean.period / (2.0 * math.pi)

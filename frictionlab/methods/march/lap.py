@@ -1,8 +1,8 @@
 """Kernel of one lap of a motion: steps, and what is met on them.
 
-A lap is a period of the drive, or, undriven, from one falling zero of the velocity along the belt to the next. The
-motion is stepped as it is, not as a deviation from a known response: that is how everybody does it, and its errors
-are to be seen.
+A lap is a period of everything that drives, or, undriven, from one falling zero of the velocity along the belt to the
+next. The motion is stepped as it is, not as a deviation from a known response: that is how everybody does it, and its
+errors are to be seen. Steps end at the corners of what drives, and have between two of them equal lengths.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import embedded, inner
-from frictionlab.compile.dispatch import length
+from frictionlab.compile.dispatch import by_variation, length
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.motion import instant_at, slip
+from frictionlab.dynamics.motion import in_piece, instant_at, piece_ends, pieces_of, slip
 from frictionlab.methods.march.adapters import MarchProblem, advance, note_step
 from frictionlab.numerics.steppers.step import StepEnd, StepStart
 from frictionlab.orbit.recorder import Track
@@ -26,6 +26,8 @@ SHORT = 3
 """Steps at rest within which a reversal counts as one without stick."""
 NO_DIP = 1e300
 """A least slip speed where there is none."""
+CONTINUES = 1e-12
+"""Change of slip at a corner, over the speeds it is a difference of, that passes for none."""
 
 
 class MarchSettings(NamedTuple):
@@ -48,6 +50,8 @@ class MarchSettings(NamedTuple):
     room: int  # panels of the record of the last lap
     spring: Any = NOTHING  # stiffness of each memory, in the energy norm
     fastest: float = 1e300  # slip that the steps are short enough for
+    refined: int = 0  # parts that the coarsest steps are cut into; 0: the stepper chooses how long steps are
+    lightest: float = 1.0  # least normal load over its mean
 
 
 class SlipTrace(NamedTuple):
@@ -64,6 +68,7 @@ class SlipTrace(NamedTuple):
     turn: float  # largest rate at which slip passed through zero
     met: float  # most slip
     lingered: float  # time with less slip than ``near``
+    flips: int  # reversals of slip by a jump of the belt, between steps
 
 
 class Tally(NamedTuple):
@@ -145,13 +150,14 @@ def slip_trace(trace: SlipTrace, w: Any, h: float, near: float) -> SlipTrace:
         turn,
         max(trace.met, speed),
         trace.lingered + (h if speed < near else 0.0),
+        trace.flips,
     )
 
 
 @embedded
 def first_trace(w: Any) -> SlipTrace:
     """The trace of a lap that begins with slip w."""
-    return SlipTrace(w, length(w), -1.0, False, 0, NO_DIP, 1.0, 0, 0.0, 0.0, 0.0)
+    return SlipTrace(w, length(w), -1.0, False, 0, NO_DIP, 1.0, 0, 0.0, 0.0, 0.0, 0)
 
 
 @inner
@@ -185,6 +191,77 @@ def next_swing(swing: Swing, tally: Tally, tau: float, speed: float) -> Swing:
     return Swing(swing.mark, max(swing.most, speed), swing.impulse, swing.stuck)
 
 
+# --- pieces of a lap ----------------------------------------------------------------------------------------------
+
+
+@inner
+def steps_in(settings: MarchSettings, lasts: float) -> int:
+    """Equal steps between two corners, none longer than the first: halved steps are halved there, too."""
+    coarsest = settings.refined * settings.first
+    return settings.refined * max(1, math.ceil(lasts / coarsest - 1e-9))
+
+
+def _end_of_lap(body: Any, settings: MarchSettings, k: int) -> float:
+    return settings.span
+
+
+def _end_at_corner(body: Any, settings: MarchSettings, k: int) -> float:
+    return piece_ends(body, k)[1]
+
+
+piece_end = by_variation(_end_of_lap, _end_at_corner)
+"""piece_end(body, settings, k): when the k-th piece of a lap ends."""
+
+
+def _next_step(body: Any, settings: MarchSettings, lap: Lap, end: float) -> float:
+    return lap.step
+
+
+def _equal_step(body: Any, settings: MarchSettings, lap: Lap, end: float) -> float:
+    if settings.refined == 0:
+        return lap.step
+    return (end - lap.duration) / steps_in(settings, end - lap.duration)
+
+
+piece_step = by_variation(_next_step, _equal_step)
+"""piece_step(body, settings, lap, end): the first step of a piece that begins where the lap has come to."""
+
+
+def _same_trace(body: Any, belt_speed: float, lap: Lap) -> SlipTrace:
+    return lap.trace
+
+
+def _trace_past_corner(body: Any, belt_speed: float, lap: Lap) -> SlipTrace:
+    trace, w = lap.trace, slip(body, belt_speed, instant_at(body, lap.duration), lap.v)
+    speed, turned = length(w), (trace.w * w.conjugate()).real
+    little = CONTINUES * (length(lap.v) + length(lap.v - w))
+    if abs(speed - trace.speed) <= little and (turned > 0.0 or speed <= little):
+        return trace
+    # Slip has jumped with the belt: what came before says nothing of the next steps.
+    return SlipTrace(
+        w if speed > 0.0 else trace.w, speed, -1.0, False, 0, trace.dip, trace.bend, trace.crossings, trace.turn,
+        max(trace.met, speed), trace.lingered, trace.flips + (1 if turned < 0.0 else 0),
+    )  # fmt: skip
+
+
+past_corner = by_variation(_same_trace, _trace_past_corner)
+"""past_corner(body, belt_speed, lap): the trace where a piece begins."""
+
+
+@inner
+def problem_in_piece(problem: MarchProblem, k: int) -> MarchProblem:
+    """The problem as the k-th piece of a lap has it."""
+    return MarchProblem(
+        problem.law,
+        in_piece(problem.body, k),
+        problem.belt_speed,
+        problem.stepper,
+        problem.grid,
+        problem.memory,
+        problem.ahead,
+    )
+
+
 # --- a lap --------------------------------------------------------------------------------------------------------
 
 
@@ -192,11 +269,29 @@ def next_swing(swing: Swing, tally: Tally, tau: float, speed: float) -> Swing:
 def march_lap(
     problem: MarchProblem, settings: MarchSettings, start: StepStart, h: float, track: Track
 ) -> Lap:
-    """From tau = 0 once around; h: the first step."""
-    body, belt_speed, driven, end = problem.body, problem.belt_speed, settings.driven, settings.span
-    x, v, tau, k, steps, back = start.x, start.v, 0.0, 0, 0, False
-    trace = first_trace(slip(body, belt_speed, instant_at(body, tau), v))
-    tally, swing = Tally(0.0 * x, 0.0, 0.0), Swing(2.0 * math.pi, length(v), 0.0 * x, 0.0)
+    """From tau = 0 once around, corner by corner; h: the first step."""
+    body, belt_speed, x = problem.body, problem.belt_speed, start.x
+    trace = first_trace(slip(body, belt_speed, instant_at(body, 0.0), start.v))
+    lap = Lap(x, start.v, Tally(0.0 * x, 0.0, 0.0), trace, 0.0, h, 0, True)
+    for k in range(pieces_of(body)):
+        end = piece_end(body, settings, k)
+        lap = march_piece(problem_in_piece(problem, k), settings, lap, end, track)
+        if not lap.returned:
+            break
+    return lap
+
+
+@inner
+def march_piece(problem: MarchProblem, settings: MarchSettings, lap: Lap, end: float, track: Track) -> Lap:
+    """From where a lap has come to until a corner; undriven, until it returns."""
+    body, belt_speed, driven = problem.body, problem.belt_speed, settings.driven
+    x, v, tally, tau, steps, back = lap.x, lap.v, lap.tally, lap.duration, lap.steps, False
+    h, trace, k = (
+        piece_step(body, settings, lap, end),
+        past_corner(body, belt_speed, lap),
+        steps if driven else 0,
+    )
+    swing = Swing(2.0 * math.pi, length(v), 0.0 * x, 0.0)
     while tau < end and steps < settings.work:
         # The last step ends with the lap, however the sum of equal steps was rounded.
         last = end - tau <= h * (1.0 + settings.slack)
@@ -216,7 +311,9 @@ def march_lap(
             note_step(track, tau, step, taken.stuck, problem, begin, taken, step)
         keep_memory(problem)
         x, v, k, tau = taken.x, taken.v, k + 1 if driven else k, end if last and not back else tau + step
-        trace = slip_trace(trace, slip(body, belt_speed, instant_at(body, tau), v), step, settings.near)
+        # At rest on a belt that vibrates there is no slip but the rounding of a difference.
+        w = 0.0 * v if taken.stuck else slip(body, belt_speed, instant_at(body, tau), v)
+        trace = slip_trace(trace, w, step, settings.near)
         tally = tally_step(tally, taken, step)
         if back:
             break

@@ -8,12 +8,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_law
+from frictionlab.compile.dispatch import by_law, by_variation
 from frictionlab.compile.stack import count_of, items_of, room
-from frictionlab.dynamics.motion import belt_path, belt_velocity, instant_at, load, normal_load
+from frictionlab.dynamics.motion import (
+    belt_advance,
+    belt_velocity,
+    in_piece,
+    instant_at,
+    load,
+    normal_load,
+    piece_ends,
+    pieces_of,
+)
 from frictionlab.dynamics.step_size import squared
 from frictionlab.methods.march.adapters import MarchProblem
-from frictionlab.methods.march.lap import Lap, MarchSettings, SlipTrace, first_trace, march_lap
+from frictionlab.methods.march.lap import Lap, MarchSettings, SlipTrace, first_trace, march_lap, steps_in
 from frictionlab.numerics.steppers.step import BELT, COLUMNS, LOAD, NORMAL_LOAD, StepStart
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.scene.body import Body
@@ -62,20 +71,45 @@ class MarchHistory(NamedTuple):
     progress: MarchProgress
     rate: float  # at which the last gaps shrank
     track: Track
-    grid: Any  # what acted at half steps: kernels hold a pointer to it until the march ends
+    grid: Any  # what acted at the nodes of steps: kernels hold a pointer to it until the march ends
 
 
 @inner
-def grid_of(body: Body, settings: MarchSettings, x: Any) -> Any:
-    """What acts on a body at x at the half steps of a lap: computed once, for laps are alike."""
+def _fill_node(body: Body, belt_speed: float, tau: float, grid: Any, j: int) -> None:
+    now = instant_at(body, tau)
+    grid[COLUMNS * j + LOAD] = load(body, now)
+    grid[COLUMNS * j + NORMAL_LOAD] = normal_load(body, now)
+    grid[COLUMNS * j + BELT] = belt_velocity(body, belt_speed, now)
+
+
+def _grid_of_half_steps(body: Body, settings: MarchSettings, x: Any) -> Any:
     steps = settings.steps
     grid = np.full(COLUMNS * (2 * steps + 1), 0.0 * x)
     for j in range(2 * steps + 1):
-        now = instant_at(body, j * (0.5 * settings.span / steps))
-        grid[COLUMNS * j + LOAD] = load(body, now)
-        grid[COLUMNS * j + NORMAL_LOAD] = normal_load(body, now)
-        grid[COLUMNS * j + BELT] = belt_velocity(body, settings.belt_speed, now)
+        _fill_node(body, settings.belt_speed, j * (0.5 * settings.span / steps), grid, j)
     return grid
+
+
+def _grid_of_pieces(body: Body, settings: MarchSettings, x: Any) -> Any:
+    gridded, total = settings.steps > 1, 1
+    for k in range(pieces_of(body) if gridded else 0):
+        begin, end = piece_ends(body, k)
+        total += steps_in(settings, end - begin)
+    grid, j = np.full(3 * COLUMNS * total, 0.0 * x), 0
+    for k in range(pieces_of(body) if gridded else 0):
+        # From the piece itself, ends included: a neighbour may have other values there.
+        piece, (begin, end) = in_piece(body, k), piece_ends(body, k)
+        half_steps = 2 * steps_in(settings, end - begin)
+        for i in range(half_steps // 2):
+            for part in range(3):
+                tau = begin + (end - begin) * ((2 * i + part) / half_steps)
+                _fill_node(piece, settings.belt_speed, tau, grid, j)
+                j += 1
+    return grid
+
+
+grid_of = by_variation(_grid_of_half_steps, _grid_of_pieces)
+"""grid_of(body, settings, x): what acts on a body at x at the nodes of a lap: computed once, for laps are alike."""
 
 
 # --- laps until the motion repeats --------------------------------------------------------------------------------
@@ -220,13 +254,14 @@ def path_stuck(law: Any, body: Body, settings: MarchSettings, lap: Lap) -> float
     """How far the belt carries a mass that stuck for a whole lap, by as many laps at once as it surely sticks."""
     if settings.stride > 1 or not (lap.returned and sticks_all_along(settings, lap)):
         return 0.0
-    carries = abs(belt_path(body, settings.belt_speed, 0.0, settings.span))
+    carried = belt_advance(body, settings.belt_speed)
+    carries = abs(carried)
     if carries == 0.0:
         return 0.0
     drift = carries * (body.stiffness_mean + body.stiffness_split) / body.normal_load
     # Not beyond release: one lap less than what friction can hold allows.
-    many = math.floor((largest_hold(law) - lap.tally.peak) / drift) - 1.0
-    return belt_path(body, settings.belt_speed, 0.0, many * settings.span) if many > 1.0 else 0.0
+    many = math.floor((settings.lightest * largest_hold(law) - lap.tally.peak) / drift) - 1.0
+    return many * carried if many > 1.0 else 0.0
 
 
 @inner

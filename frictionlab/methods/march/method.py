@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw, Positive
-from frictionlab.methods.base import Answers, Method, against_varying
+from frictionlab.methods.base import Answers, Method
 from frictionlab.methods.march.answers import AnsweredPoint, answers_of
 from frictionlab.methods.march.error import WORK, Plan
 from frictionlab.methods.march.judge import MarchedPoint
@@ -109,8 +109,6 @@ class March(Method):
         for moreau along the belt; bristles too stiff for an explicit stepper.
         """
         assert scene.normal_load is not None
-        if reason := against_varying(self.name, scene):
-            return reason
         law = law.under_load(scene.normal_load)
         return next(reasons_against(Request(scene, law, self._stepper(law), self.theta, self.steps)), None)
 

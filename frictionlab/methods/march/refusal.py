@@ -9,7 +9,7 @@ from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.march.error import FEWEST_LAPS, WORK
-from frictionlab.methods.march.stability import fewest_steps
+from frictionlab.methods.march.stability import fewest_steps, lags_the_load
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.scene.scene import Scene
@@ -57,7 +57,16 @@ def reasons_against(asked: Request) -> Iterator[str]:
         yield law.no_vector_form()
     yield from _against_jumps(asked)
     yield from _against_rates(asked)
+    yield from _against_constant_contact(asked)
     yield from _against_so_few_steps(asked)
+
+
+def _against_constant_contact(asked: Request) -> Iterator[str]:
+    if asked.kind in SEVERAL and lags_the_load(asked.scene):
+        yield (
+            "normal_load_variation.contact: constant needs a law of one bristle, whose limit follows the load while "
+            "its stiffness stays; for this law give per_load"
+        )
 
 
 def _against_the_stepper(asked: Request) -> Iterator[str]:

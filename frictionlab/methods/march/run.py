@@ -10,7 +10,7 @@ import numpy as np
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
-from frictionlab.dynamics.motion import mean_friction
+from frictionlab.dynamics.motion import mean_friction, quickest_of, span
 from frictionlab.dynamics.smoothing import ARCTAN, SQUARE_ROOT, TANH
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.march.adapters import Exponential, Moreau, Rk4, Sdirk2, Smoothed, Stepper
@@ -28,7 +28,10 @@ from frictionlab.methods.march.stability import (
     fastest_slip,
     fewest_steps,
     first_memory,
+    lags_the_load,
+    lightest_contact,
     memory_stiffness,
+    shares_of_load,
     steps_through_rest,
 )
 from frictionlab.methods.periodic.problem import along_the_belt
@@ -59,6 +62,7 @@ class Resolution:
     enough: float = 0.0  # distance from the closed orbit, in the same norm
     most: int = 1  # laps
     work: int = 1_000_000_000  # steps
+    refined: int = 1  # times as many as in the coarsest run: a power of two
     rate: float = 0.0  # at which gaps are known to shrink, 0: unknown
 
 
@@ -91,6 +95,7 @@ class MarchResult:
     dip: float  # least slip speed between two nodes of more slip, no reversal seen
     bend: float  # second derivative of slip speed there
     crossings: int  # per period of the response
+    flips: int  # reversals by jumps of the belt, in the last lap
     rate: float
     creeping: (
         float  # share of the period in which the stepper cannot tell stick from creep, where that matters
@@ -116,26 +121,30 @@ class MarchRun:
         self.through_rest = steps_through_rest(scene, law)
         straight = along_the_belt(scene, law) and not _starts_across(scene)
         self.straight = straight
-        self.body = on_the_line(self.mass) if straight else in_the_plane(self.mass)
+        # a lap is a period of everything that changes in time: so many of the drive
+        self.periods = 1.0 if scene.is_harmonic else float(scene.periods)
+        self.body = (on_the_line if straight else in_the_plane)(self.mass, self.periods)
+        self.lightest, self.heaviest = shares_of_load(scene)
         sine, cosine = self.body.reference_sine, self.body.reference_cosine
         self._free = complex(cosine), complex(scene.frequency * sine)
         self._fresh = first_memory(scene, law)
         self._spring = memory_stiffness(scene, law)
         self.start = self.place(scene.start if scene.undriven else scene.initial)
         self.forgets = scene.belt_speed != 0.0  # on a belt at rest the mass stays wherever a run left it
-        self.lap = 2.0 * math.pi / self.mass.frequency
+        self.drive_period = 2.0 * math.pi / self.mass.frequency
+        self.lap: float = interpreted(span)(self.body)
         self.window = self._relaxing()
         self.seconds = 0.0
 
     @property
     def at_rest(self) -> float:
-        """The coefficient that slip must overcome to begin; with memory, that of the slowest slip."""
-        return friction_at_rest(self.law)
+        """The most that slip must overcome to begin, over the mean normal load; with memory, of the slowest slip."""
+        return self.heaviest * friction_at_rest(self.law)
 
     @property
     def slipping(self) -> float:
-        """The coefficient of slow slip."""
-        return self.law.sliding_friction(0.0) or self.at_rest
+        """The largest friction of slow slip, over the mean normal load."""
+        return self.heaviest * self.law.sliding_friction(0.0) or self.at_rest
 
     @property
     def follows_the_drive(self) -> bool:
@@ -144,7 +153,8 @@ class MarchRun:
             return False
         mass = self.mass
         damping = mass.damping if self.straight else min(mass.damping, mass.transverse_damping)
-        return mass.normal_load * self.law.steepest_fall() < damping and not self.scene.undriven
+        heaviest = self.heaviest * mass.normal_load
+        return heaviest * self.law.steepest_fall() < damping and not self.scene.undriven
 
     @property
     def converges(self) -> bool:
@@ -197,13 +207,15 @@ class MarchRun:
 
     def fastest(self, pace: Resolution) -> float:
         """The slip speed that steps of this pace can bear."""
-        return fastest_slip(self.law, self.lap / pace.steps) if self.stepper == "rk4" else 1e300
+        if self.stepper != "rk4":
+            return 1e300
+        return fastest_slip(self.law, self.drive_period / pace.steps / lightest_contact(self.scene))
 
     def _relaxing(self) -> int:
         """Laps in which a drift towards the steady state dies out by a third, at least fifty and at most 2000."""
         damping = self.mass.damping if self.straight else min(self.mass.damping, self.mass.transverse_damping)
         slow = max(1.0, 2.0 / damping if damping > 0.0 else 1.0, self.mass.damping)
-        return int(min(2000.0, max(50.0, slow / self.lap)))
+        return int(min(2000.0, max(50.0, slow / self.drive_period)))
 
     def _marched(self, pace: Resolution, way: MarchSettings, place: MarchState) -> MarchHistory:
         real = self.straight or self.law.memory_kind == "scalars"
@@ -222,9 +234,10 @@ class MarchRun:
         return OF_NO_NUMBERS[self.stepper]
 
     def _way(self, pace: Resolution) -> MarchSettings:
-        driven, h = not self.scene.undriven, self.lap / pace.steps
+        driven, h = not self.scene.undriven, self.drive_period / pace.steps
         adaptive = self.stepper == "smoothed"
-        reach = self.lap / 12.0 if adaptive else h
+        quickest: float = interpreted(quickest_of)(self.body)
+        reach = 2.0 * math.pi / quickest / 12.0 if adaptive else h
         return MarchSettings(
             belt_speed=self.scene.belt_speed,
             driven=driven,
@@ -243,15 +256,17 @@ class MarchRun:
             room=0,
             spring=self._spring,
             fastest=self.fastest(pace),
+            refined=0 if adaptive else pace.refined,
+            lightest=self.lightest,
         )
 
     def _near(self, pace: Resolution) -> float:
         """Slip speed that smoothing makes of stick, or the jump of slip over a step that is blind to stick."""
         if self.stepper == "smoothed":
             return 3.0 * pace.width
-        force = self.mass.normal_load * self.law.sliding_friction(0.0)
+        force = self.heaviest * self.mass.normal_load * self.law.sliding_friction(0.0)
         blind = self.stepper == "rk4" and self.law.memory_kind == "none"
-        return 2.0 * force * self.lap / pace.steps if blind else 0.0
+        return 2.0 * force * self.drive_period / pace.steps if blind else 0.0
 
     def _creeping(self, pace: Resolution, march: MarchHistory) -> float:
         """The belt carries a mass that sticks; one that creeps as fast as the belt moves stays where it is.
@@ -288,6 +303,7 @@ class MarchRun:
             dip=float(march.trace.dip),
             bend=float(march.trace.bend),
             crossings=int(march.trace.crossings) * stride,
+            flips=int(march.trace.flips),
             rate=float(march.rate),
             creeping=self._creeping(pace, march),
             steps=int(march.progress.steps),
@@ -324,7 +340,8 @@ class MarchRun:
     def _only_slides(self, march: MarchHistory) -> bool:
         """Whether friction must end at one number: slip on a line that never turns, a law of one sliding friction."""
         one = self.law.memory_kind == "bristle" and self.law.constant_sliding_friction()
-        return one and self.straight and not self.scene.undriven and march.trace.crossings == 0
+        reverses = march.trace.crossings > 0 or march.trace.flips > 0
+        return one and self.straight and not (self.scene.undriven or reverses or lags_the_load(self.scene))
 
     def _from_sliding(self, march: MarchHistory) -> float:
         """How far friction is from that of steady sliding, where bristles go under slip that does not turn.

@@ -23,6 +23,43 @@ SLOW = np.geomspace(1e-30, 1.0, 241)
 """Speeds at which friction near rest is evaluated, over that of the motion."""
 
 
+# --- what changes in time -----------------------------------------------------------------------------------------
+
+
+def shares_of_load(scene: Scene) -> tuple[float, float]:
+    """The least and the largest normal load, over its mean."""
+    if scene.normal_load_variation is None:
+        return 1.0, 1.0
+    signals = scene.signals()
+    assert scene.normal_load is not None
+    low, high = signals.normal_load.extremes(signals.period)
+    return 1.0 + low / scene.normal_load, 1.0 + high / scene.normal_load
+
+
+def lags_the_load(scene: Scene) -> bool:
+    """Whether the limit of friction changes while the contact keeps its stiffness."""
+    part = scene.normal_load_variation
+    return part is not None and part.amplitude > 0.0 and part.contact == "constant"
+
+
+def lightest_contact(scene: Scene) -> float:
+    """The least share of the mean load under which bristles are bent as the law says it; 1 where they follow it."""
+    return shares_of_load(scene)[0] if lags_the_load(scene) else 1.0
+
+
+def quickest_wave(scene: Scene) -> float:
+    """The highest circular frequency of all waves; at least that of the drive."""
+    signals = scene.signals()
+    every = (*signals.load, *signals.belt, signals.normal_load)
+    return max((wave.frequency for each in every for wave in each.waves), default=scene.frequency)
+
+
+def belt_swing(scene: Scene) -> float:
+    """The largest velocity of the belt's vibration, or of a prescribed oscillation."""
+    signals = scene.signals()
+    return math.hypot(*(max(map(abs, each.extremes(signals.period))) for each in signals.belt))
+
+
 # --- the motion ---------------------------------------------------------------------------------------------------
 
 
@@ -30,12 +67,14 @@ def expected_slip(scene: Scene) -> float:
     """The largest slip speed of the friction-free motion, and at ``scene.initial`` [scene velocity]."""
     along = velocity_scale(scene) + abs(scene.belt_speed)
     if scene.degrees_of_freedom == 0:
-        return math.hypot(along, abs(scene.motion().transverse_velocity))
+        across = abs(scene.motion().transverse_velocity)
+        return math.hypot(along, across) if scene.is_harmonic else belt_swing(scene) + abs(scene.belt_speed)
     mass, start = scene.mass(), scene.start if scene.undriven else scene.initial
     dynamic = complex(mass.transverse_stiffness - mass.frequency**2, mass.transverse_damping * mass.frequency)
     across = abs(mass.transverse_force) * mass.frequency
     speed = math.hypot(along, across / abs(dynamic) if dynamic else (math.inf if across else 0.0))
     speed = speed if math.isfinite(speed) else abs(scene.belt_speed)
+    speed = speed if scene.is_harmonic else speed + belt_swing(scene)
     if start is not None:
         speed = max(speed, math.hypot(start.velocity - scene.belt_speed, start.velocity2))
     return speed
@@ -149,7 +188,7 @@ def fewest_steps(scene: Scene, law: FrictionLaw, stepper: str) -> int:
     held = 0.0 if scene.degrees_of_freedom == 0 else quickest_when_held(scene, law)
     if stepper == "exponential":
         return math.ceil(MARGIN * lap * held / exponential.DECAY)
-    rate = law.largest_rate(expected_slip(scene))
+    rate = law.largest_rate(expected_slip(scene)) / lightest_contact(scene)
     if not math.isfinite(rate):
         return 0
     return math.ceil(MARGIN * lap * max(held / rk4.DECAY, rate / stable_decay(law)))
@@ -158,8 +197,9 @@ def fewest_steps(scene: Scene, law: FrictionLaw, stepper: str) -> int:
 def quickest_when_held(scene: Scene, law: FrictionLaw) -> float:
     """The largest frequency, or rate of decay, of a mass held by its springs and by its contact."""
     mass = scene.mass()
-    stiffness = max(mass.stiffness, mass.transverse_stiffness) + mass.normal_load * elastic_stiffness(law)
-    damping = max(mass.damping, mass.transverse_damping) + mass.normal_load * contact_damping(scene, law)
+    heaviest = mass.normal_load * shares_of_load(scene)[1]
+    stiffness = max(mass.stiffness, mass.transverse_stiffness) + heaviest * elastic_stiffness(law)
+    damping = max(mass.damping, mass.transverse_damping) + heaviest * contact_damping(scene, law)
     return max(math.sqrt(stiffness), damping)
 
 
@@ -171,4 +211,5 @@ def steps_through_rest(scene: Scene, law: FrictionLaw) -> float:
         return 0.0
     speeds, memory = usual_slip(scene) * SLOW, first_memory(scene, law)
     steepest = max(friction_at_once(law, float(speed), memory) / float(speed) for speed in speeds)
-    return 2.0 * math.pi / scene.frequency * scene.mass().normal_load * steepest / rk4.DECAY
+    heaviest = scene.mass().normal_load * shares_of_load(scene)[1]
+    return 2.0 * math.pi / scene.frequency * heaviest * steepest / rk4.DECAY

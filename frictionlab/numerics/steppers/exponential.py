@@ -12,7 +12,16 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
-from frictionlab.numerics.steppers.step import StepEnd, StepStart, belt_at, load_at, normal_load_at
+from frictionlab.numerics.steppers.step import (
+    FIRST,
+    LAST,
+    MIDDLE,
+    StepEnd,
+    StepStart,
+    belt_at,
+    load_at,
+    normal_load_at,
+)
 
 DECAY = 2.0
 """Largest step times frequency, or rate of decay, of a mass held by its springs and bristles."""
@@ -30,12 +39,13 @@ def kick(
     acceleration_under: Any, resistance: Any, problem: Any, start: StepStart, h: float, at: Drift
 ) -> Any:
     """Velocity after a whole step at this place, and the coefficient of friction over it."""
-    law, body, j = problem.law, problem.body, 2 * start.k + 1
-    push, pressed, belt = load_at(problem, j), normal_load_at(problem, j), belt_at(problem, j)
+    body, k = problem.body, start.k
+    push, pressed = load_at(problem, k, MIDDLE), normal_load_at(problem, k, MIDDLE)
+    belt = belt_at(problem, k, MIDDLE)
     # The explicit midpoint rule: half a step tells the velocity at which friction and dashpots act.
-    mu = resistance(law, start.v - belt, at.z)[1]
+    mu = resistance(problem, k, start.v - belt, at.z)
     middle = start.v + 0.5 * h * acceleration_under(body, push, pressed, at.x, start.v, mu)
-    mu = resistance(law, middle - belt, at.z)[1]
+    mu = resistance(problem, k, middle - belt, at.z)
     return start.v + h * acceleration_under(body, push, pressed, at.x, middle, mu), mu
 
 
@@ -45,14 +55,16 @@ def exponential_step(
 ) -> StepEnd:
     """One step over h, for a law of one deflection.
 
-    acceleration_under(body, load, normal_load, x, v, friction) is the equation of motion, resistance(law, w, z) =
-    (z', friction); advance(law, h, w, z) is the deflection after slip w that lasts h.
+    acceleration_under(body, load, normal_load, x, v, friction) is the equation of motion, resistance(problem, k, w,
+    z) the coefficient in the middle of the k-th step; advance(problem, k, part, h, w, z) is the deflection after slip
+    w that lasts half the step, h, from its node ``part`` on. The impulse is that of the coefficient.
     """
-    law, j, half = problem.law, 2 * start.k, 0.5 * h
-    first, middle, last = belt_at(problem, j), belt_at(problem, j + 1), belt_at(problem, j + 2)
+    k, half = start.k, 0.5 * h
+    first, middle = belt_at(problem, k, FIRST), belt_at(problem, k, MIDDLE)
+    last = belt_at(problem, k, LAST)
     # Drift: over either half the belt goes at the mean of its velocities at the ends.
     x = start.x + half * start.v
-    z = advance(law, half, start.v - 0.5 * (first + middle), problem.memory[0])
+    z = advance(problem, k, FIRST, half, start.v - 0.5 * (first + middle), problem.memory[0])
     v, mu = kick(acceleration_under, resistance, problem, start, h, Drift(x, z))
-    problem.ahead[0] = advance(law, half, v - 0.5 * (middle + last), z)
+    problem.ahead[0] = advance(problem, k, MIDDLE, half, v - 0.5 * (middle + last), z)
     return StepEnd(x + half * v, v, h * mu, False, 1.0)

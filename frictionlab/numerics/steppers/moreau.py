@@ -19,7 +19,15 @@ from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, length
-from frictionlab.numerics.steppers.step import StepEnd, StepStart, belt_at, load_at, normal_load_at
+from frictionlab.numerics.steppers.step import (
+    FIRST,
+    LAST,
+    StepEnd,
+    StepStart,
+    belt_at,
+    load_at,
+    normal_load_at,
+)
 
 MOST_TRIALS = 60
 TINY = 1e-300
@@ -53,6 +61,18 @@ def _over_in_the_plane(a: float, b: float, q: complex) -> complex:
 
 over = by_dimension(_over_on_the_line, _over_in_the_plane)
 """q with its components along x1 and x2 divided by a and b."""
+
+
+def _moved_on_the_line(mass_1: float, mass_2: float, velocity: float) -> float:
+    return mass_1 * velocity
+
+
+def _moved_in_the_plane(mass_1: float, mass_2: float, velocity: complex) -> complex:
+    return complex(mass_1 * velocity.real, mass_2 * velocity.imag)
+
+
+momentum = by_dimension(_moved_on_the_line, _moved_in_the_plane)
+"""momentum(mass_1, mass_2, velocity): a velocity with its components times the masses along x1 and x2."""
 
 
 @inner
@@ -127,11 +147,12 @@ def moreau_step(restoring_force: Any, problem: Any, start: StepStart, h: float) 
     mass_2 = 1.0 + late * (body.damping_mean - body.damping_split)
     mass_2 += late * late * (body.stiffness_mean - body.stiffness_split)
     # Loads are those of the instant theta into the step: its middle or its end.
-    k, j = start.k, 2 * start.k + int(2.0 * theta)
-    pushed = v + h * (load_at(problem, j) - restoring_force(body, x + late * left * v, left * v))
-    pressed, belt = normal_load_at(problem, j), belt_at(problem, 2 * k + 2)
+    k, part = start.k, int(2.0 * theta)
+    pushed = v + h * (load_at(problem, k, part) - restoring_force(body, x + late * left * v, left * v))
+    pressed, belt = normal_load_at(problem, k, part), belt_at(problem, k, LAST)
     contact = ContactStep(problem.law, h * pressed, mass_1, mass_2)
     # Written for the slip that ends the step: mass * w1 + P = what pushes, less what carries along with the belt.
-    w, impulse = project_impulse(contact, theta, v - belt_at(problem, 2 * k), pushed - mass_1 * belt)
+    pushed = pushed - momentum(mass_1, mass_2, belt)
+    w, impulse = project_impulse(contact, theta, v - belt_at(problem, k, FIRST), pushed)
     after = w + belt
-    return StepEnd(x + late * after + h * left * v, after, impulse / pressed, length(w) == 0.0, 1.0)
+    return StepEnd(x + late * after + h * left * v, after, impulse / body.normal_load, length(w) == 0.0, 1.0)

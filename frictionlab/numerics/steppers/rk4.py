@@ -13,7 +13,7 @@ from typing import Any
 
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.stack import count_of, room
-from frictionlab.numerics.steppers.step import StepEnd, StepStart
+from frictionlab.numerics.steppers.step import FIRST, LAST, MIDDLE, StepEnd, StepStart
 
 DECAY = 2.785
 """Largest step times rate of decay: where the stability polynomial leaves the unit disk on the real axis."""
@@ -21,32 +21,32 @@ DECAY = 2.785
 
 @inner
 def rk4_step(rates: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
-    """One step over h; ``rates(problem, j, x, v, memory, moving)`` = (x'', friction) writes z' into ``moving``.
+    """One step over h; ``rates(problem, k, part, x, v, memory, moving)`` = (x'', friction) writes z' into ``moving``.
 
-    j counts half steps; the k-th step begins at j = 2 k. It has no stick phases: a step never ends at rest.
+    part is a node of the k-th step. It has no stick phases: a step never ends at rest.
     """
-    law, memory, j, x, v = problem.law, problem.memory, 2 * start.k, start.x, start.v
+    law, memory, k, x, v = problem.law, problem.memory, start.k, start.x, start.v
     n, half, sixth = count_of(law), 0.5 * h, h / 6.0
     stage, rate, total = room(law, 1, 0, memory[0]), room(law, 1, 0, memory[0]), room(law, 1, 0, memory[0])
-    a1, f1 = rates(problem, j, x, v, memory, rate)
+    a1, f1 = rates(problem, k, FIRST, x, v, memory, rate)
     # The first half step: at the rates of the start.
     v2 = v + half * a1
     for i in range(n):
         total[i] = rate[i]
         stage[i] = memory[i] + half * rate[i]
-    a2, f2 = rates(problem, j + 1, x + half * v, v2, stage, rate)
+    a2, f2 = rates(problem, k, MIDDLE, x + half * v, v2, stage, rate)
     # The same half step anew, at the rates found there.
     v3 = v + half * a2
     for i in range(n):
         total[i] = total[i] + 2.0 * rate[i]
         stage[i] = memory[i] + half * rate[i]
-    a3, f3 = rates(problem, j + 1, x + half * v2, v3, stage, rate)
+    a3, f3 = rates(problem, k, MIDDLE, x + half * v2, v3, stage, rate)
     # The whole step, at the rates of its middle.
     v4 = v + h * a3
     for i in range(n):
         total[i] = total[i] + 2.0 * rate[i]
         stage[i] = memory[i] + h * rate[i]
-    a4, f4 = rates(problem, j + 2, x + h * v3, v4, stage, rate)
+    a4, f4 = rates(problem, k, LAST, x + h * v3, v4, stage, rate)
     # Simpson's weights; the sum of z' is kept as it grows, for there may be many numbers.
     for i in range(n):
         problem.ahead[i] = memory[i] + sixth * (total[i] + rate[i])

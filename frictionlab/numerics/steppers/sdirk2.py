@@ -143,13 +143,13 @@ def solve_stage(rates: Any, problem: Any, stage: Stage, v: Any, z: Any) -> Stage
 
 @inner
 def two_stages(
-    rates: Any, problem: Any, tau: float, start: DeflectedState, h: float
+    rates: Any, problem: Any, tau: float, start: DeflectedState, h: float, swing: float
 ) -> tuple[DeflectedState, bool]:
-    """One step, and whether both of its stages converged."""
+    """One step, and whether both of its stages converged; swing: by how much the belt's velocity varies."""
     # Scales of this step: of velocity from body and slip, of deflection from what slip can do within the step.
     g, late = GAMMA * h, (1.0 - GAMMA) * h
     x, v, z = start.x, start.v, start.z
-    quick = length(v) + length(v - problem.belt_speed) + length(x) * 1e-3 + 1e-9
+    quick = length(v) + length(v - problem.belt_speed) + length(x) * 1e-3 + 1e-9 + swing
     deep = min(problem.law.largest_deflection(), length(z) + h * quick)
     first = solve_stage(rates, problem, Stage(tau + g, g, x, v, z, quick, deep), v, z)
     # Stiffly accurate: the second stage is the state at the end of the step.
@@ -163,8 +163,10 @@ def two_stages(
 
 
 @inner
-def sdirk2_step(rates: Any, problem: Any, start: StepStart, h: float) -> StepEnd:
+def sdirk2_step(rates: Any, problem: Any, start: StepStart, h: float, swing: float) -> StepEnd:
     """One step over h, for a law of one deflection; ``rates(problem, tau, x, v, z)`` = (x'', friction, z').
+
+    swing: by how much the belt's velocity varies.
 
     Steps in which Newton's method fails are halved; the state is NaN if even 2^-24 of the step fails, or too many.
     """
@@ -172,7 +174,7 @@ def sdirk2_step(rates: Any, problem: Any, start: StepStart, h: float) -> StepEnd
     state = DeflectedState(start.x, start.v, problem.memory[0], 0.0 * start.v)
     done, part, least, tried = 0.0, h, h * 0.5**MOST_HALVINGS, 0
     while done < h * (1.0 - 1e-9):
-        ahead, converged = two_stages(rates, problem, start.tau + done, state, part)
+        ahead, converged = two_stages(rates, problem, start.tau + done, state, part, swing)
         tried += 1
         if tried > MOST_PARTS or (not converged and part <= least):
             nothing = math.nan * start.v

@@ -5,30 +5,57 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import embedded
+from frictionlab.compile.dispatch import by_variation
 
 LOAD, NORMAL_LOAD, BELT, COLUMNS = 0, 1, 2, 3
-"""Places in ``problem.grid``, which has COLUMNS numbers for every half step of a lap of equal steps.
+"""Places in ``problem.grid``, which has COLUMNS numbers for every node of a lap of steps.
 
 Complex in the plane. A bare pointer: kernels count the references to every array they hand on.
 """
+FIRST, MIDDLE, LAST = 0, 1, 2
+"""The nodes of a step, half a step apart."""
+
+
+def _shared_with_neighbours(body: Any, k: int, part: int) -> int:
+    return 2 * k + part
+
+
+def _of_the_step_alone(body: Any, k: int, part: int) -> int:
+    return 3 * k + part
+
+
+node = by_variation(_shared_with_neighbours, _of_the_step_alone)
+"""node(body, k, part): which node of the lap is that of the k-th step. Where something may jump at a corner, a step
+that ends there and the one that begins there have a node each."""
+
+
+def _along_x1(body: Any, velocity: Any) -> float:
+    return velocity.real
+
+
+def _in_any_direction(body: Any, velocity: Any) -> Any:
+    return velocity
+
+
+_belt = by_variation(_along_x1, _in_any_direction)
 
 
 @embedded
-def load_at(problem: Any, j: int) -> Any:
-    """What drives the mass, at the j-th half step."""
-    return problem.grid[COLUMNS * j + LOAD]
+def load_at(problem: Any, k: int, part: int) -> Any:
+    """What drives the mass, at a node of the k-th step."""
+    return problem.grid[COLUMNS * node(problem.body, k, part) + LOAD]
 
 
 @embedded
-def normal_load_at(problem: Any, j: int) -> float:
+def normal_load_at(problem: Any, k: int, part: int) -> float:
     """What presses it on the belt."""
-    return problem.grid[COLUMNS * j + NORMAL_LOAD].real
+    return problem.grid[COLUMNS * node(problem.body, k, part) + NORMAL_LOAD].real
 
 
 @embedded
-def belt_at(problem: Any, j: int) -> float:
-    """The velocity of the belt."""
-    return problem.grid[COLUMNS * j + BELT].real
+def belt_at(problem: Any, k: int, part: int) -> Any:
+    """The velocity of the belt; a number on the line where it is steady."""
+    return _belt(problem.body, problem.grid[COLUMNS * node(problem.body, k, part) + BELT])
 
 
 class StepStart(NamedTuple):
@@ -48,6 +75,6 @@ class StepEnd(NamedTuple):
 
     x: Any
     v: Any
-    impulse: Any  # integral of the friction coefficient over the step
+    impulse: Any  # integral of friction over the step, in shares of the mean normal load
     stuck: bool  # whether it ended at rest on the belt
     growth: float

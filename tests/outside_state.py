@@ -31,7 +31,9 @@ from outside_motion import (
     Z1,
     Body,
     Friction,
+    Signals,
     period,
+    signals_at,
 )
 
 KINDS = {
@@ -115,14 +117,14 @@ def steady(
     tolerance: float = 1e-13,
     periods: int = 4000,
 ) -> Outside:
-    """The mean friction once the motion repeats, from a start (x1, slip 1, x2, slip 2, z1, z2). Raises Unsettled.
+    """The mean friction once the motion repeats, from a start (x1, x1', x2, x2') or on the belt. Raises Unsettled.
 
     Its error: the change from a hundred times the tolerance, and what may be still to come.
     """
-    fine, closing, drive_periods, last = _Problem(scene, law, tolerance).settled(start, periods)
-    coarse = _Problem(scene, law, 100.0 * tolerance).settled(tuple(last), periods)[0]
-    step_error = abs(fine.mean - coarse.mean)
-    return fine._replace(error=step_error + closing + 1e-15, closing=closing, drive_periods=drive_periods)
+    problem = _Problem(scene, law, tolerance)
+    fine, closing, last = problem.settled(problem.state_of(start), periods)
+    coarse, _, _ = _Problem(scene, law, 100.0 * tolerance).settled(last, periods)
+    return fine._replace(error=abs(fine.mean - coarse.mean) + closing + 1e-15, closing=closing)
 
 
 class _Problem:
@@ -185,10 +187,21 @@ class _Problem:
     def distance(self, one: np.ndarray, other: np.ndarray) -> float:
         return float((np.abs(one - other) / self.scale[:STATES]).max())
 
-    def settled(self, start: tuple[float, ...], periods: int) -> tuple[Outside, float, int, np.ndarray]:
-        """Means of the motion that repeats, what may be to come of them, its length in drive periods, its state."""
+    def state_of(self, start: tuple[float, ...]) -> np.ndarray:
+        """The state just before tau = 0; at rest on the belt where no start is given, or slip is but rounding."""
         state = np.zeros(STATES)
         state[: len(start)] = start
+        if start:
+            last, f = len(self.force.pieces) - 1, self.force
+            now = Signals(f.edges[last], f.pieces[last], f.which, f.sines)
+            velocity = signals_at(now, f.edges[last + 1])[0]
+            for k, signal in ((W1, BELT1), (W1 + 2, BELT2)):
+                state[k] = 0.0 if len(start) <= k else state[k] - velocity[signal]
+                state[k] *= abs(state[k]) > 1e-12 * self.scale[W1]
+        return state
+
+    def settled(self, state: np.ndarray, periods: int) -> tuple[Outside, float, np.ndarray]:
+        """Means of the motion that repeats, what may be to come of them, its state."""
         taken, turns, left, before = 0, 1, math.inf, math.inf
         while left > 1e-14:
             trail = [state]
@@ -220,7 +233,7 @@ class _Problem:
             0.0,
             int(tally[3]),
         )
-        return found, change * 30.0, turns * self.force.drive_periods, end
+        return found, change * 30.0, end
 
     def _newton(self, state: np.ndarray, turns: int) -> tuple[np.ndarray, int, float]:
         """Newton's method as long as it comes nearer by ten times; the periods it took, and what is left."""

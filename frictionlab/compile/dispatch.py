@@ -134,8 +134,10 @@ def by_variation(of_one_sine: Any, of_varying: Any) -> Any:
 
 
 def by_contact(of_any_load: Any, of_constant_stiffness: Any) -> Any:
-    """The same, chosen by the field ``keeps_stiffness``: of_constant_stiffness is for a contact that keeps its stiffness while
-    the normal load changes."""
+    """The same, chosen by the field ``keeps_stiffness``.
+
+    of_constant_stiffness: for a contact that keeps its stiffness while the normal load changes.
+    """
     return _by_field("keeps_stiffness", of_any_load, of_constant_stiffness)
 
 
@@ -217,9 +219,9 @@ def by_law(
 
     The first argument is a law, or a record with a law in the field ``law``.
 
-    of_path is for bristle laws on the line (no argument is complex) whose path is exact, in a contact that follows the
-    normal load, of_deflections for memory laws, of_scalars for those whose memories have no direction; the choice is made when kernels are compiled, so that
-    what a law does not need is never compiled for it.
+    of_path is for bristle laws on the line (no argument is complex) whose path is exact, in a contact that follows
+    the normal load, of_deflections for memory laws, of_scalars for those whose memories have no direction; the choice
+    is made when kernels are compiled, so that what a law does not need is never compiled for it.
     """
     deflections = of_deflections or of_sliding
     choices = of_sliding, of_bristle, of_path or of_bristle, deflections, of_scalars or deflections

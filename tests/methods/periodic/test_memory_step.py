@@ -30,7 +30,7 @@ LUGRE = fl.LuGre(mu_kinetic=0.3, mu_static=0.5, stiffness=40, damping=0.01, stri
 @njit
 def steps(law: Any, body: Any, h: float, many: int, start: Any, jacobian: Any, like: Any) -> Any:
     """So many steps from a state, and back into it; the blocks of the last step."""
-    work = workspace(law, like)
+    work = workspace(law, like, ())
     n = count_of(law)
     for k in range(n):
         work.unit[k], work.size[k] = 1.0, 1e-2
@@ -52,7 +52,7 @@ def steps(law: Any, body: Any, h: float, many: int, start: Any, jacobian: Any, l
 @njit
 def inside(law: Any, body: Any, h: float, share: float, state: Any, like: Any) -> Any:
     """The state a share into a step of h, from a state and back into it."""
-    work = workspace(law, like)
+    work = workspace(law, like, ())
     for k in range(count_of(law)):
         work.unit[k], work.size[k] = 1.0, 1e-2
     for row in range(state.size):

@@ -102,6 +102,8 @@ class Signal(NamedTuple):
 
     def extremes(self, end: float) -> tuple[float, float]:
         """The least and the largest value over a period ``end``."""
+        if not self.waves and not self.pieces:
+            return 0.0, 0.0
         quickest = max((each.frequency for each in self.waves), default=0.0)
         edges = [0.0, *self.corners(end), end]
         low, high = math.inf, -math.inf

@@ -189,12 +189,9 @@ SAMPLES_A_WAVE = 16
 
 def _least(waves: Floats, pieces: Floats, side: float) -> float:
     """The least value of press + side * load over a period."""
-    length, every = _lengths(pieces), np.arange(len(pieces))
     if len(waves) == 0:
-        _, rate, bend = _combined(waves, pieces, side, every, 0.0 * length)
-        bottom = np.clip(-rate / np.where(bend > 0.0, bend, np.inf), 0.0, length)
-        places = np.array([0.0 * length, bottom, length])
-        return float(_combined(waves, pieces, side, every, places)[0].min())
+        return _least_of_parabolas(pieces, side)
+    length, every = _lengths(pieces), np.arange(len(pieces))
     # Of many values, those below their neighbours improved by Newton's method.
     count = 9 + math.ceil(SAMPLES_A_WAVE * length.max() * waves[:, FREQUENCY].max() / (2.0 * math.pi))
     place = np.linspace(0.0, 1.0, count) * length[:, None]
@@ -209,6 +206,15 @@ def _least(waves: Floats, pieces: Floats, side: float) -> float:
         step = np.where(bend > 0.0, -rate / np.where(bend > 0.0, bend, 1.0), 0.0)
         r = np.clip(r + step, 0.0, length[piece])
     return float(least)
+
+
+def _least_of_parabolas(pieces: Floats, side: float) -> float:
+    """The same where there are no waves: at the ends or at the bottom."""
+    a, b, c = side * pieces[:, PARABOLA : PARABOLA + 3].T
+    a, b, length = a + pieces[:, RAMP], b + pieces[:, RAMP + 1], _lengths(pieces)
+    bottom = np.clip(-b / np.where(c > 0.0, c, np.inf), 0.0, length)
+    places = np.array([0.0 * length, bottom, length])
+    return float((a + places * (b + 0.5 * c * places)).min())
 
 
 def _combined(waves: Floats, pieces: Floats, side: float, piece: Any, r: Floats) -> tuple[Any, Any, Any]:

@@ -42,6 +42,9 @@ UNBOUNDED = (
 
 def _refusal_of_legs(scene: Scene, law: Any) -> str | None:
     """Why a prescribed slip has no two legs along which the deflection is known."""
+    part = scene.normal_load_variation
+    if part is not None and part.contact == "constant":
+        return "exact cannot keep the stiffness of bristles while the normal load changes"
     if not law.exact_path():
         return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction)"
     if scene.constant_contact:
@@ -62,12 +65,9 @@ def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
     if scene.undriven:
         return "exact needs a drive, whose period is that of the motion"
     if scene.degrees_of_freedom == 2 and not scene.load_along_belt_only:
-        what = (
-            "has a transverse load"
-            if scene.signals().load[1] != Signal()
-            else "has a belt that vibrates across"
-        )
-        return f"exact works along one line: this scene {what}"
+        loaded = scene.signals().load[1] != Signal()
+        what = "a transverse load" if loaded else "a belt that vibrates across"
+        return f"exact works along one line: this scene has {what}"
     if scene.degrees_of_freedom > 0 and not scene.is_harmonic and resonates(scene.mass(), RESONANT):
         return "exact needs more damping for a sine within 1e-3 of resonance, unless it is all that changes in time"
     return None
@@ -76,9 +76,10 @@ def _refusal_of_flow(scene: Scene, law: FrictionLaw) -> str | None:
 class Exact(Method):
     """Steady states of Coulomb friction along one line, to rounding: events in closed form, no steps.
 
-    Between events the motion is that of a linear oscillator under a constant friction force, or rest on the belt.
-    Each event is found by steps that cannot pass it; the period is closed by Newton's method with derivatives carried
-    through the events (saltation), falling back to the map itself, which never expands.
+    Between events the motion is that of a linear oscillator under loads and friction known in time, or rest on the
+    belt: sines, and between corners of loads, belt velocity and normal load parabolas. Each event is found by steps
+    that cannot pass it; the period is closed by Newton's method with derivatives carried through the events
+    (saltation), falling back to the map itself, which never expands.
 
     Sources: Den Hartog (1931); of saltation Leine & Nijmeijer (2004); of the map Leine & van de Wouw (2008).
     """

@@ -12,9 +12,11 @@ from profiles import deep
 from varying_scenes import draw_varying
 
 from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.dahl import Dahl
 from frictionlab.methods.exact.method import Exact
 from frictionlab.orbit.panels import DERIVATIVE, WEIGHTS
 from frictionlab.scene.scene import Scene
+from frictionlab.theory import mean_prescribed_longitudinal
 
 LAW = Coulomb(mu=0.4)
 SPEEDS = [-30.0, -3.0, 0.7, 12.0, 40.0]
@@ -274,6 +276,16 @@ def test_the_neighbours_a_curve_comes_from_do_not_change_a_point():
         assert abs(mean - alone.mean[0]) <= error + alone.error[0] <= 1e-11
 
 
+@pytest.mark.parametrize("waveform", ["square", "triangle"])
+def test_prescribed_slip_of_any_waveform_meets_its_closed_form(waveform):
+    ratios = np.array([-1.5, -0.4, 0.05, 0.9])
+    slip = {"velocity_amplitude": 2.0, "frequency": 3.0, "phase": 50.0, "waveform": waveform}
+    answers = solve([Scene(belt_speed=2.0 * ratio, slip=slip) for ratio in ratios])
+    closed_form = 0.4 * mean_prescribed_longitudinal(ratios, waveform)
+    assert np.all(answers.error <= 1e-13)
+    assert np.all(np.abs(answers.mean.real - closed_form) <= answers.error + 1e-14)
+
+
 def test_what_it_cannot_do_is_refused_with_the_way_out():
     across = {"natural_frequency": 2.0, "damping_ratio": 0.1}
     for changes, reason in (
@@ -283,4 +295,10 @@ def test_what_it_cannot_do_is_refused_with_the_way_out():
     ):
         refusal = Exact().refusal(scene(3.0, **changes), LAW)
         assert reason in refusal
-        assert "shooting" in refusal
+        assert "use shooting" in refusal
+    kept = Scene(
+        belt_speed=1.0, slip={"velocity_amplitude": 2.0, "frequency": 3.0}, normal_load_variation=SAW
+    )
+    constant = kept.with_(**{"normal_load_variation.contact": "constant"})
+    assert Exact().refusal(kept, Dahl(mu=0.4, stiffness=4.0)) is None
+    assert "stiffness of bristles" in Exact().refusal(constant, Dahl(mu=0.4, stiffness=4.0))

@@ -106,10 +106,11 @@ class Exact(Method):
         return curve_of(scenes, law.sliding_friction(1.0), tolerance).answers()
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-        """A few period maps of two legs or more; slow drives meet the free motion many times."""
+        """A few period maps of two legs or more, more with corners; slow drives meet the free motion many times."""
         if scene.degrees_of_freedom == 0:
             return 1e-3
-        return 1e-5 * max(1.0, 0.3 / scene.frequency)
+        share = 1.0 if scene.is_harmonic else 3.0 * scene.periods
+        return 1e-5 * share * max(1.0, 0.3 / scene.frequency)
 
 
 class _Curve:

@@ -175,6 +175,14 @@ def test_a_mass_that_loads_leave_at_rest_stays_where_it_starts():
         assert abs(told.mean[0].real - x / 10.0) <= told.error[0] <= 1e-11
 
 
+def test_a_slow_belt_draws_the_mass_to_the_end_of_where_it_may_rest():
+    speeds = [-1e-3, -1e-4, -1e-5, 1e-5, 1e-4, 1e-3]
+    answers = solve([scene(v, **STILL) for v in speeds])
+    assert answers.status == ["ok"] * len(speeds)
+    gap = np.abs(answers.mean.real - np.where(np.array(speeds) < 0.0, -0.3, 0.1))
+    assert np.all(gap <= 3.0 * np.abs(speeds))
+
+
 def test_a_belt_that_jumps_leaves_no_mass_at_rest():
     answers = solve([scene(0.0, belt_vibration=SHAKE, **STILL)])
     assert answers.status == ["ok"]

@@ -55,26 +55,47 @@ def friction_free_slip(scene: Scene, law: FrictionLaw | None = None) -> Piecewis
 
     Raises ValueError as ``friction_free_velocity``.
     """
+    return _free_slip(scene, _coefficient(scene, law))
+
+
+def friction_free_response(
+    scene: Scene, law: FrictionLaw | None, order: int
+) -> tuple[Piecewise, Piecewise] | None:
+    """The same motion: x1 and x2 themselves, or for order 1 their velocities; None where one has no bound."""
+    found = _response(scene, _coefficient(scene, law), order)
+    return None if found[0] is None or found[1] is None else (found[0], found[1])
+
+
+def _coefficient(scene: Scene, law: FrictionLaw | None) -> float:
+    """That with which a normal load that varies pushes the body along x1 in steady sliding."""
     if scene.degrees_of_freedom == 0 or scene.signals().normal_load == Signal():
-        return _free_slip(scene, 0.0)
+        return 0.0
     if law is None:
         raise ValueError("friction_free_velocity: where the normal load varies, give the law of friction")
-    return _free_slip(scene, math.copysign(law.sliding_friction(abs(scene.belt_speed)), scene.belt_speed))
+    return math.copysign(law.sliding_friction(abs(scene.belt_speed)), scene.belt_speed)
+
+
+def _response(scene: Scene, coefficient: float, order: int) -> tuple[Piecewise | None, Piecewise | None]:
+    mass, signals = scene.mass(), scene.signals()
+    edges = edges_of(signals.corners(), signals.period)
+    push = signals.load[0].plus(signals.normal_load.scaled(coefficient))
+    along, across = (
+        LinearOscillator(mass.damping, mass.stiffness),
+        LinearOscillator(mass.transverse_damping, mass.transverse_stiffness),
+    )
+    return along.response(push, edges, order), across.response(signals.load[1], edges, order)
 
 
 def _free_slip(scene: Scene, coefficient: float) -> Piecewise | None:
-    """coefficient: that with which the normal load pushes the body along x1."""
     signals = scene.signals()
-    edges = edges_of(signals.corners(), signals.period)
+    belt = piecewise(signals.belt[0], edges_of(signals.corners(), signals.period))
     if scene.degrees_of_freedom == 0:
-        return piecewise(signals.belt[0], edges)
-    mass = scene.mass()
-    push = signals.load[0].plus(signals.normal_load.scaled(coefficient))
-    response = LinearOscillator(mass.damping, mass.stiffness).response(push, edges, 1)
-    return None if response is None else _less(response, piecewise(signals.belt[0], edges))
+        return belt
+    response, _ = _response(scene, coefficient, 1)
+    return None if response is None else less(response, belt)
 
 
-def _less(first: Piecewise, second: Piecewise) -> Piecewise:
+def less(first: Piecewise, second: Piecewise) -> Piecewise:
     """The difference of two functions on the same pieces, the second without free motion."""
     other = second.negative()
     return first._replace(

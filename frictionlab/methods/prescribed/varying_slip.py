@@ -110,11 +110,11 @@ def piece_at(edges: Floats, tau: Floats) -> PieceNumbers:
 
 
 class VaryingPoint:
-    """One scene of such a slip, a law without memory, and the answer."""
+    """One scene of such a slip, a law without memory, and the answer; slip: another than the prescribed one."""
 
-    def __init__(self, scene: Scene, law: FrictionLaw) -> None:
+    def __init__(self, scene: Scene, law: FrictionLaw, slip: VaryingSlip | None = None) -> None:
         assert scene.normal_load is not None
-        self.slip = VaryingSlip.of(scene.signals(), scene.normal_load)
+        self.slip = slip or VaryingSlip.of(scene.signals(), scene.normal_load)
         self.belt_speed, self.law, self.periods = scene.belt_speed, law, float(scene.periods)
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind = "", "", "guaranteed"
@@ -183,10 +183,12 @@ class VaryingPoint:
 
     def orbit(self) -> Orbit | None:
         """The prescribed motion and the friction along it."""
-        if self.status != "ok":
-            return None
+        return self.slip.orbit(*self.friction()) if self.status == "ok" else None
+
+    def friction(self) -> tuple[Floats, Vectors]:
+        """Times, at the nodes of panels, and the friction there."""
         edges, k = self._panels()
         tau, _ = nodes(edges)
         slip = self.slip.velocity(tau, k[:, None]) - self.belt_speed
         load = self.slip.normal_load.at(tau, k[:, None])[0]
-        return self.slip.orbit(tau, load * sliding_vectors(self.law, slip))
+        return tau, load * sliding_vectors(self.law, slip)

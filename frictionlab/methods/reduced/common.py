@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.exact.method import REDUCED
+from frictionlab.methods.prescribed.motion import displacement, velocity
 from frictionlab.methods.prescribed.quadrature import orbit_of_slip
 from frictionlab.methods.reduced.bounds import Line, bounds
 from frictionlab.methods.reduced.full_mean import full_mean
@@ -28,6 +29,7 @@ from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
+from frictionlab.theory.equivalent_drive import equivalent_drive
 
 WIDEST = 0.25
 """Distance of bounds on the mean, relative to the friction coefficient, above which they are narrowed."""
@@ -58,6 +60,8 @@ class Modelled(NamedTuple):
 UNBOUNDED_ENERGIES = "; energies are those of this motion, without an error"
 """Said of every row: what one harmonic leaves out is bounded in the mean friction alone."""
 
+EQUIVALENT = "; the belt's vibration as the drive that is equivalent to it"
+
 Model = Callable[[Scene, float, Floats], Harmonic]
 """(scene, friction = mu*normal_load, belt speeds >= 0) -> the model's motion."""
 
@@ -77,6 +81,33 @@ def line_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
     if not math.isfinite(friction_free_velocity(scene)):
         return f"{name} starts from the friction-free motion, which is unbounded at undamped resonance; use exact"
     return None
+
+
+def steadied(scene: Scene) -> Scene | None:
+    """The scene that a reduced model answers: the same, or that of the drive equivalent to its belt's vibration."""
+    if scene.is_harmonic:
+        return scene
+    other = equivalent_drive(scene)
+    return None if other is None else other.scene
+
+
+def answer_steadied(scenes: Sequence[Scene], answer: Callable[[Sequence[Scene]], Answers]) -> Answers:
+    """The answers of scenes on belts that vibrate by those of their equivalent drives, with the body's own motion."""
+    other = equivalent_drive(scenes[0])
+    if other is None:
+        return answer(scenes)
+    found = answer([other.scene.model_copy(update={"belt_speed": scene.belt_speed}) for scene in scenes])
+    carried = Motion(1.0, scenes[0].frequency, other.velocity, other.transverse_velocity)
+
+    def orbit(i: int) -> Orbit | None:
+        one = found.orbit(i)
+        if one is None:
+            return None
+        angle = scenes[0].frequency * one.tau
+        return replace(one, x=one.x + displacement(carried, angle), v=one.v + velocity(carried, angle))
+
+    said = [text + EQUIVALENT if text else text for text in found.model]
+    return replace(found, model=said, orbit=orbit, orbits=None)
 
 
 def point_refusal(scene: Scene, friction: float) -> str:

@@ -9,9 +9,9 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method, against_varying
+from frictionlab.methods.base import Answers, Method
 from frictionlab.methods.reduced.bristle import answer_bristle, bristle_refusal
-from frictionlab.methods.reduced.common import Harmonic, answer_line, line_refusal
+from frictionlab.methods.reduced.common import Harmonic, answer_line, answer_steadied, line_refusal, steadied
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.numerics.roots import monotone_root
 from frictionlab.quantities import Floats
@@ -19,6 +19,10 @@ from frictionlab.scene.scene import Scene
 from frictionlab.theory import friction_free_velocity, one_harmonic_least_ratio, one_harmonic_velocity
 
 TEXT = "one harmonic of x1' and of Coulomb friction balanced (Eqs. 5, 8, 9 in explicit form)"
+NOT_ONE_SINE = (
+    "harmonic_balance takes sines of the drive's frequency, of loads and of the belt's vibration, under a constant "
+    "normal load"
+)
 AT_REST = (
     "on a belt at rest one harmonic gives sliding only if the load exceeds 4/pi of mu*normal_load; use exact"
 )
@@ -44,13 +48,14 @@ class HarmonicBalance(Method):
         if scene.degrees_of_freedom == 0:
             reason = "harmonic_balance needs a mass: with a prescribed slip there is no motion to solve for"
             return suggest_shooting(reason, scene, law)
-        if varies := against_varying(self.name, scene):
-            return suggest_shooting(varies, scene, law)
-        return _balance(law).refusal(self.name, scene, law)
+        steady = steadied(scene)
+        if steady is None:
+            return suggest_shooting(NOT_ONE_SINE, scene, law)
+        return _balance(law).refusal(self.name, steady, law)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
-        return _balance(law).answer(scenes, law, tolerance)
+        return answer_steadied(scenes, lambda others: _balance(law).answer(others, law, tolerance))
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Two root searches on whole arrays; slow drives need more samples to be sure of the reversals.

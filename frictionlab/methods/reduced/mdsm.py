@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method, against_varying
+from frictionlab.methods.base import Answers, Method
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.prescribed.quadrature import integrals, slip_edges
 from frictionlab.methods.reduced.common import (
@@ -19,11 +19,14 @@ from frictionlab.methods.reduced.common import (
     Harmonic,
     Modelled,
     answer_line,
+    answer_steadied,
     judged,
     line_refusal,
     model_orbit,
+    steadied,
 )
 from frictionlab.methods.reduced.full_mean import full_mean
+from frictionlab.methods.reduced.waveforms import answer_waveforms
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.body import Motion
@@ -35,6 +38,7 @@ from frictionlab.theory import (
     mean_prescribed_transverse,
 )
 from frictionlab.theory.rest import friction_at_rest
+from frictionlab.theory.uniqueness import falls_slowly
 
 ALONG = "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)"
 PLANE = "direct separation of motion: quadrature over the friction-free motion"
@@ -57,29 +61,34 @@ class Mdsm(Method):
         """Friction with memory, no drive, no one steady state; what cannot be bounded is refused by ``solve``."""
         if law.memory_kind != "none":
             return "mdsm needs friction without memory (a sliding law)"
-        if reason := against_varying(self.name, scene):
-            return reason
         if scene.degrees_of_freedom == 0:
             return None
         if scene.undriven:
             return "mdsm needs a drive: it averages over the driven motion"
-        if _in_closed_form(scene, law):
-            return line_refusal(self.name, scene, law)
+        steady = steadied(scene)
+        if steady is not None and _in_closed_form(steady, law):
+            return line_refusal(self.name, steady, law)
         return _plane_refusal(scene, law)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
         if scenes[0].degrees_of_freedom == 0:
             return _answer_prescribed(scenes, law, tolerance)
-        if _in_closed_form(scenes[0], law):
-            return answer_line(scenes, law, tolerance, ALONG, friction_free)
-        return _answer_plane(scenes, law, tolerance)
+        if steadied(scenes[0]) is None:
+            return answer_waveforms(scenes, law, tolerance)
+        return answer_steadied(scenes, lambda others: _answer_sines(others, law, tolerance))
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Nearly all of it for the error: a root search on whole arrays, or shooting point by point."""
         if scene.degrees_of_freedom == 0 or not _in_closed_form(scene, law):
             return 3e-3
         return 5e-5 * max(1.0, 1.0 / scene.frequency)
+
+
+def _answer_sines(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+    if _in_closed_form(scenes[0], law):
+        return answer_line(scenes, law, tolerance, ALONG, friction_free)
+    return _answer_plane(scenes, law, tolerance)
 
 
 def _in_closed_form(scene: Scene, law: FrictionLaw) -> bool:
@@ -91,7 +100,7 @@ def _plane_refusal(scene: Scene, law: FrictionLaw) -> str | None:
     damping = [mass.damping] if scene.load_along_belt_only else [mass.damping, mass.transverse_damping]
     if min(damping) == 0.0:
         return "mdsm needs damping in every driven direction: without it the motion depends on the start"
-    if law.steepest_fall() * mass.normal_load >= min(damping):
+    if not falls_slowly(scene, law):
         return (
             "mdsm needs damping that outweighs the fall of friction: else the steady state may not be unique"
         )
@@ -166,7 +175,7 @@ def _position(scene: Scene, mean: complex) -> complex:
 def _answer_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """The exact mean; where there is a closed form beyond the one along the belt, by that."""
     answers = solve_prescribed(scenes, law, tolerance)
-    if not law.constant_sliding_friction():
+    if not law.constant_sliding_friction() or not scenes[0].is_harmonic:
         return answers
     mu, model = law.sliding_friction(1.0), list(answers.model)
     reason, kind = list(answers.reason), list(answers.error_kind)

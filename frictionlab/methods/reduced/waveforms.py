@@ -1,0 +1,82 @@
+"""Direct separation of motion where more than sines of one frequency changes in time: the friction-free motion of a
+linear body under any waveform, over any vibrating belt, and the mean of friction over it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Answers
+from frictionlab.methods.prescribed.varying_slip import VaryingPoint, VaryingSlip, piece_at
+from frictionlab.methods.reduced.common import ROUNDING, Modelled, judged
+from frictionlab.methods.reduced.full_mean import full_mean
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
+from frictionlab.theory.linear import friction_free_response, less
+from frictionlab.theory.rest import stays_at_rest
+
+AVERAGED = "direct separation of motion: friction averaged over the friction-free motion of these waveforms"
+MAY_STAY = "the belt is at rest and static friction holds the mass: it may rest anywhere in a range"
+
+
+class FreeMotions:
+    """The friction-free motion of a scene, its slip velocity about the belt's mean speed, and its position."""
+
+    def __init__(self, scene: Scene, law: FrictionLaw) -> None:
+        assert scene.normal_load is not None
+        prescribed = VaryingSlip.of(
+            scene.signals(), scene.normal_load
+        )  # of the belt, under the same normal load
+        velocity, position = (friction_free_response(scene, law, order) for order in (1, 0))
+        assert velocity is not None
+        assert position is not None
+        self.velocity, self.position = velocity, position
+        belt = prescribed.along, prescribed.across
+        along, across = (less(own, other) for own, other in zip(velocity, belt, strict=True))
+        waves = (*along.waves, *across.waves, *prescribed.normal_load.waves)
+        quickest = max([scene.frequency, 1.0, *(wave.frequency for wave in waves)])
+        self.slip = VaryingSlip(along, across, prescribed.normal_load, quickest)
+
+    def orbit(self, point: VaryingPoint, at: complex) -> Orbit:
+        """This motion about a mean position, and friction along it."""
+        tau, friction = point.friction()
+        k = piece_at(self.slip.along.edges, 0.5 * (tau[:, :1] + tau[:, -1:]))
+        x, v = (one.at(tau, k)[0] + 1j * other.at(tau, k)[0] for one, other in (self.position, self.velocity))
+        return Orbit(tau, at + x, v, friction, None)
+
+
+def answer_waveforms(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+    """Answers on scenes that differ in belt speed alone, their error from the mean of the full problem."""
+    start = time.perf_counter()
+    motions = [FreeMotions(scene, law) for scene in scenes]
+    points = [VaryingPoint(scene, law, free.slip) for scene, free in zip(scenes, motions, strict=True)]
+    rows = [_error(scene, law, point) for scene, point in zip(scenes, points, strict=True)]
+    means = np.array([point.found.mean for point in points])
+    errors: Floats = np.array([error for error, _ in rows])
+
+    def orbit(i: int) -> Orbit:
+        mass = scenes[i].mass()
+        mean = means[i]
+        return motions[i].orbit(
+            points[i], mass.normal_load * complex(mean.real, mean.imag / mass.transverse_stiffness)
+        )
+
+    found = Modelled(means, errors, time.perf_counter() - start)
+    answers = judged(found, [reason for _, reason in rows], AVERAGED, tolerance, orbit)
+    return replace(answers, period=np.where(np.isnan(answers.error), np.nan, float(scenes[0].periods)))
+
+
+def _error(scene: Scene, law: FrictionLaw, point: VaryingPoint) -> tuple[float, str]:
+    """The change of the mean because friction changes the motion, or the reason why it is not known."""
+    if point.status != "ok":
+        return float("nan"), point.reason
+    if stays_at_rest(scene, law):
+        return float("nan"), MAY_STAY
+    full = full_mean(scene, law)
+    rounding = ROUNDING * law.sliding_friction(abs(scene.belt_speed))
+    return abs(full.mean - point.found.mean.real) + full.error + point.found.error + rounding, full.reason

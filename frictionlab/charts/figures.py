@@ -24,7 +24,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.textpath import TextPath
-from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
 from frictionlab.charts.curves import CurveData, Family, SweptValue, family_of, is_logarithmic, kinks
@@ -54,6 +54,7 @@ LEGEND_MARKS = WITHOUT_NUMBER | {"not_unique": r"$\mathrm{I}$"}
 MOST_VALUES_IN_LEGEND = 8
 LONGEST_LABEL, BESIDE = 36, 22  # letters of a name alone, and beside another name or a count
 LEGEND_FONT = 7  # [point]
+DEGREES = [1, 1.5, 3, 4.5, 9, 10]  # between ticks of an angle, times a power of ten
 ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
 
@@ -151,6 +152,8 @@ def _draw_panel(axes: Axes, family: Family, panel: tuple[SweptValue, ...], colum
     if panel:
         axes.set_title(", ".join(_sentence(setting) for setting in panel), loc="left")
     axes.margins(x=0.02)
+    if word(family.abscissa).endswith("deg]"):
+        axes.xaxis.set_major_locator(MaxNLocator(steps=DEGREES))
     if is_logarithmic(
         np.concatenate([curve.rows[family.abscissa].to_numpy(dtype=float) for curve in curves])
     ):

@@ -88,7 +88,8 @@ def _against_several_memories(asked: Request) -> Iterator[str]:
     if asked.scene.degrees_of_freedom == 0:
         yield "for a law with several memories or scalars march needs a driven mass; use shooting"
     if asked.scene.undriven:
-        yield "for a law with several memories or scalars march needs a driven mass: give a drive"
+        reason = "for a law with several memories or scalars march needs a driven mass"
+        yield suggest_shooting(reason, asked.scene, asked.law)
 
 
 def _against_jumps(asked: Request) -> Iterator[str]:

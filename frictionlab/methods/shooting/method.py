@@ -13,6 +13,7 @@ from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
 from frictionlab.methods.shooting.undriven import solve_undriven
+from frictionlab.methods.shooting.undriven_memory import ACROSS
 from frictionlab.scene.scene import Scene
 
 Applies = Callable[[Scene, FrictionLaw], bool]
@@ -92,6 +93,8 @@ class Shooting(Method):
             return "undriven scenes are solved along the belt only: leave initial.x2 and velocity2 at 0"
         if scene.undriven and law.memory_kind == "scalars" and starts_to_creep(scene):
             return CREEPS
+        if scene.undriven and scene.degrees_of_freedom == 2 and not law.damps_across(abs(scene.belt_speed)):
+            return ACROSS
         if law.planar_form() == "vectorial" and not along_the_belt(scene, law):
             return law.no_vector_form() or None
         return None
@@ -100,10 +103,11 @@ class Shooting(Method):
         """About 0.3 ms in the plane and 0.1 ms on the line at 1e-9; steps grow as tolerance^(-1/8).
 
         With a bristle, other starts included, 1 ms on the line where the path is exact, else ten times as long and as
-        tolerance^(-1/5), and 50 ms in the plane. With another memory 20 ms on the line and 200 ms in the plane.
+        tolerance^(-1/5), and 50 ms in the plane. With another memory 20 ms on the line and 200 ms in the plane, and
+        as long undriven with any memory.
         """
         planar = not scene.load_along_belt_only
-        cost = COSTS[map_kind(law, planar)]
+        cost = MEMORY if scene.undriven and law.count() > 0 else COSTS[map_kind(law, planar)]
         return (cost.plane if planar else cost.line) * (cost.tolerance / tolerance) ** cost.power
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

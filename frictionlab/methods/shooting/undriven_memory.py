@@ -48,6 +48,7 @@ LITTLE = 1e-4
 """Of sliding friction: how near to it friction must stay where nothing else takes energy from the motion."""
 STICKING = 1e-2
 """Of the belt speed: slower slip is called stick."""
+ACROSS = "friction of so quick a slip may feed a motion across the belt, which is not followed: leave transverse out"
 MOST_TURNS, RESTING = 5000, 4
 """Turns after which a mass that still swings on a belt at rest is given up; those by which its decay is judged."""
 
@@ -154,8 +155,12 @@ class UndrivenMemory:
         return None
 
     def _cycle(self, cycle: Cycle) -> PeriodicMotion:
-        slowest = self._path.follow(cycle.state, cycle.turns).slowest
-        rests = slowest < STICKING * abs(self._path.speed)
+        """Raises NotFound where a motion across the belt might grow."""
+        span, speed = self._path.follow(cycle.state, cycle.turns, room=PANELS_AT_FIRST), self._path.speed
+        fastest = float(np.abs(span.track.v.real[: span.track.filled[0]] - speed).max())
+        if self.scene.degrees_of_freedom == 2 and not self.law.damps_across(fastest):
+            raise NotFound(ACROSS)
+        rests = span.slowest < STICKING * abs(speed)
         kind = "a cycle of stick and slip" if rests else "a cycle of slip without rest"
         return PeriodicMotion(
             cycle.state, cycle.turns * TURN, cycle.mean, cycle.error, cycle.multiplier, kind

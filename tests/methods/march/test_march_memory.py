@@ -123,7 +123,7 @@ def test_in_the_plane_without_a_load_across_march_answers_as_along_the_belt():
             ONE,
             "shooting",
         ),
-        (driven(1.0, drive=None, initial={"x": 1.0}), {}, ONE, "give a drive"),
+        (driven(1.0, drive=None, initial={"x": 1.0}), {}, ONE, "use shooting"),
         (driven(1.0), {"stepper": "moreau"}, ONE, "use rk4"),
         (driven(1.0), {"theta": 1}, ONE, "leave it out"),
         (driven(1.0), {}, elements(stiffness=(1e6,), reach=(1e-6,)), "steps per period"),

@@ -351,7 +351,7 @@ def test_a_soft_contact_slides_on_or_reverses_on_one_belt() -> None:
     assert one.columns["mean_friction"][0] == pytest.approx(0.4, abs=1e-9)
 
 
-def test_vectors_and_undriven_bristles_are_refused_where_they_mean_nothing() -> None:
+def test_vectors_are_refused_where_they_mean_nothing() -> None:
     drive = fl.Drive(unbalance=10.0, frequency=1.0)
     across = fl.Transverse(natural_frequency=2.0, damping_ratio=0.1, load=fl.Load(unbalance=10.0))
     planar = fl.Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=5.0, drive=drive, transverse=across)
@@ -359,4 +359,4 @@ def test_vectors_and_undriven_bristles_are_refused_where_they_mean_nothing() -> 
     assert "exponent 1" in str(Shooting().refusal(planar, square))
     assert Shooting().refusal(planar, square.model_copy(update={"planar": "per-axis"})) is None
     undriven = fl.Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=5.0)
-    assert "use march" in str(Shooting().refusal(undriven, square))
+    assert Shooting().refusal(undriven, square) is None

@@ -28,7 +28,7 @@ from frictionlab.methods.shooting.undriven_motion import (
     NotFound,
     PeriodicMotion,
 )
-from frictionlab.methods.shooting.undriven_path import LEAST, PANELS_AT_FIRST, Return, UndrivenPath
+from frictionlab.methods.shooting.undriven_path import FOLLOWED, LEAST, PANELS_AT_FIRST, Return, UndrivenPath
 from frictionlab.orbit.record import Orbit
 from frictionlab.orbit.recorder import Track
 from frictionlab.quantities import Floats
@@ -81,6 +81,11 @@ class UndrivenMemory:
         state = self._path.sliding
         matrix = self._path.quotients(state, BETWEEN_LOOKS)
         return KnownOrbit(state, matrix, 1.0 - radius(matrix))
+
+    @property
+    def _accuracy(self) -> float:
+        """Of maps that are to follow the motion no worse than the mean is asked for."""
+        return max(min(0.1 * self.tolerance, FOLLOWED), LEAST)
 
     @property
     def _conserves(self) -> bool:
@@ -173,12 +178,16 @@ class UndrivenMemory:
         start, mass = self.scene.start, self._path.mass
         if start.x == start.velocity == 0.0:
             return PeriodicMotion(self._path.start, math.nan, 0.0, ROUNDING, math.nan, RESTS)
-        accuracy = max(0.1 * self.tolerance, LEAST)
-        # where it ends depends on every step of the way: twice, the second time much finer
-        (rough, _), (fine, left) = (self._rested(each) for each in (accuracy, accuracy / FINER))
-        unit = math.sqrt(mass.stiffness) / mass.normal_load
-        error = unit * (2.0 * abs(fine[0] - rough[0]) + left) + ROUNDING
-        return PeriodicMotion(fine, math.nan, float(unit * fine[0]), float(error), math.nan, RESTS)
+        unit, accuracy = math.sqrt(mass.stiffness) / mass.normal_load, self._accuracy
+        state, left = self._rested(accuracy)
+        while True:
+            # where it ends depends on every step of the way: once more, much finer
+            before, accuracy = state, max(accuracy / FINER, LEAST)
+            state, left = self._rested(accuracy)
+            mean = float(unit * state[0])
+            error = unit * (2.0 * float(abs(state[0] - before[0])) + left) + ROUNDING
+            if error <= self.tolerance or accuracy <= LEAST:
+                return PeriodicMotion(state, math.nan, mean, error, math.nan, RESTS)
 
     def _rested(self, accuracy: float) -> tuple[Floats, float]:
         """The state in which the motion has died out, but for so much of its way. Raises NotFound."""

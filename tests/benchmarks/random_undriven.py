@@ -158,7 +158,7 @@ class Motion:
 
     def mean(self, rtol: float) -> float:
         """In the long run. Raises TooSlow."""
-        place, peaks, tau = self.start(), list[tuple[float, float]](), 0.0
+        place, peaks, tau = self.start(), list[tuple[float, float, float]](), 0.0
 
         def turns(tau: float, y: Floats) -> float:
             return float(y[1] + self.belt)
@@ -175,29 +175,26 @@ class Motion:
                 return float(found.y[0, -1] / self.load)
             for at, y in zip(found.t_events[0], found.y_events[0], strict=True):
                 if self.side * (y[0] - self.still) > 0.0:
-                    peaks.append((float(at), float(y[-1])))
+                    peaks.append((float(at), float(y[-1]), float(y[0] - self.still)))
             if (mean := _repeated(peaks)) is not None:
                 return mean
             place, tau = found.y[:, -1], span[1]
 
 
-def _repeated(peaks: list[tuple[float, float]]) -> float | None:
+def _repeated(peaks: list[tuple[float, float, float]]) -> float | None:
     """The mean over so few peaks as it repeats after."""
     for back in 1, 2, 3, 4:
         if len(peaks) < 5 * back + 1:
             return None
         means, lengths = [], []
         for k in range(4):
-            (begun, before), (at, impulse) = peaks[-1 - (k + 1) * back], peaks[-1 - k * back]
+            (begun, before, _), (at, impulse, _) = peaks[-1 - (k + 1) * back], peaks[-1 - k * back]
             means.append(-(impulse - before) / (at - begun))
             lengths.append(at - begun)
-        changes, stretches = np.abs(np.diff(means)), np.abs(np.diff(lengths))
-        # and what changes in the same way for long may change on
-        if (
-            changes.max() < REPEATS
-            and stretches.max() < 1e3 * REPEATS
-            and changes[0] <= max(0.5 * changes[2], 1e-11)
-        ):
+        # what dies out repeats its mean long before it ends: deflections must repeat, too
+        ends = np.array([far for _, _, far in peaks[-1::-back][:4]])
+        dies_out = np.abs(np.diff(ends)).max() > 1e-6 * np.abs(ends).max()
+        if not dies_out and np.abs(np.diff(means)).max() < REPEATS and np.ptp(lengths) < 1e3 * REPEATS:
             return float(means[0])
     return None
 

@@ -65,6 +65,10 @@ class Outside(NamedTuple):
     steps: int
 
 
+ROUNDING = 2e-14
+"""Of a mean, over some hundred steps."""
+
+
 class Unsettled(Exception):
     """The motion does not repeat after as many periods as were allowed, or takes too many steps."""
 
@@ -124,7 +128,7 @@ def steady(
     problem = _Problem(scene, law, tolerance)
     fine, closing, last = problem.settled(problem.state_of(start), periods)
     coarse, _, _ = _Problem(scene, law, 100.0 * tolerance).settled(last, periods)
-    return fine._replace(error=abs(fine.mean - coarse.mean) + closing + 1e-15, closing=closing)
+    return fine._replace(error=abs(fine.mean - coarse.mean) + closing + ROUNDING, closing=closing)
 
 
 class _Problem:

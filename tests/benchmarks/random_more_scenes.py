@@ -65,6 +65,14 @@ def solved(drawn: tuple[Keys, Keys]) -> Found:
     return Found(state.status, state.reason, state.model, state.mean_friction, state.error, spent, start)
 
 
+class Cases(list[str]):
+    """What is wrong, printed at once."""
+
+    def append(self, case: str) -> None:
+        super().append(case)
+        print(case, flush=True)
+
+
 class Worker:
     """A process that solves one scene after another, and another one after a hang."""
 
@@ -105,8 +113,10 @@ def starts(scene: Keys) -> list[tuple[float, ...]]:
 
 def one_answer(count: int, rng: np.random.Generator, worker: Worker) -> tuple[Counter[str], list[str]]:
     """Scenes of T1 from three starts each, and by auto."""
-    tally, wrong = Counter[str](), []
+    tally, wrong = Counter[str](), Cases()
     for number in range(count):
+        if number % 50 == 49:
+            print(number + 1, dict(tally), file=sys.stderr, flush=True)
         scene, law = convergent_scene(Numpy(rng))
         found = worker.solve((scene, law))
         tally[f"auto: {found.status}"] += 1
@@ -134,8 +144,10 @@ def every_kind(
     count: int, compared: int, rng: np.random.Generator, worker: Worker
 ) -> tuple[Counter[str], list[str]]:
     """Scenes of every kind by auto; the first so many answers against the tests' own integration."""
-    tally, wrong, seconds = Counter[str](), [], []
+    tally, wrong, seconds = Counter[str](), Cases(), []
     for number in range(count):
+        if number % 50 == 49:
+            print(number + 1, dict(tally), file=sys.stderr, flush=True)
         scene, law = scene_of_every_kind(Numpy(rng))
         found = worker.solve((scene, law))
         tally[found.status] += 1
@@ -173,11 +185,9 @@ def main(convergent: int, count: int, compared: int, seed: int) -> int:
         every_kind(count, compared, np.random.default_rng(seed + 1), worker),
     ]
     worker.close()
-    for tally, wrong in results:
+    for tally, _ in results:
         for line in sorted(tally.items()):
             print(*line)
-        for case in wrong:
-            print(case)
     print(f"{time.perf_counter() - begun:.0f} s")
     bad = [case for _, wrong in results for case in wrong if "failed" not in case.split(",")[0]]
     failed = results[1][0]["failed"]

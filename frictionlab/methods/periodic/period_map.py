@@ -26,7 +26,7 @@ from frictionlab.methods.periodic.maps.memory_state import (
 )
 from frictionlab.methods.periodic.maps.pace import Pace, pace_of
 from frictionlab.methods.periodic.maps.path import path_map, repeated_path
-from frictionlab.methods.periodic.maps.rates import MEMORY, contact_of, workspace
+from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, workspace
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.maps.stick import periods_at_rest
 from frictionlab.numerics.vectors import dimension
@@ -88,7 +88,7 @@ def _no_grain(law: Any, body: Body, accuracy: float, like: Any) -> float:
 
 def _grain_of_memory(law: Any, body: Body, accuracy: float, like: Any) -> float:
     """A yield within a step, or the sum of all steps' errors."""
-    work, most = workspace(law, like, contact_of(body)), 0.0
+    work, most = workspace(law, like, contact_kind(body)), 0.0
     measure_scales(law, body, work, like)
     if law.turning > 0.0:
         for k in range(count_of(law)):
@@ -116,7 +116,7 @@ def _image_with_memory(
 ) -> Mapped:
     law, body, like = case.law, case.body, case.like
     y, u = unpack(body, state, like)
-    work = workspace(law, like, contact_of(body))
+    work = workspace(law, like, contact_kind(body))
     measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     cut_back(law, work)
@@ -138,7 +138,7 @@ def _image_by_path(
 ) -> Mapped:
     law, body, like = case.law, case.body, case.like
     y, u = unpack(body, state, like)
-    work = workspace(law, like, contact_of(body))
+    work = workspace(law, like, contact_kind(body))
     measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     z = work.start[MEMORY]
@@ -207,7 +207,7 @@ def _remember_nothing(law: Any, body: Body, state: Any, z: Any) -> None:
 
 
 def _remember_a_deflection(law: Any, body: Body, state: Any, z: Any) -> None:
-    work = workspace(law, z, contact_of(body))
+    work = workspace(law, z, contact_kind(body))
     measure_scales(law, body, work, z)
     work.start[MEMORY] = z
     pack_memory(law, body, work, state, z)
@@ -215,7 +215,7 @@ def _remember_a_deflection(law: Any, body: Body, state: Any, z: Any) -> None:
 
 def _remember_sliding(law: Any, body: Body, state: Any, z: Any) -> None:
     """The memory of steady sliding at slip velocity z."""
-    work = workspace(law, z, contact_of(body))
+    work = workspace(law, z, contact_kind(body))
     measure_scales(law, body, work, z)
     remember_sliding(law, body, work, z)
     pack_memory(law, body, work, state, z)

@@ -18,7 +18,7 @@ from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.dynamics.motion import swing_of
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.memory_state import measure_scales, unpack_memory
-from frictionlab.methods.periodic.maps.rates import MEMORY, contact_of, workspace
+from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, workspace
 from frictionlab.methods.periodic.period_map import start_of, unpack
 from frictionlab.numerics.linalg import norm, subtract
 from frictionlab.scene.body import Body
@@ -85,7 +85,7 @@ def _creep_on_the_line(case: Case, state: Any, like: float) -> float:
     law, body, belt_speed, _like = case
     stiffness = body.stiffness_mean + body.stiffness_split
     y, u = unpack(body, state, like)
-    work = workspace(law, like, contact_of(body))
+    work = workspace(law, like, contact_kind(body))
     measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     z, nudge, fastest = work.start[MEMORY], 1e-3 * law.largest_deflection(), -2.0 * belt_speed

@@ -26,7 +26,7 @@ BETWEEN_REVERSALS = (
     "closed form: slip prescribed along the belt, the normal load integrated between its reversals"
 )
 BETWEEN_CORNERS = "prescribed slip: Gauss-Lobatto quadrature, panels between corners graded towards slow slip"
-RESTS = "the slip rests for a part of the period: friction there is any value up to mu"
+NO_SLIP = "the slip rests for a part of the period: friction there is any value up to mu"
 WIDEST_PANEL = math.pi / 16.0
 """Half width of a panel, in radians of the quickest harmonic."""
 _CLOSEST = 1e-16
@@ -178,7 +178,7 @@ class VaryingPoint:
         return -complex((weights * friction).sum()) / self.slip.along.period, largest
 
     def _left_open(self, mean: float, spread: float) -> PrescribedMean:
-        self.status, self.error_kind, self.reason = "not_unique", "", RESTS
+        self.status, self.error_kind, self.reason = "not_unique", "", NO_SLIP
         return PrescribedMean(low=mean - spread, high=mean + spread)
 
     def orbit(self) -> Orbit | None:

@@ -100,8 +100,8 @@ def _keeps_stiffness(body: Any) -> Any:
     return (1.0,)
 
 
-contact_of = by_contact(_follows_load, _keeps_stiffness)
-"""contact_of(body): what ``workspace`` is told of the contact."""
+contact_kind = by_contact(_follows_load, _keeps_stiffness)
+"""contact_kind(body): what ``workspace`` is told of the contact."""
 
 
 @inlined

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from frictionlab.scene.signals import FULL_TURN, signal_of
-from frictionlab.scene.waveforms import MOST_COMMON, as_fraction
+from frictionlab.scene.waveforms import LONGEST_COMMON, as_fraction
 
 SHAKEN = "belt_vibration", "normal_load_variation"
 """The parts that take the drive's frequency, or give one where there is no drive."""
@@ -81,10 +81,10 @@ def _denominators(scene: Any) -> dict[str, int]:
 
 def _period(scene: Any) -> Iterator[str]:
     periods, denominators = periods_of(scene), _denominators(scene)
-    if periods > MOST_COMMON:
+    if periods > LONGEST_COMMON:
         yield (
             f"{max(denominators, key=denominators.__getitem__)}.frequency_ratio: with it everything repeats after "
-            f"{periods} periods of the drive only, more than {MOST_COMMON}: choose smaller denominators"
+            f"{periods} periods of the drive only, more than {LONGEST_COMMON}: choose smaller denominators"
         )
 
 

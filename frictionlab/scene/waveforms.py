@@ -15,7 +15,7 @@ Name = Literal["sine", "square", "triangle", "sawtooth"]
 WAVEFORMS: tuple[str, ...] = get_args(Name)
 MOST_TERMS = 64
 """Of a sum of harmonics, and the largest order among them."""
-MOST_COMMON = 64
+LONGEST_COMMON = 64
 """Periods of the drive after which everything must have repeated."""
 LARGEST_RATIO = 1000
 """Of a frequency to the drive's."""
@@ -139,13 +139,13 @@ Waveform = Annotated[Form, PlainValidator(_form), PlainSerializer(Form.plain), W
 
 def as_fraction(ratio: float) -> Fraction:
     """The fraction of small whole numbers that a ratio of frequencies is."""
-    return Fraction(ratio).limit_denominator(MOST_COMMON)
+    return Fraction(ratio).limit_denominator(LONGEST_COMMON)
 
 
 def _ratio(value: Any) -> float:
     """Of numbers and of texts such as 3/2. Raises ValueError where it is no ratio of small whole numbers."""
     wanted = (
-        f"must be p/q in whole numbers, q at most {MOST_COMMON} and p/q from 1/{MOST_COMMON} to "
+        f"must be p/q in whole numbers, q at most {LONGEST_COMMON} and p/q from 1/{LONGEST_COMMON} to "
         f'{LARGEST_RATIO}, such as 2, 0.5 or "3/2"'
     )
     if isinstance(value, str) and _FRACTION.fullmatch(value):

@@ -37,7 +37,7 @@ from frictionlab.methods.periodic.period_map import pack, size_of
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.undriven_memory import UndrivenMemory
 from frictionlab.methods.shooting.undriven_motion import (
-    RESTS,
+    COMES_TO_REST,
     SLIDES,
     SLIDES_FREELY,
     TURN,
@@ -222,7 +222,7 @@ class _Undriven:
             raise NotFound(f"the mass still creeps towards rest after {-periods} periods of the free mass")
         mean = state[0] / self._pressed
         error = 1e-11 * periods + ROUNDING
-        return PeriodicMotion(np.array([state[0], 0.0]), math.nan, mean, error, math.nan, RESTS)
+        return PeriodicMotion(np.array([state[0], 0.0]), math.nan, mean, error, math.nan, COMES_TO_REST)
 
     def _deflection(self) -> float:
         """Of the spring in steady sliding."""

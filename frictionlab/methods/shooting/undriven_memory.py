@@ -20,7 +20,7 @@ from frictionlab.methods.periodic.attraction import ENOUGH, KnownOrbit, obeys
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
 from frictionlab.methods.shooting.undriven_cycle import Cycle, close_cycle, radius
 from frictionlab.methods.shooting.undriven_motion import (
-    RESTS,
+    COMES_TO_REST,
     SLIDES,
     SLIDES_FREELY,
     TURN,
@@ -177,7 +177,7 @@ class UndrivenMemory:
         """On a belt at rest: the spring keeps what friction holds when the motion has died out."""
         start, mass = self.scene.start, self._path.mass
         if start.x == start.velocity == 0.0:
-            return PeriodicMotion(self._path.start, math.nan, 0.0, ROUNDING, math.nan, RESTS)
+            return PeriodicMotion(self._path.start, math.nan, 0.0, ROUNDING, math.nan, COMES_TO_REST)
         unit, accuracy = math.sqrt(mass.stiffness) / mass.normal_load, self._accuracy
         state, left = self._rested(accuracy)
         while True:
@@ -187,7 +187,7 @@ class UndrivenMemory:
             mean = float(unit * state[0])
             error = unit * (2.0 * float(abs(state[0] - before[0])) + left) + ROUNDING
             if error <= self.tolerance or accuracy <= LEAST:
-                return PeriodicMotion(state, math.nan, mean, error, math.nan, RESTS)
+                return PeriodicMotion(state, math.nan, mean, error, math.nan, COMES_TO_REST)
 
     def _rested(self, accuracy: float) -> tuple[Floats, float]:
         """The state in which the motion has died out, but for so much of its way. Raises NotFound."""

@@ -11,7 +11,7 @@ from frictionlab.quantities import Floats
 
 TURN = 2.0 * math.pi
 """The period of the free mass."""
-RESTS = "at rest, where the motion from scene.initial ends"
+COMES_TO_REST = "at rest, where the motion from scene.initial ends"
 SLIDES = "steady sliding, which attracts"
 SLIDES_FREELY = "a free oscillation in slip, which does not decay without damping"
 

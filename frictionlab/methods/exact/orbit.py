@@ -109,7 +109,7 @@ def sample_leg(body: Any, leg: Any, start: Any, r: float) -> tuple[float, float,
 
 
 @inner
-def legs_of(body: Any, x: float, w: float, shift: float, legs: int) -> LegTable:
+def legs_of_orbit(body: Any, x: float, w: float, shift: float, legs: int) -> LegTable:
     """A period from canonical time 0, as legs; the orbit starts at ``shift``."""
     # The state is known at canonical time 0, the orbit starts at ``shift``: the legs before it follow those after it.
     table = np.empty((2 * legs + 8, FACTS))
@@ -166,7 +166,7 @@ def make_orbits(mass: Mass, coefficient: float, belt_speeds: Any, states: Any, e
         if legs > 0:
             side = side_solved(mass, belt_speeds[i])
             body = oscillator_at(mass, coefficient, side * belt_speeds[i])
-            table = legs_of(body, x, w, shift, legs)
+            table = legs_of_orbit(body, x, w, shift, legs)
             needed = track.filled[0] + count_panels(body, table.legs, table.rows)
             if needed > room:
                 room = 2 * needed

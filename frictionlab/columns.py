@@ -43,7 +43,7 @@ RESULTS: dict[str, str] = {
     "period": "period of the response in drive periods, of an undriven one in units of 2 pi",
     "floquet": "largest modulus of the Floquet multipliers, without the trivial one of an undriven orbit",
     "normalized_friction": "mean_friction / steady sliding friction at the belt speed",
-    "velocity_ratio": "belt_speed / V_lin, the friction-free velocity amplitude",
+    "velocity_ratio": "belt_speed / V_lin, the largest friction-free velocity of x1 over the belt's vibration",
     "friction_to_drive": "friction coefficient * normal_load / force amplitude",
     "presliding_ratio": "presliding length * frequency / V_lin",
     "model": "the method that computed the number, and for auto the reason for its choice",

@@ -136,8 +136,12 @@ def kinks(curve: CurveData) -> list[float]:
     """V_lin, and its mirror image, inside the belt speeds of a curve that has its closed-form kink there.
 
     That is a curve whose body moves along the belt alone and whose friction of steady sliding is the same at
-    every speed: from V_lin on slip no longer reverses. V_lin is read from velocity_ratio.
+    every speed: from V_lin on slip no longer reverses. V_lin is read from velocity_ratio. Friction on bristles that
+    keep their stiffness lags behind a normal load that changes, and has no kink there.
     """
+    contact = curve.rows.get("scene.normal_load_variation.contact")
+    if contact is not None and (contact == "constant").any():
+        return []
     rows = curve.rows[curve.rows["velocity_ratio"].abs() > 0]
     sliding = (rows["mean_friction"] / rows["normalized_friction"]).dropna().abs()
     across = rows["transverse_velocity_amplitude"].abs().max() > 0

@@ -15,7 +15,7 @@ from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS, OF_SHAPE, SCALED
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.quantities import Floats
-from frictionlab.results.loads_in_time import loads_of, scene_of, varies
+from frictionlab.results.loads_in_time import loads_of, varies
 from frictionlab.results.table import value_in
 from frictionlab.shape.ends import Loads, Rows, end_of_reversal, start_friction
 from frictionlab.shape.shakedown import Shakedown, Value, shakedown_of_body, shakedown_of_slip
@@ -78,7 +78,7 @@ def _loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
         return 0.0 if found is None or found != found else float(found)
 
     if varies(given):
-        return loads_of(scene_of(given), _law(given, laws))
+        return loads_of(given, _law(given, laws))
     frequency = value("scene.drive.frequency")
 
     def force(path: str) -> complex:

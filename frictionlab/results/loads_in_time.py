@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,13 +11,19 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signal
+from frictionlab.scene.waveforms import told
 from frictionlab.shape.ends import Loads
+from frictionlab.theory.piecewise import edges_of, piecewise
+from frictionlab.theory.prescribed import mean_direction
 from frictionlab.theory.rest import can_hold
 
 KEYS = "waveform", "direction", "frequency_ratio", "belt_vibration", "normal_load_variation"
 LOPSIDED = (
     "loads, belt and normal load do not repeat mirrored half a period later: the limit of friction at vanishing belt "
     "speed is not known"
+)
+JUMPS = (
+    "friction jumps at the end of reversal, where slip rests for a part of the period: it has no shape there"
 )
 STICKS = "the body sticks to a belt of vanishing speed: the start of its curve is known for one sine along the belt"
 STICKS_ELASTICALLY = (
@@ -37,51 +42,68 @@ def scene_of(given: Mapping[str, Any]) -> Scene:
     """The scene of a row, on a belt at rest."""
     tree: dict[str, Any] = {"belt_speed": 0.0}
     for name, value in given.items():
-        path = re.findall(r"[^.\[\]]+", name)
+        path = name.split(".")
         if path[0] == "scene" and path[1] != "dimensional" and value is not None and value == value:
             held = tree
             for key in path[1:-1]:
                 held = held.setdefault(key, {})
-            held[path[-1]] = value
-    return Scene(**_with_lists(tree))
+            held[path[-1]] = told(value) if path[-1] == "waveform" else value
+    return Scene(**tree)
 
 
-def _with_lists(tree: Any) -> Any:
-    """Mappings whose keys are 0, 1, 2 ... as lists."""
-    if not isinstance(tree, dict):
-        return tree
-    inside = {key: _with_lists(value) for key, value in tree.items()}
-    return [inside[key] for key in sorted(inside, key=int)] if "0" in inside else inside
-
-
-def loads_of(scene: Scene, law: FrictionLaw | None) -> Loads:
-    """The loads of a scene on a belt at rest; law: as methods received it, None where it is not known."""
+def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:
+    """The loads of a row; law: as methods received it, None where it is not known."""
+    scene = scene_of(given)
     prescribed = scene.degrees_of_freedom == 0
     remembers = law is not None and law.memory_kind != "none"
     along = (0j if prescribed else scene.mass().force) if scene.is_harmonic else 0j
     across = 0.0 if scene.load_along_belt_only else 1.0
+    start, unknown = _start(scene, law)
     return Loads(
         along=along,
         across=0j if prescribed else complex(across),
         across_slip=across if prescribed else 0.0,
         static_limit=math.nan,
         prescribed=prescribed,
-        unknown_start=_unknown_start(scene, law),
-        symmetric=True,
+        unknown_start=unknown,
+        start=start,
         lags=remembers and scene.constant_contact,
     )
 
 
-def _unknown_start(scene: Scene, law: FrictionLaw | None) -> str:
-    """Why friction at vanishing belt speed is not zero by symmetry; '' where it is."""
-    if not repeats_mirrored(scene):
-        return LOPSIDED
-    if law is not None and (law.memory_kind == "deflections" or law.elastic_deflection() > 0.0):
-        return STICKS_ELASTICALLY
+def _start(scene: Scene, law: FrictionLaw | None) -> tuple[float, str]:
+    """The mean friction at vanishing belt speed, or why it is not known; zero where both directions are alike."""
     remembers = law is not None and law.memory_kind != "none"
-    if scene.degrees_of_freedom > 0 and not remembers and (law is None or can_hold(scene, law)):
-        return STICKS
-    return ""
+    prescribed = scene.degrees_of_freedom == 0
+    if prescribed and not remembers and _rests_at_its_largest(scene):
+        return math.nan, JUMPS
+    if not repeats_mirrored(scene):
+        along = prescribed and scene.load_along_belt_only
+        if along and law is not None and not remembers and law.constant_sliding_friction():
+            return law.sliding_friction(1.0) * _direction(scene), ""
+        return math.nan, LOPSIDED
+    if law is not None and (law.memory_kind == "deflections" or law.elastic_deflection() > 0.0):
+        return math.nan, STICKS_ELASTICALLY
+    if not prescribed and not remembers and (law is None or can_hold(scene, law)):
+        return math.nan, STICKS
+    return 0.0, ""
+
+
+def _rests_at_its_largest(scene: Scene) -> bool:
+    """Whether a slip along the belt keeps its largest velocity for a while, as a square one does."""
+    signals = scene.signals()
+    slip = piecewise(signals.belt[0], edges_of(signals.corners(), signals.period))
+    flat = np.abs(slip.middle[(slip.slope == 0.0) & (slip.curvature() == 0.0)])
+    return scene.load_along_belt_only and bool(np.any(flat >= (1.0 - 1e-12) * slip.size()))
+
+
+def _direction(scene: Scene) -> float:
+    """Mean Coulomb friction of a slip along a belt at rest, relative to its coefficient."""
+    assert scene.normal_load is not None
+    signals = scene.signals()
+    edges = edges_of(signals.corners(), signals.period)
+    load = piecewise(signals.normal_load.scaled(1.0 / scene.normal_load), edges, 1.0)
+    return mean_direction(piecewise(signals.belt[0], edges), load).mean
 
 
 def repeats_mirrored(scene: Scene) -> bool:

@@ -56,6 +56,15 @@ class Form(NamedTuple):
         return " + ".join(map(str, self.terms)) if self.terms else self.shape
 
 
+_TERM = re.compile(r"(?:(\S+) )?sin\((?:(\d+) )?theta(?: \+ (\S+) deg)?\)")
+
+
+def told(text: str) -> Form:
+    """The form that a cell of a table tells, a name or a formula. Raises ValueError."""
+    terms = [Term(int(b or 1), float(a or 1.0), float(c or 0.0)) for a, b, c in _TERM.findall(text)]
+    return Form("harmonics", tuple(terms)) if terms else _form(text)
+
+
 SINE = Form("sine")
 
 

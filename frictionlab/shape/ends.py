@@ -21,7 +21,7 @@ class Loads(NamedTuple):
     along, across: phasors of the forces along and across the belt. static_limit: the largest friction force at
     rest if the law defines one, else NaN. prescribed: whether the slip is prescribed. shakedown: for bristles, their
     state on a belt of vanishing speed. unknown_start: why the start of the curve is not known, '' where it is.
-    symmetric: whether what varies in time moves the body back and forth alike on a belt at rest. lags: whether the
+    start: the mean friction at vanishing belt speed where that is known beforehand, else NaN. lags: whether the
     friction of bristles lags behind the normal load.
     """
 
@@ -32,7 +32,7 @@ class Loads(NamedTuple):
     prescribed: bool
     shakedown: Shakedown | None = None
     unknown_start: str = ""
-    symmetric: bool = False
+    start: float = math.nan
     lags: bool = False
 
     @property
@@ -61,8 +61,12 @@ class Rows(NamedTuple):
 
     @property
     def steady(self) -> Floats:
-        """Friction coefficient of steady sliding."""
-        return self.mean_friction / self.normalized_friction
+        """Friction coefficient of steady sliding; where vibration leaves no friction, the median of the others."""
+        left = self.normalized_friction != 0.0
+        found = np.divide(
+            self.mean_friction, self.normalized_friction, where=left, out=np.full(len(left), np.nan)
+        )
+        return found if left.all() or not left.any() else np.where(left, found, np.nanmedian(found))
 
     @property
     def constant_friction(self) -> bool:
@@ -114,7 +118,9 @@ def start_friction(rows: Rows, loads: Loads) -> Estimate:
         raise UnreadableCurve(loads.unknown_start)
     if loads.shakedown is not None:
         return _bristle_start(rows, loads.shakedown, loads.prescribed)
-    if loads.prescribed or loads.symmetric:
+    if loads.start == loads.start:
+        return Estimate(loads.start, _ROUNDING * abs(loads.start))
+    if loads.prescribed:
         return Estimate(0.0, 0.0)
     force = abs(loads.along) or abs(loads.across)
     if force == 0.0:

@@ -128,7 +128,9 @@ def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
 def _bristle_on_a_line(scene: Scene, law: Any, tolerance: float) -> LegsPoint | BristlePoint | MemoryPoint:
     if scene.is_harmonic:
         return BristlePoint(scene, law, tolerance)
-    return LegsPoint(scene, law) if law.exact_path() else MemoryPoint(scene, law, tolerance)
+    # in a contact that keeps its stiffness, deflections change with the normal load, too
+    known = law.exact_path() and not scene.constant_contact
+    return LegsPoint(scene, law) if known else MemoryPoint(scene, law, tolerance)
 
 
 def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:

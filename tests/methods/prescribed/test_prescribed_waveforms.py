@@ -12,7 +12,7 @@ from answered import with_columns
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from profiles import deep
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
@@ -24,6 +24,7 @@ from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import mean_prescribed_longitudinal, mean_prescribed_pulsating
+from frictionlab.theory.piecewise import edges_of, piecewise
 
 LAW = Coulomb(mu=0.4)
 FALLING = Stribeck(mu_kinetic=0.3, mu_static=0.5, stribeck_speed=0.4, stribeck_exponent=1.5, viscosity=0.02)
@@ -255,6 +256,48 @@ def test_memory_without_an_exact_path_follows_waveforms(law: Any, planar: bool) 
     assert one.mean[0] == pytest.approx(sine.mean[0], abs=one.error[0] + sine.error[0])
     for column in ("mean_friction_transverse", "energy_contact", "energy_friction", "velocity_amplitude"):
         assert one.columns[column][0] == pytest.approx(sine.columns[column][0], abs=1e-7, nan_ok=True)
+
+
+def stepped(one: Scene, law: Any, laps: int = 10) -> float:
+    """The mean of a bristle that keeps its stiffness: Radau between corners and reversals, z' = rate(w, z/n)."""
+    signals, law = one.signals(), law.under_load(2.0)
+    edges = edges_of(signals.corners(), signals.period)
+    slip = piecewise(signals.belt[0], edges).minus(one.belt_speed)
+    load = piecewise(signals.normal_load.scaled(0.5), edges, 1.0)
+    cuts = np.unique(np.concatenate([edges, slip.crossings().tau]))
+    pieces = np.clip(np.searchsorted(edges, 0.5 * (cuts[:-1] + cuts[1:]), side="right") - 1, 0, None)
+    z, total = 0.0, 0.0
+    for _ in range(laps):
+        total = 0.0
+        for start, stop, k in zip(cuts[:-1], cuts[1:], pieces, strict=True):
+
+            def rates(tau: float, y: Any, k: int = k) -> list[float]:
+                at, here = np.array([tau]), np.array([k])
+                w, n = float(slip.at(at, here)[0][0]), float(load.at(at, here)[0][0])
+                moved = law.rate(w, y[0] / n)
+                return [moved, n * law.friction(w, y[0] / n, moved / n)]
+
+            run = solve_ivp(rates, (start, stop), [z, 0.0], method="Radau", rtol=1e-9, atol=1e-12)
+            z, total = run.y[0, -1], total + run.y[1, -1]
+    return -total / signals.period
+
+
+@deep("two kernels to compile")
+@pytest.mark.parametrize("waveform", ["sine", "sawtooth"])
+@pytest.mark.parametrize(
+    "law",
+    [DAHL, LuGre(mu_kinetic=0.4, mu_static=0.5, stribeck_speed=0.3, presliding_length=0.1, damping=0.3)],
+    ids=lambda law: type(law).__name__,
+)
+def test_a_contact_may_keep_its_stiffness_under_a_load_that_changes(law: Any, waveform: str) -> None:
+    load = {"amplitude": 0.4, "phase": 70.0, "frequency_ratio": 2, "contact": "constant"}
+    one = scene(0.3, waveform, 25.0, normal_load_variation=load)
+    found = answer(one, law, tolerance=1e-8)
+
+    assert found.status == ["ok"]
+    assert abs(found.mean[0].real - stepped(one, law)) <= found.error[0] + 1e-9
+    follows = scene(0.3, waveform, 25.0, normal_load_variation={**load, "contact": "per_load"})
+    assert abs(mean(follows, law) - found.mean[0].real) > 1e-5
 
 
 def test_exact_says_what_it_cannot_do() -> None:

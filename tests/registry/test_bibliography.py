@@ -21,6 +21,7 @@ from frictionlab.registry.law_file import read_law_file
 from frictionlab.registry.records import law_record
 
 PLUGINS = Path(__file__).parents[2] / "plugins"
+STUDIES = sorted((Path(__file__).parents[2] / "studies").glob("*.yaml"))
 SOLVERS = [name for name in registry.method_names() if name != "auto"]  # auto answers by another's work
 CLASSES: list[Any] = [registry.law_class(name) for name in registry.law_names()]
 CLASSES += [registry.method_class(name) for name in SOLVERS]
@@ -80,8 +81,11 @@ def test_no_two_entries_share_a_key_or_a_name() -> None:
 
 def test_the_bibliography_holds_nothing_that_nobody_names() -> None:
     used = {each.key for kind in OURS for each in publications(inspect.getdoc(kind) or "", kind.bibtex)}
+    studies = " ".join(file.read_text(encoding="utf-8") for file in STUDIES)
 
-    assert {entry.key for entry in bibliography()} == used
+    assert {entry.key for entry in bibliography()} == used | {
+        each.key for each in publications_named(studies, bibliography())
+    }
 
 
 def test_a_text_names_a_publication_by_its_authors_and_year() -> None:

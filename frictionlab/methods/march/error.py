@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from frictionlab.methods.march.laps import CLOSED, LATE, STALLED, TIRED, TOO_FAST, TOO_STIFF
 from frictionlab.methods.march.run import MarchResult, MarchRun, Resolution
-from frictionlab.methods.march.stability import MARGIN, lightest_contact, quickest_wave
+from frictionlab.methods.march.stability import MARGIN, lightest_contact
 from frictionlab.numerics.richardson import FEWEST, REVERSING, SMOOTH, STICKING, bias, first_error, richardson
 
 COARSEST, WORK = 64, 16_000_000
@@ -232,8 +232,8 @@ def _slowness(march: MarchRun) -> int:
     """Steps are counted per period; a slow drive needs more of them for the body's own motion."""
     mass = march.mass
     quickest = max(1.0, mass.damping)
-    if not march.scene.is_harmonic:
-        quickest = max(quickest, quickest_wave(march.scene))
+    if mass.varying:
+        quickest = max(quickest, mass.varying.quickest)
     if not march.straight:
         quickest = max(quickest, math.sqrt(mass.transverse_stiffness), mass.transverse_damping)
     return max(1, math.ceil(quickest / mass.frequency))

@@ -51,13 +51,13 @@ def reasons_against(asked: Request) -> Iterator[str]:
     yield from _against_the_stepper(asked)
     if asked.theta is not None and law.count() > 0:
         yield "theta is a key of stepper moreau, which does not support friction with memory; leave it out"
+    yield from _against_constant_contact(asked)
     yield from _against_several_memories(asked)
     planar = law.planar_form() == "vectorial" and not along_the_belt(scene, law)
     if planar and law.no_vector_form():
         yield law.no_vector_form()
     yield from _against_jumps(asked)
     yield from _against_rates(asked)
-    yield from _against_constant_contact(asked)
     yield from _against_so_few_steps(asked)
 
 

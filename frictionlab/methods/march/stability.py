@@ -47,19 +47,6 @@ def lightest_contact(scene: Scene) -> float:
     return shares_of_load(scene)[0] if lags_the_load(scene) else 1.0
 
 
-def quickest_wave(scene: Scene) -> float:
-    """The highest circular frequency of all waves; at least that of the drive."""
-    signals = scene.signals()
-    every = (*signals.load, *signals.belt, signals.normal_load)
-    return max((wave.frequency for each in every for wave in each.waves), default=scene.frequency)
-
-
-def belt_swing(scene: Scene) -> float:
-    """The largest velocity of the belt's vibration, or of a prescribed oscillation."""
-    signals = scene.signals()
-    return math.hypot(*(max(map(abs, each.extremes(signals.period))) for each in signals.belt))
-
-
 # --- the motion ---------------------------------------------------------------------------------------------------
 
 
@@ -67,14 +54,16 @@ def expected_slip(scene: Scene) -> float:
     """The largest slip speed of the friction-free motion, and at ``scene.initial`` [scene velocity]."""
     along = velocity_scale(scene) + abs(scene.belt_speed)
     if scene.degrees_of_freedom == 0:
-        across = abs(scene.motion().transverse_velocity)
-        return math.hypot(along, across) if scene.is_harmonic else belt_swing(scene) + abs(scene.belt_speed)
+        motion = scene.motion()
+        if motion.varying:
+            return abs(scene.belt_speed) + float(motion.varying.belt_swing)
+        return math.hypot(along, abs(motion.transverse_velocity))
     mass, start = scene.mass(), scene.start if scene.undriven else scene.initial
     dynamic = complex(mass.transverse_stiffness - mass.frequency**2, mass.transverse_damping * mass.frequency)
     across = abs(mass.transverse_force) * mass.frequency
     speed = math.hypot(along, across / abs(dynamic) if dynamic else (math.inf if across else 0.0))
     speed = speed if math.isfinite(speed) else abs(scene.belt_speed)
-    speed = speed if scene.is_harmonic else speed + belt_swing(scene)
+    speed = speed + float(mass.varying.belt_swing) if mass.varying else speed
     if start is not None:
         speed = max(speed, math.hypot(start.velocity - scene.belt_speed, start.velocity2))
     return speed

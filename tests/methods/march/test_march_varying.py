@@ -1,0 +1,315 @@
+"""Time stepping of scenes that vary in time: waveforms, belts, normal loads; steps that end at every corner."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from answered import with_columns
+from draws_of_every_kind import every_kind
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from memory_laws import Elements
+from strategies import sizes
+
+from frictionlab.compile.interpret import interpreted
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.elasto_plastic import ElastoPlastic
+from frictionlab.laws.jenkins import Jenkins
+from frictionlab.laws.lugre import LuGre
+from frictionlab.laws.stribeck import Stribeck
+from frictionlab.methods.march.lap import MarchSettings, steps_in
+from frictionlab.methods.march.method import March
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Scene
+
+COULOMB, DAHL = Coulomb(mu=0.4), Dahl(mu=0.4, presliding_length=1.0)
+LINE = {"damping_ratio": 0.1, "normal_load": 10.0, "belt_speed": 2.0}
+DRIVE = {"amplitude": 10.0, "frequency": 1.3}
+ACROSS = {"natural_frequency": 2.1, "damping_ratio": 0.05}
+SCENES = {
+    "square drive": LINE | {"drive": DRIVE | {"waveform": "square", "phase": 40.0}},
+    "square belt alone": LINE
+    | {"belt_vibration": {"velocity_amplitude": 3.0, "waveform": "square", "frequency": 0.7}},
+    "sawtooth belt, square load": LINE
+    | {
+        "drive": DRIVE,
+        "belt_vibration": {"velocity_amplitude": 3.0, "waveform": "sawtooth", "phase": 30.0},
+        "normal_load_variation": {"amplitude": 0.5, "waveform": "square", "frequency_ratio": "3/2"},
+    },
+    "plane": LINE
+    | {
+        "drive": DRIVE | {"waveform": "triangle"},
+        "transverse": ACROSS | {"load": {"amplitude": 8.0, "waveform": "square", "frequency_ratio": 2}},
+        "belt_vibration": {"velocity_amplitude": 2.0, "direction": 50.0, "waveform": "square"},
+    },
+}
+STEPPERS = [
+    ({"steps": 100}, COULOMB),
+    ({"steps": 100, "theta": 1}, COULOMB),
+    ({"stepper": "rk4", "steps": 200}, COULOMB),
+    ({"stepper": "smoothed", "width": 0.2}, COULOMB),
+    ({"steps": 100}, DAHL),
+    ({"stepper": "rk4", "steps": 100}, DAHL),
+    ({"stepper": "sdirk2", "steps": 50}, DAHL),
+]
+
+
+def solve(keys, law=COULOMB, tolerance=1e-3, **given_keys):
+    """The answer to one scene, accepted."""
+    scene, method = Scene(**keys), March(**given_keys)
+    assert method.refusal(scene, law) is None
+    return with_columns(method, [scene], law, tolerance)
+
+
+def mean_and_error(answers):
+    """Of the only scene."""
+    assert answers.status == ["ok"], answers.reason
+    return float(answers.columns["mean_friction"][0]), float(answers.columns["error"][0])
+
+
+# --- against methods that step nothing ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(("keys", "law"), STEPPERS, ids=lambda each: str(each))
+def test_the_error_covers_and_the_period_is_that_of_everything(name, keys, law):
+    found = solve(SCENES[name], law, **keys)
+    expected = with_columns(Shooting(), [Scene(**SCENES[name])], law, 1e-7)
+    (mean, error), (truth, known) = mean_and_error(found), mean_and_error(expected)
+    assert abs(mean - truth) <= error + known
+    assert error < 0.05
+    assert found.columns["period"][0] == expected.columns["period"][0]
+
+
+def test_columns_of_an_orbit_are_those_of_shooting():
+    name = "sawtooth belt, square load"
+    found = solve(SCENES[name], DAHL, steps=400).columns
+    expected = with_columns(Shooting(), [Scene(**SCENES[name])], DAHL, 1e-8).columns
+    for column in (
+        "velocity_amplitude",
+        "energy_input",
+        "energy_viscous",
+        "energy_friction",
+        "energy_contact",
+    ):
+        assert found[column] == pytest.approx(expected[column], rel=5e-3), column
+
+
+# --- corners ------------------------------------------------------------------------------------------------------
+
+
+@given(first=sizes(1e-3, 1.0), lasts=sizes(1e-4, 10.0), refined=st.sampled_from([1, 2, 16]))
+def test_equal_steps_fill_a_piece_and_halved_ones_halve_every_step_of_it(first, lasts, refined):
+    count = interpreted(steps_in)
+    plain = MarchSettings(2.0, True, 100, 9.0, first, 0.5, first, 0.0, 1, 1, 0.0, 0.0, 1, 1, 0, refined=1)
+    halved = plain._replace(first=first / refined, refined=refined)
+    assert count(halved, lasts) == refined * count(plain, lasts)
+    assert lasts / count(plain, lasts) <= first * (1.0 + 1e-8)
+
+
+SLIDING = {
+    **LINE,
+    "belt_speed": 30.0,
+    "drive": DRIVE | {"waveform": "square", "phase": 17.0},
+    "belt_vibration": {"velocity_amplitude": 6.0, "waveform": "sawtooth", "frequency_ratio": 2},
+    "normal_load_variation": {"amplitude": 0.5, "waveform": "square", "phase": 50.0},
+}
+RISING = Stribeck(mu_kinetic=0.2, mu_static=0.2, viscosity=0.01)
+FOLLOWING = LuGre(mu_kinetic=0.2, presliding_length=3.0, viscosity=0.01)
+
+
+@pytest.mark.parametrize(
+    ("keys", "law", "order", "coarsest"),
+    [
+        ({}, RISING, 2, 20),
+        ({"theta": 1}, RISING, 1, 80),
+        ({"stepper": "rk4"}, RISING, 4, 20),
+        ({}, FOLLOWING, 2, 20),
+        ({"stepper": "rk4"}, FOLLOWING, 4, 40),
+        ({"stepper": "sdirk2"}, FOLLOWING, 2, 20),
+    ],
+    ids=lambda each: str(each),
+)
+def test_jumps_of_belt_and_loads_cost_no_order(keys, law, order, coarsest):
+    means = [
+        mean_and_error(solve(SLIDING, law, 1e-9, steps=coarsest * part, **keys))[0] for part in (1, 2, 4)
+    ]
+    ratio = (means[1] - means[0]) / (means[2] - means[1])
+    assert math.log2(ratio) == pytest.approx(order, abs=0.25)
+
+
+def test_a_stuck_mass_leaves_stick_where_the_velocity_of_the_belt_jumps():
+    vibration = {"velocity_amplitude": 0.3, "waveform": "square", "frequency": 0.5, "phase": 25.0}
+    keys = LINE | {"belt_speed": 0.1, "belt_vibration": vibration}
+    scene, orbit = Scene(**keys), solve(keys, steps=200).orbit(0)
+    belt, starts, left = scene.signals().belt[0], orbit.tau[:, 0], 0
+    for tau in belt.corners(scene.signals().period):
+        after = int(np.argmin(np.abs(starts - tau)))
+        assert abs(starts[after] - tau) <= 1e-12  # a step begins there
+        assert orbit.v[after, 0] == orbit.v[after - 1, -1]  # the slip jumps, the mass goes on
+        assert not orbit.stick[after]
+        left += int(orbit.stick[after - 1])
+    assert left == 1
+    middle = 0.5 * (orbit.tau[:, 0] + orbit.tau[:, -1])
+    carried = 0.1 + belt(middle)
+    assert orbit.v.real[:, -1][orbit.stick] == pytest.approx(carried[orbit.stick], abs=1e-14)
+
+
+def test_a_mass_that_never_slips_on_a_vibrating_belt_has_a_range_of_means():
+    keys = LINE | {"belt_speed": 0.0, "belt_vibration": {"velocity_amplitude": 0.3, "frequency": 0.5}}
+    found = with_columns(March(), [Scene(**keys)], COULOMB, 1e-3)
+    expected = with_columns(Shooting(), [Scene(**keys)], COULOMB, 1e-6)
+    assert found.status == expected.status == ["not_unique"]
+    for name in ("mean_low", "mean_high"):
+        assert found.columns[name] == pytest.approx(expected.columns[name], abs=1e-9)
+
+
+# --- prescribed slip ----------------------------------------------------------------------------------------------
+
+
+def slip(waveform, belt_speed, **more):
+    """A prescribed slip along the belt of velocity 3."""
+    return {
+        "belt_speed": belt_speed,
+        "slip": {"velocity_amplitude": 3.0, "frequency": 0.7, "waveform": waveform} | more,
+    }
+
+
+@pytest.mark.parametrize("belt_speed", [0.3, 2.0, 4.0])
+@pytest.mark.parametrize("waveform", ["square", "triangle"])
+def test_a_slip_along_the_belt_is_averaged_to_its_closed_form(waveform, belt_speed):
+    ratio = min(belt_speed / 3.0, 1.0)
+    expected = 0.4 * (ratio if waveform == "triangle" or ratio == 1.0 else 0.0)
+    mean, error = mean_and_error(solve(slip(waveform, belt_speed, phase=33.0), tolerance=1e-4))
+    assert abs(mean - expected) <= error <= 1e-4
+
+
+@pytest.mark.parametrize(("stepper", "width"), [("moreau", None), ("smoothed", 0.05)])
+def test_a_load_in_phase_with_the_slip_weighs_its_directions(stepper, width):
+    keys = slip("square", 1.0) | {"normal_load_variation": {"amplitude": 0.3, "waveform": "square"}}
+    own = {"width": width} if width else {}
+    mean, error = mean_and_error(solve(keys, tolerance=1e-6, stepper=stepper, **own))
+    assert (
+        abs(mean + 0.4 * 0.3) <= error + 1e-12
+    )  # ahead of the belt under 1.3 of the load, behind it under .7
+
+
+def test_a_slip_that_rests_for_a_while_has_a_range_of_means():
+    found = with_columns(March(), [Scene(**slip("square", 3.0))], COULOMB, 1e-4)
+    assert found.status == ["not_unique"]
+    assert found.columns["mean_high"][0] > found.columns["mean_low"][0]
+
+
+@pytest.mark.parametrize("stepper", ["exponential", "rk4"])
+@pytest.mark.parametrize("direction", [0.0, 40.0])
+def test_bristles_follow_any_slip(stepper, direction):
+    keys = slip("sawtooth", 1.0, direction=direction, phase=20.0)
+    keys |= {"normal_load_variation": {"amplitude": 0.5, "waveform": "triangle", "frequency_ratio": 0.5}}
+    found = solve(keys, DAHL, 1e-4, stepper=stepper)
+    expected = with_columns(Shooting(), [Scene(**keys)], DAHL, 1e-7)
+    (mean, error), (truth, known) = mean_and_error(found), mean_and_error(expected)
+    assert abs(mean - truth) <= error + known
+    assert found.columns["period"][0] == 2.0
+    assert found.columns["energy_contact"] == pytest.approx(expected.columns["energy_contact"], rel=1e-2)
+
+
+# --- a contact of constant stiffness ------------------------------------------------------------------------------
+
+
+def pressed(contact, amplitude=0.6):
+    """A changing load."""
+    return {"normal_load_variation": {"amplitude": amplitude, "waveform": "sine", "contact": contact}}
+
+
+def mean_of_constant_contact(law, belt_speed, load, oscillation, end, laps=6, steps=4000):
+    """Mean friction at a prescribed slip: z' = rate(w, z/n), friction(w, z/n, z'/n)*n, by Runge-Kutta steps."""
+    z, h, total = 0.0, end / steps, 0.0
+
+    def rates(tau, z):
+        n, w = load(tau), oscillation(tau) - belt_speed
+        rate = law.rate(w, z / n)
+        return rate, n * law.friction(w, z / n, rate / n)
+
+    for k in range(laps * steps):
+        tau = k * h
+        r1, f1 = rates(tau, z)
+        r2, f2 = rates(tau + 0.5 * h, z + 0.5 * h * r1)
+        r3, f3 = rates(tau + 0.5 * h, z + 0.5 * h * r2)
+        r4, f4 = rates(tau + h, z + h * r3)
+        z += h / 6.0 * (r1 + 2.0 * r2 + 2.0 * r3 + r4)
+        total += (f1 + 2.0 * f2 + 2.0 * f3 + f4) / 6.0 if k >= (laps - 1) * steps else 0.0
+    return -total / steps
+
+
+@pytest.mark.parametrize("stepper", ["exponential", "rk4"])
+@pytest.mark.parametrize(
+    "law",
+    [DAHL, LuGre(mu_kinetic=0.4, presliding_length=0.5, damping=0.05, viscosity=0.01)],
+    ids=["dahl", "lugre"],
+)
+def test_bristles_of_constant_stiffness_see_their_deflection_over_the_share_of_the_load(law, stepper):
+    keys = slip("sine", 1.0) | pressed("constant")
+    mean, error = mean_and_error(solve(keys, law, 1e-5, stepper=stepper))
+
+    def wave(tau):
+        return math.sin(0.7 * tau)
+
+    end = 2.0 * math.pi / 0.7
+    expected = mean_of_constant_contact(
+        law, 1.0, lambda tau: 1.0 + 0.6 * wave(tau), lambda tau: 3.0 * wave(tau), end
+    )
+    assert abs(mean - expected) <= error + 1e-5
+    follows, _ = mean_and_error(solve(slip("sine", 1.0) | pressed("per_load"), law, 1e-5, stepper=stepper))
+    assert abs(follows - expected) > 1e-2
+
+
+@pytest.mark.parametrize("law", [DAHL, Jenkins(mu=0.4, presliding_length=1.0)], ids=["dahl", "jenkins"])
+def test_steppers_agree_on_a_mass_held_by_a_contact_of_constant_stiffness(law):
+    keys = LINE | {"drive": DRIVE} | pressed("constant")
+    steppers = ["exponential", "rk4"] + (["sdirk2"] if law is DAHL else [])
+    found = [mean_and_error(solve(keys, law, 1e-4, stepper=stepper, steps=200)) for stepper in steppers]
+    for mean, error in found:
+        assert abs(mean - found[0][0]) <= error + found[0][1]
+        assert error < 5e-3
+
+
+def test_a_spring_in_series_with_coulomb_friction_yields_at_the_limit_of_the_moment():
+    law = Jenkins(mu=0.4, presliding_length=1e-3)
+    for contact in ("constant", "per_load"):
+        keys = slip("sine", 4.0) | pressed(contact, 0.9)
+        mean, error = mean_and_error(solve(keys, law, 1e-4))
+        assert abs(mean - 0.4) <= error + 2e-4  # slip never turns, and the spring is short
+
+
+def test_laws_of_several_memories_keep_no_constant_stiffness():
+    scene = Scene(**LINE, drive=DRIVE, **pressed("constant"))
+    said = March().refusal(scene, Elements(stiffness=(1.0, 3.0), reach=(0.2, 0.1)))
+    assert said is not None
+    assert "give per_load" in said
+    assert March().refusal(scene, DAHL) is None
+
+
+# --- random scenes ------------------------------------------------------------------------------------------------
+
+KINDS = {
+    "coulomb": Coulomb,
+    "stribeck": Stribeck,
+    "dahl": Dahl,
+    "lugre": LuGre,
+    "elasto-plastic": ElastoPlastic,
+}
+
+
+@given(drawn=every_kind())
+def test_the_error_covers_scenes_of_every_kind(drawn):
+    keys, told = drawn
+    scene, law = Scene(**keys), KINDS[told["kind"]](**{name: told[name] for name in told if name != "kind"})
+    method, shooting = March(steps=128), Shooting()
+    assume(method.refusal(scene, law) is None and shooting.refusal(scene, law) is None)
+    found, expected = (each.solve([scene], law, 1e-3) for each in (method, shooting))
+    if found.status == expected.status == ["ok"]:
+        off = abs(float(found.mean[0].real) - float(expected.mean[0].real))
+        assert off <= found.error[0] + expected.error[0]

@@ -45,7 +45,7 @@ from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
-Vectors = NDArray[np.complex128]
+PlaneVectors = NDArray[np.complex128]
 
 MOST_STEPS, WORK = 1 << 20, 16_000_000
 """Steps per period, and in all, of one point."""
@@ -319,14 +319,14 @@ class SteppedPoint:
         _, _, rate = self._slips(4096)
         return 1.1 * float(np.abs(rate).max())
 
-    def _slips(self, n: int) -> tuple[Floats, Vectors, Vectors]:
+    def _slips(self, n: int) -> tuple[Floats, PlaneVectors, PlaneVectors]:
         """Time, slip and its rate at the middle of n equal parts of a period of everything."""
         whole = 2.0 * math.pi * self.periods / self.motion.frequency
         tau = np.asarray((np.arange(n) + 0.5) * (whole / n), np.float64)
         if self.slip is not None:
             k = piece_at(self.slip.along.edges, tau)
             (along, rate), (across, rate_2) = self.slip.along.at(tau, k), self.slip.across.at(tau, k)
-            slip: Vectors = along - self.scene.belt_speed + 1j * across
+            slip: PlaneVectors = along - self.scene.belt_speed + 1j * across
             return tau, slip, rate + 1j * rate_2
         turn = np.exp(1j * self.motion.frequency * tau)
         first, second = self.motion.velocity * turn, self.motion.transverse_velocity * turn
@@ -359,7 +359,7 @@ class SteppedPoint:
             return self._sign_changes(lambda slip: slip.imag)
         return 2 if self.motion.transverse_velocity != 0 else 0
 
-    def _sign_changes(self, part: Callable[[Vectors], Floats]) -> int:
+    def _sign_changes(self, part: Callable[[PlaneVectors], Floats]) -> int:
         _, slip, _ = self._slips(4096)
         sides = np.sign(part(slip))
         return int(np.count_nonzero(sides * np.roll(sides, 1) < 0.0))
@@ -402,7 +402,7 @@ class SteppedPoint:
         edges, run = slip.along.edges, self.runs[0]
         coarsest, whole = self.steps // self.refined, 2.0 * math.pi / self.motion.frequency
         panels: list[Floats] = []
-        friction: list[Vectors] = []
+        friction: list[PlaneVectors] = []
         at = 0
         for start, stop in itertools.pairwise(edges):
             n = self.refined * max(1, math.ceil(coarsest * ((stop - start) / whole) - 1e-9))
@@ -416,7 +416,7 @@ class SteppedPoint:
         return replace(slip.orbit(np.concatenate(panels), np.concatenate(friction)), stick=None)
 
 
-def _between(each: Vectors, angle: Floats) -> Vectors:
+def _between(each: PlaneVectors, angle: Floats) -> PlaneVectors:
     """Friction at these angles, from that of the middle of every step by the cubic through the nearest four.
 
     The straight line between two would bend every loop inwards, and take of its area.
@@ -425,7 +425,7 @@ def _between(each: Vectors, angle: Floats) -> Vectors:
     return _cubic(each, place, np.floor(place))
 
 
-def _cubic(each: Vectors, place: Floats, second: Floats) -> Vectors:
+def _cubic(each: PlaneVectors, place: Floats, second: Floats) -> PlaneVectors:
     """The cubic through the four values that begin before the place ``second``, evaluated at a place among them."""
     below = second.astype(np.int64)
     s = place - below

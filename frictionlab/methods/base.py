@@ -80,13 +80,6 @@ class Method(Record, ABC):
         """Expected kernel time per point [s], once compiled; for planning only."""
 
 
-def against_varying(name: str, scene: Scene) -> str | None:
-    """Why a method that takes loads of one sine on a steady belt under a constant normal load refuses a scene."""
-    if scene.is_harmonic:
-        return None
-    return f"{name} takes sines of the drive's frequency on a steady belt under a constant normal load"
-
-
 def refused(reasons: Sequence[str]) -> Answers:
     """The answers of a method that cannot do these scenes."""
     n, nothing = len(reasons), np.full(len(reasons), np.nan)

@@ -42,13 +42,10 @@ UNBOUNDED = (
 
 def _refusal_of_legs(scene: Scene, law: Any) -> str | None:
     """Why a prescribed slip has no two legs along which the deflection is known."""
-    part = scene.normal_load_variation
-    if part is not None and part.contact == "constant":
+    if scene.constant_contact:
         return "exact cannot keep the stiffness of bristles while the normal load changes"
     if not law.exact_path():
         return "exact needs a deflection known along a path (Dahl, Jenkins, LuGre of constant friction)"
-    if scene.constant_contact:
-        return "exact needs bristles whose stiffness follows the normal load (contact: per_load)"
     if not along_one_line(scene, law):
         return "exact works along one line: this slip has a component across the belt"
     return None

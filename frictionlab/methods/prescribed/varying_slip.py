@@ -29,6 +29,8 @@ BETWEEN_CORNERS = "prescribed slip: Gauss-Lobatto quadrature, panels between cor
 NO_SLIP = "the slip rests for a part of the period: friction there is any value up to mu"
 WIDEST_PANEL = math.pi / 16.0
 """Half width of a panel, in radians of the quickest harmonic."""
+HALVINGS, MOST_PANELS, SAME_MEAN = 6, 4000, 1e-14
+"""How often panels are halved, up to how many, and the share of friction that halving may change."""
 _CLOSEST = 1e-16
 """Half width of the panels, in shares of the period, at which the refinement towards rest ends."""
 
@@ -155,10 +157,15 @@ class VaryingPoint:
         """
         first = self.law.sliding_friction(0.0) if turns is not None else 0.0
         edges, k = self._panels()
-        halves = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])]))
         coarse, _ = self._mean(edges, k, first)
-        fine, largest = self._mean(halves, np.repeat(k, 2), first)
-        error = 4.0 * abs(fine - coarse) + 64.0 * EPSILON * largest
+        for _ in range(HALVINGS):
+            edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])]))
+            k = np.repeat(k, 2)
+            fine, largest = self._mean(edges, k, first)
+            changed, coarse = abs(fine - coarse), fine
+            if changed <= SAME_MEAN * largest or len(k) > MOST_PANELS:
+                break
+        error = 4.0 * changed + 64.0 * EPSILON * largest
         if turns is None:
             return fine, error
         return fine + first * turns.mean, error + first * turns.error

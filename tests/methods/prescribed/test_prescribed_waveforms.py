@@ -302,6 +302,8 @@ def test_a_contact_may_keep_its_stiffness_under_a_load_that_changes(law: Any, wa
 
 def test_exact_says_what_it_cannot_do() -> None:
     constant = {"amplitude": 0.3, "contact": "constant"}
-    assert "per_load" in (Exact().refusal(scene(0.3, "square", normal_load_variation=constant), DAHL) or "")
+    assert "keep the stiffness" in (
+        Exact().refusal(scene(0.3, "square", normal_load_variation=constant), DAHL) or ""
+    )
     assert Exact().refusal(scene(0.3, "square", normal_load_variation=constant), LAW) is None
     assert "across the belt" in (Exact().refusal(scene(0.3, "square", slip={"direction": 30.0}), DAHL) or "")

@@ -51,21 +51,22 @@ def _shapes(study: Study) -> Iterator[str]:
     scene = study.scene
     load = scene.transverse.load if scene.transverse is not None else None
     if scene.drive is not None and _told(study, "drive", scene.drive):
-        yield f"The load along x1 is {_wave(study, 'drive', scene.drive)}."
+        where = "" if _turned(study, "drive", scene.drive) else " along x1"
+        yield f"The load{where} varies {_wave(study, 'drive', scene.drive)}."
     if load is not None and _told(study, "transverse.load", load):
-        yield f"The load across the belt is {_wave(study, 'transverse.load', load)}."
+        yield f"The load across the belt varies {_wave(study, 'transverse.load', load)}."
     for name, where in (("slip", "x1"), ("transverse_slip", "x2")):
         part = getattr(scene, name)
         if part is not None and (_told(study, name, part) or _turned(study, name, part)):
             along = _direction(study, name, part) if _turned(study, name, part) else f"along {where}"
-            yield f"The slip velocity {along} is {_wave(study, name, part)}."
+            yield f"The slip velocity {along} varies {_wave(study, name, part)}."
     if (belt := scene.belt_vibration) is not None:
         where = _direction(study, "belt_vibration", belt)
         yield f"The belt vibrates {where}, its velocity {_wave(study, 'belt_vibration', belt)}."
     if (normal := scene.normal_load_variation) is not None:
         name = "normal_load_variation"
         contact = _CONTACTS["" if _is_swept(study, f"{name}.contact") else normal.contact]
-        yield f"The normal load varies, {_wave(study, name, normal)}; {contact}."
+        yield f"The normal load varies {_wave(study, name, normal)}; {contact}."
 
 
 _CONTACTS = {
@@ -102,12 +103,11 @@ def _direction(study: Study, name: str, part: Any) -> str:
 
 
 def _wave(study: Study, name: str, part: Any) -> str:
-    """Its waveform, and its frequency where that is not the drive's."""
-    form = part.waveform or SINE
-    wave = (
-        "of several waveforms" if _is_swept(study, f"{name}.waveform") else _WAVES.get(form.shape, str(form))
-    )
-    ratio = getattr(part, "frequency_ratio", None)
+    """As what it varies, and how often where that is not the drive's frequency."""
+    form, ratio = part.waveform or SINE, getattr(part, "frequency_ratio", None)
+    wave = f"as {_WAVES.get(form.shape, str(form))}"
+    if _is_swept(study, f"{name}.waveform"):
+        wave = "in several waveforms"
     if _is_swept(study, f"{name}.frequency_ratio"):
         return f"{wave} at several frequencies"
     return wave if ratio in (None, 1.0) else f"{wave} at {as_fraction(ratio)} times the drive's frequency"

@@ -160,14 +160,14 @@ def test_words_tell_curves_apart_and_never_lie_along_the_axis() -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({}, "The normal load varies, a sine; the stiffness of bristles follows it."),
+        ({}, "The normal load varies as a sine; the stiffness of bristles follows it."),
         (
             {"drive": {"amplitude": 1, "frequency": 2, "waveform": "square"}},
-            "on a moving belt, shaken along it. The load along x1 is a square wave.",
+            "on a moving belt, shaken along it. The load along x1 varies as a square wave.",
         ),
         (
             {"belt_vibration": {"velocity_amplitude": 1, "waveform": SUM, "frequency_ratio": "3/2"}},
-            f"The belt vibrates along its motion, its velocity {FORMULA} at 3/2 times the drive's frequency.",
+            f"The belt vibrates along its motion, its velocity as {FORMULA} at 3/2 times the drive's frequency.",
         ),
         (
             {
@@ -187,9 +187,9 @@ def test_the_page_says_what_is_swept_over_words() -> None:
     scene = SCENE | {"transverse": {"natural_frequency": 1, "damping_ratio": 0.1}}
     said = scene_sentences(parse_study(study(sweep, scene=scene)))
 
-    assert "shaken in several directions. The load along x1 is of several waveforms." in said
+    assert "shaken in several directions. The load varies in several waveforms." in said
     assert (
-        "a sine at several frequencies; the stiffness of bristles follows it or stays that of its mean."
+        "as a sine at several frequencies; the stiffness of bristles follows it or stays that of its mean."
         in said
     )
 

@@ -6,7 +6,8 @@ L, force K_1 L, velocity omega_1 L, energy K_1 L^2. The equations of motion are 
     x1'' + 2 damping_ratio x1' + x1 + normal_load T1 = load along x1,
     x2'' + 2 damping_ratio_2 omega_r x2' + omega_r^2 x2 + normal_load T2 = load along x2,
 
-with T the friction coefficient of a law at the slip velocity (x1' - belt_speed, x2').
+with T the friction coefficient of a law at the slip velocity (x1' - belt_speed, x2'), or against a belt that vibrates
+and under a normal load that changes where the scene says so.
 """
 
 from __future__ import annotations
@@ -46,7 +47,10 @@ class _Part(Record):
 
 
 class _Force(_Part):
-    """A periodic force given by an unbalance or by its amplitude."""
+    """A periodic force given by an unbalance or by its amplitude.
+
+    Waveforms of such a force are compared by Michaux, Ferri & Cunefare (2008).
+    """
 
     unbalance: NonNegative | None = None
     amplitude: NonNegative | None = None
@@ -125,7 +129,8 @@ class BeltVibration(_Part):
 
     velocity_amplitude [omega_1 L] >= 0; phase [degrees]; direction [degrees] from x1 towards x2, in scenes with
     ``transverse``. frequency_ratio: in shares of the drive's frequency, p/q; frequency [omega_1] instead where
-    nothing else has one.
+    nothing else has one. A slider pulled through its spring over a vibrating plate, in any direction, is this scene
+    (Gutowski & Leus, 2020).
     """
 
     velocity_amplitude: NonNegative
@@ -142,7 +147,8 @@ class NormalLoadVariation(_Part):
     amplitude [-] >= 0; phase [degrees]; frequencies as for ``BeltVibration``. contact: ``per_load``, the stiffness
     and damping of bristles follow the load, as in laws per unit normal load (Canudas de Wit & Tsiotras, 1999);
     ``constant``, they stay those of the mean load, and the load changes the limit of friction alone (a spring in
-    series with Coulomb friction, as in Teidelt, Starcevic & Popov, 2012).
+    series with Coulomb friction, as in Teidelt, Starcevic & Popov, 2012, Popov, Popov & Popov, 2017, and Mao et al.,
+    2017).
     """
 
     amplitude: NonNegative

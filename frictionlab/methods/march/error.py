@@ -65,9 +65,9 @@ def _by_given_steps(march: MarchRun, plan: Plan, tolerance: float) -> MarchMean:
         if not runs[-1].settled:
             return _unsettled(runs)
     first = runs[0]
-    doubt = first_error([run.mean.real for run in runs]) + max(
-        _unseen(march, runs[:2]), _unseen(march, runs[1:])
-    )
+    doubt = first_error([run.mean.real for run in runs])
+    doubt = 2.0 * doubt if _ends_of_stick_vary(march, first) else doubt
+    doubt += max(_unseen(march, runs[:2]), _unseen(march, runs[1:]))
     error = (
         doubt
         + crossing(march, first)
@@ -116,7 +116,7 @@ def _limit(march: MarchRun, plan: Plan, runs: list[MarchResult]) -> MarchMean:
     runs = runs if len(runs) > 1 else every
     unseen = _unseen(march, runs[-3:])
     reversing = unseen > 0.0 or len(runs) < len(every) or any(run.crossings > 0 for run in runs[-3:])
-    reversing = reversing or last.verdict == STALLED or march.has_corners
+    reversing = reversing or last.verdict == STALLED or march.has_corners or _ends_of_stick_vary(march, last)
     least = REVERSING if reversing else STICKING if last.stuck > 0.0 else SMOOTH
     along = richardson([run.mean.real for run in runs], plan.order, least)
     across = richardson([run.mean.imag for run in runs], plan.order, least)
@@ -128,6 +128,12 @@ def _limit(march: MarchRun, plan: Plan, runs: list[MarchResult]) -> MarchMean:
     how = f"{last.pace.steps} steps per period"
     how += f", extrapolated at order {along.order}" if along.order else ""
     return MarchMean(complex(along.value, across.value), error, period.value, tuple(runs), how)
+
+
+def _ends_of_stick_vary(march: MarchRun, run: MarchResult) -> bool:
+    """Whether stick begins and ends anywhere in steps that are of several lengths, or under loads of several waves:
+    errors fall with the steps, but irregularly."""
+    return bool(march.mass.varying) and run.stuck > 0.0
 
 
 def _rounding(run: MarchResult) -> float:

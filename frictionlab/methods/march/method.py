@@ -77,6 +77,9 @@ class March(Method):
     smoothing: of smoothed, tanh (default), square_root or arctan.
     periods [-], >= 4: most periods to wait for the motion to repeat, 100000.
 
+    Steps end at the corners of loads, belt and normal load; where several frequencies act, a lap is their common
+    period. Under a load that changes, one bristle may keep its stiffness (contact: constant); other memory may not.
+
     The motion starts from scene.initial, else on the friction-free orbit, undriven at rest on the belt. Where no
     theorem makes the steady state unique, starts far from each other must reach the same.
 

@@ -11,6 +11,7 @@ from draws_of_every_kind import every_kind
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from memory_laws import Elements
+from profiles import deep
 from strategies import sizes
 
 from frictionlab.compile.interpret import interpreted
@@ -46,14 +47,25 @@ SCENES = {
         "belt_vibration": {"velocity_amplitude": 2.0, "direction": 50.0, "waveform": "square"},
     },
 }
-STEPPERS = [
-    ({"steps": 100}, COULOMB),
-    ({"steps": 100, "theta": 1}, COULOMB),
-    ({"stepper": "rk4", "steps": 200}, COULOMB),
-    ({"stepper": "smoothed", "width": 0.2}, COULOMB),
-    ({"steps": 100}, DAHL),
-    ({"stepper": "rk4", "steps": 100}, DAHL),
-    ({"stepper": "sdirk2", "steps": 50}, DAHL),
+STEPPERS = {
+    "moreau": ({"steps": 100}, COULOMB),
+    "moreau, theta 1": ({"steps": 100, "theta": 1}, COULOMB),
+    "rk4": ({"stepper": "rk4", "steps": 200}, COULOMB),
+    "smoothed": ({"stepper": "smoothed", "width": 0.2}, COULOMB),
+    "exponential": ({"steps": 100}, DAHL),
+    "rk4 of a bristle": ({"stepper": "rk4", "steps": 100}, DAHL),
+    "sdirk2": ({"stepper": "sdirk2", "steps": 100}, DAHL),
+}
+slow = deep("every stepper on every scene")
+QUICK = {
+    ("sawtooth belt, square load", "moreau"),
+    ("sawtooth belt, square load", "exponential"),
+    ("plane", "moreau"),
+}
+PAIRS = [
+    pytest.param(name, stepper, marks=() if (name, stepper) in QUICK else slow)
+    for name in SCENES
+    for stepper in STEPPERS
 ]
 
 
@@ -73,14 +85,14 @@ def mean_and_error(answers):
 # --- against methods that step nothing ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize(("keys", "law"), STEPPERS, ids=lambda each: str(each))
-def test_the_error_covers_and_the_period_is_that_of_everything(name, keys, law):
+@pytest.mark.parametrize(("name", "stepper"), PAIRS)
+def test_the_error_covers_and_the_period_is_that_of_everything(name, stepper):
+    keys, law = STEPPERS[stepper]
     found = solve(SCENES[name], law, **keys)
     expected = with_columns(Shooting(), [Scene(**SCENES[name])], law, 1e-7)
     (mean, error), (truth, known) = mean_and_error(found), mean_and_error(expected)
     assert abs(mean - truth) <= error + known
-    assert error < 0.05
+    assert error < 0.2
     assert found.columns["period"][0] == expected.columns["period"][0]
 
 
@@ -303,6 +315,7 @@ KINDS = {
 }
 
 
+@deep("a kernel for every law and kind of scene")
 @given(drawn=every_kind())
 def test_the_error_covers_scenes_of_every_kind(drawn):
     keys, told = drawn

@@ -9,7 +9,7 @@ from typing import Any
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.march.error import FEWEST_LAPS, WORK
-from frictionlab.methods.march.stability import fewest_steps, lags_the_load
+from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.scene.scene import Scene
@@ -62,7 +62,7 @@ def reasons_against(asked: Request) -> Iterator[str]:
 
 
 def _against_constant_contact(asked: Request) -> Iterator[str]:
-    if asked.kind in SEVERAL and lags_the_load(asked.scene):
+    if asked.kind in SEVERAL and asked.scene.constant_contact:
         yield (
             "normal_load_variation.contact: constant needs a law of one bristle, whose limit follows the load while "
             "its stiffness stays; for this law give per_load"

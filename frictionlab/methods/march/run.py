@@ -28,7 +28,6 @@ from frictionlab.methods.march.stability import (
     fastest_slip,
     fewest_steps,
     first_memory,
-    lags_the_load,
     lightest_contact,
     memory_stiffness,
     shares_of_load,
@@ -342,7 +341,7 @@ class MarchRun:
         """Whether friction must end at one number: slip on a line that never turns, a law of one sliding friction."""
         one = self.law.memory_kind == "bristle" and self.law.constant_sliding_friction()
         reverses = march.trace.crossings > 0 or march.trace.flips > 0
-        return one and self.straight and not (self.scene.undriven or reverses or lags_the_load(self.scene))
+        return one and self.straight and not (self.scene.undriven or reverses or self.scene.constant_contact)
 
     def _from_sliding(self, march: MarchHistory) -> float:
         """How far friction is from that of steady sliding, where bristles go under slip that does not turn.

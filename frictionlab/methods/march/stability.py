@@ -36,15 +36,9 @@ def shares_of_load(scene: Scene) -> tuple[float, float]:
     return 1.0 + low / scene.normal_load, 1.0 + high / scene.normal_load
 
 
-def lags_the_load(scene: Scene) -> bool:
-    """Whether the limit of friction changes while the contact keeps its stiffness."""
-    part = scene.normal_load_variation
-    return part is not None and part.amplitude > 0.0 and part.contact == "constant"
-
-
 def lightest_contact(scene: Scene) -> float:
     """The least share of the mean load under which bristles are bent as the law says it; 1 where they follow it."""
-    return shares_of_load(scene)[0] if lags_the_load(scene) else 1.0
+    return shares_of_load(scene)[0] if scene.constant_contact else 1.0
 
 
 # --- the motion ---------------------------------------------------------------------------------------------------

@@ -24,7 +24,7 @@ A, B, E3, E5, C = (
     np.ascontiguousarray(table) for table in (DOP853.A, DOP853.B, DOP853.E3, DOP853.E5, DOP853.C)
 )
 STAGES = len(B)
-MOST_STEPS = 3_000_000
+MOST_STEPS_OF_A_PERIOD = 3_000_000
 
 
 class Body(NamedTuple):
@@ -384,7 +384,7 @@ def span(body, law, now, end, y, side, tolerance, largest, longest, tally, signs
     slides, in_plane = law.kind < DAHL, body.planar and law.kind < DAHL and body.free
     while t < end:
         tally[3] += 1.0
-        if tally[3] > MOST_STEPS:
+        if tally[3] > MOST_STEPS_OF_A_PERIOD:
             y[X1] = math.nan
             break
         size = tolerance * largest

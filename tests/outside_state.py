@@ -65,6 +65,8 @@ class Outside(NamedTuple):
     steps: int
 
 
+MOST_STEPS = 10_000_000
+"""Until the motion repeats."""
 ROUNDING = 2e-14
 """Of a mean, over some hundred steps."""
 
@@ -142,7 +144,7 @@ class _Problem:
         self.scale = self._scale()
         quickest = max(self.body.quickest, self.force.fastest)
         self.longest = min(2.0 * math.pi / quickest / 40.0, self.lasts / 20.0)
-        self.side, self.signs = 1, np.zeros(2)
+        self.side, self.signs, self.steps = 1, np.zeros(2), 0.0
 
     def _scale(self) -> np.ndarray:
         """A size of each number of the state and of the integrals, rather too small than too large."""
@@ -183,8 +185,9 @@ class _Problem:
                 self.longest,
                 self.signs,
             )
-            if not np.isfinite(end).all():
-                raise Unsettled(f"more than {tally[3]:.0f} steps")
+            self.steps += tally[3]
+            if not np.isfinite(end).all() or self.steps > MOST_STEPS:
+                raise Unsettled("too many steps")
             state, total, tallies = end[:STATES].copy(), total + end, tallies + tally
         return state, total, tallies
 

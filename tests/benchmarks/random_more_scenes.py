@@ -123,8 +123,7 @@ def one_answer(count: int, rng: np.random.Generator, worker: Worker) -> tuple[Co
         try:
             means = [steady(scene, law, start, 1e-12, periods=100_000) for start in starts(scene)]
         except Unsettled as why:
-            tally["not followed to the end"] += 1
-            wrong.append(f"T1 {number}: not followed: {why}: {scene} {law}")
+            tally[f"not followed to the end: {str(why)[-40:]}"] += 1
             continue
         spread, left = np.ptp([each.mean for each in means]), sum(each.error for each in means)
         tally["followed from three starts"] += 1

@@ -65,7 +65,7 @@ class Outside(NamedTuple):
     steps: int
 
 
-MOST_STEPS = 10_000_000
+MOST_STEPS = 2_000_000
 """Until the motion repeats."""
 ROUNDING = 2e-14
 """Of a mean, over some hundred steps."""

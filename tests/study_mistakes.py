@@ -239,5 +239,13 @@ EDITS = [
     ("  laws.soft.mu", "  scene.transverse.load.frequency_ratio: [1, 3/2, 1.5]\n  laws.soft.mu",
      "20:51: sweep.scene.transverse.load.frequency_ratio[2]: 1.5 is in the list twice"),
     ("  laws.soft.mu", "  scene.drive.wavform: [sine, square]\n  laws.soft.mu", "20:3: sweep.scene.drive.wavform: no such value in"),
+    ("5}, column: error", "5, scene.drive.waveform: square}, column: error",
+     "23:49: expect[0].where.scene.drive.waveform: is no input column of this study's table"),
+    ("laws.soft.mu: [0.1, 0.2]\nkeep: {orbit: 200}\nexpect:\n  - {where: {law: coulomb, scene.belt_speed: 5}",
+     "scene.drive.waveform: [sine, square]\nexpect:\n  - {where: {law: coulomb, scene.drive.waveform: sawtooth}",
+     "22:50: expect[0].where.scene.drive.waveform: the table has sine, square alone, got sawtooth"),
+    ("laws.soft.mu: [0.1, 0.2]\nkeep: {orbit: 200}\nexpect:\n  - {where: {law: coulomb, scene.belt_speed: 5}",
+     "scene.drive.waveform: [sine, square]\nexpect:\n  - {where: {law: coulomb, scene.drive.waveform: sinus}",
+     "22:50: expect[0].where.scene.drive.waveform: must be 'sine', 'square', 'triangle', 'sawtooth' or {harmonics: [...]}"),
 ]
 # fmt: on

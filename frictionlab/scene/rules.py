@@ -46,7 +46,9 @@ def _directions(scene: Any) -> Iterator[str]:
 def problems_of_frequencies(scene: Any, frequency: str, given: str = "") -> Iterator[str]:
     """Of what takes a frequency or gives one. given: the part that gives it, the drive where there is one."""
     given = "drive" if scene.drive is not None else given
-    parts = {name: getattr(scene, name) for name in SHAKEN if getattr(scene, name) is not None}
+    parts = {name: part for name in SHAKEN if (part := getattr(scene, name)) is not None}
+    if not parts:
+        return
     own = {name for name, part in parts.items() if getattr(part, frequency) is not None}
     for name, part in parts.items():
         if name in own and given:
@@ -71,17 +73,17 @@ def periods_of(scene: Any) -> int:
 def _denominators(scene: Any) -> dict[str, int]:
     """Of every frequency ratio, by the part that has it."""
     load = scene.transverse.load if scene.transverse is not None else None
-    parts = {"transverse.load": load, **{name: getattr(scene, name) for name in SHAKEN}}
+    parts = ("transverse.load", load), *((name, getattr(scene, name)) for name in SHAKEN)
     return {
         name: as_fraction(part.frequency_ratio).denominator
-        for name, part in parts.items()
+        for name, part in parts
         if part is not None and part.frequency_ratio is not None
     }
 
 
 def _period(scene: Any) -> Iterator[str]:
-    periods, denominators = periods_of(scene), _denominators(scene)
-    if periods > LONGEST_COMMON:
+    denominators = _denominators(scene)
+    if denominators and (periods := math.lcm(*denominators.values())) > LONGEST_COMMON:
         yield (
             f"{max(denominators, key=denominators.__getitem__)}.frequency_ratio: with it everything repeats after "
             f"{periods} periods of the drive only, more than {LONGEST_COMMON}: choose smaller denominators"

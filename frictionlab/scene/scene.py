@@ -30,7 +30,7 @@ from frictionlab.scene.rules import (
 )
 from frictionlab.scene.signals import FULL_TURN, Signal, Signals, signal_of
 from frictionlab.scene.varying import varying_of
-from frictionlab.scene.waveforms import SINE, Form, Ratio, Waveform
+from frictionlab.scene.waveforms import SINE, Ratio, Waveform, form_of
 
 
 class _Part(Record):
@@ -376,7 +376,7 @@ class Scene(_Part):
 
     def values(self) -> dict[str, float | str]:
         """Every value of the scene by its dotted path, without the leading ``scene.``; SI numbers included."""
-        return _flat(self)
+        return _flat(self.model_dump(exclude_none=True))
 
     def given(self) -> dict[str, Any]:
         """Nested plain values from which the same scene can be built; in SI units if the scene was given in them."""
@@ -436,14 +436,16 @@ def with_values(tree: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str,
     return new
 
 
-def _flat(record: Record, prefix: str = "") -> dict[str, float | str]:
-    """The values of a record and of those inside it, by dotted path; a waveform as one text."""
+def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, float | str]:
+    """Nested values by dotted path; a sum of harmonics as one text."""
     flat: dict[str, float | str] = {}
-    for name, value in record:
-        if isinstance(value, Record):
-            flat |= _flat(value, f"{prefix}{name}.")
-        elif value is not None:
-            flat[f"{prefix}{name}"] = str(value) if isinstance(value, Form) else value
+    for key, value in tree.items():
+        if not isinstance(value, dict):
+            flat[f"{prefix}{key}"] = value
+        elif "harmonics" in value:
+            flat[f"{prefix}{key}"] = str(form_of(value))
+        else:
+            flat |= _flat(value, f"{prefix}{key}.")
     return flat
 
 

@@ -62,14 +62,17 @@ _TERM = re.compile(r"(?:(\S+) )?sin\((?:(\d+) )?theta(?: \+ (\S+) deg)?\)")
 def told(text: str) -> Form:
     """The form that a cell of a table tells, a name or a formula. Raises ValueError."""
     terms = [Term(int(b or 1), float(a or 1.0), float(c or 0.0)) for a, b, c in _TERM.findall(text)]
-    return Form("harmonics", tuple(terms)) if terms else _form(text)
+    return Form("harmonics", tuple(terms)) if terms else form_of(text)
 
 
 SINE = Form("sine")
 
 
-def _form(value: Any) -> Form:
-    """Raises ValueError for what is neither a shape nor a sum of harmonics, with the path of what is wrong in it."""
+def form_of(value: Any) -> Form:
+    """The waveform that a study gives so.
+
+    Raises ValueError for what is neither a shape nor a sum of harmonics, with the path of what is wrong in it.
+    """
     if isinstance(value, Form):
         return value
     if isinstance(value, str) and value in WAVEFORMS:
@@ -141,7 +144,7 @@ _FORM_SCHEMA = {
         },
     ]
 }
-Waveform = Annotated[Form, PlainValidator(_form), PlainSerializer(Form.plain), WithJsonSchema(_FORM_SCHEMA)]
+Waveform = Annotated[Form, PlainValidator(form_of), PlainSerializer(Form.plain), WithJsonSchema(_FORM_SCHEMA)]
 """sine: sin(theta). square: sign(sin(theta)). triangle: (2/pi) arcsin(sin(theta)). sawtooth: rises through 0 at theta
 = 0 from -1 to 1, and jumps at theta = pi. {harmonics: [{order, amplitude, phase}, ...]}: their sum."""
 

@@ -15,19 +15,18 @@ import numpy as np
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
-from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.contact import resistance
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.closed_loop_line import ELASTIC, NOTHING_MOVES
 from frictionlab.methods.prescribed.exact_legs import gained
 from frictionlab.methods.prescribed.motion import PrescribedMean
-from frictionlab.methods.prescribed.quadrature import nodes
 from frictionlab.methods.prescribed.varying_slip import WIDEST_PANEL, VaryingSlip, piece_at
+from frictionlab.orbit.panels import NODES, WEIGHTS
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.scene import Scene
-from frictionlab.theory.piecewise import Piecewise
+from frictionlab.theory.piecewise import PieceNumbers, Piecewise
 
 ANY_LEGS = "prescribed slip along a line: deflection exact along every leg, Gauss-Lobatto quadrature"
 FORGETS_NOTHING = (
@@ -44,25 +43,23 @@ _NEAREST = 1e-14
 
 
 class OneWay(NamedTuple):
-    """Slip in one direction between two times, on one piece; side 0 where it rests. path: the way slid, >= 0."""
+    """Legs of slip in one direction between two times, on one piece: arrays; side 0 where it rests, path >= 0."""
 
-    start: float
-    stop: float
-    piece: int
-    side: float
-    path: float
+    start: Floats
+    stop: Floats
+    piece: PieceNumbers
+    side: Floats
+    path: Floats
 
 
-def one_way_legs(slip: Piecewise) -> list[OneWay]:
+def one_way_legs(slip: Piecewise) -> OneWay:
     """Those of a period."""
     cuts = np.unique(np.concatenate([slip.edges, slip.crossings().tau]))
     start, stop = cuts[:-1], cuts[1:]
     middle = 0.5 * (start + stop)
     k = piece_at(slip.edges, middle)
     side = np.where(slip.at_rest()[k], 0.0, np.sign(slip.at(middle, k)[0]))
-    path = np.abs(slip.integral(start, stop, k))
-    rows = zip(*(each.tolist() for each in (start, stop, k, side, path)), strict=True)
-    return [OneWay(*row) for row in rows]
+    return OneWay(start, stop, k, side, np.abs(slip.integral(start, stop, k)))
 
 
 class LegLoop(NamedTuple):
@@ -83,17 +80,17 @@ class ExactPath:
         self.reach, fastest = law.largest_deflection(), law.largest_rate(1.0)
         self.length = min(self.reach, 1.0 / fastest) if 0.0 < fastest < math.inf else self.reach
 
-    def deflections(self, z: float) -> list[float]:
-        """What it gains until each leg begins, and until the end of the period; z: at tau = 0."""
-        gain, change = interpreted(gained), [0.0]
-        for leg in self.legs:
-            more = gain(self.law, self.length, z + change[-1], leg.side, leg.path) if leg.side else 0.0
-            change.append(change[-1] + more)
+    def changes(self, z: float) -> Floats:
+        """What it has gained where each leg begins, and at the end of the period; z: at tau = 0."""
+        change = np.zeros(len(self.legs.side) + 1)
+        arguments = self.length, self.legs.side, self.legs.path, z, change
+        _, seconds = KernelCall(changes_on_legs, self.law).timed(*arguments)
+        self.seconds += seconds
         return change
 
     def opened(self, z: float) -> float:
         """What it gains in a period; that falls as z grows."""
-        return self.deflections(z)[-1]
+        return float(self.changes(z)[-1])
 
     def closed(self) -> tuple[float, float]:
         """The least and the largest deflection at tau = 0 that repeat; apart where the contact stays elastic."""
@@ -105,54 +102,69 @@ class ExactPath:
 
     def loop(self, z: float, cuts: int = 1) -> LegLoop:
         """From this deflection at tau = 0; cuts: the parts into which panels are divided."""
-        rows = []
-        for leg, change in zip(self.legs, self.deflections(z), strict=False):
-            tau, weights = nodes(self._edges(leg, z + change, cuts))
-            k, begin = np.full(tau.shape, leg.piece), np.full(tau.shape, leg.start)
-            moves = abs(leg.side)
-            slid, speed = moves * self.slip.integral(begin, tau, k), moves * self.slip.at(tau, k)[0]
-            start = np.full(tau.shape, z + change)
-            rows.append((tau, weights, start, slid, speed, self.load.at(tau, k)[0]))
-        tau, weights, start, slid, speed, load = (np.concatenate(part) for part in zip(*rows, strict=True))
-        friction = np.empty(tau.size)
-        arguments = start.ravel(), slid.ravel(), speed.ravel(), friction
-        _, seconds = KernelCall(friction_on_legs, self.law).timed(*arguments)
+        first = z + self.changes(z)[:-1]
+        start, stop, leg = self._panels(first)
+        width, shares = (stop - start) / cuts, np.arange(cuts)
+        start = (start[:, None] + width[:, None] * shares).ravel()
+        half, leg = 0.5 * np.repeat(width, cuts), np.repeat(leg, cuts)
+        tau, weights = (start + half)[:, None] + half[:, None] * NODES, half[:, None] * WEIGHTS
+        k, moves = self.legs.piece[leg][:, None], np.abs(self.legs.side[leg])[:, None]
+        slid = moves * self.slip.integral(self.legs.start[leg][:, None], tau, k)
+        speed, friction = moves * self.slip.at(tau, k)[0], np.empty(tau.size)
+        begun = np.repeat(first[leg], tau.shape[1])
+        _, seconds = KernelCall(friction_on_legs, self.law).timed(
+            begun, slid.ravel(), speed.ravel(), friction
+        )
         self.seconds += seconds
-        force = load * friction.reshape(tau.shape)
+        force = self.load.at(tau, k)[0] * friction.reshape(tau.shape)
         mean = -math.fsum((weights * force).ravel().tolist()) / self.slip.period
         return LegLoop(mean, float(np.abs(force).max()), tau, force)
 
-    def _edges(self, leg: OneWay, z: float, cuts: int) -> Floats:
-        """Of panels of a leg that begins at z: they grow with the way slid, and shrink towards the corner of friction
-        where that saturates."""
-        corner = self.law.saturation_path(z, leg.side) if leg.side else math.inf
-        edges = [leg.start, leg.stop]
-        if 0.0 < corner < leg.path:
-            edges.insert(1, self._time_of(leg, corner))
-        start, stop, done = np.array(edges[:-1]), np.array(edges[1:]), []
+    def _panels(self, first: Floats) -> tuple[Floats, Floats, PieceNumbers]:
+        """Starts and ends of panels, and their legs, which begin at these deflections: they grow with the way slid,
+        and shrink towards the corner of friction where that saturates."""
+        legs = self.legs
+        pairs = zip(first.tolist(), legs.side.tolist(), strict=True)
+        corner = np.array([self.law.saturation_path(z, side) if side else math.inf for z, side in pairs])
+        leg = np.flatnonzero((corner > 0.0) & (corner < legs.path))
+        turns, leg = self._times_of(leg, corner[leg]), np.concatenate([np.arange(len(first)), leg])
+        order = np.argsort(np.concatenate([legs.start, turns]), kind="stable")
+        start, leg = np.concatenate([legs.start, turns])[order], leg[order]
+        stop, done = np.append(start[1:], self.slip.period), []
         while len(start):
-            first, last = self._way(leg, start), self._way(leg, stop)
+            there, half = corner[leg], 0.5 * (stop - start)
+            here, last = self._way(leg, start), self._way(leg, stop)
             most = np.where(
-                first < BEND_OVER * self.length, np.maximum(_FIRST * self.length, 0.5 * first), np.inf
+                here < BEND_OVER * self.length, np.maximum(_FIRST * self.length, 0.5 * here), np.inf
             )
-            if corner < math.inf:
-                near = np.maximum(0.5 * (corner - last), _NEAREST * self.length)
-                most = np.where(0.5 * (first + last) < corner, np.minimum(most, near), np.inf)
-            half = 0.5 * (stop - start)
-            kept = (last - first <= most) & (half <= self.widest) | (half <= EPSILON * self.slip.period)
-            done.append(start[kept])
+            near = np.maximum(0.5 * (there - last), _NEAREST * self.length)
+            known = there < math.inf
+            most = np.where(
+                known, np.where(0.5 * (here + last) < there, np.minimum(most, near), np.inf), most
+            )
+            if self.law.elastic_deflection() >= self.reach:  # friction is a straight line up to its corner
+                most = np.full(len(start), np.inf)
+            kept = (last - here <= most) & (half <= self.widest) | (half <= EPSILON * self.slip.period)
+            done.append((start[kept], stop[kept], leg[kept]))
             low, high, middle = start[~kept], stop[~kept], (start + half)[~kept]
             start, stop = np.concatenate([low, middle]), np.concatenate([middle, high])
-        whole = np.append(np.sort(np.concatenate(done)), leg.stop)
-        parts = whole[:-1, None] + np.diff(whole)[:, None] * (np.arange(cuts) / cuts)
-        return np.append(parts.ravel(), leg.stop)
+            leg = np.tile(leg[~kept], 2)
+        start, stop, leg = (np.concatenate(part) for part in zip(*done, strict=True))
+        order = np.argsort(start, kind="stable")
+        return start[order], stop[order], leg[order]
 
-    def _way(self, leg: OneWay, tau: Floats) -> Floats:
-        k, begin = np.full(tau.shape, leg.piece), np.full(tau.shape, leg.start)
-        return abs(leg.side) * np.abs(self.slip.integral(begin, tau, k))
+    def _way(self, leg: PieceNumbers, tau: Floats) -> Floats:
+        slid = self.slip.integral(self.legs.start[leg], tau, self.legs.piece[leg])
+        return np.abs(self.legs.side[leg]) * np.abs(slid)
 
-    def _time_of(self, leg: OneWay, way: float) -> float:
-        return root(lambda tau: float(self._way(leg, np.array([tau]))[0]) - way, leg.start, leg.stop)
+    def _times_of(self, leg: PieceNumbers, way: Floats) -> Floats:
+        """When so much way has been slid on these legs, by bisection."""
+        low, high = self.legs.start[leg], self.legs.stop[leg]
+        for _ in range(70):
+            middle = 0.5 * (low + high)
+            beyond = self._way(leg, middle) > way
+            low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+        return high
 
 
 def root(rising: Callable[[float], float], low: float, high: float) -> float:
@@ -172,6 +184,14 @@ def root(rising: Callable[[float], float], low: float, high: float) -> float:
         else:
             high, at_high, at_low, side = middle, here, 0.5 * at_low if side > 0 else at_low, 1
     return 0.5 * (low + high)
+
+
+@njit
+def changes_on_legs(law: Any, length: float, side: Any, path: Any, z: float, change: Any) -> None:
+    """Fill change with what a deflection z at tau = 0 has gained where each leg begins, and at their end."""
+    for i in range(side.size):
+        more = gained(law, length, z + change[i], side[i], path[i]) if side[i] != 0.0 else 0.0
+        change[i + 1] = change[i] + more
 
 
 @njit
@@ -197,7 +217,7 @@ class LegsPoint:
 
     def _answer(self) -> PrescribedMean:
         path = self.path
-        if not any(leg.side for leg in path.legs):
+        if not path.legs.side.any():
             return self._left_open(-path.reach, path.reach, NOTHING_MOVES)
         low, high = path.closed()
         # where a period forgets next to nothing of its start, rounding says what repeats

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import time
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from frictionlab.compile.call import KernelCall
+from frictionlab.compile.decorators import njit
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.loop import Vectors
@@ -33,6 +35,8 @@ HALVINGS, MOST_PANELS, SAME_MEAN = 6, 4000, 1e-14
 """How often panels are halved, up to how many, and the share of friction that halving may change."""
 _CLOSEST = 1e-16
 """Half width of the panels, in shares of the period, at which the refinement towards rest ends."""
+_CLOSEST_ON_THE_LINE = 1e-11
+"""There what is left to quadrature vanishes with slip."""
 
 
 class VaryingSlip(NamedTuple):
@@ -82,6 +86,7 @@ class VaryingSlip(NamedTuple):
         bend, done = along.curvature() + across.curvature(), []
         rounding = along.size() + across.size()
         widest = WIDEST_PANEL / self.quickest if self.quickest else math.inf
+        closest = _CLOSEST_ON_THE_LINE if self.on_the_line else _CLOSEST
         while len(start):
             middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
             k = piece_at(along.edges, middle)
@@ -89,7 +94,7 @@ class VaryingSlip(NamedTuple):
             moved = np.hypot(rate, rate_2) * 2.0 * half + 0.5 * bend[k] * (2.0 * half) ** 2
             narrow = (np.hypot(first, second) >= moved) & (half <= widest)
             # where slip only touches rest, panels end at the width that rounding leaves of the way there
-            kept = narrow | (half <= _CLOSEST * along.period) | (moved <= EPSILON * rounding)
+            kept = narrow | (half <= closest * along.period) | (moved <= EPSILON * rounding)
             done.append(start[kept])
             start, stop = (
                 np.concatenate([start[~kept], middle[~kept]]),
@@ -109,6 +114,22 @@ def _path(velocity: Piecewise, tau: Floats, k: PieceNumbers) -> Floats:
 def piece_at(edges: Floats, tau: Floats) -> PieceNumbers:
     """The pieces on which these times are, inside."""
     return np.clip(np.searchsorted(edges, tau, side="right") - 1, 0, len(edges) - 2)
+
+
+def friction_along(law: FrictionLaw, slip: Vectors) -> Vectors:
+    """The friction that resists each slip; zero at rest."""
+    if law.constant_sliding_friction():
+        return sliding_vectors(law, slip)
+    friction = np.empty(slip.size, np.complex128)
+    KernelCall(friction_of_slips, law)(slip.ravel(), friction)
+    return friction.reshape(slip.shape)
+
+
+@njit
+def friction_of_slips(law: Any, slip: Any, friction: Any) -> None:
+    """Fill friction with that of a law without memory at each slip velocity."""
+    for i in range(slip.size):
+        friction[i] = law.sliding_vector(slip[i]) if slip[i] != 0.0 else 0j
 
 
 class VaryingPoint:
@@ -178,7 +199,7 @@ class VaryingPoint:
         tau, weights = nodes(edges)
         slip = self.slip.velocity(tau, k[:, None]) - self.belt_speed
         load = self.slip.normal_load.at(tau, k[:, None])[0]
-        friction = load * sliding_vectors(self.law, slip)
+        friction = load * friction_along(self.law, slip)
         largest = float(np.abs(friction).max())
         if less:
             friction = friction - load * less * slip / np.maximum(np.abs(slip), 1e-300)
@@ -198,4 +219,4 @@ class VaryingPoint:
         tau, _ = nodes(edges)
         slip = self.slip.velocity(tau, k[:, None]) - self.belt_speed
         load = self.slip.normal_load.at(tau, k[:, None])[0]
-        return tau, load * sliding_vectors(self.law, slip)
+        return tau, load * friction_along(self.law, slip)

@@ -15,7 +15,8 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Mapping
-from typing import Any, ClassVar, Literal
+from functools import lru_cache
+from typing import Any, ClassVar, Literal, NamedTuple
 
 from pydantic import ValidationError, model_validator
 
@@ -299,38 +300,16 @@ class Scene(_Part):
 
     def signals(self) -> Signals:
         """Everything that changes in time."""
-        omega = self.frequency
-        period = FULL_TURN * self.periods / omega
-        belt, normal = self.belt_vibration, self.normal_load_variation
-        if self.degrees_of_freedom == 0:
-            along, across = self._slips(omega)
-        else:
-            along, across = _turned(_varying(belt, omega), belt.direction if belt is not None else 0.0)
+        return self._shaking.signals
+
+    @property
+    def _shaking(self) -> _Shaking:
+        """What shakes: read once of all scenes that differ in belt speed alone."""
         assert self.normal_load is not None
-        variation = _varying(normal, omega).scaled(self.normal_load)
-        return Signals(period, self._loads(omega), (along, across), variation)
-
-    def _loads(self, omega: float) -> tuple[Signal, Signal]:
-        drive, load = self.drive, self.transverse.load if self.transverse is not None else None
-        if drive is None:
-            return Signal(), Signal()
-        whole = signal_of(drive.waveform or SINE, omega, drive.phase).scaled(drive.size(omega))
-        along, across = _turned(whole, drive.direction or 0.0)
-        if load is not None:
-            own = signal_of(load.waveform or SINE, omega * (load.frequency_ratio or 1.0), load.phase)
-            across = own.scaled(load.size(omega))
-        return along, across
-
-    def _slips(self, omega: float) -> tuple[Signal, Signal]:
-        parts = [
-            signal_of(part.waveform or SINE, omega, part.phase).scaled(part.velocity_amplitude)
-            if part is not None
-            else Signal()
-            for part in (self.slip, self.transverse_slip)
-        ]
-        if self.slip is not None and self.slip.direction is not None:
-            return _turned(parts[0], self.slip.direction)
-        return parts[0], parts[1]
+        load = self.transverse.load if self.transverse is not None else None
+        parts = self.drive, load, self.slip, self.transverse_slip
+        varying = self.belt_vibration, self.normal_load_variation
+        return _shaking_by(parts, varying, self.frequency, self.periods, self.normal_load, self.is_harmonic)
 
     @property
     def load_along_belt_only(self) -> bool:
@@ -345,34 +324,25 @@ class Scene(_Part):
         assert self.damping_ratio is not None
         assert self.normal_load is not None
         across = self.transverse or Transverse(natural_frequency=1.0, damping_ratio=0.0)
-        omega_r, omega = across.natural_frequency, self.frequency
-        signals = self.signals()
-        along, aside = (each.harmonic(omega, signals.period) for each in signals.load)
+        omega_r, shaking = across.natural_frequency, self._shaking
+        along, aside = shaking.load
         return Mass(
             damping=2.0 * self.damping_ratio,
             stiffness=1.0,
             transverse_damping=2.0 * across.damping_ratio * omega_r,
             transverse_stiffness=omega_r**2,
             normal_load=self.normal_load,
-            frequency=omega,
+            frequency=self.frequency,
             force=along,
             transverse_force=aside,
-            varying=self._varying(signals),
+            varying=shaking.varying,
         )
 
     def motion(self) -> Motion:
         """The numbers of a prescribed slip."""
         assert self.normal_load is not None
-        signals = self.signals()
-        phasors = [each.harmonic(self.frequency, signals.period) for each in signals.belt]
-        along, aside = phasors
-        return Motion(self.normal_load, self.frequency, along, aside, self._varying(signals))
-
-    def _varying(self, signals: Signals) -> Any:
-        """What kernels are told of what changes in time otherwise than as one sine; nothing where nothing does."""
-        if self.is_harmonic:
-            return ()
-        return varying_of(signals, self.frequency, self.constant_contact)
+        shaking = self._shaking
+        return Motion(self.normal_load, self.frequency, *shaking.belt, shaking.varying)
 
     def values(self) -> dict[str, float | str]:
         """Every value of the scene by its dotted path, without the leading ``scene.``; SI numbers included."""
@@ -458,6 +428,63 @@ def _varying(part: BeltVibration | NormalLoadVariation | None, omega: float) -> 
     if part is None:
         return Signal()
     return signal_of(part.waveform, omega * (part.frequency_ratio or 1.0), part.phase).scaled(_size(part))
+
+
+class _Shaking(NamedTuple):
+    """Everything that changes in time, its harmonics at the frequency of the drive along x1 and x2, and what kernels
+    are told of what changes otherwise than as one sine; nothing where nothing does."""
+
+    signals: Signals
+    load: tuple[complex, complex]
+    belt: tuple[complex, complex]
+    varying: Any
+
+
+@lru_cache(maxsize=1024)
+def _shaking_by(
+    parts: tuple[Drive | None, Load | None, Slip | None, TransverseSlip | None],
+    others: tuple[BeltVibration | None, NormalLoadVariation | None],
+    omega: float,
+    periods: int,
+    normal_load: float,
+    is_harmonic: bool,
+) -> _Shaking:
+    (drive, load, slip, across), (belt, normal) = parts, others
+    if slip is not None or across is not None:
+        moved = _slips(slip, across, omega)
+    else:
+        moved = _turned(_varying(belt, omega), belt.direction if belt is not None else 0.0)
+    variation = _varying(normal, omega).scaled(normal_load)
+    signals = Signals(FULL_TURN * periods / omega, _loads(drive, load, omega), moved, variation)
+    first, second, third, fourth = (
+        each.harmonic(omega, signals.period) for each in (*signals.load, *signals.belt)
+    )
+    constant = normal is not None and normal.amplitude > 0.0 and normal.contact == "constant"
+    varying = () if is_harmonic else varying_of(signals, omega, constant)
+    return _Shaking(signals, (first, second), (third, fourth), varying)
+
+
+def _loads(drive: Drive | None, load: Load | None, omega: float) -> tuple[Signal, Signal]:
+    if drive is None:
+        return Signal(), Signal()
+    whole = signal_of(drive.waveform or SINE, omega, drive.phase).scaled(drive.size(omega))
+    along, across = _turned(whole, drive.direction or 0.0)
+    if load is not None:
+        own = signal_of(load.waveform or SINE, omega * (load.frequency_ratio or 1.0), load.phase)
+        across = own.scaled(load.size(omega))
+    return along, across
+
+
+def _slips(slip: Slip | None, across: TransverseSlip | None, omega: float) -> tuple[Signal, Signal]:
+    parts = [
+        signal_of(part.waveform or SINE, omega, part.phase).scaled(part.velocity_amplitude)
+        if part is not None
+        else Signal()
+        for part in (slip, across)
+    ]
+    if slip is not None and slip.direction is not None:
+        return _turned(parts[0], slip.direction)
+    return parts[0], parts[1]
 
 
 def _turned(signal: Signal, direction: float) -> tuple[Signal, Signal]:

@@ -24,7 +24,7 @@ from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics import motion
 from frictionlab.dynamics.motion import START, Instant
 from frictionlab.dynamics.step_size import growth_factor
-from frictionlab.methods.exact import legs
+from frictionlab.methods.exact import legs, oscillator
 from frictionlab.scene.body import Body, Mass, in_the_plane, on_the_line
 from frictionlab.scene.scene import Scene
 
@@ -217,7 +217,7 @@ def test_deviation_and_reference_together_obey_the_equation_of_motion(mass, tau,
 def test_legs_of_slip_in_closed_form_have_the_acceleration_of_the_equation_of_motion(
     damping, frequency, size, friction, belt_speed, tau, x, w, sign
 ):
-    closed = interpreted(legs.canonical)(damping, frequency, size, friction, belt_speed)
+    closed = interpreted(oscillator.canonical)(damping, frequency, size, friction, belt_speed)
     mass = Mass(2.0 * damping, 1.0, 0.0, 1.0, friction, frequency, complex(size), 0j)
     body, after = on_the_line(mass), 0.02
 
@@ -242,7 +242,7 @@ def test_legs_of_rest_in_closed_form_are_held_by_the_force_at_rest(
     damping, frequency, size, belt_speed, tau, x
 ):
     friction, after = 99.0, 0.3
-    closed = interpreted(legs.canonical)(damping, frequency, size, friction, belt_speed)
+    closed = interpreted(oscillator.canonical)(damping, frequency, size, friction, belt_speed)
     body = on_the_line(Mass(2.0 * damping, 1.0, 0.0, 1.0, friction, frequency, complex(size), 0j))
     leg = interpreted(legs.stick_leg)(closed, tau, x, after)
 

@@ -14,8 +14,8 @@ from frictionlab.scene.signals import Signal, Wave
 PieceNumbers = NDArray[np.int64]
 _ROUNDING = 8.0 * EPSILON
 """Share of its size below which the value of such a function is rounding."""
-_FINEST = 1e-16
-"""Share of the period below which intervals are not cut."""
+_FINEST = EPSILON
+"""Share of the period, of half an interval, from which on it is not cut: at the period's end it has no middle."""
 
 
 class FreeMotion(NamedTuple):

@@ -33,8 +33,9 @@ WIDEST_PANEL = math.pi / 16.0
 """Half width of a panel, in radians of the quickest harmonic."""
 HALVINGS, MOST_PANELS, SAME_MEAN = 6, 4000, 1e-14
 """How often panels are halved, up to how many, and the share of friction that halving may change."""
-_CLOSEST = 1e-16
-"""Half width of the panels, in shares of the period, at which the refinement towards rest ends."""
+_CLOSEST = EPSILON
+"""Half width of the panels, in shares of the period, at which the refinement towards rest ends: narrower ones have no
+middle at the end of the period."""
 _CLOSEST_ON_THE_LINE = 1e-11
 """There what is left to quadrature vanishes with slip."""
 

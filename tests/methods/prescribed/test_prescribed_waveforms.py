@@ -221,6 +221,13 @@ def test_an_elastic_contact_on_a_belt_at_rest_keeps_its_mean() -> None:
     assert middle != pytest.approx(0.0, abs=1e-3)  # the contact is bent forward while it is heavy
 
 
+def test_slip_that_comes_to_rest_at_the_end_of_a_long_period_ends_its_panels() -> None:
+    # between 8 and this period two neighbours among numbers are farther apart than 2e-16 of it
+    straight = scene(0.0, A_SINE, slip={"frequency": 2 * math.pi / 8.76, "direction": 40.0})
+
+    assert abs(mean(straight, LAW)) <= 1e-13
+
+
 def test_columns_keep_their_meaning() -> None:
     load = {"amplitude": 0.3, "frequency_ratio": 1.5}
     found = answer(scene(0.4, "triangle", 25.0, normal_load_variation=load), LAW).columns

@@ -127,7 +127,9 @@ OUTSIDE = {
     "ruamel": ["study", "runner"],
     "pandas": ["results", "runner", "charts", "report", "cli"],
     "pyarrow": ["results", "runner"],
-    "matplotlib": ["charts", "bench.chart"],
+    "matplotlib": [
+        *("charts", "bench.chart", "bench.orders.chart", "bench.stability.chart", "bench.failures.chart"),
+    ],
     # inside functions alone: nothing imports it before it is needed
     "distributed": ["runner"],
     "scipy": ["theory", "numerics", "methods.reduced", "bench.peers"],

@@ -6,10 +6,15 @@ from frictionlab.bench.measure import MeasurementInterrupted, WorkloadResult, me
 from frictionlab.bench.reader import load_bench
 from frictionlab.bench.record import Bench, UnknownCurve
 from frictionlab.bench.report import bench_summary, write
+from frictionlab.bench.sections import BenchPicture, Section, SectionResult, SectionSource
 
 __all__ = [
     "Bench",
+    "BenchPicture",
     "MeasurementInterrupted",
+    "Section",
+    "SectionResult",
+    "SectionSource",
     "UnknownCurve",
     "WorkloadResult",
     "bench_summary",

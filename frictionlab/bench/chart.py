@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 from frictionlab.bench.measure import Row, WorkloadResult
 from frictionlab.bench.record import Contender
 from frictionlab.bench.report import largest, point_remark
+from frictionlab.bench.sections import BenchPicture, SectionResult
 from frictionlab.charts.figures import PAGE, STYLE
 from frictionlab.runner.errors import SaveError
 
@@ -27,23 +28,35 @@ LINE_STYLES = ("solid", (0, (5, 1.5)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)))
 LEAST = 1e-17
 """An error of zero is drawn here."""
 HEIGHT = 3.0
+UNSTAMPED = {"svg": {"Date": None}, "png": {"Software": None}}
+"""The kinds of file of a chart, and what is left out of each so that the same chart is the same file."""
+CAPTION = (
+    "Lower is nearer the reference, further left is cheaper: read what each error costs along a level line."
+)
 LETTERS = 36
 """On a line of the legend."""
 
 
-def draw_charts(done: Sequence[WorkloadResult], folder: Path) -> list[Path]:
-    """Draw every curve as SVG and PNG; the files written. Raises SaveError."""
-    files = []
+def draw_charts(done: Sequence[WorkloadResult | SectionResult], folder: Path) -> list[BenchPicture]:
+    """Draw every curve and section as SVG and PNG; what was drawn. Raises SaveError."""
+    pictures = []
     try:
         with mpl.rc_context(STYLE):
             for measured in done:
-                figure = chart(measured)
-                for kind, unstamped in (("svg", {"Date": None}), ("png", {"Software": None})):
-                    files.append(folder / f"{measured.work.name}.{kind}")
-                    figure.savefig(files[-1], metadata=unstamped)
+                if isinstance(measured, WorkloadResult):
+                    pictures.append(BenchPicture(measured.work.name, CAPTION))
+                    save_figure(chart(measured), folder, measured.work.name)
+                else:
+                    pictures += measured.draw(folder)
     except OSError as problem:
         raise SaveError(f"cannot write the charts in {folder}: {problem.strerror or problem}") from problem
-    return files
+    return pictures
+
+
+def save_figure(figure: Figure, folder: Path, stem: str) -> None:
+    """Write a figure as SVG and PNG without a date. Raises OSError."""
+    for kind, unstamped in UNSTAMPED.items():
+        figure.savefig(folder / f"{stem}.{kind}", metadata=unstamped)
 
 
 def chart(measured: WorkloadResult) -> Figure:

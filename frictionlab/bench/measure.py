@@ -13,6 +13,7 @@ from frictionlab.bench.first_run import first_run
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Bench, BenchSetting, Contender, ReferenceMeans, Workload
 from frictionlab.bench.references import independent, reference_means
+from frictionlab.bench.sections import SectionResult
 from frictionlab.bench.solvers import SolverAnswers, mean_task, solve_points, whole_task
 from frictionlab.bench.timing import Times, time_task
 from frictionlab.compile.call import compiling_at_once
@@ -24,9 +25,9 @@ NO_TIME = Times(math.nan, (math.nan,) * 3, 0)
 
 
 class MeasurementInterrupted(Exception):
-    """Stopped by the user; ``done`` holds the workloads measured before."""
+    """Stopped by the user; ``done`` holds what was measured before."""
 
-    def __init__(self, done: list[WorkloadResult]) -> None:
+    def __init__(self, done: list[WorkloadResult | SectionResult]) -> None:
         super().__init__("interrupted")
         self.done = done
 
@@ -64,12 +65,15 @@ class WorkloadResult:
     rows: list[Row]
 
 
-def measure(bench: Bench, tell: Callable[[str], None], first_runs: bool = False) -> list[WorkloadResult]:
-    """Measure a bench list; first_runs: the first setting of each method without kernels, too.
+def measure(
+    bench: Bench, tell: Callable[[str], None], first_runs: bool = False
+) -> list[WorkloadResult | SectionResult]:
+    """Measure the curves and sections of a bench list; first_runs: the first setting of each method without
+    kernels, too.
 
     Raises MeasurementInterrupted with what is finished.
     """
-    done: list[WorkloadResult] = []
+    done: list[WorkloadResult | SectionResult] = []
     try:
         with compiling_at_once():  # what is timed is machine code
             for work in bench.workloads:
@@ -78,6 +82,9 @@ def measure(bench: Bench, tell: Callable[[str], None], first_runs: bool = False)
                 rows = list(_rows(bench, work, found, tell))
                 rows = [_with_first_run(row, work, tell) for row in rows] if first_runs else rows
                 done.append(WorkloadResult(work, found, rows))
+            for section in bench.sections:
+                tell(section.name)
+                done.append(section.measure(tell))
     except KeyboardInterrupt:
         raise MeasurementInterrupted(done) from None
     return done

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
@@ -11,13 +12,16 @@ from frictionlab import columns
 from frictionlab.bench.contenders import Defaults, contenders
 from frictionlab.bench.record import Bench, Workload
 from frictionlab.bench.references import read_references
-from frictionlab.mistakes.notes import Notes, Path
+from frictionlab.bench.sections import Section, SectionReader, SectionSource
+from frictionlab.mistakes.notes import Notes, Path, dotted
 from frictionlab.study import Mistake, Study, StudyError
 from frictionlab.study.choices import items
 from frictionlab.study.reader import study_of
 from frictionlab.study.yaml_source import Source, read_file
 
-BENCH_KEYS = ("schema", "title", "scenes", "references", "methods", "peers", "repeats", "seconds")
+SECTIONS: dict[str, SectionReader] = {}
+"""What reads each key of a list that is neither a curve nor about curves."""
+BENCH_KEYS = ("schema", "title", "scenes", "references", "methods", "peers", "repeats", "seconds", *SECTIONS)
 SCENE_KEYS = ("name", "title", "scene", "laws", "sweep", "references", "methods", "peers")
 OWN_STUDY = ("scene", "laws", "sweep")
 BENCH_SCHEMA = 1
@@ -61,7 +65,9 @@ class _Reading:
     def bench(self) -> Bench | None:
         if self._notes.mapping(self._tree, (), BENCH_KEYS) is None:
             return None
-        self._notes.head(self._tree, ("schema", "scenes"), BENCH_SCHEMA)
+        sections = self._sections()
+        asked = any(key in self._tree for key in SECTIONS)
+        self._notes.head(self._tree, ("schema",) if asked else ("schema", "scenes"), BENCH_SCHEMA)
         repeats = self._notes.whole_number(self._tree.get("repeats", REPEATS), ("repeats",), 1)
         seconds = self._notes.positive(self._tree.get("seconds", SECONDS), ("seconds",))
         title = self._notes.text(self._tree.get("title", ""), ("title",))
@@ -69,13 +75,26 @@ class _Reading:
             read_references(self._tree.get("references", []), ("references",), self._path, self._notes),
             contenders(self._tree, (), self._notes),
         )
+        found = self._curves(defaults) if "scenes" in self._tree or not asked else []
+        bench = Bench(self._path.stem, title, tuple(found), repeats or 1, seconds or 1.0, sections)
+        self._note_equal_names(bench.names)
+        return bench
+
+    def _sections(self) -> tuple[Section, ...]:
+        """The sections of every key that is there."""
+        return tuple(
+            section
+            for key, read in SECTIONS.items()
+            if key in self._tree
+            for section in read(SectionSource(self._tree[key], (key,), self._notes, self._study))
+        )
+
+    def _curves(self, defaults: Defaults) -> list[Workload]:
         given = self._tree.get("scenes", [])
         blocks = items(given, ("scenes",), "[{name: A, scene: {...}, laws: [...]}]", self._notes)
-        found = [
+        return [
             work for index, block in enumerate(blocks) for work in self._workloads(block, index, defaults)
         ]
-        self._note_equal_names(found)
-        return Bench(self._path.stem, title, tuple(found), repeats or 1, seconds or 1.0)
 
     def _workloads(self, block: Any, index: int, defaults: Defaults) -> list[Workload]:
         path: Path = ("scenes", index)
@@ -90,7 +109,7 @@ class _Reading:
         chosen = defaults.contenders | contenders(block, path, self._notes)
         if not chosen and not self._noted("methods", path) and not self._noted("peers", path):
             self._notes.add(path, "no methods and no peers: there is nothing to measure")
-        study = self._study(block, path)
+        study = self._curve_study(block, path)
         if study is None:
             return []
         return [
@@ -119,26 +138,31 @@ class _Reading:
             self._notes.add((*path, "name"), "names a file: use letters, digits, points, - and _")
         return name
 
-    def _study(self, block: dict[str, Any], path: Path) -> Study | None:
-        """The scene, laws and sweep as the study they are, read by the study's own reader."""
+    def _curve_study(self, block: dict[str, Any], path: Path) -> Study | None:
+        """The study of a block that sweeps the belt speed alone."""
         sweep = block.get("sweep")
         stray = [key for key in sweep if key not in columns.BELT_SPEEDS] if isinstance(sweep, dict) else []
         for key in stray:
             self._notes.on_key((*path, "sweep", key), "a bench curve sweeps the belt speed alone")
+        study = self._study(block, path, stray)
+        return None if stray else study
+
+    def _study(self, block: dict[str, Any], path: Path, stray: Sequence[str] = ()) -> Study | None:
+        """The scene, laws and sweep as the study they are, read by the study's own reader; mistakes of stray paths
+        of the sweep are noted elsewhere.
+        """
         try:
-            study = study_of(_part(self._source, block, path))
+            return study_of(_part(self._source, block, path))
         except StudyError as problem:
-            head = f"scenes[{path[1]}]"
+            head = dotted(path)
             self._mistakes += [
                 replace(each, path=f"{head}.{each.path}" if each.path else head)
                 for each in problem.mistakes
                 if each.path not in [f"sweep.{key}" for key in stray]
             ]
             return None
-        return None if stray else study
 
-    def _note_equal_names(self, found: list[Workload]) -> None:
-        names = [work.name for work in found]
+    def _note_equal_names(self, names: Sequence[str]) -> None:
         for name in {name for name in names if names.count(name) > 1}:
             self._notes.add(("scenes",), f"two curves are called '{name}'; give each its own name")
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from frictionlab.bench.peers.base import Peer
+from frictionlab.bench.sections import Section
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
@@ -78,21 +79,32 @@ class Workload:
 
 @dataclass(frozen=True)
 class Bench:
-    """Workloads, and how long each setting may be timed: so many repeats, or so many seconds if that is less."""
+    """Workloads and sections, and how long each setting of a workload may be timed: so many repeats, or so many
+    seconds if that is less.
+    """
 
     name: str
     title: str
     workloads: tuple[Workload, ...]
     repeats: int
     seconds: float
+    sections: tuple[Section, ...] = ()
+
+    @property
+    def names(self) -> list[str]:
+        """Of all that is measured, curves first."""
+        return [work.name for work in self.workloads] + [section.name for section in self.sections]
 
     def only(self, names: Sequence[str]) -> Bench:
-        """The curves of these names alone; all where none is named. Raises UnknownCurve."""
-        known = [work.name for work in self.workloads]
-        if unknown := [name for name in names if name not in known]:
-            raise UnknownCurve(f"no curve '{unknown[0]}' in the list; there are {', '.join(known)}")
-        kept = tuple(work for work in self.workloads if not names or work.name in names)
-        return replace(self, workloads=kept)
+        """The curves and sections of these names alone; all where none is named. Raises UnknownCurve."""
+        if unknown := [name for name in names if name not in self.names]:
+            part = "curve or section" if self.sections else "curve"
+            raise UnknownCurve(f"no {part} '{unknown[0]}' in the list; there are {', '.join(self.names)}")
+        return replace(
+            self,
+            workloads=tuple(work for work in self.workloads if not names or work.name in names),
+            sections=tuple(section for section in self.sections if not names or section.name in names),
+        )
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import Any
 
 from frictionlab.bench.measure import BENCH_STATUSES, Row, WorkloadResult
 from frictionlab.bench.record import Contender, ReferenceMeans
+from frictionlab.bench.sections import SectionResult
 from frictionlab.bench.timing import Times
 from frictionlab.runner.errors import SaveError
 
@@ -20,17 +21,19 @@ HEAD = (
 )
 
 
-def write(done: Sequence[WorkloadResult], folder: Path) -> list[Path]:
-    """One CSV and one Markdown table per curve; the files written. Raises SaveError."""
+def write(done: Sequence[WorkloadResult | SectionResult], folder: Path) -> list[Path]:
+    """One CSV and one Markdown table per curve, the tables of each section; the files written. Raises SaveError."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        return [path for each in done for path in _write_one(each, folder / each.work.name)]
+        return [path for each in done for path in _write_one(each, folder)]
     except OSError as problem:
         raise SaveError(f"cannot write the tables in {folder}: {problem.strerror or problem}") from problem
 
 
-def _write_one(measured: WorkloadResult, path: Path) -> list[Path]:
-    table, text = path.with_name(f"{path.name}.csv"), path.with_name(f"{path.name}.md")
+def _write_one(measured: WorkloadResult | SectionResult, folder: Path) -> list[Path]:
+    if not isinstance(measured, WorkloadResult):
+        return measured.write(folder)
+    table, text = folder / f"{measured.work.name}.csv", folder / f"{measured.work.name}.md"
     records = [_record(measured, row) for row in measured.rows]
     with table.open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, list(records[0]), lineterminator="\n")
@@ -157,9 +160,13 @@ def _spread(times: Times) -> str:
     return f"{_short(times.least)} ({', '.join(map(_short, times.quartiles))})"
 
 
-def bench_summary(done: Sequence[WorkloadResult]) -> str:
-    """Time per point to reach an error, for every curve and contender, with the ratio to the best method."""
-    return "\n\n".join(_summary(each) for each in done)
+def bench_summary(done: Sequence[WorkloadResult | SectionResult]) -> str:
+    """Time per point to reach an error, for every curve and contender, with the ratio to the best method; what
+    each section came to.
+    """
+    return "\n\n".join(
+        _summary(each) if isinstance(each, WorkloadResult) else each.summary() for each in done
+    )
 
 
 def _summary(measured: WorkloadResult) -> str:

@@ -12,20 +12,24 @@ from frictionlab.cli import options
 from frictionlab.cli.output import INTERRUPTED, CommandError, print_message, print_result
 
 if TYPE_CHECKING:
-    from frictionlab.bench import WorkloadResult
+    from frictionlab.bench import SectionResult, WorkloadResult
 
 
 @click.command("bench")
 @click.argument("bench_list", metavar="LIST", type=click.Path(path_type=Path))
 @options.folder("runs/bench-<list name>")
-@click.option("--only", multiple=True, metavar="NAME", help="Measure this curve alone; may be repeated.")
+@click.option(
+    "--only", multiple=True, metavar="NAME", help="Measure this curve or section alone; may be repeated."
+)
 @click.option(
     "--first-runs",
     is_flag=True,
     help="Also time the first setting of each method where no kernel is compiled.",
 )
 def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], first_runs: bool) -> None:
-    """Measure error against time per point of every method and peer in LIST; one chart and table per curve."""
+    """Measure error against time per point of every method and peer in LIST; one chart and table per curve, and
+    those of each section.
+    """
     from frictionlab import bench
 
     try:
@@ -37,14 +41,15 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], fir
         done = bench.measure(asked, print_message, first_runs)
     except bench.MeasurementInterrupted as problem:
         _save(problem.done, folder)
+        parts = "curves and sections" if asked.sections else "curves"
         raise CommandError(
-            INTERRUPTED, f"interrupted: {len(problem.done)} of {len(asked.workloads)} curves done"
+            INTERRUPTED, f"interrupted: {len(problem.done)} of {len(asked.names)} {parts} done"
         ) from problem
     print_result(bench.bench_summary(done))
     _save(done, folder)
 
 
-def _save(done: Sequence[WorkloadResult], folder: Path) -> None:
+def _save(done: Sequence[WorkloadResult | SectionResult], folder: Path) -> None:
     """Write tables, then charts: the tables are on disk before matplotlib is imported."""
     if not done:
         return

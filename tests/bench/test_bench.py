@@ -15,7 +15,7 @@ from answered import with_columns
 from fake_methods import Another, Fake, breaks_down
 
 from frictionlab import bench, cli, registry
-from frictionlab.bench import chart, timing
+from frictionlab.bench import chart, reader, timing
 from frictionlab.bench.measure import Row, WorkloadResult, chosen
 from frictionlab.bench.peers import base
 from frictionlab.bench.peers.listing import PEERS
@@ -282,6 +282,93 @@ def test_an_interrupted_bench_keeps_the_curves_that_are_done(
     assert "interrupted: 1 of 2 curves done" in capsys.readouterr().err
     assert Path("out/A.csv").exists()
     assert not Path("out/B.csv").exists()
+
+
+# --- sections -----------------------------------------------------------------------------------------------------
+
+
+class Told:
+    """What the fake section came to."""
+
+    def __init__(self, name: str) -> None:
+        self.name, self.title = name, "a fake"
+
+    def write(self, folder: Path) -> list[Path]:
+        (folder / f"{self.name}.csv").write_text("a\n1\n")
+        return [folder / f"{self.name}.csv"]
+
+    def draw(self, folder: Path) -> list[bench.BenchPicture]:
+        (folder / f"{self.name}.svg").write_text("<svg/>")
+        return [bench.BenchPicture(self.name, "Nothing is to be read.")]
+
+    def summary(self) -> str:
+        return f"{self.name}: told"
+
+
+class Part:
+    """A fake section; trouble is called when it is measured."""
+
+    def __init__(self, name: str, trouble: Any = lambda: None) -> None:
+        self.name, self._trouble = name, trouble
+
+    def measure(self, tell: Any) -> Told:
+        self._trouble()
+        return Told(self.name)
+
+
+def sections(monkeypatch: pytest.MonkeyPatch, *parts: Part) -> None:
+    """A bench list whose key ``fakes`` means these sections."""
+    monkeypatch.setitem(reader.SECTIONS, "fakes", lambda source: parts)
+    monkeypatch.setattr(reader, "BENCH_KEYS", (*reader.BENCH_KEYS, "fakes"))
+
+
+def test_a_list_may_have_sections_alone(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    sections(monkeypatch, Part("one"), Part("two"))
+    Path("list.yaml").write_text("schema: 1\nfakes: true\n")
+
+    assert cli.main(["bench", "list.yaml", "-o", "out"]) == 0
+
+    assert capsys.readouterr().out == "one: told\n\ntwo: told\n"
+    assert sorted(path.name for path in Path("out").iterdir()) == ["one.csv", "one.svg", "two.csv", "two.svg"]
+
+
+def test_a_section_is_chosen_by_name_beside_curves(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    sections(monkeypatch, Part("one"), Part("two"))
+    Path("list.yaml").write_text(f"{LIST}fakes: true\n")
+
+    assert cli.main(["bench", "list.yaml", "--only", "two", "-o", "out"]) == 0
+    assert capsys.readouterr().out == "two: told\n"
+    assert cli.main(["bench", "list.yaml", "--only", "three"]) == 2
+    assert "no curve or section 'three' in the list; there are A, one, two" in capsys.readouterr().err
+
+
+def test_an_interrupted_bench_keeps_the_sections_that_are_done(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    sections(monkeypatch, Part("one"), Part("two", interrupt))
+    Path("list.yaml").write_text("schema: 1\nfakes: true\n")
+
+    assert cli.main(["bench", "list.yaml", "-o", "out"]) == 130
+
+    assert "interrupted: 1 of 2 curves and sections done" in capsys.readouterr().err
+    assert sorted(path.name for path in Path("out").iterdir()) == ["one.csv", "one.svg"]
+
+
+def test_a_section_and_a_curve_of_one_name_are_a_mistake(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    sections(monkeypatch, Part("A"))
+    Path("list.yaml").write_text(f"{LIST}fakes: true\n")
+
+    assert cli.main(["bench", "list.yaml"]) == 2
+    assert "two curves are called 'A'" in capsys.readouterr().err
 
 
 MISTAKES = [

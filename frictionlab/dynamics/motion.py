@@ -265,7 +265,7 @@ def _no_swing(body: Any) -> float:
 
 
 def _belt_swing(body: Any) -> float:
-    return body.varying.belt_swing
+    return body.varying.whole.belt_swing
 
 
 belt_swing = by_variation(_no_swing, _belt_swing)
@@ -280,8 +280,9 @@ def _one_piece(body: Any) -> int:
 
 
 def _pieces_of_a_span(body: Any) -> int:
-    laps = math.floor(body.periods / body.varying.periods + 0.5)
-    return laps * body.varying.pieces
+    whole = body.varying.whole
+    laps = math.floor(body.periods / whole.periods + 0.5)
+    return laps * whole.pieces
 
 
 pieces_of = by_variation(_one_piece, _pieces_of_a_span)
@@ -295,8 +296,8 @@ def _whole_span(body: Any, k: int) -> Any:
 @inner
 def _edge(varying: Any, k: int) -> float:
     """When the k-th piece since the start begins."""
-    lap, at, first = k // varying.pieces, k % varying.pieces, varying.edges
-    return lap * varying.table[first + varying.pieces] + varying.table[first + at]
+    pieces, first = varying.whole.pieces, varying.whole.edges
+    return k // pieces * varying.table[first + pieces] + varying.table[first + k % pieces]
 
 
 def _piece_between_corners(body: Any, k: int) -> Any:
@@ -343,21 +344,15 @@ def _with_varying(body: Body, varying: Any) -> Body:
 
 def _body_of_piece(body: Body, k: int) -> Body:
     old = body.varying
-    at = old.lines + PER_PIECE * (k % old.pieces)
+    at = old.whole.lines + PER_PIECE * (k % old.whole.pieces)
     normal = Course(old.normal_load.first, old.normal_load.terms, old.table[at + 8], old.table[at + 9])
     varying = Packed(
         old.table,
+        old.whole,
         _edge(old, k),
         _course_on_line(old, old.load, at),
         _course_on_line(old, old.belt, at + 4),
         normal,
-        old.lines,
-        old.edges,
-        old.pieces,
-        old.periods,
-        old.quickest,
-        old.belt_swing,
-        old.constant_contact,
         old.keeps_stiffness,
     )
     return _with_varying(body, varying)
@@ -372,8 +367,8 @@ def _still_itself(body: Any, tau: float) -> Any:
 
 
 def _body_at(body: Body, tau: float) -> Body:
-    varying = body.varying
-    k = varying.pieces * math.floor(tau / varying.table[varying.edges + varying.pieces])
+    varying, whole = body.varying, body.varying.whole
+    k = whole.pieces * math.floor(tau / varying.table[whole.edges + whole.pieces])
     while tau >= _edge(varying, k + 1):
         k += 1
     return in_piece(body, k)
@@ -391,17 +386,11 @@ def _with_bare_table(body: Any) -> Any:
     old = body.varying
     varying = Packed(
         items_of(old.table),
+        old.whole,
         old.begins,
         old.load,
         old.belt,
         old.normal_load,
-        old.lines,
-        old.edges,
-        old.pieces,
-        old.periods,
-        old.quickest,
-        old.belt_swing,
-        old.constant_contact,
         old.keeps_stiffness,
     )
     return _with_varying(body, varying)
@@ -416,7 +405,7 @@ def _drive_frequency(body: Any) -> float:
 
 
 def _quickest_wave(body: Any) -> float:
-    return body.varying.quickest
+    return body.varying.whole.quickest
 
 
 quickest_of = by_variation(_drive_frequency, _quickest_wave)

@@ -13,7 +13,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signal
 from frictionlab.scene.waveforms import told
 from frictionlab.shape.ends import Loads
-from frictionlab.theory.piecewise import edges_of, piecewise
+from frictionlab.theory.piecewise import piecewise
 from frictionlab.theory.prescribed import mean_direction
 from frictionlab.theory.rest import can_hold
 
@@ -92,7 +92,7 @@ def _start(scene: Scene, law: FrictionLaw | None) -> tuple[float, str]:
 def _rests_at_its_largest(scene: Scene) -> bool:
     """Whether a slip along the belt keeps its largest velocity for a while, as a square one does."""
     signals = scene.signals()
-    slip = piecewise(signals.belt[0], edges_of(signals.corners(), signals.period))
+    slip = piecewise(signals.belt[0], signals.edges())
     flat = np.abs(slip.middle[(slip.slope == 0.0) & (slip.curvature() == 0.0)])
     return scene.load_along_belt_only and bool(np.any(flat >= (1.0 - 1e-12) * slip.size()))
 
@@ -101,7 +101,7 @@ def _direction(scene: Scene) -> float:
     """Mean Coulomb friction of a slip along a belt at rest, relative to its coefficient."""
     assert scene.normal_load is not None
     signals = scene.signals()
-    edges = edges_of(signals.corners(), signals.period)
+    edges = signals.edges()
     load = piecewise(signals.normal_load.scaled(1.0 / scene.normal_load), edges, 1.0)
     return mean_direction(piecewise(signals.belt[0], edges), load).mean
 

@@ -295,8 +295,7 @@ class Scene(_Part):
     @property
     def constant_contact(self) -> bool:
         """Whether bristles keep their stiffness while the normal load changes."""
-        part = self.normal_load_variation
-        return part is not None and part.amplitude > 0.0 and part.contact == "constant"
+        return _keeps_stiffness(self.normal_load_variation)
 
     def signals(self) -> Signals:
         """Everything that changes in time."""
@@ -459,9 +458,13 @@ def _shaking_by(
     first, second, third, fourth = (
         each.harmonic(omega, signals.period) for each in (*signals.load, *signals.belt)
     )
-    constant = normal is not None and normal.amplitude > 0.0 and normal.contact == "constant"
-    varying = () if is_harmonic else varying_of(signals, omega, constant)
+    varying = () if is_harmonic else varying_of(signals, omega, _keeps_stiffness(normal))
     return _Shaking(signals, (first, second), (third, fourth), varying)
+
+
+def _keeps_stiffness(part: NormalLoadVariation | None) -> bool:
+    """Whether bristles do while the normal load changes."""
+    return part is not None and part.amplitude > 0.0 and part.contact == "constant"
 
 
 def _loads(drive: Drive | None, load: Load | None, omega: float) -> tuple[Signal, Signal]:

@@ -182,6 +182,11 @@ _CORNERS: dict[str, tuple[tuple[float, float, float], ...]] = {
 """Of each shape: theta at its corners, the value after them, and the slope by theta."""
 
 
+def edges_of(corners: list[float], period: float) -> Floats:
+    """The ends of the pieces between corners, from 0 to the period."""
+    return np.array([0.0, *(tau for tau in corners if tau > 0.0), period])
+
+
 class Signals(NamedTuple):
     """What changes in time in a scene, along x1 and x2.
 
@@ -202,3 +207,7 @@ class Signals(NamedTuple):
             if not found or tau - found[-1] > 1e-13 * self.period:
                 found.append(tau)
         return found
+
+    def edges(self) -> Floats:
+        """The ends of the pieces between corners [pieces + 1], from 0 to the period."""
+        return edges_of(self.corners(), self.period)

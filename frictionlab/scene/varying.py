@@ -16,27 +16,23 @@ from frictionlab.scene.signals import Signal, Signals
 
 
 class Waves(NamedTuple):
-    """A function of time for kernels: sums of sine[j]*sin(frequency[j] tau) + cosine[j]*cos(frequency[j] tau), and a
-    line, value + slope*(tau - when the piece began); numbers are real on the line and x1 + i x2 in the plane."""
+    """Sum of sine[j]*sin(frequency[j] tau) + cosine[j]*cos(frequency[j] tau), along x1 and x2 as x1 + i x2."""
 
     frequency: Floats
     sine: Any
     cosine: Any
-    value: Any
-    slope: Any
 
 
 class Varying(NamedTuple):
     """What changes in time otherwise than as one sine, in pieces between corners of any of its functions.
 
-    Within a piece every function is smooth, and beyond its ends it goes on as within. begins: the piece that holds;
+    Within a piece every function is smooth, and beyond its ends it goes on as within.
     edges [pieces + 1]: from 0 to the common period; lines [pieces]: value at the beginning of each piece, and slope.
     periods: of the drive in a common period. quickest: the highest frequency of any wave, at least that of the drive.
     belt_swing: the largest velocity of the belt's vibration.
     constant_contact: whether bristles keep the stiffness of the mean normal load.
     """
 
-    begins: float
     load: Waves
     belt: Waves
     normal_load: Waves
@@ -55,7 +51,7 @@ class Varying(NamedTuple):
 
 def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Varying:
     """The numbers of signals, those along x1 and x2 as x1 + i x2; frequency: of the drive."""
-    edges = np.array([0.0, *(tau for tau in signals.corners() if tau > 0.0), signals.period])
+    edges = signals.edges()
     middles = 0.5 * (edges[:-1] + edges[1:])
     half = 0.5 * np.diff(edges)
     every = (*signals.load, *signals.belt, signals.normal_load)
@@ -64,10 +60,9 @@ def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Va
     belt, belt_lines, belt_slopes = _planar_waves(*signals.belt, middles, half)
     normal, normal_lines, normal_slopes = _planar_waves(signals.normal_load, Signal(), middles, half)
     return Varying(
-        begins=0.0,
         load=load,
         belt=belt,
-        normal_load=_real(normal),
+        normal_load=normal,
         edges=edges,
         load_lines=load_lines,
         load_slopes=load_slopes,
@@ -83,7 +78,7 @@ def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Va
 
 
 def _planar_waves(along: Signal, across: Signal, middles: Floats, half: Floats) -> tuple[Waves, Any, Any]:
-    """Of the piece that begins at 0; the values at the beginnings of all pieces, and the slopes."""
+    """The waves; the values of the lines at the beginnings of all pieces, and their slopes."""
     waves = [(each.frequency, each.phasor, 0j) for each in along.waves]
     waves += [(each.frequency, 0j, each.phasor) for each in across.waves]
     frequency = np.array([each for each, _, _ in waves])
@@ -92,12 +87,7 @@ def _planar_waves(along: Signal, across: Signal, middles: Floats, half: Floats) 
     (first, rise), (second, rise_2) = along.lines_at(middles), across.lines_at(middles)
     slopes = rise + 1j * rise_2
     lines = first + 1j * second - half * slopes
-    return Waves(frequency, sine, cosine, complex(lines[0]), complex(slopes[0])), lines, slopes
-
-
-def _real(waves: Waves) -> Waves:
-    sine, cosine = waves.sine.real.copy(), waves.cosine.real.copy()
-    return Waves(waves.frequency, sine, cosine, waves.value.real, waves.slope.real)
+    return Waves(frequency, sine, cosine), lines, slopes
 
 
 PER_WAVE = 5
@@ -116,26 +106,32 @@ class Course(NamedTuple):
     slope: Any
 
 
-class Packed(NamedTuple):
-    """``Varying`` for kernels; begins: when the piece that holds does.
+class Whole(NamedTuple):
+    """What is the same in every piece: where in the table the numbers of the pieces (lines) and their ends (edges)
+    are, how many pieces there are, and of ``Varying`` the periods, quickest and belt_swing."""
 
-    keeps_stiffness: filled where the contact does while the normal load changes, a type of its own for kernels.
-    table: an array, in kernels a pointer to its items: the waves of the load, the belt and the normal load, then from
-    ``lines`` on the numbers of every piece, then from ``edges`` on their ends.
-    """
-
-    table: Any
-    begins: float
-    load: Course
-    belt: Course
-    normal_load: Course
     lines: int
     edges: int
     pieces: int
     periods: float
     quickest: float
     belt_swing: float
-    constant_contact: bool
+
+
+class Packed(NamedTuple):
+    """``Varying`` for kernels; begins: when the piece that holds does.
+
+    keeps_stiffness: filled where the contact does while the normal load changes, a type of its own for kernels.
+    table: an array, in kernels a pointer to its items: the waves of the load, the belt and the normal load, then the
+    numbers of every piece, then their ends.
+    """
+
+    table: Any
+    whole: Whole
+    begins: float
+    load: Course
+    belt: Course
+    normal_load: Course
     keeps_stiffness: Any
 
 
@@ -175,17 +171,18 @@ def packed(varying: Any, planar: bool) -> Any:
     normal = Course(int(ends[1]), counts[2], float(varying.normal_lines[0]), float(varying.normal_slopes[0]))
     return Packed(
         table=table,
+        whole=Whole(
+            lines=int(ends[2]),
+            edges=int(ends[2]) + lines.size,
+            pieces=len(lines),
+            periods=varying.periods,
+            quickest=varying.quickest,
+            belt_swing=varying.belt_swing,
+        ),
         begins=0.0,
         load=load,
         belt=belt,
         normal_load=normal,
-        lines=int(ends[2]),
-        edges=int(ends[2]) + lines.size,
-        pieces=len(lines),
-        periods=varying.periods,
-        quickest=varying.quickest,
-        belt_swing=varying.belt_swing,
-        constant_contact=varying.constant_contact,
         keeps_stiffness=(1.0,) if varying.constant_contact else (),
     )
 

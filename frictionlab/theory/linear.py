@@ -11,7 +11,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Segments, Signal, Wave
-from frictionlab.theory.piecewise import FreeMotion, Piecewise, edges_of, oscillation, piecewise
+from frictionlab.theory.piecewise import FreeMotion, Piecewise, oscillation, piecewise
 
 _SINGULAR = 64.0 * EPSILON
 """Of the determinant of what a free motion loses in a period; below it an oscillator is at undamped resonance."""
@@ -77,7 +77,7 @@ def _coefficient(scene: Scene, law: FrictionLaw | None) -> float:
 
 def _response(scene: Scene, coefficient: float, order: int) -> tuple[Piecewise | None, Piecewise | None]:
     mass, signals = scene.mass(), scene.signals()
-    edges = edges_of(signals.corners(), signals.period)
+    edges = signals.edges()
     push = signals.load[0].plus(signals.normal_load.scaled(coefficient))
     along, across = (
         LinearOscillator(mass.damping, mass.stiffness),
@@ -88,7 +88,7 @@ def _response(scene: Scene, coefficient: float, order: int) -> tuple[Piecewise |
 
 def _free_slip(scene: Scene, coefficient: float) -> Piecewise | None:
     signals = scene.signals()
-    belt = piecewise(signals.belt[0], edges_of(signals.corners(), signals.period))
+    belt = piecewise(signals.belt[0], signals.edges())
     if scene.degrees_of_freedom == 0:
         return belt
     response, _ = _response(scene, coefficient, 1)

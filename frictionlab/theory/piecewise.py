@@ -210,8 +210,3 @@ def piecewise(signal: Signal, edges: Floats, mean: float = 0.0) -> Piecewise:
     """A signal, and a constant, on pieces between these edges."""
     middle, slope = signal.lines_at(0.5 * (edges[:-1] + edges[1:]))
     return Piecewise(edges, middle + mean, slope, signal.waves)
-
-
-def edges_of(corners: list[float], period: float) -> Floats:
-    """Of the pieces between corners, from 0 to the period."""
-    return np.array([0.0, *(tau for tau in corners if tau > 0.0), period])

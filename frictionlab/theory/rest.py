@@ -12,7 +12,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signal
-from frictionlab.theory.piecewise import PieceNumbers, edges_of, piecewise
+from frictionlab.theory.piecewise import PieceNumbers, piecewise
 
 CREEP = 1e-9
 """Slip speed at which the friction of slow slip is evaluated."""
@@ -99,7 +99,7 @@ def _held_with_the_belt(scene: Scene) -> _Held | None:
             np.concatenate([load, -load]), np.full(2 * len(load), mass.normal_load), mass.normal_load
         )
     signals = scene.signals()
-    edges = edges_of(signals.corners(), signals.period)
+    edges = signals.edges()
     tau, k = _times(edges, mass.varying.quickest)
     along, across = (
         _against_the_belt(*parts, edges, tau, k)

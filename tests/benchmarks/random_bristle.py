@@ -15,11 +15,10 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections import Counter
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from tally import Tally, TooSlow, log_uniform
 
 import frictionlab as fl
 from frictionlab.bench.peers import scipy_bristle
@@ -43,30 +42,12 @@ SETTLED = 3e-10
 """Of the mean, still to come, where a motion is taken to have settled."""
 
 
-class TooSlow(Exception):
-    """LSODA would take too long."""
-
-
-@dataclass
-class Tally:
-    """What became of the scenes."""
-
-    found: Counter[str] = field(default_factory=Counter)
-    compared: Counter[str] = field(default_factory=Counter)
-    wrong: list[str] = field(default_factory=list)
-    seconds: list[float] = field(default_factory=list)
-
-
-def _log(rng: np.random.Generator, low: float, high: float) -> float:
-    return float(math.exp(rng.uniform(math.log(low), math.log(high))))
-
-
 def draw(rng: np.random.Generator) -> tuple[str, Scene, BristleLaw, float]:
     """Its kind, a scene, a law and a tolerance."""
-    load, frequency, planar = _log(rng, 0.1, 100), _log(rng, 0.3, 5), bool(rng.random() < 0.5)
-    mu, ratio = _log(rng, 0.1, 1.0), _log(rng, 0.01, 2)
+    load, frequency, planar = log_uniform(rng, 0.1, 100), log_uniform(rng, 0.3, 5), bool(rng.random() < 0.5)
+    mu, ratio = log_uniform(rng, 0.1, 1.0), log_uniform(rng, 0.01, 2)
     scene = Scene(
-        damping_ratio=_log(rng, 0.02, 0.5),
+        damping_ratio=log_uniform(rng, 0.02, 0.5),
         normal_load=ratio * load / mu,
         belt_speed=0.0,
         drive=Drive(amplitude=load, frequency=frequency, phase=float(rng.uniform(0, 360))),
@@ -74,8 +55,8 @@ def draw(rng: np.random.Generator) -> tuple[str, Scene, BristleLaw, float]:
     )
     v_lin = friction_free_velocity(scene)
     kind = str(rng.choice([kind for kind in KINDS if not planar or kind != "dahl exponent"]))
-    law = _law(rng, kind, mu, v_lin, _log(rng, 1e-6, 1e2) * v_lin / frequency, planar)
-    speed = _log(rng, 0.01, 1.5) * v_lin
+    law = _law(rng, kind, mu, v_lin, log_uniform(rng, 1e-6, 1e2) * v_lin / frequency, planar)
+    speed = log_uniform(rng, 0.01, 1.5) * v_lin
     name = f"{kind}, {'plane' if planar else 'line'}"
     return name, scene.model_copy(update={"belt_speed": speed}), law, float(rng.choice(TOLERANCES))
 
@@ -83,9 +64,9 @@ def draw(rng: np.random.Generator) -> tuple[str, Scene, BristleLaw, float]:
 def _across(rng: np.random.Generator, load: float) -> Transverse:
     phase = 0.0 if rng.random() < 0.5 else float(rng.uniform(0, 360))
     return Transverse(
-        natural_frequency=_log(rng, 0.3, 5),
-        damping_ratio=_log(rng, 0.02, 0.5),
-        load=Load(amplitude=load * _log(rng, 0.1, 10), phase=phase),
+        natural_frequency=log_uniform(rng, 0.3, 5),
+        damping_ratio=log_uniform(rng, 0.02, 0.5),
+        load=Load(amplitude=load * log_uniform(rng, 0.1, 10), phase=phase),
     )
 
 
@@ -102,12 +83,15 @@ def _law(
     if kind == "jenkins":
         return Jenkins(mu=mu, **common)
     if rng.random() < 0.7:  # damping up to that of the load of friction at the speed of the mass
-        common["damping"] = _log(rng, 1e-4, 1.0) * mu / v_lin
+        common["damping"] = log_uniform(rng, 1e-4, 1.0) * mu / v_lin
     if kind == "lugre":
         return LuGre(mu_kinetic=mu, **common)
     if kind == "lugre stribeck":
-        curve = {"mu_static": mu * float(rng.uniform(1, 2)), "stribeck_speed": _log(rng, 0.01, 1) * v_lin}
-        viscosity = _log(rng, 1e-3, 0.3) * mu / v_lin if rng.random() < 0.5 else 0.0
+        curve = {
+            "mu_static": mu * float(rng.uniform(1, 2)),
+            "stribeck_speed": log_uniform(rng, 0.01, 1) * v_lin,
+        }
+        viscosity = log_uniform(rng, 1e-3, 0.3) * mu / v_lin if rng.random() < 0.5 else 0.0
         return LuGre(mu_kinetic=mu, viscosity=viscosity, **curve, **common)
     return ElastoPlastic(mu_kinetic=mu, breakaway_ratio=float(rng.uniform(0.1, 0.95)), **common)
 

@@ -89,7 +89,7 @@ class Worker:
         except multiprocessing.TimeoutError:
             self.close()
             return Found("hung", f"{limit:g} s", "", math.nan, math.nan, limit, ())
-        except Exception as problem:
+        except Exception as problem:  # whatever was raised is what is counted
             return Found("crashed", repr(problem), "", math.nan, math.nan, 0.0, ())
 
     def close(self) -> None:

@@ -7,11 +7,11 @@ SCENES (default 200), Dahl, LuGre, elasto-plastic and Jenkins friction in turn, 
 
 from __future__ import annotations
 
-import math
 import sys
 from pathlib import Path
 
 import numpy as np
+from tally import log_uniform
 
 sys.path.append(str(Path(__file__).parent.parent))
 
@@ -27,14 +27,10 @@ KNOWN = 2e-11
 """Of the explicit steps."""
 
 
-def _log(rng: np.random.Generator, low: float, high: float) -> float:
-    return float(math.exp(rng.uniform(math.log(low), math.log(high))))
-
-
 def drawn_law(rng: np.random.Generator, kind: int) -> BristleLaw:
     """Unit friction in quick slip."""
-    length = _log(rng, 0.01, 3.0)
-    falls = {"mu_static": float(rng.uniform(1.0, 1.6)), "stribeck_speed": _log(rng, 0.1, 2.0)}
+    length = log_uniform(rng, 0.01, 3.0)
+    falls = {"mu_static": float(rng.uniform(1.0, 1.6)), "stribeck_speed": log_uniform(rng, 0.1, 2.0)}
     more = falls if rng.random() < 0.5 else {}
     damping = float(rng.choice([0.0, 0.1]))
     if kind == 0:
@@ -52,9 +48,9 @@ def drawn_law(rng: np.random.Generator, kind: int) -> BristleLaw:
 def drawn_scene(rng: np.random.Generator) -> Scene:
     """Slip of unit amplitude along the belt."""
     angle = float(rng.choice([0.0, 60.0, 90.0, rng.uniform(0.0, 360.0)]))
-    across = TransverseSlip(velocity_amplitude=_log(rng, 0.05, 3.0), phase=angle)
-    slip = Slip(velocity_amplitude=1.0, frequency=_log(rng, 0.3, 3.0))
-    return Scene(belt_speed=_log(rng, 0.02, 1.5), slip=slip, transverse_slip=across)
+    across = TransverseSlip(velocity_amplitude=log_uniform(rng, 0.05, 3.0), phase=angle)
+    slip = Slip(velocity_amplitude=1.0, frequency=log_uniform(rng, 0.3, 3.0))
+    return Scene(belt_speed=log_uniform(rng, 0.02, 1.5), slip=slip, transverse_slip=across)
 
 
 def main(count: int, seed: int, kinds: list[int]) -> int:

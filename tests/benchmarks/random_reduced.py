@@ -15,6 +15,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy as np
+from tally import log_uniform
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.base import Method
@@ -44,31 +45,27 @@ class Tally:
     uncovered: list[str] = field(default_factory=list)
 
 
-def _log(rng: np.random.Generator, low: float, high: float) -> float:
-    return float(math.exp(rng.uniform(math.log(low), math.log(high))))
-
-
 def draw(rng: np.random.Generator, planar: bool) -> Scene:
     """One scene; its law is LAW."""
-    load, frequency = _log(rng, 0.1, 100), _log(rng, 0.3, 10)
+    load, frequency = log_uniform(rng, 0.1, 100), log_uniform(rng, 0.3, 10)
     across = None
     if planar:
         phase = 0.0 if rng.random() < 0.5 else float(rng.uniform(0, 360))
         across = Transverse(
-            natural_frequency=_log(rng, 0.3, 10),
-            damping_ratio=_log(rng, 1e-3, 1),
-            load=Load(amplitude=load * _log(rng, 0.01, 10), phase=phase),
+            natural_frequency=log_uniform(rng, 0.3, 10),
+            damping_ratio=log_uniform(rng, 1e-3, 1),
+            load=Load(amplitude=load * log_uniform(rng, 0.01, 10), phase=phase),
         )
     scene = Scene(
-        damping_ratio=_log(rng, 1e-3, 1),
-        normal_load=_log(rng, 1e-3, 2) * load / LAW.mu,
+        damping_ratio=log_uniform(rng, 1e-3, 1),
+        normal_load=log_uniform(rng, 1e-3, 2) * load / LAW.mu,
         belt_speed=0.0,
         drive=Drive(
             amplitude=load, frequency=frequency, phase=float(rng.uniform(0, 360)) if not planar else 0.0
         ),
         transverse=across,
     )
-    speed = _log(rng, 0.01, 1.5) * friction_free_velocity(scene)
+    speed = log_uniform(rng, 0.01, 1.5) * friction_free_velocity(scene)
     return scene.model_copy(update={"belt_speed": speed})
 
 

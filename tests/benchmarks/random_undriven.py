@@ -14,14 +14,13 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections import Counter
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from maxwell_slip import MaxwellSlip
 from rate_and_state import RateAndState
 from scipy.integrate import solve_ivp
+from tally import Tally, TooSlow, log_uniform
 
 import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
@@ -39,29 +38,11 @@ REPEATS = 1e-9
 """By how much two means in a row differ, and those before them, where a motion is taken to repeat."""
 
 
-class TooSlow(Exception):
-    """LSODA would take too long."""
-
-
-@dataclass
-class Tally:
-    """What became of the scenes."""
-
-    found: Counter[str] = field(default_factory=Counter)
-    compared: Counter[str] = field(default_factory=Counter)
-    wrong: list[str] = field(default_factory=list)
-    seconds: list[float] = field(default_factory=list)
-
-
-def _log(rng: np.random.Generator, low: float, high: float) -> float:
-    return float(math.exp(rng.uniform(math.log(low), math.log(high))))
-
-
 def draw(rng: np.random.Generator) -> tuple[str, Scene, FrictionLaw, float]:
     """Its kind, a scene, a law and a tolerance."""
-    load, speed, kind = _log(rng, 0.1, 10), _log(rng, 1e-2, 3), str(rng.choice(KINDS))
+    load, speed, kind = log_uniform(rng, 0.1, 10), log_uniform(rng, 1e-2, 3), str(rng.choice(KINDS))
     law = _law(rng, kind, load, speed)
-    damping = 0.0 if rng.random() < 0.25 else _log(rng, 1e-3, 1)
+    damping = 0.0 if rng.random() < 0.25 else log_uniform(rng, 1e-3, 1)
     side = float(rng.choice([-1.0, 1.0]))
     start = None
     if rng.random() < 0.33:
@@ -72,13 +53,13 @@ def draw(rng: np.random.Generator) -> tuple[str, Scene, FrictionLaw, float]:
 
 
 def _law(rng: np.random.Generator, kind: str, load: float, speed: float) -> FrictionLaw:
-    mu = _log(rng, 0.1, 1)
+    mu = log_uniform(rng, 0.1, 1)
     if kind == "rate-and-state":
-        a = mu * _log(rng, 0.01, 0.1)
+        a = mu * log_uniform(rng, 0.01, 0.1)
         b, state_law = a * float(rng.uniform(0.5, 3)), str(rng.choice(["ageing", "slip"]))
-        length = load * a * _log(rng, 0.03, 3)
+        length = load * a * log_uniform(rng, 0.03, 3)
         return RateAndState(mu=mu, a=a, b=b, slip_length=length, reference_speed=speed, state_law=state_law)
-    length = load * mu * _log(rng, 1e-5, 1)
+    length = load * mu * log_uniform(rng, 1e-5, 1)
     if kind == "maxwell-slip":
         share = rng.uniform(0.1, 1, 3)
         return MaxwellSlip(
@@ -90,12 +71,15 @@ def _law(rng: np.random.Generator, kind: str, load: float, speed: float) -> Fric
         return fl.Jenkins(mu=mu, presliding_length=length)
     common: dict[str, Any] = {"mu_kinetic": mu, "presliding_length": length}
     if rng.random() < 0.6:  # up to that which is critical for the mass on its bristles
-        common["damping"] = _log(rng, 1e-2, 2) * math.sqrt(mu / length / load)
+        common["damping"] = log_uniform(rng, 1e-2, 2) * math.sqrt(mu / length / load)
     if kind == "lugre constant":
         return fl.LuGre(**common)
-    common |= {"mu_static": mu * float(rng.uniform(1, 2)), "stribeck_speed": _log(rng, 0.03, 3) * speed}
+    common |= {
+        "mu_static": mu * float(rng.uniform(1, 2)),
+        "stribeck_speed": log_uniform(rng, 0.03, 3) * speed,
+    }
     if rng.random() < 0.5:
-        common["viscosity"] = _log(rng, 1e-3, 0.3) * mu / speed
+        common["viscosity"] = log_uniform(rng, 1e-3, 0.3) * mu / speed
     if kind == "lugre":
         return fl.LuGre(**common)
     return fl.ElastoPlastic(breakaway_ratio=float(rng.uniform(0.1, 0.95)), **common)

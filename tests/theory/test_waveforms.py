@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.signals import FULL_TURN, signal_of
+from frictionlab.scene.signals import FULL_TURN, edges_of, signal_of
 from frictionlab.scene.waveforms import Form, Term
 from frictionlab.theory import (
     friction_free_velocity,
@@ -21,7 +21,7 @@ from frictionlab.theory import (
     mean_prescribed_pulsating,
 )
 from frictionlab.theory.linear import LinearOscillator
-from frictionlab.theory.piecewise import edges_of, piecewise
+from frictionlab.theory.piecewise import piecewise
 from frictionlab.theory.prescribed import mean_direction
 
 angles = st.floats(0.0, 360.0)

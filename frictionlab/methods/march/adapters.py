@@ -9,7 +9,7 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import embedded, fast, inner
-from frictionlab.compile.dispatch import as_argument, by_law, by_stepper, by_variation, length
+from frictionlab.compile.dispatch import as_argument, by_contact, by_law, by_stepper, by_variation, length
 from frictionlab.compile.stack import count_of, room
 from frictionlab.dynamics import smoothing
 from frictionlab.dynamics.contact import (
@@ -132,13 +132,11 @@ def _resists_per_load(body: Any, law: Any, w: Any, z: Any, pressed: float) -> An
     return resistance(law, w, z)
 
 
-def _resists_under_load(body: Any, law: Any, w: Any, z: Any, pressed: float) -> Any:
-    if not body.varying.constant_contact:
-        return resistance(law, w, z)
+def _resists_at_share(body: Any, law: Any, w: Any, z: Any, pressed: float) -> Any:
     return resistance_at_share(law, w, z, _share(body, pressed))
 
 
-bristle_resistance = by_variation(_resists_per_load, _resists_under_load)
+bristle_resistance = by_contact(_resists_per_load, _resists_at_share)
 """bristle_resistance(body, law, w, z, pressed): rate of one bristle, and friction coefficient."""
 
 
@@ -146,13 +144,11 @@ def _advances_per_load(body: Any, law: Any, h: float, w: Any, z: Any, pressed: f
     return advance_bristle(law, h, w, z)
 
 
-def _advances_under_load(body: Any, law: Any, h: float, w: Any, z: Any, pressed: float) -> Any:
-    if not body.varying.constant_contact:
-        return advance_bristle(law, h, w, z)
+def _advances_at_share(body: Any, law: Any, h: float, w: Any, z: Any, pressed: float) -> Any:
     return advance_at_share(law, h, w, z, _share(body, pressed))
 
 
-bristle_advance = by_variation(_advances_per_load, _advances_under_load)
+bristle_advance = by_contact(_advances_per_load, _advances_at_share)
 """bristle_advance(body, law, h, w, z, pressed): the deflection after slip w that lasts h, under a normal load."""
 
 
@@ -160,12 +156,12 @@ def _yields_per_load(body: Any, law: Any, z: Any, pressed: float) -> Any:
     return project_to_yield(law, z)
 
 
-def _yields_under_load(body: Any, law: Any, z: Any, pressed: float) -> Any:
-    n = _share(body, pressed) if body.varying.constant_contact else 1.0
+def _yields_at_share(body: Any, law: Any, z: Any, pressed: float) -> Any:
+    n = _share(body, pressed)
     return n * project_to_yield(law, z / n)
 
 
-bristle_within_yield = by_variation(_yields_per_load, _yields_under_load)
+bristle_within_yield = by_contact(_yields_per_load, _yields_at_share)
 """bristle_within_yield(body, law, z, pressed): the deflection, not beyond yield."""
 
 

@@ -126,7 +126,7 @@ def driven(motion: Motion, like: complex) -> Body:
         balanced_cosine=parts[2],
         reference_sine=parts[0],
         reference_cosine=parts[1],
-        periods=varying.periods if varying else 1.0,
+        periods=varying.whole.periods if varying else 1.0,
         prescribed=True,
         varying=varying,
     )
@@ -136,7 +136,6 @@ def _moved_belt(varying: Any, like: complex) -> Any:
     """What varies, where the belt moves instead of the body."""
     if not varying:
         return varying
-    belt = varying.belt
-    belt = belt._replace(sine=-belt.sine, cosine=-belt.cosine, value=-belt.value, slope=-belt.slope)
+    belt = varying.belt._replace(sine=-varying.belt.sine, cosine=-varying.belt.cosine)
     moved = varying._replace(belt=belt, belt_lines=-varying.belt_lines, belt_slopes=-varying.belt_slopes)
     return packed(moved, isinstance(like, complex))

@@ -20,7 +20,7 @@ from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signals
-from frictionlab.theory.piecewise import PieceNumbers, Piecewise, edges_of, piecewise
+from frictionlab.theory.piecewise import PieceNumbers, Piecewise, piecewise
 from frictionlab.theory.prescribed import MeanDirection, mean_direction
 from frictionlab.theory.rest import friction_at_rest
 
@@ -51,7 +51,7 @@ class VaryingSlip(NamedTuple):
     @classmethod
     def of(cls, signals: Signals, normal_load: float) -> VaryingSlip:
         """That of a scene."""
-        edges = edges_of(signals.corners(), signals.period)
+        edges = signals.edges()
         share = signals.normal_load.scaled(1.0 / normal_load)
         every = (*signals.belt, share)
         quickest = max((wave.frequency for each in every for wave in each.waves), default=0.0)

@@ -24,7 +24,7 @@ from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import mean_prescribed_longitudinal, mean_prescribed_pulsating
-from frictionlab.theory.piecewise import edges_of, piecewise
+from frictionlab.theory.piecewise import piecewise
 
 LAW = Coulomb(mu=0.4)
 FALLING = Stribeck(mu_kinetic=0.3, mu_static=0.5, stribeck_speed=0.4, stribeck_exponent=1.5, viscosity=0.02)
@@ -268,7 +268,7 @@ def test_memory_without_an_exact_path_follows_waveforms(law: Any, planar: bool) 
 def stepped(one: Scene, law: Any, laps: int = 10) -> float:
     """The mean of a bristle that keeps its stiffness: Radau between corners and reversals, z' = rate(w, z/n)."""
     signals, law = one.signals(), law.under_load(2.0)
-    edges = edges_of(signals.corners(), signals.period)
+    edges = signals.edges()
     slip = piecewise(signals.belt[0], edges).minus(one.belt_speed)
     load = piecewise(signals.normal_load.scaled(0.5), edges, 1.0)
     cuts = np.unique(np.concatenate([edges, slip.crossings().tau]))

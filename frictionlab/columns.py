@@ -19,6 +19,7 @@ RESULTS: dict[str, str] = {
     "error_kind": "guaranteed (proved) or estimated",
     "status": "ok, refused, failed, not_unique or killed",
     "reason": "why the status is not ok, or what to note about an ok point",
+    "unique": "proved, tested or no: whether every start ends in this state; empty where nothing was asked",
     "mean_low": "smallest mean seen where the steady state is not unique",
     "mean_high": "largest mean seen where the steady state is not unique",
     "window": "periods averaged for mean_low and mean_high",
@@ -171,7 +172,7 @@ SHAPES: dict[str, tuple[str, ...]] = {
 }
 """Measures of shape and the verdicts each can give."""
 
-TEXT: frozenset[str] = frozenset({"error_kind", "status", "reason", "model"})
+TEXT: frozenset[str] = frozenset({"error_kind", "status", "reason", "unique", "model"})
 """The result columns that hold text; every other one holds a number, empty where it does not apply."""
 
 STATUSES: tuple[str, ...] = ("ok", "refused", "failed", "not_unique", "killed")

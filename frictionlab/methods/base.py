@@ -16,6 +16,8 @@ from frictionlab.quantities import Floats, Record
 from frictionlab.scene.scene import Scene
 
 Status = Literal["ok", "refused", "failed", "not_unique", "killed"]
+PROVED, TESTED, NOT_UNIQUE = "proved", "tested", "no"
+"""Of the only steady state: a theorem says so, starts far apart ended in it, others end elsewhere."""
 
 
 def no_orbit(i: int) -> None:
@@ -31,6 +33,8 @@ class Answers:
     seconds: kernel time. An array left out is empty for every scene.
     floquet(): largest modulus of the multipliers of each, found when asked for. orbit(i): the orbit of scene i, made
     when asked for; None without one. orbits(): all of them, where a method makes them together at less cost.
+    unique: of ok answers PROVED, with the theorem in their model, TESTED, with the starts in their reason, NOT_UNIQUE
+    of a state that only scene.initial chooses, or '' where nothing was asked; left out where nothing ever is.
     balanced: whether orbits obey the equation of motion but for numerical errors; energies of others have no errors.
     """
 
@@ -46,6 +50,7 @@ class Answers:
     mean_high: Floats | None = None
     window: Floats | None = None
     seconds: Floats | None = None
+    unique: Sequence[str] | None = None
     orbit: Callable[[int], Orbit | None] = field(default=no_orbit, repr=False)
     orbits: Callable[[], Orbits] | None = field(default=None, repr=False)
     balanced: bool = True

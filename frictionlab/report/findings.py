@@ -33,6 +33,8 @@ FEW_ROWS = 4
 """A table of so few rows is shown whole."""
 MOST_EXAMPLES = 3
 TOLD_ELSEWHERE = ("reason", "model")
+TESTED, PROVED = "tested: ", "unique: "
+"""How sentences on uniqueness begin, in ``reason`` and in ``model``."""
 
 
 def brief_grid(curves: Sequence[CurveRows]) -> Grid:
@@ -149,13 +151,35 @@ def models_grid(table: pd.DataFrame) -> Grid:
 
 def trouble_grid(table: pd.DataFrame) -> Grid:
     """Every point that is not plainly ok, those of like reasons together, with examples."""
-    odd = table[(table["status"] != "ok") | table["reason"].notna()]
+    # that starts were tested is told in a table of its own
+    plain = (table["status"] == "ok") & table["reason"].fillna(TESTED).str.startswith(TESTED)
+    odd = table[~plain]
     groups = odd.groupby([odd["status"], odd["reason"].map(pattern)], sort=False)
     ordered = sorted(groups, key=lambda group: (group[0][0] == "ok", -len(group[1])))
     swept = swept_inputs(table)
     rows = [_trouble(str(status), rows, swept) for (status, _), rows in ordered]
     head = ["status", "points", "reason", "laws", "methods", "for example"]
     return grid("Points that are not plainly ok", head, rows, "reasons")
+
+
+def uniqueness_grid(table: pd.DataFrame) -> Grid:
+    """How it is known of points that no start ends elsewhere, in the methods' own sentences; by how many points."""
+    told = table[table["unique"].notna()]
+    how = told["model"].where(told["unique"] == "proved", told["reason"]).map(_how_unique)
+    groups = told.assign(how=how).groupby([told["unique"], how.map(pattern)], sort=False)
+    rows = [
+        [str(verdict), alike(rows["how"]), counted(len(rows), "point"), joined_values(rows["law"])]
+        for (verdict, _), rows in groups
+    ]
+    return grid(
+        "Whether every start ends there", ["unique", "how it is known", "points", "laws"], rows, "kinds"
+    )
+
+
+def _how_unique(sentences: Any) -> str:
+    """Of the sentences of a model or a reason the one on uniqueness; nothing where there is none."""
+    parts = str(sentences).partition(" (auto: ")[0].split("; ")
+    return next((part.partition(": ")[2] for part in parts if part.startswith((TESTED, PROVED))), "")
 
 
 def _trouble(status: str, rows: pd.DataFrame, swept: Sequence[str]) -> list[Cell]:

@@ -119,6 +119,7 @@ def _found(saved: Saved) -> dict[str, Any]:
         "fold": len(verdicts) > MOST_SHOWN_AT_ONCE and all(verdict.passed for verdict in verdicts),
         "expected": len(saved.study.expect),
         "odd": findings.trouble_grid(saved.table),
+        "unique": findings.uniqueness_grid(saved.table),
         "models": findings.models_grid(saved.table),
         "errors": findings.errors_grid(curves, saved.study.tolerance),
         "errors_sentence": findings.sentence_of_errors(saved),

@@ -60,6 +60,7 @@ class SteadyState:
     mean_friction: float = NAN
     error: float = NAN
     error_kind: str = ""
+    unique: str = ""
     mean_low: float = NAN
     mean_high: float = NAN
     window: float = NAN

@@ -12,7 +12,7 @@ import numpy as np
 from frictionlab.columns import DERIVED, FROM_ORBITS, RESULTS, TEXT
 from frictionlab.compile.notice import seconds_compiling
 from frictionlab.faults import INTERNAL, MARK, BrokenPlugin, CannotCompile, failing_law, text_of_error
-from frictionlab.methods.base import Answers, refused
+from frictionlab.methods.base import NOT_UNIQUE, Answers, refused
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import derived_columns
 from frictionlab.runner.chunks import Chunk
@@ -93,7 +93,7 @@ def _reason(problem: BaseException) -> str:
 def _believable(answers: Answers, size: int) -> Answers:
     """The answers, every ``ok`` without a number made ``failed``. Raises TypeError for a wrong count."""
     lists: list[Sized | None] = [answers.status, answers.reason, answers.model, answers.error_kind]
-    lists += [answers.mean, answers.error, *(getattr(answers, name) for name in OWN)]
+    lists += [answers.mean, answers.error, answers.unique, *(getattr(answers, name) for name in OWN)]
     counts = {len(part) for part in lists if part is not None}
     if counts != {size}:
         raise TypeError(f"the method gave {sorted(counts)} answers for {size} points")
@@ -161,7 +161,17 @@ def _part(chunk: Chunk, piece: Piece) -> Part:
 def text_columns(answers: Answers) -> dict[str, list[str]]:
     """The columns of words, by the names they have in the table."""
     names = "status", "reason", "model", "error_kind"
-    return {name: list(getattr(answers, name)) for name in names}
+    return {name: list(getattr(answers, name)) for name in names} | {"unique": _unique(answers)}
+
+
+def _unique(answers: Answers) -> list[str]:
+    """Whether the state is the only one: of an ok answer what its method says, of an open one that it is not."""
+    told = answers.unique or [""] * len(answers.status)
+    said = {"not_unique": NOT_UNIQUE}
+    return [
+        each if status == "ok" else said.get(status, "")
+        for status, each in zip(answers.status, told, strict=True)
+    ]
 
 
 def _orbits(chunk: Chunk, piece: Piece) -> dict[int, Samples]:

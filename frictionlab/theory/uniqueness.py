@@ -11,23 +11,46 @@ positive E never grows, and two periodic motions have e' = 0 throughout: they ha
 distance e. Where that slips, T = T' and k e = 0. So they differ only if the mass never slips, which it cannot on a
 belt of mean speed other than 0: it would be carried off. In the plane the same holds by vectors, with the lesser
 damping.
+
+Where no dashpot damps and friction never falls, E still never grows, so that the map of a period moves no two states
+apart, and the states it leaves as they are form a convex set: one of them that attracts its neighbours is alone.
 """
 
 from __future__ import annotations
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import stays_at_rest
+
+NEVER_PART = "unique: dashpots damp and friction never falls with speed (Leine & van de Wouw, 2008)"
+ALONE = "unique: friction never falls with speed, and motions near this one come nearer (Leine & van de Wouw, 2008)"
 
 
 def is_unique(scene: Scene, law: FrictionLaw) -> bool:
     """Whether the scene has exactly one periodic motion, which attracts every start (theorem T1).
 
     For every periodic load, motion of the belt and positive normal load: of a law without memory on a mass with
-    damping above ``largest normal load * steepest fall``, where the mean belt speed is not 0.
-    Source: Leine & van de Wouw (2008).
+    damping above ``largest normal load * steepest fall``, where the mean belt speed is not 0, or loads make the mass
+    slip all the same. Source: Leine & van de Wouw (2008).
+    """
+    return bool(why_unique(scene, law)) and not stays_at_rest(scene, law)
+
+
+def why_unique(scene: Scene, law: FrictionLaw) -> str:
+    """The theorem by which this scene has one steady state at every belt speed at which the mass slips, or ''.
+
+    Of a law without memory under a drive, with its condition.
     """
     free = scene.degrees_of_freedom > 0 and not scene.undriven
-    return free and scene.belt_speed != 0.0 and _damping(scene) > 0.0 and is_convergent(scene, law)
+    if not (free and _damping(scene) > 0.0 and is_convergent(scene, law)):
+        return ""
+    if law.monotone():
+        return NEVER_PART
+    fall = largest_normal_load(scene) * law.steepest_fall()
+    return (
+        f"unique: damping of {_damping(scene):.6g} exceeds the steepest fall of friction with speed, {fall:.6g} "
+        "(Leine & van de Wouw, 2008)"
+    )
 
 
 def is_convergent(scene: Scene, law: FrictionLaw) -> bool:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method, Status
+from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Method, Status
 from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.forcing import forcing_of, resonates
 from frictionlab.methods.exact.orbit import make_orbits
@@ -25,6 +25,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
 from frictionlab.theory import friction_free_velocity
+from frictionlab.theory.uniqueness import ALONE, NEVER_PART
 
 EVENTS = "closed-form legs of slip and stick between events, fixed point of the return map by Newton's method"
 REDUCED = (
@@ -126,6 +127,7 @@ class _Curve:
         self.status: list[Status] = ["ok"] * n
         self.reason, self.model, self.error_kind = [""] * n, [EVENTS] * n, ["estimated"] * n
         self.rows = np.full((n, 9), np.nan)
+        self.unique = [PROVED] * n
         self.window = np.full(n, np.nan)
         self.bounds = np.full((n, 2), np.nan)
         self.seconds = 0.0
@@ -140,6 +142,12 @@ class _Curve:
         self._judge(open_points)
         if self.scenes[0].degrees_of_freedom == 2:
             self.model = [text + REDUCED if text else text for text in self.model]
+        proof = NEVER_PART if self.mass.damping > 0.0 else ALONE
+        proved = {text: f"{text}; {proof}" for text in set(self.model)}
+        self.model = [
+            proved[text] if unique == PROVED else text
+            for text, unique in zip(self.model, self.unique, strict=True)
+        ]
         mean = self.sides * self.rows[:, curve.MEAN]
         low, high = self.bounds.T
         return Answers(
@@ -154,6 +162,7 @@ class _Curve:
             mean_low=low,
             mean_high=high,
             window=self.window,
+            unique=self.unique,
             seconds=np.full(len(mean), self.seconds / len(mean)),
             orbit=lambda i: self._orbits([i]).one(0),
             orbits=lambda: self._orbits(range(len(mean))),
@@ -174,6 +183,7 @@ class _Curve:
             self._depends_on_start(i, self._mean_without_reversal(i), NO_DAMPING)
         elif undamped and self.mass.frequency == 1.0 and self.limit < 0.25 * math.pi * force:
             self.status[i], self.reason[i], self.model[i], self.error_kind[i] = "failed", UNBOUNDED, "", ""
+            self.unique[i] = ""
         else:
             return False
         return True
@@ -183,6 +193,7 @@ class _Curve:
 
     def _depends_on_start(self, i: int, bounds: tuple[float, float], reason: str) -> None:
         """Not unique, unless the scene says where it starts; bounds: of the mean over all starts."""
+        self.unique[i] = NOT_UNIQUE
         if self.scenes[i].initial is not None and self._settles(i):
             return
         self.status[i], self.reason[i], self.error_kind[i] = "not_unique", reason, ""
@@ -270,7 +281,7 @@ class _Curve:
 
     def _fail(self, i: int, reason: str) -> None:
         self.status[i], self.reason[i], self.error_kind[i] = "failed", reason, ""
-        self.rows[i] = np.nan
+        self.rows[i], self.unique[i] = np.nan, ""
 
     def _floquet(self) -> Floats:
         """In the plane the multipliers of x2 count too; they are known only where friction turns them aside."""

@@ -59,18 +59,18 @@ def obeys(orbit: KnownOrbit, before: Any, after: Any, predicted: Any) -> bool:
 
 
 @inner
-def _arrives(case: Case, start: Any, orbit: KnownOrbit, constant: bool) -> bool:
-    """Whether a motion comes near to an orbit within some hundred periods, or nears it as its monodromy says."""
+def _arrives(case: Case, start: Any, orbit: KnownOrbit, constant: bool) -> int:
+    """After how many periods a motion comes near to an orbit, or nears it as its monodromy says; 0 for never."""
     slides_on = constant and never_reverses(case.body, case.belt_speed)
     residual, size, steps, obeyed = np.empty(start.size), 1.0 + norm(orbit.state), 0, 0
     before, after, predicted = np.empty(start.size), np.empty(start.size), np.empty(start.size)
     subtract(start, orbit.state, before)
-    for _ in range(PATIENCE):
+    for n in range(1, PATIENCE + 1):
         image = image_of(case, start, residual, 1e-5 * case.body.normal_load)
         steps += image.steps
         # A motion that takes this long is no cheap one: the starts are then followed to their ends instead.
         if image.steps < 0 or steps > MUCH_WORK // 4:
-            return False
+            return 0
         # The next period starts where this one ends.
         for row in range(start.size):
             start[row] = start[row] + residual[row]
@@ -79,18 +79,19 @@ def _arrives(case: Case, start: Any, orbit: KnownOrbit, constant: bool) -> bool:
         subtract(start, orbit.state, after)
         obeyed = obeyed + 1 if obeys(orbit, before, after, predicted) else 0
         if obeyed == ENOUGH or norm(after) < NEAR * size:
-            return True
+            return n
         copy(after, before)
-    return False
+    return 0
 
 
-def _reached_without_memory(case: Case, state: Any, matrix: Any, constant: bool) -> bool:
-    """Where it is not sure that all motions end there, four starts are followed to their ends instead."""
-    return False
+def _reached_without_memory(case: Case, state: Any, matrix: Any, constant: bool) -> int:
+    """0: where it is not sure that all motions end there, starts are followed to their ends instead."""
+    return 0
 
 
-def _reached_with_memory(case: Case, state: Any, matrix: Any, constant: bool) -> bool:
-    """Whether the mass ends on this orbit, set off at rest on the belt and sliding as if it never reversed.
+def _reached_with_memory(case: Case, state: Any, matrix: Any, constant: bool) -> int:
+    """How many periods at least a mass set off at rest on the belt, and one sliding as if slip never reversed, were
+    followed until they ended on this orbit; 0 where one of them did not.
 
     The second is an orbit of its own where the belt is faster than any vibration and sliding friction constant.
     matrix: the monodromy, NaN where it is not known.
@@ -100,14 +101,16 @@ def _reached_with_memory(case: Case, state: Any, matrix: Any, constant: bool) ->
     # Set off at rest on the belt, where the contact remembers nothing.
     start = np.empty(state.size)
     start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
-    if not _arrives(case, start, orbit, constant):
-        return False
+    first = _arrives(case, start, orbit, constant)
+    if first == 0:
+        return 0
     # Set off as in sliding that never reverses, with the memory of that.
     write_sliding(case, start)
-    return _arrives(case, start, orbit, constant)
+    return min(first, _arrives(case, start, orbit, constant))
 
 
 reached = by_law(_reached_without_memory, _reached_with_memory, None, _reached_with_memory)
+"""reached(case, state, matrix, constant): periods for which the two starts that are quick to ask were followed."""
 
 
 @inner

@@ -181,8 +181,9 @@ RECORDED, MULTIPLIERS = Wanted(False, True, False), Wanted(False, False, True)
 
 
 class Curve(NamedTuple):
-    """States [n, size], results [n, 6] of ``solve_curve``, monodromies [n or 0, size, size], whether the starts that
-    are quick to ask end there [n], the orbits one after another and the panels before which each ends [n]."""
+    """States [n, size], results [n, 6] of ``solve_curve``, monodromies [n or 0, size, size], after how many periods
+    both starts that are quick to ask end there [n] (0: not both do), the orbits one after another and the panels
+    before which each ends [n]."""
 
     states: Any
     results: Any
@@ -206,7 +207,7 @@ def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal,
         matrices = np.full((states.shape[0], states.shape[1], states.shape[1]), np.nan)
     n, size = states.shape
     accuracy = recorded_accuracy(body, goal)
-    ends_there, gradient = np.zeros(n, np.bool_), np.empty(size, np.complex128)
+    ends_there, gradient = np.zeros(n, np.int64), np.empty(size, np.complex128)
     track, ends = track_of(128 if wanted.orbits else 0), np.zeros(n, np.int64)
     for i in range(n):
         case = case_of(law, body, belt_speeds[i])

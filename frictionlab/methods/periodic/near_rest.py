@@ -393,4 +393,4 @@ def answer_near_rest(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: G
             for row in range(DIRECTIONS if wanted.matrices else 0):
                 copy(search.matrix[row], matrices[i, row])
         ends[i] = track.filled[0]
-    return Curve(states, results, matrices, np.zeros(n, np.bool_), track, ends)
+    return Curve(states, results, matrices, np.zeros(n, np.int64), track, ends)

@@ -165,7 +165,7 @@ class PeriodicProblem:
             found.states[left], found.results[left] = rest.states, rest.results
             seconds += more
         n, size = found.states.shape
-        nothing = np.zeros(n, np.bool_), interpreted(track_of)(0), np.zeros(n, np.int64)
+        nothing = np.zeros(n, np.int64), interpreted(track_of)(0), np.zeros(n, np.int64)
         return Curve(found.states, found.results, np.empty((0, size, size)), *nothing), seconds
 
     def _called(
@@ -222,6 +222,10 @@ class PeriodicProblem:
         state = np.empty(self.size)
         KernelCall(write_start, self.law)(self.body, at, state)
         return self._iterate(belt_speed, state, most, ROUGH[self.law.memory_kind])
+
+    def place(self, belt_speed: float, start: Initial | None) -> tuple[complex, complex]:
+        """Position and velocity at which ``transient`` starts."""
+        return self._free_start(belt_speed)[:2] if start is None else self._at(start)
 
     def period_means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
         """The one-period means of an orbit of so many periods, from its state."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ PERIODS = 100
 """For which a memory that does not forget is followed from each start."""
 FORGETS = 1.0 - 1e-6
 """Largest multiplier of a memory that converges from every start."""
+TWO_STARTS = "2 starts ended here, with no memory and with that of steady sliding"
 MODEL = "prescribed slip: memory by Rodas5P, periodic"
 
 
@@ -42,6 +44,7 @@ class MemoryPoint:
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind, self.seconds = "", MODEL, "estimated", 0.0
         self.curve: Curve | None = None
+        self.tested = ""
         moves = self.belt_speed != 0.0 or self._swing() > 0.0
         self.found = self._answer(tolerance) if moves else self._left_open([], "no slip")
 
@@ -59,6 +62,10 @@ class MemoryPoint:
         if curve.results[0, 3] < 0.0 or not curve.reached[0] or multiplier > FORGETS:
             return self._followed(guess[0])
         self.curve = curve
+        constants = curve.reached[0] * -math.log(max(multiplier, 1e-300))
+        self.tested = (
+            f"tested: {TWO_STARTS}, each followed for {constants:.2g} or more of the slowest time constant"
+        )
         mean, across, error = curve.results[0, :3]
         return PrescribedMean(complex(mean, across), error)
 

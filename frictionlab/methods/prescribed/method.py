@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.base import PROVED, TESTED, Answers, Status
 from frictionlab.methods.prescribed.bristle import BristlePoint, along_one_line
 from frictionlab.methods.prescribed.memory import MemoryPoint
 from frictionlab.methods.prescribed.motion import PrescribedMean
@@ -34,6 +34,8 @@ from frictionlab.scene.scene import Scene
 from frictionlab.theory import mean_prescribed_longitudinal
 from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.saturation import saturates
+
+AT_ONCE = "unique: friction hangs on the prescribed slip alone"
 
 
 class SlidingPoint:
@@ -139,6 +141,20 @@ def _point(scene: Scene, law: FrictionLaw, tolerance: float) -> Point:
     return POINTS["none" if slides_on else law.memory_kind](scene, law, tolerance)
 
 
+def _told_uniqueness(row: Point) -> str:
+    """How it is known of a point that is ok that no memory at the start leads elsewhere; said in its model or reason.
+
+    Of bristles nothing is asked: the deflection that repeats is looked for as if there were one.
+    """
+    if row.status != "ok" or isinstance(row, BristlePoint | LegsPoint | AxesPoint):
+        return ""
+    if isinstance(row, MemoryPoint):
+        row.reason = f"{row.reason}; {row.tested}" if row.reason else row.tested
+        return TESTED
+    row.model = f"{row.model}; {AT_ONCE}"
+    return PROVED
+
+
 def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     """Answer scenes of prescribed slip that differ in belt speed alone."""
     rows = [_point(scene, law, tolerance) for scene in scenes]
@@ -146,6 +162,7 @@ def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
         if row.status == "ok" and row.found.error > tolerance:
             row.reason = f"error {row.found.error:.1e} above the tolerance: only rounding errors remain"
     found = [row.found for row in rows]
+    unique = [_told_uniqueness(row) for row in rows]
     ok = np.array([row.status == "ok" for row in rows])
     low = np.array([each.low for each in found])
     return Answers(
@@ -159,6 +176,7 @@ def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
         mean_low=low,
         mean_high=np.array([each.high for each in found]),
         window=np.where(np.isnan(low), np.nan, 1.0),
+        unique=unique,
         seconds=np.array([row.seconds for row in rows]),
         orbit=lambda i: rows[i].orbit(),
     )

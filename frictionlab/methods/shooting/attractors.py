@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Protocol
 
 import numpy as np
@@ -51,6 +52,37 @@ class Attractor:
         return math.nan if self.curve is None else float(self.curve.results[0, 0])
 
 
+@dataclass(frozen=True)
+class Trial:
+    """Starts that all ended in one state: how many, how far apart, followed for how many drive periods at least.
+
+    apart [scene velocity]: the largest distance between two of them, a displacement counted as its spring's energy.
+    """
+
+    starts: int
+    apart: float
+    periods: int
+
+    @classmethod
+    def of(cls, at: Sequence[tuple[complex, complex]], stiffness: float, periods: int) -> Trial:
+        """Of starts at these positions and velocities."""
+        pairs = combinations(at, 2)
+        apart = max(
+            (math.sqrt(stiffness * abs(x - y) ** 2 + abs(v - u) ** 2) for (x, v), (y, u) in pairs),
+            default=0.0,
+        )
+        return cls(len(at), apart, periods)
+
+    def sentence(self, multiplier: float) -> str:
+        """For ``reason``; multiplier: the largest of the state, whose decay is the slowest, NaN where not known."""
+        told = f"tested: {self.starts} starts up to {self.apart:.3g} apart ended here"
+        told = f"{told}, followed for {self.periods} periods"
+        if math.isnan(multiplier):
+            return f"{told} or more"
+        constants = self.periods * -math.log(max(multiplier, 1e-300))
+        return f"{told} or more, {max(constants, 0.0):.2g} of the slowest time constant"
+
+
 def multiplier(curve: Curve, row: int = 0) -> float:
     """The largest modulus of an orbit's Floquet multipliers."""
     return float(np.abs(np.linalg.eigvals(curve.matrices[row])).max())
@@ -83,21 +115,29 @@ def force_swing(scene: Scene) -> float:
     return max(largest, velocity_scale(scene) / frequency)
 
 
+def quick_starts(problem: PeriodicProblem, scene: Scene) -> list[tuple[complex, complex]]:
+    """Position and velocity of the two starts that are followed while a curve is closed: at rest on the belt, and
+    sliding as if slip never reversed."""
+    return [(0.0, scene.belt_speed), problem.place(scene.belt_speed, None)]
+
+
 def attractors(
     problem: PeriodicProblem, scene: Scene, candidate: Attractor | None
-) -> tuple[list[Attractor], float]:
-    """Where each of the starts leads; and kernel time [s]. The candidate is an orbit already known."""
+) -> tuple[list[Attractor], Trial, float]:
+    """Where each of the starts leads; the starts; and kernel time [s]. The candidate is an orbit already known."""
     known = [candidate] if candidate is not None else []
     reached, seconds, patience = [], 0.0, _patience(scene, problem.law, candidate)
-    for start in starts(scene, problem.mass.normal_load * friction_at_rest(problem.law)):
+    all_starts, fewest = starts(scene, problem.mass.normal_load * friction_at_rest(problem.law)), MOST
+    for start in all_starts:
         way = problem.transient(scene.belt_speed, start, patience)
-        seconds += way.seconds
+        seconds, fewest = seconds + way.seconds, min(fewest, len(way.means))
         found = next((orbit for orbit in known if _arrived(way, orbit)), None)
         if found is None:
             found, more = _closed(problem, scene, way)
             known, seconds = [*known, found], seconds + more
         reached.append(found)
-    return reached, seconds
+    at = [problem.place(scene.belt_speed, start) for start in all_starts]
+    return reached, Trial.of(at, problem.mass.stiffness, fewest), seconds
 
 
 def _patience(scene: Scene, law: FrictionLaw, candidate: Attractor | None) -> int:

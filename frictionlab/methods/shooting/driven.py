@@ -11,15 +11,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.base import NOT_UNIQUE, PROVED, TESTED, Answers, Status
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, map_kind
-from frictionlab.methods.shooting.attractors import FEWEST, attractors, closed_orbit, describe, multiplier
+from frictionlab.methods.shooting.attractors import (
+    FEWEST,
+    Trial,
+    attractors,
+    closed_orbit,
+    describe,
+    multiplier,
+    quick_starts,
+)
 from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
 from frictionlab.theory.rest import can_hold, resting_range, stays_at_rest
+from frictionlab.theory.uniqueness import ALONE, why_unique
 
 Complexes = NDArray[np.complex128]
 
@@ -59,14 +68,16 @@ def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) ->
     for i in resting:
         states.settle(i)
     states.judge(tolerance)
+    states.tell_uniqueness()
     return states.answers()
 
 
 class SteadyStates:
     """The steady states of a curve, as far as they are known.
 
-    multipliers: NaN where nothing has asked for them. whole: states have every degree of freedom; along the line
-    multipliers across the belt are left out.
+    multipliers: NaN where nothing has asked for them. reached: for how many periods the two starts that are quick to
+    ask were followed until they ended here, 0 where they do not. tried: starts that all ended here. whole: states
+    have every degree of freedom; along the line multipliers across the belt are left out.
     """
 
     def __init__(self, scenes: Sequence[Scene], problem: PeriodicProblem) -> None:
@@ -76,12 +87,15 @@ class SteadyStates:
         self.status: list[Status] = ["failed"] * n
         self.reason = [""] * n
         self.states: list[Floats | None] = [None] * n
-        self.reached = [False] * n
+        self.reached = [0] * n
+        self.unique = [""] * n
+        self.tried: dict[int, Trial] = {}
         self.mean: Complexes = np.full(n, UNKNOWN)
         self.error, self.low, self.high, self.period, self.multipliers, self.seconds = np.full((6, n), np.nan)
         self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.like, complex)
         judged_by_multipliers = not problem.goal.contracts or _undamped(scenes[0])
         self.wanted = DIFFERENTIATED if judged_by_multipliers else CLOSED
+        self.proof = why_unique(scenes[0], problem.law)
         self.near_rest = problem.by_implicit_steps
         self.solved_by = [problem] * n
 
@@ -103,7 +117,7 @@ class SteadyStates:
         multipliers, undamped = _multipliers(curve), _undamped(self.scenes.scene)
         maps = curve.results[:, 3].tolist()
         for row, i in enumerate(where):
-            self.reached[i] = bool(curve.reached[row])
+            self.reached[i] = int(curve.reached[row])
             self.solved_by[i] = problem
             if maps[row] < 0.0:
                 steps = "" if problem is self.problem else " of implicit steps"
@@ -138,7 +152,10 @@ class SteadyStates:
             most = abs(law.friction(0.0, law.elastic_deflection(), 0.0))
             self._clear(i)
             self._leave_open(i, HELD_ELASTICALLY, -most, most)
-        elif not (self.problem.goal.asks and self._attracts(i)):
+        elif self.problem.goal.asks and self._attracts(i):
+            at = quick_starts(self.problem, self.scenes[i])
+            self.tried[i] = Trial.of(at, self.problem.mass.stiffness, self.reached[i])
+        else:
             self._compare_starts(i)
 
     def settle(self, i: int) -> None:
@@ -155,6 +172,7 @@ class SteadyStates:
         self.close([i], state)
         self.error[i] += 1e-11 * periods  # of the steps on the way there
         self.reason[i] = "the state reached from scene.initial; other starts come to rest at other places"
+        self.unique[i] = NOT_UNIQUE
 
     def judge(self, tolerance: float) -> None:
         """Say where the error is above the tolerance."""
@@ -164,13 +182,28 @@ class SteadyStates:
                 said = said if self.solved_by[i] is self.problem else f"{said}: {BY_ROUNDING}"
                 self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
 
+    def tell_uniqueness(self) -> None:
+        """Say of answers that no other start was found to leave how that is known."""
+        for i, status in enumerate(self.status):
+            if status != "ok" or self.unique[i]:
+                continue
+            if i in self.tried:
+                self.unique[i] = TESTED
+                said = self.tried[i].sentence(self._known(i))
+                self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
+            elif self.proof or (self.problem.goal.contracts and self.multipliers[i] < 1.0):
+                self.unique[i] = PROVED
+
     def answers(self) -> Answers:
         """As every method gives them."""
-        models = {way: _model(self.scenes.scene, self.problem, way) for way in dict.fromkeys(self.solved_by)}
+        ways = list(dict.fromkeys(self.solved_by))
+        models = {(way, ""): _model(self.scenes.scene, self.problem, way) for way in ways}
+        models |= {(way, PROVED): f"{models[way, '']}; {self.proof or ALONE}" for way in ways}
+        proved = [PROVED if each == PROVED else "" for each in self.unique]
         return Answers(
             status=self.status,
             reason=self.reason,
-            model=[models[way] for way in self.solved_by],
+            model=[models[each] for each in zip(self.solved_by, proved, strict=True)],
             error_kind=["estimated" if status == "ok" else "" for status in self.status],
             mean=self.mean,
             error=self.error,
@@ -179,6 +212,7 @@ class SteadyStates:
             mean_low=self.low,
             mean_high=self.high,
             window=np.where(np.isnan(self.low), np.nan, 1.0),
+            unique=self.unique,
             seconds=self.seconds,
             orbit=lambda i: self.solved_by[i].orbits([self.scenes[i]], [self.states[i]]).one(0),
             orbits=self._orbits,
@@ -210,7 +244,7 @@ class SteadyStates:
 
     def _attracts(self, i: int) -> bool:
         """Whether no small disturbance leaves the answer, and both of the cheap starts end there."""
-        return self.status[i] == "ok" and self.reached[i] and not self._known(i) > 1.0 + 1e-6
+        return self.status[i] == "ok" and self.reached[i] > 0 and not self._known(i) > 1.0 + 1e-6
 
     def _holds_elastically(self, i: int) -> bool:
         """Whether on a belt at rest the bristle only follows the mass: nothing then decides about its mean."""
@@ -224,7 +258,7 @@ class SteadyStates:
         if self.states[i] is not None:
             curve, _ = problem.close([scene], self.states[i])
             known = closed_orbit(curve, curve.results[0, :1])
-        reached, seconds = attractors(problem, scene, known)
+        reached, trial, seconds = attractors(problem, scene, known)
         self.seconds[i] += seconds
         first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
         self._clear(i)
@@ -232,7 +266,11 @@ class SteadyStates:
             self._put(i, first.curve, 0)
             self.status[i], self.states[i] = "ok", first.curve.states[0]
             self.multipliers[i] = multiplier(first.curve)
-            self.reason[i] = "" if unique else f"reached from scene.initial; {describe(reached)}"
+            if unique:
+                self.tried[i] = trial
+            else:
+                self.reason[i] = f"reached from scene.initial; {describe(reached)}"
+                self.unique[i] = NOT_UNIQUE
             return
         if problem.falls_slowly and all(one.curve is None for one in reached):
             stopped = STOPPED if max(one.followed for one in reached) < FEWEST else ""

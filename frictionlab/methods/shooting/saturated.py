@@ -21,6 +21,7 @@ from frictionlab.orbit.read import read_columns
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.saturation import remaining_share, saturates
+from frictionlab.theory.uniqueness import why_unique
 
 SATURATED = "the one deflection along the slip stays at its limit: friction is that of sliding"
 HELD = "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range"
@@ -73,4 +74,8 @@ def solve_saturated(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float)
         for status, reason, scene in zip(found.status, found.reason, scenes, strict=True)
     ]
     models = [f"{model}; {SATURATED}" for model in found.model]
-    return replace(found, reason=reasons, model=models, floquet=floquet)
+    damped = (
+        why_unique(free[0], Saturated(mu=mu)) != ""
+    )  # the theorem then holds for friction that becomes this, too
+    unique = found.unique if damped else None
+    return replace(found, reason=reasons, model=models, floquet=floquet, unique=unique)

@@ -365,7 +365,9 @@ def test_critical_and_overdamped_motion_is_continuous_in_the_damping():
 def test_a_fast_belt_is_answered_by_the_closed_form():
     answers = solve([scene(50.0), scene(60.0)])
     assert answers.error_kind == ["guaranteed"] * 2
-    assert answers.model[1] == "closed form: slip never reverses (belt speed >= V_lin = 50)"
+    assert answers.model[1].startswith(
+        "closed form: slip never reverses (belt speed >= V_lin = 50); unique: "
+    )
     assert list(answers.columns["mean_friction"]) == [0.4, 0.4]
     assert answers.columns["velocity_amplitude"][1] == pytest.approx(50.0, rel=1e-12)
     assert answers.columns["floquet"][1] == pytest.approx(math.exp(-0.2 * math.pi))

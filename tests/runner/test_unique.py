@@ -1,0 +1,108 @@
+"""The column ``unique``: what is known of other starts, and where that is told."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+import frictionlab as fl
+from frictionlab.results.state import SteadyState
+
+COULOMB = fl.Coulomb(mu=0.4)
+GENTLE = fl.Stribeck(mu_kinetic=0.39, mu_static=0.4)
+STEEP = fl.Stribeck(mu_kinetic=0.2, mu_static=0.4)
+S11 = fl.Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_exponent=1.0)
+DAHL = fl.Dahl(mu=0.4, stiffness=40.0)
+FULL = {"damping_ratio": 0.1, "normal_load": 10.0, "belt_speed": 5.0}
+DRIVE = fl.Drive(unbalance=10.0, frequency=1.0)
+
+
+def state(law: fl.FrictionLaw, method: str = "auto", **changes: Any) -> SteadyState:
+    drive = {} if "slip" in changes else {**FULL, "drive": DRIVE}
+    given = {name: value for name, value in {**drive, **changes}.items() if value is not None}
+    return fl.steady_state(fl.Scene(**given), law, method=method)
+
+
+@pytest.mark.parametrize(
+    ("found", "said"),
+    [
+        (lambda: state(COULOMB), "dashpots damp and friction never falls"),
+        (lambda: state(COULOMB, belt_speed=60.0), "dashpots damp and friction never falls"),
+        (lambda: state(COULOMB, belt_speed=0.0), "dashpots damp and friction never falls"),
+        (
+            lambda: state(COULOMB, damping_ratio=0.0, drive=fl.Drive(unbalance=10, frequency=1.5)),
+            "come nearer",
+        ),
+        (lambda: state(COULOMB, "shooting"), "dashpots damp and friction never falls"),
+        (lambda: state(GENTLE), "damping of 0.2 exceeds the steepest fall of friction with speed, 0.0857764"),
+        (
+            lambda: state(
+                COULOMB,
+                transverse=fl.Transverse(natural_frequency=0.5, damping_ratio=0.1, load={"unbalance": 1}),
+            ),
+            "dashpots damp and friction never falls",
+        ),
+        (
+            lambda: state(STEEP, slip=fl.Slip(velocity_amplitude=3.0, frequency=1.0), belt_speed=1.0),
+            "hangs on",
+        ),
+    ],
+)
+def test_a_theorem_is_named_with_its_condition(found: Any, said: str) -> None:
+    one = found()
+
+    assert (one.status, one.unique) == ("ok", "proved")
+    assert re.search(rf"; unique: [^;]*{said}", one.model)
+    assert "tested" not in one.reason
+
+
+def test_starts_are_told_with_their_distance_and_time() -> None:
+    four, two = state(STEEP), state(DAHL)
+
+    assert (four.unique, two.unique) == ("tested", "tested")
+    told = re.fullmatch(
+        r"tested: (\d) starts up to (\S+) apart ended here, followed for (\d+) periods or more, (\S+) of the slowest "
+        "time constant",
+        two.reason,
+    )
+    assert told is not None
+    assert told[1] == "2"
+    # at rest on the belt: x = 0, v = 5; sliding: on the free orbit of amplitude 50 about 4, then at x = 4 - 50
+    assert float(told[2]) == pytest.approx((46.0**2 + 5.0**2) ** 0.5, rel=2e-3)
+    assert float(told[3]) >= 3
+    assert four.reason.startswith("tested: 4 starts up to ")
+    assert "unique: " not in four.model + two.model
+
+
+def test_other_states_are_told() -> None:
+    falls = {"damping_ratio": 0.01, "drive": fl.Drive(unbalance=0.2, frequency=1.3), "belt_speed": 0.3}
+    held = {"drive": fl.Drive(unbalance=2.0, frequency=1.0), "belt_speed": 0.0}
+    chosen = state(COULOMB, **held, initial=fl.Initial(x=1.0))
+
+    assert [state(S11, **falls).unique, state(COULOMB, **held).unique] == ["no", "no"]
+    assert state(COULOMB, "shooting", **held).unique == "no"
+    assert (chosen.status, chosen.unique) == ("ok", "no")
+    assert "unique: " not in chosen.model
+
+
+def test_nothing_is_said_where_nothing_was_asked() -> None:
+    assert state(COULOMB, "mdsm", belt_speed=5.0).unique == ""
+    assert state(COULOMB, "march").unique == ""
+    assert state(COULOMB, "shooting", drive=None).unique == ""
+    assert state(DAHL, slip=fl.Slip(velocity_amplitude=3.0, frequency=1.0), belt_speed=1.0).unique == ""
+    refused = state(STEEP, "exact")
+    assert (refused.status, refused.unique) == ("refused", "")
+
+
+def test_an_answer_that_failed_is_no_state(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = fl.steady_state(fl.Scene(**FULL, drive=DRIVE), COULOMB, tolerance=1e-30)
+
+    assert (asked.status, asked.unique) == ("failed", "")
+
+
+def test_the_column_is_in_the_table() -> None:
+    table = fl.curve(fl.Scene(**FULL, drive=DRIVE), COULOMB, [5.0, 60.0])
+
+    assert table["unique"].tolist() == ["proved", "proved"]

@@ -34,7 +34,7 @@ class Follow(NamedTuple):
 class KnownOrbit(NamedTuple):
     """A closed orbit that motions are to end on: its state, its monodromy, and one less the largest multiplier.
 
-    gap: not positive, or NaN, where multipliers are not known to be below one.
+    gap: not positive, or NaN, where multipliers are not known to be below one. A state of NaN: no orbit is known.
     """
 
     state: Any
@@ -156,6 +156,15 @@ def write_start(law: Any, body: Body, start: Any, state: Any) -> None:
     start_of(law, bare(body), state, x, v, deflection)
 
 
+ARRIVED, VERY_NEAR = -1, 1e-5
+"""What stands for a number of periods where a motion ends on a known orbit, and how near to it, over its size, is."""
+
+
+def unknown_orbit(size: int) -> KnownOrbit:
+    """For motions that are to be followed whatever they end on."""
+    return KnownOrbit(np.full(size, math.nan), np.full((size, size), math.nan), -1.0)
+
+
 MANY = 8.0
 """Fewer periods at rest on the belt are followed one by one: orbits of several periods rest for some of them."""
 
@@ -177,14 +186,14 @@ def _periods_alike(case: Case, state: Any, image: Any) -> float:
 
 @inner
 def iterate_until_periodic(
-    law: Any, body: Body, belt_speed: float, how: Follow, means: Any, states: Any
+    law: Any, body: Body, belt_speed: float, how: Follow, orbit: KnownOrbit, means: Any, states: Any
 ) -> Any:
-    """Follow the motion from ``states[0]``, period by period, until it repeats.
+    """Follow the motion from ``states[0]``, period by period, until it repeats or is sure to end on the known orbit.
 
     Of the periods in which the belt carries it at rest one stands for many.
 
     Fills the one-period means [n] and the states [n + 1, size]; returns after how many periods it repeats (0 where
-    it has not after n), and how many it was followed.
+    it has not after n, ARRIVED on the known orbit), and how many it was followed.
     """
     body = bare(body)
     case, steps = case_of(law, body, belt_speed), 0
@@ -193,6 +202,9 @@ def iterate_until_periodic(
     residual, slides_on = np.empty(states.shape[1]), how.constant and never_reverses(body, belt_speed)
     # A bristle that nears its limit as a power of the way slid comes to move less than that long before it is there.
     alike *= 0.1 if slides_on else 1.0
+    before, after, predicted = np.empty(residual.size), np.empty(residual.size), np.empty(residual.size)
+    subtract(states[0], orbit.state, before)
+    near, obeyed = VERY_NEAR * norm(orbit.state), 0
     for n in range(means.size):
         image = image_of(case, states[n], residual, how.accuracy)
         means[n] = mean_friction(image.rubbed.real, span(body))
@@ -202,6 +214,11 @@ def iterate_until_periodic(
             states[n + 1, row] = states[n, row] + many * residual[row]
         if slides_on and ends_sliding(case, states[n + 1]):
             return 1, n + 1
+        subtract(states[n + 1], orbit.state, after)
+        obeyed = obeyed + 1 if many == 1.0 and obeys(orbit, before, after, predicted) else 0
+        if obeyed == ENOUGH or norm(after) < near:
+            return ARRIVED, n + 1
+        copy(after, before)
         nearest = 1e300
         for k in range(1, min(LONGEST_PERIOD, n // 2) + 1):
             # Two states in a row must repeat: one alone may pass near an old one by chance.

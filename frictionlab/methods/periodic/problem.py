@@ -16,8 +16,10 @@ from frictionlab.dynamics.motion import swing_of
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import (
     Follow,
+    KnownOrbit,
     iterate_until_periodic,
     settle,
+    unknown_orbit,
     write_start,
 )
 from frictionlab.methods.periodic.continuation import (
@@ -74,8 +76,8 @@ def map_kind(law: FrictionLaw, planar: bool) -> str:
 
 
 class Transient(NamedTuple):
-    """A motion followed until it repeats: after how many periods of all that changes in time (0: never), its
-    one-period means, its end."""
+    """A motion followed until it repeats: after how many periods of all that changes in time (0: never, ARRIVED: it
+    ends on the orbit that is known), its one-period means, its end."""
 
     period: int
     means: Floats
@@ -216,12 +218,17 @@ class PeriodicProblem:
         accuracy = 1e-13 * self.mass.normal_load
         return KernelCall(settle, self.law)(self.body, *self._at(start), accuracy)
 
-    def transient(self, belt_speed: float, start: Initial | None, most: int) -> Transient:
-        """The motion from a start (None: on the friction-free orbit), for so many periods at most."""
+    def transient(
+        self, belt_speed: float, start: Initial | None, most: int, known: KnownOrbit | None = None
+    ) -> Transient:
+        """The motion from a start (None: on the friction-free orbit), for so many periods at most.
+
+        known: an orbit that attracts; a motion that is sure to end there is followed no farther.
+        """
         at = self._free_start(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
         state = np.empty(self.size)
         KernelCall(write_start, self.law)(self.body, at, state)
-        return self._iterate(belt_speed, state, most, ROUGH[self.law.memory_kind])
+        return self._iterate(belt_speed, state, most, ROUGH[self.law.memory_kind], known)
 
     def place(self, belt_speed: float, start: Initial | None) -> tuple[complex, complex]:
         """Position and velocity at which ``transient`` starts."""
@@ -231,11 +238,18 @@ class PeriodicProblem:
         """The one-period means of an orbit of so many periods, from its state."""
         return self._iterate(belt_speed, state, periods, 1e-9).means
 
-    def _iterate(self, belt_speed: float, state: Floats, most: int, relative: float) -> Transient:
+    def _iterate(
+        self,
+        belt_speed: float,
+        state: Floats,
+        most: int,
+        relative: float,
+        known: KnownOrbit | None = None,
+    ) -> Transient:
         means, states = np.empty(most), np.empty((most + 1, self.size))
         states[0] = state
         how = Follow(relative * self.mass.normal_load, self.goal.constant)
-        arguments = self.body, belt_speed, how, means, states
+        arguments = self.body, belt_speed, how, known or unknown_orbit(self.size), means, states
         (period, count), seconds = KernelCall(iterate_until_periodic, self.law).timed(*arguments)
         return Transient(period, means[:count], states[count], seconds)
 

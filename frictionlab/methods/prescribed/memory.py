@@ -11,7 +11,7 @@ from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.periodic.attraction import Follow, iterate_until_periodic, write_start
+from frictionlab.methods.periodic.attraction import Follow, iterate_until_periodic, unknown_orbit, write_start
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.period_map import size_of
@@ -85,7 +85,14 @@ class MemoryPoint:
             each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(state)))
             states[0] = state
             how = Follow(1e-6 * self.motion.normal_load, False)
-            arguments: tuple[Any, ...] = self.body, self.belt_speed, how, each, states
+            arguments: tuple[Any, ...] = (
+                self.body,
+                self.belt_speed,
+                how,
+                unknown_orbit(len(state)),
+                each,
+                states,
+            )
             (_repeats, count), seconds = KernelCall(iterate_until_periodic, self.law).timed(*arguments)
             self.seconds += seconds
             means.append(each[count - 1])

@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit
 from frictionlab.methods.periodic.continuation import Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
 from frictionlab.quantities import Floats
@@ -20,6 +21,8 @@ from frictionlab.theory.rest import friction_at_rest
 
 STABLE = 1.0 - 1e-7
 """Largest Floquet multiplier of an orbit that counts as attractive."""
+RESTING = 6
+"""Starts at rest along the way of the belt in a period."""
 FEWEST, MOST = 200, 20_000
 """Periods a start is followed for."""
 DECAYS, CLIMBS = 30.0, 2.0
@@ -45,6 +48,12 @@ class Attractor:
             return False
         doubt = float(self.curve.results[0, 2] + other.curve.results[0, 2])
         return abs(self.mean - other.mean) <= doubt + 1e-12
+
+    @property
+    def known(self) -> KnownOrbit:
+        """As kernels see it."""
+        assert self.curve is not None
+        return KnownOrbit(self.curve.states[0], self.curve.matrices[0], 1.0 - multiplier(self.curve))
 
     @property
     def mean(self) -> float:
@@ -108,6 +117,22 @@ def starts(scene: Scene, limit: float) -> list[Initial | None]:
     return [*given, None, Initial(velocity=scene.belt_speed), flung, ahead]
 
 
+def resting_starts(scene: Scene, limit: float, count: int = RESTING) -> list[Initial]:
+    """At rest on the belt, at places along the way it goes in one period, before the one at which slip begins.
+
+    Whatever rests on the belt at some time begins to slip at one phase of the drive, and goes on from there as
+    anything else that begins to slip at that phase does. These starts begin at phases spread over the period.
+    limit: force of friction at rest.
+    """
+    mass, signals, belt = scene.mass(), scene.signals(), scene.belt_speed
+    velocity = belt + float(signals.belt[0](0.0))
+    side, period = math.copysign(1.0, belt), 2.0 * math.pi / mass.frequency * scene.periods
+    last = (float(signals.load[0](0.0)) - mass.damping * velocity + side * limit) / mass.stiffness
+    longest = 2.0 * limit / mass.stiffness
+    way = min(abs(belt) * period, longest) if belt != 0.0 else longest
+    return [Initial(x=last - side * way * (k + 0.5) / count, velocity=velocity) for k in range(count)]
+
+
 def force_swing(scene: Scene) -> float:
     """The deflection that the load along the belt would hold, or shakes a free mass through, if that is larger."""
     signals, frequency = scene.signals(), scene.frequency
@@ -127,13 +152,15 @@ def attractors(
     """Where each of the starts leads; the starts; and kernel time [s]. The candidate is an orbit already known."""
     known = [candidate] if candidate is not None else []
     reached, seconds, patience = [], 0.0, _patience(scene, problem.law, candidate)
-    all_starts, fewest = starts(scene, problem.mass.normal_load * friction_at_rest(problem.law)), MOST
+    limit, fewest = problem.mass.normal_load * friction_at_rest(problem.law), MOST
+    all_starts = [*starts(scene, limit), *resting_starts(scene, limit)]
     for start in all_starts:
-        way = problem.transient(scene.belt_speed, start, patience)
+        first = next((orbit for orbit in known if orbit.period == 1 and orbit.curve is not None), None)
+        way = problem.transient(scene.belt_speed, start, patience, None if first is None else first.known)
         seconds, fewest = seconds + way.seconds, min(fewest, len(way.means))
-        found = next((orbit for orbit in known if _arrived(way, orbit)), None)
+        found = first if way.period == ARRIVED else next((one for one in known if _arrived(way, one)), None)
         if found is None:
-            found, more = _closed(problem, scene, way)
+            found, more = orbit_at_the_end(problem, scene, way)
             known, seconds = [*known, found], seconds + more
         reached.append(found)
     at = [problem.place(scene.belt_speed, start) for start in all_starts]
@@ -166,7 +193,7 @@ def _arrived(way: Transient, orbit: Attractor) -> bool:
     return bool(np.abs(way.state - state).max() <= 1e-5 * max(1.0, float(np.abs(state).max())))
 
 
-def _closed(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:
+def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:
     """The orbit at the end of a way, or the spread of what never repeats."""
     seconds = 0.0
     if way.period > 0:

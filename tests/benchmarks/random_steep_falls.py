@@ -30,7 +30,7 @@ import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import ARRIVED
 from frictionlab.methods.periodic.problem import PeriodicProblem
-from frictionlab.methods.shooting.attractors import orbit_at_the_end
+from frictionlab.methods.shooting.attractors import Attractor, closed_orbit, orbit_at_the_end
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.linear import velocity_scale
@@ -115,18 +115,18 @@ def followed(number: int, seed: int, count: int) -> dict[str, Any]:
     rng = random.Random(f"{seed} {number}")
     values, parameters = draw(rng)
     scene, law, begun = fl.Scene(**values), law_of(parameters), time.process_time()
-    problem, states, known = PeriodicProblem(scene, law, TOLERANCE), [], None
+    problem = PeriodicProblem(scene, law, TOLERANCE)
+    curve, _ = problem.close([scene])
+    candidate = closed_orbit(curve, curve.results[0, :1])
+    states = [] if candidate is None else [_told(candidate)]
+    known = None if candidate is None else candidate.known
     for tried, start in enumerate(starts(scene, problem.mass.normal_load * 0.4, count, rng), 1):  # noqa: B007
         way = problem.transient(scene.belt_speed, start, LONG, known)
         if way.period == ARRIVED:
             continue
         orbit, _ = orbit_at_the_end(problem, scene, way)
         known = orbit.known if orbit.period == 1 else known
-        found = [
-            orbit.period,
-            orbit.mean,
-            math.nan if orbit.curve is None else float(orbit.curve.results[0, 2]),
-        ]
+        found = _told(orbit)
         if not any(_same(one, found) for one in states):
             states.append(found)
         if len(states) > 1 or orbit.period == 0:
@@ -139,6 +139,10 @@ def followed(number: int, seed: int, count: int) -> dict[str, Any]:
         "scene": json.dumps(values),
         "law": json.dumps(parameters),
     }
+
+
+def _told(orbit: Attractor) -> list[float]:
+    return [orbit.period, orbit.mean, math.nan if orbit.curve is None else float(orbit.curve.results[0, 2])]
 
 
 def _same(one: list[float], other: list[float]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -133,6 +134,17 @@ def resting_starts(scene: Scene, limit: float, count: int = RESTING) -> list[Ini
     return [Initial(x=last - side * way * (k + 0.5) / count, velocity=velocity) for k in range(count)]
 
 
+def thrown_starts(problem: PeriodicProblem, scene: Scene) -> list[Initial]:
+    """Thrown off sliding that never reverses, by half and by the whole swing of the loads, to all sides."""
+    (x, v), law = problem.place(scene.belt_speed, None), problem.law
+    if law.count() == 0:  # with memory that place is shifted by friction already
+        shift = problem.mass.normal_load * law.sliding_friction(abs(scene.belt_speed))
+        x += math.copysign(shift, scene.belt_speed)
+    turns = [math.pi * (k + 0.5) / 2.0 for k in range(4)]
+    thrown = [cmath.rect(share * force_swing(scene), turn) for share in (0.5, 1.0) for turn in turns]
+    return [Initial(x=x.real + each.real, velocity=v.real + each.imag) for each in thrown]
+
+
 def force_swing(scene: Scene) -> float:
     """The deflection that the load along the belt would hold, or shakes a free mass through, if that is larger."""
     signals, frequency = scene.signals(), scene.frequency
@@ -149,22 +161,52 @@ def quick_starts(problem: PeriodicProblem, scene: Scene) -> list[tuple[complex, 
 def attractors(
     problem: PeriodicProblem, scene: Scene, candidate: Attractor | None
 ) -> tuple[list[Attractor], Trial, float]:
-    """Where each of the starts leads; the starts; and kernel time [s]. The candidate is an orbit already known."""
-    known = [candidate] if candidate is not None else []
-    reached, seconds, patience = [], 0.0, _patience(scene, problem.law, candidate)
-    limit, fewest = problem.mass.normal_load * friction_at_rest(problem.law), MOST
-    all_starts = [*starts(scene, limit), *resting_starts(scene, limit)]
-    for start in all_starts:
-        first = next((orbit for orbit in known if orbit.period == 1 and orbit.curve is not None), None)
-        way = problem.transient(scene.belt_speed, start, patience, None if first is None else first.known)
-        seconds, fewest = seconds + way.seconds, min(fewest, len(way.means))
-        found = first if way.period == ARRIVED else next((one for one in known if _arrived(way, one)), None)
+    """Where starts lead, the starts, and kernel time [s]. The candidate is an orbit already known.
+
+    More starts follow the first ones for as long as all of them reach one orbit of one period.
+    """
+    limit = problem.mass.normal_load * friction_at_rest(problem.law)
+    followed = _Followed(problem, scene, candidate)
+    for start in starts(scene, limit):
+        followed.follow(start)
+    for start in [*resting_starts(scene, limit), *thrown_starts(problem, scene)]:
+        if not followed.one_orbit():
+            break
+        followed.follow(start)
+    at = [problem.place(scene.belt_speed, start) for start in followed.starts]
+    return followed.reached, Trial.of(at, problem.mass.stiffness, followed.fewest), followed.seconds
+
+
+class _Followed:
+    """Starts, where they led, and the fewest periods for which one was followed."""
+
+    def __init__(self, problem: PeriodicProblem, scene: Scene, candidate: Attractor | None) -> None:
+        self._problem, self._scene = problem, scene
+        self._known = [] if candidate is None else [candidate]
+        self._patience = _patience(scene, problem.law, candidate)
+        self.starts: list[Initial | None] = []
+        self.reached: list[Attractor] = []
+        self.fewest, self.seconds = MOST, 0.0
+
+    def one_orbit(self) -> bool:
+        """Whether all of them ended on one orbit of one period."""
+        first = self.reached[0]
+        return first.period == 1 and all(first.agrees(other) for other in self.reached)
+
+    def follow(self, start: Initial | None) -> None:
+        """To its end, or until it is sure to end on the first known orbit of one period."""
+        first = next((one for one in self._known if one.period == 1 and one.curve is not None), None)
+        known = None if first is None else first.known
+        way = self._problem.transient(self._scene.belt_speed, start, self._patience, known)
+        self.seconds, self.fewest = self.seconds + way.seconds, min(self.fewest, len(way.means))
+        found = (
+            first if way.period == ARRIVED else next((one for one in self._known if _arrived(way, one)), None)
+        )
         if found is None:
-            found, more = orbit_at_the_end(problem, scene, way)
-            known, seconds = [*known, found], seconds + more
-        reached.append(found)
-    at = [problem.place(scene.belt_speed, start) for start in all_starts]
-    return reached, Trial.of(at, problem.mass.stiffness, fewest), seconds
+            found, more = orbit_at_the_end(self._problem, self._scene, way)
+            self._known, self.seconds = [*self._known, found], self.seconds + more
+        self.starts.append(start)
+        self.reached.append(found)
 
 
 def _patience(scene: Scene, law: FrictionLaw, candidate: Attractor | None) -> int:

@@ -166,6 +166,14 @@ CURVES: dict[str, str] = {
 }
 """The columns of the table of curves after the inputs."""
 
+ONSETS: dict[str, str] = {
+    "onset": "stick_begins, stick_ends, reversal_ends or multiplier_leaves, read along increasing belt speed",
+    "belt_speed": "where that is",
+    "belt_speed_error": "bound on its error",
+    "how": "what was solved for, how the multiplier leaves (+1, -1, complex), or why it was not located",
+}
+"""The columns of the table of onsets after the inputs."""
+
 SHAPES: dict[str, tuple[str, ...]] = {
     "area": ("concave", "convex", "mixed", "undecided"),
     "initial": ("concave", "convex", "undecided"),

@@ -57,6 +57,7 @@ ARROWS = {
         *("methods.base", "methods.exact", "methods.prescribed", "methods.refusals", "methods.shooting"),
     ],
     "methods.auto": ["laws", "methods.base", "methods.exact", "methods.shooting", "scene"],
+    "onsets": ["laws", "methods.base", "orbit", "quantities", "scene", "theory"],
     "registry": ["faults", "laws", "methods.base"],
     "study": ["columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
     "results": [
@@ -71,6 +72,7 @@ ARROWS = {
             "laws",
             "methods.base",
             "mistakes",
+            "onsets",
             "orbit",
             "printable",
             "quantities",
@@ -119,7 +121,7 @@ OUTSIDE = {
     ],
     "numpy": [
         *("quantities", "compile", "theory", "shape", "orbit", "numerics", "dynamics", "methods", "study"),
-        *("results", "runner", "scene", "charts", "bench", "testing"),
+        *("onsets", "results", "runner", "scene", "charts", "bench", "testing"),
     ],
     "hypothesis": ["testing"],
     "numba": ["compile", "bench.peers"],  # the peers' integrators are called with numba's C functions

@@ -194,6 +194,7 @@ def _run(job: Job, asked: RunOptions) -> Run:
     finally:
         meter.close()
     _show_failed(result) if asked.as_json or asked.cite else _show(result)
+    result = api.with_onsets(result)
     _draw(job, result, asked)
     _report(result)
     return result

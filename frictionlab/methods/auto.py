@@ -27,6 +27,7 @@ class Auto(Method):
     """
 
     name: ClassVar[str] = "auto"
+    resolves_events: ClassVar[bool] = True
 
     def choice(self, scene: Scene, law: FrictionLaw) -> tuple[Method | None, str]:
         """The method for this scene and law, and why; None where every method refuses."""

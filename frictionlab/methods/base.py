@@ -63,6 +63,8 @@ class Method(Record, ABC):
     """
 
     name: ClassVar[str]
+    resolves_events: ClassVar[bool] = False
+    """Whether instants of stick and reversal are solved for: else rest is known to a step or to a model."""
     bibtex: ClassVar[str] = ""
 
     @abstractmethod

@@ -19,8 +19,9 @@ class Run:
     """A study and what came of it: its tables, its kept orbits, and the verdicts on what it expects.
 
     made, orbits_made: the table and the orbits, or what reads them from their file. curves: one row per curve, with
-    its shape; none where belt speed is not swept or the run was stopped. shown, found: of a table too long to be
-    held, the rows that figures and pages show, and how many of all rows have each status.
+    its shape; none where belt speed is not swept or the run was stopped. onsets_made: finds the onsets of its curves.
+    shown, found: of a table too long to be held, the rows that figures and pages show, and how many of all rows have
+    each status.
     """
 
     study: Study
@@ -30,6 +31,7 @@ class Run:
     folder: Path | None
     computed: int
     curves: pd.DataFrame = field(default_factory=pd.DataFrame)
+    onsets_made: Callable[[], pd.DataFrame] = pd.DataFrame
     shown: pd.DataFrame | None = None
     found: Mapping[str, int] | None = None
 
@@ -42,6 +44,11 @@ class Run:
     def orbits(self) -> pd.DataFrame | None:
         """The kept orbits; None where none are kept."""
         return self.orbits_made()
+
+    @cached_property
+    def onsets(self) -> pd.DataFrame:
+        """One row per onset of a curve, found when first asked for: belt speeds where stick begins, ends, ..."""
+        return self.onsets_made()
 
     @property
     def to_show(self) -> pd.DataFrame:

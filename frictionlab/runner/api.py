@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor
 from contextlib import suppress
+from dataclasses import replace
 from math import inf
 from os import PathLike
 from pathlib import Path
@@ -44,6 +45,7 @@ from frictionlab.runner.errors import SaveError
 from frictionlab.runner.folder import Existing, Identity, RunFolder
 from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, KeptChunks, Keys, kept_beside
 from frictionlab.runner.long_run import LongRun
+from frictionlab.runner.onsets import onset_table
 from frictionlab.runner.open_chunks import OpenChunk, answered, each_once, open_chunks
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.solve import answer, parts
@@ -143,6 +145,21 @@ def run_folder(study: Study, out: Path) -> RunFolder:
     return RunFolder(out, Identity(*told, solver=code_digest(study)))
 
 
+def with_onsets(done: Run) -> Run:
+    """The run, its onsets in onsets.csv beside its table: found now, or read where an earlier run wrote them.
+
+    Without a curve there is no such file. Raises SaveError.
+    """
+    assert done.folder is not None
+    folder = run_folder(done.study, done.folder)
+    earlier = folder.onsets() if done.computed == 0 else None
+    if earlier is not None:
+        return replace(done, onsets_made=lambda: earlier)
+    if not done.curves.empty:
+        folder.save_onsets(done.onsets)
+    return done
+
+
 def _solve(
     gathering: Accumulator,
     left: list[OpenChunk],
@@ -195,12 +212,22 @@ def _finished(study: Study, gathering: Accumulator, folder: RunFolder | None, st
     """The run, saved and judged. Raises Interrupted or UnsavedError, both with the run."""
     table, orbits = gathering.table, gathering.orbits
     laws = registry.Laws({law.kind: law.law_class for law in study.laws})
-    curves = curve_table(table.iloc[:0] if stopped else table, laws)
+    read = table.iloc[:0] if stopped else table
+    curves = curve_table(read, laws)
     verdicts = () if stopped else tuple(judge(expectation, table, curves) for expectation in study.expect)
     gathering.judged(verdicts)
     unsaved = _saved(gathering, table, orbits, curves)
     path = folder.path if folder is not None and unsaved is None else None
-    done = Run(study, lambda: table, lambda: orbits, verdicts, path, gathering.computed, curves)
+    done = Run(
+        study,
+        lambda: table,
+        lambda: orbits,
+        verdicts,
+        path,
+        gathering.computed,
+        curves,
+        onsets_made=lambda: onset_table(study, read),
+    )
     if unsaved is not None:
         raise UnsavedError(unsaved, done) from unsaved
     if stopped:

@@ -91,6 +91,10 @@ class RunFolder:
     def _curves(self) -> Path:
         return self.path / "curves.csv"
 
+    @property
+    def _onsets(self) -> Path:
+        return self.path / "onsets.csv"
+
     def check(self, existing: Existing) -> None:
         """Raises FolderError where this run cannot be written, or would mix with another study."""
         nearest = next(place for place in [self.path, *self.path.absolute().parents] if place.exists())
@@ -236,7 +240,7 @@ class RunFolder:
             _refuse_folder(self.path, problem)
 
     def _results(self) -> Iterator[Path]:
-        yield from (self.table, self.csv_file, self._curves, self.orbits_file)
+        yield from (self.table, self.csv_file, self._curves, self._onsets, self.orbits_file)
         yield self.path / "report.html"
         for pattern in ("*.svg", "*.png"):
             yield from (self.path / "figures").glob(pattern)
@@ -312,7 +316,7 @@ class RunFolder:
 
     def remove_texts(self) -> None:
         """Remove what was made from an earlier table. Raises SaveError."""
-        for path in (self.csv_file, self._curves):
+        for path in (self.csv_file, self._curves, self._onsets):
             try:
                 path.unlink(missing_ok=True)
             except OSError as problem:
@@ -336,6 +340,15 @@ class RunFolder:
         """Write curves.csv, where there are curves. Raises SaveError."""
         if not curves.empty:
             self._put(self._curves, _as_csv(curves))
+
+    def onsets(self) -> pd.DataFrame | None:
+        """The table of onsets of an earlier run; None without an intact one."""
+        known = self._onsets.name in self._stamps() and not self._damage(self._onsets.name)
+        return pd.read_csv(self._onsets) if known else None
+
+    def save_onsets(self, onsets: pd.DataFrame) -> None:
+        """Write onsets.csv. Raises SaveError."""
+        self._put(self._onsets, _as_csv(onsets))
 
     @property
     def has_csv(self) -> bool:

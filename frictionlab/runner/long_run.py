@@ -32,6 +32,7 @@ from frictionlab.runner.long_files import (
     read_whole,
     rows_of_file,
 )
+from frictionlab.runner.onsets import READ_FOR_ONSETS, onset_table
 from frictionlab.runner.open_chunks import OpenChunk, answered, open_chunks
 from frictionlab.runner.progress import Progress
 from frictionlab.runner.workforce import Workforce
@@ -155,6 +156,7 @@ class LongRun:
         self, verdicts: tuple[Verdict, ...], curves: pd.DataFrame, shown: pd.DataFrame, counts: dict[str, int]
     ) -> Run:
         table, orbits = self._folder.table, self._folder.orbits_file
+        wanted = {*READ_FOR_ONSETS, *INPUTS}
         return Run(
             self._study,
             lambda: read_whole(table),
@@ -163,6 +165,9 @@ class LongRun:
             self._folder.path,
             self._run["computed"],
             curves,
+            lambda: onset_table(
+                self._study, read_columns_of_file(table, lambda name: name in wanted or _is_input(name))
+            ),
             shown,
             counts,
         )

@@ -83,6 +83,7 @@ class Exact(Method):
     """
 
     name: ClassVar[str] = "exact"
+    resolves_events: ClassVar[bool] = True
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""

@@ -82,6 +82,7 @@ class Shooting(Method):
     """
 
     name: ClassVar[str] = "shooting"
+    resolves_events: ClassVar[bool] = True
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """An undriven start across the belt, or of a contact that creeps; a law of none of the kinds known."""

@@ -1,0 +1,1 @@
+"""Belt speeds at which the kind of a steady motion changes."""

@@ -1,0 +1,226 @@
+"""The onsets of one curve: belt speeds at which stick begins, stick ends and reversal ends."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from frictionlab.onsets.motions import CurveMotions, KindOfMotion
+from frictionlab.onsets.search import DistanceAt, change_between
+from frictionlab.theory.linear import friction_free_velocity
+from frictionlab.theory.uniqueness import is_convergent
+
+_WITHIN = 1e-6
+"""Width of the bracket that a search ends with, relative to the belt speed."""
+_WITHIN_IF_QUICK = 1e-9
+"""The same for motions that are quick to solve for."""
+_SLOW = 3e-3
+"""Seconds a motion; those that take longer are not solved for again."""
+_QUICK = 5e-5
+"""Seconds a motion; so quick ones are all looked at."""
+_MOST_IF_QUICK, _MOST, _MOST_IF_STARTS = 96, 48, 24
+"""How many are solved for along a curve: quick ones, others, and those for which starts are compared (at most one
+for four points of the curve)."""
+_NEAR = 0.3
+"""DistanceOf from stick below which the motions between two of a kind are looked at, for a window that none shows."""
+_ROUNDING = 1e-12
+"""Of V_lin."""
+_NOISE = 10.0
+"""Error of a distance over that of the mean friction coefficient, relative to the static one."""
+
+STICK_BEGINS, STICK_ENDS, REVERSAL_ENDS = "stick_begins", "stick_ends", "reversal_ends"
+_SOLVED_FOR = {
+    STICK_BEGINS: "the force that would hold the mass is the static limit where slip is least",
+    STICK_ENDS: "the force that would hold the mass is the static limit where slip is least",
+    REVERSAL_ENDS: "the largest slip velocity along x1 is zero",
+}
+CLOSED_FORM = "closed form: V_lin"
+
+
+class Onset(NamedTuple):
+    """A belt speed at which the kind of motion changes, read along increasing belt speed, and how it was found."""
+
+    onset: str
+    belt_speed: float
+    error: float
+    how: str
+
+
+class KnownRow(NamedTuple):
+    """What a row of the result table says of the motion at its belt speed > 0."""
+
+    belt_speed: float
+    sticks: bool
+    reverses: bool
+
+
+def onsets_along(motions: CurveMotions, rows: list[KnownRow], most: int) -> list[Onset]:
+    """The onsets between the rows of a curve, ascending, of which only those with a motion are given.
+
+    most: motions that may be solved for; ``_MOST`` of them at most. A window of stick narrower than the rows is found
+    where the motions beside it come near stick: the distance from stick is followed to its least value between rows.
+    """
+    if len(rows) < 2:
+        return []
+    return _Search(motions, rows, most).onsets()
+
+
+class _Search:
+    """motions looked at, by belt speed."""
+
+    def __init__(self, motions: CurveMotions, rows: list[KnownRow], most: int) -> None:
+        self.motions, self.rows = motions, rows
+        self.seen: dict[float, KindOfMotion] = {}
+        self.slow, self.quick = motions.seconds > _SLOW, motions.seconds <= _QUICK
+        self.within = _WITHIN_IF_QUICK if self.quick else _WITHIN
+        self.compares_starts = not is_convergent(motions.scene, motions.law)
+        # where starts are compared a motion costs many times what it does otherwise
+        usual = _MOST_IF_STARTS if self.compares_starts else _MOST_IF_QUICK if self.quick else _MOST
+        self.most = min(most, usual, len(rows) // 4 if self.compares_starts else usual)
+        self.end = self._closed_form_end()
+
+    @property
+    def left(self) -> int:
+        return 0 if self.slow else self.most - self.motions.looks
+
+    def onsets(self) -> list[Onset]:
+        self._look_at_rows()
+        found = self._ends_of_reversal()
+        self._look_for_windows()
+        found += self._ends_of_stick()
+        return sorted(found, key=lambda each: (each.belt_speed, each.onset))
+
+    def _closed_form_end(self) -> float | None:
+        """V_lin, where slip of constant friction along the belt alone stops to reverse and to stick."""
+        scene, law = self.motions.scene, self.motions.law
+        if not (scene.load_along_belt_only and law.constant_sliding_friction() and law.monotone()):
+            return None
+        end = friction_free_velocity(scene, law)
+        return end if self.rows[0].belt_speed < end <= self.rows[-1].belt_speed else None
+
+    # --- looking ----------------------------------------------------------------------------------------------------
+
+    def _see(self, belt_speeds: list[float]) -> None:
+        speeds = sorted({speed for speed in belt_speeds if speed not in self.seen})[: max(self.left, 0)]
+        self.seen |= {each.belt_speed: each for each in self.motions.at(speeds)}
+
+    def _look_at_rows(self) -> None:
+        """Some of the rows, none where starts are compared; and the motions just below V_lin."""
+        speeds = [each.belt_speed for each in self.rows]
+        if not self.quick:
+            kept = np.unique(np.linspace(0, len(speeds) - 1, min(len(speeds), self.most // 4)).round())
+            speeds = [speeds[int(place)] for place in kept]
+        else:
+            speeds = [
+                speeds[int(k)] for k in np.unique(np.linspace(0, len(speeds) - 1, self.most // 2).round())
+            ]
+        ends = [] if self.end is None else [self.end * (1.0 - _WITHIN), self.end * (1.0 - 1e-3)]
+        self._see([*[each for each in ends if each > self.rows[0].belt_speed], *speeds])
+
+    def _known(self) -> list[KnownRow]:
+        """Rows and motions looked at, ascending."""
+        found = {each.belt_speed: each for each in self.rows}
+        found |= {
+            speed: KnownRow(speed, each.sticks, each.reverses)
+            for speed, each in self.seen.items()
+            if not each.reason
+        }
+        return [found[speed] for speed in sorted(found)]
+
+    def _look_for_windows(self) -> None:
+        """Follow the distance from stick to its least size where neighbours of one kind come near the other."""
+        for _ in range(4):
+            seen = [self.seen[speed] for speed in sorted(self.seen) if not self.seen[speed].reason]
+            wanted = [
+                speed
+                for before, here, after in zip(seen, seen[1:], seen[2:], strict=False)
+                for speed in _between(before, here, after)
+            ]
+            if not wanted or self.left < len(wanted):
+                return
+            self._see(wanted)
+
+    # --- finding ----------------------------------------------------------------------------------------------------
+
+    def _ends_of_reversal(self) -> list[Onset]:
+        if self.end is not None:
+            return [Onset(REVERSAL_ENDS, self.end, _ROUNDING * self.end, CLOSED_FORM)]
+        found = []
+        for low, high in pairwise(self._known()):
+            if low.reverses and not high.reverses:
+                found.append(self._located(REVERSAL_ENDS, low, high, lambda each: each.to_reversal))
+        return found
+
+    def _ends_of_stick(self) -> list[Onset]:
+        found = []
+        for low, high in pairwise(self._known()):
+            if low.sticks == high.sticks:
+                continue
+            name = STICK_BEGINS if high.sticks else STICK_ENDS
+            if self.end is not None and low.sticks and low.belt_speed >= self.end * (1.0 - 1.01 * _WITHIN):
+                found.append(Onset(name, self.end, _ROUNDING * self.end, CLOSED_FORM))
+            else:
+                found.append(self._located(name, low, high, lambda each: each.to_stick))
+        return found
+
+    def _located(
+        self, name: str, low: KnownRow, high: KnownRow, read: Callable[[KindOfMotion], float]
+    ) -> Onset:
+        if self.left > 2:
+            self._see([low.belt_speed, high.belt_speed])
+        ends = [self.seen.get(each.belt_speed) for each in (low, high)]
+        if any(each is None or each.reason for each in ends):
+            return _between_rows(name, low, high, self._why_not())
+        first, last = (each for each in ends if each is not None)
+        if (read(first) > 0.0) == (read(last) > 0.0):
+            return _between_rows(name, low, high, "the motions do not show what the rows do")
+        width = self.within * high.belt_speed
+
+        def distance(speed: float) -> float | None:
+            (each,) = self.motions.at([speed])
+            self.seen[speed] = each
+            return None if each.reason else read(each)
+
+        begin, end = DistanceAt(low.belt_speed, read(first)), DistanceAt(high.belt_speed, read(last))
+        place = change_between(distance, begin, end, width, max(self.left, 0))
+        error = place.error + self._noise(begin, end, max(first.error, last.error))
+        how = _SOLVED_FOR[name]
+        if place.stopped is not None:
+            how = (
+                f"between motions that differ; none at {place.stopped:.6g}: {self.seen[place.stopped].reason}"
+            )
+        elif place.error > width:
+            how = f"{how}; stopped after {self.motions.looks} motions"
+        return Onset(name, place.value, error, how)
+
+    def _noise(self, low: DistanceAt, high: DistanceAt, error: float) -> float:
+        """By how much the error of the motions moves the place at most, by the mean slope of the distance."""
+        slope = abs(high.f - low.f) / (high.x - low.x)
+        return _NOISE * error / (self.motions.limit * slope) if slope > 0.0 and math.isfinite(slope) else 0.0
+
+    def _why_not(self) -> str:
+        if math.isinf(self.motions.seconds):
+            return "not located: the method does not solve for the instants of stick and reversal"
+        if self.slow:
+            return f"not located: a motion takes about {self.motions.seconds:.1g} s"
+        if self.compares_starts:
+            return "not located: starts are compared, and no more motions were solved for"
+        return "not located: so many curves leave no more motions to solve for"
+
+
+def _between(before: KindOfMotion, here: KindOfMotion, after: KindOfMotion) -> list[float]:
+    """Belt speeds on both sides of a motion that is nearer the other kind than its neighbours of the same kind."""
+    sizes = [abs(each.to_stick) for each in (before, here, after)]
+    alike = before.sticks == here.sticks == after.sticks and here.reverses
+    if not (alike and sizes[1] <= min(sizes[0], sizes[2]) and sizes[1] < _NEAR):
+        return []
+    return [0.5 * (each.belt_speed + here.belt_speed) for each in (before, after)]
+
+
+def _between_rows(name: str, low: KnownRow, high: KnownRow, why: str) -> Onset:
+    middle, half = 0.5 * (low.belt_speed + high.belt_speed), 0.5 * (high.belt_speed - low.belt_speed)
+    return Onset(name, middle, half, f"between two points of the curve; {why}")

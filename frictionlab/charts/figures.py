@@ -28,6 +28,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocato
 from numpy.typing import NDArray
 
 from frictionlab.charts.curves import CurveData, Family, SweptValue, family_of, is_logarithmic, kinks
+from frictionlab.charts.onsets import OnsetMark, draw_onsets, onset_entries, onsets_on
 from frictionlab.columns import SI, belt_speed, word
 from frictionlab.printable import printable
 
@@ -88,8 +89,10 @@ class Data(NamedTuple):
     color: Any
 
 
-def draw_figures(table: pd.DataFrame, title: str, folder: Path) -> list[Path]:
-    """Draw every figure of a result table into a folder; the files written.
+def draw_figures(
+    table: pd.DataFrame, title: str, folder: Path, onsets: pd.DataFrame | None = None
+) -> list[Path]:
+    """Draw every figure of a result table into a folder, onsets marked along belt speed; the files written.
 
     A table without a sweep has no figure, nor has a quantity that applies nowhere. Raises OSError where the
     folder cannot be written.
@@ -102,7 +105,7 @@ def draw_figures(table: pd.DataFrame, title: str, folder: Path) -> list[Path]:
     with mpl.rc_context(STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # of a title: an empty box says it
         for name, columns in figure_columns(table).items():
-            files += _save(_figure(family, columns, printable(title)), folder / name)
+            files += _save(_figure(family, columns, printable(title), onsets), folder / name)
     return files
 
 
@@ -128,7 +131,10 @@ def _save(figure: Figure, path: Path) -> list[Path]:
     return [svg, png]
 
 
-def _figure(family: Family, columns: Sequence[str], title: str) -> Figure:
+def _figure(family: Family, columns: Sequence[str], title: str, onsets: pd.DataFrame | None = None) -> Figure:
+    if family.abscissa != belt_speed([family.abscissa]):
+        onsets = None
+    marks = [mark for curve in family.curves for mark in onsets_on(curve, onsets)]
     pictures = [(panel, column) for panel in family.panels for column in columns]
     wide = min(2, len(pictures))
     high = -(-len(pictures) // wide)
@@ -137,13 +143,17 @@ def _figure(family: Family, columns: Sequence[str], title: str) -> Figure:
     FigureCanvasAgg(figure)
     lines = textwrap.wrap(_plain(title), round(width * 13))
     figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight="bold")
-    figure.set_figheight(high * PANEL_HEIGHT + LINE * (len(lines) + _add_legend(figure, family, columns)))
+    figure.set_figheight(
+        high * PANEL_HEIGHT + LINE * (len(lines) + _add_legend(figure, family, columns, marks))
+    )
     for place, (panel, column) in enumerate(pictures, start=1):
-        _draw_panel(figure.add_subplot(high, wide, place), family, panel, column)
+        _draw_panel(figure.add_subplot(high, wide, place), family, panel, column, onsets)
     return figure
 
 
-def _draw_panel(axes: Axes, family: Family, panel: tuple[SweptValue, ...], column: str) -> None:
+def _draw_panel(
+    axes: Axes, family: Family, panel: tuple[SweptValue, ...], column: str, onsets: pd.DataFrame | None
+) -> None:
     curves = [curve for curve in family.curves if curve.panel == panel]
     for curve in curves:
         _draw_curve(axes, family, curve, column)
@@ -162,6 +172,8 @@ def _draw_panel(axes: Axes, family: Family, panel: tuple[SweptValue, ...], colum
     _scale_upwards(axes, [curve.rows[column] for curve in curves], column)
     if family.abscissa == belt_speed([family.abscissa]):
         _mark_kinks(axes, [speed for curve in curves for speed in kinks(curve)])
+    for curve in curves:
+        draw_onsets(axes, onsets_on(curve, onsets), _color(family, curve))
 
 
 def _scale_upwards(axes: Axes, curves: Sequence[pd.Series], column: str) -> None:
@@ -308,9 +320,9 @@ def _mark_kinks(axes: Axes, speeds: Sequence[float]) -> None:
     above.tick_params(length=0, pad=1)
 
 
-def _add_legend(figure: Figure, family: Family, columns: Sequence[str]) -> int:
+def _add_legend(figure: Figure, family: Family, columns: Sequence[str], marks: Sequence[OnsetMark]) -> int:
     """Name what tells curves apart, and count what has no number, below the pictures; the lines it takes."""
-    entries = _curve_entries(family, columns) + _status_entries(family)
+    entries = _curve_entries(family, columns) + _status_entries(family) + onset_entries(marks)
     if not entries:
         return 0
     handle = 3.5 if _methods_have_markers(family) else 2.0

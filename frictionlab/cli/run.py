@@ -253,7 +253,8 @@ def _draw(job: Job, result: Run, asked: RunOptions) -> None:
     from frictionlab.results.table import whole
 
     table = result.table if asked.figures else result.to_show
-    if draw_into(whole(table), job.study.title or job.name, job.out):
+    onsets = None if result.curves.empty else result.onsets
+    if draw_into(whole(table), job.study.title or job.name, job.out, onsets):
         print_message(f"figures in {job.out / 'figures'}")
 
 

@@ -70,6 +70,24 @@ def shape_grid(curves: pd.DataFrame, told: Sequence[str]) -> Grid:
     return grid("Shape of the curves, from curves.csv", head, rows, "curves")
 
 
+def onset_grid(onsets: pd.DataFrame, told: Sequence[str]) -> Grid:
+    """The onsets of onsets.csv, each with its error, curve by curve; told: the inputs that tell curves apart."""
+    rows = [
+        [
+            curve.law,
+            curve.method,
+            curve.name,
+            row["onset"].replace("_", " "),
+            _measure(row, "belt_speed"),
+            row["how"],
+        ]
+        for curve in curve_rows(onsets, [name for name in told if name in onsets])
+        for _, row in curve.rows.iterrows()
+    ]
+    head = ["law", "method", "curve", "what", "belt speed", "how it was found"]
+    return grid("Onsets along rising belt speed, from onsets.csv", head, rows, "onsets")
+
+
 def _is_input(name: str) -> bool:
     return name in ("law", "kind", "method") or name.startswith(("scene.", "law."))
 

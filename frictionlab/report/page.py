@@ -114,6 +114,9 @@ def _found(saved: Saved) -> dict[str, Any]:
         "shape": None
         if saved.curves is None
         else findings.shape_grid(saved.curves, swept_inputs(saved.table)),
+        "onsets": None
+        if saved.onsets is None
+        else findings.onset_grid(saved.onsets, swept_inputs(saved.table)),
         "pictures": pictures(saved),
         "verdicts": findings.verdicts_grid(verdicts),
         "fold": len(verdicts) > MOST_SHOWN_AT_ONCE and all(verdict.passed for verdict in verdicts),

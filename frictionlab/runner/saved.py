@@ -24,7 +24,7 @@ from frictionlab.study import Study, StudyError, read_back
 from frictionlab.study.grid import grid_size
 
 WANTED = "RUN is a folder that 'frictionlab run STUDY -o RUN' wrote"
-REPORT_FILES = frozenset({"results.parquet", "curves.csv"})
+REPORT_FILES = frozenset({"results.parquet", "curves.csv", "onsets.csv"})
 """Files that a report is made from, beside the study and its account."""
 MOST_NAMED = 3
 """Runs named to somebody who gave the folder around them."""
@@ -32,7 +32,7 @@ MOST_NAMED = 3
 
 @dataclass(frozen=True)
 class Saved:
-    """A run in its folder. account: provenance.json; curves: curves.csv, None where there is none.
+    """A run in its folder. account: provenance.json; curves, onsets: of curves.csv and onsets.csv, None without one.
 
     table: of a long one the rows that are shown; ``rows`` is then the number of all.
     damaged: what is wrong with files that a report does without, and the command that mends them.
@@ -45,6 +45,7 @@ class Saved:
     account: dict[str, Any]
     damaged: tuple[str, ...] = ()
     rows: int | None = None
+    onsets: pd.DataFrame | None = None
 
     @property
     def size(self) -> int:
@@ -84,7 +85,8 @@ def read_saved(folder: Path) -> Saved:
     table = _table(folder, study)
     rows = rows_of_file(folder / "results.parquet")
     long = rows if rows > LONG_TABLE else None
-    saved = Saved(folder, study, whole(table), _curves(folder), account, tuple(wrong.values()), long)
+    tables = _csv(folder / "curves.csv"), _csv(folder / "onsets.csv")
+    saved = Saved(folder, study, whole(table), tables[0], account, tuple(wrong.values()), long, tables[1])
     _check_belongs_together(saved)
     return saved
 
@@ -93,7 +95,8 @@ def saved_as(run: Run) -> Saved:
     """A run that was just written. Raises FolderError where somebody took its account away meanwhile."""
     assert run.folder is not None
     account, long = _account(run.folder), None if run.shown is None else run.size
-    return Saved(run.folder, run.study, whole(run.to_show), _curves(run.folder), account, (), long)
+    curves, onsets = _csv(run.folder / "curves.csv"), _csv(run.folder / "onsets.csv")
+    return Saved(run.folder, run.study, whole(run.to_show), curves, account, (), long, onsets)
 
 
 def _check_is_a_run(folder: Path) -> None:
@@ -167,8 +170,7 @@ def _wrong(table: pd.DataFrame, study: Study) -> str:
     return "it is empty" if table.empty else ""
 
 
-def _curves(folder: Path) -> pd.DataFrame | None:
-    file = folder / "curves.csv"
+def _csv(file: Path) -> pd.DataFrame | None:
     if not file.exists():
         return None
     try:
@@ -177,7 +179,7 @@ def _curves(folder: Path) -> pd.DataFrame | None:
         return None
     except (OSError, ValueError) as problem:
         reason = str(problem).partition("\n")[0]
-        raise FolderError(f"{file} cannot be read ({reason}); {_remedy(folder)}") from problem
+        raise FolderError(f"{file} cannot be read ({reason}); {_remedy(file.parent)}") from problem
 
 
 def _account(folder: Path) -> dict[str, Any]:

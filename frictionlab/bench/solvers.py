@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.bench.peers.base import Peer
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Method
+from frictionlab.methods.base import Answers, Method
 from frictionlab.quantities import Floats
 from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.solve import FROM_METHODS, answer, number_columns
@@ -31,6 +31,14 @@ class SolverAnswers:
         """The same answer n times: none."""
         return cls([status] * n, [reason] * n, np.full(n, np.nan), np.full(n, np.nan))
 
+    def put(self, places: Sequence[int], answers: Answers) -> None:
+        """A method's answers at these places."""
+        for at, place in enumerate(places):
+            self.status[place] = answers.status[at]
+            self.reason[place] = answers.reason[at]
+        self.means[places] = answers.mean.real
+        self.errors[places] = answers.error
+
 
 def solve_points(
     solver: Method | Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
@@ -41,11 +49,7 @@ def solve_points(
     n = len(scenes)
     found = SolverAnswers.without("failed", "", n)
     for piece in answer(Chunk(np.arange(n), Scenes.of(scenes), law, solver, Task(tolerance))):
-        for at, place in enumerate(piece.places):
-            found.status[place] = piece.answers.status[at]
-            found.reason[place] = piece.answers.reason[at]
-        found.means[piece.places] = piece.answers.mean.real
-        found.errors[piece.places] = piece.answers.error
+        found.put(piece.places, piece.answers)
     return found
 
 

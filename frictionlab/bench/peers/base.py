@@ -61,10 +61,14 @@ class Peer(Record, ABC):
     package: ClassVar[str]
     remedy: ClassVar[str] = "pip install frictionlab[peers]"
 
+    def missing(self) -> str | None:
+        """How to install it where it is not; None where it is."""
+        return None if find_spec(self.package) else f"not installed: {self.remedy}"
+
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Why this peer cannot do this scene and law, or is not there; None when it can."""
-        if find_spec(self.package) is None:
-            return f"not installed: {self.remedy}"
+        if (missing := self.missing()) is not None:
+            return missing
         if (other := self.other_law(law)) is not None:
             return other
         if scene.degrees_of_freedom == 0 or scene.undriven:

@@ -1,0 +1,281 @@
+"""The failure maps of one method or peer as a figure: a row of panels for each map, readable without colour."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path as Outline
+from matplotlib.patheffects import withStroke
+from numpy.typing import NDArray
+
+from frictionlab.bench.chart import save_figure
+from frictionlab.bench.failures.boundaries import free_velocities, rest_edge, uniqueness_edge
+from frictionlab.bench.failures.measure import MapOutcome, MapTruth
+from frictionlab.bench.sections import BenchPicture
+from frictionlab.charts.figures import PAGE
+from frictionlab.columns import word
+from frictionlab.quantities import Floats
+
+if TYPE_CHECKING:
+    from frictionlab.bench.failures.section import FailureResult
+
+_LEVELS = (1e-16, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 1.0)
+"""Of errors: a shade between two of them, darker for a smaller error."""
+_WITHOUT_ERROR: dict[str, dict[str, Any]] = {
+    "refused": {"facecolor": "white", "edgecolor": "0.6", "hatch": "////"},
+    "failed": {"facecolor": "0.85", "edgecolor": "#b2182b", "hatch": "xxxx"},
+    "not_unique": {"facecolor": "white", "edgecolor": "#762a83", "hatch": "||||"},
+}
+_UNKNOWN: dict[str, Any] = {"facecolor": "white", "edgecolor": "0.6"}
+"""Where a number has no error to be shown."""
+_PANEL, _LEGEND = 1.75, 0.95
+"""Heights [inch] of a map and of what stands below all of them."""
+_CAPTION = (
+    "A panel at one value of its vertical axis is a curve over belt speed: shade is the error of the mean friction "
+    "(left stated, right true), hatching is no number, a cross is a number that is wrong without a word."
+)
+
+
+class Mesh(NamedTuple):
+    """Edges between the cells of a map, along both axes, and whether an axis is logarithmic."""
+
+    x: Floats
+    y: Floats
+    logarithmic: tuple[bool, bool]
+
+
+def draw_maps(result: FailureResult, folder: Path) -> list[BenchPicture]:
+    """Write the figure as SVG and PNG. Raises OSError."""
+    shown = [
+        (outcome, truth)
+        for outcome, truth in zip(result.outcomes, result.truths, strict=True)
+        if outcome.counts()["refused"] < len(outcome.points)
+    ]
+    if not shown:
+        return []
+    with mpl.rc_context({"hatch.linewidth": 0.5}):
+        save_figure(figure_of_maps(result, shown), folder, result.name)
+    return [BenchPicture(result.name, _CAPTION)]
+
+
+def figure_of_maps(result: FailureResult, shown: Sequence[tuple[MapOutcome, MapTruth]]) -> Figure:
+    """A row for each map: stated error, where any is stated, and true error."""
+    kinds = ["true"] if result.side == "peer" else ["stated", "true"]
+    refused = _refused_everywhere(result)
+    figure = Figure(
+        figsize=(PAGE, _PANEL * len(shown) + _LEGEND + 0.12 * refused.count("\n")), layout="constrained"
+    )
+    FigureCanvasAgg(figure)
+    grid = figure.subplots(len(shown), len(kinds), squeeze=False)
+    colors = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 0.97, len(_LEVELS) - 1)))
+    mesh: Any = None
+    for row, (outcome, truth) in zip(grid, shown, strict=True):
+        for axes, kind in zip(row, kinds, strict=True):
+            mesh = _draw(axes, outcome, truth, kind, colors)
+            if axes is not row[0]:
+                axes.tick_params(labelleft=False)
+        row[0].set_ylabel(_across(outcome))
+        row[0].set_title(_heading(outcome), loc="left", fontweight="bold")
+        if len(kinds) > 1:
+            row[1].set_title("true error", loc="right")
+            row[0].set_title("stated error", loc="right")
+    for axes in grid[-1]:
+        axes.set_xlabel(word("scene.belt_speed"))
+    bar = figure.colorbar(mesh, ax=grid, location="right", ticks=_LEVELS, shrink=min(1.0, 2.0 / len(shown)))
+    bar.set_label("error of the mean friction")
+    bar.ax.set_yticklabels([f"$10^{{{round(math.log10(level))}}}$" for level in _LEVELS])
+    figure.legend(
+        handles=_legend(), loc="outside lower center", ncols=5, title=refused or None, columnspacing=1.2
+    )
+    figure.suptitle(f"{result.title}: {_counted(result)}", x=0.01, ha="left", fontsize=8)
+    return figure
+
+
+def _counted(result: FailureResult) -> str:
+    counts = result.counts()
+    return f"{counts.total():,} points, {counts['silent']:,} wrong without a word"
+
+
+def _heading(outcome: MapOutcome) -> str:
+    silent = outcome.counts()["silent"]
+    return f"{outcome.drawn.name}{f': {silent} wrong without a word' if silent else ''}"
+
+
+def _refused_everywhere(result: FailureResult) -> str:
+    """Maps without a panel, with the reason."""
+    lines = []
+    for outcome in result.outcomes:
+        if outcome.counts()["refused"] == len(outcome.points):
+            lines += textwrap.wrap(
+                f"{outcome.drawn.name}: refused at every point: {outcome.points[0].reason}", 110
+            )
+    return "\n".join(lines)
+
+
+def _across(outcome: MapOutcome) -> str:
+    drawn = outcome.drawn
+    if drawn.ordinate(drawn.rows[0]) != drawn.rows[0].value:
+        return "friction over load"
+    kind, _, parameter = drawn.quantity.rpartition(".")
+    return word(f"law.{parameter}" if kind.startswith("laws.") else drawn.quantity, 22)
+
+
+def _draw(axes: Axes, outcome: MapOutcome, truth: MapTruth, kind: str, colors: ListedColormap) -> Any:
+    drawn = outcome.drawn
+    ordinates = np.array([drawn.ordinate(row) for row in drawn.rows])
+    rising = np.argsort(ordinates)
+    mesh = Mesh(_edges(drawn.speeds), _edges(ordinates[rising]), (_is_log(drawn.speeds), _is_log(ordinates)))
+    grid = [outcome.grid[i] for i in rising]
+    told = np.array([[point.outcome for point in row] for row in grid])
+    errors = np.array([[getattr(point, kind) for point in row] for row in grid])
+    number = np.isfinite(errors)
+    shades = np.where(number, np.clip(errors, _LEVELS[0], 0.999), np.nan)
+    drawn_mesh = axes.pcolormesh(
+        mesh.x, mesh.y, shades, cmap=colors, norm=BoundaryNorm(_LEVELS, colors.N), rasterized=True
+    )
+    for name, look in _WITHOUT_ERROR.items():
+        _hatch(axes, mesh, told == name, look)
+    _hatch(axes, mesh, np.isin(told, ("ok", "silent")) & ~number, _UNKNOWN)
+    for scale, logarithmic in zip((axes.set_xscale, axes.set_yscale), mesh.logarithmic, strict=True):
+        scale("log" if logarithmic else "linear")
+    _draw_lines(axes, truth, mesh, rising)
+    _cross_out(axes, drawn.speeds, ordinates[rising], told == "silent")
+    _name_points(axes, outcome)
+    axes.set_xlim(mesh.x[0], mesh.x[-1])
+    axes.set_ylim(mesh.y[0], mesh.y[-1])
+    return drawn_mesh
+
+
+def _is_log(values: Floats) -> bool:
+    """Whether values > 0 are spaced by a ratio rather than by a difference."""
+    if values.min() <= 0.0 or len(values) < 3:
+        return False
+    logs, plain = np.diff(np.log(np.sort(values))), np.diff(np.sort(values))
+    return bool(np.ptp(logs) / logs.mean() < np.ptp(plain) / plain.mean())
+
+
+def _edges(values: Floats) -> Floats:
+    """Half-way between neighbours, on the scale they are spaced on, and as far beyond the ends."""
+    scaled = np.log(values) if _is_log(values) else values
+    middle = 0.5 * (scaled[1:] + scaled[:-1])
+    edges = np.concatenate([[2.0 * scaled[0] - middle[0]], middle, [2.0 * scaled[-1] - middle[-1]]])
+    return np.exp(edges) if _is_log(values) else edges
+
+
+def _hatch(axes: Axes, mesh: Mesh, where: NDArray[np.bool_], look: dict[str, Any]) -> None:
+    """One outline around all cells of a kind: neighbours along the belt speed joined."""
+    boxes = [
+        [(mesh.x[start], mesh.y[row]), (mesh.x[stop], mesh.y[row]), (mesh.x[stop], mesh.y[row + 1]),
+         (mesh.x[start], mesh.y[row + 1]), (mesh.x[start], mesh.y[row])]
+        for row, cells in enumerate(where)
+        for start, stop in _runs(cells)
+    ]  # fmt: skip
+    if not boxes:
+        return
+    codes = [Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY]
+    outline = Outline(np.concatenate(boxes), np.tile(codes, len(boxes)))
+    axes.add_patch(PathPatch(outline, linewidth=0.0, zorder=1.5, **look))
+
+
+def _runs(cells: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Where neighbours are true: first and one after the last."""
+    changes = np.flatnonzero(np.diff(np.concatenate([[False], cells, [False]]).astype(int)))
+    return list(zip(changes[::2].tolist(), changes[1::2].tolist(), strict=True))
+
+
+_LINES: dict[str, dict[str, Any]] = {
+    "free": {"color": "white", "linestyle": "solid", "label": "V_lin"},
+    "reverses": {"color": "#fdae61", "linestyle": (0, (1, 1)), "label": "end of reversal"},
+    "sticks": {"color": "#f768a1", "linestyle": (0, (4, 1.5)), "label": "stick window"},
+    "unique": {
+        "color": "#00ffff",
+        "linestyle": (0, (6, 1.5, 1, 1.5)),
+        "label": "one steady state proved: edge",
+    },
+    "rest": {"color": "#ffffbf", "linestyle": (0, (2, 2)), "label": "friction holds the load: edge"},
+}
+_OUTLINED = [withStroke(linewidth=2.4, foreground="black")]
+"""Lines are seen on every shade."""
+
+
+def _line(name: str) -> dict[str, Any]:
+    look = {key: value for key, value in _LINES[name].items() if key != "label"}
+    return look | {"linewidth": 1.1, "path_effects": _OUTLINED, "zorder": 3}
+
+
+def _draw_lines(axes: Axes, truth: MapTruth, mesh: Mesh, rising: NDArray[np.int64]) -> None:
+    speeds, ordinates = free_velocities(truth.drawn)
+    axes.plot(speeds[rising], ordinates[rising], **_line("free"))
+    for name, edge in (("unique", uniqueness_edge(truth.drawn)), ("rest", rest_edge(truth.drawn))):
+        for ordinate in edge.ordinates:
+            axes.axhline(ordinate, **_line(name))
+    motions = truth.motions
+    if motions is None:
+        return
+    for name, where in (("reverses", motions.reverses), ("sticks", motions.sticks)):
+        _outline(axes, mesh, where[rising], _line(name))
+
+
+def _outline(axes: Axes, mesh: Mesh, where: Floats, look: dict[str, Any]) -> None:
+    """The border between cells where something holds and where it does not, along the edges of the cells."""
+    upright = np.argwhere(np.abs(np.diff(where, axis=1)) == 1.0)
+    level = np.argwhere(np.abs(np.diff(where, axis=0)) == 1.0)
+    pieces = [[(mesh.x[i + 1], mesh.y[j]), (mesh.x[i + 1], mesh.y[j + 1])] for j, i in upright]
+    pieces += [[(mesh.x[i], mesh.y[j + 1]), (mesh.x[i + 1], mesh.y[j + 1])] for j, i in level]
+    if pieces:
+        codes = np.tile([Outline.MOVETO, Outline.LINETO], len(pieces))
+        border = PathPatch(
+            Outline(np.concatenate(pieces), codes), fill=False, edgecolor=look.pop("color"), **look
+        )
+        axes.add_patch(border)
+
+
+def _cross_out(axes: Axes, speeds: Floats, ordinates: Floats, silent: NDArray[np.bool_]) -> None:
+    rows, columns = np.nonzero(silent)
+    look: dict[str, Any] = {"marker": "x", "markersize": 4.0, "markeredgewidth": 1.0, "linestyle": "none"}
+    if len(rows):
+        axes.plot(
+            speeds[columns],
+            ordinates[rows],
+            color="red",
+            path_effects=_OUTLINED,
+            zorder=4,
+            rasterized=True,
+            **look,
+        )
+
+
+def _name_points(axes: Axes, outcome: MapOutcome) -> None:
+    """A ring at each named point, with its name."""
+    drawn = outcome.drawn
+    for point, row in zip(drawn.points, drawn.named_rows, strict=True):
+        at = (point.belt_speed, drawn.ordinate(row))
+        axes.plot(*at, marker="o", markersize=3.5, markerfacecolor="white", markeredgecolor="black", zorder=5)
+        axes.annotate(
+            point.name, at, xytext=(3, 3), textcoords="offset points", fontsize=6, color="white", zorder=5,
+            path_effects=[withStroke(linewidth=1.6, foreground="black")], annotation_clip=True,
+        )  # fmt: skip
+
+
+def _legend() -> list[Any]:
+    words = {"refused": "refused", "failed": "failed", "not_unique": "not unique"}
+    patches: list[Any] = [
+        Patch(linewidth=0.0, label=words[name], **look) for name, look in _WITHOUT_ERROR.items()
+    ]
+    patches.append(Patch(linewidth=0.0, label="no error known", **_UNKNOWN))
+    cross = Line2D([], [], marker="x", color="red", linestyle="none", path_effects=_OUTLINED, markersize=4)
+    cross.set_label("wrong without a word")
+    lines = [Line2D([], [], label=look["label"], **_line(name)) for name, look in _LINES.items()]
+    return [*patches, cross, *lines]

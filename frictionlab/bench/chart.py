@@ -12,9 +12,12 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 
+from frictionlab.bench.account import small_print
 from frictionlab.bench.measure import Row, WorkloadResult
+from frictionlab.bench.names import file_stem
 from frictionlab.bench.record import Contender
 from frictionlab.bench.report import largest, point_remark
 from frictionlab.bench.sections import BenchPicture, SectionResult
@@ -44,8 +47,8 @@ def draw_charts(done: Sequence[WorkloadResult | SectionResult], folder: Path) ->
         with mpl.rc_context(STYLE):
             for measured in done:
                 if isinstance(measured, WorkloadResult):
-                    pictures.append(BenchPicture(measured.work.name, CAPTION))
-                    save_figure(chart(measured), folder, measured.work.name)
+                    pictures.append(BenchPicture(file_stem(measured.work.name), CAPTION))
+                    save_figure(chart(measured), folder, pictures[-1].file_stem)
                 else:
                     pictures += measured.draw(folder)
     except OSError as problem:
@@ -54,9 +57,19 @@ def draw_charts(done: Sequence[WorkloadResult | SectionResult], folder: Path) ->
 
 
 def save_figure(figure: Figure, folder: Path, stem: str) -> None:
-    """Write a figure as SVG and PNG without a date. Raises OSError."""
+    """Write a figure as SVG and PNG, with machine, date and versions in small print. Raises OSError."""
+    _print_below(figure, textwrap.fill(small_print(), 175))
     for kind, unstamped in UNSTAMPED.items():
         figure.savefig(folder / f"{stem}.{kind}", metadata=unstamped)
+
+
+def _print_below(figure: Figure, text: str) -> None:
+    """Small print at the lower right, in a strip that the layout leaves free."""
+    strip = 0.085 * (1 + text.count("\n")) / figure.get_figheight()
+    engine = figure.get_layout_engine()
+    if isinstance(engine, ConstrainedLayoutEngine):
+        engine.set(rect=(0.0, strip, 1.0, 1.0 - strip))
+    figure.text(0.995, 0.1 * strip, text, ha="right", va="bottom", fontsize=4.5, color="0.45")
 
 
 def chart(measured: WorkloadResult) -> Figure:
@@ -69,7 +82,9 @@ def chart(measured: WorkloadResult) -> Figure:
     figure.set_figheight(max(HEIGHT, 0.4 + 0.11 * lines))
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlabel(r"time per point [$\mathrm{\mu s}$]; thin: with every other column")
+    axes.set_xlabel(
+        r"time per point [$\mathrm{\mu s}$]; thin: with every other column; dotted: a model without its error"
+    )
     axes.set_ylabel("largest error of the mean friction")
     axes.grid(which="major", color="0.9", linewidth=0.5)
     axes.set_axisbelow(True)
@@ -106,6 +121,9 @@ def _draw(axes: Axes, contender: Contender, look: dict[str, Any], rows: Sequence
         axes.plot(*zip(*places, strict=True), **look)
     for row, (x, y) in zip(drawn, places, strict=True):
         axes.plot([x, 1e6 * row.whole.least], [y, y], color=look["color"], linewidth=0.5)
+        if math.isfinite(row.model.least):
+            alone = look | {"marker": "|", "linestyle": (0, (1, 1.5)), "linewidth": 0.9, "markevery": [0]}
+            axes.plot([1e6 * row.model.least, x], [y, y], **alone)
     partly = [place for place, row in zip(places, drawn, strict=True) if row.counts["ok"] < row.points]
     for x, y in partly:
         axes.plot([x], [y], marker="x", markersize=8, color="0.2", linestyle="none")

@@ -5,19 +5,27 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from frictionlab.bench.first_run import first_run
+from frictionlab.bench.forecast import Expected, Forecast
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Bench, BenchSetting, Contender, ReferenceMeans, Workload
 from frictionlab.bench.references import independent, reference_means
 from frictionlab.bench.sections import SectionResult
-from frictionlab.bench.solvers import SolverAnswers, mean_task, solve_points, whole_task
+from frictionlab.bench.solvers import (
+    SolverAnswers,
+    mean_task,
+    model_task,
+    seconds_per_point,
+    solve_points,
+    whole_task,
+)
 from frictionlab.bench.timing import Times, time_task
 from frictionlab.compile.call import compiling_at_once
-from frictionlab.methods.base import Method
+from frictionlab.methods.base import Method, ReducedModel
 from frictionlab.quantities import Floats
 
 BENCH_STATUSES = ("ok", "refused", "failed", "not_unique")
@@ -36,7 +44,8 @@ class MeasurementInterrupted(Exception):
 class Row:
     """One contender at one setting on one workload; points: those it was given, times: per point that has an answer.
 
-    mean: for the mean friction and its error alone; whole: with every other column; first: processor time [s] of the
+    model: of a reduced model for its mean friction alone; mean: for the mean friction and its error, of a reduced
+    model the price of its error included; whole: with every other column; first: processor time [s] of the
     whole curve where no kernel is compiled yet, NaN where that was not measured. ``covered``: points whose
     stated error, with the reference's own, covers their error; None for a peer, which states none.
     """
@@ -53,16 +62,23 @@ class Row:
     mean: Times
     whole: Times
     reference: ReferenceMeans | None
+    model: Times = NO_TIME
     first: float = math.nan
+
+    @property
+    def error_alone(self) -> float:
+        """Seconds per point that a reduced model's stated error costs; NaN of others."""
+        return self.mean.least - self.model.least
 
 
 @dataclass(frozen=True)
 class WorkloadResult:
-    """A workload with its references and rows."""
+    """A workload with its references and rows; missing: peers that are not installed, with the remedy."""
 
     work: Workload
     references: list[ReferenceMeans]
     rows: list[Row]
+    missing: dict[str, str] = field(default_factory=dict)
 
 
 def measure(
@@ -74,14 +90,16 @@ def measure(
     Raises MeasurementInterrupted with what is finished.
     """
     done: list[WorkloadResult | SectionResult] = []
+    forecast = Forecast(_steps(bench))
     try:
         with compiling_at_once():  # what is timed is machine code
             for work in bench.workloads:
-                tell(f"{work.name}: references")
+                tell(f"{work.name}: references ({forecast})")
                 found = reference_means(work)
-                rows = list(_rows(bench, work, found, tell))
+                forecast.done()
+                rows = list(_rows(bench, work, found, tell, forecast))
                 rows = [_with_first_run(row, work, tell) for row in rows] if first_runs else rows
-                done.append(WorkloadResult(work, found, rows))
+                done.append(WorkloadResult(work, found, rows, missing_peers(work)))
             for section in bench.sections:
                 tell(section.name)
                 done.append(section.measure(tell))
@@ -91,12 +109,47 @@ def measure(
 
 
 def _rows(
-    bench: Bench, work: Workload, found: Sequence[ReferenceMeans], tell: Callable[[str], None]
+    bench: Bench,
+    work: Workload,
+    found: Sequence[ReferenceMeans],
+    tell: Callable[[str], None],
+    forecast: Forecast,
 ) -> Iterator[Row]:
-    for contender in work.contenders:
+    for contender in _there(work):
         for setting, solver in contender.solvers:
-            tell(f"{work.name}: {contender.label}, {setting}")
+            tell(f"{work.name}: {contender.label}, {setting} ({forecast})")
             yield _row(bench, work, found, contender, setting, solver)
+            forecast.done()
+
+
+def missing_peers(work: Workload) -> dict[str, str]:
+    """The peers of a curve that are not installed, by label, with how to install them."""
+    return {
+        contender.label: told
+        for contender in work.contenders
+        if isinstance(peer := contender.solvers[0][1], Peer) and (told := peer.missing())
+    }
+
+
+def _there(work: Workload) -> list[Contender]:
+    """The methods, and the peers that are installed."""
+    missing = missing_peers(work)
+    return [contender for contender in work.contenders if contender.label not in missing]
+
+
+def _steps(bench: Bench) -> Iterator[Expected]:
+    """Of each curve the references, then every setting, with a first guess of its seconds.
+
+    A setting is solved, timed for its mean, solved once more for every column and timed for that.
+    """
+    for work in bench.workloads:
+        yield Expected("references", bench.seconds)
+        for contender in _there(work):
+            for setting, solver in contender.solvers:
+                points = len(chosen(len(work.scenes), contender.points))
+                once = points * seconds_per_point(solver, work.scenes[-1], work.law, setting.tolerance)
+                timed = max(once, min(bench.repeats * once, bench.seconds))
+                yield Expected(contender.label, 2.0 * (once + timed))
 
 
 def _with_first_run(row: Row, work: Workload, tell: Callable[[str], None]) -> Row:
@@ -122,7 +175,8 @@ def _row(
     outcome = solve_points(solver, scenes, work.law, setting.tolerance)
     reference = independent(found, contender.kind if contender.side == "method" else "", places)
     off, covered = _off(outcome, reference, places)
-    mean, whole = _times(bench, work, setting, solver, [places[i] for i in _solved(outcome)])
+    answered = [places[i] for i in _solved(outcome)]
+    mean, whole = _times(bench, work, setting, solver, answered)
     return Row(
         contender,
         setting,
@@ -136,6 +190,7 @@ def _row(
         mean,
         whole,
         reference,
+        _model_times(bench, work, solver, answered),
     )
 
 
@@ -190,3 +245,12 @@ def _times(
     task = whole_task(solver, *given)
     task()  # with kernels of its own, to be compiled first
     return mean, time_task(task, bench.repeats, bench.seconds).each_of(len(places))
+
+
+def _model_times(bench: Bench, work: Workload, solver: Method | Peer, places: list[int]) -> Times:
+    """Time of a reduced model's mean alone; none of other solvers."""
+    if not places or not isinstance(solver, ReducedModel):
+        return NO_TIME
+    task = model_task(solver, [work.scenes[place] for place in places], work.law)
+    task()
+    return time_task(task, bench.repeats, bench.seconds).each_of(len(places))

@@ -11,6 +11,7 @@ from typing import Any
 from frictionlab import columns
 from frictionlab.bench.contenders import Defaults, contenders
 from frictionlab.bench.failures.reader import read_failures
+from frictionlab.bench.names import file_stem
 from frictionlab.bench.record import Bench, Workload
 from frictionlab.bench.references import read_references
 from frictionlab.bench.sections import Section, SectionReader, SectionSource
@@ -166,6 +167,12 @@ class _Reading:
     def _note_equal_names(self, names: Sequence[str]) -> None:
         for name in {name for name in names if names.count(name) > 1}:
             self._notes.add(("scenes",), f"two curves are called '{name}'; give each its own name")
+        files: dict[str, str] = {}
+        for name in dict.fromkeys(names):
+            other = files.setdefault(file_stem(name).casefold(), name)
+            if other != name:
+                told = f"'{other}' and '{name}' would both be written to {file_stem(name)}; rename one"
+                self._notes.add(("scenes",), told)
 
 
 def _part(source: Source, block: dict[str, Any], path: Path) -> Source:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from frictionlab.bench.measure import BENCH_STATUSES, Row, WorkloadResult
+from frictionlab.bench.names import file_stem
 from frictionlab.bench.record import Contender, ReferenceMeans
 from frictionlab.bench.sections import SectionResult
 from frictionlab.bench.timing import Times
@@ -17,7 +18,8 @@ from frictionlab.runner.errors import SaveError
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
 HEAD = (
     "| solver | setting | points | largest error | median error | largest stated error | covered "
-    "| us per point: mean and error (quartiles) | everything | repeats | first run, s | remark |"
+    "| us per point: mean and error (quartiles) | model alone | its error alone | everything | repeats "
+    "| first run, s | remark |"
 )
 
 
@@ -33,10 +35,11 @@ def write(done: Sequence[WorkloadResult | SectionResult], folder: Path) -> list[
 def _write_one(measured: WorkloadResult | SectionResult, folder: Path) -> list[Path]:
     if not isinstance(measured, WorkloadResult):
         return measured.write(folder)
-    table, text = folder / f"{measured.work.name}.csv", folder / f"{measured.work.name}.md"
+    stem = file_stem(measured.work.name)
+    table, text = folder / f"{stem}.csv", folder / f"{stem}.md"
     records = [_record(measured, row) for row in measured.rows]
     with table.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(records[0]), lineterminator="\n")
+        writer = csv.DictWriter(file, list(records[0]) if records else [], lineterminator="\n")
         writer.writeheader()
         writer.writerows(records)
     text.write_text(markdown(measured), encoding="utf-8")
@@ -60,11 +63,12 @@ def _record(measured: WorkloadResult, row: Row) -> dict[str, Any]:
         "stated_error": _cell(row.stated),
         "covered": "" if row.covered is None else row.covered,
     }
-    for name, times in (("mean", row.mean), ("all", row.whole)):
+    for name, times in (("mean", row.mean), ("all", row.whole), ("model", row.model)):
         values = (times.least, *times.quartiles)
         names = (f"{name}_us", f"{name}_us_q1", f"{name}_us_q2", f"{name}_us_q3")
         told |= dict(zip(names, (_cell(1e6 * value) for value in values), strict=True))
         told[f"{name}_repeats"] = times.repeats
+    told["error_us"] = _cell(1e6 * row.error_alone)
     told["first_run_s"] = _cell(row.first)
     told["reference"] = row.reference.label if row.reference else ""
     told["reference_error"] = _cell(_own_error(row.reference))
@@ -90,7 +94,13 @@ def markdown(measured: WorkloadResult) -> str:
     speeds = work.speeds()
     lines = [f"## {work.name}{': ' + work.title if work.title else ''}", ""]
     lines += [f"{len(speeds)} belt speeds from {speeds[0]:g} to {speeds[-1]:g}.", ""]
-    lines += [*reference_lines(measured), "", HEAD, "|---" * (HEAD.count("|") - 1) + "|"]
+    lines += [f"- {left_out(measured.missing)}"] if measured.missing else []
+    lines += [
+        *reference_lines(measured),
+        "",
+        HEAD,
+        "|---" * (HEAD.count("|") - 1) + "|",
+    ]
     for rows in _by_contender(measured):
         refused = all(row.counts["refused"] == row.points for row in rows)
         lines += [_line(rows[0], "all")] if refused else [_line(row, str(row.setting)) for row in rows]
@@ -130,6 +140,8 @@ def _line(row: Row, setting: str) -> str:
         _power(row.stated),
         covered,
         _spread(row.mean),
+        _short(row.model.least),
+        _short(row.error_alone),
         "" if not row.whole.repeats else _short(row.whole.least) if row.whole is not row.mean else "the same",
         str(row.mean.repeats or ""),
         "" if math.isnan(row.first) else f"{row.first:.2g}",
@@ -161,12 +173,25 @@ def _spread(times: Times) -> str:
 
 
 def bench_summary(done: Sequence[WorkloadResult | SectionResult]) -> str:
-    """Time per point to reach an error, for every curve and contender, with the ratio to the best method; what
-    each section came to.
-    """
-    return "\n\n".join(
-        _summary(each) if isinstance(each, WorkloadResult) else each.summary() for each in done
-    )
+    """What every curve and section came to, and in one line the peers that are not installed."""
+    missing = {
+        label: told
+        for each in done
+        if isinstance(each, WorkloadResult)
+        for label, told in each.missing.items()
+    }
+    told = [part_summary(each) for each in done]
+    return "\n\n".join([*told, left_out(missing)] if missing else told)
+
+
+def part_summary(measured: WorkloadResult | SectionResult) -> str:
+    """Of a curve the time per point to reach an error, for every contender, with the ratio to the best method."""
+    return _summary(measured) if isinstance(measured, WorkloadResult) else measured.summary()
+
+
+def left_out(missing: Mapping[str, str]) -> str:
+    """The one line on peers that are not installed, from the remedies by their labels."""
+    return f"Peers left out: {', '.join(missing)} ({'; '.join(dict.fromkeys(missing.values()))})."
 
 
 def _summary(measured: WorkloadResult) -> str:
@@ -176,7 +201,7 @@ def _summary(measured: WorkloadResult) -> str:
         min((_reach(rows, c, target) for c in contenders if c.side == "method"), default=math.inf)
         for target in TARGETS
     ]
-    wide = max(len(contender.label) for contender in contenders) + 7
+    wide = max((len(contender.label) for contender in contenders), default=0) + 7
     title = f"{measured.work.name}: us per point to a largest error of (times the best method's)"
     lines = [title, " " * wide + "".join(f"{target:>22.0e}" for target in TARGETS)]
     for contender in contenders:

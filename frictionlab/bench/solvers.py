@@ -9,12 +9,20 @@ import numpy as np
 
 from frictionlab.bench.peers.base import Peer
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method
+from frictionlab.methods.base import Answers, Method, ReducedModel
 from frictionlab.quantities import Floats
 from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.solve import FROM_METHODS, answer, number_columns
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
+
+PEER_SECONDS = 0.05
+"""A first guess of what a point costs a peer."""
+
+
+def seconds_per_point(solver: Method | Peer, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
+    """A first guess of what a point costs [s]."""
+    return PEER_SECONDS if isinstance(solver, Peer) else solver.cost(scene, law, tolerance)
 
 
 @dataclass(frozen=True)
@@ -71,6 +79,11 @@ def mean_task(
 ) -> Callable[[], object]:
     """The mean friction and its error: all that is found before another column is asked for."""
     return lambda: solver.solve(scenes, law, tolerance)
+
+
+def model_task(model: ReducedModel, scenes: Sequence[Scene], law: FrictionLaw) -> Callable[[], object]:
+    """The mean friction of a reduced model alone, without its error."""
+    return lambda: model.model_means(scenes, law)
 
 
 def whole_task(

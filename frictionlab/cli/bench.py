@@ -31,12 +31,14 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], fir
     those of each section.
     """
     from frictionlab import bench
+    from frictionlab.bench.page import check_folder
 
     try:
         asked = bench.load_bench(bench_list).only(only)
     except bench.UnknownCurve as problem:
         raise click.UsageError(str(problem)) from None
     folder = out or Path("runs") / f"bench-{asked.name}"
+    check_folder(folder)
     try:
         done = bench.measure(asked, print_message, first_runs)
     except bench.MeasurementInterrupted as problem:
@@ -50,12 +52,8 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], fir
 
 
 def _save(done: Sequence[WorkloadResult | SectionResult], folder: Path) -> None:
-    """Write tables, then charts: the tables are on disk before matplotlib is imported."""
-    if not done:
-        return
-    from frictionlab.bench import write
-    from frictionlab.bench.chart import draw_charts
+    """Write what is done, if anything, and the page of the folder."""
+    if done:
+        from frictionlab.bench.page import save
 
-    write(done, folder)
-    draw_charts(done, folder)
-    print_message(f"tables and charts in {folder}")
+        print_message(f"tables and charts in {folder}, all of them on {save(done, folder)}")

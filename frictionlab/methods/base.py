@@ -87,6 +87,17 @@ class Method(Record, ABC):
         """Expected kernel time per point [s], once compiled; for planning only."""
 
 
+class ReducedModel(Method):
+    """A method that solves a simpler problem than the scene states: most of its work goes into its error."""
+
+    @abstractmethod
+    def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
+        """The mean friction of the model alone, as ``solve`` has it, without its error.
+
+        Of scenes that differ in belt speed alone, none of them refused; NaN where the model has no answer.
+        """
+
+
 def refused(reasons: Sequence[str]) -> Answers:
     """The answers of a method that cannot do these scenes."""
     n, nothing = len(reasons), np.full(len(reasons), np.nan)

@@ -6,12 +6,10 @@ import errno
 import io
 import json
 import os
-import platform
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
 
@@ -21,10 +19,10 @@ from frictionlab.faults import INTERNAL, MARK
 from frictionlab.printable import printable
 from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.files import damage, remove_leftovers, stamp, stamp_of_file, stamps, write_whole
+from frictionlab.runner.machine import machine_and_versions
 from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study.study import LAW_COPIES
 
-PACKAGES = ("numpy", "numba", "llvmlite", "pandas", "pyarrow", "pydantic", "scipy")
 Existing = Literal["reuse", "replace"]
 PAGE_MARK = '<meta name="generator" content="frictionlab'
 MOST_DIFFERENCES = 2
@@ -254,7 +252,7 @@ class RunFolder:
             "code": dict(self.identity.code),
             "plugins": list(self.identity.law_texts),
             **runs,
-            **_platform(),
+            **machine_and_versions(),
             "files": self._stamps_of_files(),
         }
         # provenance.json first: a study.yaml without it is treated as a user's own file.
@@ -395,31 +393,6 @@ def _equal(line: str, others: Sequence[str]) -> int:
     """With how many letters one of the others begins like this line, at most."""
     shared = [[one == other for one, other in zip(line, text, strict=False)] for text in others]
     return max(([*same, False].index(False) for same in shared), default=0)
-
-
-def _platform() -> dict[str, Any]:
-    return {
-        "python": platform.python_version(),
-        "platform": platform.platform(),
-        "processor": _processor(),
-        "packages": {name: found for name in PACKAGES if (found := _version(name))},
-    }
-
-
-def _processor() -> str:
-    """Its name, where the machine tells it."""
-    with suppress(OSError, ValueError):
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
-        return next(names, "") or platform.processor() or platform.machine()
-    return platform.processor() or platform.machine()
-
-
-def _version(name: str) -> str | None:
-    try:
-        return version(name)
-    except ModuleNotFoundError:  # PackageNotFoundError is one
-        return None
 
 
 def check_page(path: Path) -> None:

@@ -190,21 +190,27 @@ def test_a_method_that_fails_keeps_its_place_in_tables_and_chart(monkeypatch: py
     assert said == ["off; 4 failed: ZeroDivisionError: float division by zero", "another"]
 
 
-def test_a_peer_that_is_not_installed_keeps_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_peers_that_are_not_installed_are_one_line_and_no_rows(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(base, "find_spec", lambda name: None)
     peers = "".join(f"      - {{kind: {name}, tolerance: [1.0e-3, 1.0e-6]}}\n" for name in PEERS)
 
     found = measured(f"{LIST}    peers:\n{peers}")
 
-    for name in PEERS:
-        assert [row.counts["refused"] for row in rows_of(found, name)] == [4, 4]
-    told = bench.bench_summary([found])
-    assert all(told.count(f"not installed: {peer.remedy}") >= 1 for peer in PEERS.values())
-    assert told.count("not installed: pip install") == len(PEERS)
-    assert {text.get_text().partition(" ")[0] for text in chart.chart(found).legends[0].get_texts()} == {
-        "off",
-        *PEERS,
-    }
+    assert {row.contender.label for row in found.rows} == {"off"}
+    assert found.missing == {name: f"not installed: {peer.remedy}" for name, peer in PEERS.items()}
+    for told in (bench.bench_summary([found]), markdown(found)):
+        (line,) = (line for line in told.splitlines() if "not installed" in line)
+        assert line.removeprefix("- ").startswith(f"Peers left out: {', '.join(PEERS)} (not installed: ")
+    assert {text.get_text() for text in chart.chart(found).legends[0].get_texts()} == {"off"}
+
+
+def test_a_list_of_missing_peers_alone_is_written_without_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(base, "find_spec", lambda name: None)
+    alone = LIST.partition("    methods:")[0] + "    peers: [heyoka]\n"
+
+    bench.write([measured(alone)], Path("out"))
+
+    assert "Peers left out: heyoka" in Path("out/A.md").read_text()
 
 
 def test_few_points_of_a_curve_are_spread_over_it() -> None:
@@ -264,6 +270,8 @@ def test_the_command_writes_a_chart_and_tables_per_curve(capsys: pytest.CaptureF
         "A.md",
         "A.png",
         "A.svg",
+        "bench.json",
+        "index.html",
     ]
 
 
@@ -331,7 +339,14 @@ def test_a_list_may_have_sections_alone(
     assert cli.main(["bench", "list.yaml", "-o", "out"]) == 0
 
     assert capsys.readouterr().out == "one: told\n\ntwo: told\n"
-    assert sorted(path.name for path in Path("out").iterdir()) == ["one.csv", "one.svg", "two.csv", "two.svg"]
+    assert sorted(path.name for path in Path("out").iterdir()) == [
+        "bench.json",
+        "index.html",
+        "one.csv",
+        "one.svg",
+        "two.csv",
+        "two.svg",
+    ]
 
 
 def test_a_section_is_chosen_by_name_beside_curves(
@@ -358,7 +373,12 @@ def test_an_interrupted_bench_keeps_the_sections_that_are_done(
     assert cli.main(["bench", "list.yaml", "-o", "out"]) == 130
 
     assert "interrupted: 1 of 2 curves and sections done" in capsys.readouterr().err
-    assert sorted(path.name for path in Path("out").iterdir()) == ["one.csv", "one.svg"]
+    assert sorted(path.name for path in Path("out").iterdir()) == [
+        "bench.json",
+        "index.html",
+        "one.csv",
+        "one.svg",
+    ]
 
 
 def test_a_section_and_a_curve_of_one_name_are_a_mistake(

@@ -258,10 +258,12 @@ def _cross_out(axes: Axes, speeds: Floats, ordinates: Floats, silent: NDArray[np
 
 
 def _name_points(axes: Axes, outcome: MapOutcome) -> None:
-    """A ring at each named point, with its name."""
+    """A ring at each named point, with its name, and a cross through one that is wrong without a word."""
     drawn = outcome.drawn
-    for point, row in zip(drawn.points, drawn.named_rows, strict=True):
+    for point, row, found in zip(drawn.points, drawn.named_rows, outcome.named, strict=True):
         at = (point.belt_speed, drawn.ordinate(row))
+        silent = np.array([[found.outcome == "silent"]])
+        _cross_out(axes, np.array(at[:1]), np.array(at[1:]), silent)
         axes.plot(*at, marker="o", markersize=3.5, markerfacecolor="white", markeredgecolor="black", zorder=5)
         axes.annotate(
             point.name, at, xytext=(3, 3), textcoords="offset points", fontsize=6, color="white", zorder=5,
@@ -272,9 +274,9 @@ def _name_points(axes: Axes, outcome: MapOutcome) -> None:
 def _legend() -> list[Any]:
     words = {"refused": "refused", "failed": "failed", "not_unique": "not unique"}
     patches: list[Any] = [
-        Patch(linewidth=0.0, label=words[name], **look) for name, look in _WITHOUT_ERROR.items()
+        Patch(linewidth=0.4, label=words[name], **look) for name, look in _WITHOUT_ERROR.items()
     ]
-    patches.append(Patch(linewidth=0.0, label="no error known", **_UNKNOWN))
+    patches.append(Patch(linewidth=0.4, label="no error known", **_UNKNOWN))
     cross = Line2D([], [], marker="x", color="red", linestyle="none", path_effects=_OUTLINED, markersize=4)
     cross.set_label("wrong without a word")
     lines = [Line2D([], [], label=look["label"], **_line(name)) for name, look in _LINES.items()]

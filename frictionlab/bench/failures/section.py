@@ -13,14 +13,13 @@ from frictionlab.bench.forecast import Expected, Forecast
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Contender
 from frictionlab.bench.sections import BenchPicture
+from frictionlab.bench.solvers import seconds_per_point
 
 CELLS = {field.name: field.name for field in fields(PointOutcome)} | {
     "stated": "stated_error",
     "true": "true_error",
 }
 """The columns of a table of points, by the fields they hold."""
-PEER_SECONDS = 0.05
-"""A guess of what a point costs a peer."""
 
 
 @dataclass(frozen=True)
@@ -123,10 +122,7 @@ class FailureSection:
 def _seconds(truth: MapTruth, contender: Contender) -> float:
     """A guess of what a row of a map costs."""
     (setting, solver), row = contender.solvers[0], truth.drawn.rows[0]
-    point = (
-        PEER_SECONDS if isinstance(solver, Peer) else solver.cost(row.scenes[-1], row.law, setting.tolerance)
-    )
-    return point * len(row.scenes)
+    return seconds_per_point(solver, row.scenes[-1], row.law, setting.tolerance) * len(row.scenes)
 
 
 def by_label(

@@ -24,6 +24,7 @@ from frictionlab.methods.reduced.common import ROUNDING, Modelled, judged
 from frictionlab.methods.reduced.full_mean import full_mean
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene, Slip
 from frictionlab.theory import friction_free_velocity
 
@@ -58,6 +59,14 @@ def bristle_refusal(name: str, scene: Scene, law: BristleLaw) -> str | None:
     if not math.isfinite(friction_free_velocity(scene)):
         return f"{name} starts from the friction-free motion, which is unbounded at undamped resonance; use shooting"
     return None
+
+
+def bristle_means(scenes: Sequence[Scene], law: BristleLaw) -> Floats:
+    """The mean friction of the one balance of each scene, without its error; NaN where there is not one."""
+    law = law.under_load(scenes[0].mass().normal_load)
+    found = [balances(scene.mass(), abs(scene.belt_speed), law) for scene in scenes]
+    only = [exact[0] if len(exact) == 1 and not near else None for exact, near in found]
+    return np.array([_mean(scene, balance) for scene, balance in zip(scenes, only, strict=True)])
 
 
 def answer_bristle(scenes: Sequence[Scene], law: BristleLaw, tolerance: float) -> Answers:

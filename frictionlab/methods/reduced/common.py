@@ -96,7 +96,7 @@ def answer_steadied(scenes: Sequence[Scene], answer: Callable[[Sequence[Scene]],
     other = equivalent_drive(scenes[0])
     if other is None:
         return answer(scenes)
-    found = answer([other.scene.model_copy(update={"belt_speed": scene.belt_speed}) for scene in scenes])
+    found = answer(steadied_all(scenes))
     carried = Motion(1.0, scenes[0].frequency, other.velocity, other.transverse_velocity)
 
     def orbit(i: int) -> Orbit | None:
@@ -120,6 +120,22 @@ def point_refusal(scene: Scene, friction: float) -> str:
     if mass.damping == 0.0 and abs(scene.belt_speed) >= friction_free_velocity(scene):
         return "without damping and without slip reversal the free oscillation does not decay; use exact"
     return ""
+
+
+def steadied_all(scenes: Sequence[Scene]) -> Sequence[Scene]:
+    """Scenes that differ in belt speed alone as a reduced model takes them: on a belt that does not vibrate."""
+    other = equivalent_drive(scenes[0])
+    if other is None:
+        return scenes
+    return [other.scene.model_copy(update={"belt_speed": scene.belt_speed}) for scene in scenes]
+
+
+def line_means(scenes: Sequence[Scene], law: FrictionLaw, model: Model) -> Floats:
+    """The mean friction of a model along the belt, without its error."""
+    mu, speeds = law.sliding_friction(1.0), belt_speeds_of(scenes)
+    found = model(scenes[0], mu * scenes[0].mass().normal_load, np.abs(speeds))
+    answered = np.array([not reason for reason in found.reasons])
+    return np.where(answered, mu * np.copysign(found.mean, speeds), np.nan)
 
 
 def answer_line(

@@ -9,9 +9,17 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method
-from frictionlab.methods.reduced.bristle import answer_bristle, bristle_refusal
-from frictionlab.methods.reduced.common import Harmonic, answer_line, answer_steadied, line_refusal, steadied
+from frictionlab.methods.base import Answers, ReducedModel
+from frictionlab.methods.reduced.bristle import answer_bristle, bristle_means, bristle_refusal
+from frictionlab.methods.reduced.common import (
+    Harmonic,
+    answer_line,
+    answer_steadied,
+    line_means,
+    line_refusal,
+    steadied,
+    steadied_all,
+)
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.numerics.roots import monotone_root
 from frictionlab.quantities import Floats
@@ -28,7 +36,7 @@ AT_REST = (
 )
 
 
-class HarmonicBalance(Method):
+class HarmonicBalance(ReducedModel):
     """One harmonic of motion and friction balanced along the belt; for Coulomb friction its curve is explicit.
 
     Amplitude and belt speed follow from their ratio without a search (theory.one_harmonic_velocity); only a given
@@ -56,6 +64,10 @@ class HarmonicBalance(Method):
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
         return answer_steadied(scenes, lambda others: _balance(law).answer(others, law, tolerance))
+
+    def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats:
+        """Of the one harmonic that balances."""
+        return _balance(law).means(steadied_all(scenes), law)
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Two root searches on whole arrays; slow drives need more samples to be sure of the reversals.
@@ -102,15 +114,17 @@ class _Balance(NamedTuple):
 
     refusal: Callable[[str, Scene, Any], str | None]
     answer: Callable[[Sequence[Scene], Any, float], Answers]
+    means: Callable[[Sequence[Scene], Any], Floats]
     cost: Callable[[Scene], float]
 
 
 _OF_COULOMB = _Balance(
     line_refusal,
     lambda scenes, law, tolerance: answer_line(scenes, law, tolerance, TEXT, one_harmonic),
+    lambda scenes, law: line_means(scenes, law, one_harmonic),
     lambda scene: 5e-5 * max(1.0, 1.0 / scene.frequency),
 )
-_OF_BRISTLES = _Balance(bristle_refusal, answer_bristle, lambda _scene: 4e-2)
+_OF_BRISTLES = _Balance(bristle_refusal, answer_bristle, bristle_means, lambda _scene: 4e-2)
 
 
 def _balance(law: FrictionLaw) -> _Balance:

@@ -9,9 +9,10 @@ from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method
+from frictionlab.methods.base import Answers, ReducedModel
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.prescribed.quadrature import integrals, slip_edges
 from frictionlab.methods.reduced.common import (
@@ -21,12 +22,14 @@ from frictionlab.methods.reduced.common import (
     answer_line,
     answer_steadied,
     judged,
+    line_means,
     line_refusal,
     model_orbit,
     steadied,
+    steadied_all,
 )
 from frictionlab.methods.reduced.full_mean import full_mean
-from frictionlab.methods.reduced.waveforms import answer_waveforms
+from frictionlab.methods.reduced.waveforms import answer_waveforms, waveform_means
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.body import Motion
@@ -41,10 +44,12 @@ from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.uniqueness import falls_slowly
 
 ALONG = "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)"
+PRESCRIBED_TOLERANCE = 1e-9
+"""Of the mean over a prescribed slip where none is asked for."""
 PLANE = "direct separation of motion: quadrature over the friction-free motion"
 
 
-class Mdsm(Method):
+class Mdsm(ReducedModel):
     """Direct separation of motion: the fast motion as if there were no friction, friction averaged over it.
 
     Along the belt a closed form, in the plane a quadrature over the friction-free ellipse. A prescribed slip has no
@@ -77,6 +82,18 @@ class Mdsm(Method):
         if steadied(scenes[0]) is None:
             return answer_waveforms(scenes, law, tolerance)
         return answer_steadied(scenes, lambda others: _answer_sines(others, law, tolerance))
+
+    def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
+        """Of the friction-free motion; of a prescribed slip all of it is exact."""
+        if scenes[0].degrees_of_freedom == 0:
+            return _answer_prescribed(scenes, law, PRESCRIBED_TOLERANCE).mean
+        if steadied(scenes[0]) is None:
+            return waveform_means(scenes, law)
+        steady = steadied_all(scenes)
+        if _in_closed_form(steady[0], law):
+            return line_means(steady, law, friction_free)
+        motion = friction_free_motion(steady[0])
+        return np.array([_plane_mean(scene, law, motion)[0] for scene in steady])
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Nearly all of it for the error: a root search on whole arrays, or shooting point by point."""
@@ -140,14 +157,17 @@ def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -
 
 def _point(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[tuple[complex, float], str]:
     """Mean friction and its error, or the reason why there is none."""
-    edges = slip_edges(motion, scene.belt_speed)
-    found = integrals(motion, scene.belt_speed, law, edges)
-    mean = 0j if scene.belt_speed == 0.0 else -found.mean
-    rounding = ROUNDING * found.largest
+    mean, rounding = _plane_mean(scene, law, motion)
     if scene.belt_speed == 0.0:
         return (mean, rounding), _at_rest(scene, law)
     error, reason = _error(scene, law, mean.real)
     return (mean, rounding + error), reason
+
+
+def _plane_mean(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[complex, float]:
+    """Mean friction over the friction-free motion, and the error of its quadrature."""
+    found = integrals(motion, scene.belt_speed, law, slip_edges(motion, scene.belt_speed))
+    return (0j if scene.belt_speed == 0.0 else -found.mean), ROUNDING * found.largest
 
 
 def _error(scene: Scene, law: FrictionLaw, mean: float) -> tuple[float, str]:

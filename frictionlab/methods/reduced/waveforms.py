@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers
@@ -48,6 +49,12 @@ class FreeMotions:
         k = piece_at(self.slip.along.edges, 0.5 * (tau[:, :1] + tau[:, -1:]))
         x, v = (one.at(tau, k)[0] + 1j * other.at(tau, k)[0] for one, other in (self.position, self.velocity))
         return Orbit(tau, at + x, v, friction, None)
+
+
+def waveform_means(scenes: Sequence[Scene], law: FrictionLaw) -> NDArray[np.complex128]:
+    """The mean friction over the friction-free motion, without its error; NaN where there is none."""
+    points = [VaryingPoint(scene, law, FreeMotions(scene, law).slip) for scene in scenes]
+    return np.array([point.found.mean if point.status == "ok" else complex(np.nan) for point in points])
 
 
 def answer_waveforms(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

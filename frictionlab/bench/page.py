@@ -1,0 +1,205 @@
+"""The page of a folder of bench results: one HTML file that needs nothing else."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from frictionlab.bench.account import add_to_account, entry_of, print_of
+from frictionlab.bench.measure import BENCH_STATUSES, WorkloadResult
+from frictionlab.bench.report import left_out, write
+from frictionlab.bench.sections import SectionResult
+from frictionlab.report.figures import address
+from frictionlab.report.page import rendered
+from frictionlab.report.tables import Grid
+from frictionlab.results.words import counted
+from frictionlab.runner.folder import check_page, write_page
+
+PAGE_NAME = "index.html"
+MOST_ROWS_OPEN = 40
+"""Rows of a table that are shown unasked."""
+MOST_ROWS_ON_PAGE = 200
+ROWS_OF_MANY = 20
+"""Shown of a table with more rows than a page holds."""
+
+
+class PagePicture(NamedTuple):
+    """A chart in the page: its data as an address, its caption."""
+
+    address: str
+    caption: str
+
+
+class PageTable(NamedTuple):
+    """A table of the page, whether it is folded away, and the file with all of it."""
+
+    grid: Grid
+    folded: bool
+    file: str
+
+
+class PagePart(NamedTuple):
+    """A curve or a section of the page; print: where and with what it was measured, in a line."""
+
+    name: str
+    title: str
+    anchor: str
+    kind: str
+    notes: Sequence[str]
+    summary: str
+    pictures: Sequence[PagePicture]
+    tables: Sequence[PageTable]
+    print: str
+
+
+def save(done: Sequence[WorkloadResult | SectionResult], folder: Path) -> Path:
+    """Write tables, then charts, the account of the folder and its page; where that is. Raises SaveError.
+
+    The tables are on disk before matplotlib is imported.
+    """
+    tables = [write([each], folder) for each in done]
+    from frictionlab.bench.chart import draw_charts
+
+    pictures = [draw_charts([each], folder) for each in done]
+    entries = [entry_of(*each) for each in zip(done, tables, pictures, strict=True)]
+    page = folder / PAGE_NAME
+    write_page(page, bench_page(folder, add_to_account(folder, entries)))
+    return page
+
+
+def check_folder(folder: Path) -> None:
+    """Raises FolderError where a page is in the way that a person wrote."""
+    check_page(folder / PAGE_NAME)
+
+
+def bench_page(folder: Path, parts: Mapping[str, Mapping[str, Any]]) -> str:
+    """The page of a folder with these entries of its account."""
+    shown = [_part(folder, stem, entry) for stem, entry in parts.items() if not _left_out(entry)]
+    missing = {name: told for entry in parts.values() for name, told in entry["missing"].items()}
+    latest = max(parts.values(), key=lambda entry: str(entry["date"]))
+    curves = sum(part.kind == "curve" for part in shown)
+    return rendered(
+        "bench.html",
+        title=f"Bench results in {folder.absolute().name}",
+        facts=[
+            f"{latest['processor']}, {counted(latest['cores'], 'core')}",
+            " … ".join(dict.fromkeys(f(str(entry["date"]) for entry in parts.values()) for f in (min, max))),
+            *([counted(curves, "curve")] if curves else []),
+            *([counted(len(shown) - curves, "section")] if len(shown) > curves else []),
+        ],
+        missing=left_out(missing) if missing else "",
+        parts=shown,
+        versions=_versions(latest),
+    )
+
+
+def _left_out(entry: Mapping[str, Any]) -> bool:
+    """Whether it is the section of a peer that is not installed: a line at the head of the page says so."""
+    return entry["kind"] == "section" and bool(entry["missing"])
+
+
+def _part(folder: Path, stem: str, entry: Mapping[str, Any]) -> PagePart:
+    table = _curve_table if entry["kind"] == "curve" else _any_table
+    return PagePart(
+        entry["name"],
+        entry["title"],
+        f"part-{stem}",
+        entry["kind"],
+        entry["notes"],
+        entry["summary"],
+        [
+            PagePicture(address(folder / picture["file_stem"]), picture["caption"])
+            for picture in entry["pictures"]
+        ],
+        [page_table for name in entry["tables"] for page_table in _table(folder / name, table)],
+        print_of(entry),
+    )
+
+
+def _versions(entry: Mapping[str, Any]) -> Grid:
+    own = {name: entry[name] for name in ("frictionlab", "python", "platform", "processor")}
+    rows = [[name, str(value)] for name, value in (own | entry["packages"]).items()]
+    return Grid("Machine, and versions of what is measured, peers included", ["what", "version"], rows)
+
+
+def _table(file: Path, made: Callable[[str, list[dict[str, str]]], Grid]) -> list[PageTable]:
+    try:
+        with file.open(encoding="utf-8", newline="") as text:
+            records = list(csv.DictReader(text))
+    except OSError:
+        return []
+    if not records:
+        return []
+    few = records if len(records) <= MOST_ROWS_ON_PAGE else records[:ROWS_OF_MANY]
+    grid = made(file.name, few)
+    if len(few) < len(records):
+        grid = grid._replace(
+            below=f"... and {len(records) - len(few):,} more rows, all of them in {file.name}"
+        )
+    return [PageTable(grid, len(few) > MOST_ROWS_OPEN or len(few) < len(records), file.name)]
+
+
+def _any_table(name: str, records: list[dict[str, str]]) -> Grid:
+    """A table as its file has it, numbers to four digits, without columns that are empty in every row."""
+    kept = [key for key in records[0] if any(record[key] for record in records)]
+    return Grid(
+        f"{name}: {counted(len(records), 'row')}",
+        [key.replace("_", " ") for key in kept],
+        [[_number(record[key]) for key in kept] for record in records],
+    )
+
+
+def _number(text: str) -> str:
+    try:
+        value = float(text)
+    except ValueError:
+        return text
+    return text if value == int(value) and abs(value) < 1e6 and "." not in text else f"{value:.4g}"
+
+
+CURVE_CELLS: dict[str, Callable[[dict[str, str]], str]] = {
+    "solver": lambda row: row["solver"] + (" (peer)" if row["side"] == "peer" else ""),
+    "setting": lambda row: f"{row['quantity']} {_number(row['value'])}" if row["quantity"] else "as is",
+    "points": lambda row: row["points"],
+    "largest error": lambda row: _size(row["largest_error"]),
+    "median error": lambda row: _size(row["median_error"]),
+    "stated error": lambda row: _size(row["stated_error"]),
+    "covered": lambda row: f"{row['covered']}/{row['ok']}" if row["covered"] and row["ok"] != "0" else "",
+    "mean and error, μs": lambda row: _micro(row["mean_us"]),
+    "model alone, μs": lambda row: _micro(row["model_us"]),
+    "its error alone, μs": lambda row: _micro(row["error_us"]),
+    "every column, μs": lambda row: _micro(row["all_us"]) if row["side"] == "method" else "",
+    "quartiles of mean and error, μs": lambda row: ", ".join(
+        filter(None, (_micro(row[f"mean_us_q{i}"]) for i in (1, 2, 3)))
+    ),
+    "first run, s": lambda row: _number(row["first_run_s"]),
+    "remark": lambda row: _remark(row),
+}
+"""The columns of a curve's table, from a row of its file."""
+
+
+def _curve_table(name: str, records: list[dict[str, str]]) -> Grid:
+    rows = [[cell(record) for cell in CURVE_CELLS.values()] for record in records]
+    kept = [place for place in range(len(CURVE_CELLS)) if any(row[place] for row in rows)]
+    heads = list(CURVE_CELLS)
+    return Grid(
+        f"{name.removesuffix('.csv')}: errors of the mean friction, and times per point",
+        [heads[place] for place in kept],
+        [[row[place] for place in kept] for row in rows],
+    )
+
+
+def _size(text: str) -> str:
+    return f"{float(text):.1e}" if text else ""
+
+
+def _micro(text: str) -> str:
+    return "" if not text else f"{float(text):,.0f}" if float(text) >= 1000.0 else f"{float(text):.3g}"
+
+
+def _remark(row: dict[str, str]) -> str:
+    """What has no number, how often and why."""
+    counts = [f"{row[s]} {s.replace('_', ' ')}" for s in BENCH_STATUSES if s != "ok" and row[s] != "0"]
+    return ": ".join(part for part in (", ".join(counts), row["reason"]) if part)

@@ -1,0 +1,260 @@
+"""The page of a folder of bench results, what stands on it, and what is told while it is measured."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from pages import Page
+
+from frictionlab import bench, cli
+from frictionlab.bench import account
+from frictionlab.bench.forecast import Expected, Forecast, duration
+from frictionlab.bench.measure import WorkloadResult
+from frictionlab.bench.names import file_stem
+from frictionlab.bench.page import MOST_ROWS_ON_PAGE
+from frictionlab.bench.peers import base
+from frictionlab.bench.report import markdown
+from frictionlab.methods.reduced import common
+from frictionlab.study import StudyError
+
+LIST = """\
+schema: 1
+title: A page
+repeats: 2
+seconds: 0.05
+scenes:
+  - name: W1
+    title: at <resonance>
+    scene: &line {damping_ratio: 0.1, normal_load: 10, drive: {unbalance: 10, frequency: 1}}
+    laws: [{kind: coulomb, mu: 0.4, label: dry}, {kind: coulomb, mu: 0.3, label: half dry}]
+    sweep: {scene.belt_speed: [10, 20, 60]}
+    references: [{kind: exact, tolerance: 1.0e-12}]
+    methods: [{kind: shooting, tolerance: [1.0e-3, 1.0e-6]}, mdsm, harmonic_balance]
+    peers: [{kind: heyoka, tolerance: 1.0e-6}]
+failures:
+  - name: load
+    scene: *line
+    laws: [{kind: coulomb, mu: 0.4}]
+    sweep: {scene.belt_speed: [10, 60], scene.normal_load: [1, 10, 100]}
+    references: [{kind: exact, tolerance: 1.0e-12}]
+    methods: [mdsm]
+    peers: [{kind: heyoka, tolerance: 1.0e-6}]
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The results of a list of two curves and a section, on a machine without heyoka."""
+    home = tmp_path_factory.mktemp("bench")
+    (home / "list.yaml").write_text(LIST)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(base, "find_spec", lambda name: None)
+        assert cli.main(["bench", str(home / "list.yaml"), "-o", str(home / "out")]) == 0
+    return home / "out"
+
+
+@pytest.fixture(scope="module")
+def page(folder: Path) -> Page:
+    return Page((folder / "index.html").read_text())
+
+
+def table_of(page: Page, caption: str) -> tuple[list[str], list[list[str]]]:
+    """The heads and rows of the table whose caption begins so."""
+    (table,) = [
+        table
+        for table in page.all("table")
+        if next(each for each in table.inside if each.tag == "caption").text.startswith(caption)
+    ]
+    rows = [
+        [cell.text for cell in row.inside] for part in table.inside for row in part.inside if row.tag == "tr"
+    ]
+    return rows[0], rows[1:]
+
+
+def test_the_page_holds_every_table_and_every_chart(folder: Path, page: Page) -> None:
+    for file in folder.glob("*.csv"):
+        records = list(csv.DictReader(file.read_text().splitlines()))
+        _, rows = table_of(page, file.stem)
+        assert len(rows) == len(records) <= MOST_ROWS_ON_PAGE
+        assert any(link.attributes.get("href") == file.name for link in page.all("a"))
+    pictures = page.all("img")
+    assert len(pictures) == len(list(folder.glob("*.svg"))) == 3
+    assert all(picture.attributes["src"].startswith("data:image/") for picture in pictures)
+    assert all(picture.attributes["alt"] for picture in pictures)
+
+
+def test_the_page_is_sound_and_needs_nothing_else(page: Page) -> None:
+    assert page.wrong == []
+    assert not {element.tag for element in page.elements} & {"script", "link", "iframe"}
+    assert any(element.attributes.get("name") == "viewport" for element in page.all("meta"))
+    assert "at <resonance>" in "".join(heading.text for heading in page.all("h2"))
+
+
+PRICES = "model alone, μs", "its error alone, μs", "mean and error, μs"
+
+
+def test_mean_and_median_error_and_both_prices_of_a_model_are_columns(page: Page) -> None:
+    head, rows = table_of(page, "W1_dry")
+
+    assert {"largest error", "median error", *PRICES} <= set(head)
+    by_solver = {row[0]: dict(zip(head, row, strict=True)) for row in rows}
+    assert by_solver["shooting"]["model alone, μs"] == ""
+    for model in ("mdsm", "harmonic_balance"):
+        told = {key: float(cell.replace(",", "")) for key, cell in by_solver[model].items() if key in PRICES}
+        assert told["model alone, μs"] > 0.0
+        both = told["model alone, μs"] + told["its error alone, μs"]
+        assert both == pytest.approx(told["mean and error, μs"], rel=0.01)
+
+
+def test_finding_its_error_is_what_a_reduced_model_is_slow_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    def slow_bounds(*given: object) -> object:
+        raise AssertionError("the model alone asks for no bounds")
+
+    monkeypatch.setattr(common, "bounds", slow_bounds)
+    from frictionlab import Coulomb, Drive, Scene
+    from frictionlab.bench.solvers import model_task
+    from frictionlab.methods.reduced.mdsm import Mdsm
+
+    scene = Scene(damping_ratio=0.1, normal_load=10, belt_speed=10, drive=Drive(unbalance=10, frequency=1))
+    model_task(Mdsm(), [scene], Coulomb(mu=0.4))()
+
+
+def test_machine_date_and_versions_are_on_the_page_and_in_every_chart(folder: Path, page: Page) -> None:
+    told = account.circumstances()
+    small = account.small_print()
+
+    assert told["date"] in small
+    assert f"numba {told['packages']['numba']}" in small
+    for name in ("numpy", "numba", "scipy"):
+        assert [name, told["packages"][name]] in table_of(page, "Machine")[1]
+    assert "".join(item.text for item in page.all("p")).count(small) == 3  # a part each
+    for file in folder.glob("*.svg"):
+        assert re.sub(r"\W", "", f"<!-- {small} -->") in re.sub(r"\W", "", file.read_text())
+
+
+def test_peers_that_are_not_installed_are_one_line_of_the_page(folder: Path, page: Page) -> None:
+    lines = [
+        element.text for element in page.all("p") if "heyoka" in element.text and "left out" in element.text
+    ]
+
+    assert len(lines) == 1
+    assert "pip install frictionlab[peers]" in lines[0]
+    tables = [table for table in page.all("table") if "Machine" not in table.text]
+    assert tables
+    assert not any("heyoka" in element.text for element in [*tables, *page.all("pre"), *page.all("h2")])
+    assert not list(folder.glob("*heyoka*"))
+
+
+def test_files_have_no_spaces(folder: Path) -> None:
+    assert {"W1_dry.csv", "W1_half_dry.csv", "W1_half_dry.svg"} <= {path.name for path in folder.iterdir()}
+    assert not [path for path in folder.iterdir() if " " in path.name]
+
+
+def test_what_was_measured_before_stays_on_the_page(tmp_path: Path) -> None:
+    (tmp_path / "list.yaml").write_text(
+        LIST.partition("failures:")[0].replace("[{kind: shooting", "[exact, {kind: shooting")
+    )
+    for name in ("W1 half dry", "W1 dry"):
+        command = ["bench", str(tmp_path / "list.yaml"), "-o", str(tmp_path / "out"), "--only", name]
+        assert cli.main(command) == 0
+
+    found = Page((tmp_path / "out" / "index.html").read_text())
+    assert [heading.text.partition(":")[0] for heading in found.all("h2")] == [
+        "W1 half dry", "W1 dry", "Machine and versions",
+    ]  # fmt: skip
+
+
+def test_a_page_that_a_person_wrote_is_not_overwritten(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "list.yaml").write_text(LIST)
+    (tmp_path / "index.html").write_text("mine")
+
+    assert cli.main(["bench", str(tmp_path / "list.yaml"), "-o", str(tmp_path)]) == 2
+
+    assert "index.html is there already" in capsys.readouterr().err
+    assert (tmp_path / "index.html").read_text() == "mine"
+    assert not list(tmp_path.glob("*.csv"))
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"parts": {"A": 3}}'])
+def test_an_account_that_cannot_be_read_is_begun_anew(text: str, tmp_path: Path) -> None:
+    (tmp_path / account.ACCOUNT).write_text(text)
+
+    assert account.read_account(tmp_path) == {}
+
+
+def test_two_curves_whose_files_would_be_one_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "list.yaml").write_text(_colliding())
+
+    with pytest.raises(StudyError, match="would both be written to W1_half_dry"):
+        bench.load_bench(tmp_path / "list.yaml")
+
+
+def _colliding() -> str:
+    """A curve 'W1 half dry' beside one called W1_half_dry."""
+    curves = LIST.partition("failures:")[0]
+    block = curves.partition("scenes:\n")[2].replace("&line ", "").replace("name: W1", "name: W1_half_dry")
+    return curves + block.replace(", {kind: coulomb, mu: 0.3, label: half dry}]", "]")
+
+
+def test_a_name_becomes_a_file_name() -> None:
+    assert file_stem("W4 soft/hard  lugre") == "W4_soft_hard_lugre"
+    assert file_stem("W3_0.5") == "W3_0.5"
+
+
+# --- elapsed and expected time ------------------------------------------------------------------------------------
+
+
+def clock(times: Sequence[float]) -> Forecast:
+    """A forecast of five steps of two groups by a clock that shows these times."""
+    ticks = iter(times)
+    steps = [Expected("a", 1.0), Expected("a", 3.0), *[Expected("b", 1.0)] * 2, Expected("a", 1.0)]
+    return Forecast(steps, lambda: next(ticks))
+
+
+def test_what_is_left_follows_from_what_was_measured_so_far() -> None:
+    fresh = clock([0.0])
+    assert fresh.left() == 7.0
+
+    begun = clock([0.0, 2.0, 8.0])
+    begun.done()
+    assert begun.left() == pytest.approx(2.0 * 6.0)  # all take twice the guess
+    begun.done()
+    assert begun.left() == pytest.approx(2.0 * 3.0)
+
+    mixed = clock([0.0, 1.0, 4.0, 14.0])
+    for _ in range(3):
+        mixed.done()
+    assert mixed.left() == pytest.approx(10.0 + 1.0)  # one of b at ten times its guess, one of a at its own
+
+
+def test_elapsed_and_expected_time_are_told() -> None:
+    forecast = clock([0.0, 2.0, 70.0])
+    forecast.done()
+
+    assert str(forecast) == "2 of 5, 1 min 10 s gone, about 12 s to go"
+    assert [duration(s) for s in (0.2, 59.0, 200.0, 7500.0)] == ["0 s", "59 s", "3 min 20 s", "2 h 5 min"]
+
+
+def test_every_setting_is_told_with_its_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "list.yaml").write_text(
+        LIST.partition("failures:")[0].replace("mdsm, ", "").replace("heyoka", "scipy")
+    )
+
+    lines: list[str] = []
+    found = bench.measure(bench.load_bench(tmp_path / "list.yaml").only(["W1 dry"]), lines.append)
+
+    assert [re.sub(r" \(.*", "", line) for line in lines] == [
+        "W1 dry: references", "W1 dry: shooting, tolerance 0.001", "W1 dry: shooting, tolerance 1e-06",
+        "W1 dry: harmonic_balance, as is", "W1 dry: scipy, as is",
+    ]  # fmt: skip
+    assert all(re.search(rf"\({n} of 5, .* gone, about .* to go\)", line) for n, line in enumerate(lines, 1))
+    assert isinstance(found[0], WorkloadResult)
+    assert "| model alone | its error alone |" in markdown(found[0])
+    assert json.loads(json.dumps(account.entry_of(found[0], [], [])))["kind"] == "curve"

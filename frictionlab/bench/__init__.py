@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from frictionlab.bench.measure import MeasurementInterrupted, WorkloadResult, measure
+from frictionlab.bench.measure import WorkloadResult, measure
 from frictionlab.bench.reader import load_bench
 from frictionlab.bench.record import Bench, UnknownCurve
 from frictionlab.bench.report import bench_summary, write
@@ -11,7 +11,6 @@ from frictionlab.bench.sections import BenchPicture, Section, SectionResult, Sec
 __all__ = [
     "Bench",
     "BenchPicture",
-    "MeasurementInterrupted",
     "Section",
     "SectionResult",
     "SectionSource",

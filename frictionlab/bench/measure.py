@@ -32,14 +32,6 @@ BENCH_STATUSES = ("ok", "refused", "failed", "not_unique")
 NO_TIME = Times(math.nan, (math.nan,) * 3, 0)
 
 
-class MeasurementInterrupted(Exception):
-    """Stopped by the user; ``done`` holds what was measured before."""
-
-    def __init__(self, done: list[WorkloadResult | SectionResult]) -> None:
-        super().__init__("interrupted")
-        self.done = done
-
-
 @dataclass(frozen=True)
 class Row:
     """One contender at one setting on one workload; points: those it was given, times: per point that has an answer.
@@ -83,29 +75,23 @@ class WorkloadResult:
 
 def measure(
     bench: Bench, tell: Callable[[str], None], first_runs: bool = False
-) -> list[WorkloadResult | SectionResult]:
-    """Measure the curves and sections of a bench list; first_runs: the first setting of each method without
-    kernels, too.
+) -> Iterator[WorkloadResult | SectionResult]:
+    """Measure the curves, then the sections of a bench list, and hand each out as soon as it is finished.
 
-    Raises MeasurementInterrupted with what is finished.
+    first_runs: the first setting of each method without kernels, too.
     """
-    done: list[WorkloadResult | SectionResult] = []
     forecast = Forecast(_steps(bench))
-    try:
-        with compiling_at_once():  # what is timed is machine code
-            for work in bench.workloads:
-                tell(f"{work.name}: references ({forecast})")
-                found = reference_means(work)
-                forecast.done()
-                rows = list(_rows(bench, work, found, tell, forecast))
-                rows = [_with_first_run(row, work, tell) for row in rows] if first_runs else rows
-                done.append(WorkloadResult(work, found, rows, missing_peers(work)))
-            for section in bench.sections:
-                tell(section.name)
-                done.append(section.measure(tell))
-    except KeyboardInterrupt:
-        raise MeasurementInterrupted(done) from None
-    return done
+    with compiling_at_once():  # what is timed is machine code
+        for work in bench.workloads:
+            tell(f"{work.name}: references ({forecast})")
+            found = reference_means(work)
+            forecast.done()
+            rows = list(_rows(bench, work, found, tell, forecast))
+            rows = [_with_first_run(row, work, tell) for row in rows] if first_runs else rows
+            yield WorkloadResult(work, found, rows, missing_peers(work))
+        for section in bench.sections:
+            tell(section.name)
+            yield section.measure(tell)
 
 
 def _rows(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,7 +30,7 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], fir
     those of each section.
     """
     from frictionlab import bench
-    from frictionlab.bench.page import check_folder
+    from frictionlab.bench.page import check_folder, save
 
     try:
         asked = bench.load_bench(bench_list).only(only)
@@ -39,21 +38,15 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], fir
         raise click.UsageError(str(problem)) from None
     folder = out or Path("runs") / f"bench-{asked.name}"
     check_folder(folder)
+    done: list[WorkloadResult | SectionResult] = []
     try:
-        done = bench.measure(asked, print_message, first_runs)
-    except bench.MeasurementInterrupted as problem:
-        _save(problem.done, folder)
+        for finished in bench.measure(asked, print_message, first_runs):
+            page = save([finished], folder)
+            done.append(finished)
+    except KeyboardInterrupt:
         parts = "curves and sections" if asked.sections else "curves"
         raise CommandError(
-            INTERRUPTED, f"interrupted: {len(problem.done)} of {len(asked.names)} {parts} done"
-        ) from problem
+            INTERRUPTED, f"interrupted: {len(done)} of {len(asked.names)} {parts} done"
+        ) from None
     print_result(bench.bench_summary(done))
-    _save(done, folder)
-
-
-def _save(done: Sequence[WorkloadResult | SectionResult], folder: Path) -> None:
-    """Write what is done, if anything, and the page of the folder."""
-    if done:
-        from frictionlab.bench.page import save
-
-        print_message(f"tables and charts in {folder}, all of them on {save(done, folder)}")
+    print_message(f"tables and charts in {folder}, all of them on {page}")

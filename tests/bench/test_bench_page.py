@@ -248,13 +248,13 @@ def test_every_setting_is_told_with_its_place(tmp_path: Path, capsys: pytest.Cap
     )
 
     lines: list[str] = []
-    found = bench.measure(bench.load_bench(tmp_path / "list.yaml").only(["W1 dry"]), lines.append)
+    (found,) = bench.measure(bench.load_bench(tmp_path / "list.yaml").only(["W1 dry"]), lines.append)
 
     assert [re.sub(r" \(.*", "", line) for line in lines] == [
         "W1 dry: references", "W1 dry: shooting, tolerance 0.001", "W1 dry: shooting, tolerance 1e-06",
         "W1 dry: harmonic_balance, as is", "W1 dry: scipy, as is",
     ]  # fmt: skip
     assert all(re.search(rf"\({n} of 5, .* gone, about .* to go\)", line) for n, line in enumerate(lines, 1))
-    assert isinstance(found[0], WorkloadResult)
-    assert "| model alone | its error alone |" in markdown(found[0])
-    assert json.loads(json.dumps(account.entry_of(found[0], [], [])))["kind"] == "curve"
+    assert isinstance(found, WorkloadResult)
+    assert "| model alone | its error alone |" in markdown(found)
+    assert json.loads(json.dumps(account.entry_of(found, [], [])))["kind"] == "curve"

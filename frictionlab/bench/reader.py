@@ -12,6 +12,7 @@ from frictionlab import columns
 from frictionlab.bench.contenders import Defaults, contenders
 from frictionlab.bench.failures.reader import read_failures
 from frictionlab.bench.names import file_stem
+from frictionlab.bench.orders import read_orders
 from frictionlab.bench.record import Bench, Workload
 from frictionlab.bench.references import read_references
 from frictionlab.bench.sections import Section, SectionReader, SectionSource
@@ -21,7 +22,7 @@ from frictionlab.study.choices import items
 from frictionlab.study.reader import study_of
 from frictionlab.study.yaml_source import Source, read_file
 
-SECTIONS: dict[str, SectionReader] = {"failures": read_failures}
+SECTIONS: dict[str, SectionReader] = {"orders": read_orders, "failures": read_failures}
 """What reads each key of a list that is neither a curve nor about curves."""
 BENCH_KEYS = ("schema", "title", "scenes", "references", "methods", "peers", "repeats", "seconds", *SECTIONS)
 SCENE_KEYS = ("name", "title", "scene", "laws", "sweep", "references", "methods", "peers")

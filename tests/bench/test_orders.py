@@ -1,0 +1,183 @@
+"""Observed orders: fits of sequences that are known, linear test problems, and a stepper with a wrong weight."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from profiles import deep
+
+from frictionlab import bench, cli
+from frictionlab.bench.orders.fit import fit_order
+from frictionlab.bench.orders.motions import MOTIONS
+from frictionlab.bench.orders.section import OrdersResult, OrdersSection
+from frictionlab.bench.orders.solvers import ORDER_SOLVERS, with_phase
+from frictionlab.bench.orders.theory import theory_of
+from frictionlab.methods.march.run import MarchRun, Resolution
+from frictionlab.study import StudyError
+
+SIZES = 0.5 ** np.arange(8)
+
+
+def orders(motions: str, solvers: str, samples: int = 8) -> OrdersResult:
+    """Of these motions and solvers."""
+    section = OrdersSection(
+        tuple(MOTIONS[name] for name in motions.split()),
+        tuple(ORDER_SOLVERS[name] for name in solvers.split()),
+        samples,
+    )
+    return section.measure(lambda line: None)
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 4.0])
+def test_a_power_is_fitted_above_the_error_of_the_reference(order: float) -> None:
+    errors = 1e-3 * SIZES**order + 1e-9
+
+    fit = fit_order(SIZES, errors, known=1e-9)
+
+    assert fit.asymptotic
+    assert fit.order == pytest.approx(order, abs=0.05)
+    assert errors[fit.last] > 1e-8
+
+
+def test_coarse_settings_that_fall_otherwise_are_left_out() -> None:
+    fit = fit_order(SIZES, SIZES**2 + 10.0 * SIZES**6, known=1e-16)
+
+    assert fit.asymptotic
+    assert fit.first >= 2
+    assert fit.order == pytest.approx(2.0, abs=0.1)
+
+
+def test_errors_that_fall_ever_faster_have_no_asymptotic_range() -> None:
+    fit = fit_order(SIZES, np.exp(-1.0 / SIZES), known=1e-60)
+
+    assert not fit.asymptotic
+    assert fit.spread > 1.0
+
+
+def test_errors_of_rounding_alone_have_no_order() -> None:
+    assert math.isnan(fit_order(SIZES, np.full(8, 1e-16), known=1e-14).order)
+
+
+def test_a_later_start_changes_no_mean() -> None:
+    plane = MOTIONS["plane_near_rest"]
+    means = [
+        MarchRun(with_phase(plane.scene, shift), plane.law, "moreau")
+        .run(Resolution(steps=512, enough=1e-12, most=1000))
+        .mean.real
+        for shift in (0.0, 90.0 / 512)
+    ]
+
+    assert means[0] == pytest.approx(means[1], abs=1e-6)
+
+
+@pytest.mark.parametrize(("theta", "order"), [("moreau_0.5", 2.0), ("moreau_1", 1.0)])
+def test_smooth_motion_shows_the_order_of_the_stepper(theta: str, order: float) -> None:
+    (row,) = orders("smooth", theta).rows
+
+    assert row.asymptotic
+    assert row.agrees
+    assert row.fit.order == pytest.approx(order, abs=0.1)
+
+
+def test_a_reversal_inside_a_step_costs_the_order() -> None:
+    smooth, reversing = orders("smooth crossing", "rk4", samples=6).rows
+
+    assert smooth.fit.order == pytest.approx(4.0, abs=0.1)
+    assert reversing.fit.order == pytest.approx(1.0, abs=0.3)
+
+
+def test_smoothing_is_of_order_one_in_its_width_where_slip_reverses() -> None:
+    (row,) = orders("crossing", "smoothed").rows
+
+    assert row.refinement.setting == "width"
+    assert row.asymptotic
+    assert row.fit.order == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_stepper_with_a_wrong_weight_shows_a_wrong_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    def midway(self: MarchRun, pace: Resolution, *given: Any) -> Any:
+        return run(self, Resolution(**{**vars(pace), "theta": 1.0}), *given)
+
+    run = MarchRun.run
+    monkeypatch.setattr(MarchRun, "run", midway)
+    (row,) = orders("smooth", "moreau_0.5").rows
+
+    assert row.asymptotic
+    assert not row.agrees
+    assert row.fit.order == pytest.approx(1.0, abs=0.1)
+
+
+def test_every_solver_has_a_theory_on_every_motion_it_can_follow() -> None:
+    for motion in MOTIONS.values():
+        for solver in ORDER_SOLVERS.values():
+            if solver.refusal(motion) is None:
+                assert theory_of(solver.name, motion.name).reason
+
+
+def test_the_table_says_what_was_fitted_and_why_theory_expects_it(tmp_path: Path) -> None:
+    result = orders("smooth", "moreau_1 smoothed")
+    (path,) = result.write(tmp_path)
+
+    with path.open() as file:
+        by_steps, by_width = csv.DictReader(file)
+    assert list(by_steps) == [
+        *("solver", "motion", "law", "setting", "settings_from", "settings_to", "order", "spread", "theory"),
+        *("reason", "asymptotic", "error_from", "error_to", "reference"),
+    ]
+    assert float(by_steps["order"]) == pytest.approx(1.0, abs=0.1)
+    assert (by_steps["theory"], by_steps["asymptotic"], by_steps["reference"]) == ("1.0", "yes", "shooting")
+    assert float(by_steps["error_to"]) < float(by_steps["error_from"])
+    assert by_width["theory"] == ""
+    assert "faster than any power" in by_width["reason"]
+    assert "moreau_1" in result.summary()
+
+
+def test_the_picture_has_a_panel_a_motion(tmp_path: Path) -> None:
+    (picture,) = orders("smooth", "moreau_1").draw(tmp_path)
+
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["orders.png", "orders.svg"]
+    assert "slope" in picture.caption
+
+
+def test_the_command_measures_the_orders_of_a_list(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("list.yaml").write_text("schema: 1\norders: {motions: [smooth], steppers: [moreau_1]}\n")
+
+    assert cli.main(["bench", "list.yaml", "-o", "out"]) == 0
+
+    assert "1 of 1 asymptotic, 1 of them within 0.1 of theory" in capsys.readouterr().out
+    assert Path("out/orders.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ("{motions: [smoth]}", "did you mean 'smooth'"),
+        ("{steppers: []}", "the list is empty"),
+        ("{samples: 0}", "must be >= 1"),
+        ("{solvers: [rk4]}", "unknown key"),
+        ("false", "must be a mapping"),
+    ],
+)
+def test_a_wrong_request_is_told(given: str, told: str, tmp_path: Path) -> None:
+    (tmp_path / "list.yaml").write_text(f"schema: 1\norders: {given}\n")
+
+    with pytest.raises(StudyError) as caught:
+        bench.load_bench(tmp_path / "list.yaml")
+    assert told in str(caught.value)
+
+
+@deep("minutes")
+def test_orders_are_within_a_tenth_of_theory_wherever_they_are_asymptotic() -> None:
+    rows = orders(" ".join(MOTIONS), " ".join(ORDER_SOLVERS), samples=24).rows
+
+    known = [row for row in rows if row.asymptotic]
+    assert len(known) >= 20
+    assert [(row.solver, row.motion.name, row.fit) for row in known if not row.agrees] == []

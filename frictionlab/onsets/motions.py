@@ -16,7 +16,7 @@ from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.theory.linear import velocity_scale
-from frictionlab.theory.piecewise import edges_of, piecewise
+from frictionlab.theory.piecewise import piecewise
 from frictionlab.theory.rest import friction_at_rest
 
 _LEAST = 1e-12
@@ -116,7 +116,7 @@ class CurveMotions:
                 np.zeros(orbit.tau.shape, complex),
             )
         signals, mass = self.scene.signals(), self.scene.mass()
-        edges = edges_of(signals.corners(), signals.period)
+        edges = signals.edges()
         tau = orbit.tau
         middle = np.mod(0.5 * (tau[:, :1] + tau[:, -1:]), signals.period)
         k = np.clip(np.searchsorted(edges, middle, side="right") - 1, 0, len(edges) - 2)

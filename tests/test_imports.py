@@ -126,6 +126,7 @@ OUTSIDE = {
     "hypothesis": ["testing"],
     "numba": ["compile", "bench.peers"],  # the peers' integrators are called with numba's C functions
     "llvmlite": ["compile"],
+    "flint": ["methods.exact.proof"],
     "ruamel": ["study", "runner"],
     "pandas": ["results", "runner", "charts", "report", "cli"],
     "pyarrow": ["results", "runner"],

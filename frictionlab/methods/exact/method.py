@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import field_validator
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
@@ -31,6 +33,8 @@ EVENTS = "closed-form legs of slip and stick between events, fixed point of the 
 REDUCED = (
     " (one degree of freedom: without a load across the belt x2 decays under every isotropic sliding law)"
 )
+PROOF = 3e-3
+"""Of a point [s]."""
 FARTHEST = np.finfo(np.float64).max
 NO_DAMPING = (
     "without damping and without slip reversal the free oscillation does not decay: the friction is mu at every "
@@ -79,11 +83,22 @@ class Exact(Method):
     that cannot pass it; the period is closed by Newton's method with derivatives carried through the events
     (saltation), falling back to the map itself, which never expands.
 
+    certify: prove every mean in interval arithmetic, some milliseconds a point; needs python-flint, which
+    ``pip install 'frictionlab[certify]'`` installs.
+
     Sources: Den Hartog (1931); of saltation Leine & Nijmeijer (2004); of the map Leine & van de Wouw (2008).
     """
 
     name: ClassVar[str] = "exact"
     resolves_events: ClassVar[bool] = True
+    certify: bool = False
+
+    @field_validator("certify")
+    @classmethod
+    def _has_intervals(cls, certify: bool) -> bool:
+        if certify and importlib.util.find_spec("flint") is None:
+            raise ValueError("needs python-flint: pip install 'frictionlab[certify]', or leave certify out")
+        return certify
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""
@@ -102,14 +117,19 @@ class Exact(Method):
         if scenes[0].degrees_of_freedom == 0:
             return solve_prescribed(scenes, law, tolerance)
         curve_of = _Curve if scenes[0].is_harmonic else _VaryingCurve
-        return curve_of(scenes, law.sliding_friction(1.0), tolerance).answers()
+        answers = curve_of(scenes, law.sliding_friction(1.0), tolerance).answers()
+        if self.certify:
+            from frictionlab.methods.exact.proof.certify import certified  # python-flint need not be there
+
+            answers = certified(answers, scenes, law)
+        return answers
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """A few period maps of two legs or more, more with corners; slow drives meet the free motion many times."""
         if scene.degrees_of_freedom == 0:
             return 1e-3
         share = 1.0 if scene.is_harmonic else 3.0 * scene.periods
-        return 1e-5 * share * max(1.0, 0.3 / scene.frequency)
+        return (PROOF * self.certify + 1e-5 * share) * max(1.0, 0.3 / scene.frequency)
 
 
 class _Curve:

@@ -13,7 +13,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.theory.uniqueness import is_unique
 
 PROVED = "; its events enclosed and its mean proved in interval arithmetic (Krawczyk), of the only orbit (theorem T1)"
-NOT_UNIQUE = "not proved: theorem T1, by which there is no other orbit, needs damping and a belt that moves"
+NOT_UNIQUE = "not proved: no theorem says that there is no other orbit"
 
 
 def certified(answers: Answers, scenes: Sequence[Scene], law: FrictionLaw) -> Answers:

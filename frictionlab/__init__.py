@@ -51,6 +51,7 @@ _HOMES = {
     "Stribeck": "frictionlab.laws.stribeck",
     "Transverse": "frictionlab.scene.scene",
     "TransverseSlip": "frictionlab.scene.scene",
+    "attractors": "frictionlab.runner.api",
     "curve": "frictionlab.runner.api",
     "run": "frictionlab.runner.api",
     "steady_state": "frictionlab.runner.api",

@@ -174,6 +174,21 @@ ONSETS: dict[str, str] = {
 }
 """The columns of the table of onsets after the inputs."""
 
+ATTRACTORS: dict[str, str] = {
+    "belt_speed": "of the scene, nondimensional",
+    "attractor": "number of the state at this belt speed, from 1",
+    "period": "in drive periods; 0 for a motion that does not repeat",
+    "mean_friction": "mean over the whole period; empty where it does not repeat",
+    "error": "bound on its error, estimated",
+    "mean_low": "smallest mean over one drive period",
+    "mean_high": "largest mean over one drive period",
+    "point": "number of the drive period whose start this is, from 1; of the last ones where it does not repeat",
+    "x": "position along x1 at the start of that drive period",
+    "velocity": "x1' then",
+    "found_from": "a start by its number, the search for a closed orbit, or the neighbour the state was carried from",
+}
+"""The columns of the table of attractors after the inputs, one row per Poincare point."""
+
 SHAPES: dict[str, tuple[str, ...]] = {
     "area": ("concave", "convex", "mixed", "undecided"),
     "initial": ("concave", "convex", "undecided"),

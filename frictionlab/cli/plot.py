@@ -19,7 +19,7 @@ def plot_command(run: Path) -> None:
     saved = read_saved(run)
     for line in saved.damaged:
         print_message(line)
-    if files := draw_into(saved.table, saved.title, run, saved.onsets):
+    if files := draw_into(saved.table, saved.title, run, saved.onsets, saved.attractors):
         print_result("\n".join(map(str, files)))
     else:
         print_message(f"no figures: the study of {run} sweeps nothing")

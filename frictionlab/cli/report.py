@@ -20,5 +20,5 @@ def report_command(run: Path) -> None:
     saved = read_saved(run)
     for line in saved.damaged:
         print_message(line)
-    draw_into(saved.table, saved.title, run, saved.onsets)
+    draw_into(saved.table, saved.title, run, saved.onsets, saved.attractors)
     print_result(str(write_report(saved)))

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method
+from frictionlab.methods.base import Answers, FoundState, Method
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Scene
@@ -57,6 +57,13 @@ class Auto(Method):
         """The cost of the chosen method."""
         method, _reason = self.choice(scene, law)
         return method.cost(scene, law, tolerance) if method is not None else 0.0
+
+    def states(
+        self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int
+    ) -> list[FoundState]:
+        """Those that shooting finds: no other method follows motions to wherever they end."""
+        shooting = METHODS_BY_COST[-1]
+        return [] if any(shooting.refusals(scenes, law)) else shooting.states(scenes, law, tolerance, starts)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Solve by the chosen method; points with an error above the tolerance are failed."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +56,25 @@ class Answers:
     balanced: bool = True
 
 
+class FoundState(NamedTuple):
+    """A state that a motion ended in: the scene's place on its curve, its period in drive periods (0: never repeats).
+
+    mean, error: of the friction coefficient over the whole period, NaN where it never repeats; low, high: of means
+    over one drive period each. x, velocity: along the belt, at the start of each of its drive periods, or of the last
+    ones. found_from: from where it was found.
+    """
+
+    place: int
+    period: int
+    mean: float
+    error: float
+    low: float
+    high: float
+    x: Floats
+    velocity: Floats
+    found_from: str
+
+
 class Method(Record, ABC):
     """A way to find steady states; its fields are the parameters a study may set.
 
@@ -81,6 +100,15 @@ class Method(Record, ABC):
     @abstractmethod
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone, in ascending order; none of them refused."""
+
+    def states(
+        self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int
+    ) -> list[FoundState]:
+        """The states that so many starts end in, of scenes that differ in belt speed alone, in ascending order.
+
+        Nothing for a method that follows one motion to one answer.
+        """
+        return []
 
     @abstractmethod
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from markupsafe import Markup
+from markupsafe import Markup, escape
+from pandas import DataFrame
 
+from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.charts.curves import Family, family_of
 from frictionlab.charts.figures import figure_columns
 from frictionlab.report.markup import symbol_html, unit_html, word_html
@@ -38,10 +40,25 @@ class Picture(NamedTuple):
 def pictures(saved: Saved) -> list[Picture]:
     """The figures of a run; one that is not in its folder has no address."""
     family = family_of(saved.table)
-    if family is None:
-        return []
-    found = figure_columns(saved.table).items()
-    return [_picture(saved, family, name, columns) for name, columns in found]
+    found = {} if family is None else figure_columns(saved.table)
+    usual = [_picture(saved, family, name, columns) for name, columns in found.items()] if family else []
+    several = {} if saved.attractors is None else bifurcations(saved.attractors)
+    return usual + [_bifurcation(saved, name, rows) for name, rows in several.items()]
+
+
+def _bifurcation(saved: Saved, name: str, rows: DataFrame) -> Picture:
+    """Every state that motions end in along one curve."""
+    periods = sorted({int(period) for period in rows["period"]} - {0})
+    told = (
+        f"Of {joined_values(rows['law'])} by {joined_values(rows['method'])}: every state that motions end in"
+    )
+    found = f"periods of the response found: {', '.join(map(str, periods))}" if periods else "nothing repeats"
+    wild = "; grey where the motion does not repeat" if (rows["period"] == 0).any() else ""
+    caption = escape(
+        f"{told}, above the means over a whole period (with the range of means over one drive period), below the "
+        f"position at the start of each drive period. A marker for each period of the response{wild}; {found}."
+    )
+    return Picture(name, address(saved.folder / "figures" / name), Markup(caption), str(caption), False)
 
 
 def _picture(saved: Saved, family: Family, name: str, columns: Sequence[str]) -> Picture:

@@ -20,6 +20,7 @@ class Run:
 
     made, orbits_made: the table and the orbits, or what reads them from their file. curves: one row per curve, with
     its shape; none where belt speed is not swept or the run was stopped. onsets_made: finds the onsets of its curves.
+    attractors: a row per Poincare point of every state that motions end in, None where the study does not keep them.
     shown, found: of a table too long to be held, the rows that figures and pages show, and how many of all rows have
     each status.
     """
@@ -32,6 +33,7 @@ class Run:
     computed: int
     curves: pd.DataFrame = field(default_factory=pd.DataFrame)
     onsets_made: Callable[[], pd.DataFrame] = pd.DataFrame
+    attractors: pd.DataFrame | None = None
     shown: pd.DataFrame | None = None
     found: Mapping[str, int] | None = None
 

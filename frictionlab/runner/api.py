@@ -19,6 +19,7 @@ from frictionlab import __version__, registry
 from frictionlab.columns import RESULTS, selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
+from frictionlab.results.attractor_table import attractor_table
 from frictionlab.results.curve_table import curve_table
 from frictionlab.results.derived import si_columns, si_scales
 from frictionlab.results.expectations import judge
@@ -109,6 +110,7 @@ def run(
             LongRun(ready, folder, kept, overrides), folder, existing, executor, progress, as_csv
         )
     curves = list(ready.curves())
+    attractors = None if folder is None else folder.earlier_attractors(existing)
     gathering = Accumulator(inputs(curves), folder, progress, overrides, ready.selected())
     task = task_of(ready)
     gathering.resume(existing, task.samples)
@@ -116,7 +118,8 @@ def run(
     if folder is not None:
         folder.open(existing)
     stopped = _solve(gathering, left, kept, executor)
-    return _finished(ready, gathering, folder, stopped)
+    found = attractors if gathering.complete else None
+    return _with_attractors(_finished(ready, gathering, folder, stopped), found, folder)
 
 
 def _run_long(
@@ -235,6 +238,28 @@ def _finished(study: Study, gathering: Accumulator, folder: RunFolder | None, st
     return done
 
 
+def _with_attractors(done: Run, found: pd.DataFrame | None, folder: RunFolder | None) -> Run:
+    """The run with its attractors, where the study keeps them. Raises Interrupted, UnsavedError."""
+    count = done.study.keep_attractors
+    if count is None:
+        return done
+    try:
+        table = (
+            attractor_table(list(done.study.curves()), done.study.tolerance, count)
+            if found is None
+            else found
+        )
+    except KeyboardInterrupt:
+        raise Interrupted(done) from None
+    done = replace(done, attractors=table)
+    try:
+        if folder is not None and found is None:
+            folder.save_attractors(table)
+    except SaveError as problem:
+        raise UnsavedError(problem, done) from problem
+    return done
+
+
 def _saved(
     gathering: Accumulator, table: pd.DataFrame, orbits: pd.DataFrame | None, curves: pd.DataFrame
 ) -> SaveError | None:
@@ -274,6 +299,28 @@ def curve(
     with workforce(executor) as force:
         force.solve(list(open_chunks([whole], task)), lambda _, parts: gathering.take(parts), gathering.tick)
     return gathering.table.iloc[places].reset_index(drop=True)
+
+
+def attractors(
+    scene: Scene,
+    law: FrictionLaw,
+    belt_speed: ArrayLike,
+    starts: int = 8,
+    method: str | Method = "auto",
+    tolerance: float = 1e-8,
+) -> pd.DataFrame:
+    """Every state that motions of a driven scene end in, of whatever period: a row per Poincare point.
+
+    So many starts are followed at each belt speed [scene velocity], as shooting does, and every state found is
+    carried on to the next belt speed from both sides. Rows rise in belt speed; columns as in ``attractors.csv`` of a study.
+    Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
+    """
+    scene, law, ready = given_scene(scene), given_law(law), given_method(method)
+    if isinstance(starts, bool) or not isinstance(starts, int) or starts < 1:
+        raise ValueError(f"starts: a whole number of at least 1, not {starts!r}")
+    different = np.unique(given_speeds(belt_speed))
+    whole = _one_curve(_kind(law), law, ready, Scenes(scene, different))
+    return attractor_table([whole], given_tolerance(tolerance), starts)
 
 
 def steady_state(

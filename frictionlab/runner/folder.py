@@ -93,6 +93,11 @@ class RunFolder:
     def _onsets(self) -> Path:
         return self.path / "onsets.csv"
 
+    @property
+    def attractors_file(self) -> Path:
+        """Where the table of attractors is."""
+        return self.path / "attractors.csv"
+
     def check(self, existing: Existing) -> None:
         """Raises FolderError where this run cannot be written, or would mix with another study."""
         nearest = next(place for place in [self.path, *self.path.absolute().parents] if place.exists())
@@ -189,6 +194,20 @@ class RunFolder:
         """The orbits kept by an earlier run of this study; None where they are not there or damaged."""
         return self._earlier(self.orbits_file, existing)
 
+    def earlier_attractors(self, existing: Existing) -> pd.DataFrame | None:
+        """The attractors found by an earlier run of this very study file; None where they are missing or damaged."""
+        if (
+            existing == "replace"
+            or not self.attractors_file.exists()
+            or self._damage(self.attractors_file.name)
+        ):
+            return None
+        try:
+            same = self._study.read_text(encoding="utf-8") == self.identity.text
+        except (OSError, ValueError):
+            return None
+        return pd.read_csv(self.attractors_file) if same else None
+
     def _earlier(self, path: Path, existing: Existing) -> pd.DataFrame | None:
         if existing == "replace" or not path.exists() or self._damage(path.name):
             return None
@@ -238,7 +257,14 @@ class RunFolder:
             _refuse_folder(self.path, problem)
 
     def _results(self) -> Iterator[Path]:
-        yield from (self.table, self.csv_file, self._curves, self._onsets, self.orbits_file)
+        yield from (
+            self.table,
+            self.csv_file,
+            self._curves,
+            self._onsets,
+            self.orbits_file,
+            self.attractors_file,
+        )
         yield self.path / "report.html"
         for pattern in ("*.svg", "*.png"):
             yield from (self.path / "figures").glob(pattern)
@@ -314,7 +340,7 @@ class RunFolder:
 
     def remove_texts(self) -> None:
         """Remove what was made from an earlier table. Raises SaveError."""
-        for path in (self.csv_file, self._curves, self._onsets):
+        for path in (self.csv_file, self._curves, self._onsets, self.attractors_file):
             try:
                 path.unlink(missing_ok=True)
             except OSError as problem:
@@ -347,6 +373,10 @@ class RunFolder:
     def save_onsets(self, onsets: pd.DataFrame) -> None:
         """Write onsets.csv. Raises SaveError."""
         self._put(self._onsets, _as_csv(onsets))
+
+    def save_attractors(self, attractors: pd.DataFrame) -> None:
+        """Write attractors.csv. Raises SaveError."""
+        self._put(self.attractors_file, _as_csv(attractors))
 
     @property
     def has_csv(self) -> bool:

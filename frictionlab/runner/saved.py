@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +46,16 @@ class Saved:
     account: dict[str, Any]
     damaged: tuple[str, ...] = ()
     rows: int | None = None
-    onsets: pd.DataFrame | None = None
+
+    @cached_property
+    def onsets(self) -> pd.DataFrame | None:
+        """onsets.csv; None where there is none. Raises FolderError."""
+        return _text_table(self.folder / "onsets.csv")
+
+    @cached_property
+    def attractors(self) -> pd.DataFrame | None:
+        """attractors.csv; None where there is none. Raises FolderError."""
+        return _text_table(self.folder / "attractors.csv")
 
     @property
     def size(self) -> int:
@@ -85,8 +95,9 @@ def read_saved(folder: Path) -> Saved:
     table = _table(folder, study)
     rows = rows_of_file(folder / "results.parquet")
     long = rows if rows > LONG_TABLE else None
-    tables = _csv(folder / "curves.csv"), _csv(folder / "onsets.csv")
-    saved = Saved(folder, study, whole(table), tables[0], account, tuple(wrong.values()), long, tables[1])
+    saved = Saved(
+        folder, study, whole(table), _text_table(folder / "curves.csv"), account, tuple(wrong.values()), long
+    )
     _check_belongs_together(saved)
     return saved
 
@@ -95,8 +106,9 @@ def saved_as(run: Run) -> Saved:
     """A run that was just written. Raises FolderError where somebody took its account away meanwhile."""
     assert run.folder is not None
     account, long = _account(run.folder), None if run.shown is None else run.size
-    curves, onsets = _csv(run.folder / "curves.csv"), _csv(run.folder / "onsets.csv")
-    return Saved(run.folder, run.study, whole(run.to_show), curves, account, (), long, onsets)
+    return Saved(
+        run.folder, run.study, whole(run.to_show), _text_table(run.folder / "curves.csv"), account, (), long
+    )
 
 
 def _check_is_a_run(folder: Path) -> None:
@@ -170,7 +182,8 @@ def _wrong(table: pd.DataFrame, study: Study) -> str:
     return "it is empty" if table.empty else ""
 
 
-def _csv(file: Path) -> pd.DataFrame | None:
+def _text_table(file: Path) -> pd.DataFrame | None:
+    """A table kept as text; None where there is none."""
     if not file.exists():
         return None
     try:

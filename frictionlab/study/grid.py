@@ -33,6 +33,7 @@ LARGEST_RANGE = 1_000_000
 LARGEST_CHECK = 20_000
 """Points that are built to check a grid; of a larger one the ends and evenly spaced values of each sweep."""
 MOST_KEPT_SAMPLES = 50_000_000
+MOST_STARTS = 100_000
 """Samples of kept orbits in all."""
 _KEYS = ("start", "stop", "num", "spacing")
 
@@ -255,6 +256,10 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
             ("keep", "orbit"),
             f"{study.keep_orbit} samples of {size} points are more than {MOST_KEPT_SAMPLES}",
         )
+        return
+    if (study.keep_attractors or 0) * size > MOST_STARTS:
+        said = f"{study.keep_attractors} starts at {size} points are more than {MOST_STARTS}"
+        notes.add(("keep", "attractors"), said)
         return
     study = _thinned(study)
     _build(lambda: study.scenes_along, study.sweep, "scene.", notes)

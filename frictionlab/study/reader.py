@@ -42,6 +42,8 @@ STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
     *("sweep", "expect", "keep", "columns", "limit"),
 )
+KEPT = {"orbit": 2, "attractors": 1}
+"""What ``keep`` may ask for, and the least count of each."""
 REQUIRED = ("schema", "scene", "laws")
 DEFAULT_TOLERANCE = 1e-8
 DEFAULT_METHODS = ("auto",)
@@ -181,9 +183,9 @@ class _StudyReader:
         words = [key for key in ("title", "source") if key in tree]
         told: dict[str, Any] = {key: notes.text(tree[key], (key,)) for key in words}
         told["tolerance"] = notes.positive(tree.get("tolerance", DEFAULT_TOLERANCE), ("tolerance",))
-        keep = notes.mapping(tree.get("keep", {}), ("keep",), ("orbit",)) or {}
-        if "orbit" in keep:
-            told["keep_orbit"] = notes.whole_number(keep["orbit"], ("keep", "orbit"), 2)
+        keep = notes.mapping(tree.get("keep", {}), ("keep",), tuple(KEPT)) or {}
+        for name in keep.keys() & KEPT.keys():
+            told[f"keep_{name}"] = notes.whole_number(keep[name], ("keep", name), KEPT[name])
         limit = notes.mapping(tree.get("limit", {}), ("limit",), (LIMIT_KEY,)) or {}
         if LIMIT_KEY in limit:
             told[LIMIT_KEY] = notes.positive(limit[LIMIT_KEY], ("limit", LIMIT_KEY))

@@ -46,7 +46,9 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
         "expect": {"type": "array", "items": {"oneOf": _expectations()}},
         "columns": {"type": "array", "minItems": 1, "items": {"enum": [*columns.RESULTS, *columns.SI]}},
         "limit": _closed_object({LIMIT_KEY: _TIME}, []),
-        "keep": _closed_object({"orbit": {"type": "integer", "minimum": 2}}, []),
+        "keep": _closed_object(
+            {name: {"type": "integer", "minimum": least} for name, least in reader.KEPT.items()}, []
+        ),
     }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

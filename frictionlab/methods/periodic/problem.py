@@ -35,7 +35,7 @@ from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.lane_calls import FEWEST_IN_LANES, LaneCalls
 from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT
 from frictionlab.methods.periodic.near_rest import answer_near_rest
-from frictionlab.methods.periodic.period_map import size_of
+from frictionlab.methods.periodic.period_map import size_of, unpack
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
 from frictionlab.orbit.record import Orbits
 from frictionlab.orbit.recorder import Track, track_of
@@ -77,10 +77,11 @@ def map_kind(law: FrictionLaw, planar: bool) -> str:
 
 class Transient(NamedTuple):
     """A motion followed until it repeats: after how many periods of all that changes in time (0: never, ARRIVED: it
-    ends on the orbit that is known), its one-period means, its end."""
+    ends on the orbit that is known), its one-period means, the states at the end of each [n, size], its end."""
 
     period: int
     means: Floats
+    states: Floats
     state: Floats
     seconds: float
 
@@ -225,18 +226,35 @@ class PeriodicProblem:
 
         known: an orbit that attracts; a motion that is sure to end there is followed no farther.
         """
+        return self.carried(belt_speed, self.state_at(belt_speed, start), most, known)
+
+    def state_at(self, belt_speed: float, start: Initial | None) -> Floats:
+        """The state of a start."""
         at = self._free_start(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
         state = np.empty(self.size)
         KernelCall(write_start, self.law)(self.body, at, state)
+        return state
+
+    def carried(
+        self, belt_speed: float, state: Floats, most: int, known: KnownOrbit | None = None
+    ) -> Transient:
+        """The motion from a state, that of another belt speed for one; the rest as ``transient``."""
         return self._iterate(belt_speed, state, most, ROUGH[self.law.memory_kind], known)
+
+    def positions(self, states: Floats) -> tuple[Floats, Floats]:
+        """Position and velocity along x1 of states at the start of a period."""
+        sine, cosine = complex(self.body.reference_sine), complex(self.body.reference_cosine)
+        pairs = [interpreted(unpack)(self.body, state, self.like) for state in states]
+        x = np.array([complex(y).real for y, _ in pairs]) + cosine.real
+        return x, np.array([complex(u).real for _, u in pairs]) + self.body.frequency * sine.real
 
     def place(self, belt_speed: float, start: Initial | None) -> tuple[complex, complex]:
         """Position and velocity at which ``transient`` starts."""
         return self._free_start(belt_speed)[:2] if start is None else self._at(start)
 
-    def period_means(self, belt_speed: float, state: Floats, periods: int) -> Floats:
-        """The one-period means of an orbit of so many periods, from its state."""
-        return self._iterate(belt_speed, state, periods, 1e-9).means
+    def repeated(self, belt_speed: float, state: Floats, periods: int) -> Transient:
+        """An orbit of so many periods, from its state."""
+        return self._iterate(belt_speed, state, periods, 1e-9)
 
     def _iterate(
         self,
@@ -251,7 +269,7 @@ class PeriodicProblem:
         how = Follow(relative * self.mass.normal_load, self.goal.constant)
         arguments = self.body, belt_speed, how, known or unknown_orbit(self.size), means, states
         (period, count), seconds = KernelCall(iterate_until_periodic, self.law).timed(*arguments)
-        return Transient(period, means[:count], states[count], seconds)
+        return Transient(period, means[:count], states[1 : count + 1], states[count], seconds)
 
     def _free_start(self, belt_speed: float) -> tuple[complex, complex, complex]:
         """On the friction-free orbit; with memory, remembering and shifted as in sliding that never reverses."""

@@ -24,6 +24,8 @@ STABLE = 1.0 - 1e-7
 """Largest Floquet multiplier of an orbit that counts as attractive."""
 RESTING = 6
 """Starts at rest along the way of the belt in a period."""
+SHOWN = 100
+"""States that are kept of a motion that does not repeat."""
 FEWEST, MOST = 200, 20_000
 """Periods a start is followed for."""
 DECAYS, CLIMBS = 30.0, 2.0
@@ -34,7 +36,8 @@ DECAYS, CLIMBS = 30.0, 2.0
 class Attractor:
     """Where a start led: an orbit closed after some drive periods, or (0) a motion that never repeats.
 
-    low, high: the smallest and the largest mean over one drive period. followed: for how many periods.
+    low, high: the smallest and the largest mean over one drive period. followed: for how many periods. points: states
+    at the starts of the periods of a closed orbit, or at the last ones of another motion [n, size].
     """
 
     followed: int
@@ -42,6 +45,7 @@ class Attractor:
     low: float
     high: float
     curve: Curve | None
+    points: Floats
 
     def agrees(self, other: Attractor) -> bool:
         """Whether both have the same mean friction, for the same reason."""
@@ -98,12 +102,13 @@ def multiplier(curve: Curve, row: int = 0) -> float:
     return float(np.abs(np.linalg.eigvals(curve.matrices[row])).max())
 
 
-def closed_orbit(curve: Curve, means: Floats) -> Attractor | None:
-    """A closed orbit, with its means over each drive period; None where it did not close, or repels."""
+def closed_orbit(curve: Curve, means: Floats, points: Floats | None = None) -> Attractor | None:
+    """A closed orbit, with means over each drive period and states there; None where it did not close, or repels."""
     # of slip that never reverses bristles may near their limit as a power of the way: multipliers are then one
     if curve.results[0, 3] < 0.0 or (curve.results[0, 3] > 0.0 and not multiplier(curve) < STABLE):
         return None
-    return Attractor(0, len(means), float(means.min()), float(means.max()), curve)
+    points = curve.states if points is None else points
+    return Attractor(0, len(means), float(means.min()), float(means.max()), curve, points)
 
 
 def starts(scene: Scene, limit: float) -> list[Initial | None]:
@@ -165,11 +170,11 @@ def attractors(
 
     More starts follow the first ones for as long as all of them reach one orbit of one period.
     """
-    limit = problem.mass.normal_load * friction_at_rest(problem.law)
-    followed = _Followed(problem, scene, candidate)
-    for start in starts(scene, limit):
+    followed = FollowedStarts(problem, scene, candidate)
+    first, more = all_starts(problem, scene)
+    for start in first:
         followed.follow(start)
-    for start in [*resting_starts(scene, limit), *thrown_starts(problem, scene)]:
+    for start in more:
         if not followed.one_orbit():
             break
         followed.follow(start)
@@ -177,13 +182,25 @@ def attractors(
     return followed.reached, Trial.of(at, problem.mass.stiffness, followed.fewest), followed.seconds
 
 
-class _Followed:
-    """Starts, where they led, and the fewest periods for which one was followed."""
+def all_starts(
+    problem: PeriodicProblem, scene: Scene, more: int = 0
+) -> tuple[list[Initial | None], list[Initial]]:
+    """Those that are followed always, and those that follow where the first ones agree; more: at rest on the belt."""
+    limit = problem.mass.normal_load * friction_at_rest(problem.law)
+    others = [*resting_starts(scene, limit), *thrown_starts(problem, scene)]
+    return starts(scene, limit), [*others, *resting_starts(scene, limit, more)]
+
+
+class FollowedStarts:
+    """Starts at one belt speed, where they led, and the fewest periods for which one was followed.
+
+    known: the states found, the candidate first where there is one; a motion that does not repeat each time anew.
+    """
 
     def __init__(self, problem: PeriodicProblem, scene: Scene, candidate: Attractor | None) -> None:
         self._problem, self._scene = problem, scene
-        self._known = [] if candidate is None else [candidate]
         self._patience = _patience(scene, problem.law, candidate)
+        self.known = [] if candidate is None else [candidate]
         self.starts: list[Initial | None] = []
         self.reached: list[Attractor] = []
         self.fewest, self.seconds = MOST, 0.0
@@ -195,17 +212,21 @@ class _Followed:
 
     def follow(self, start: Initial | None) -> None:
         """To its end, or until it is sure to end on the first known orbit of one period."""
-        first = next((one for one in self._known if one.period == 1 and one.curve is not None), None)
+        self.starts.append(start)
+        self.carry(self._problem.state_at(self._scene.belt_speed, start))
+
+    def carry(self, state: Floats) -> None:
+        """The same from a state, that of another belt speed for one."""
+        first = next((one for one in self.known if one.period == 1 and one.curve is not None), None)
         known = None if first is None else first.known
-        way = self._problem.transient(self._scene.belt_speed, start, self._patience, known)
+        way = self._problem.carried(self._scene.belt_speed, state, self._patience, known)
         self.seconds, self.fewest = self.seconds + way.seconds, min(self.fewest, len(way.means))
         found = (
-            first if way.period == ARRIVED else next((one for one in self._known if _arrived(way, one)), None)
+            first if way.period == ARRIVED else next((one for one in self.known if _arrived(way, one)), None)
         )
         if found is None:
             found, more = orbit_at_the_end(self._problem, self._scene, way)
-            self._known, self.seconds = [*self._known, found], self.seconds + more
-        self.starts.append(start)
+            self.known, self.seconds = [*self.known, found], self.seconds + more
         self.reached.append(found)
 
 
@@ -241,13 +262,16 @@ def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> 
     if way.period > 0:
         curve, period, seconds = _shortest(problem, scene, way)
         means: Floats = curve.results[0, :1]  # of finer maps than those on the way
+        points: Floats = curve.states
         if period > 1 and curve.results[0, 3] >= 0.0:
-            means = problem.period_means(scene.belt_speed, curve.states[0], period)
-        orbit = closed_orbit(curve, means)
+            whole = problem.repeated(scene.belt_speed, curve.states[0], period)
+            means, points = whole.means, whole.states
+        orbit = closed_orbit(curve, means, points)
         if orbit is not None:
             return orbit, seconds
     last = way.means[len(way.means) // 2 :]
-    return Attractor(len(way.means), 0, float(last.min()), float(last.max()), None), seconds
+    low, high = float(last.min()), float(last.max())
+    return Attractor(len(way.means), 0, low, high, None, way.states[-SHOWN:]), seconds
 
 
 def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Curve, int, float]:

@@ -6,11 +6,12 @@ from collections.abc import Callable, Sequence
 from typing import ClassVar, NamedTuple
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method
+from frictionlab.methods.base import Answers, FoundState, Method
 from frictionlab.methods.periodic.problem import along_the_belt, map_kind
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
+from frictionlab.methods.shooting.followed_states import follow_states
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
 from frictionlab.methods.shooting.undriven import solve_undriven
 from frictionlab.methods.shooting.undriven_memory import ACROSS
@@ -115,3 +116,10 @@ class Shooting(Method):
         """Answer a curve by continuation in belt speed."""
         solve = next(solve for applies, solve in CASES if applies(scenes[0], law))
         return solve(scenes, law, tolerance)
+
+    def states(
+        self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int
+    ) -> list[FoundState]:
+        """Motions of a driven mass followed to their ends, and from the ends at one belt speed on at the next."""
+        solve = next(solve for applies, solve in CASES if applies(scenes[0], law))
+        return follow_states(scenes, law, tolerance, starts) if solve is solve_driven else []

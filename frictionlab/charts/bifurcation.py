@@ -1,0 +1,108 @@
+"""Bifurcation figures: every state that motions end in, against belt speed.
+
+Above the means, below where the mass is at the start of each drive period. A marker per period of the response, so
+that the figure reads in black and white; motions that do not repeat are pale bars above and pale dots below.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from frictionlab.charts.figures import PAGE, STYLE, save_figure
+from frictionlab.columns import ATTRACTORS, word
+from frictionlab.printable import printable
+
+MARKERS: dict[int, tuple[str, str]] = {
+    1: ("o", "#000000"),
+    2: ("s", "#c2410c"),
+    3: ("^", "#0369a1"),
+    4: ("D", "#15803d"),
+    5: ("v", "#7e22ce"),
+    6: ("P", "#be185d"),
+}
+LONGER = ("x", "#525252")
+WILD = "0.72"
+
+
+def bifurcations(attractors: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    """The rows of each figure, by its name: one for every curve on which anything was found."""
+    inputs = [name for name in attractors.columns if name not in ATTRACTORS]
+    curves = [rows for _, rows in attractors.groupby(inputs, sort=False, dropna=False)] if inputs else []
+    if len(curves) == 1:
+        return {"bifurcation": curves[0]}
+    return {f"{number}_bifurcation": rows for number, rows in enumerate(curves, 1)}
+
+
+def draw_bifurcations(attractors: pd.DataFrame, title: str, folder: Path) -> list[Path]:
+    """Draw them into a folder; the files. Raises OSError where it cannot be written."""
+    files = []
+    with mpl.rc_context(STYLE), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from")  # of a title: an empty box says it
+        for name, rows in bifurcations(attractors).items():
+            folder.mkdir(parents=True, exist_ok=True)
+            files += save_figure(_figure(rows, printable(title)), folder / name)
+    return files
+
+
+def _figure(rows: pd.DataFrame, title: str) -> Figure:
+    figure = Figure(figsize=(PAGE, 4.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle(title.replace("$", r"\$"), x=0.01, ha="left", fontsize=8, fontweight="bold")
+    above, below = figure.subplots(2, 1, sharex=True)
+    states = rows[rows["point"] == 1]
+    _draw_means(above, states)
+    _draw_points(below, rows)
+    above.set_ylabel(word("mean_friction", 28))
+    below.set_ylabel("position $x_1$ at the\nstart of a drive period")
+    below.set_xlabel(word("scene.belt_speed"))
+    figure.legend(handles=list(_legend(states)), loc="outside lower center", ncols=7, handlelength=1.0)
+    return figure
+
+
+def _look(period: int) -> dict[str, Any]:
+    marker, color = MARKERS.get(period, LONGER)
+    shape = {"marker": marker, "color": color, "markersize": 2.6, "markeredgewidth": 0.7}
+    return {**shape, "linestyle": "none", "markerfacecolor": "none" if period > 1 else color}
+
+
+def _draw_means(axes: Axes, states: pd.DataFrame) -> None:
+    several = states[states["period"] != 1]
+    for wild, rows in ((True, several[several["period"] == 0]), (False, several[several["period"] > 1])):
+        ends = rows["mean_low"], rows["mean_high"]
+        axes.vlines(
+            rows["belt_speed"],
+            *ends,
+            colors=WILD if wild else "0.85",
+            linewidth=2.0 if wild else 0.8,
+            zorder=1,
+        )
+    for period, rows in states[states["period"] > 0].groupby("period"):
+        axes.plot(rows["belt_speed"], rows["mean_friction"], zorder=3, **_look(int(period)))
+
+
+def _draw_points(axes: Axes, rows: pd.DataFrame) -> None:
+    wild = rows[rows["period"] == 0]
+    axes.plot(wild["belt_speed"], wild["x"], ",", color="0.55", zorder=1, rasterized=True)
+    for period, points in rows[rows["period"] > 0].groupby("period"):
+        axes.plot(points["belt_speed"], points["x"], zorder=3, **_look(int(period)))
+
+
+def _legend(states: pd.DataFrame) -> Iterator[Line2D]:
+    found = np.unique(states["period"].to_numpy(dtype=int)).tolist()
+    for period in [each for each in found if each in MARKERS]:
+        yield Line2D([], [], label="1 period" if period == 1 else f"{period} periods", **_look(period))
+    if any(period > max(MARKERS) for period in found):
+        yield Line2D([], [], label="more", **_look(max(MARKERS) + 1))
+    if 0 in found:
+        yield Line2D([], [], color=WILD, linewidth=2.0, label="does not repeat")

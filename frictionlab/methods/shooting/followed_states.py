@@ -1,0 +1,84 @@
+"""Every steady state that motions end in along a curve in belt speed: orbits of any period, and what never repeats.
+
+At each belt speed starts far from each other are followed until they repeat. Then every state found is carried on to
+the next belt speed, upwards and downwards: an orbit is followed as far as it attracts, on both sides of a jump.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import FoundState
+from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.methods.shooting.attractors import Attractor, FollowedStarts, all_starts, closed_orbit
+from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import stays_at_rest
+
+CLOSED, UP, DOWN = "closed orbit", "the next lower belt speed", "the next higher belt speed"
+"""Where a state is found from, other than a start: by the search for an orbit, by continuation from either side."""
+
+
+@dataclass
+class _Point:
+    """The states at one belt speed, each with where it was found from."""
+
+    place: int
+    followed: FollowedStarts
+    states: list[tuple[Attractor, str]]
+
+    def note(self, found_from: str) -> None:
+        """Enter the state that the last motion ended in, if it is a new one."""
+        last = self.followed.reached[-1]
+        if not any(_same(last, one) for one, _ in self.states):
+            self.states.append((last, found_from))
+
+
+def _same(one: Attractor, other: Attractor) -> bool:
+    """Motions that never repeat are not told apart."""
+    return one is other or one.agrees(other) or one.period == other.period == 0
+
+
+def follow_states(
+    scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, count: int
+) -> list[FoundState]:
+    """The states of driven scenes in ascending belt speed, by so many starts each and from those of their neighbours.
+
+    Nothing where friction holds the mass at rest: there every place in a range is one.
+    """
+    problem = PeriodicProblem(scenes[0], law, tolerance)
+    moving = [(i, scene) for i, scene in enumerate(scenes) if not stays_at_rest(scene, law)]
+    points = [_from_starts(problem, i, scene, count) for i, scene in moving]
+    _carry(pairwise(points), UP)
+    _carry(pairwise(reversed(points)), DOWN)
+    return [_told(problem, point.place, state, way) for point in points for state, way in point.states]
+
+
+def _from_starts(problem: PeriodicProblem, place: int, scene: Scene, count: int) -> _Point:
+    curve, _ = problem.close([scene])
+    candidate = closed_orbit(curve, curve.results[0, :1])
+    followed = FollowedStarts(problem, scene, candidate)
+    point = _Point(place, followed, [] if candidate is None else [(candidate, CLOSED)])
+    first, more = all_starts(problem, scene, count)
+    for number, start in enumerate([*first, *more][:count], 1):
+        followed.follow(start)
+        point.note(f"start {number}")
+    return point
+
+
+def _carry(neighbours: Iterable[tuple[_Point, _Point]], found_from: str) -> None:
+    """Follow the states of each point on at the next."""
+    for here, there in neighbours:
+        for state, _ in here.states:
+            there.followed.carry(state.points[-1])
+            there.note(found_from)
+
+
+def _told(problem: PeriodicProblem, place: int, state: Attractor, found_from: str) -> FoundState:
+    x, velocity = problem.positions(state.points)
+    error = math.nan if state.curve is None else float(state.curve.results[0, 2])
+    numbers = state.mean, error, state.low, state.high
+    return FoundState(place, round(state.period * problem.common), *numbers, x, velocity, found_from)

@@ -1,0 +1,54 @@
+"""The table of attractors: every state that motions end in along the curves of a study, a row per Poincare point."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from frictionlab.columns import ATTRACTORS
+from frictionlab.methods.base import FoundState
+from frictionlab.results.curve_table import curve_inputs
+from frictionlab.results.table import Inputs, inputs
+from frictionlab.study import StudyCurve
+
+
+def attractor_table(curves: Sequence[StudyCurve], tolerance: float, starts: int) -> pd.DataFrame:
+    """Of all curves whose method follows motions to wherever they end, by so many starts at each belt speed."""
+    given = inputs(curves)
+    keys = curve_inputs(given.columns)
+    rows = [row for curve in curves for row in _rows(curve, given, keys, tolerance, starts)]
+    return pd.DataFrame(rows, columns=[*keys, *ATTRACTORS])
+
+
+def _rows(
+    curve: StudyCurve, given: Inputs, keys: Sequence[str], tolerance: float, starts: int
+) -> Iterator[dict[str, Any]]:
+    head = {name: given.columns[name][curve.rows[0]] for name in keys}
+    speeds, places = np.unique(curve.scenes.belt_speeds, return_index=True)
+    scenes, law, method = curve.scenes.taken(places), curve.law, curve.method.method
+    if method.refusal(scenes[0], law) is not None:
+        return
+    numbers = dict.fromkeys(range(len(speeds)), 0)
+    for state in method.states(scenes, law, tolerance, starts):
+        numbers[state.place] += 1
+        for point in range(len(state.x)):
+            yield head | _row(state, point, float(speeds[state.place]), numbers[state.place])
+
+
+def _row(state: FoundState, point: int, speed: float, number: int) -> dict[str, Any]:
+    return {
+        "belt_speed": speed,
+        "attractor": number,
+        "period": state.period,
+        "mean_friction": state.mean,
+        "error": state.error,
+        "mean_low": state.low,
+        "mean_high": state.high,
+        "point": point + 1,
+        "x": float(state.x[point]),
+        "velocity": float(state.velocity[point]),
+        "found_from": state.found_from,
+    }

@@ -33,7 +33,7 @@ FEW_ROWS = 4
 """A table of so few rows is shown whole."""
 MOST_EXAMPLES = 3
 TOLD_ELSEWHERE = ("reason", "model")
-TESTED, PROVED = "tested: ", "unique: "
+SAYS_TESTED, SAYS_PROVED = "tested: ", "unique: "
 """How sentences on uniqueness begin, in ``reason`` and in ``model``."""
 
 
@@ -170,7 +170,7 @@ def models_grid(table: pd.DataFrame) -> Grid:
 def trouble_grid(table: pd.DataFrame) -> Grid:
     """Every point that is not plainly ok, those of like reasons together, with examples."""
     # that starts were tested is told in a table of its own
-    plain = (table["status"] == "ok") & table["reason"].fillna(TESTED).str.startswith(TESTED)
+    plain = (table["status"] == "ok") & table["reason"].fillna(SAYS_TESTED).str.startswith(SAYS_TESTED)
     odd = table[~plain]
     groups = odd.groupby([odd["status"], odd["reason"].map(pattern)], sort=False)
     ordered = sorted(groups, key=lambda group: (group[0][0] == "ok", -len(group[1])))
@@ -197,7 +197,9 @@ def uniqueness_grid(table: pd.DataFrame) -> Grid:
 def _how_unique(sentences: Any) -> str:
     """Of the sentences of a model or a reason the one on uniqueness; nothing where there is none."""
     parts = str(sentences).partition(" (auto: ")[0].split("; ")
-    return next((part.partition(": ")[2] for part in parts if part.startswith((TESTED, PROVED))), "")
+    return next(
+        (part.partition(": ")[2] for part in parts if part.startswith((SAYS_TESTED, SAYS_PROVED))), ""
+    )
 
 
 def _trouble(status: str, rows: pd.DataFrame, swept: Sequence[str]) -> list[Cell]:

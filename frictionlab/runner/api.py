@@ -312,8 +312,8 @@ def attractors(
     """Every state that motions of a driven scene end in, of whatever period: a row per Poincare point.
 
     So many starts are followed at each belt speed [scene velocity], as shooting does, and every state found is
-    carried on to the next belt speed from both sides. Rows rise in belt speed; columns as in ``attractors.csv`` of a study.
-    Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
+    carried on to the next belt speed from both sides. Rows rise in belt speed; columns as in ``attractors.csv`` of a
+    study. Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     if isinstance(starts, bool) or not isinstance(starts, int) or starts < 1:

@@ -22,9 +22,9 @@ from frictionlab.theory.rest import friction_at_rest
 
 STABLE = 1.0 - 1e-7
 """Largest Floquet multiplier of an orbit that counts as attractive."""
-RESTING = 6
+PLACES_ON_THE_BELT = 6
 """Starts at rest along the way of the belt in a period."""
-SHOWN = 100
+POINTS_KEPT = 100
 """States that are kept of a motion that does not repeat."""
 FEWEST, MOST = 200, 20_000
 """Periods a start is followed for."""
@@ -71,25 +71,31 @@ class Trial:
     """Starts that all ended in one state: how many, how far apart, followed for how many drive periods at least.
 
     apart [scene velocity]: the largest distance between two of them, a displacement counted as its spring's energy.
+    carried: how many states of neighbouring belt speeds were followed besides.
     """
 
     starts: int
     apart: float
     periods: int
+    carried: int = 0
 
     @classmethod
-    def of(cls, at: Sequence[tuple[complex, complex]], stiffness: float, periods: int) -> Trial:
+    def of(
+        cls, at: Sequence[tuple[complex, complex]], stiffness: float, periods: int, carried: int = 0
+    ) -> Trial:
         """Of starts at these positions and velocities."""
         pairs = combinations(at, 2)
         apart = max(
             (math.sqrt(stiffness * abs(x - y) ** 2 + abs(v - u) ** 2) for (x, v), (y, u) in pairs),
             default=0.0,
         )
-        return cls(len(at), apart, periods)
+        return cls(len(at), apart, periods, carried)
 
     def sentence(self, multiplier: float) -> str:
         """For ``reason``; multiplier: the largest of the state, whose decay is the slowest, NaN where not known."""
-        told = f"tested: {self.starts} starts up to {self.apart:.3g} apart ended here"
+        told = f"tested: {self.starts} starts up to {self.apart:.3g} apart"
+        told += f" and {self.carried} states of neighbouring belt speeds" if self.carried else ""
+        told += " ended here"
         told = f"{told}, followed for {self.periods} periods"
         if math.isnan(multiplier):
             return f"{told} or more"
@@ -123,7 +129,7 @@ def starts(scene: Scene, limit: float) -> list[Initial | None]:
     return [*given, None, Initial(velocity=scene.belt_speed), flung, ahead]
 
 
-def resting_starts(scene: Scene, limit: float, count: int = RESTING) -> list[Initial]:
+def resting_starts(scene: Scene, limit: float, count: int = PLACES_ON_THE_BELT) -> list[Initial]:
     """At rest on the belt, at places along the way it goes in one period, before the one at which slip begins.
 
     Whatever rests on the belt at some time begins to slip at one phase of the drive, and goes on from there as
@@ -163,10 +169,8 @@ def quick_starts(problem: PeriodicProblem, scene: Scene) -> list[tuple[complex, 
     return [(0.0, scene.belt_speed), problem.place(scene.belt_speed, None)]
 
 
-def attractors(
-    problem: PeriodicProblem, scene: Scene, candidate: Attractor | None
-) -> tuple[list[Attractor], Trial, float]:
-    """Where starts lead, the starts, and kernel time [s]. The candidate is an orbit already known.
+def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | None) -> FollowedStarts:
+    """Starts followed to where they lead. The candidate is an orbit already known.
 
     More starts follow the first ones for as long as all of them reach one orbit of one period.
     """
@@ -178,8 +182,7 @@ def attractors(
         if not followed.one_orbit():
             break
         followed.follow(start)
-    at = [problem.place(scene.belt_speed, start) for start in followed.starts]
-    return followed.reached, Trial.of(at, problem.mass.stiffness, followed.fewest), followed.seconds
+    return followed
 
 
 def all_starts(
@@ -192,7 +195,7 @@ def all_starts(
 
 
 class FollowedStarts:
-    """Starts at one belt speed, where they led, and the fewest periods for which one was followed.
+    """Starts at one belt speed, where they led, and the kernel time it took.
 
     known: the states found, the candidate first where there is one; a motion that does not repeat each time anew.
     """
@@ -201,18 +204,26 @@ class FollowedStarts:
         self._problem, self._scene = problem, scene
         self._patience = _patience(scene, problem.law, candidate)
         self.known = [] if candidate is None else [candidate]
-        self.starts: list[Initial | None] = []
         self.reached: list[Attractor] = []
-        self.fewest, self.seconds = MOST, 0.0
+        self.seconds = 0.0
+        self._starts: list[Initial | None] = []
+        self._fewest = MOST
 
     def one_orbit(self) -> bool:
         """Whether all of them ended on one orbit of one period."""
         first = self.reached[0]
         return first.period == 1 and all(first.agrees(other) for other in self.reached)
 
+    @property
+    def trial(self) -> Trial:
+        """What is told of the starts, where all of them ended in one state."""
+        at = [self._problem.place(self._scene.belt_speed, start) for start in self._starts]
+        carried = len(self.reached) - len(at)
+        return Trial.of(at, self._problem.mass.stiffness, self._fewest, carried)
+
     def follow(self, start: Initial | None) -> None:
         """To its end, or until it is sure to end on the first known orbit of one period."""
-        self.starts.append(start)
+        self._starts.append(start)
         self.carry(self._problem.state_at(self._scene.belt_speed, start))
 
     def carry(self, state: Floats) -> None:
@@ -220,7 +231,7 @@ class FollowedStarts:
         first = next((one for one in self.known if one.period == 1 and one.curve is not None), None)
         known = None if first is None else first.known
         way = self._problem.carried(self._scene.belt_speed, state, self._patience, known)
-        self.seconds, self.fewest = self.seconds + way.seconds, min(self.fewest, len(way.means))
+        self.seconds, self._fewest = self.seconds + way.seconds, min(self._fewest, len(way.means))
         found = (
             first if way.period == ARRIVED else next((one for one in self.known if _arrived(way, one)), None)
         )
@@ -271,7 +282,7 @@ def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> 
             return orbit, seconds
     last = way.means[len(way.means) // 2 :]
     low, high = float(last.min()), float(last.max())
-    return Attractor(len(way.means), 0, low, high, None, way.states[-SHOWN:]), seconds
+    return Attractor(len(way.means), 0, low, high, None, way.states[-POINTS_KEPT:]), seconds
 
 
 def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Curve, int, float]:

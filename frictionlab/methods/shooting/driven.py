@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import reduce
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,10 +17,11 @@ from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Cu
 from frictionlab.methods.periodic.problem import PeriodicProblem, map_kind
 from frictionlab.methods.shooting.attractors import (
     FEWEST,
+    FollowedStarts,
     Trial,
-    attractors,
     closed_orbit,
     describe,
+    follow_all,
     multiplier,
     quick_starts,
 )
@@ -65,6 +67,7 @@ def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) ->
     states.close_all(moving)
     for i in moving if not states.problem.goal.contracts else ():
         states.check_attraction(i)
+    states.carry_on()
     for i in resting:
         states.settle(i)
     states.judge(tolerance)
@@ -76,8 +79,9 @@ class SteadyStates:
     """The steady states of a curve, as far as they are known.
 
     multipliers: NaN where nothing has asked for them. reached: for how many periods the two starts that are quick to
-    ask were followed until they ended here, 0 where they do not. tried: starts that all ended here. whole: states
-    have every degree of freedom; along the line multipliers across the belt are left out.
+    ask were followed until they ended here, 0 where they do not. tried: starts that all ended here. followed:
+    starts where the answer hangs on all of them. whole: states have every degree of freedom; along the line
+    multipliers across the belt are left out.
     """
 
     def __init__(self, scenes: Sequence[Scene], problem: PeriodicProblem) -> None:
@@ -90,6 +94,7 @@ class SteadyStates:
         self.reached = [0] * n
         self.unique = [""] * n
         self.tried: dict[int, Trial] = {}
+        self.followed: dict[int, FollowedStarts] = {}
         self.mean: Complexes = np.full(n, UNKNOWN)
         self.error, self.low, self.high, self.period, self.multipliers, self.seconds = np.full((6, n), np.nan)
         self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.like, complex)
@@ -258,8 +263,31 @@ class SteadyStates:
         if self.states[i] is not None:
             curve, _ = problem.close([scene], self.states[i])
             known = closed_orbit(curve, curve.results[0, :1])
-        reached, trial, seconds = attractors(problem, scene, known)
-        self.seconds[i] += seconds
+        self.followed[i] = followed = follow_all(problem, scene, known)
+        self.seconds[i] += followed.seconds
+        self._judge_starts(i)
+
+    def carry_on(self) -> None:
+        """Follow the orbits found at each belt speed on at the next, upwards and downwards.
+
+        A state that only few starts reach may be reached by many at a neighbour, or be the neighbour's answer.
+        """
+        rising = sorted(self.followed)
+        for here, there in [*pairwise(rising), *pairwise(rising[::-1])]:
+            if self.status[there] != "ok" or self.unique[there]:
+                continue
+            followed = self.followed[there]
+            before = followed.seconds
+            for one in list(self.followed[here].known):
+                if one.curve is not None:
+                    followed.carry(one.points[-1])
+            self.seconds[there] += followed.seconds - before
+            self._judge_starts(there)
+
+    def _judge_starts(self, i: int) -> None:
+        """The answer that all starts reach; else the one reached from scene.initial, or none."""
+        problem, scene, followed = self.problem, self.scenes[i], self.followed[i]
+        reached = followed.reached
         first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
         self._clear(i)
         if first.period == 1 and first.curve is not None and (unique or scene.initial is not None):
@@ -267,7 +295,7 @@ class SteadyStates:
             self.status[i], self.states[i] = "ok", first.curve.states[0]
             self.multipliers[i] = multiplier(first.curve)
             if unique:
-                self.tried[i] = trial
+                self.tried[i] = followed.trial
             else:
                 self.reason[i] = f"reached from scene.initial; {describe(reached)}"
                 self.unique[i] = NOT_UNIQUE

@@ -18,7 +18,7 @@ from frictionlab.methods.shooting.attractors import Attractor, FollowedStarts, a
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import stays_at_rest
 
-CLOSED, UP, DOWN = "closed orbit", "the next lower belt speed", "the next higher belt speed"
+BY_CLOSING, FROM_BELOW, FROM_ABOVE = "closed orbit", "the next lower belt speed", "the next higher belt speed"
 """Where a state is found from, other than a start: by the search for an orbit, by continuation from either side."""
 
 
@@ -52,8 +52,8 @@ def follow_states(
     problem = PeriodicProblem(scenes[0], law, tolerance)
     moving = [(i, scene) for i, scene in enumerate(scenes) if not stays_at_rest(scene, law)]
     points = [_from_starts(problem, i, scene, count) for i, scene in moving]
-    _carry(pairwise(points), UP)
-    _carry(pairwise(reversed(points)), DOWN)
+    _carry(pairwise(points), FROM_BELOW)
+    _carry(pairwise(reversed(points)), FROM_ABOVE)
     return [_told(problem, point.place, state, way) for point in points for state, way in point.states]
 
 
@@ -61,7 +61,7 @@ def _from_starts(problem: PeriodicProblem, place: int, scene: Scene, count: int)
     curve, _ = problem.close([scene])
     candidate = closed_orbit(curve, curve.results[0, :1])
     followed = FollowedStarts(problem, scene, candidate)
-    point = _Point(place, followed, [] if candidate is None else [(candidate, CLOSED)])
+    point = _Point(place, followed, [] if candidate is None else [(candidate, BY_CLOSING)])
     first, more = all_starts(problem, scene, count)
     for number, start in enumerate([*first, *more][:count], 1):
         followed.follow(start)

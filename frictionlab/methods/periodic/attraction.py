@@ -156,8 +156,10 @@ def write_start(law: Any, body: Body, start: Any, state: Any) -> None:
     start_of(law, bare(body), state, x, v, deflection)
 
 
-ARRIVED, VERY_NEAR = -1, 1e-5
-"""What stands for a number of periods where a motion ends on a known orbit, and how near to it, over its size, is."""
+ARRIVED, VERY_NEAR, FALLEN = -1, 1e-5, 0.1
+"""What stands for a number of periods where a motion ends on a known orbit; how near to it is near enough, over its
+size; and to what share the distance must have fallen while it obeyed. Three periods alone are no sign: the motion turns
+about the orbit, and may meet stick, and leave, where it has not been yet."""
 
 
 def unknown_orbit(size: int) -> KnownOrbit:
@@ -204,7 +206,7 @@ def iterate_until_periodic(
     alike *= 0.1 if slides_on else 1.0
     before, after, predicted = np.empty(residual.size), np.empty(residual.size), np.empty(residual.size)
     subtract(states[0], orbit.state, before)
-    near, obeyed = VERY_NEAR * norm(orbit.state), 0
+    near, obeyed, far = VERY_NEAR * norm(orbit.state), 0, 0.0
     for n in range(means.size):
         image = image_of(case, states[n], residual, how.accuracy)
         means[n] = mean_friction(image.rubbed.real, span(body))
@@ -215,8 +217,9 @@ def iterate_until_periodic(
         if slides_on and ends_sliding(case, states[n + 1]):
             return 1, n + 1
         subtract(states[n + 1], orbit.state, after)
+        far = norm(before) if obeyed == 0 else far
         obeyed = obeyed + 1 if many == 1.0 and obeys(orbit, before, after, predicted) else 0
-        if obeyed == ENOUGH or norm(after) < near:
+        if (obeyed >= ENOUGH and norm(after) < FALLEN * far) or norm(after) < near:
             return ARRIVED, n + 1
         copy(after, before)
         nearest = 1e300

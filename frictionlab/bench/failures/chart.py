@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
@@ -18,11 +19,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path as Outline
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
 from frictionlab.bench.chart import save_figure
 from frictionlab.bench.failures.boundaries import free_velocities, rest_edge, uniqueness_edge
 from frictionlab.bench.failures.measure import MapOutcome, MapTruth
+from frictionlab.bench.failures.record import OF_FRICTION_TO_LOAD
 from frictionlab.bench.sections import BenchPicture
 from frictionlab.charts.figures import PAGE
 from frictionlab.columns import word
@@ -65,7 +68,7 @@ def draw_maps(result: FailureResult, folder: Path) -> list[BenchPicture]:
     ]
     if not shown:
         return []
-    with mpl.rc_context({"hatch.linewidth": 0.5}):
+    with mpl.rc_context({"hatch.linewidth": 0.5, "svg.fonttype": "none"}):  # many panels: letters stay text
         save_figure(figure_of_maps(result, shown), folder, result.name)
     return [BenchPicture(result.name, _CAPTION)]
 
@@ -88,9 +91,8 @@ def figure_of_maps(result: FailureResult, shown: Sequence[tuple[MapOutcome, MapT
                 axes.tick_params(labelleft=False)
         row[0].set_ylabel(_across(outcome))
         row[0].set_title(_heading(outcome), loc="left", fontweight="bold")
-        if len(kinds) > 1:
-            row[1].set_title("true error", loc="right")
-            row[0].set_title("stated error", loc="right")
+    for axes, kind in zip(grid[0], kinds, strict=True):
+        axes.set_title(f"{kind} error", loc="right")
     for axes in grid[-1]:
         axes.set_xlabel(word("scene.belt_speed"))
     bar = figure.colorbar(mesh, ax=grid, location="right", ticks=_LEVELS, shrink=min(1.0, 2.0 / len(shown)))
@@ -126,7 +128,7 @@ def _refused_everywhere(result: FailureResult) -> str:
 
 def _across(outcome: MapOutcome) -> str:
     drawn = outcome.drawn
-    if drawn.ordinate(drawn.rows[0]) != drawn.rows[0].value:
+    if drawn.quantity in OF_FRICTION_TO_LOAD:
         return "friction over load"
     kind, _, parameter = drawn.quantity.rpartition(".")
     return word(f"law.{parameter}" if kind.startswith("laws.") else drawn.quantity, 22)
@@ -148,13 +150,15 @@ def _draw(axes: Axes, outcome: MapOutcome, truth: MapTruth, kind: str, colors: L
     for name, look in _WITHOUT_ERROR.items():
         _hatch(axes, mesh, told == name, look)
     _hatch(axes, mesh, np.isin(told, ("ok", "silent")) & ~number, _UNKNOWN)
-    for scale, logarithmic in zip((axes.set_xscale, axes.set_yscale), mesh.logarithmic, strict=True):
-        scale("log" if logarithmic else "linear")
-    _draw_lines(axes, truth, mesh, rising)
-    _cross_out(axes, drawn.speeds, ordinates[rising], told == "silent")
-    _name_points(axes, outcome)
+    axes.set_xscale("log" if mesh.logarithmic[0] else "linear")
+    axes.set_yscale("log" if mesh.logarithmic[1] else "linear")
     axes.set_xlim(mesh.x[0], mesh.x[-1])
     axes.set_ylim(mesh.y[0], mesh.y[-1])
+    for axis, logarithmic in zip((axes.xaxis, axes.yaxis), mesh.logarithmic, strict=True):
+        _number_ticks(axis, logarithmic)
+    _draw_lines(axes, truth, rising)
+    _cross_out(axes, drawn.speeds, ordinates[rising], told == "silent")
+    _name_points(axes, outcome)
     return drawn_mesh
 
 
@@ -215,9 +219,19 @@ def _line(name: str) -> dict[str, Any]:
     return look | {"linewidth": 1.1, "path_effects": _OUTLINED, "zorder": 3}
 
 
-def _draw_lines(axes: Axes, truth: MapTruth, mesh: Mesh, rising: NDArray[np.int64]) -> None:
+def _number_ticks(axis: Axis, logarithmic: bool) -> None:
+    """No small ticks, and plain numbers on a logarithmic axis of few decades."""
+    axis.set_minor_locator(NullLocator())
+    low, high = axis.get_view_interval()
+    if logarithmic and high < 100.0 * low:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+
+
+def _draw_lines(axes: Axes, truth: MapTruth, rising: NDArray[np.int64]) -> None:
+    """Those of theory, and those that are read from the motion of the first reference."""
     speeds, ordinates = free_velocities(truth.drawn)
-    axes.plot(speeds[rising], ordinates[rising], **_line("free"))
+    axes.plot(speeds[rising], ordinates[rising], **(_line("free") | {"zorder": 3.5}))
     for name, edge in (("unique", uniqueness_edge(truth.drawn)), ("rest", rest_edge(truth.drawn))):
         for ordinate in edge.ordinates:
             axes.axhline(ordinate, **_line(name))
@@ -225,21 +239,13 @@ def _draw_lines(axes: Axes, truth: MapTruth, mesh: Mesh, rising: NDArray[np.int6
     if motions is None:
         return
     for name, where in (("reverses", motions.reverses), ("sticks", motions.sticks)):
-        _outline(axes, mesh, where[rising], _line(name))
-
-
-def _outline(axes: Axes, mesh: Mesh, where: Floats, look: dict[str, Any]) -> None:
-    """The border between cells where something holds and where it does not, along the edges of the cells."""
-    upright = np.argwhere(np.abs(np.diff(where, axis=1)) == 1.0)
-    level = np.argwhere(np.abs(np.diff(where, axis=0)) == 1.0)
-    pieces = [[(mesh.x[i + 1], mesh.y[j]), (mesh.x[i + 1], mesh.y[j + 1])] for j, i in upright]
-    pieces += [[(mesh.x[i], mesh.y[j + 1]), (mesh.x[i + 1], mesh.y[j + 1])] for j, i in level]
-    if pieces:
-        codes = np.tile([Outline.MOVETO, Outline.LINETO], len(pieces))
-        border = PathPatch(
-            Outline(np.concatenate(pieces), codes), fill=False, edgecolor=look.pop("color"), **look
-        )
-        axes.add_patch(border)
+        if (where == 0.0).any() and (where == 1.0).any():
+            look = _line(name)
+            border = axes.contour(
+                truth.drawn.speeds, ordinates[rising], where[rising], levels=[0.5],
+                colors=look["color"], linestyles=[look["linestyle"]], linewidths=look["linewidth"], zorder=3,
+            )  # fmt: skip
+            border.set(path_effects=_OUTLINED)
 
 
 def _cross_out(axes: Axes, speeds: Floats, ordinates: Floats, silent: NDArray[np.bool_]) -> None:
@@ -266,8 +272,8 @@ def _name_points(axes: Axes, outcome: MapOutcome) -> None:
         _cross_out(axes, np.array(at[:1]), np.array(at[1:]), silent)
         axes.plot(*at, marker="o", markersize=3.5, markerfacecolor="white", markeredgecolor="black", zorder=5)
         axes.annotate(
-            point.name, at, xytext=(3, 3), textcoords="offset points", fontsize=6, color="white", zorder=5,
-            path_effects=[withStroke(linewidth=1.6, foreground="black")], annotation_clip=True,
+            point.name, at, xytext=(4, 3), textcoords="offset points", fontsize=5.5, zorder=5,
+            bbox={"boxstyle": "square,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.8},
         )  # fmt: skip
 
 

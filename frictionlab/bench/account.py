@@ -22,6 +22,12 @@ ACCOUNT = "bench.json"
 PRINTED = ("numpy", "numba", "scipy")
 """Packages in the small print of a chart, besides the peers."""
 
+ENTRY_KEYS = {
+    *("kind", "name", "title", "notes", "missing", "summary", "tables", "pictures"),
+    *("frictionlab", "date", "cores", "python", "platform", "processor", "packages"),
+}
+"""What the page asks of an entry; one without them is another version's."""
+
 
 @cache
 def circumstances() -> dict[str, Any]:
@@ -72,7 +78,8 @@ def read_account(folder: Path) -> dict[str, dict[str, Any]]:
     """The entries of a folder by the stem of their files; none where it has no account that can be read."""
     try:
         found = json.loads((folder / ACCOUNT).read_text(encoding="utf-8"))
-        return {str(stem): dict(entry) for stem, entry in found["parts"].items()}
+        entries = {str(stem): dict(entry) for stem, entry in found["parts"].items()}
+        return {stem: entry for stem, entry in entries.items() if entry.keys() >= ENTRY_KEYS}
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return {}
 

@@ -105,6 +105,9 @@ def test_the_reference_s_own_error_is_granted() -> None:
     (result,) = measured(text=LIST.replace("tolerance: 1.0e-9", "tolerance: 6.0e-4"))
 
     assert result.counts()["silent"] == 0
+    assert [point.undecided for point in result.outcomes[0].grid[0]] == [False, True, False, False]
+    assert "known to\nload" in result.summary()
+    assert "6e-04" in result.summary()
 
 
 def test_no_method_is_judged_by_its_own_kind() -> None:

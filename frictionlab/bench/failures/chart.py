@@ -43,7 +43,9 @@ _WITHOUT_ERROR: dict[str, dict[str, Any]] = {
 }
 _UNKNOWN: dict[str, Any] = {"facecolor": "white", "edgecolor": "0.6"}
 """Where a number has no error to be shown."""
-_PANEL, _LEGEND = 1.75, 0.95
+_UNDECIDED: dict[str, Any] = {"facecolor": "none", "edgecolor": "0.1", "hatch": "\\\\\\\\", "alpha": 0.45}
+"""Where the distance from the reference is above the stated error, but not with the reference's own added."""
+_PANEL, _LEGEND = 1.75, 1.1
 """Heights [inch] of a map and of what stands below all of them."""
 _CAPTION = (
     "A panel at one value of its vertical axis is a curve over belt speed: shade is the error of the mean friction "
@@ -99,7 +101,7 @@ def figure_of_maps(result: FailureResult, shown: Sequence[tuple[MapOutcome, MapT
     bar.set_label("error of the mean friction")
     bar.ax.set_yticklabels([f"$10^{{{round(math.log10(level))}}}$" for level in _LEVELS])
     figure.legend(
-        handles=_legend(), loc="outside lower center", ncols=5, title=refused or None, columnspacing=1.2
+        handles=_legend(), loc="outside lower center", ncols=4, title=refused or None, columnspacing=1.2
     )
     figure.suptitle(f"{result.title}: {_counted(result)}", x=0.01, ha="left", fontsize=8)
     return figure
@@ -150,6 +152,9 @@ def _draw(axes: Axes, outcome: MapOutcome, truth: MapTruth, kind: str, colors: L
     for name, look in _WITHOUT_ERROR.items():
         _hatch(axes, mesh, told == name, look)
     _hatch(axes, mesh, np.isin(told, ("ok", "silent")) & ~number, _UNKNOWN)
+    if kind == "true":
+        undecided = np.array([[point.undecided for point in row] for row in grid])
+        _hatch(axes, mesh, undecided, _UNDECIDED)
     axes.set_xscale("log" if mesh.logarithmic[0] else "linear")
     axes.set_yscale("log" if mesh.logarithmic[1] else "linear")
     axes.set_xlim(mesh.x[0], mesh.x[-1])
@@ -283,6 +288,7 @@ def _legend() -> list[Any]:
         Patch(linewidth=0.4, label=words[name], **look) for name, look in _WITHOUT_ERROR.items()
     ]
     patches.append(Patch(linewidth=0.4, label="no error known", **_UNKNOWN))
+    patches.append(Patch(linewidth=0.4, label="reference too coarse to tell", **_UNDECIDED))
     cross = Line2D([], [], marker="x", color="red", linestyle="none", path_effects=_OUTLINED, markersize=4)
     cross.set_label("wrong without a word")
     lines = [Line2D([], [], label=look["label"], **_line(name)) for name, look in _LINES.items()]

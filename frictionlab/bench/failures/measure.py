@@ -62,6 +62,11 @@ class PointOutcome:
     reference_error: float
     point: str = ""
 
+    @property
+    def undecided(self) -> bool:
+        """Whether the reference is too coarse to tell if the stated error covers the true one."""
+        return self.outcome == "ok" and self.stated < self.true
+
 
 @dataclass(frozen=True)
 class MapOutcome:

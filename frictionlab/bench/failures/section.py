@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import math
+import statistics
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, fields
@@ -72,11 +74,21 @@ class FailureResult:
         if self.missing:
             return f"{self.name}: {self.missing}"
         wide = max(len(outcome.drawn.name) for outcome in self.outcomes)
-        lines = [f"{self.title}: points", " " * wide + "".join(f"{word_of(each):>14}" for each in OUTCOMES)]
-        rows = [(outcome.drawn.name, outcome.counts()) for outcome in self.outcomes]
-        for name, counts in [*rows, ("all", self.counts())]:
-            lines.append(f"{name:<{wide}}" + "".join(f"{counts[each]:>14,}" for each in OUTCOMES))
+        heads = [*map(word_of, OUTCOMES), "known to"]
+        lines = [f"{self.title}: points", " " * wide + "".join(f"{head:>14}" for head in heads)]
+        for outcome in self.outcomes:
+            counts = outcome.counts()
+            numbers = "".join(f"{counts[each]:>14,}" for each in OUTCOMES)
+            lines.append(f"{outcome.drawn.name:<{wide}}{numbers}{_known_to(outcome):>14}")
+        total = self.counts()
+        lines.append(f"{'all':<{wide}}" + "".join(f"{total[each]:>14,}" for each in OUTCOMES))
         return "\n".join(lines)
+
+
+def _known_to(outcome: MapOutcome) -> str:
+    """The median of the references' own errors, over the points that have one."""
+    errors = [point.reference_error for point in outcome.points if math.isfinite(point.reference_error)]
+    return f"{statistics.median(errors):.0e}" if errors else ""
 
 
 def word_of(outcome: str) -> str:

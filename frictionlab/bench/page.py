@@ -135,9 +135,7 @@ def _table(file: Path, made: Callable[[str, list[dict[str, str]]], Grid]) -> lis
     few = records if len(records) <= MOST_ROWS_ON_PAGE else records[:ROWS_OF_MANY]
     grid = made(file.name, few)
     if len(few) < len(records):
-        grid = grid._replace(
-            below=f"... and {len(records) - len(few):,} more rows, all of them in {file.name}"
-        )
+        grid = grid._replace(caption=f"{file.name}: the first {len(few)} of {len(records):,} rows")
     return [PageTable(grid, len(few) > MOST_ROWS_OPEN or len(few) < len(records), file.name)]
 
 

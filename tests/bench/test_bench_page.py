@@ -16,7 +16,7 @@ from frictionlab.bench import account
 from frictionlab.bench.forecast import Expected, Forecast, duration
 from frictionlab.bench.measure import WorkloadResult
 from frictionlab.bench.names import file_stem
-from frictionlab.bench.page import MOST_ROWS_ON_PAGE
+from frictionlab.bench.page import MOST_ROWS_ON_PAGE, bench_page
 from frictionlab.bench.peers import base
 from frictionlab.bench.report import markdown
 from frictionlab.methods.reduced import common
@@ -167,6 +167,19 @@ def test_what_was_measured_before_stays_on_the_page(tmp_path: Path) -> None:
     assert [heading.text.partition(":")[0] for heading in found.all("h2")] == [
         "W1 half dry", "W1 dry", "Machine and versions",
     ]  # fmt: skip
+
+
+def test_of_a_long_table_the_first_rows_are_shown_and_the_file_is_named(folder: Path, tmp_path: Path) -> None:
+    parts = account.read_account(folder)
+    head, *_ = (folder / "failures_mdsm.csv").read_text().splitlines()
+    rows = [f"load,scene.normal_load,{i},1,1,ok,,,,,," for i in range(MOST_ROWS_ON_PAGE + 1)]
+    (tmp_path / "failures_mdsm.csv").write_text("\n".join([head, *rows]))
+
+    long = Page(bench_page(tmp_path, {"failures_mdsm": parts["failures_mdsm"]}))
+
+    _, shown = table_of(long, "failures_mdsm.csv: the first 20 of 201 rows")
+    assert len(shown) == 20
+    assert long.all("details")
 
 
 def test_a_page_that_a_person_wrote_is_not_overwritten(

@@ -84,15 +84,8 @@ ARROWS = {
     "scaffold": ["registry", "runner"],
     "bench": [
         *("charts", "columns", "compile", "laws", "mistakes", "quantities", "runner", "scene", "study"),
-        *(
-            "methods.base",
-            "methods.exact",
-            "methods.march",
-            "methods.shooting",
-            "report",
-            "results",
-            "theory",
-        ),
+        *("methods.base", "methods.exact", "methods.march", "methods.shooting", "numerics"),
+        *("report", "results", "theory"),
     ],
     "testing": [
         *("compile", "dynamics", "faults", "laws", "registry", "scene"),

@@ -16,13 +16,18 @@ from frictionlab.bench.orders import read_orders
 from frictionlab.bench.record import Bench, Workload
 from frictionlab.bench.references import read_references
 from frictionlab.bench.sections import Section, SectionReader, SectionSource
+from frictionlab.bench.stability import read_stability
 from frictionlab.mistakes.notes import Notes, Path, dotted
 from frictionlab.study import Mistake, Study, StudyError
 from frictionlab.study.choices import items
 from frictionlab.study.reader import study_of
 from frictionlab.study.yaml_source import Source, read_file
 
-SECTIONS: dict[str, SectionReader] = {"orders": read_orders, "failures": read_failures}
+SECTIONS: dict[str, SectionReader] = {
+    "orders": read_orders,
+    "stability": read_stability,
+    "failures": read_failures,
+}
 """What reads each key of a list that is neither a curve nor about curves."""
 BENCH_KEYS = ("schema", "title", "scenes", "references", "methods", "peers", "repeats", "seconds", *SECTIONS)
 SCENE_KEYS = ("name", "title", "scene", "laws", "sweep", "references", "methods", "peers")

@@ -52,9 +52,19 @@ def _seen(changes: np.ndarray, order: int) -> bool:
     return bool((np.abs(ratios / 2.0**order - 1.0) < SURE).all())
 
 
+SLOWEST = 0.8
+"""Largest ratio of a change to the one before at which errors of steps that are still too long are taken to fall."""
+
+
 def first_error(values: Sequence[float]) -> float:
-    """Bound on the distance of the first value to the limit, from the values of finer steps, at order one."""
-    return 1.5 * max(abs(value - values[0]) for value in values[1:])
+    """Bound on the distance of the first of three values to the limit, from those of steps halved once and twice.
+
+    At order one with half as much again; where both changes go one way and the second is more than half the first,
+    at the ratio that is seen: steps that are still too long converge more slowly than their order says.
+    """
+    first, last = values[1] - values[0], values[2] - values[1]
+    seen = min(last / first, SLOWEST) if first * last > 0.0 else 0.0
+    return max(1.5 * max(abs(first), abs(first + last)), abs(first + last / (1.0 - seen)))
 
 
 def bias(wide: float, asked: float, narrow: float, narrowest: float) -> float:

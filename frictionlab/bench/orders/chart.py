@@ -12,14 +12,20 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from frictionlab.bench.chart import HOLLOW, LINE_STYLES, MARKERS, OURS, save_figure
+from frictionlab.bench.chart import LINE_STYLES, OURS, THEIRS, save_figure
 from frictionlab.bench.orders.section import OrderRow
 from frictionlab.charts.figures import PAGE, STYLE
 
-COLUMNS, PANEL = 3, 1.9
+COLUMNS, PANEL = 3, 1.95
 LOWEST = 1e-16
 """Errors below are drawn here."""
+MARKERS_OF_SOLVERS = "osD^v<>ph"
+RIGHT = 9.7
+"""Where the slopes stand."""
+NEAREST_LABELS = 1.3
+"""Powers of ten between two numbers at the right end."""
 
 
 def draw_orders(rows: Sequence[OrderRow], folder: Path, stem: str) -> None:
@@ -33,53 +39,72 @@ def orders_figure(rows: Sequence[OrderRow]) -> Figure:
     motions = list({row.motion.name: row.motion for row in rows}.values())
     solvers = list(dict.fromkeys(row.solver for row in rows))
     lines = math.ceil(len(motions) / COLUMNS)
-    figure = Figure(figsize=(PAGE, PANEL * lines + 0.7), layout="constrained")
+    figure = Figure(figsize=(PAGE, PANEL * lines + 0.6), layout="constrained")
     FigureCanvasAgg(figure)
     panels = figure.subplots(lines, COLUMNS, squeeze=False, sharex=True, sharey=True)
     handles: dict[str, Any] = {}
     for axes, motion in zip(panels.flat, motions, strict=False):
-        for row in (row for row in rows if row.motion is motion):
+        drawn = [row for row in rows if row.motion is motion]
+        for row in drawn:
             handles[row.solver] = _draw(axes, row, solvers.index(row.solver))
+        _label(axes, drawn, handles)
         _dress(axes, f"{motion.title} ({motion.law_text})")
     for axes in panels.flat[len(motions) :]:
         axes.set_axis_off()
-    figure.supxlabel("setting over its coarsest: step, smoothing width or tolerance", fontsize=8)
+    for column in range(COLUMNS):
+        shown = [axes for axes in panels[:, column] if axes.axison]
+        if shown:
+            shown[-1].set_xlabel("refinements")
+            shown[-1].tick_params(labelbottom=True)
     figure.supylabel("error of the mean friction", fontsize=8)
     named = [name for name in solvers if name in handles]
-    figure.legend(
-        [handles[name] for name in named], named, loc="outside lower center", ncols=4, handlelength=3.2
-    )
+    entries = [Line2D([], [], **_look(solvers.index(name), full=True)) for name in named]
+    figure.legend(entries, named, loc="outside lower center", ncols=5, handlelength=3.2)
     return figure
 
 
-def _draw(axes: Axes, row: OrderRow, place: int) -> Any:
-    """Errors of one solver: full where its range is asymptotic, and its slope beside the last fitted setting."""
-    sizes, errors = row.refinement.sizes, np.maximum(row.refinement.errors, LOWEST)
-    color = OURS[place % len(OURS)]
-    known = row.asymptotic
-    look: dict[str, Any] = {
+def _look(place: int, full: bool) -> dict[str, Any]:
+    """Colour, marker and line of a solver; hollow where its range is not asymptotic."""
+    color = (*OURS, *THEIRS)[place]
+    return {
         "color": color,
         "linestyle": LINE_STYLES[place % len(LINE_STYLES)],
-        "marker": (MARKERS if known else HOLLOW)[place % 6],
-        "markerfacecolor": color if known else "white",
+        "marker": MARKERS_OF_SOLVERS[place],
+        "markerfacecolor": color if full else "white",
+        "markersize": 3.0,
         "linewidth": 0.9,
     }
-    (line,) = axes.plot(sizes / sizes[0], errors, **look)
-    if not math.isnan(row.fit.order):
-        last = row.fit.last
-        told = f"{row.fit.order:.2f}" if known else f"({row.fit.order:.2f})"
-        axes.annotate(
-            told, (sizes[last] / sizes[0], errors[last]), xytext=(3, 2), textcoords="offset points", fontsize=6,
-            color=color,
-        )  # fmt: skip
+
+
+def _draw(axes: Axes, row: OrderRow, place: int) -> Line2D:
+    """Errors of one solver at each refinement: full where its range is asymptotic."""
+    errors = np.maximum(row.refinement.errors, LOWEST)
+    (line,) = axes.plot(range(len(errors)), errors, **_look(place, row.asymptotic))
     return line
 
 
+def _label(axes: Axes, rows: Sequence[OrderRow], handles: dict[str, Any]) -> None:
+    """The slopes, at the right end and as high as the last errors fitted, but not one upon another."""
+    fitted = [row for row in rows if not math.isnan(row.fit.order)]
+    height = math.log10(LOWEST) - NEAREST_LABELS
+    for row in sorted(fitted, key=lambda row: float(row.refinement.errors[-1])):
+        height = max(math.log10(max(row.refinement.errors[-1], LOWEST)), height + NEAREST_LABELS)
+        told = f"{row.fit.order:.2f}" if row.asymptotic else f"({row.fit.order:.2f})"
+        axes.text(
+            RIGHT,
+            10.0**height,
+            told,
+            fontsize=6,
+            color=handles[row.solver].get_color(),
+            va="center",
+            clip_on=False,
+        )
+
+
 def _dress(axes: Axes, title: str) -> None:
-    axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_ylim(LOWEST, 1.0)
-    axes.invert_xaxis()
+    axes.set_ylim(0.3 * LOWEST, 3.0)
+    axes.set_xlim(-0.3, RIGHT - 0.2)
     axes.grid(which="major", color="0.9", linewidth=0.5)
     axes.set_axisbelow(True)
     axes.set_title(title, loc="left", fontsize=7)

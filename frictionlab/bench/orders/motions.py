@@ -32,7 +32,7 @@ _OFF_RESONANCE = Scene(
 """Off resonance; without friction the velocity has the amplitude 35."""
 _COULOMB = Coulomb(mu=0.4)
 _FALLING = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=40.0)
-_DRAGGED = LuGre(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=40.0, presliding_length=5.0)
+_DRAGGED = LuGre(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=40.0, presliding_length=10.0)
 _SOFT, _STIFF = LuGre(mu_kinetic=0.4, presliding_length=5.0), LuGre(mu_kinetic=0.4, presliding_length=0.5)
 
 

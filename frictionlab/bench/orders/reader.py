@@ -12,7 +12,7 @@ from frictionlab.bench.sections import Section, SectionSource
 from frictionlab.study.choices import items
 
 ORDERS_KEYS = ("motions", "steppers", "samples")
-GRIDS_OF_A_STEP = 24
+GRIDS_OF_A_STEP = 40
 Named = TypeVar("Named")
 
 

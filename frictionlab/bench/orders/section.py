@@ -23,8 +23,9 @@ REFERENCE_TOLERANCE = 1e-12
 LEAST_REFERENCE_ERROR = 1e-14
 """What no reference is known better than."""
 ORDERS_CAPTION = (
-    "Errors of the mean friction as a setting is refined: the steeper, the higher the order; the number is the "
-    "fitted slope, in brackets where the range is not asymptotic; a line that levels out has met rounding errors."
+    "Errors of the mean friction; each refinement halves the step or the smoothing width, or asks for a tenth of the "
+    "tolerance. The steeper, the higher the order; the number is the fitted slope over the setting, in brackets and "
+    "with hollow marks where the range is not asymptotic."
 )
 
 

@@ -1,0 +1,139 @@
+"""The picture of a stability map: true error as colour, its regions, and the limits of the step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from frictionlab.bench.chart import save_figure
+from frictionlab.bench.stability.record import StabilityMap, StepLimit
+from frictionlab.charts.figures import PAGE, STYLE
+
+MAP_HEIGHT, WIDEST_MAP = 2.9, 2.6
+BEST, WORST = 1e-9, 1.0
+"""Errors beyond are drawn as these."""
+COLORS_OF_ERRORS = "cividis"
+"""Told apart by the colour-blind, and in grey: dark is right."""
+MEASURED_DOTS = 12
+
+
+def draw_stability(maps: Sequence[StabilityMap], title: str, folder: Path, stem: str) -> None:
+    """Write the picture. Raises OSError."""
+    with mpl.rc_context(STYLE | {"hatch.linewidth": 0.5, "savefig.dpi": 200}):
+        save_figure(stability_figure(maps, title), folder, stem)
+
+
+def stability_figure(maps: Sequence[StabilityMap], title: str) -> Figure:
+    """A panel a problem."""
+    width = min(PAGE, WIDEST_MAP * len(maps) + 1.2)
+    figure = Figure(figsize=(width, MAP_HEIGHT), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = figure.subplots(1, len(maps), squeeze=False)[0]
+    for axes, drawn in zip(panels, maps, strict=True):
+        colors = _draw_map(axes, drawn)
+    figure.colorbar(colors, ax=list(panels), label="true error of the mean friction", extend="both", pad=0.01)
+    figure.suptitle(title, x=0.01, ha="left", fontsize=8, fontweight="bold")
+    figure.legend(handles=_legend(maps), loc="outside lower center", ncols=2, handlelength=2.6)
+    return figure
+
+
+def _draw_map(axes: Axes, drawn: StabilityMap) -> Any:
+    """One panel; rates as they were found at the points."""
+    x, shape = np.array(drawn.settings), (len(drawn.rates), len(drawn.settings))
+    rates = np.array([point.rate for point in drawn.points]).reshape(shape)[:, 0]
+    errors = np.array([point.error for point in drawn.points]).reshape(shape)
+    said = np.array([point.region == "wrong_and_said" for point in drawn.points]).reshape(shape)
+    colors = axes.pcolormesh(
+        x,
+        rates,
+        np.ma.masked_invalid(np.clip(errors, BEST, WORST)),
+        norm=mpl.colors.LogNorm(BEST, WORST),
+        cmap=COLORS_OF_ERRORS,
+        shading="nearest",
+        rasterized=True,
+    )
+    axes.set_facecolor("0.85")
+    if said.any():
+        axes.contourf(x, rates, said.astype(float), [0.5, 1.5], colors="none", hatches=["////"])
+    silent = [point for point in drawn.points if point.region == "wrong_and_silent"]
+    axes.plot(
+        [point.value for point in silent],
+        [point.rate for point in silent],
+        color="white",
+        marker="x",
+        markersize=2.2,
+        markeredgewidth=0.7,
+        linestyle="none",
+        rasterized=True,
+    )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    ends = x.min(), x.max(), rates.min(), rates.max()
+    _draw_limits(axes, drawn, x, rates)
+    axes.set_xlim(ends[0], ends[1])
+    axes.set_ylim(ends[2], ends[3])
+    if drawn.setting == "steps":
+        axes.invert_xaxis()
+    axes.set_xlabel(
+        "steps per period (longer steps to the right)" if drawn.setting == "steps" else "tolerance"
+    )
+    axes.set_ylabel(f"local rate: {drawn.problem.rate_text}")
+    axes.set_title(drawn.problem.title, loc="left", fontsize=7)
+    return colors
+
+
+def _draw_limits(axes: Axes, drawn: StabilityMap, x: Any, rates: Any) -> None:
+    """Where the step taken is as long as the limit; a contour of steps that adapt."""
+    limit, shape = drawn.limit, (len(rates), len(x))
+    reach = np.array([point.step * point.rate for point in drawn.points]).reshape(shape)
+    if math.isfinite(limit.predicted):
+        _contour(axes, x, rates, reach, limit)
+    if math.isfinite(limit.held):
+        held = np.array([point.held for point in drawn.points]).reshape(shape)
+        axes.contour(x, rates, held, [limit.held], colors="red", linestyles="dotted", linewidths=1.2)
+
+
+def _contour(axes: Axes, x: Any, rates: Any, reach: Any, limit: StepLimit) -> None:
+    drawn = axes.contour(
+        x, rates, reach, [limit.predicted], colors="red", linestyles="dashed", linewidths=1.2
+    )
+    measured = (
+        axes.contour(x, rates, reach, [limit.measured], linewidths=0.0) if limit.measured > 0.0 else drawn
+    )
+    for path in measured.get_paths():
+        points = np.asarray(path.vertices)
+        if len(points):
+            every = max(1, len(points) // MEASURED_DOTS)
+            axes.plot(*points[::every].T, color="white", marker="o", markersize=2.5, markeredgecolor="red",
+                      markeredgewidth=0.6, linestyle="none")  # fmt: skip
+
+
+def _legend(maps: Sequence[StabilityMap]) -> list[Any]:
+    """What the pictures of these maps hold."""
+    entries: list[Any] = [
+        Patch(facecolor="white", edgecolor="0.2", hatch="////", label="wrong, and told so"),
+        Line2D([], [], color="0.4", marker="x", linestyle="none", label="wrong without a word"),
+    ]
+    if any(math.isfinite(drawn.limit.predicted) for drawn in maps):
+        entries.append(
+            Line2D([], [], color="red", linestyle="dashed", label="limit of step times rate, predicted")
+        )
+        entries.append(
+            Line2D([], [], color="white", marker="o", markeredgecolor="red", markersize=3, linestyle="none",
+                   label="measured")
+        )  # fmt: skip
+    if any(math.isfinite(drawn.limit.held) for drawn in maps):
+        entries.append(
+            Line2D([], [], color="red", linestyle="dotted", label="limit of a mass held by its bristles")
+        )
+    return entries

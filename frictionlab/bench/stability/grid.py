@@ -1,0 +1,63 @@
+"""The grid of a stability map, and what is known at each of its rates."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.bench.solvers import solve_points
+from frictionlab.bench.stability.problems import PROBLEMS, width_at
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.march.run import MarchRun, MarchState, Resolution
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Scene
+
+BEST_TOLERANCE = 1e-12
+SETTLED_LAPS = 400
+
+
+class KnownState(NamedTuple):
+    """A scene at a rate with its steady state: mean friction and its error, largest slip, where a period begins."""
+
+    scene: Scene
+    law: FrictionLaw
+    mean: float
+    error: float
+    most_slip: float
+    state: MarchState
+
+
+def spaced(ends: tuple[float, float], n: int) -> list[float]:
+    """In equal ratios, ascending."""
+    return [float(value) for value in np.geomspace(min(ends), max(ends), n)]
+
+
+def whole_steps(ends: tuple[float, float], n: int) -> list[int]:
+    """Steps per period in about equal ratios, each once."""
+    return sorted({round(value) for value in spaced(ends, n)})
+
+
+@cache
+def known_state(problem: str, rate: float, smoothed: bool = False) -> KnownState:
+    """By shooting, the state at the start of a period by many small steps; smoothed: of friction smoothed instead."""
+    scene, law = PROBLEMS[problem].at(rate)
+    ready = law.under_load(scene.normal_load or 1.0)
+    if smoothed:
+        pace = Resolution(width=width_at(rate), accuracy=1e-12, enough=1e-10, most=SETTLED_LAPS)
+        run = MarchRun(scene, ready, "smoothed").run(pace)
+        return KnownState(scene, ready, run.mean.real, 1e-9, run.met, run.place)
+    found = solve_points(Shooting(), [scene], law, BEST_TOLERANCE)
+    steps = max(4096, int(8.0 * rate))
+    stepper = "moreau" if problem == "smoothing" else "rk4"
+    run = MarchRun(scene, ready, stepper).run(Resolution(steps=steps, enough=1e-12, most=SETTLED_LAPS))
+    return KnownState(scene, ready, float(found.means[0]), float(found.errors[0]), run.met, run.place)
+
+
+def local_rate(problem: str, known: KnownState, rate: float) -> float:
+    """The rate at the largest slip that is really met, for bristles; else as it was asked for."""
+    if problem != "bristle":
+        return rate
+    law: Any = known.law
+    return float(law.largest_rate(known.most_slip))

@@ -1,0 +1,201 @@
+"""Stability maps: limits of the step against known numbers, regions, and steppers that keep silent when wrong."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import replace
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import pytest
+from profiles import deep
+
+from frictionlab import bench, cli
+from frictionlab.bench.stability import steppers
+from frictionlab.bench.stability.grid import known_state
+from frictionlab.bench.stability.limits import measured_limit, predicted_limit, stepper_limit
+from frictionlab.bench.stability.problems import PROBLEMS
+from frictionlab.bench.stability.record import MapPoint
+from frictionlab.bench.stability.section import StabilityResult, StabilitySection
+from frictionlab.bench.stability.steppers import MAPPED_STEPPERS
+from frictionlab.numerics.richardson import first_error
+from frictionlab.study import StudyError
+
+
+def mapped(name: str, problem: str, grid: int) -> StabilityResult:
+    """A small map of a stepper."""
+    return StabilitySection(MAPPED_STEPPERS[name], (PROBLEMS[problem],), grid).measure(lambda line: None)
+
+
+# --- limits -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("limit", [2.0, 6.394, 300.0])
+def test_the_limit_is_where_a_perturbation_begins_to_grow(limit: float) -> None:
+    assert measured_limit(lambda z: (z / limit) ** 3) == pytest.approx(limit, rel=1e-3)
+
+
+def test_what_never_grows_has_no_limit_and_what_always_grows_no_stable_step() -> None:
+    assert measured_limit(lambda z: 1.0 / (1.0 + z)) == math.inf
+    assert measured_limit(lambda z: 1.0 + z) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("stepper", "theta", "memory", "limit"),
+    [
+        ("rk4", 0.5, "bristle", 2.7853),
+        ("rk4", 0.5, "none", 2.7853),
+        ("moreau", 0.25, "none", 4.0),
+        ("moreau", 0.4, "none", 10.0),
+        ("moreau", 0.5, "none", math.inf),
+        ("moreau", 1.0, "none", math.inf),
+        ("exponential", 0.5, "bristle", math.inf),
+        ("sdirk2", 0.5, "bristle", math.inf),
+        ("smoothed", 0.5, "none", 6.394),
+    ],
+)
+def test_the_step_of_a_stepper_may_be_as_long_as_theory_says(
+    stepper: str, theta: float, memory: str, limit: float
+) -> None:
+    found = stepper_limit(stepper, theta, memory)
+
+    assert found == pytest.approx(limit, rel=0.01)
+    assert predicted_limit("dop853" if stepper == "smoothed" else stepper, theta) == pytest.approx(
+        found, rel=0.01
+    )
+
+
+# --- regions ------------------------------------------------------------------------------------------------------
+
+RIGHT = MapPoint(64.0, 10.0, 0.1, "ok", "", error=1e-5, stated=1e-4)
+
+
+def test_a_point_is_right_wrong_and_said_or_wrong_and_silent() -> None:
+    assert RIGHT.region == "right"
+    assert RIGHT._replace(error=0.1, stated=0.2).region == "wrong_and_said"
+    assert RIGHT._replace(status="refused", error=math.nan, stated=math.nan).region == "wrong_and_said"
+    assert RIGHT._replace(stated=1e-6).region == "wrong_and_silent"
+    assert RIGHT._replace(error=math.nan).region == "wrong_and_silent"
+
+
+def test_an_explicit_stepper_is_refused_beyond_its_limit_and_right_before_it() -> None:
+    (drawn,) = mapped("rk4", "bristle", 6).maps
+
+    assert drawn.counts()["wrong_and_silent"] == 0
+    for point in drawn.points:
+        # the method allows for the motion without friction, which is quicker by some percents
+        if point.step * point.rate > 1.1 * drawn.limit.measured:
+            assert point.region == "wrong_and_said"
+        if point.step * point.rate < 0.5 * drawn.limit.measured and point.value > 100.0:
+            assert point.region == "right"
+
+
+def test_implicit_steps_are_right_wherever_they_are_short_enough_for_the_motion() -> None:
+    (drawn,) = mapped("sdirk2", "bristle", 4).maps
+
+    assert all(point.region == "right" for point in drawn.points if point.value > 100.0)
+    assert any(point.step * point.rate > 100.0 for point in drawn.points)
+
+
+def test_a_theta_that_march_does_not_offer_is_seen_to_fail_beyond_its_own_limit() -> None:
+    (drawn,) = mapped("moreau_0.25", "plane", 8).maps
+
+    assert {point.status for point in drawn.points} == {"refused"}
+    stable = [point.error for point in drawn.points if point.step * point.rate < 0.7 * drawn.limit.measured]
+    beyond = [point.error for point in drawn.points if point.step * point.rate > 1.5 * drawn.limit.measured]
+    assert median(beyond) > 10.0 * median(stable)
+
+
+def test_a_method_that_states_too_little_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    def boasting(*given: Any) -> Any:
+        found = solve(*given)
+        return replace(found, errors=1e-6 * found.errors)
+
+    solve = steppers.solve_points
+    monkeypatch.setattr(steppers, "solve_points", boasting)
+    (drawn,) = mapped("exponential", "bristle", 4).maps
+
+    assert drawn.counts()["wrong_and_silent"] > 4
+
+
+def test_steps_far_too_long_for_the_motion_state_an_error_that_covers() -> None:
+    known = known_state("plane", 1.0)
+    point = MAPPED_STEPPERS["moreau_1"]._point(known, 8, 1.0)  # type: ignore[union-attr]
+
+    assert point.error > 0.01
+    assert point.region == "wrong_and_said"
+
+
+def test_changes_that_fall_slowly_leave_more_to_come() -> None:
+    assert first_error([1.0, 0.5, 0.25]) >= 1.0
+    assert first_error([0.0111, 0.0070, 0.0040]) >= 0.0111
+    assert first_error([1.0, 2.0, 1.5]) == 1.5
+
+
+# --- tables and pictures ------------------------------------------------------------------------------------------
+
+
+def test_the_table_holds_every_point_with_the_limits(tmp_path: Path) -> None:
+    result = mapped("rk4", "bristle", 4)
+    (path,) = result.write(tmp_path)
+
+    with path.open() as file:
+        rows = list(csv.DictReader(file))
+    assert path.name == "stability_rk4.csv"
+    assert len(rows) == 16
+    assert {row["region"] for row in rows} <= {"right", "wrong_and_said", "wrong_and_silent"}
+    assert float(rows[0]["measured_limit"]) == pytest.approx(2.785, rel=0.01)
+    assert float(rows[0]["predicted_limit"]) == 2.785
+    assert "0 wrong and silent; step*rate at most 2.785" in result.summary()
+
+
+@pytest.mark.parametrize("name", ["rk4", "exponential"])
+def test_the_picture_is_drawn_and_says_how_to_read_it(name: str, tmp_path: Path) -> None:
+    (picture,) = mapped(name, "bristle", 4).draw(tmp_path)
+
+    assert picture.file_stem == f"stability_{name}"
+    assert "Colour is the true error" in picture.caption
+    assert (tmp_path / f"stability_{name}.svg").stat().st_size < 250_000
+
+
+def test_the_command_maps_the_steppers_of_a_list(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("list.yaml").write_text(
+        "schema: 1\nstability: {steppers: [exponential, rk4], problems: [bristle], grid: 3}\n"
+    )
+
+    assert cli.main(["bench", "list.yaml", "-o", "out", "--only", "stability_rk4"]) == 0
+
+    assert capsys.readouterr().out.startswith("stability_rk4, bristle: 9 points")
+    assert sorted(path.name for path in Path("out").iterdir()) == [
+        f"stability_rk4.{kind}" for kind in ("csv", "png", "svg")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ("{steppers: [rk5]}", "did you mean 'rk4'"),
+        ("{problems: [bristles]}", "did you mean 'bristle'"),
+        ("{grid: 1}", "must be >= 2"),
+        ("{method: []}", "unknown key"),
+    ],
+)
+def test_a_wrong_request_is_told(given: str, told: str, tmp_path: Path) -> None:
+    (tmp_path / "list.yaml").write_text(f"schema: 1\nstability: {given}\n")
+
+    with pytest.raises(StudyError) as caught:
+        bench.load_bench(tmp_path / "list.yaml")
+    assert told in str(caught.value)
+
+
+@deep("minutes")
+@pytest.mark.parametrize("name", MAPPED_STEPPERS)
+def test_no_stepper_is_wrong_without_a_word(name: str) -> None:
+    for problem in MAPPED_STEPPERS[name].problems():
+        (drawn,) = mapped(name, problem, 40).maps
+        assert [point for point in drawn.points if point.region == "wrong_and_silent"] == []

@@ -23,7 +23,7 @@ from frictionlab.charts.figures import PAGE, STYLE, save_figure
 from frictionlab.columns import ATTRACTORS, word
 from frictionlab.printable import printable
 
-MARKER_OF_PERIOD: dict[int, tuple[str, str]] = {
+MARKERS: dict[int, tuple[str, str]] = {
     1: ("o", "#000000"),
     2: ("s", "#c2410c"),
     3: ("^", "#0369a1"),
@@ -71,38 +71,33 @@ def _figure(rows: pd.DataFrame, title: str) -> Figure:
 
 
 def _look(period: int) -> dict[str, Any]:
-    marker, color = MARKER_OF_PERIOD.get(period, LONGER)
+    marker, color = MARKERS.get(period, LONGER)
     shape = {"marker": marker, "color": color, "markersize": 2.6, "markeredgewidth": 0.7}
     return {**shape, "linestyle": "none", "markerfacecolor": "none" if period > 1 else color}
 
 
 def _draw_means(axes: Axes, states: pd.DataFrame) -> None:
-    several = states[states["period"] != 1]
-    for wild, rows in ((True, several[several["period"] == 0]), (False, several[several["period"] > 1])):
+    wild, longer = states[states["period"] == 0], states[states["period"] > 1]
+    for rows, color, width in ((wild, WILD, 2.0), (longer, "0.85", 0.8)):
         ends = rows["mean_low"], rows["mean_high"]
-        axes.vlines(
-            rows["belt_speed"],
-            *ends,
-            colors=WILD if wild else "0.85",
-            linewidth=2.0 if wild else 0.8,
-            zorder=1,
-        )
+        axes.vlines(rows["belt_speed"], *ends, colors=color, linewidth=width, zorder=1)
     for period, rows in states[states["period"] > 0].groupby("period"):
         axes.plot(rows["belt_speed"], rows["mean_friction"], zorder=3, **_look(int(period)))
 
 
 def _draw_points(axes: Axes, rows: pd.DataFrame) -> None:
     wild = rows[rows["period"] == 0]
-    axes.plot(wild["belt_speed"], wild["x"], ",", color="0.55", zorder=1, rasterized=True)
+    dots: Any = {"marker": "o", "markersize": 0.9, "markeredgewidth": 0.0, "linestyle": "none"}
+    axes.plot(wild["belt_speed"], wild["x"], color="0.55", zorder=1, rasterized=True, **dots)
     for period, points in rows[rows["period"] > 0].groupby("period"):
         axes.plot(points["belt_speed"], points["x"], zorder=3, **_look(int(period)))
 
 
 def _legend(states: pd.DataFrame) -> Iterator[Line2D]:
     found = np.unique(states["period"].to_numpy(dtype=int)).tolist()
-    for period in [each for each in found if each in MARKER_OF_PERIOD]:
+    for period in [each for each in found if each in MARKERS]:
         yield Line2D([], [], label="1 period" if period == 1 else f"{period} periods", **_look(period))
-    if any(period > max(MARKER_OF_PERIOD) for period in found):
-        yield Line2D([], [], label="more", **_look(max(MARKER_OF_PERIOD) + 1))
+    if any(period > max(MARKERS) for period in found):
+        yield Line2D([], [], label="more", **_look(max(MARKERS) + 1))
     if 0 in found:
         yield Line2D([], [], color=WILD, linewidth=2.0, label="does not repeat")

@@ -158,8 +158,8 @@ def write_start(law: Any, body: Body, start: Any, state: Any) -> None:
 
 ARRIVED, VERY_NEAR, FALLEN = -1, 1e-5, 0.1
 """What stands for a number of periods where a motion ends on a known orbit; how near to it is near enough, over its
-size; and to what share the distance must have fallen while it obeyed. Three periods alone are no sign: the motion turns
-about the orbit, and may meet stick, and leave, where it has not been yet."""
+size; and to what share the distance must have fallen while it obeyed. Three periods alone are no sign: the motion
+turns about the orbit, and may meet stick, and leave, where it has not been yet."""
 
 
 def unknown_orbit(size: int) -> KnownOrbit:

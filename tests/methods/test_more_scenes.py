@@ -30,7 +30,8 @@ from scenes_of_every_kind import (
 )
 from scipy.integrate import solve_ivp
 
-from frictionlab import registry
+from frictionlab import registry, steady_state
+from frictionlab.laws.dahl import Dahl
 from frictionlab.methods.auto import Auto
 from frictionlab.scene.scene import Scene
 
@@ -276,3 +277,25 @@ def test_signals_are_those_of_the_contract(drawn):
 
 def test_scenes_of_all_kinds_are_among_the_sixty():
     assert (len(ON_THE_LINE), len(IN_THE_PLANE), len(PRESCRIBED)) == (40, 12, 8)
+
+
+@deep("seconds of steps")
+def test_where_an_orbit_repels_motions_that_never_repeat_have_a_range_of_means():
+    """Bristles of constant contact under a square normal load: the orbit of one period has a multiplier of 1.6."""
+    scene = Scene(
+        damping_ratio=0.17521587733291477,
+        normal_load=0.27365081285124804,
+        normal_load_variation={
+            "waveform": "square",
+            "phase": 193.24079948189194,
+            "amplitude": 0.23361105079360167,
+            "frequency": 2.165853915667782,
+            "contact": "constant",
+        },
+        belt_speed=0.031018767596622785,
+    )
+    state = steady_state(scene, Dahl(mu=0.8690975812796703, presliding_length=0.039844205871870646))
+
+    assert state.status == "not_unique"
+    assert "4 of 4 starts do not repeat" in state.reason
+    assert state.mean_low < 0.85 < 0.92 < state.mean_high

@@ -43,6 +43,8 @@ SOLVED = {
     "scalars": "; mass and memory solved together (Rodas5P)",
 }
 """How the period map treats what the law remembers."""
+SURELY = 1e-6
+"""By how much a multiplier above one is no rounding error."""
 STOPPED = ", and were followed no farther: that took hundreds of thousands of steps, for friction near rest is steep"
 UNDAMPED = "without damping a free oscillation remains, and the state depends on the start"
 HELD_ELASTICALLY = (
@@ -80,8 +82,8 @@ class SteadyStates:
 
     multipliers: NaN where nothing has asked for them. reached: for how many periods the two starts that are quick to
     ask were followed until they ended here, 0 where they do not. tried: starts that all ended here. followed:
-    starts where the answer hangs on all of them. whole: states have every degree of freedom; along the line
-    multipliers across the belt are left out.
+    starts where the answer hangs on all of them. repelling: where an orbit of one period is known that motions leave.
+    whole: states have every degree of freedom; along the line multipliers across the belt are left out.
     """
 
     def __init__(self, scenes: Sequence[Scene], problem: PeriodicProblem) -> None:
@@ -95,6 +97,7 @@ class SteadyStates:
         self.unique = [""] * n
         self.tried: dict[int, Trial] = {}
         self.followed: dict[int, FollowedStarts] = {}
+        self.repelling: set[int] = set()
         self.mean: Complexes = np.full(n, UNKNOWN)
         self.error, self.low, self.high, self.period, self.multipliers, self.seconds = np.full((6, n), np.nan)
         self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.like, complex)
@@ -249,7 +252,7 @@ class SteadyStates:
 
     def _attracts(self, i: int) -> bool:
         """Whether no small disturbance leaves the answer, and both of the cheap starts end there."""
-        return self.status[i] == "ok" and self.reached[i] > 0 and not self._known(i) > 1.0 + 1e-6
+        return self.status[i] == "ok" and self.reached[i] > 0 and not self._known(i) > 1.0 + SURELY
 
     def _holds_elastically(self, i: int) -> bool:
         """Whether on a belt at rest the bristle only follows the mass: nothing then decides about its mean."""
@@ -263,6 +266,8 @@ class SteadyStates:
         if self.states[i] is not None:
             curve, _ = problem.close([scene], self.states[i])
             known = closed_orbit(curve, curve.results[0, :1])
+            if curve.results[0, 3] >= 0.0 and multiplier(curve) > 1.0 + SURELY:
+                self.repelling.add(i)
         self.followed[i] = followed = follow_all(problem, scene, known)
         self.seconds[i] += followed.seconds
         self._judge_starts(i)
@@ -300,7 +305,8 @@ class SteadyStates:
                 self.reason[i] = f"reached from scene.initial; {describe(reached)}"
                 self.unique[i] = NOT_UNIQUE
             return
-        if problem.falls_slowly and all(one.curve is None for one in reached):
+        # Where the orbit of one period is known to repel, motions that never repeat are what they seem.
+        if problem.falls_slowly and i not in self.repelling and all(one.curve is None for one in reached):
             stopped = STOPPED if max(one.followed for one in reached) < FEWEST else ""
             self.reason[i] = f"no steady state found: {describe(reached)}{stopped}"
             return

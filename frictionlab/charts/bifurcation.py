@@ -19,7 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.charts.figures import PAGE, STYLE, save_figure
+from frictionlab.charts.figures import PAGE, STYLE, write_figure
 from frictionlab.columns import ATTRACTORS, word
 from frictionlab.printable import printable
 
@@ -51,7 +51,7 @@ def draw_bifurcations(attractors: pd.DataFrame, title: str, folder: Path) -> lis
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # of a title: an empty box says it
         for name, rows in bifurcations(attractors).items():
             folder.mkdir(parents=True, exist_ok=True)
-            files += save_figure(_figure(rows, printable(title)), folder / name)
+            files += write_figure(_figure(rows, printable(title)), folder / name)
     return files
 
 

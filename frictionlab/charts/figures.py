@@ -105,7 +105,7 @@ def draw_figures(
     with mpl.rc_context(STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # of a title: an empty box says it
         for name, columns in figure_columns(table).items():
-            files += save_figure(_figure(family, columns, printable(title), onsets), folder / name)
+            files += write_figure(_figure(family, columns, printable(title), onsets), folder / name)
     return files
 
 
@@ -123,7 +123,7 @@ def _as_given(columns: Sequence[str], table: pd.DataFrame) -> list[str]:
     return [IN_SI[column] if IN_SI.get(column) in table else column for column in columns]
 
 
-def save_figure(figure: Figure, path: Path) -> list[Path]:
+def write_figure(figure: Figure, path: Path) -> list[Path]:
     """Write a figure as a drawing and as pixels; the files. Raises OSError."""
     svg, png = path.with_suffix(".svg"), path.with_suffix(".png")
     figure.savefig(svg, metadata={"Date": None})

@@ -1,0 +1,143 @@
+"""Starts under friction that falls steeply: states that few of them reach, and every state along a belt speed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from test_falling_friction import Line
+
+import frictionlab as fl
+from frictionlab.methods.periodic.attraction import ARRIVED
+from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.methods.shooting import attractors
+from frictionlab.methods.shooting.followed_states import FROM_ABOVE, follow_states
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.scene.scene import Initial
+
+STEEP = fl.Stribeck(mu_static=0.4, mu_kinetic=0.2, stribeck_exponent=1.0)
+SCENE = fl.Scene(
+    damping_ratio=0.01, normal_load=10.0, belt_speed=0.4, drive=fl.Drive(unbalance=0.2, frequency=1.3)
+)
+STICKS = fl.Scene(
+    damping_ratio=0.0107, normal_load=0.1366, belt_speed=0.1105,
+    drive=fl.Drive(amplitude=0.6194, frequency=0.3485, phase=34.8),
+)  # fmt: skip
+SHARP = fl.Stribeck(mu_static=0.4, mu_kinetic=0.1265, stribeck_speed=0.0181)
+SLIPS = fl.Scene(
+    damping_ratio=0.0138253, normal_load=0.172613, belt_speed=-0.109512,
+    drive=fl.Drive(amplitude=1.31086, frequency=0.501718, phase=76.2182),
+)  # fmt: skip
+WIDE = fl.Stribeck(mu_static=0.4, mu_kinetic=0.175801, stribeck_speed=0.427633, stribeck_exponent=1.0)
+
+
+def at(scene: fl.Scene, speed: float) -> fl.Scene:
+    return scene.model_copy(update={"belt_speed": speed})
+
+
+@pytest.mark.parametrize(
+    ("scene", "law", "means", "finds"),
+    [
+        (STICKS, SHARP, (0.00866, 0.0652), "resting_starts"),
+        (SLIPS, WIDE, (0.003789, -0.002665), "thrown_starts"),
+    ],
+)
+def test_states_that_the_first_starts_miss_are_found(scene, law, means, finds, monkeypatch):
+    answer = Shooting().solve([scene], law, 1e-8)
+
+    assert answer.status == ["not_unique"]
+    assert (answer.mean_low[0], answer.mean_high[0]) == pytest.approx(sorted(means), abs=1e-4)
+    for name in ("resting_starts", "thrown_starts"):
+        monkeypatch.setattr(attractors, name, lambda *_: [])
+    assert Shooting().solve([scene], law, 1e-8).status == ["ok"], f"{finds} are not what finds it"
+
+
+def test_mass_rests_along_the_way_of_the_belt():
+    limit = STICKS.normal_load * 0.4
+    places = [start.x for start in attractors.resting_starts(STICKS, limit, 8)]
+    held = 0.6194 * math.sin(math.radians(34.8)) - 2.0 * 0.0107 * 0.1105 - np.array(places)
+
+    way = min(0.1105 * 2.0 * math.pi / 0.3485, 2.0 * limit)
+    assert np.abs(held).max() <= limit
+    assert np.diff(sorted(places)) == pytest.approx(np.full(7, way / 8))
+    assert limit + held.min() == pytest.approx(
+        way / 16
+    )  # slip begins at the end of the way: friction pushes on
+
+
+def test_an_orbit_of_a_neighbour_is_carried_on(monkeypatch):
+    """One start at each belt speed: the neighbour alone says that there is another state."""
+    monkeypatch.setattr(attractors, "all_starts", lambda *_: ([None], []))
+    slow, fast = at(STICKS, 0.1105), at(STICKS, 0.1165)
+    alone = [Shooting().solve([one], SHARP, 1e-8) for one in (slow, fast)]
+    curve = Shooting().solve([slow, fast], SHARP, 1e-8)
+
+    assert [one.status[0] for one in alone] == ["ok", "ok"]
+    assert alone[1].mean[0] > 5.0 * alone[0].mean[0]
+    assert curve.status[0] == "not_unique"
+    assert curve.mean_high[0] > 5.0 * curve.mean_low[0]
+
+
+def test_a_motion_that_nears_a_known_orbit_is_left_early():
+    drawn = fl.Stribeck(mu_static=0.4, mu_kinetic=0.2, stribeck_speed=1.0)
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10.0, belt_speed=5.0, drive=fl.Drive(unbalance=10.0, frequency=1.0)
+    )
+    problem = PeriodicProblem(scene, drawn, 1e-8)
+    curve, _ = problem.close([scene])
+    orbit = attractors.closed_orbit(curve, curve.results[0, :1])
+    assert orbit is not None
+    start = Initial(x=-30.0, velocity=20.0)
+    whole, short = problem.transient(5.0, start, 500), problem.transient(5.0, start, 500, orbit.known)
+
+    assert (whole.period, short.period) == (1, ARRIVED)
+    assert len(short.means) < 0.7 * len(whole.means)
+    gone = short.state - orbit.known.state, problem.state_at(5.0, start) - orbit.known.state
+    assert np.abs(gone[0]).max() < 0.1 * np.abs(gone[1]).max()
+    assert whole.means[-1] == pytest.approx(orbit.mean, abs=1e-6)
+
+
+@pytest.fixture(scope="module")
+def states():
+    speeds = [0.4, 0.45, 0.5]
+    return follow_states([at(SCENE, speed) for speed in speeds], STEEP, 1e-8, 2)
+
+
+def test_orbits_of_two_and_three_periods_live_side_by_side(states):
+    found = {(one.place, one.period): one for one in states}
+
+    assert set(found) == {(0, 3), (0, 2), (1, 3), (1, 2), (2, 2)}
+    assert found[0, 2].found_from == FROM_ABOVE
+    assert found[0, 3].mean == pytest.approx(0.22298, abs=1e-4)
+    assert all(len(one.x) == len(one.velocity) == one.period for one in states)
+    assert all(one.low < one.mean < one.high for one in states)
+
+
+def test_their_points_follow_each_other_in_an_unrelated_integration(states):
+    for one in states[:2]:
+        line, here = Line(at(SCENE, 0.4), STEEP), []
+        for k in range(one.period):
+            state, t, side = [one.x[k], one.velocity[k], 0.0], 0.0, math.copysign(1.0, one.velocity[k] - 0.4)
+            side = 0.0 if abs(one.velocity[k] - 0.4) < 1e-12 else side
+            while t < line.period * (1.0 - 1e-13):
+                state, t, side = (line.slip if side else line.stick)(state, t, line.period, side)
+            here.append((state[0], state[1]))
+        expected = np.roll(np.column_stack([one.x, one.velocity]), -1, axis=0)
+        assert np.array(here) == pytest.approx(expected, abs=2e-5)
+
+
+def test_python_gets_them_as_a_table():
+    table = fl.attractors(SCENE, STEEP, [0.5, 0.4, 0.45], starts=2)
+
+    assert table["belt_speed"].is_monotonic_increasing
+    assert table.groupby(["belt_speed", "attractor"]).size().tolist() == [3, 2, 3, 2, 2]
+    assert (
+        table.groupby(["belt_speed", "attractor"]).size() == table[table["point"] == 1]["period"].tolist()
+    ).all()
+    alone = fl.attractors(SCENE, fl.Coulomb(mu=0.4), [0.4])
+    mean = fl.steady_state(SCENE, fl.Coulomb(mu=0.4)).mean_friction
+    assert alone["period"].tolist() == [1]
+    assert alone["mean_friction"][0] == pytest.approx(mean, abs=1e-8)
+    with pytest.raises(ValueError, match="starts"):
+        fl.attractors(SCENE, STEEP, [0.4], starts=0)

@@ -1,0 +1,91 @@
+"""The attractors that a study keeps: their file, figure and place in the report, taken over by the next run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+import frictionlab as fl
+from frictionlab import cli
+from frictionlab.charts.bifurcation import bifurcations
+from frictionlab.columns import ATTRACTORS
+from frictionlab.runner import api
+
+STUDY = """
+schema: 1
+scene:
+  damping_ratio: 0.01
+  normal_load: 10
+  belt_speed: 0.4
+  drive: {unbalance: 0.2, frequency: 1.3}
+laws:
+  - {kind: stribeck, mu_static: 0.4, mu_kinetic: 0.2, stribeck_speed: 1, stribeck_exponent: 1}
+methods: [auto, {kind: march, steps: 64}]
+sweep:
+  scene.belt_speed: [0.5, 0.4, 0.45]
+keep: {attractors: 2}
+"""
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("kept")
+    (folder / "study.yaml").write_text(STUDY)
+    assert cli.main(["run", str(folder / "study.yaml"), "-o", str(folder / "out")]) in (0, 3)
+    return folder
+
+
+def test_every_state_is_a_row_per_point_and_only_of_methods_that_follow_motions(ran: Path) -> None:
+    table = pd.read_csv(ran / "out" / "attractors.csv")
+
+    assert list(table.columns[-len(ATTRACTORS) :]) == list(ATTRACTORS)
+    assert set(table["method"]) == {"auto"}
+    assert "scene.belt_speed" not in table
+    assert table["scene.damping_ratio"].unique().tolist() == [0.01]
+    states = table.groupby(["belt_speed", "attractor"])
+    assert states["point"].max().tolist() == states["period"].max().tolist() == [3, 2, 3, 2, 2]
+
+
+def test_the_figure_shows_every_period_in_colour_and_in_grey(ran: Path) -> None:
+    picture = plt.imread(ran / "out" / "figures" / "bifurcation.png")[..., :3]
+    grey = picture @ [0.299, 0.587, 0.114]
+
+    assert (ran / "out" / "figures" / "bifurcation.svg").stat().st_size < 250_000
+    assert np.ptp(picture, axis=2).max() > 0.3
+    assert (grey < 0.55).mean() > 0.005
+
+
+def test_the_report_tells_the_periods(ran: Path) -> None:
+    page = (ran / "out" / "report.html").read_text()
+
+    assert "periods of the response found: 2, 3." in page
+
+
+def test_the_same_study_takes_them_over(ran: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    counts: list[int] = []
+
+    def count(*given: Any) -> pd.DataFrame:
+        counts.append(given[-1])
+        return pd.DataFrame({"law": ["x"]})
+
+    monkeypatch.setattr(api, "attractor_table", count)
+    first = fl.run(ran / "study.yaml", ran / "out")
+    assert counts == []
+    assert first.attractors is not None
+    assert len(first.attractors) == 12
+    fl.run(ran / "study.yaml", ran / "out", ["keep.attractors=3"])
+    assert counts == [3]
+
+
+def test_each_curve_has_a_figure_of_its_own() -> None:
+    rows = pd.DataFrame({"law": ["a", "b", "b"], **{name: [1.0, 2.0, 3.0] for name in ATTRACTORS}})
+
+    assert [len(part) for part in bifurcations(rows).values()] == [1, 2]
+    assert list(bifurcations(rows)) == ["1_bifurcation", "2_bifurcation"]
+    assert list(bifurcations(rows[:1])) == ["bifurcation"]
+    assert bifurcations(rows[:0]) == {}

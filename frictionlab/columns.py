@@ -177,7 +177,7 @@ ONSETS: dict[str, str] = {
 ATTRACTORS: dict[str, str] = {
     "belt_speed": "of the scene, nondimensional",
     "attractor": "number of the state at this belt speed, from 1",
-    "period": "in drive periods; 0 for a motion that does not repeat",
+    "period": "in drive periods, up to 8; 0 for a motion that does not repeat within so many",
     "mean_friction": "mean over the whole period; empty where it does not repeat",
     "error": "bound on its error, estimated",
     "mean_low": "smallest mean over one drive period",

@@ -33,9 +33,9 @@ class Run:
     computed: int
     curves: pd.DataFrame = field(default_factory=pd.DataFrame)
     onsets_made: Callable[[], pd.DataFrame] = pd.DataFrame
-    attractors: pd.DataFrame | None = None
     shown: pd.DataFrame | None = None
     found: Mapping[str, int] | None = None
+    attractors: pd.DataFrame | None = None
 
     @cached_property
     def table(self) -> pd.DataFrame:

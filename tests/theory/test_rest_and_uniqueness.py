@@ -154,11 +154,20 @@ def test_the_theorem_says_when_it_does_not_hold() -> None:
     assert is_unique(pressed(0.99), falls)
     assert not falls_slowly(pressed(1.01), falls)  # under the mean load alone it would
     assert not is_unique(pressed(1.01), falls)
-    assert not is_unique(where.at(0.0), LAW)
+    held = where.at(0.0).model_copy(update={"normal_load": 500.0, "belt_vibration": None})
+    assert not is_unique(held, LAW)
     assert is_convergent(where.at(0.0), LAW)
     assert not is_unique(where.model_copy(update={"damping_ratio": 0.0}), LAW)
     assert not is_unique(where, Dahl(mu=0.5, stiffness=10.0))
     assert not is_unique(Scene(belt_speed=1.0, slip={"velocity_amplitude": 1.0, "frequency": 1.0}), LAW)
+
+
+def test_motions_converge_on_a_belt_of_mean_speed_zero_that_leaves_no_rest() -> None:
+    where = shaken(0.0, "square", (0.0, 0.0, 0.0), damping_ratio=0.15)
+    apart = energies(followed(where, 0.0, 30))
+
+    assert is_unique(where, LAW)
+    assert apart[-1].max() <= 1e-3 * apart[0].min()
 
 
 def test_a_mass_that_rides_on_its_belt_has_more_than_one_motion() -> None:

@@ -43,6 +43,7 @@ RESULTS: dict[str, str] = {
     "energy_contact_error": "bound on the absolute error of energy_contact, estimated",
     "period": "period of the response in drive periods, of an undriven one in units of 2 pi",
     "floquet": "largest modulus of the Floquet multipliers, without the trivial one of an undriven orbit",
+    "floquet_error": "bound on the absolute error of floquet, estimated",
     "normalized_friction": "mean_friction / steady sliding friction at the belt speed",
     "velocity_ratio": "belt_speed / V_lin, the largest friction-free velocity of x1 over the belt's vibration",
     "friction_to_drive": "friction coefficient * normal_load / force amplitude",

@@ -57,7 +57,7 @@ ARROWS = {
         *("methods.base", "methods.exact", "methods.prescribed", "methods.refusals", "methods.shooting"),
     ],
     "methods.auto": ["laws", "methods.base", "methods.exact", "methods.shooting", "scene"],
-    "onsets": ["laws", "methods.base", "orbit", "quantities", "scene", "theory"],
+    "onsets": ["laws", "methods.base", "methods.periodic", "orbit", "quantities", "scene", "theory"],
     "registry": ["faults", "laws", "methods.base"],
     "study": ["columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
     "results": [
@@ -77,7 +77,7 @@ ARROWS = {
             "printable",
             "quantities",
         ),
-        *("registry", "results", "scene", "study"),
+        *("registry", "results", "scene", "study", "theory"),
     ],
     "charts": ["columns", "printable"],
     "report": ["charts", "columns", "registry", "results", "runner", "scene", "study"],

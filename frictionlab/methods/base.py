@@ -24,6 +24,17 @@ def no_orbit(i: int) -> None:
     """Of answers without orbits."""
 
 
+class Multipliers(NamedTuple):
+    """Of each scene the largest modulus of its Floquet multipliers and the bound on its error, NaN where not known.
+
+    reason: why it is empty although there is a motion, else ''.
+    """
+
+    modulus: Floats
+    error: Floats
+    reason: list[str]
+
+
 @dataclass(frozen=True)
 class Answers:
     """What a method found on n scenes that differ in belt speed alone, one entry per scene.
@@ -31,8 +42,9 @@ class Answers:
     mean: friction coefficient, NaN without one; x1 + i x2 where friction has two directions. error: bound on that of
     its x1. period: of the response, in drive periods. mean_low, mean_high, window: where the state is not unique.
     seconds: kernel time. An array left out is empty for every scene.
-    floquet(): largest modulus of the multipliers of each, found when asked for. orbit(i): the orbit of scene i, made
-    when asked for; None without one. orbits(): all of them, where a method makes them together at less cost.
+    floquet(): largest modulus of the multipliers of each, found when asked for, as closely as the method needs it;
+    multipliers(): as the table tells it, with its error; left out, floquet() is told. orbit(i): the orbit of scene i,
+    made when asked for; None without one. orbits(): all of them, where a method makes them together at less cost.
     unique: of ok answers PROVED, with the theorem in their model, TESTED, with the starts in their reason, NOT_UNIQUE
     of a state that only scene.initial chooses, or '' where nothing was asked; left out where nothing ever is.
     balanced: whether orbits obey the equation of motion but for numerical errors; energies of others have no errors.
@@ -46,6 +58,7 @@ class Answers:
     error: Floats
     period: Floats | None = None
     floquet: Callable[[], Floats] | None = field(default=None, repr=False)
+    multipliers: Callable[[], Multipliers] | None = field(default=None, repr=False)
     mean_low: Floats | None = None
     mean_high: Floats | None = None
     window: Floats | None = None

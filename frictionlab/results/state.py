@@ -84,6 +84,7 @@ class SteadyState:
     energy_contact_error: float = NAN
     period: float = NAN
     floquet: float = NAN
+    floquet_error: float = NAN
     normalized_friction: float = NAN
     velocity_ratio: float = NAN
     friction_to_drive: float = NAN

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,27 +18,31 @@ from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.solve import answer
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import Study, StudyCurve
+from frictionlab.theory.uniqueness import is_convergent
 
 if TYPE_CHECKING:
     from frictionlab.onsets.curve import Onset
 
-READ_FOR_ONSETS = ("status", "stick_fraction", "reversals")
-"""The result columns from which onsets are bracketed."""
+OF_REST = ("status", "stick_fraction", "reversals")
+"""The result columns between which stick and reversal begin and end."""
+OF_MULTIPLIERS = ("status", "period", "floquet")
+"""Those between which a multiplier leaves the unit circle."""
+READ_FOR_ONSETS = frozenset([*OF_REST, *OF_MULTIPLIERS])
 _FEWEST = 2000
-"""CurveMotions of all curves together, however few points a run has."""
+"""Motions of all curves together, however few points a run has."""
 _SHARE = 8
 """Points of a run for each motion that is solved for, where they are many."""
 
 
 def onset_table(study: Study, table: pd.DataFrame) -> pd.DataFrame:
-    """One row per onset of the curves of sliding laws, curve by curve in the order of the study.
+    """One row per onset of the curves of driven masses, curve by curve in the order of the study.
 
-    table: that of the run, or its inputs and ``READ_FOR_ONSETS``; without these columns there are no rows. Onsets are
+    table: that of the run, or its inputs and ``READ_FOR_ONSETS``; what lacks columns has no rows. Onsets are
     found between the belt speeds > 0 of a curve.
     """
     keys = curve_inputs(table.columns)
-    curves = [each for each in study.curves() if _has_onsets(each)]
-    if not set(READ_FOR_ONSETS) <= set(table.columns) or not curves or not len(table):
+    curves = [each for each in study.curves() if _is_followed(each)]
+    if not curves or not len(table):
         return _frame([], [], keys)
     points = sum(len(each.rows) for each in curves)
     most = max(_FEWEST, points // _SHARE) // len(curves)
@@ -49,31 +54,64 @@ def onset_table(study: Study, table: pd.DataFrame) -> pd.DataFrame:
     return _frame(found, heads, keys, table)
 
 
-def _has_onsets(curve: StudyCurve) -> bool:
-    """Whether a mass is driven against friction without memory, at more than one belt speed."""
+def _is_followed(curve: StudyCurve) -> bool:
+    """Whether a mass is driven, at more than one belt speed."""
     scene = curve.scenes.scene
-    driven = scene.degrees_of_freedom > 0 and not scene.undriven
-    return driven and len(curve.rows) > 1 and curve.given_law.memory_kind == "none"
+    return scene.degrees_of_freedom > 0 and not scene.undriven and len(curve.rows) > 1
 
 
 def _onsets(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) -> list[Onset]:
+    found = []
+    if curve.given_law.memory_kind == "none" and set(OF_REST) <= set(rows.columns):
+        found += _onsets_of_rest(curve, rows, tolerance, most)
+    if _may_lose_stability(curve) and set(OF_MULTIPLIERS) <= set(rows.columns):
+        found += _onsets_of_multipliers(curve, rows, tolerance, most)
+    return found
+
+
+def _onsets_of_rest(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) -> list[Onset]:
     from frictionlab.onsets.curve import KnownRow, onsets_along  # brings numba: only where it is needed
     from frictionlab.onsets.motions import CurveMotions
 
     speeds = curve.scenes.belt_speeds
-    stick, reversals = (rows[name].to_numpy(dtype=float) for name in READ_FOR_ONSETS[1:])
-    usable = (
-        (rows["status"] == "ok").to_numpy() & (speeds > 0.0) & np.isfinite(stick) & np.isfinite(reversals)
-    )
+    stick, reversals = (rows[name].to_numpy(dtype=float) for name in OF_REST[1:])
     known = {
         float(speeds[i]): KnownRow(float(speeds[i]), stick[i] > 0.0, stick[i] > 0.0 or reversals[i] > 0.0)
-        for i in np.flatnonzero(usable).tolist()
+        for i in np.flatnonzero((rows["status"] == "ok").to_numpy() & (speeds > 0.0)).tolist()
+        if math.isfinite(stick[i]) and math.isfinite(reversals[i])
     }
     ascending = [known[speed] for speed in sorted(known)]
     scene, law, method = curve.scenes.scene, curve.law, curve.method.method
     solve = partial(_solved, curve, tolerance)
     seconds = method.cost(scene, law, tolerance) if method.resolves_events else math.inf
     return onsets_along(CurveMotions(scene, law, solve, seconds), ascending, most)
+
+
+def _may_lose_stability(curve: StudyCurve) -> bool:
+    """Whether no theorem makes every motion attract, and the method closes the motion of one period."""
+    scene, law = curve.scenes.scene, curve.law
+    vectorial = scene.degrees_of_freedom < 2 or law.planar_form() == "vectorial"
+    return curve.method.method.resolves_events and vectorial and not is_convergent(scene, law)
+
+
+def _onsets_of_multipliers(curve: StudyCurve, rows: pd.DataFrame, tolerance: float, most: int) -> list[Onset]:
+    from frictionlab.onsets.multipliers import MOST_CLOSED, StabilityRow, multiplier_onsets
+
+    speeds = curve.scenes.belt_speeds
+    period, modulus = (rows[name].to_numpy(dtype=float) for name in OF_MULTIPLIERS[1:])
+    attracts = (
+        (rows["status"] == "ok").to_numpy() & (period == curve.scenes.scene.periods) & ~(modulus >= 1.0)
+    )
+    answered = (attracts | (rows["status"] == "not_unique").to_numpy() | (modulus >= 1.0)) & (speeds > 0.0)
+    known = {
+        float(speeds[i]): StabilityRow(float(speeds[i]), bool(attracts[i])) for i in np.flatnonzero(answered)
+    }
+    changes = sum(one.attracts != other.attracts for one, other in pairwise(known[v] for v in sorted(known)))
+    if not changes or most < MOST_CLOSED * changes:
+        return []
+    return multiplier_onsets(
+        curve.scenes.scene, curve.law, tolerance, [known[speed] for speed in sorted(known)]
+    )
 
 
 def _solved(curve: StudyCurve, tolerance: float, scenes: Scenes) -> list[tuple[Answers, int]]:

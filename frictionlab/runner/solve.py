@@ -125,8 +125,8 @@ def number_columns(answers: Answers, scenes: Sequence[Scene], wanted: Collection
     if scenes[0].planar:
         found["mean_friction_transverse"] = np.where(np.isnan(answers.mean.real), np.nan, answers.mean.imag)
     found |= {name: _given(getattr(answers, name), nothing) for name in OWN}
-    if "floquet" in wanted and answers.floquet is not None:
-        found["floquet"] = answers.floquet()
+    if "floquet" in wanted or "floquet_error" in wanted:
+        found |= _multipliers(answers)
     if any(name in wanted for name in FROM_ORBITS):
         from frictionlab.orbit.energy_errors import Means
         from frictionlab.orbit.read import read_columns  # brings numba: only where it is needed
@@ -136,6 +136,13 @@ def number_columns(answers: Answers, scenes: Sequence[Scene], wanted: Collection
     spent = time.perf_counter() - seconds_compiling() - start
     found["seconds"] = found["seconds"] + spent / len(scenes)
     return {name: found.get(name, nothing) for name in wanted}
+
+
+def _multipliers(answers: Answers) -> dict[str, Floats]:
+    if answers.multipliers is not None:
+        known = answers.multipliers()
+        return {"floquet": known.modulus, "floquet_error": known.error}
+    return {} if answers.floquet is None else {"floquet": answers.floquet()}
 
 
 def _given(numbers: Floats | None, nothing: Floats) -> Floats:
@@ -151,7 +158,10 @@ def _part(chunk: Chunk, piece: Piece) -> Part:
         if any(name in asked for name in DERIVED):
             derived = derived_columns(scenes, chunk.law, numbers["mean_friction"])
             numbers |= {name: column for name, column in derived.items() if name in asked}
-        return Part(rows, text_columns(piece.answers), numbers, _orbits(chunk, piece))
+        text = text_columns(piece.answers)
+        if "floquet" in asked and piece.answers.multipliers is not None:
+            text["reason"] = _noted(text["reason"], piece.answers.multipliers().reason)
+        return Part(rows, text, numbers, _orbits(chunk, piece))
     except BrokenPlugin:
         raise
     except (Exception, SystemExit) as problem:
@@ -172,6 +182,11 @@ def _unique(answers: Answers) -> list[str]:
         each if status == "ok" else said.get(status, "")
         for status, each in zip(answers.status, told, strict=True)
     ]
+
+
+def _noted(reasons: list[str], notes: list[str]) -> list[str]:
+    """The reasons, with why a number beside them is empty."""
+    return ["; ".join(filter(None, both)) for both in zip(reasons, notes, strict=True)]
 
 
 def _orbits(chunk: Chunk, piece: Piece) -> dict[int, Samples]:

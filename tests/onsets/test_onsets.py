@@ -13,6 +13,7 @@ from profiles import deep
 
 import frictionlab as fl
 from frictionlab import cli
+from frictionlab.onsets.multipliers import how_it_leaves
 from frictionlab.onsets.search import DistanceAt, change_between
 
 LINE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 1, "drive": {"amplitude": 10, "frequency": 1}}
@@ -190,3 +191,33 @@ def test_a_search_goes_round_places_without_an_answer() -> None:
     stopped = change_between(lambda x: None, DistanceAt(0.0, -0.7), DistanceAt(1.0, 0.3), 1e-6, 60)
     assert stopped.stopped is not None
     assert abs(stopped.value - 0.7) <= stopped.error
+
+
+DOUBLING = LINE | {"drive": {"unbalance": 10, "frequency": 1.5}}
+DAMPED = {"kind": "lugre", "mu_kinetic": 0.4, "presliding_length": 10, "contact_damping": 2}
+
+
+def test_a_multiplier_leaves_at_minus_one_where_the_period_doubles() -> None:
+    onsets = fl.run(study(DOUBLING, [11.0, 12.5, 15.0], DAMPED, tolerance=1e-6)).onsets
+
+    assert onsets["onset"].tolist() == ["multiplier_leaves"] * 2
+    assert onsets["how"].tolist() == ["-1", "-1"]
+    assert onsets["belt_speed"].to_numpy() == pytest.approx([11.49954, 13.96066], abs=1e-4)
+    assert (onsets["belt_speed_error"] < 1e-3).all()
+    place, beside = onsets["belt_speed"][0], 10.0 * onsets["belt_speed_error"][0]
+    rows = shown(DOUBLING, DAMPED, [place - beside, place - 2.0 * beside])
+    assert rows["floquet"].is_monotonic_decreasing
+    assert rows["floquet"].between(0.99, 1.0).all()
+
+
+@pytest.mark.parametrize(
+    ("inside", "outside", "how"),
+    [
+        (0.999, 1.001, "+1"),
+        (-0.999, -1.001, "-1"),
+        (0.8 + 0.599j, 0.8 + 0.601j, "complex, at 36.91 degrees"),
+        (0.4, -2.5, "-1: jumps from 0.4 to -2.5"),
+    ],
+)
+def test_how_a_multiplier_leaves(inside: complex, outside: complex, how: str) -> None:
+    assert how_it_leaves(inside, outside) == how

@@ -13,7 +13,7 @@ from pydantic import field_validator
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Method, Status
+from frictionlab.methods.base import NOT_UNIQUE, PROVED, Answers, Method, Multipliers, Status
 from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.forcing import forcing_of, resonates
 from frictionlab.methods.exact.orbit import make_orbits
@@ -35,6 +35,8 @@ REDUCED = (
 )
 PROOF = 3e-3
 """Of a point [s]."""
+SALTATION = 1e-8
+"""Error of multipliers carried through events, absolute or of those above one: rounding, much more than is seen."""
 FARTHEST = np.finfo(np.float64).max
 NO_DAMPING = (
     "without damping and without slip reversal the free oscillation does not decay: the friction is mu at every "
@@ -180,6 +182,7 @@ class _Curve:
             error=self.rows[:, curve.ERROR],
             period=np.where(np.isfinite(mean), float(self.scenes[0].periods), np.nan),
             floquet=self._floquet,
+            multipliers=self._multipliers,
             mean_low=low,
             mean_high=high,
             window=self.window,
@@ -310,6 +313,10 @@ class _Curve:
             return self.rows[:, curve.FLOQUET]
         # x2 obeys x2'' + (2 b2 wr + f/|w|) x2' + wr^2 x2 = 0 along the orbit: no closed form, and not computed.
         return np.full(len(self.scenes), np.nan)
+
+    def _multipliers(self) -> Multipliers:
+        known = self._floquet()
+        return Multipliers(known, SALTATION * np.maximum(known, 1.0), [""] * len(known))
 
     def _orbits(self, places: Sequence[int]) -> Orbits:
         """Of the scenes at these places; without panels where there is none."""

@@ -13,7 +13,7 @@ from frictionlab.methods.periodic.attraction import reached
 from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.fixed_point import ROUNDING, FixedPoint, Goal, fixed_point
 from frictionlab.methods.periodic.monodromy import free_inverse, monodromy
-from frictionlab.methods.periodic.period_map import period_map, size_of
+from frictionlab.methods.periodic.period_map import image_of, period_map, size_of
 from frictionlab.methods.periodic.steady_sliding import NEAR, never_reverses, write_sliding
 from frictionlab.numerics.linalg import copy, norm
 from frictionlab.orbit.recorder import Track, grown, track_of
@@ -168,16 +168,22 @@ def recorded_accuracy(body: Body, goal: Goal) -> float:
 class Wanted(NamedTuple):
     """What of a curve: its orbits closed from a guess, or those of given states; recorded, and their monodromies.
 
+    mapped: nothing else but the given states one period later, by fine maps.
+
     One kernel for all: each entry of its own would be compiled for seconds.
     """
 
     closed: bool
     orbits: bool
     matrices: bool
+    mapped: bool = False
 
 
 CLOSED, DIFFERENTIATED = Wanted(True, False, False), Wanted(True, False, True)
 RECORDED, MULTIPLIERS = Wanted(False, True, False), Wanted(False, False, True)
+MAPPED = Wanted(False, False, False, True)
+FINE = 1e-10
+"""Accuracy of fine maps, of the normal load."""
 
 
 class Curve(NamedTuple):
@@ -207,12 +213,16 @@ def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal,
         matrices = np.full((states.shape[0], states.shape[1], states.shape[1]), np.nan)
     n, size = states.shape
     accuracy = recorded_accuracy(body, goal)
-    ends_there, gradient = np.zeros(n, np.int64), np.empty(size, np.complex128)
+    ends_there, gradient, work = np.zeros(n, np.int64), np.empty(size, np.complex128), np.empty(size)
     track, ends = track_of(128 if wanted.orbits else 0), np.zeros(n, np.int64)
     for i in range(n):
         case = case_of(law, body, belt_speeds[i])
+        if wanted.mapped:
+            image_of(case, states[i].copy(), work, FINE * body.normal_load)
+            for row in range(size):
+                states[i, row] = states[i, row] + work[row]
         # An orbit that was not found has a negative count of maps.
-        if results[i, 3] >= 0.0:
+        elif results[i, 3] >= 0.0:
             if wanted.orbits:
                 track = record_orbit(case, states[i], accuracy, track)
             if wanted.matrices and math.isnan(matrices[i, 0, 0]):

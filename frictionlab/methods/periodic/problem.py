@@ -25,6 +25,7 @@ from frictionlab.methods.periodic.attraction import (
 from frictionlab.methods.periodic.continuation import (
     CLOSED,
     DIFFERENTIATED,
+    MAPPED,
     MULTIPLIERS,
     RECORDED,
     Curve,
@@ -255,6 +256,19 @@ class PeriodicProblem:
     def repeated(self, belt_speed: float, state: Floats, periods: int) -> Transient:
         """An orbit of so many periods, from its state."""
         return self._iterate(belt_speed, state, periods, 1e-9)
+
+    def mapped(self, belt_speeds: Floats, states: Floats) -> Floats:
+        """These states [n, size], each at its belt speed, after all that changes in time has repeated once.
+
+        By fine maps: as close as differences of them need.
+        """
+        body = self.body._replace(periods=self.common)
+        call = KernelCall(self.kernel, self.law)
+        first = body, belt_speeds[:1], states[:1], self.goal, MAPPED
+        found = call.timed(
+            body, belt_speeds, states.copy(), self.goal, MAPPED, points=len(states), first=first
+        )
+        return np.asarray(found[0].states)
 
     def _iterate(
         self,

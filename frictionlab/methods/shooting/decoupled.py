@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers
+from frictionlab.methods.base import Answers, Multipliers
 from frictionlab.methods.periodic.problem import PeriodicProblem, along_the_belt
 from frictionlab.methods.shooting.attractors import multiplier
 from frictionlab.methods.shooting.driven import solve_driven
@@ -84,6 +84,12 @@ def solve_apart(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> 
         own = nothing if along.floquet is None else along.floquet()
         return np.where(ok, np.maximum(own, across.floquet()), own)
 
+    def multipliers() -> Multipliers:
+        known = Multipliers(nothing, nothing, []) if along.multipliers is None else along.multipliers()
+        both = np.where(ok, np.maximum(known.modulus, across.floquet()), known.modulus)
+        # across the belt it is a quotient whose error is not known
+        return Multipliers(both, np.where(both == known.modulus, known.error, np.nan), known.reason)
+
     @cache
     def other() -> Orbit | None:
         return across.orbit()
@@ -99,6 +105,7 @@ def solve_apart(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> 
         mean=along.mean.real + np.complex128(complex(0.0, across.mean)),
         error=np.where(ok, np.fmax(along.error, across.error), along.error),
         floquet=floquet,
+        multipliers=multipliers,
         seconds=(nothing if along.seconds is None else along.seconds) + across.seconds / len(scenes),
         orbit=orbit,
         orbits=None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import reduce
+from functools import cached_property, reduce
 from itertools import pairwise
 from typing import Any
 
@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import NOT_UNIQUE, PROVED, TESTED, Answers, Status
+from frictionlab.methods.base import NOT_UNIQUE, PROVED, TESTED, Answers, Multipliers, Status
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, map_kind
+from frictionlab.methods.periodic.sharpened import ClosedMotion, sharpened
 from frictionlab.methods.shooting.attractors import (
     FEWEST,
     FollowedStarts,
@@ -45,6 +46,8 @@ SOLVED = {
 """How the period map treats what the law remembers."""
 SURELY = 1e-6
 """By how much a multiplier above one is no rounding error."""
+CENTRAL = 1e-6
+"""Error of multipliers by central quotients of a law without memory, absolute or of those above one."""
 STOPPED = ", and were followed no farther: that took hundreds of thousands of steps, for friction near rest is steep"
 UNDAMPED = "without damping a free oscillation remains, and the state depends on the start"
 HELD_ELASTICALLY = (
@@ -102,6 +105,7 @@ class SteadyStates:
         self.error, self.low, self.high, self.period, self.multipliers, self.seconds = np.full((6, n), np.nan)
         self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.like, complex)
         judged_by_multipliers = not problem.goal.contracts or _undamped(scenes[0])
+        self.matrices: list[Floats | None] = [None] * n
         self.wanted = DIFFERENTIATED if judged_by_multipliers else CLOSED
         self.proof = why_unique(scenes[0], problem.law)
         self.near_rest = problem.by_implicit_steps
@@ -139,6 +143,8 @@ class SteadyStates:
         places = np.array(where)[found]
         self._put(places, curve, found)
         self.multipliers[places] = multipliers[found]
+        for row in found if len(curve.matrices) else ():
+            self.matrices[where[row]] = curve.matrices[row]
 
     def _held(self, where: list[int]) -> set[int]:
         """Where friction can hold the mass at all times and the belt is too slow to keep it from rest."""
@@ -217,6 +223,7 @@ class SteadyStates:
             error=self.error,
             period=self.period,
             floquet=self._floquet,
+            multipliers=lambda: self._multipliers,
             mean_low=self.low,
             mean_high=self.high,
             window=np.where(np.isnan(self.low), np.nan, 1.0),
@@ -249,6 +256,28 @@ class SteadyStates:
             ]
             found = np.fmax(found, way.multipliers(self.scenes, unknown))
         return found
+
+    @cached_property
+    def _multipliers(self) -> Multipliers:
+        if self.whole and self.problem.law.count() > 0:
+            return self._sharpened()
+        found = self._floquet()
+        ok = np.array([status == "ok" for status in self.status])
+        error = np.where(ok & ~np.isnan(found), CENTRAL * np.maximum(found, 1.0), np.nan)
+        return Multipliers(found, error, [""] * len(found))
+
+    def _sharpened(self) -> Multipliers:
+        """Of a law with memory, whose monodromies are one-sided quotients."""
+        n = len(self.scenes)
+        modulus, error, reason = self.multipliers.copy(), np.full(n, np.nan), [""] * n
+        motions = {
+            i: ClosedMotion(float(self.belt_speeds[i]), state, matrix)
+            for i, (state, matrix) in enumerate(zip(self.states, self.matrices, strict=True))
+            if self.status[i] == "ok" and state is not None and matrix is not None and matrix.any()
+        }
+        for i, one in zip(motions, sharpened(self.problem, list(motions.values())), strict=True):
+            modulus[i], error[i], reason[i] = one
+        return Multipliers(modulus, error, reason)
 
     def _attracts(self, i: int) -> bool:
         """Whether no small disturbance leaves the answer, and both of the cheap starts end there."""
@@ -298,7 +327,7 @@ class SteadyStates:
         if first.period == 1 and first.curve is not None and (unique or scene.initial is not None):
             self._put(i, first.curve, 0)
             self.status[i], self.states[i] = "ok", first.curve.states[0]
-            self.multipliers[i] = multiplier(first.curve)
+            self.multipliers[i], self.matrices[i] = multiplier(first.curve), first.curve.matrices[0]
             if unique:
                 self.tried[i] = followed.trial
             else:

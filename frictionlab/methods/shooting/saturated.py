@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw, Positive, SlidingLaw
-from frictionlab.methods.base import Answers
+from frictionlab.methods.base import Answers, Multipliers
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.orbit.read import read_columns
 from frictionlab.quantities import Floats
@@ -69,13 +69,18 @@ def solve_saturated(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float)
         own = np.full(len(way), np.nan) if found.floquet is None else found.floquet()
         return np.asarray(np.maximum(own, remaining_share(law, way)))
 
+    def multipliers() -> Multipliers:
+        known = floquet()
+        error = np.full(len(known), np.nan) if found.multipliers is None else found.multipliers().error
+        return Multipliers(known, error, [""] * len(known))
+
     reasons = [
         HELD if status == "not_unique" and scene.belt_speed == 0.0 else reason
         for status, reason, scene in zip(found.status, found.reason, scenes, strict=True)
     ]
     models = [f"{model}; {SATURATED}" for model in found.model]
-    damped = (
-        why_unique(free[0], Saturated(mu=mu)) != ""
-    )  # the theorem then holds for friction that becomes this, too
-    unique = found.unique if damped else None
-    return replace(found, reason=reasons, model=models, floquet=floquet, unique=unique)
+    # The theorem then holds for friction that becomes this, too.
+    unique = found.unique if why_unique(free[0], Saturated(mu=mu)) else None
+    return replace(
+        found, reason=reasons, model=models, floquet=floquet, multipliers=multipliers, unique=unique
+    )

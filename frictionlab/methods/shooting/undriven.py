@@ -57,7 +57,7 @@ PIECE = 1.0 / 32.0
 MOST_PIECES = 200_000
 WORK_OF_A_PIECE = 3
 """What following one costs beside its steps [steps]."""
-ALWAYS = Instant(0.0, 0.0, 1.0)
+EVERY_START = Instant(0.0, 0.0, 1.0)
 """Nothing shakes the mass: what acts on it is the same at every instant."""
 
 
@@ -132,12 +132,12 @@ class _Undriven:
     @cached_property
     def _speed(self) -> float:
         """Of the belt."""
-        return interpreted(belt_velocity)(self._body, self.scene.belt_speed, ALWAYS)
+        return interpreted(belt_velocity)(self._body, self.scene.belt_speed, EVERY_START)
 
     @cached_property
     def _pressed(self) -> float:
         """The normal load."""
-        return interpreted(normal_load)(self._body, ALWAYS)
+        return interpreted(normal_load)(self._body, EVERY_START)
 
     @cached_property
     def _kernel(self) -> KernelCall:
@@ -189,9 +189,9 @@ class _Undriven:
 
     def _force(self, x: float, v: float) -> float:
         """Acceleration of a mass that slips."""
-        w = interpreted(slip)(self._body, self.scene.belt_speed, ALWAYS, v)
+        w = interpreted(slip)(self._body, self.scene.belt_speed, EVERY_START, v)
         friction = math.copysign(self.law.sliding_friction(abs(w)), w)
-        return interpreted(acceleration)(self._body, ALWAYS, x, v, friction)
+        return interpreted(acceleration)(self._body, EVERY_START, x, v, friction)
 
     # --- the ends ---
 
@@ -259,7 +259,9 @@ class _Undriven:
     @property
     def _release(self) -> float:
         """The deflection at which rest ends."""
-        unstretched, _rate, _bend = interpreted(holding_force)(self._body, self.scene.belt_speed, ALWAYS, 0.0)
+        unstretched, _rate, _bend = interpreted(holding_force)(
+            self._body, self.scene.belt_speed, EVERY_START, 0.0
+        )
         limit = self._pressed * friction_at_rest(self.law)
         return (math.copysign(limit, self._speed) + unstretched) / self._mass.stiffness
 

@@ -50,3 +50,40 @@ def test_the_monodromy_is_that_of_finer_maps(law: Any, planar: bool, belt_speed:
     found, known = (np.abs(np.linalg.eigvals(each)).max() for each in (curve.matrices[0], expected))
     assert found == pytest.approx(known, abs=1e-5)
     assert curve.matrices[0] == pytest.approx(expected, abs=3e-4)
+
+
+@pytest.mark.parametrize("law", [pytest.param(DAHL, id="exact path"), pytest.param(LUGRE, id="memory")])
+@pytest.mark.parametrize("belt_speed", [2.0, 20.0])
+def test_the_multiplier_of_the_table_is_within_its_error(law: Any, belt_speed: float) -> None:
+    scene = SCENE.model_copy(update={"belt_speed": belt_speed})
+    row = fl.curve(scene, law, [belt_speed], "shooting", 1e-8, columns=["floquet", "floquet_error"]).iloc[0]
+    problem = PeriodicProblem(scene, law.under_load(10.0), 1e-10)
+    curve, _ = problem.close([scene], wanted=DIFFERENTIATED)
+
+    known = np.abs(np.linalg.eigvals(by_quotients(problem, belt_speed, curve.states[0]))).max()
+
+    assert row["floquet_error"] < 1e-4
+    assert abs(row["floquet"] - known) <= row["floquet_error"] + 1e-8
+    rough = np.abs(np.linalg.eigvals(curve.matrices[0])).max()
+    assert abs(row["floquet"] - known) < 0.1 * abs(rough - known) + 1e-7
+
+
+def test_where_the_map_has_no_derivative_there_is_no_multiplier_but_a_reason() -> None:
+    # number 86 of tests/benchmarks/random_multipliers.py: slip that hardly reverses, on a slow belt
+    drive = fl.Drive(amplitude=0.18977730933120288, frequency=3.7205439413744097, phase=344.0896473998927)
+    scene = fl.Scene(
+        damping_ratio=0.06874662892719423,
+        normal_load=0.6570155620257131,
+        belt_speed=0.05493628650494744,
+        drive=drive,
+    )
+    law = fl.LuGre(
+        mu_kinetic=0.3295774612701697, presliding_length=0.49855881722710593, damping=1.091685038792133
+    )
+
+    row = fl.curve(scene, law, [scene.belt_speed], "shooting", 1e-8).iloc[0]
+
+    assert row["status"] == "ok"
+    assert np.isnan(row["floquet"])
+    assert np.isnan(row["floquet_error"])
+    assert "no multiplier: the period map has no derivative here" in row["reason"]

@@ -13,7 +13,7 @@ import pytest
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.charts.figures import FIGURES
-from frictionlab.columns import CURVES, RESULTS, SI, TEXT
+from frictionlab.columns import CURVES, ONSETS, RESULTS, SI, TEXT
 from frictionlab.mistakes.validation import number_paths, value_paths
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
@@ -125,6 +125,7 @@ def test_the_study_reference_lists_the_columns_of_the_table_in_their_order() -> 
         *RESULTS,
         *SI,
         *measures,
+        *ONSETS,
     ]
 
 

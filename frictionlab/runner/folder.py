@@ -368,7 +368,7 @@ class RunFolder:
     def onsets(self) -> pd.DataFrame | None:
         """The table of onsets of an earlier run; None without an intact one."""
         known = self._onsets.name in self._stamps() and not self._damage(self._onsets.name)
-        return pd.read_csv(self._onsets) if known else None
+        return pd.read_csv(self._onsets, dtype={"how": "str"}) if known else None  # "-1" is a word there
 
     def save_onsets(self, onsets: pd.DataFrame) -> None:
         """Write onsets.csv. Raises SaveError."""

@@ -187,7 +187,7 @@ def _text_table(file: Path) -> pd.DataFrame | None:
     if not file.exists():
         return None
     try:
-        return pd.read_csv(file)
+        return pd.read_csv(file, dtype={"how": "str"})  # "-1" is a word there
     except pd.errors.EmptyDataError:
         return None
     except (OSError, ValueError) as problem:

@@ -215,7 +215,7 @@ def test_a_multiplier_leaves_at_minus_one_where_the_period_doubles() -> None:
     [
         (0.999, 1.001, "+1"),
         (-0.999, -1.001, "-1"),
-        (0.8 + 0.599j, 0.8 + 0.601j, "complex, at 36.91 degrees"),
+        (0.8 + 0.599j, 0.8 + 0.601j, "complex, at 36.92 degrees"),
         (0.4, -2.5, "-1: jumps from 0.4 to -2.5"),
     ],
 )

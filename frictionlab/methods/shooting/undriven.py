@@ -57,7 +57,7 @@ PIECE = 1.0 / 32.0
 MOST_PIECES = 200_000
 WORK_OF_A_PIECE = 3
 """What following one costs beside its steps [steps]."""
-EVERY_START = Instant(0.0, 0.0, 1.0)
+ANY_INSTANT = Instant(0.0, 0.0, 1.0)
 """Nothing shakes the mass: what acts on it is the same at every instant."""
 
 
@@ -132,12 +132,12 @@ class _Undriven:
     @cached_property
     def _speed(self) -> float:
         """Of the belt."""
-        return interpreted(belt_velocity)(self._body, self.scene.belt_speed, EVERY_START)
+        return interpreted(belt_velocity)(self._body, self.scene.belt_speed, ANY_INSTANT)
 
     @cached_property
     def _pressed(self) -> float:
         """The normal load."""
-        return interpreted(normal_load)(self._body, EVERY_START)
+        return interpreted(normal_load)(self._body, ANY_INSTANT)
 
     @cached_property
     def _kernel(self) -> KernelCall:
@@ -189,9 +189,9 @@ class _Undriven:
 
     def _force(self, x: float, v: float) -> float:
         """Acceleration of a mass that slips."""
-        w = interpreted(slip)(self._body, self.scene.belt_speed, EVERY_START, v)
+        w = interpreted(slip)(self._body, self.scene.belt_speed, ANY_INSTANT, v)
         friction = math.copysign(self.law.sliding_friction(abs(w)), w)
-        return interpreted(acceleration)(self._body, EVERY_START, x, v, friction)
+        return interpreted(acceleration)(self._body, ANY_INSTANT, x, v, friction)
 
     # --- the ends ---
 
@@ -260,7 +260,7 @@ class _Undriven:
     def _release(self) -> float:
         """The deflection at which rest ends."""
         unstretched, _rate, _bend = interpreted(holding_force)(
-            self._body, self.scene.belt_speed, EVERY_START, 0.0
+            self._body, self.scene.belt_speed, ANY_INSTANT, 0.0
         )
         limit = self._pressed * friction_at_rest(self.law)
         return (math.copysign(limit, self._speed) + unstretched) / self._mass.stiffness

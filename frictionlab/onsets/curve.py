@@ -23,8 +23,8 @@ _SLOW = 3e-3
 _QUICK = 5e-5
 """Seconds a motion; so quick ones are all looked at."""
 _MOST_IF_QUICK, _MOST, _MOST_IF_STARTS = 96, 48, 24
-"""How many are solved for along a curve: quick ones, others, and those for which starts are compared (at most one
-for four points of the curve)."""
+"""How many are solved for along a curve: quick ones, others, and those for which starts are compared (in the plane at
+most one for four points of the curve)."""
 _NEAR = 0.3
 """DistanceOf from stick below which the motions between two of a kind are looked at, for a window that none shows."""
 _ROUNDING = 1e-12
@@ -80,7 +80,8 @@ class _Search:
         self.compares_starts = not is_convergent(motions.scene, motions.law)
         # where starts are compared a motion costs many times what it does otherwise
         usual = _MOST_IF_STARTS if self.compares_starts else _MOST_IF_QUICK if self.quick else _MOST
-        self.most = min(most, usual, len(rows) // 4 if self.compares_starts else usual)
+        dear = self.compares_starts and motions.scene.planar
+        self.most = min(most, usual, len(rows) // 4 if dear else usual)
         self.end = self._closed_form_end()
 
     @property

@@ -65,7 +65,7 @@ def _solver(
     if tolerance is not None and tolerance <= 0.0:
         notes.add((*path, "tolerance"), f"must be > 0, got {value_text(tolerance)}")
     told = {key: each for key, each in item.items() if key not in OWN_KEYS_OF_CONTENDER}
-    solver = _method(told, path, notes) if head == "methods" else _peer(told, path, notes)
+    solver = _method(told, path, notes) if head == "methods" else peer_of(told, path, notes)
     if solver is None or tolerance is None or notes.below(path):
         return None
     return BenchSetting(varied, float(value) if varied else 0.0, tolerance), solver
@@ -79,7 +79,8 @@ def _method(told: dict[str, Any], path: Path, notes: Notes) -> Method | None:
     return None if choice is None else choice.method
 
 
-def _peer(told: dict[str, Any], path: Path, notes: Notes) -> Peer | None:
+def peer_of(told: dict[str, Any], path: Path, notes: Notes) -> Peer | None:
+    """The peer of an item without tolerance and points; None, noted, where there is a mistake."""
     if "kind" not in told:
         notes.add((*path, "kind"), "required key is missing")
         return None

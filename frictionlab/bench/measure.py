@@ -159,7 +159,7 @@ def _row(
     places = chosen(len(work.scenes), contender.points)
     scenes = [work.scenes[place] for place in places]
     outcome = solve_points(solver, scenes, work.law, setting.tolerance)
-    reference = independent(found, contender.kind if contender.side == "method" else "", places)
+    reference = independent(found, contender.kind, places)
     off, covered = _off(outcome, reference, places)
     answered = [places[i] for i in _solved(outcome)]
     mean, whole = _times(bench, work, setting, solver, answered)

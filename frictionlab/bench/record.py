@@ -48,15 +48,15 @@ class Contender:
 
 @dataclass(frozen=True)
 class ReferenceSource:
-    """The source of reference values: a method at a small tolerance, or values from a file.
+    """The source of reference values: a method or peer at a small tolerance, or values from a file.
 
-    kind: of the method; empty for values, which are by belt speed. tolerance: asked of the method, or the error of
-    the values.
+    kind: of the method or peer; empty for values, which are by belt speed. tolerance: asked of the solver, or the
+    error of the values.
     """
 
     label: str
     kind: str
-    method: Method | None
+    solver: Method | Peer | None
     tolerance: float
     values: dict[float, float]
 

@@ -10,12 +10,20 @@ from typing import Any
 
 import numpy as np
 
+from frictionlab.bench.contenders import peer_of
+from frictionlab.bench.peers.base import Peer
+from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.record import ReferenceMeans, ReferenceSource, Workload
-from frictionlab.bench.solvers import solve_points
+from frictionlab.bench.solvers import SolverAnswers, solve_points
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.mistakes.notes import Notes, Path
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import items, method_choice
 
 REFERENCE_COLUMNS = ("belt_speed", "mean_friction")
+LOOSER = 100.0
+"""Times the tolerance of a peer, for an answer that tells how well the first is known."""
 
 
 def read_references(given: Any, path: Path, file: FilePath, notes: Notes) -> tuple[ReferenceSource, ...]:
@@ -40,10 +48,21 @@ def _trusted(item: Any, path: Path, file: FilePath, notes: Notes) -> ReferenceSo
     if told.get("kind") == "auto":
         notes.add((*path, "kind"), "auto only chooses: name a method it chooses from")
         return None
+    if told.get("kind") in PEERS:
+        return _peer_reference(told, tolerance, path, notes)
     choice = method_choice(told, path, notes)
     if choice is None or tolerance is None:
         return None
     return ReferenceSource(f"{choice.label} at {tolerance:g}", choice.name, choice.method, tolerance, {})
+
+
+def _peer_reference(
+    told: dict[str, Any], tolerance: float | None, path: Path, notes: Notes
+) -> ReferenceSource | None:
+    peer = peer_of(told, path, notes)
+    if peer is None or tolerance is None:
+        return None
+    return ReferenceSource(f"{told.get('label', peer.name)} at {tolerance:g}", peer.name, peer, tolerance, {})
 
 
 def _values(item: dict[str, Any], path: Path, file: FilePath, notes: Notes) -> ReferenceSource | None:
@@ -79,15 +98,31 @@ def reference_means(work: Workload) -> list[ReferenceMeans]:
 
 
 def _reference_means(trusted: ReferenceSource, work: Workload) -> ReferenceMeans:
-    if trusted.method is None:
+    if trusted.solver is None:
         means = np.array([_known(trusted.values, speed) for speed in work.speeds()])
         return ReferenceMeans(
             trusted.label, "", means, np.where(np.isnan(means), math.nan, trusted.tolerance)
         )
-    outcome = solve_points(trusted.method, work.scenes, work.law, trusted.tolerance)
-    good = np.array([status == "ok" for status in outcome.status])
-    means, errors = (np.where(good, column, math.nan) for column in (outcome.means, outcome.errors))
+    outcome = solve_points(trusted.solver, work.scenes, work.law, trusted.tolerance)
+    means, errors = known_means(trusted, outcome, work.scenes, work.law)
     return ReferenceMeans(trusted.label, trusted.kind, means, errors)
+
+
+def known_means(
+    trusted: ReferenceSource, outcome: SolverAnswers, scenes: Sequence[Scene], law: FrictionLaw
+) -> tuple[Floats, Floats]:
+    """What a solver's answers are worth as a reference: means and their errors, NaN where it has no answer.
+
+    A method states its error. That of a peer is taken from asking once more, for ``LOOSER`` times the tolerance: how
+    far that answer is away, and the tolerance itself.
+    """
+    good = np.array(outcome.status) == "ok"
+    errors = outcome.errors
+    if isinstance(trusted.solver, Peer) and good.any():
+        loose = solve_points(trusted.solver, scenes, law, LOOSER * trusted.tolerance)
+        errors = np.abs(loose.means - outcome.means) + trusted.tolerance
+        good &= np.isfinite(errors)
+    return np.where(good, outcome.means, math.nan), np.where(good, errors, math.nan)
 
 
 def _known(values: dict[float, float], speed: float) -> float:
@@ -96,6 +131,6 @@ def _known(values: dict[float, float], speed: float) -> float:
 
 
 def independent(found: Sequence[ReferenceMeans], kind: str, places: Sequence[int]) -> ReferenceMeans | None:
-    """The first reference not made by this kind of method that knows one of these points; kind empty: a peer."""
-    others = (each for each in found if not kind or each.kind != kind)
+    """The first reference not made by this kind of method or peer that knows one of these points."""
+    others = (each for each in found if each.kind != kind)
     return next((each for each in others if np.isfinite(each.means[list(places)]).any()), None)

@@ -65,13 +65,27 @@ def _peer_answers(peer: Peer, scenes: Sequence[Scene], law: FrictionLaw, toleran
     n = len(scenes)
     if (reason := peer.refusal(scenes[0], law)) is not None:
         return SolverAnswers.without("refused", reason, n)
+    if n > 1 and not peer.together:
+        return _joined([_peer_answers(peer, [scene], law, tolerance) for scene in scenes])
     try:
         means = peer.solve(scenes, law, tolerance)
     except Exception as problem:  # another's library may raise anything, and keeps its place all the same
+        if n > 1:  # one scene that fails leaves the others their answers
+            return _joined([_peer_answers(peer, [scene], law, tolerance) for scene in scenes])
         return SolverAnswers.without("failed", str(problem) or type(problem).__name__, n)
     status = ["ok" if good else "failed" for good in np.isfinite(means)]
     reasons = ["" if good else "the answer is no finite number" for good in np.isfinite(means)]
     return SolverAnswers(status, reasons, means, np.full(n, np.nan))
+
+
+def _joined(parts: Sequence[SolverAnswers]) -> SolverAnswers:
+    """Answers of one scene after another."""
+    return SolverAnswers(
+        [status for part in parts for status in part.status],
+        [reason for part in parts for reason in part.reason],
+        np.concatenate([part.means for part in parts]),
+        np.concatenate([part.errors for part in parts]),
+    )
 
 
 def mean_task(

@@ -20,7 +20,9 @@ from frictionlab.bench.measure import Row, WorkloadResult, chosen
 from frictionlab.bench.peers import base
 from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.peers.scipy_bristle import ScipyBristle
+from frictionlab.bench.peers.scipy_steps import ScipySteps
 from frictionlab.bench.report import markdown
+from frictionlab.bench.solvers import solve_points
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.elasto_plastic import ElastoPlastic
@@ -141,6 +143,26 @@ def test_the_reference_and_its_own_error_are_in_the_tables() -> None:
     (record, _) = csv.DictReader(Path("out/A.csv").read_text().splitlines())
     assert (record["reference"], record["reference_error"]) == ("known.csv", "1e-15")
     assert "Reference of off: known.csv, known to 1.0e-15." in Path("out/A.md").read_text()
+
+
+def test_a_peer_may_be_the_reference_known_to_what_a_looser_tolerance_changes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def solve(peer: ScipySteps, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Any:
+        return np.array([0.4 * math.tanh(scene.belt_speed) / 3.0 + 2.0 * tolerance for scene in scenes])
+
+    monkeypatch.setattr(ScipySteps, "solve", solve)
+    own = LIST.replace(
+        "{values: known.csv, error: 1.0e-15}", "{kind: scipy, tolerance: 1.0e-9, label: steps}"
+    )
+    found = measured(own + "    peers: [{kind: scipy, tolerance: 1.0e-6}]\n")
+
+    coarse, _, peer = found.rows
+    assert coarse.reference is not None
+    assert coarse.reference.label == "steps at 1e-09"
+    assert coarse.largest == pytest.approx(1e-3, rel=1e-5)
+    assert coarse.reference.errors == pytest.approx(2.0 * 99e-9 + 1e-9)
+    assert (peer.reference, peer.reason) == (None, "no independent reference")
 
 
 def test_exact_is_measured_against_shooting_and_shooting_against_exact() -> None:
@@ -552,6 +574,24 @@ def test_a_peer_that_gives_up_keeps_its_place(monkeypatch: pytest.MonkeyPatch) -
 
     (row,) = rows_of(found, "scipy")
     assert (row.counts["failed"], row.reason) == (4, "gave up after 100 calls of the equations of motion")
+
+
+@pytest.mark.parametrize("name", ["scipy", "heyoka"])
+def test_a_scene_that_a_peer_gives_up_leaves_the_others_their_answers(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def solve(peer: Any, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Any:
+        if any(scene.belt_speed == 2.0 for scene in scenes):
+            raise ArithmeticError("gave up")
+        return np.array([0.1 for _ in scenes])
+
+    monkeypatch.setattr(PEERS[name], "solve", solve)
+    monkeypatch.setattr(base, "find_spec", lambda name: True)
+
+    found = solve_points(PEERS[name](), [SLIDING.at(speed) for speed in SPEEDS], LAW, 1e-6)
+
+    assert found.status == ["ok", "failed", "ok", "ok"]
+    assert found.reason[1] == "gave up"
 
 
 @pytest.mark.parametrize("name", ["scipy", "scipy_events", "heyoka"])

@@ -14,6 +14,7 @@ import numpy as np
 from frictionlab.bench.failures.record import FailureMap, GridRow
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Contender, ReferenceSource
+from frictionlab.bench.references import known_means
 from frictionlab.bench.solvers import SolverAnswers, solve_points
 from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
@@ -104,37 +105,36 @@ class MapTruth:
         return self._motions if self.known else None
 
     def _known(self, trusted: ReferenceSource) -> KnownMeans:
-        assert trusted.method is not None
-        first = self._motions is None
-        solved = [
-            _with_motion(trusted.method, row, trusted.tolerance, first)
-            for row in (*self.drawn.rows, *self.drawn.named_rows)
+        assert trusted.solver is not None
+        rows = (*self.drawn.rows, *self.drawn.named_rows)
+        if isinstance(trusted.solver, Peer) or self._motions is not None:
+            answers = [solve_points(trusted.solver, row.scenes, row.law, trusted.tolerance) for row in rows]
+        else:
+            solved = [_with_motion(trusted.solver, row, trusted.tolerance) for row in rows]
+            answers = [found for found, _ in solved]
+            self._motions = _motions(np.array([motion for _, motion in solved[: len(self.drawn.rows)]]))
+        pairs = [
+            known_means(trusted, found, row.scenes, row.law) for found, row in zip(answers, rows, strict=True)
         ]
-        if first:
-            motion = np.array([columns for _, columns in solved[: len(self.drawn.rows)]])
-            stick, reversals = motion[:, 0], motion[:, 1]
-            sticks = np.where(np.isnan(stick), np.nan, stick > 0.0)
-            reverses = np.where(np.isnan(reversals), np.nan, (stick > 0.0) | (reversals > 0.0))
-            self._motions = GridMotions(sticks, reverses)
-        good = [np.array(answers.status) == "ok" for answers, _ in solved]
-        pairs = list(zip(good, (answers for answers, _ in solved), strict=True))
         return KnownMeans(
-            trusted.label,
-            trusted.kind,
-            [np.where(ok, answers.means, math.nan) for ok, answers in pairs],
-            [np.where(ok, answers.errors, math.nan) for ok, answers in pairs],
+            trusted.label, trusted.kind, [means for means, _ in pairs], [errors for _, errors in pairs]
         )
 
 
-def _with_motion(
-    method: Method, row: GridRow, tolerance: float, motion: bool
-) -> tuple[SolverAnswers, Floats]:
-    """The answers along a row, and stick fraction and reversals where they are asked for."""
+def _motions(columns: Floats) -> GridMotions:
+    """From the columns of ``MOTION``, on the second axis."""
+    stick, reversals = columns[:, 0], columns[:, 1]
+    sticks = np.where(np.isnan(stick), np.nan, stick > 0.0)
+    return GridMotions(sticks, np.where(np.isnan(reversals), np.nan, (stick > 0.0) | (reversals > 0.0)))
+
+
+def _with_motion(method: Method, row: GridRow, tolerance: float) -> tuple[SolverAnswers, Floats]:
+    """The answers along a row, and the columns of ``MOTION``."""
     n = len(row.scenes)
     found, columns = SolverAnswers.without("failed", "", n), np.full((len(MOTION), n), np.nan)
     for piece in answer(Chunk(np.arange(n), row.scenes, row.law, method, Task(tolerance))):
         found.put(piece.places, piece.answers)
-        if motion and "ok" in piece.answers.status:
+        if "ok" in piece.answers.status:
             read = number_columns(piece.answers, row.scenes.taken(piece.places), MOTION)
             for place, name in enumerate(MOTION):
                 columns[place, piece.places] = read[name]
@@ -162,10 +162,9 @@ def _row(
     truth: MapTruth, contender: Contender, place: int, row: GridRow, outcome: SolverAnswers
 ) -> tuple[PointOutcome, ...]:
     (setting, solver), ratio = contender.solvers[0], row.friction_to_load
-    kind = "" if isinstance(solver, Peer) else contender.kind
     found = []
     for i, speed in enumerate(row.scenes.belt_speeds.tolist()):
-        label, mean, known = _reference_at(truth.known, kind, place, i)
+        label, mean, known = _reference_at(truth.known, contender.kind, place, i)
         status = outcome.status[i]
         off = abs(float(outcome.means[i]) - mean) if status == "ok" else math.nan
         stated = float(outcome.errors[i])
@@ -188,8 +187,8 @@ def _row(
 
 
 def _reference_at(known: Sequence[KnownMeans], kind: str, place: int, i: int) -> tuple[str, float, float]:
-    """The first reference not made by this kind of method that has an answer here: its label, mean and error."""
+    """The first reference not made by this kind of solver that has an answer here: its label, mean and error."""
     for each in known:
-        if (not kind or each.kind != kind) and math.isfinite(each.means[place][i]):
+        if each.kind != kind and math.isfinite(each.means[place][i]):
             return each.label, float(each.means[place][i]), float(each.errors[place][i])
     return "", math.nan, math.nan

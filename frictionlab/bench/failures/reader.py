@@ -45,7 +45,7 @@ def _map(block: Any, path: Path, source: SectionSource) -> tuple[MapTruth, list[
             notes.add((*path, key), "required key is missing")
     name, title = (notes.text(block.get(key, ""), (*path, key)) for key in ("name", "title"))
     references = read_references(block.get("references", []), (*path, "references"), FilePath(), notes)
-    if any(trusted.method is None for trusted in references):
+    if any(trusted.solver is None for trusted in references):
         notes.add((*path, "references"), "give methods: a table of values has no place for a second quantity")
     given = list(contenders(block, path, notes).values())
     _note_several(block, path, given, notes)

@@ -60,6 +60,8 @@ class Peer(Record, ABC):
     name: ClassVar[str]
     package: ClassVar[str]
     remedy: ClassVar[str] = "pip install frictionlab[peers]"
+    together: ClassVar[bool] = False
+    """Whether it solves many scenes at once for less than one after another."""
 
     def missing(self) -> str | None:
         """How to install it where it is not; None where it is."""

@@ -22,6 +22,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.study.choices import items, method_choice
 
 REFERENCE_COLUMNS = ("belt_speed", "mean_friction")
+CAREFUL = 10.0
 LOOSER = 100.0
 """Times the tolerance of a peer, for an answer that tells how well the first is known."""
 
@@ -113,14 +114,15 @@ def known_means(
 ) -> tuple[Floats, Floats]:
     """What a solver's answers are worth as a reference: means and their errors, NaN where it has no answer.
 
-    A method states its error. That of a peer is taken from asking once more, for ``LOOSER`` times the tolerance: how
-    far that answer is away, and the tolerance itself.
+    A method states its error. That of a peer is taken from asking once more, for ``LOOSER`` times the tolerance:
+    ``CAREFUL`` times how far that answer is away, and as often the tolerance. The errors of both are of one size where
+    an integrator gets no nearer, and their difference may be small by chance.
     """
     good = np.array(outcome.status) == "ok"
     errors = outcome.errors
     if isinstance(trusted.solver, Peer) and good.any():
         loose = solve_points(trusted.solver, scenes, law, LOOSER * trusted.tolerance)
-        errors = np.abs(loose.means - outcome.means) + trusted.tolerance
+        errors = CAREFUL * (np.abs(loose.means - outcome.means) + trusted.tolerance)
         good &= np.isfinite(errors)
     return np.where(good, outcome.means, math.nan), np.where(good, errors, math.nan)
 

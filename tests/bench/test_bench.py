@@ -161,7 +161,7 @@ def test_a_peer_may_be_the_reference_known_to_what_a_looser_tolerance_changes(
     assert coarse.reference is not None
     assert coarse.reference.label == "steps at 1e-09"
     assert coarse.largest == pytest.approx(1e-3, rel=1e-5)
-    assert coarse.reference.errors == pytest.approx(2.0 * 99e-9 + 1e-9)
+    assert coarse.reference.errors == pytest.approx(10.0 * (2.0 * 99e-9 + 1e-9))
     assert (peer.reference, peer.reason) == (None, "no independent reference")
 
 

@@ -115,8 +115,8 @@ def known_means(
     """What a solver's answers are worth as a reference: means and their errors, NaN where it has no answer.
 
     A method states its error. That of a peer is taken from asking once more, for ``LOOSER`` times the tolerance:
-    ``CAREFUL`` times how far that answer is away, and as often the tolerance. The errors of both are of one size where
-    an integrator gets no nearer, and their difference may be small by chance.
+    ``CAREFUL`` times how far that answer is away, and as often the tolerance. Where an integrator gets no nearer the
+    errors of both are of one size, and their difference may be small by chance.
     """
     good = np.array(outcome.status) == "ok"
     errors = outcome.errors

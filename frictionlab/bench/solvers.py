@@ -16,13 +16,10 @@ from frictionlab.runner.solve import FROM_METHODS, answer, number_columns
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 
-PEER_SECONDS = 0.05
-"""A first guess of what a point costs a peer."""
-
 
 def seconds_per_point(solver: Method | Peer, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
     """A first guess of what a point costs [s]."""
-    return PEER_SECONDS if isinstance(solver, Peer) else solver.cost(scene, law, tolerance)
+    return solver.seconds if isinstance(solver, Peer) else solver.cost(scene, law, tolerance)
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,11 @@ import pytest
 from profiles import deep
 
 from frictionlab import bench, cli
+from frictionlab.bench.peers import one_period
 from frictionlab.bench.stability import steppers
 from frictionlab.bench.stability.grid import known_state
 from frictionlab.bench.stability.limits import measured_limit, predicted_limit, stepper_limit
+from frictionlab.bench.stability.peers import MAPPED_PEERS, peer_limit
 from frictionlab.bench.stability.problems import PROBLEMS
 from frictionlab.bench.stability.record import MapPoint
 from frictionlab.bench.stability.section import StabilityResult, StabilitySection
@@ -132,6 +134,69 @@ def test_changes_that_fall_slowly_leave_more_to_come() -> None:
     assert first_error([1.0, 0.5, 0.25]) >= 1.0
     assert first_error([0.0111, 0.0070, 0.0040]) >= 0.0111
     assert first_error([1.0, 2.0, 1.5]) == 1.5
+
+
+# --- peers --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("peer", "limit"),
+    [("RK23", 2.513), ("RK45", 3.307), ("DOP853", 6.394), ("Radau", math.inf), ("LSODA", math.inf)],
+)
+def test_the_step_of_a_peer_may_be_as_long_as_theory_says(peer: str, limit: float) -> None:
+    assert peer_limit(peer) == pytest.approx(limit, rel=0.01)
+    assert predicted_limit(peer) == limit
+
+
+def test_heyoka_chooses_steps_too_short_to_be_unstable() -> None:
+    pytest.importorskip("heyoka")
+
+    assert peer_limit("heyoka") == math.inf
+
+
+@pytest.mark.parametrize("problem", ["bristle", "smoothing", "plane"])
+def test_a_peer_finds_the_mean_over_one_period_of_a_known_orbit(problem: str) -> None:
+    section = StabilitySection(MAPPED_PEERS["LSODA"], (PROBLEMS[problem],), 3)
+    (drawn,) = section.measure(lambda line: None).maps
+
+    fine = [point for point in drawn.points if point.value < 1e-8]
+    assert [point.status for point in fine] == ["ok"] * 3
+    assert max(point.error for point in fine) < 2e-7
+
+
+def test_explicit_steps_that_adapt_stay_about_the_limit_where_the_rate_is_large() -> None:
+    known = known_state("plane", 1000.0)
+    point = MAPPED_PEERS["RK45"]._point(known, None, 1e-3, 1000.0)
+
+    assert point.step * point.rate == pytest.approx(3.307, rel=0.1)
+
+
+def test_a_peer_that_gives_up_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(one_period, "MOST_CALLS_OF_A_PERIOD", 50)
+    point = MAPPED_PEERS["RK45"]._point(known_state("bristle", 10.0), None, 1e-6, 10.0)
+
+    assert (point.status, point.region) == ("failed", "wrong_and_said")
+    assert "gave up after 50 calls" in point.reason
+
+
+def test_a_peer_that_is_not_installed_is_told_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(one_period, "find_spec", lambda name: None)
+    result = StabilitySection(MAPPED_PEERS["heyoka"], tuple(PROBLEMS.values()), 3).measure(lambda line: None)
+
+    assert result.summary() == "stability_heyoka: not installed: pip install frictionlab[peers]"
+    assert (result.write(tmp_path), result.draw(tmp_path)) == ([], [])
+
+
+def test_a_list_that_names_steppers_alone_asks_for_no_peers(tmp_path: Path) -> None:
+    (tmp_path / "ours.yaml").write_text("schema: 1\nstability: {steppers: [rk4]}\n")
+    (tmp_path / "theirs.yaml").write_text("schema: 1\nstability: {peers: [RK45]}\n")
+    (tmp_path / "all.yaml").write_text("schema: 1\nstability: true\n")
+
+    assert bench.load_bench(tmp_path / "ours.yaml").names == ["stability_rk4"]
+    assert bench.load_bench(tmp_path / "theirs.yaml").names == ["stability_RK45"]
+    assert len(bench.load_bench(tmp_path / "all.yaml").names) == len(MAPPED_STEPPERS) + len(MAPPED_PEERS)
 
 
 # --- tables and pictures ------------------------------------------------------------------------------------------

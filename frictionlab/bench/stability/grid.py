@@ -16,6 +16,8 @@ from frictionlab.scene.scene import Scene
 
 BEST_TOLERANCE = 1e-12
 SETTLED_LAPS = 400
+FINE_STEPS = {"bristle": 65_536, "smoothing": 4096, "plane": 4096}
+"""Per period, of the run that gives the state; more where slip reverses, which steps meet with order two."""
 
 
 class KnownState(NamedTuple):
@@ -49,7 +51,7 @@ def known_state(problem: str, rate: float, smoothed: bool = False) -> KnownState
         run = MarchRun(scene, ready, "smoothed").run(pace)
         return KnownState(scene, ready, run.mean.real, 1e-9, run.met, run.place)
     found = solve_points(Shooting(), [scene], law, BEST_TOLERANCE)
-    steps = max(4096, int(8.0 * rate))
+    steps = max(FINE_STEPS[problem], int(8.0 * rate))
     stepper = "moreau" if problem == "smoothing" else "rk4"
     run = MarchRun(scene, ready, stepper).run(Resolution(steps=steps, enough=1e-12, most=SETTLED_LAPS))
     return KnownState(scene, ready, float(found.means[0]), float(found.errors[0]), run.met, run.place)

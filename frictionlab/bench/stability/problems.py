@@ -49,8 +49,12 @@ def _smoothing(rate: float) -> tuple[Scene, FrictionLaw]:
 
 
 def _in_the_plane(rate: float) -> tuple[Scene, FrictionLaw]:
-    """Belt speed 1; the transverse load turns the slip by as little as keeps the mass from moving with the belt."""
-    across = Transverse(natural_frequency=1.0, damping_ratio=0.5, load=Load(amplitude=math.sqrt(rate)))
+    """Belt speed 1; the transverse load turns the slip by as little as keeps the mass from moving with the belt.
+
+    The spring across grows with the rate, or the mass would creep to its place within as many periods.
+    """
+    quick = math.sqrt(rate)
+    across = Transverse(natural_frequency=quick, damping_ratio=0.5, load=Load(amplitude=quick))
     scene = Scene(
         damping_ratio=0.5,
         normal_load=rate / MU,

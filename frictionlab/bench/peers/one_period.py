@@ -1,0 +1,155 @@
+"""One period of a motion by solvers of other libraries, at a tolerance, from a given state."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import warnings
+from functools import lru_cache
+from importlib.util import find_spec
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.bench.peers.bristle_motion import BristleMotion
+from frictionlab.bench.peers.scipy_steps import Rates
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Mass
+from frictionlab.scene.scene import Scene
+
+SOLVE_IVP_METHODS = "RK23", "RK45", "DOP853", "Radau", "LSODA"
+MOST_CALLS_OF_A_PERIOD = 200_000
+"""Of the equations of motion."""
+LEAST_RTOL = 3e-14
+HUGE = 1e300
+"""A tolerance at which every step passes."""
+
+
+class PeriodByPeer(NamedTuple):
+    """The mean friction over the period, NaN where the solver gave up, the usual step, and why it gave up."""
+
+    mean: float
+    step: float
+    reason: str
+
+
+class CreepRates(Rates):
+    """The equations of motion along the belt with friction smoothed by tanh over a width."""
+
+    def __init__(self, mass: Mass, friction: float, belt_speed: float, width: float) -> None:
+        super().__init__(mass, friction, belt_speed)
+        self._width, self._load = width, mass.normal_load
+
+    def __call__(self, t: float, y: Floats) -> list[float]:
+        """Of (x1, v1, x2, v2, integral of the friction coefficient)."""
+        self._calls += 1
+        if self._calls > MOST_CALLS_OF_A_PERIOD:
+            raise ArithmeticError(f"gave up after {MOST_CALLS_OF_A_PERIOD} calls of the equations of motion")
+        m = self._mass
+        x, v = float(y[0]), float(y[1])
+        rub = self._friction * math.tanh((v - self._belt_speed) / self._width)
+        drive = (m.force * cmath.exp(1j * m.frequency * t)).imag
+        return [v, drive - m.damping * v - x - self._load * rub, 0.0, 0.0, rub]
+
+
+def rates_of(scene: Scene, law: FrictionLaw, width: float | None) -> Any:
+    """The equations of motion as a user would type them in; width: of smoothed friction, None for what it is."""
+    if law.memory_kind == "bristle":
+        return BristleMotion(scene, law, MOST_CALLS_OF_A_PERIOD)
+    friction = law.sliding_friction(1.0)
+    if width is None:
+        return Rates(scene.mass(), friction, scene.belt_speed)
+    return CreepRates(scene.mass(), friction, scene.belt_speed, width)
+
+
+def by_solve_ivp(solver: str, rates: Any, state: Floats, period: float, tolerance: float) -> PeriodByPeer:
+    """One period; the last number of the state is the integral of the friction coefficient."""
+    from scipy.integrate import solve_ivp
+
+    settings: dict[str, Any] = {"method": solver, "rtol": max(tolerance, LEAST_RTOL), "atol": tolerance}
+    try:
+        with warnings.catch_warnings(action="ignore"), np.errstate(all="ignore"):
+            found = solve_ivp(rates, (0.0, period), state, **settings)
+    except (ArithmeticError, ValueError) as problem:
+        return PeriodByPeer(math.nan, math.nan, str(problem))
+    if found.status < 0:
+        return PeriodByPeer(math.nan, math.nan, f"solve_ivp: {found.message}")
+    return PeriodByPeer(-float(found.y[-1, -1]) / period, float(np.median(np.diff(found.t))), "")
+
+
+def growth_by_solve_ivp(solver: str, z: float) -> float:
+    """What one step of this length, forced on the solver, multiplies y of y' = -y with."""
+    from scipy import integrate
+
+    settings: dict[str, Any] = {"first_step": z, "max_step": z, "rtol": 1e-3, "atol": HUGE}
+    one: Any = getattr(integrate, solver)(lambda t, y: -y, 0.0, np.ones(1), 1e9, **settings)
+    one.step()
+    return abs(float(one.y[0]))
+
+
+def missing_heyoka() -> str | None:
+    """Why heyoka is not there; None when it is."""
+    return None if find_spec("heyoka") else "not installed: pip install frictionlab[peers]"
+
+
+def by_heyoka(
+    scene: Scene, law: FrictionLaw, state: Floats, width: float | None, tolerance: float
+) -> PeriodByPeer:
+    """One period of smoothed friction along the belt, or of slip in the plane."""
+    mass, friction = scene.mass(), law.sliding_friction(1.0)
+    period = 2.0 * math.pi / mass.frequency
+    integrator = _creep(tolerance) if width is not None else _plane(tolerance)
+    along = mass.force.real, mass.damping, mass.normal_load, friction, scene.belt_speed
+    across = mass.transverse_force.real, mass.transverse_damping, mass.transverse_stiffness
+    integrator.pars[:] = (*along, *across) if width is None else (*along, width)
+    integrator.time, integrator.state[:] = 0.0, state
+    outcome, _, _, steps, *_ = integrator.propagate_until(period)
+    mean = -float(integrator.state[-1]) / period
+    if "time_limit" not in str(outcome) or not math.isfinite(mean):
+        return PeriodByPeer(math.nan, math.nan, f"heyoka: {outcome}")
+    return PeriodByPeer(mean, period / max(1, steps), "")
+
+
+def growth_by_heyoka(z: float) -> float:
+    """What one step, at most this long, multiplies y of y' = -y with: it chooses shorter ones."""
+    integrator = _decay_of_heyoka()
+    integrator.state[0] = 1.0
+    integrator.step(max_delta_t=z)
+    return abs(float(integrator.state[0]))
+
+
+@lru_cache(maxsize=1)
+def _decay_of_heyoka() -> Any:
+    import heyoka as hy
+
+    y = hy.make_vars("y")
+    return hy.taylor_adaptive([(y, -y)], [1.0], tol=1e-3)
+
+
+@lru_cache(maxsize=128)
+def _creep(tolerance: float) -> Any:
+    """(x1, v1, x2, v2, integral of the friction coefficient), drive at frequency 1."""
+    import heyoka as hy
+
+    x, v, x2, v2, rubbed = hy.make_vars("x", "v", "x2", "v2", "rubbed")
+    force, damping, load, mu, belt, width = (hy.par[i] for i in range(6))
+    rub = mu * hy.tanh((v - belt) / width)
+    rate = force * hy.sin(hy.time) - damping * v - x - load * rub
+    system = [(x, v), (v, rate), (x2, 0.0 * x2), (v2, 0.0 * v2), (rubbed, rub)]
+    return hy.taylor_adaptive(system, [0.0] * 5, pars=[0.0] * 6, tol=tolerance)
+
+
+@lru_cache(maxsize=128)
+def _plane(tolerance: float) -> Any:
+    """The same of slip in the plane."""
+    import heyoka as hy
+
+    x, v, x2, v2, rubbed = hy.make_vars("x", "v", "x2", "v2", "rubbed")
+    force, damping, load, mu, belt, force_2, damping_2, stiffness_2 = (hy.par[i] for i in range(8))
+    slip = v - belt
+    rub = mu * (slip * slip + v2 * v2) ** -0.5
+    along = force * hy.sin(hy.time) - damping * v - x - load * rub * slip
+    across = force_2 * hy.sin(hy.time) - damping_2 * v2 - stiffness_2 * x2 - load * rub * v2
+    system = [(x, v), (v, along), (x2, v2), (v2, across), (rubbed, rub * slip)]
+    return hy.taylor_adaptive(system, [0.0] * 5, pars=[0.0] * 8, tol=tolerance)

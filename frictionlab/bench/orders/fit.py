@@ -9,13 +9,13 @@ import numpy as np
 
 from frictionlab.quantities import Floats
 
-SETTINGS_OF_A_SLOPE = 4
+SETTINGS_OF_A_SLOPE = 5
 """Settings that a local slope is fitted to: one pair of neighbours says little where errors are irregular."""
 STEADY_SLOPES = 0.12
 """Most that local slopes may differ by where the range is asymptotic."""
 FEWEST_SLOPES = 2
 """Local slopes of an asymptotic range; one more where they are those between neighbours."""
-MOST_SETTINGS = 6
+MOST_SETTINGS = 7
 """Of a fit: the finest ones."""
 FLOOR_OF_ERRORS = 20.0
 """Errors below so many times what the reference is known to are left out."""

@@ -27,7 +27,7 @@ CLOSED_ORBIT = 1e-13
 """Distance from the closed orbit, in the norm of energy."""
 LAPS = 3000
 GOLDEN_PHASE = 0.5 * (math.sqrt(5.0) - 1.0)
-WIDEST, WIDTHS, ACCURACY = 2.0, 10, 1e-12
+WIDEST, WIDTHS, ACCURACY = 2.0, 12, 1e-12
 LOOSEST, TOLERANCES = 1e-2, 9
 
 

@@ -66,16 +66,17 @@ def _draw_map(axes: Axes, drawn: StabilityMap) -> Any:
     if said.any():
         axes.contourf(x, rates, said.astype(float), [0.5, 1.5], colors="none", hatches=["////"])
     silent = [point for point in drawn.points if point.region == "wrong_and_silent"]
-    axes.plot(
-        [point.value for point in silent],
-        [point.rate for point in silent],
-        color="white",
-        marker="x",
-        markersize=2.2,
-        markeredgewidth=0.7,
-        linestyle="none",
-        rasterized=True,
-    )
+    for color, width in (("black", 1.5), ("white", 0.6)):  # seen on dark and on light
+        axes.plot(
+            [point.value for point in silent],
+            [point.rate for point in silent],
+            color=color,
+            marker="x",
+            markersize=2.2,
+            markeredgewidth=width,
+            linestyle="none",
+            rasterized=True,
+        )
     axes.set_xscale("log")
     axes.set_yscale("log")
     ends = x.min(), x.max(), rates.min(), rates.max()
@@ -122,7 +123,7 @@ def _legend(maps: Sequence[StabilityMap]) -> list[Any]:
     """What the pictures of these maps hold."""
     entries: list[Any] = [
         Patch(facecolor="white", edgecolor="0.2", hatch="////", label="wrong, and told so"),
-        Line2D([], [], color="0.4", marker="x", linestyle="none", label="wrong without a word"),
+        Line2D([], [], color="black", marker="x", linestyle="none", label="wrong without a word"),
     ]
     if any(math.isfinite(drawn.limit.predicted) for drawn in maps):
         entries.append(

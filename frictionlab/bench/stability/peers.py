@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
 
@@ -45,10 +44,10 @@ class MappedPeer:
         """Only heyoka may be missing."""
         return missing_heyoka() if self.name == "heyoka" else None
 
-    def map_of(self, problem: StabilityProblem, n: int, tell: Callable[[str], None]) -> StabilityMap:
+    def map_of(self, problem: StabilityProblem, n: int) -> StabilityMap:
         """n tolerances by n rates."""
         rates, tolerances = spaced(problem.rates, n), spaced(problem.tolerances, n)
-        limit = StepLimit(predicted_limit(self.name), peer_limit(self.name), adaptive=True)
+        limit = StepLimit(predicted_limit(self.name), peer_limit(self.name))
         points = []
         for rate in rates:
             known = known_state(problem.name, rate, smoothed=problem.name == "smoothing")

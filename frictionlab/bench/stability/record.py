@@ -45,20 +45,19 @@ class MapPoint(NamedTuple):
 
 @dataclass(frozen=True)
 class StepLimit:
-    """Largest step times rate, infinite where any step will do; adaptive: the integrator chooses its steps.
+    """Largest step times rate, infinite where any step will do.
 
     held: a limit of the step times the frequency of a mass held by its bristles, infinite where there is none.
     """
 
     predicted: float
     measured: float
-    adaptive: bool
     held: float = math.inf
 
 
 @dataclass(frozen=True)
 class StabilityMap:
-    """A grid of points of one stepper on one problem; settings and rates in ascending order, by setting first."""
+    """A grid of points of one stepper on one problem; settings and rates ascend, all settings of a rate together."""
 
     problem: StabilityProblem
     setting: Literal["steps", "tolerance"]

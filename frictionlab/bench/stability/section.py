@@ -37,7 +37,7 @@ class MappedSolver(Protocol):
     def refusal(self) -> str | None:
         """Why it is not there; None when it is."""
 
-    def map_of(self, problem: StabilityProblem, n: int, tell: Callable[[str], None]) -> StabilityMap:
+    def map_of(self, problem: StabilityProblem, n: int) -> StabilityMap:
         """n settings by n rates."""
 
 
@@ -134,7 +134,7 @@ class StabilitySection:
         if missing is None:
             for problem in (each for each in self.problems if each.name in self.mapped.problems()):
                 tell(f"{self.name}: {problem.name}")
-                maps.append(self.mapped.map_of(problem, self.grid, tell))
+                maps.append(self.mapped.map_of(problem, self.grid))
         title = f"Stability of {self.mapped.name}"
         return StabilityResult(
             self.name, title, self.mapped.integrated, maps, missing or "takes none of these problems"

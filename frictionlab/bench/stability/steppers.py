@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,13 +45,12 @@ class MappedStepper:
         known = {"rk4": ["bristle", "plane"], "moreau": ["plane"]}
         return known.get(self.stepper, ["bristle"])
 
-    def map_of(self, problem: StabilityProblem, n: int, tell: Callable[[str], None]) -> StabilityMap:
+    def map_of(self, problem: StabilityProblem, n: int) -> StabilityMap:
         """n steps per period by n rates."""
         rates, steps = spaced(problem.rates, n), whole_steps(problem.steps, n)
         limit = StepLimit(
             predicted_limit(self.stepper, self.theta),
             stepper_limit(self.stepper, self.theta, problem.memory),
-            adaptive=False,
             held=exponential.DECAY if self.stepper == "exponential" else math.inf,
         )
         points = []
@@ -100,12 +98,10 @@ class MappedSmoothing:
         """The one whose rate is that of the smoothing."""
         return ["smoothing"]
 
-    def map_of(self, problem: StabilityProblem, n: int, tell: Callable[[str], None]) -> StabilityMap:
+    def map_of(self, problem: StabilityProblem, n: int) -> StabilityMap:
         """n tolerances by n rates."""
         rates, tolerances = spaced(problem.rates, n), spaced(problem.tolerances, n)
-        limit = StepLimit(
-            predicted_limit("dop853"), stepper_limit("smoothed", 0.5, problem.memory), adaptive=True
-        )
+        limit = StepLimit(predicted_limit("dop853"), stepper_limit("smoothed", 0.5, problem.memory))
         points = [
             self._point(known_state(problem.name, rate), rate, tolerance)
             for rate in rates

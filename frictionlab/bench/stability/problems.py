@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
-from frictionlab.scene.scene import Drive, Load, Scene, Transverse
+from frictionlab.scene.scene import Drive, Initial, Load, Scene, Transverse
 
 MU = 0.4
 _SHAKEN = Scene(damping_ratio=0.5, normal_load=1.0, belt_speed=1.0, drive=Drive(amplitude=4.0, frequency=1.0))
@@ -51,7 +51,8 @@ def _smoothing(rate: float) -> tuple[Scene, FrictionLaw]:
 def _in_the_plane(rate: float) -> tuple[Scene, FrictionLaw]:
     """Belt speed 1; the transverse load turns the slip by as little as keeps the mass from moving with the belt.
 
-    The spring across grows with the rate, or the mass would creep to its place within as many periods.
+    The spring across grows with the rate, or the mass would creep to its place within as many periods; along the belt
+    it starts where the spring balances friction, or the belt would carry it there within as many.
     """
     quick = math.sqrt(rate)
     across = Transverse(natural_frequency=quick, damping_ratio=0.5, load=Load(amplitude=quick))
@@ -61,6 +62,7 @@ def _in_the_plane(rate: float) -> tuple[Scene, FrictionLaw]:
         belt_speed=1.0,
         drive=Drive(amplitude=0.0, frequency=1.0),
         transverse=across,
+        initial=Initial(x=rate),
     )
     return scene, Coulomb(mu=MU)
 

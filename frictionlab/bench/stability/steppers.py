@@ -18,8 +18,8 @@ from frictionlab.methods.march.run import MarchRun, Resolution
 from frictionlab.methods.march.stability import quickest_when_held
 from frictionlab.numerics.steppers import exponential
 
-MOST_PERIODS = 60
-"""That a motion is waited for to repeat: where it is right, it does so in twenty."""
+MOST_PERIODS = 200
+"""That a motion is waited for to repeat: where it is right, it does so in twenty, but for rounding."""
 OFFERED_THETAS = 0.5, 1.0
 
 
@@ -34,7 +34,7 @@ class MappedStepper:
     @property
     def integrated(self) -> str:
         """For the caption."""
-        return "a mass by march until its motion repeats, for 60 periods at most"
+        return "a mass by march until its motion repeats, for 200 periods at most"
 
     def refusal(self) -> str | None:
         """It is always there."""

@@ -268,7 +268,7 @@ def why_not(run: MarchResult) -> str:
             f"still changes by {run.drift:.1e} a period after {run.laps} periods (at most {run.pace.most}); "
             f"give more periods"
         )
-    if run.verdict == TOO_FAST:
+    if run.verdict == TOO_FAST and math.isfinite(run.met):
         return f"slips faster, at {run.met:.3g}, than {run.pace.steps} steps per period are stable for"
     if run.verdict == TOO_STIFF:
         return f"comes to rest, where the law is too stiff for {run.pace.steps} explicit steps per period"

@@ -80,7 +80,7 @@ class MarchedPoint:
     def _give_up(self, last: MarchResult) -> None:
         """Without a steady state: refused where other steps would do, else failed."""
         self.reason = f"the motion {why_not(last)}"
-        if last.verdict == TOO_FAST:
+        if last.verdict == TOO_FAST and math.isfinite(last.met):
             self.status = "refused"
             fewest = math.ceil(steps_needed(self.march, last))
             self.reason = unstable(last.pace.steps, fewest, self.law, self.plan.stepper)

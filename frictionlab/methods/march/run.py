@@ -361,9 +361,10 @@ class MarchRun:
             march.laps.v[a] - march.laps.v[b],
             march.laps.z[a] - march.laps.z[b],
         )
-        across = self.mass.transverse_stiffness * dx.imag**2
-        bent = float(np.dot(self._spring, np.abs(dz) ** 2))
-        return float(math.sqrt(dx.real**2 + across + abs(dv) ** 2 + bent))
+        with np.errstate(over="ignore", invalid="ignore"):  # of a motion that grows without bound
+            across = self.mass.transverse_stiffness * dx.imag**2
+            bent = float(np.dot(self._spring, np.abs(dz) ** 2))
+            return float(np.sqrt(dx.real**2 + across + abs(dv) ** 2 + bent))
 
 
 def _starts_across(scene: Scene) -> bool:

@@ -23,7 +23,7 @@ from frictionlab.charts.figures import PAGE, STYLE, write_figure
 from frictionlab.columns import ATTRACTORS, word
 from frictionlab.printable import printable
 
-MARKERS: dict[int, tuple[str, str]] = {
+PERIOD_MARKERS: dict[int, tuple[str, str]] = {
     1: ("o", "#000000"),
     2: ("s", "#c2410c"),
     3: ("^", "#0369a1"),
@@ -71,7 +71,7 @@ def _figure(rows: pd.DataFrame, title: str) -> Figure:
 
 
 def _look(period: int) -> dict[str, Any]:
-    marker, color = MARKERS.get(period, LONGER)
+    marker, color = PERIOD_MARKERS.get(period, LONGER)
     shape = {"marker": marker, "color": color, "markersize": 2.6, "markeredgewidth": 0.7}
     return {**shape, "linestyle": "none", "markerfacecolor": "none" if period > 1 else color}
 
@@ -95,9 +95,9 @@ def _draw_points(axes: Axes, rows: pd.DataFrame) -> None:
 
 def _legend(states: pd.DataFrame) -> Iterator[Line2D]:
     found = np.unique(states["period"].to_numpy(dtype=int)).tolist()
-    for period in [each for each in found if each in MARKERS]:
+    for period in [each for each in found if each in PERIOD_MARKERS]:
         yield Line2D([], [], label="1 period" if period == 1 else f"{period} periods", **_look(period))
-    if any(period > max(MARKERS) for period in found):
-        yield Line2D([], [], label="more", **_look(max(MARKERS) + 1))
+    if any(period > max(PERIOD_MARKERS) for period in found):
+        yield Line2D([], [], label="more", **_look(max(PERIOD_MARKERS) + 1))
     if 0 in found:
         yield Line2D([], [], color=WILD, linewidth=2.0, label="does not repeat")

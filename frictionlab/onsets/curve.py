@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.onsets.motions import CurveMotions, KindOfMotion
+from frictionlab.onsets.motions import CurveMotions, MotionSeen
 from frictionlab.onsets.search import DistanceAt, change_between
 from frictionlab.theory.linear import friction_free_velocity
 from frictionlab.theory.uniqueness import is_convergent
@@ -74,7 +74,7 @@ class _Search:
 
     def __init__(self, motions: CurveMotions, rows: list[KnownRow], most: int) -> None:
         self.motions, self.rows = motions, rows
-        self.seen: dict[float, KindOfMotion] = {}
+        self.seen: dict[float, MotionSeen] = {}
         self.slow, self.quick = motions.seconds > _SLOW, motions.seconds <= _QUICK
         self.within = _WITHIN_IF_QUICK if self.quick else _WITHIN
         self.compares_starts = not is_convergent(motions.scene, motions.law)
@@ -169,7 +169,7 @@ class _Search:
         return found
 
     def _located(
-        self, name: str, low: KnownRow, high: KnownRow, read: Callable[[KindOfMotion], float]
+        self, name: str, low: KnownRow, high: KnownRow, read: Callable[[MotionSeen], float]
     ) -> Onset:
         if self.left > 2:
             self._see([low.belt_speed, high.belt_speed])
@@ -213,7 +213,7 @@ class _Search:
         return "not located: so many curves leave no more motions to solve for"
 
 
-def _between(before: KindOfMotion, here: KindOfMotion, after: KindOfMotion) -> list[float]:
+def _between(before: MotionSeen, here: MotionSeen, after: MotionSeen) -> list[float]:
     """Belt speeds on both sides of a motion that is nearer the other kind than its neighbours of the same kind."""
     sizes = [abs(each.to_stick) for each in (before, here, after)]
     alike = before.sticks == here.sticks == after.sticks and here.reverses

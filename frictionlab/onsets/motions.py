@@ -24,7 +24,7 @@ _LEAST = 1e-12
 _FINE = interpolation_weights(np.linspace(-1.0, 1.0, 201))
 
 
-class KindOfMotion(NamedTuple):
+class MotionSeen(NamedTuple):
     """What the steady motion at a belt speed shows.
 
     reason: why there is none, '' where there is one. sticks, reverses: whether it rests on the belt; whether its slip
@@ -64,7 +64,7 @@ class CurveMotions:
         if not math.isfinite(self.scale) or self.scale == 0.0:
             self.scale = 1.0
 
-    def at(self, belt_speeds: Sequence[float]) -> list[KindOfMotion]:
+    def at(self, belt_speeds: Sequence[float]) -> list[MotionSeen]:
         """Those at these belt speeds, ascending."""
         if not len(belt_speeds):
             return []
@@ -81,15 +81,15 @@ class CurveMotions:
             for speed, (answers, i) in zip(speeds.tolist(), answered, strict=True)
         ]
 
-    def _of(self, belt_speed: float, answers: Answers, i: int, orbits: Orbits | None) -> KindOfMotion:
+    def _of(self, belt_speed: float, answers: Answers, i: int, orbits: Orbits | None) -> MotionSeen:
         if answers.status[i] != "ok":
-            return KindOfMotion(belt_speed, f"{answers.status[i]}: {answers.reason[i]}")
+            return MotionSeen(belt_speed, f"{answers.status[i]}: {answers.reason[i]}")
         orbit = answers.orbit(i) if orbits is None else orbits.one(i)
         if orbit is None or orbit.stick is None:
-            return KindOfMotion(belt_speed, "the method does not tell rest from slip")
+            return MotionSeen(belt_speed, "the method does not tell rest from slip")
         return self._read(belt_speed, orbit, float(answers.error[i]))
 
-    def _read(self, belt_speed: float, orbit: Orbit, error: float) -> KindOfMotion:
+    def _read(self, belt_speed: float, orbit: Orbit, error: float) -> MotionSeen:
         slip, limit, belt_acceleration = self._contact(belt_speed, orbit)
         rests = np.broadcast_to(np.asarray(orbit.stick)[:, None], slip.shape)
         shares = np.diff(orbit.tau[:, [0, -1]])[:, 0]
@@ -105,7 +105,7 @@ class CurveMotions:
         if sticks and to_reversal >= 0.0:
             # next to the end of reversal, where slip touches zero, the time at rest grows as a square root
             to_reversal = -float((shares[orbit.stick].sum() / shares.sum()) ** 2)
-        return KindOfMotion(belt_speed, "", sticks, sticks or to_reversal < 0.0, to_stick, to_reversal, error)
+        return MotionSeen(belt_speed, "", sticks, sticks or to_reversal < 0.0, to_stick, to_reversal, error)
 
     def _contact(self, belt_speed: float, orbit: Orbit) -> tuple[np.ndarray, Floats, np.ndarray]:
         """Slip, the largest friction coefficient at rest (per mean normal load), acceleration of the belt."""

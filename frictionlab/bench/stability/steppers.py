@@ -18,7 +18,7 @@ from frictionlab.methods.march.run import MarchRun, Resolution
 from frictionlab.methods.march.stability import quickest_when_held
 from frictionlab.numerics.steppers import exponential
 
-MOST_PERIODS = 200
+LONGEST_MARCH = 200
 """That a motion is waited for to repeat: where it is right, it does so in twenty, but for rounding."""
 OFFERED_THETAS = 0.5, 1.0
 
@@ -64,7 +64,7 @@ class MappedStepper:
         if self.stepper == "moreau" and self.theta not in OFFERED_THETAS:
             return self._not_offered(known, steps, rate, step)
         theta = self.theta if self.stepper == "moreau" else None
-        method = March(stepper=self.stepper, theta=theta, steps=steps, periods=MOST_PERIODS)
+        method = March(stepper=self.stepper, theta=theta, steps=steps, periods=LONGEST_MARCH)
         found = solve_points(method, [known.scene], known.law, 1e-6)
         error = abs(float(found.means[0]) - known.mean)
         stated = float(found.errors[0]) + known.error
@@ -72,7 +72,7 @@ class MappedStepper:
         return MapPoint(float(steps), rate, step, found.status[0], found.reason[0], error, stated, held)
 
     def _not_offered(self, known: KnownState, steps: int, rate: float, step: float) -> MapPoint:
-        pace = Resolution(steps=steps, theta=self.theta, enough=1e-9, most=MOST_PERIODS)
+        pace = Resolution(steps=steps, theta=self.theta, enough=1e-9, most=LONGEST_MARCH)
         with np.errstate(all="ignore"):  # beyond its limit it grows without bound
             run = MarchRun(known.scene, known.law, "moreau").run(pace)
         error = abs(run.mean.real - known.mean)

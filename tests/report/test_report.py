@@ -288,6 +288,22 @@ def test_a_point_that_is_ok_with_a_reservation_and_one_that_has_a_range_are_told
     assert second[:3] == ["ok, but", "1", "the error is above the tolerance"]
 
 
+def test_how_it_is_known_that_a_state_is_the_only_one_is_no_trouble(ran: Runner) -> None:
+    saved = ran(sweep={"scene.belt_speed": [1.0, 2.0, 3.0]})
+    saved.table["unique"] = ["proved", "tested", None]
+    saved.table["model"] = "fake; unique: dashpots damp (A & B, 2008) (auto: fake, it is cheap)"
+    saved.table["reason"] = [None, "tested: 2 starts up to 5 apart ended here", None]
+    page = Page(report(saved))
+    head, *rows = page.table("Whether every start ends there")
+
+    assert head == ["unique", "how it is known", "points", "laws"]
+    assert [row[:3] for row in rows] == [
+        ["proved", "dashpots damp (A & B, 2008)", "1 point"],
+        ["tested", "2 starts up to 5 apart ended here", "1 point"],
+    ]
+    assert "None: every point is ok, without reservation." in page.all("main")[0].text
+
+
 def test_a_run_without_trouble_says_so(ran: Runner) -> None:
     assert (
         "None: every point is ok, without reservation."

@@ -63,8 +63,8 @@ def test_starts_are_told_with_their_distance_and_time() -> None:
 
     assert (many.unique, two.unique) == ("tested", "tested")
     told = re.fullmatch(
-        r"tested: (\d) starts up to (\S+) apart ended here, followed for (\d+) periods or more, (\S+) of the slowest "
-        "time constant",
+        r"tested: (\d) starts up to (\S+) apart ended here, the starts followed for (\d+) periods "
+        r"or more, (\S+) of the slowest time constant",
         two.reason,
     )
     assert told is not None

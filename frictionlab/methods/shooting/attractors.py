@@ -71,7 +71,7 @@ class Trial:
     """Starts that all ended in one state: how many, how far apart, followed for how many drive periods at least.
 
     apart [scene velocity]: the largest distance between two of them, a displacement counted as its spring's energy.
-    carried: how many states of neighbouring belt speeds were followed besides.
+    carried: how many states of neighbouring belt speeds were followed besides, for as long as it took.
     """
 
     starts: int
@@ -94,9 +94,8 @@ class Trial:
     def sentence(self, multiplier: float) -> str:
         """For ``reason``; multiplier: the largest of the state, whose decay is the slowest, NaN where not known."""
         told = f"tested: {self.starts} starts up to {self.apart:.3g} apart"
-        told += f" and {self.carried} states of neighbouring belt speeds" if self.carried else ""
-        told += " ended here"
-        told = f"{told}, followed for {self.periods} periods"
+        told += " and the states of neighbouring belt speeds" if self.carried else ""
+        told = f"{told} ended here, the starts followed for {self.periods} periods"
         if math.isnan(multiplier):
             return f"{told} or more"
         constants = self.periods * -math.log(max(multiplier, 1e-300))
@@ -224,14 +223,15 @@ class FollowedStarts:
     def follow(self, start: Initial | None) -> None:
         """To its end, or until it is sure to end on the first known orbit of one period."""
         self._starts.append(start)
-        self.carry(self._problem.state_at(self._scene.belt_speed, start))
+        periods = self.carry(self._problem.state_at(self._scene.belt_speed, start))
+        self._fewest = min(self._fewest, periods)
 
-    def carry(self, state: Floats) -> None:
-        """The same from a state, that of another belt speed for one."""
+    def carry(self, state: Floats) -> int:
+        """The same from a state, that of another belt speed for one; for how many periods it was followed."""
         first = next((one for one in self.known if one.period == 1 and one.curve is not None), None)
         known = None if first is None else first.known
         way = self._problem.carried(self._scene.belt_speed, state, self._patience, known)
-        self.seconds, self._fewest = self.seconds + way.seconds, min(self._fewest, len(way.means))
+        self.seconds += way.seconds
         found = (
             first if way.period == ARRIVED else next((one for one in self.known if _arrived(way, one)), None)
         )
@@ -239,6 +239,7 @@ class FollowedStarts:
             found, more = orbit_at_the_end(self._problem, self._scene, way)
             self.known, self.seconds = [*self.known, found], self.seconds + more
         self.reached.append(found)
+        return len(way.means)
 
 
 def _patience(scene: Scene, law: FrictionLaw, candidate: Attractor | None) -> int:

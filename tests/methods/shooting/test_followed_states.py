@@ -79,6 +79,18 @@ def test_an_orbit_of_a_neighbour_is_carried_on(monkeypatch):
     assert curve.mean_high[0] > 5.0 * curve.mean_low[0]
 
 
+def test_neighbours_are_told_beside_the_starts():
+    falls = fl.Stribeck(mu_kinetic=0.2, mu_static=0.4)
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10.0, belt_speed=5.0, drive=fl.Drive(unbalance=10.0, frequency=1.0)
+    )
+    (alone,) = Shooting().solve([scene], falls, 1e-8).reason
+    one, other = Shooting().solve([scene, at(scene, 5.5)], falls, 1e-8).reason
+
+    assert one == alone.replace("apart", "apart and the states of neighbouring belt speeds")
+    assert "neighbouring" in other
+
+
 def test_a_motion_that_nears_a_known_orbit_is_left_early():
     drawn = fl.Stribeck(mu_static=0.4, mu_kinetic=0.2, stribeck_speed=1.0)
     scene = fl.Scene(

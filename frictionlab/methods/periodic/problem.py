@@ -251,7 +251,7 @@ class PeriodicProblem:
 
     def place(self, belt_speed: float, start: Initial | None) -> tuple[complex, complex]:
         """Position and velocity at which ``transient`` starts."""
-        return self._free_start(belt_speed)[:2] if start is None else self._at(start)
+        return self._free_orbit(belt_speed)[:2] if start is None else self._at(start)
 
     def repeated(self, belt_speed: float, state: Floats, periods: int) -> Transient:
         """An orbit of so many periods, from its state."""
@@ -286,12 +286,17 @@ class PeriodicProblem:
         return Transient(period, means[:count], states[1 : count + 1], states[count], seconds)
 
     def _free_start(self, belt_speed: float) -> tuple[complex, complex, complex]:
-        """On the friction-free orbit; with memory, remembering and shifted as in sliding that never reverses."""
+        """On the friction-free orbit; with memory, remembering as in sliding that never reverses."""
+        x, v, z = self._free_orbit(belt_speed)
+        return x, v, z - memory_of_sliding(self.law, belt_speed)
+
+    def _free_orbit(self, belt_speed: float) -> tuple[complex, complex, complex]:
+        """A place on the friction-free orbit and no deflection; with memory, shifted as in sliding on."""
         remembers = self.law.count() > 0
         friction = self.law.sliding_friction(abs(belt_speed)) if remembers else 0.0
         friction = math.copysign(friction, belt_speed)
         x, v, z = interpreted(state_of_sliding)(self.body, friction, self.like)
-        return x, v, z - memory_of_sliding(self.law, belt_speed)
+        return x, v, z
 
     def _at(self, start: Initial) -> tuple[complex, complex]:
         x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)

@@ -162,10 +162,10 @@ def force_swing(scene: Scene) -> float:
     return max(largest, velocity_scale(scene) / frequency)
 
 
-def quick_starts(problem: PeriodicProblem, scene: Scene) -> list[tuple[complex, complex]]:
+def quick_starts(problem: PeriodicProblem, belt_speed: float) -> list[tuple[complex, complex]]:
     """Position and velocity of the two starts that are followed while a curve is closed: at rest on the belt, and
     sliding as if slip never reversed."""
-    return [(0.0, scene.belt_speed), problem.place(scene.belt_speed, None)]
+    return [(0.0, belt_speed), problem.place(belt_speed, None)]
 
 
 def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | None) -> FollowedStarts:

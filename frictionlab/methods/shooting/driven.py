@@ -167,7 +167,7 @@ class SteadyStates:
             self._clear(i)
             self._leave_open(i, HELD_ELASTICALLY, -most, most)
         elif self.problem.goal.asks and self._attracts(i):
-            at = quick_starts(self.problem, self.scenes[i])
+            at = quick_starts(self.problem, float(self.belt_speeds[i]))
             self.tried[i] = Trial.of(at, self.problem.mass.stiffness, self.reached[i])
         else:
             self._compare_starts(i)

@@ -15,7 +15,12 @@ from frictionlab.study import load_study
 STUDIES = sorted((Path(__file__).parent.parent / "studies").glob("*.yaml"))
 
 
-SLOW = "not_unique_stribeck", "prescribed_curve_shapes_lugre", "popov_contact_stiffness"
+SLOW = (
+    "not_unique_stribeck",
+    "bifurcation_stribeck",
+    "prescribed_curve_shapes_lugre",
+    "popov_contact_stiffness",
+)
 """Studies with kernels that no other test needs."""
 
 

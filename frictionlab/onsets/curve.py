@@ -18,11 +18,13 @@ _WITHIN = 1e-6
 """Width of the bracket that a search ends with, relative to the belt speed."""
 _WITHIN_IF_QUICK = 1e-9
 """The same for motions that are quick to solve for."""
+_WITHIN_IF_STARTS = 1e-5
+"""The same where no theorem makes motions unique, and starts are compared for each."""
 _SLOW = 3e-3
 """Seconds a motion; those that take longer are not solved for again."""
 _QUICK = 5e-5
 """Seconds a motion; so quick ones are all looked at."""
-_MOST_IF_QUICK, _MOST, _MOST_IF_STARTS = 96, 48, 24
+_MOST_IF_QUICK, _MOST, _MOST_IF_STARTS = 96, 48, 36
 """How many are solved for along a curve: quick ones, others, and those for which starts are compared (in the plane at
 most one for four points of the curve)."""
 _NEAR = 0.3
@@ -76,8 +78,10 @@ class _Search:
         self.motions, self.rows = motions, rows
         self.seen: dict[float, MotionSeen] = {}
         self.slow, self.quick = motions.seconds > _SLOW, motions.seconds <= _QUICK
-        self.within = _WITHIN_IF_QUICK if self.quick else _WITHIN
         self.compares_starts = not is_convergent(motions.scene, motions.law)
+        self.within = (
+            _WITHIN_IF_STARTS if self.compares_starts else _WITHIN_IF_QUICK if self.quick else _WITHIN
+        )
         # where starts are compared a motion costs many times what it does otherwise
         usual = _MOST_IF_STARTS if self.compares_starts else _MOST_IF_QUICK if self.quick else _MOST
         dear = self.compares_starts and motions.scene.planar

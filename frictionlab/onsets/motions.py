@@ -100,9 +100,10 @@ class CurveMotions:
         else:
             to_stick = self._distance_from_stick(orbit, slip, limit, belt_acceleration)
         to_reversal = -_largest(slip.real, np.asarray(orbit.stick)) / self.scale
-        if sticks and (self.scene.planar or to_reversal >= 0.0):
+        touches = to_reversal > -_LEAST  # its slip does not reverse but for rounding
+        if sticks and (self.scene.planar or touches):
             to_stick = -(to_stick**2)  # on a line only stick that ends a reversal begins in proportion
-        if sticks and to_reversal >= 0.0:
+        if sticks and touches:
             # next to the end of reversal, where slip touches zero, the time at rest grows as a square root
             to_reversal = -float((shares[orbit.stick].sum() / shares.sum()) ** 2)
         return MotionSeen(belt_speed, "", sticks, sticks or to_reversal < 0.0, to_stick, to_reversal, error)

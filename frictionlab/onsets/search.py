@@ -76,7 +76,12 @@ def _next(below: list[DistanceAt], above: list[DistanceAt], width: float) -> flo
     middle = sum(ends) / len(ends)
     nearer = min(middle - a, b - middle)
     beyond = max(abs(ends[0] - ends[-1]) if len(ends) > 1 else 0.1 * nearer, 0.4 * width)
-    x = middle + beyond if middle - a < b - middle else middle - beyond
+    # no farther than half way to the end of the bracket on the other side
+    x = (
+        middle + min(beyond, 0.5 * (b - middle))
+        if middle - a < b - middle
+        else middle - min(beyond, 0.5 * (middle - a))
+    )
     inside = min(0.45 * width, 0.25 * (b - a))
     return min(max(x, a + inside), b - inside)
 

@@ -39,7 +39,8 @@ class Row:
     model: of a reduced model for its mean friction alone; mean: for the mean friction and its error, of a reduced
     model the price of its error included; whole: with every other column; first: processor time [s] of the
     whole curve where no kernel is compiled yet, NaN where that was not measured. ``covered``: points whose
-    stated error, with the reference's own, covers their error; None for a peer, which states none.
+    stated error, with the reference's own, covers their error; None without a reference, and for a peer, which states
+    none.
     """
 
     contender: Contender
@@ -172,7 +173,7 @@ def _row(
         float(np.max(off)) if off.size else math.nan,
         float(np.median(off)) if off.size else math.nan,
         _largest(outcome.errors),
-        None if contender.side == "peer" else covered,
+        None if contender.side == "peer" or not off.size else covered,
         mean,
         whole,
         reference,
@@ -234,8 +235,8 @@ def _times(
 
 
 def _model_times(bench: Bench, work: Workload, solver: Method | Peer, places: list[int]) -> Times:
-    """Time of a reduced model's mean alone; none of other solvers."""
-    if not places or not isinstance(solver, ReducedModel):
+    """Time of a reduced model's mean alone; none of other solvers, nor of a prescribed slip: nothing is left out."""
+    if not places or not isinstance(solver, ReducedModel) or work.scenes[0].degrees_of_freedom == 0:
         return NO_TIME
     task = model_task(solver, [work.scenes[place] for place in places], work.law)
     task()

@@ -135,7 +135,7 @@ class ReducedModel(Method):
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
         """The mean friction of the model alone, as ``solve`` has it, without its error.
 
-        Of scenes that differ in belt speed alone, none of them refused; NaN where the model has no answer.
+        Of scenes with a mass that differ in belt speed alone, none refused; NaN where the model has no answer.
         """
 
 

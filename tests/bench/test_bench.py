@@ -132,6 +132,7 @@ def test_a_method_is_never_measured_against_its_own_kind() -> None:
     assert {row.reference.kind for row in with_another.rows if row.reference} == {"another"}
     assert with_another.rows[0].largest == pytest.approx(1e-3)
     assert [(row.reference, row.reason) for row in alone.rows] == [(None, "no independent reference")] * 2
+    assert [row.covered for row in alone.rows] == [None] * 2
     assert all(math.isnan(row.largest) for row in alone.rows)
 
 

@@ -124,6 +124,21 @@ def test_finding_its_error_is_what_a_reduced_model_is_slow_for(monkeypatch: pyte
     model_task(Mdsm(), [scene], Coulomb(mu=0.4))()
 
 
+def test_of_a_prescribed_slip_no_model_is_timed_alone(tmp_path: Path) -> None:
+    driven = "{damping_ratio: 0.1, normal_load: 10, drive: {unbalance: 10,"
+    given = LIST.partition("failures:")[0].replace(driven, "{slip: {velocity_amplitude: 10,")
+    (tmp_path / "list.yaml").write_text(
+        given.replace("mdsm, harmonic_balance", "mdsm").replace("heyoka", "scipy")
+    )
+
+    (found,) = bench.measure(bench.load_bench(tmp_path / "list.yaml").only(["W1 dry"]), lambda line: None)
+
+    assert isinstance(found, WorkloadResult)
+    (row,) = (row for row in found.rows if row.contender.label == "mdsm")
+    assert row.counts["ok"] == 3
+    assert row.model.repeats == 0
+
+
 def test_machine_date_and_versions_are_on_the_page_and_in_every_chart(folder: Path, page: Page) -> None:
     told = account.circumstances()
     small = account.small_print()

@@ -44,8 +44,6 @@ from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.uniqueness import falls_slowly
 
 ALONG = "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)"
-PRESCRIBED_TOLERANCE = 1e-9
-"""Of the mean over a prescribed slip where none is asked for."""
 PLANE = "direct separation of motion: quadrature over the friction-free motion"
 
 
@@ -84,9 +82,7 @@ class Mdsm(ReducedModel):
         return answer_steadied(scenes, lambda others: _answer_sines(others, law, tolerance))
 
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
-        """Of the friction-free motion; of a prescribed slip all of it is exact."""
-        if scenes[0].degrees_of_freedom == 0:
-            return _answer_prescribed(scenes, law, PRESCRIBED_TOLERANCE).mean
+        """Of the friction-free motion."""
         if steadied(scenes[0]) is None:
             return waveform_means(scenes, law)
         steady = steadied_all(scenes)

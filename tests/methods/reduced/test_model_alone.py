@@ -10,7 +10,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import ReducedModel
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
 from frictionlab.methods.reduced.mdsm import Mdsm
-from frictionlab.scene.scene import BeltVibration, Slip
+from frictionlab.scene.scene import BeltVibration
 
 COULOMB = fl.Coulomb(mu=0.4)
 LINE = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=1, drive=fl.Drive(unbalance=10, frequency=1))
@@ -23,7 +23,6 @@ PLANE = fl.Scene(
 )
 SHAKEN = LINE.model_copy(update={"belt_vibration": BeltVibration(velocity_amplitude=5)})
 SQUARE = LINE.model_copy(update={"drive": fl.Drive(unbalance=10, frequency=1, waveform="square")})
-PRESCRIBED = fl.Scene(normal_load=1, belt_speed=1, slip=Slip(velocity_amplitude=10, frequency=1))
 
 
 @pytest.mark.parametrize(
@@ -33,7 +32,6 @@ PRESCRIBED = fl.Scene(normal_load=1, belt_speed=1, slip=Slip(velocity_amplitude=
         (Mdsm(), SHAKEN, COULOMB),
         (Mdsm(), SQUARE, COULOMB),
         (Mdsm(), PLANE, COULOMB),
-        (Mdsm(), PRESCRIBED, COULOMB),
         (HarmonicBalance(), LINE, COULOMB),
         (HarmonicBalance(), SHAKEN, COULOMB),
         (HarmonicBalance(), LINE, fl.Dahl(mu=0.4, stiffness=8)),

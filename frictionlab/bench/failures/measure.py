@@ -141,15 +141,15 @@ def _with_motion(method: Method, row: GridRow, tolerance: float) -> tuple[Solver
     return found, columns
 
 
-def measure_map(truth: MapTruth, contender: Contender, tell: Callable[[int], None]) -> MapOutcome:
-    """The map as this solver sees it; tell: how many rows are done, after each."""
+def measure_map(truth: MapTruth, contender: Contender, row_done: Callable[[], None]) -> MapOutcome:
+    """The map as this solver sees it; row_done is called after each row."""
     ((setting, solver),) = contender.solvers
     drawn = truth.drawn
     rows = []
     for place, row in enumerate((*drawn.rows, *drawn.named_rows)):
         outcome = solve_points(solver, row.scenes, row.law, setting.tolerance)
         rows.append(_row(truth, contender, place, row, outcome))
-        tell(place + 1)
+        row_done()
     size = len(drawn.rows)
     named = [
         PointOutcome(**(vars(points[0]) | {"point": point.name}))

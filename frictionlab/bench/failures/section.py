@@ -125,7 +125,7 @@ class FailureSection:
         found = []
         for truth, contender, _ in steps:
             tell(f"{self.name}: {truth.drawn.name} ({forecast})")
-            found.append(measure_map(truth, contender, lambda _: forecast.done()))
+            found.append(measure_map(truth, contender, forecast.done))
         return FailureResult(
             self.name, self.label, first.side, tuple(found), tuple(truth for truth, _, _ in steps)
         )

@@ -16,9 +16,13 @@ from frictionlab.runner.solve import FROM_METHODS, answer, number_columns
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 
+REFUSED_SECONDS = 1e-6
+
 
 def seconds_per_point(solver: Method | Peer, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-    """A first guess of what a point costs [s]."""
+    """A first guess of what a point costs [s]: next to nothing where it is refused."""
+    if solver.refusal(scene, law) is not None:
+        return REFUSED_SECONDS
     return solver.seconds if isinstance(solver, Peer) else solver.cost(scene, law, tolerance)
 
 

@@ -11,6 +11,7 @@ from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
 from frictionlab.bench.failures.measure import OUTCOMES, MapOutcome, MapTruth, PointOutcome, measure_map
+from frictionlab.bench.failures.record import GridRow
 from frictionlab.bench.forecast import Expected, Forecast
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Contender
@@ -113,27 +114,23 @@ class FailureSection:
         for truth, _ in self.maps:
             tell(f"{self.name}: {truth.drawn.name}, references")
             truth.known  # noqa: B018
-        steps = [
-            (truth, contender, len(truth.drawn.rows) + len(truth.drawn.points))
-            for truth, contender in self.maps
-        ]
         forecast = Forecast(
-            Expected(truth.drawn.name, _seconds(truth, contender))
-            for truth, contender, rows in steps
-            for _ in range(rows)
+            Expected(truth.drawn.name, _seconds(row, contender))
+            for truth, contender in self.maps
+            for row in (*truth.drawn.rows, *truth.drawn.named_rows)
         )
         found = []
-        for truth, contender, _ in steps:
+        for truth, contender in self.maps:
             tell(f"{self.name}: {truth.drawn.name} ({forecast})")
             found.append(measure_map(truth, contender, forecast.done))
         return FailureResult(
-            self.name, self.label, first.side, tuple(found), tuple(truth for truth, _, _ in steps)
+            self.name, self.label, first.side, tuple(found), tuple(truth for truth, _ in self.maps)
         )
 
 
-def _seconds(truth: MapTruth, contender: Contender) -> float:
+def _seconds(row: GridRow, contender: Contender) -> float:
     """A guess of what a row of a map costs."""
-    (setting, solver), row = contender.solvers[0], truth.drawn.rows[0]
+    setting, solver = contender.solvers[0]
     return seconds_per_point(solver, row.scenes[-1], row.law, setting.tolerance) * len(row.scenes)
 
 

@@ -50,7 +50,10 @@ def fit_order(sizes: Floats, errors: Floats, known: float) -> Fit:
             begin = last - points + 2 - len(steady)
             order = _slope(x, y, begin, last)
             return Fit(order, max(abs(slope - order) for slope in steady), begin, last, True)
-    order, points = _slope(x, y, first, last), min(SETTINGS_OF_A_SLOPE, last - first + 1)
+    order, points = (
+        _slope(x, y, first, last),
+        SETTINGS_OF_A_SLOPE if last - first > SETTINGS_OF_A_SLOPE else 2,
+    )
     slopes = [_slope(x, y, at, at + points - 1) for at in range(first, last - points + 2)]
     return Fit(order, max(abs(slope - order) for slope in slopes), first, last, False)
 

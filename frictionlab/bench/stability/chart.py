@@ -25,6 +25,8 @@ BEST, WORST = 1e-9, 1.0
 COLORS_OF_ERRORS = "cividis"
 """Told apart by the colour-blind, and in grey: dark is right."""
 MEASURED_DOTS = 12
+NEAR_LIMIT = 0.85
+"""Steps that adapt hover about the limit: drawn is where they first come so near."""
 
 
 def draw_stability(maps: Sequence[StabilityMap], title: str, folder: Path, stem: str) -> None:
@@ -94,11 +96,12 @@ def _draw_map(axes: Axes, drawn: StabilityMap) -> Any:
 
 
 def _draw_limits(axes: Axes, drawn: StabilityMap, x: Any, rates: Any) -> None:
-    """Where the step taken is as long as the limit; a contour of steps that adapt."""
+    """Where the step taken is as long as the limit, or as near as steps that adapt stay to it."""
     limit, shape = drawn.limit, (len(rates), len(x))
     reach = np.array([point.step * point.rate for point in drawn.points]).reshape(shape)
     if math.isfinite(limit.predicted):
-        _contour(axes, x, rates, reach, limit)
+        share = 1.0 if drawn.setting == "steps" else NEAR_LIMIT
+        _contour(axes, x, rates, reach / share, limit)
     if math.isfinite(limit.held):
         held = np.array([point.held for point in drawn.points]).reshape(shape)
         axes.contour(x, rates, held, [limit.held], colors="red", linestyles="dotted", linewidths=1.2)
@@ -126,9 +129,10 @@ def _legend(maps: Sequence[StabilityMap]) -> list[Any]:
         Line2D([], [], color="black", marker="x", linestyle="none", label="wrong without a word"),
     ]
     if any(math.isfinite(drawn.limit.predicted) for drawn in maps):
-        entries.append(
-            Line2D([], [], color="red", linestyle="dashed", label="limit of step times rate, predicted")
-        )
+        steps = maps[0].setting == "steps"
+        told = "step times rate at its limit" if steps else f"step times rate at {NEAR_LIMIT:g} of its limit"
+        told += ", predicted"
+        entries.append(Line2D([], [], color="red", linestyle="dashed", label=told))
         entries.append(
             Line2D([], [], color="white", marker="o", markeredgecolor="red", markersize=3, linestyle="none",
                    label="measured")

@@ -16,7 +16,7 @@ from frictionlab.bench.stability.record import StabilityMap
 STABILITY_CAPTION = (
     "Colour is the true error of the mean friction at each step (or tolerance) and local rate; hatched: wrong, and "
     "told so (refused, failed, or within the error stated), crosses: wrong without a word; red: where the step taken "
-    "times the rate is the limit, dashed as predicted, dots as measured on its own code. Integrated: {what}."
+    "times the rate is at (adaptive: near) its limit, dashed as predicted, dots as measured. Integrated: {what}."
 )
 
 

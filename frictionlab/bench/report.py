@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from frictionlab.bench.csv_table import write_records
 from frictionlab.bench.measure import BENCH_STATUSES, Row, WorkloadResult
 from frictionlab.bench.names import file_stem
 from frictionlab.bench.record import Contender, ReferenceMeans
@@ -38,10 +38,7 @@ def _write_one(measured: WorkloadResult | SectionResult, folder: Path) -> list[P
     stem = file_stem(measured.work.name)
     table, text = folder / f"{stem}.csv", folder / f"{stem}.md"
     records = [_record(measured, row) for row in measured.rows]
-    with table.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(records[0]) if records else [], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(records)
+    write_records(table, records)
     text.write_text(markdown(measured), encoding="utf-8")
     return [table, text]
 

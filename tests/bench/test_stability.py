@@ -243,9 +243,8 @@ def test_the_command_maps_the_steppers_of_a_list(
     assert cli.main(["bench", "list.yaml", "-o", "out", "--only", "stability_rk4"]) == 0
 
     assert capsys.readouterr().out.startswith("stability_rk4, bristle: 9 points")
-    assert sorted(path.name for path in Path("out").iterdir()) == [
-        f"stability_rk4.{kind}" for kind in ("csv", "png", "svg")
-    ]
+    written = [f"stability_rk4.{kind}" for kind in ("csv", "png", "svg")]
+    assert sorted(path.name for path in Path("out").iterdir()) == ["bench.json", "index.html", *written]
 
 
 @pytest.mark.parametrize(

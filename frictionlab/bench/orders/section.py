@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from frictionlab.bench.csv_table import write_records
 from frictionlab.bench.orders.fit import NO_FIT, Fit, fit_order
 from frictionlab.bench.orders.motions import KindOfMotion
 from frictionlab.bench.orders.solvers import OrderSolver, Refinement
@@ -63,10 +63,7 @@ class OrdersResult:
         """orders.csv. Raises OSError."""
         path = folder / f"{self.name}.csv"
         records = [_record(row) for row in self.rows]
-        with path.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.DictWriter(file, list(records[0]), lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(records)
+        write_records(path, records)
         return [path]
 
     def draw(self, folder: Path) -> list[BenchPicture]:

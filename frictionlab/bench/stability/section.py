@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
+from frictionlab.bench.csv_table import write_records
 from frictionlab.bench.sections import BenchPicture
 from frictionlab.bench.stability.problems import StabilityProblem
 from frictionlab.bench.stability.record import StabilityMap
@@ -57,10 +57,7 @@ class StabilityResult:
             return []
         path = folder / f"{self.name}.csv"
         records = [record for each in self.maps for record in _records(each)]
-        with path.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.DictWriter(file, list(records[0]), lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(records)
+        write_records(path, records)
         return [path]
 
     def draw(self, folder: Path) -> list[BenchPicture]:

@@ -26,6 +26,8 @@ PLACES_ON_THE_BELT = 6
 """Starts at rest along the way of the belt in a period."""
 POINTS_KEPT = 100
 """States that are kept of a motion that does not repeat."""
+ONE_BRANCH = 1e-3
+"""How far apart, over their size, orbits of neighbouring belt speeds are taken for one that the belt speed moves."""
 FEWEST, MOST = 200, 20_000
 """Periods a start is followed for."""
 DECAYS, CLIMBS = 30.0, 2.0
@@ -237,9 +239,18 @@ class FollowedStarts:
         )
         if found is None:
             found, more = orbit_at_the_end(self._problem, self._scene, way)
-            self.known, self.seconds = [*self.known, found], self.seconds + more
+            self.seconds += more
+            # A slow motion repeats to rounding while it is still on its way: the orbit closed there may be known.
+            twin = next((one for one in self.known if found.agrees(one)), None)
+            self.known = self.known if twin else [*self.known, found]
+            found = twin or found
         self.reached.append(found)
         return len(way.means)
+
+    def has_beside(self, state: Floats) -> bool:
+        """Whether an orbit of one period is known next to a state of another belt speed: the same orbit, moved."""
+        orbits = [one.points[0] for one in self.known if one.period == 1 and one.curve is not None]
+        return any(np.linalg.norm(state - one) <= ONE_BRANCH * np.linalg.norm(one) for one in orbits)
 
 
 def _patience(scene: Scene, law: FrictionLaw, candidate: Attractor | None) -> int:

@@ -313,7 +313,7 @@ class SteadyStates:
             followed = self.followed[there]
             before = followed.seconds
             for one in list(self.followed[here].known):
-                if one.curve is not None:
+                if one.curve is not None and not followed.has_beside(one.points[-1]):
                     followed.carry(one.points[-1])
             self.seconds[there] += followed.seconds - before
             self._judge_starts(there)

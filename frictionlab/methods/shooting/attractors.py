@@ -241,9 +241,8 @@ class FollowedStarts:
             found, more = orbit_at_the_end(self._problem, self._scene, way)
             self.seconds += more
             # A slow motion repeats to rounding while it is still on its way: the orbit closed there may be known.
-            twin = next((one for one in self.known if found.agrees(one)), None)
-            self.known = self.known if twin else [*self.known, found]
-            found = twin or found
+            if not any(found.agrees(one) for one in self.known):
+                self.known = [*self.known, found]
         self.reached.append(found)
         return len(way.means)
 

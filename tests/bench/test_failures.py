@@ -150,7 +150,7 @@ def test_the_methods_here_are_never_silently_wrong_on_a_small_map() -> None:
 def truth_of(text: str) -> MapTruth:
     Path("list.yaml").write_text(text.replace("METHODS", "fake"))
     (section,) = bench.load_bench(Path("list.yaml")).sections
-    truth: MapTruth = section.maps[0][0]  # type: ignore[attr-defined]
+    truth: MapTruth = section.maps[0][0]  # type: ignore[attr-defined]  # of this kind of section
     return truth
 
 

@@ -123,7 +123,7 @@ def test_a_method_that_states_too_little_is_found_out(monkeypatch: pytest.Monkey
 
 
 def test_explicit_steps_that_explode_fail_with_that_reason_and_no_warning() -> None:
-    point = MAPPED_STEPPERS["rk4"]._point(known_state("plane", 500.0), 20, 500.0)  # type: ignore[union-attr]
+    point = MAPPED_STEPPERS["rk4"]._point(known_state("plane", 500.0), 20, 500.0)  # type: ignore[union-attr]  # steppers of march have it
 
     assert point.status == "failed"
     assert "grows without bound" in point.reason
@@ -131,7 +131,7 @@ def test_explicit_steps_that_explode_fail_with_that_reason_and_no_warning() -> N
 
 def test_steps_far_too_long_for_the_motion_state_an_error_that_covers() -> None:
     known = known_state("plane", 1.0)
-    point = MAPPED_STEPPERS["moreau_1"]._point(known, 8, 1.0)  # type: ignore[union-attr]
+    point = MAPPED_STEPPERS["moreau_1"]._point(known, 8, 1.0)  # type: ignore[union-attr]  # steppers of march have it
 
     assert point.error > 0.01
     assert point.region == "wrong_and_said"

@@ -120,7 +120,7 @@ def followed(number: int, seed: int, count: int) -> dict[str, Any]:
     candidate = closed_orbit(curve, curve.results[0, :1])
     states = [] if candidate is None else [_told(candidate)]
     known = None if candidate is None else candidate.known
-    for tried, start in enumerate(starts(scene, problem.mass.normal_load * 0.4, count, rng), 1):  # noqa: B007
+    for tried, start in enumerate(starts(scene, problem.mass.normal_load * 0.4, count, rng), 1):  # noqa: B007  # told after the loop
         way = problem.transient(scene.belt_speed, start, LONG, known)
         if way.period == ARRIVED:
             continue

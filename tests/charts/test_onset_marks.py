@@ -79,8 +79,8 @@ def test_a_figure_draws_them_and_names_each_kind_once(
 
     def noted(self: Axes, *arguments: object, **look: object) -> list[Line2D]:
         if len(arguments) == 3 and arguments[2] in SIGNS.values():
-            drawn.append((arguments[0][0], str(arguments[2])))  # type: ignore[index]
-        return plot(self, *arguments, **look)  # type: ignore[arg-type]
+            drawn.append((arguments[0][0], str(arguments[2])))  # type: ignore[index]  # a list of places
+        return plot(self, *arguments, **look)  # type: ignore[arg-type]  # as they were given
 
     monkeypatch.setattr(Axes, "plot", noted)
     figures.draw_figures(TABLE, "Two curves", tmp_path, ONSETS)

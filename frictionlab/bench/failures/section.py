@@ -113,7 +113,7 @@ class FailureSection:
             return FailureResult(self.name, self.label, first.side, (), (), missing)
         for truth, _ in self.maps:
             tell(f"{self.name}: {truth.drawn.name}, references")
-            truth.known  # noqa: B018
+            truth.known  # noqa: B018  # found here, where it is told, and not within a time
         forecast = Forecast(
             Expected(truth.drawn.name, _seconds(row, contender))
             for truth, contender in self.maps

@@ -1,6 +1,6 @@
 """Proof of the mean friction of a periodic orbit: it exists (Krawczyk's test), and its legs have the right signs.
 
-With damping, on a moving belt and under constant friction a scene has one periodic motion (theory/uniqueness): an
+With damping and under constant friction a scene whose mass must slip has one periodic motion (theory/uniqueness): an
 orbit that is proved to exist has the mean of every motion in the long run.
 """
 

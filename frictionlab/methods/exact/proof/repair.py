@@ -15,7 +15,7 @@ from frictionlab.methods.exact.proof.signs import NoReversal, NoStick, Wrong
 def repaired(starts: list[LegStart], period: float, problem: NotProved) -> list[LegStart]:
     """The legs without what is wrong with them, in the order of time. Raises the problem where that is not known."""
     if isinstance(problem, NoReversal):
-        return _inserted(starts, problem.leg, [starts[problem.leg]._replace(sign=0)], before=True)
+        return _inserted(starts, problem.leg, [starts[problem.leg]._replace(sign=0)])
     if isinstance(problem, NoStick):
         return _with_a_reversal(starts, problem)
     if isinstance(problem, Wrong):
@@ -23,9 +23,9 @@ def repaired(starts: list[LegStart], period: float, problem: NotProved) -> list[
     return _without_the_shortest(starts, period, problem)
 
 
-def _inserted(starts: list[LegStart], place: int, new: list[LegStart], before: bool) -> list[LegStart]:
-    at = place if before else place + 1
-    return _joined([*starts[:at], *new, *starts[at:]])
+def _inserted(starts: list[LegStart], place: int, new: list[LegStart]) -> list[LegStart]:
+    """With new legs before that at this place."""
+    return _joined([*starts[:place], *new, *starts[place:]])
 
 
 def _with_a_reversal(starts: list[LegStart], problem: NoStick) -> list[LegStart]:
@@ -47,7 +47,7 @@ def _with_a_leg(starts: list[LegStart], problem: Wrong) -> list[LegStart]:
     first, last = (tau - half, tau) if leg.sign else (tau - half, tau + 2.0 * half)
     inside = 0 if leg.sign else problem.side
     new = [LegStart(inside, first, problem.x, leg.v), LegStart(leg.sign, last, problem.x, leg.v)]
-    return _inserted(starts, problem.leg, new, before=False)
+    return _inserted(starts, problem.leg + 1, new)
 
 
 def _without_the_shortest(starts: list[LegStart], period: float, problem: NotProved) -> list[LegStart]:

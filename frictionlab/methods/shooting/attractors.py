@@ -246,8 +246,14 @@ class FollowedStarts:
         self.reached.append(found)
         return len(way.means)
 
-    def has_beside(self, state: Floats) -> bool:
-        """Whether an orbit of one period is known next to a state of another belt speed: the same orbit, moved."""
+    def carry_on(self, one: Attractor) -> bool:
+        """Follow a state of another belt speed, unless it is an orbit known here, moved; whether it was followed."""
+        if one.period == 1 and one.curve is not None and self._has_beside(one.points[-1]):
+            return False
+        self.carry(one.points[-1])
+        return True
+
+    def _has_beside(self, state: Floats) -> bool:
         orbits = [one.points[0] for one in self.known if one.period == 1 and one.curve is not None]
         return any(np.linalg.norm(state - one) <= ONE_BRANCH * np.linalg.norm(one) for one in orbits)
 

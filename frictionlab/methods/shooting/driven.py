@@ -313,8 +313,8 @@ class SteadyStates:
             followed = self.followed[there]
             before = followed.seconds
             for one in list(self.followed[here].known):
-                if one.curve is not None and not followed.has_beside(one.points[-1]):
-                    followed.carry(one.points[-1])
+                if one.curve is not None:
+                    followed.carry_on(one)
             self.seconds[there] += followed.seconds - before
             self._judge_starts(there)
 

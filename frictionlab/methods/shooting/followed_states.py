@@ -73,8 +73,8 @@ def _carry(neighbours: Iterable[tuple[_Point, _Point]], found_from: str) -> None
     """Follow the states of each point on at the next."""
     for here, there in neighbours:
         for state, _ in here.states:
-            there.followed.carry(state.points[-1])
-            there.note(found_from)
+            if there.followed.carry_on(state):
+                there.note(found_from)
 
 
 def _told(problem: PeriodicProblem, place: int, state: Attractor, found_from: str) -> FoundState:

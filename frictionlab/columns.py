@@ -190,6 +190,18 @@ ATTRACTORS: dict[str, str] = {
 }
 """The columns of the table of attractors after the inputs, one row per Poincare point."""
 
+HARMONICS: dict[str, str] = {
+    "belt_speed": "of the scene, nondimensional",
+    "harmonic": "its order k, 0 for means",
+    "velocity_amplitude": "of x1' = ... + amplitude sin(k theta + phase) + ..., theta the phase of the load along x1",
+    "velocity_phase": "its phase [deg]; empty for k = 0, and where the amplitude is rounding",
+    "friction_amplitude": "of the friction coefficient that acts against the mass; minus mean_friction for k = 0",
+    "friction_phase": "its phase [deg]",
+    "friction_in_phase": "part in phase with the velocity of that harmonic: it damps where positive",
+    "friction_in_quadrature": "part that leads it by 90 degrees: inertia where positive, stiffness where negative",
+}
+"""The columns of the table of harmonics after the inputs; across the belt by these names after ``transverse_``."""
+
 SHAPES: dict[str, tuple[str, ...]] = {
     "area": ("concave", "convex", "mixed", "undecided"),
     "initial": ("concave", "convex", "undecided"),

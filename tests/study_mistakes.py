@@ -56,7 +56,7 @@ EDITS = [
     ("tolerance: 1e-6", "tolerance: true", "17:12: tolerance: must be a number, got true"),
     ("keep: {orbit: 200}", "keep: {orbit: 1}", "21:15: keep.orbit: must be >= 2, got 1"),
     ("keep: {orbit: 200}", "keep: {orbit: 2.5}", "21:15: keep.orbit: must be a whole number >= 2, got 2.5"),
-    ("keep: {orbit: 200}", "keep: {orbits: 2}", "21:8: keep.orbits: unknown key; allowed: orbit, attractors"),
+    ("keep: {orbit: 200}", "keep: {orbits: 2}", "21:8: keep.orbits: unknown key; allowed: orbit, attractors, harmonics"),
     ("keep: {orbit: 200}", "keep: {attractors: 0}", "21:20: keep.attractors: must be >= 1, got 0"),
     ("keep: {orbit: 200}", "keep: 200", "21:7: keep: must be a mapping (key: value), got 200"),
     # scene

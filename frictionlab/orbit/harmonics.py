@@ -72,6 +72,16 @@ def harmonic_parts(scene: Scene, orbit: Orbit, harmonics: int, across: bool = Fa
     )
 
 
+def harmonic_columns(scene: Scene, orbit: Orbit, harmonics: int) -> dict[str, Floats]:
+    """The harmonics of an orbit as columns of a table; across the belt by the same names after ``transverse_``."""
+    along = harmonic_parts(scene, orbit, harmonics)._asdict()
+    if not scene.planar:
+        return along
+    across = harmonic_parts(scene, orbit, harmonics, across=True)._asdict()
+    del across["harmonic"]
+    return along | {f"transverse_{name}": column for name, column in across.items()}
+
+
 def _clock(scene: Scene, orbit: Orbit) -> tuple[float, float]:
     """The circular frequency of harmonic 1, and the phase of the load along x1 at tau = 0 [rad]."""
     if scene.undriven:
@@ -105,9 +115,8 @@ def _moments(turned: Floats) -> NDArray[np.complex128]:
 
     Source: DLMF 18.17.19; upwards by j_(n+1) = (2 n + 1)/x j_n - j_(n-1), DLMF 10.51.1.
     """
-    found: NDArray[np.complex128] = (
-        np.exp(-1j * np.minimum(turned, _STEEP)[..., None] * _GAUSS) @ _LEGENDRE_GAUSS
-    )
+    turning = np.exp(-1j * np.minimum(turned, _STEEP)[..., None] * _GAUSS)
+    found: NDArray[np.complex128] = np.asarray(turning @ _LEGENDRE_GAUSS, dtype=np.complex128)
     x = np.maximum(turned, _STEEP)
     last: Floats = np.cos(x) / x  # of the orders -1 and 0
     bessel: Floats = np.sin(x) / x

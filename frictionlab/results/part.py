@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 from frictionlab.methods.base import Answers
 from frictionlab.quantities import Floats
 
-if TYPE_CHECKING:
-    from frictionlab.orbit.sample import Samples
-
 Places = NDArray[np.int64]
+KeptRows = dict[int, dict[str, Floats]]
+"""By row of the table, columns of equal length."""
 
 
 class Piece(NamedTuple):
@@ -27,28 +26,30 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True)
 class Part:
-    """Rows of the table, answered: plain data, which may cross to another process. orbits: by row."""
+    """Rows of the table, answered: plain data, which may cross to another process.
+
+    kept: what a study keeps beside the table, ``orbits`` and ``harmonics``.
+    """
 
     rows: Places
     text: dict[str, list[str]]
     numbers: dict[str, Floats]
-    orbits: dict[int, Samples]
+    kept: dict[str, KeptRows]
 
     def moved(self, rows: Places) -> Part:
         """The same answers for other rows."""
-        orbits = {new: self.orbits[old] for old, new in self._in_pairs(rows) if old in self.orbits}
-        return replace(self, rows=rows, orbits=orbits)
+        kept = {name: self._moved(found, rows) for name, found in self.kept.items()}
+        return replace(self, rows=rows, kept=kept)
 
     def only(self, places: Places) -> Part:
         """The answers at these places."""
         text = {name: [words[place] for place in places.tolist()] for name, words in self.text.items()}
         numbers = {name: column[places] for name, column in self.numbers.items()}
-        return Part(self.rows[places], text, numbers, self.orbits)
+        return Part(self.rows[places], text, numbers, self.kept)
 
-    def _in_pairs(self, rows: Places) -> zip[tuple[int, int]]:
-        return (
-            zip(self.rows.tolist(), rows.tolist(), strict=True) if self.orbits else zip((), (), strict=True)
-        )
+    def _moved(self, found: KeptRows, rows: Places) -> KeptRows:
+        pairs = zip(self.rows.tolist(), rows.tolist(), strict=True)
+        return {new: found[old] for old, new in pairs if old in found}
 
 
 def one_part(parts: Sequence[Part], rows: Places) -> Part:
@@ -59,7 +60,7 @@ def one_part(parts: Sequence[Part], rows: Places) -> Part:
     names = {name: None for part in parts for name in part.numbers}
     numbers = {name: np.full(len(rows), np.nan) for name in names}
     text: dict[str, list[str]] = {name: [""] * len(rows) for part in parts for name in part.text}
-    orbits: dict[int, Samples] = {}
+    kept: dict[str, KeptRows] = {}
     for part in parts:
         places = order[np.searchsorted(rows, part.rows, sorter=order)]
         for name, column in part.numbers.items():
@@ -67,5 +68,6 @@ def one_part(parts: Sequence[Part], rows: Places) -> Part:
         for name, words in part.text.items():
             for place, word in zip(places.tolist(), words, strict=True):
                 text[name][place] = word
-        orbits |= part.orbits
-    return Part(rows, text, numbers, orbits)
+        for name, found in part.kept.items():
+            kept.setdefault(name, {}).update(found)
+    return Part(rows, text, numbers, kept)

@@ -21,6 +21,7 @@ class Run:
     made, orbits_made: the table and the orbits, or what reads them from their file. curves: one row per curve, with
     its shape; none where belt speed is not swept or the run was stopped. onsets_made: finds the onsets of its curves.
     attractors: a row per Poincare point of every state that motions end in, None where the study does not keep them.
+    harmonics: a row per harmonic of every orbit, None where the study does not keep them.
     shown, found: of a table too long to be held, the rows that figures and pages show, and how many of all rows have
     each status.
     """
@@ -36,6 +37,7 @@ class Run:
     shown: pd.DataFrame | None = None
     found: Mapping[str, int] | None = None
     attractors: pd.DataFrame | None = None
+    harmonics: pd.DataFrame | None = None
 
     @cached_property
     def table(self) -> pd.DataFrame:

@@ -12,6 +12,7 @@ from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 
 if TYPE_CHECKING:
+    from frictionlab.orbit.harmonics import HarmonicParts
     from frictionlab.orbit.sample import Samples
 
 
@@ -39,6 +40,14 @@ class OrbitOf:
         from frictionlab.orbit.sample import sample  # imports numba: only where it is needed
 
         return sample(self._orbit, self._scene, n)
+
+    def harmonics(self, highest: int, across: bool) -> HarmonicParts | None:
+        """Its harmonics 0 ... highest along or across the belt; None where there is no orbit."""
+        if self._orbit is None:
+            return None
+        from frictionlab.orbit.harmonics import harmonic_parts  # imports numba: only where it is needed
+
+        return harmonic_parts(self._scene, self._orbit, highest, across)
 
     def __reduce__(self) -> Any:
         return OrbitOf, (partial(_kept, self._orbit), self._scene)
@@ -118,7 +127,20 @@ class SteadyState:
             raise ValueError(f"an orbit has at least one sample, not {n}")
         samples = None if self.motion is None else self.motion.sampled(n)
         if samples is None:
-            raise ValueError(
-                f"no orbit: the steady state is '{self.status}': {self.reason or 'none was kept'}"
-            )
+            raise ValueError(self._no_orbit())
         return samples
+
+    def harmonics(self, highest: int, across: bool = False) -> HarmonicParts:
+        """Harmonics 0 ... highest of velocity and friction along the belt, or across it.
+
+        Raises ValueError where there is no orbit, saying why.
+        """
+        if highest < 1:
+            raise ValueError(f"the highest harmonic is at least 1, not {highest}")
+        found = None if self.motion is None else self.motion.harmonics(highest, across)
+        if found is None:
+            raise ValueError(self._no_orbit())
+        return found
+
+    def _no_orbit(self) -> str:
+        return f"no orbit: the steady state is '{self.status}': {self.reason or 'none was kept'}"

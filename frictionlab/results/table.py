@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import pandas as pd
@@ -13,13 +13,9 @@ from frictionlab.columns import BELT_SPEEDS, RESULTS, SCALED, SI, TEXT, belt_spe
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import si_columns, si_scales
-from frictionlab.results.part import Part, Places
+from frictionlab.results.part import KeptRows, Part, Places
 from frictionlab.scene.dimensional import scaled_parameters
 from frictionlab.study import StudyCurve
-
-if TYPE_CHECKING:
-    from frictionlab.orbit.sample import Samples
-
 
 FINISHED = ("ok", "refused", "failed", "not_unique")
 
@@ -255,11 +251,9 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
-def orbit_rows(
-    orbits: Mapping[int, Samples], earlier: pd.DataFrame | None, finished: Places
-) -> pd.DataFrame | None:
+def orbit_rows(orbits: KeptRows, earlier: pd.DataFrame | None, finished: Places) -> pd.DataFrame | None:
     """The kept orbits, one row per sample; ``row`` is the point's place in the table. None without any."""
-    frames = [pd.DataFrame({"row": row, **samples._asdict()}) for row, samples in sorted(orbits.items())]
+    frames = [pd.DataFrame({"row": row, **samples}) for row, samples in sorted(orbits.items())]
     if earlier is not None:
         frames.append(earlier[earlier["row"].isin(finished)])
     return pd.concat(frames).sort_values("row", kind="stable", ignore_index=True) if frames else None

@@ -7,22 +7,19 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from frictionlab.columns import selected
 from frictionlab.results.expectations import Verdict
-from frictionlab.results.part import Part
+from frictionlab.results.harmonic_table import harmonic_table
+from frictionlab.results.part import KeptRows, Part
 from frictionlab.results.table import Inputs, Results, finished_rows, orbit_rows
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.folder import Existing, RunFolder
 from frictionlab.runner.progress import Progress, silent
-
-if TYPE_CHECKING:
-    from frictionlab.orbit.sample import Samples
-
 
 ALL = selected(None)
 SAVE_EVERY = 10.0
@@ -42,7 +39,7 @@ class Accumulator:
     ) -> None:
         self._given = given
         self._results = Results(given.size, columns)
-        self._orbits: dict[int, Samples] = {}
+        self._kept: dict[str, KeptRows] = {"orbits": {}, "harmonics": {}}
         self._earlier_orbits: pd.DataFrame | None = None
         self._folder = folder
         self._progress = progress
@@ -59,8 +56,11 @@ class Accumulator:
         self._verdicts: list[dict[str, Any]] = []
         self.finished = np.zeros(given.size, np.bool_)
 
-    def resume(self, existing: Existing, samples: int) -> None:
-        """Take over the rows an earlier run of the same study finished. Raises FolderError."""
+    def resume(self, existing: Existing, samples: int, in_part: bool = True) -> None:
+        """Take over the rows an earlier run of the same study finished. Raises FolderError.
+
+        in_part: also where it did not finish all of them.
+        """
         earlier = self._folder.earlier(existing) if self._folder is not None else None
         if self._folder is None or earlier is None:
             return
@@ -73,6 +73,8 @@ class Accumulator:
                 self._earlier_orbits = None
                 return
         rows, kept = finished_rows(self._given, earlier)
+        if len(rows) < self._given.size and not in_part:
+            return
         self._results.put_earlier(rows, kept)
         self.finished[rows] = True
 
@@ -91,7 +93,8 @@ class Accumulator:
 
     def _put(self, part: Part) -> None:
         self._results.put(part)
-        self._orbits |= part.orbits
+        for name, found in part.kept.items():
+            self._kept[name] |= found
 
     def tick(self) -> None:
         """Tell how far the run is, and save it when that is due."""
@@ -127,7 +130,12 @@ class Accumulator:
     @property
     def orbits(self) -> pd.DataFrame | None:
         """The kept orbits as they stand; None where none are kept."""
-        return orbit_rows(self._orbits, self._earlier_orbits, np.flatnonzero(self.finished))
+        return orbit_rows(self._kept["orbits"], self._earlier_orbits, np.flatnonzero(self.finished))
+
+    @property
+    def harmonics(self) -> pd.DataFrame:
+        """The kept harmonics as they stand."""
+        return harmonic_table(self._given, self._kept["harmonics"])
 
     @property
     def computed(self) -> int:

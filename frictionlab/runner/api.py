@@ -110,16 +110,29 @@ def run(
             LongRun(ready, folder, kept, overrides), folder, existing, executor, progress, as_csv
         )
     curves = list(ready.curves())
-    attractors = None if folder is None else folder.earlier_attractors(existing)
+    attractors, harmonics = _earlier_texts(folder, existing)
     gathering = Accumulator(inputs(curves), folder, progress, overrides, ready.selected())
     task = task_of(ready)
-    gathering.resume(existing, task.samples)
+    if ready.keep_harmonics is None or harmonics is not None:
+        gathering.resume(existing, task.samples, in_part=ready.keep_harmonics is None)
     left = [] if gathering.complete else list(open_chunks(curves, task, gathering.finished, Keys(ready.code)))
     if folder is not None:
         folder.open(existing)
     stopped = _solve(gathering, left, kept, executor)
-    found = attractors if gathering.complete else None
-    return _with_attractors(_finished(ready, gathering, folder, stopped), found, folder)
+    attractors, harmonics = (attractors, harmonics) if gathering.complete else (None, None)
+    done = _finished(ready, gathering, folder, stopped)
+    return _with_attractors(_with_harmonics(done, harmonics, gathering, folder), attractors, folder)
+
+
+def _earlier_texts(
+    folder: RunFolder | None, existing: Existing
+) -> tuple[pd.DataFrame | None, pd.DataFrame | None]:
+    """Attractors and harmonics that an earlier run of this study wrote once it was whole."""
+    if folder is None:
+        return None, None
+    files = folder.attractors_file, folder.harmonics_file
+    attractors, harmonics = (folder.earlier_text(file, existing) for file in files)
+    return attractors, harmonics
 
 
 def _run_long(
@@ -235,6 +248,22 @@ def _finished(study: Study, gathering: Accumulator, folder: RunFolder | None, st
         raise UnsavedError(unsaved, done) from unsaved
     if stopped:
         raise Interrupted(done)
+    return done
+
+
+def _with_harmonics(
+    done: Run, found: pd.DataFrame | None, gathering: Accumulator, folder: RunFolder | None
+) -> Run:
+    """The run with its harmonics, where the study keeps them. Raises UnsavedError."""
+    if done.study.keep_harmonics is None:
+        return done
+    done = replace(done, harmonics=gathering.harmonics if found is None else found)
+    try:
+        if folder is not None and found is None:
+            assert done.harmonics is not None
+            folder.save_harmonics(done.harmonics)
+    except SaveError as problem:
+        raise UnsavedError(problem, done) from problem
     return done
 
 

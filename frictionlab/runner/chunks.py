@@ -26,18 +26,20 @@ LONG_CURVE, LONG_SIZE = 4000, 500
 
 @dataclass(frozen=True)
 class Task:
-    """What all points of a run share: tolerance on mean_friction [-], samples per kept orbit (0: none), the result
-    columns asked for, and the time a point may take [s]."""
+    """What all points of a run share: tolerance on mean_friction [-], samples per kept orbit and the highest harmonic
+    kept (0: none), the result columns asked for, and the time a point may take [s]."""
 
     tolerance: float
     samples: int = 0
+    harmonics: int = 0
     columns: frozenset[str] = selected(None)
     seconds_per_point: float = math.inf
 
 
 def task_of(study: Study) -> Task:
     """What the points of a study share."""
-    return Task(study.tolerance, study.keep_orbit or 0, study.selected(), study.seconds_per_point)
+    kept = study.keep_orbit or 0, study.keep_harmonics or 0
+    return Task(study.tolerance, *kept, study.selected(), study.seconds_per_point)
 
 
 @dataclass(frozen=True)

@@ -98,6 +98,11 @@ class RunFolder:
         """Where the table of attractors is."""
         return self.path / "attractors.csv"
 
+    @property
+    def harmonics_file(self) -> Path:
+        """Where the table of harmonics is."""
+        return self.path / "harmonics.csv"
+
     def check(self, existing: Existing) -> None:
         """Raises FolderError where this run cannot be written, or would mix with another study."""
         nearest = next(place for place in [self.path, *self.path.absolute().parents] if place.exists())
@@ -194,19 +199,15 @@ class RunFolder:
         """The orbits kept by an earlier run of this study; None where they are not there or damaged."""
         return self._earlier(self.orbits_file, existing)
 
-    def earlier_attractors(self, existing: Existing) -> pd.DataFrame | None:
-        """The attractors found by an earlier run of this very study file; None where they are missing or damaged."""
-        if (
-            existing == "replace"
-            or not self.attractors_file.exists()
-            or self._damage(self.attractors_file.name)
-        ):
+    def earlier_text(self, file: Path, existing: Existing) -> pd.DataFrame | None:
+        """The table that an earlier run of this very study file wrote as text; None where missing or damaged."""
+        if existing == "replace" or not file.exists() or self._damage(file.name):
             return None
         try:
             same = self._study.read_text(encoding="utf-8") == self.identity.text
         except (OSError, ValueError):
             return None
-        return pd.read_csv(self.attractors_file) if same else None
+        return pd.read_csv(file) if same else None
 
     def _earlier(self, path: Path, existing: Existing) -> pd.DataFrame | None:
         if existing == "replace" or not path.exists() or self._damage(path.name):
@@ -264,6 +265,7 @@ class RunFolder:
             self._onsets,
             self.orbits_file,
             self.attractors_file,
+            self.harmonics_file,
         )
         yield self.path / "report.html"
         for pattern in ("*.svg", "*.png"):
@@ -340,7 +342,8 @@ class RunFolder:
 
     def remove_texts(self) -> None:
         """Remove what was made from an earlier table. Raises SaveError."""
-        for path in (self.csv_file, self._curves, self._onsets, self.attractors_file):
+        texts = self.csv_file, self._curves, self._onsets, self.attractors_file, self.harmonics_file
+        for path in texts:
             try:
                 path.unlink(missing_ok=True)
             except OSError as problem:
@@ -377,6 +380,10 @@ class RunFolder:
     def save_attractors(self, attractors: pd.DataFrame) -> None:
         """Write attractors.csv. Raises SaveError."""
         self._put(self.attractors_file, _as_csv(attractors))
+
+    def save_harmonics(self, harmonics: pd.DataFrame) -> None:
+        """Write harmonics.csv. Raises SaveError."""
+        self._put(self.harmonics_file, _as_csv(harmonics))
 
     @property
     def has_csv(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import time
 from collections.abc import Mapping
@@ -11,25 +12,23 @@ from contextlib import suppress
 from functools import cache
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
 import numpy as np
 
 from frictionlab import registry
 from frictionlab.faults import INTERNAL, MARK, from_outside
-from frictionlab.results.part import Part
+from frictionlab.quantities import Floats
+from frictionlab.results.part import KeptRows, Part
 from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.code_digest import solving_code
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.files import remove_leftovers, write_whole
 
-if TYPE_CHECKING:
-    from frictionlab.orbit.sample import Samples
-
 FolderName = str | PathLike[str]
 FOLDER = ".cache"
 USUAL_GIGABYTES = 4.0
-_HEAD = b"frictionlab chunk 1 "
+_HEAD = b"frictionlab chunk 2 "
 _CHECKSUM = 64
 """Letters of a checksum."""
 
@@ -57,7 +56,9 @@ class Keys:
             *_told(chunk.law),
             *_told(chunk.method),
             repr(sorted(scenes.scene.model_copy(update=_BESIDE).values().items())),
-            repr((task.tolerance, task.samples, task.seconds_per_point, sorted(task.columns))),
+            repr(
+                (task.tolerance, task.samples, task.harmonics, task.seconds_per_point, sorted(task.columns))
+            ),
         ]
         digest = hashlib.sha256("\0".join(told).encode())
         digest.update(scenes.belt_speeds.tobytes())
@@ -167,21 +168,23 @@ def _is_an_answer(part: Part) -> bool:
 
 
 def _packed(part: Part) -> bytes:
-    """A head, a checksum, a line that says what follows, the numbers of all columns, then those of the orbits."""
+    """A head, a checksum, a line that says what follows, the numbers of all columns, then those of what is kept."""
     words = {name: _indexed(column) for name, column in part.text.items()}
-    places = sorted(part.orbits)
     told = {
         "points": len(part.rows),
         "columns": list(part.numbers),
         "words": {name: different for name, (different, _) in words.items()},
-        "orbits": places,
+        "kept": {name: _told_of(rows) for name, rows in part.kept.items()},
     }
     numbers = [np.asarray(column, dtype=np.float64).tobytes() for column in part.numbers.values()]
     indices = [np.array(column, dtype=np.int32).tobytes() for _, column in words.values()]
-    orbits = [
-        np.asarray(values, dtype=np.float64).tobytes() for place in places for values in part.orbits[place]
+    kept = [
+        np.asarray(values, dtype=np.float64).tobytes()
+        for rows in part.kept.values()
+        for columns in rows.values()
+        for values in columns.values()
     ]
-    content = b"".join([json.dumps(told).encode(), b"\n", *numbers, *indices, *orbits])
+    content = b"".join([json.dumps(told).encode(), b"\n", *numbers, *indices, *kept])
     return _HEAD + hashlib.sha256(content).hexdigest().encode() + b"\n" + content
 
 
@@ -211,17 +214,26 @@ def _unpacked(content: bytes) -> Part | None:
         np.arange(n),
         text,
         dict(zip(names, columns, strict=True)),
-        _samples(told["orbits"], numbers[floats + integers :]),
+        _kept_of(told["kept"], np.frombuffer(numbers[floats + integers :], np.float64)),
     )
 
 
-def _samples(places: list[int], content: bytes) -> dict[int, Samples]:
-    if not places:
-        return {}
-    from frictionlab.orbit.sample import Samples  # imports numba: only where it is needed
+def _told_of(rows: KeptRows) -> dict[str, Any]:
+    """The rows of a kept table, its columns, which every row has, and the length of these."""
+    first = next(iter(rows.values()), {})
+    return {"rows": list(rows), "columns": list(first), "length": max(map(len, first.values()), default=0)}
 
-    numbers = np.frombuffer(content, np.float64).reshape(len(places), len(Samples._fields), -1)
-    return {place: Samples(*values) for place, values in zip(places, numbers, strict=True)}
+
+def _kept_of(told: Mapping[str, dict[str, Any]], numbers: Floats) -> dict[str, KeptRows]:
+    kept, start = dict[str, KeptRows](), 0
+    for name, one in told.items():
+        shape = len(one["rows"]), len(one["columns"]), one["length"]
+        values = numbers[start : start + math.prod(shape)].reshape(shape)
+        kept[name] = {
+            row: dict(zip(one["columns"], values[k], strict=True)) for k, row in enumerate(one["rows"])
+        }
+        start += values.size
+    return kept
 
 
 def _checksum(content: bytes) -> bytes:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor
 from dataclasses import asdict
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -17,7 +17,7 @@ from frictionlab import registry
 from frictionlab.columns import ALWAYS, INPUTS, OF_SHAPE, RESULTS, SI
 from frictionlab.results.curve_table import curve_table
 from frictionlab.results.expectations import Verdict, judge
-from frictionlab.results.part import Part
+from frictionlab.results.part import KeptRows, Part
 from frictionlab.results.run import Run
 from frictionlab.results.table import InputColumns, Inputs, Results, orbit_rows, status_counts
 from frictionlab.results.thinned import Thinned, shown_rows, thinned
@@ -37,9 +37,6 @@ from frictionlab.runner.open_chunks import OpenChunk, answered, open_chunks
 from frictionlab.runner.progress import Progress
 from frictionlab.runner.workforce import Workforce
 from frictionlab.study import Study, StudyCurve
-
-if TYPE_CHECKING:
-    from frictionlab.orbit.sample import Samples
 
 ROWS_TOGETHER = 20_000
 """Rows of a piece of the table, at least; more where those of a curve are more, or lie farther apart."""
@@ -179,12 +176,12 @@ class LongRun:
         for block in blocks(self._curves):
             first = min(self._curves[place].rows.start for place in block)
             inputs = columns.of(block)
-            results, orbits = Results(inputs.size, chosen), _no_orbits()
+            results, orbits = Results(inputs.size, chosen), KeptRows()
             results.unfinished(self._rest)
             for part in _of_next(found, len(block)):
                 moved = part.moved(part.rows - first)
                 results.put(moved)
-                orbits |= part.orbits
+                orbits |= part.kept.get("orbits", {})
             yield _Piece(inputs, results, orbit_rows(orbits, None, np.empty(0, np.int64)))
 
     def _answers(self) -> Iterator[list[Part]]:
@@ -245,10 +242,6 @@ class _Piece(NamedTuple):
         """What the shape of curves is read from; no rows for a run that was stopped."""
         none_or_all = slice(0) if stopped else slice(None)
         return self.results.frame(self.inputs, none_or_all, {*OF_SHAPE, *ALWAYS})
-
-
-def _no_orbits() -> dict[int, Samples]:
-    return {}
 
 
 def _is_input(name: str) -> bool:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Collection, Sequence, Sized
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,13 +14,9 @@ from frictionlab.faults import INTERNAL, MARK, BrokenPlugin, CannotCompile, fail
 from frictionlab.methods.base import NOT_UNIQUE, Answers, refused
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import derived_columns
+from frictionlab.results.part import KeptRows, Part, Piece
 from frictionlab.runner.chunks import Chunk
 from frictionlab.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from frictionlab.orbit.sample import Samples
-
-from frictionlab.results.part import Part, Piece
 
 
 def solve(chunk: Chunk) -> list[Part]:
@@ -161,7 +156,7 @@ def _part(chunk: Chunk, piece: Piece) -> Part:
         text = text_columns(piece.answers)
         if "floquet" in asked and piece.answers.multipliers is not None:
             text["reason"] = _noted(text["reason"], piece.answers.multipliers().reason)
-        return Part(rows, text, numbers, _orbits(chunk, piece))
+        return Part(rows, text, numbers, _kept(chunk, piece))
     except BrokenPlugin:
         raise
     except (Exception, SystemExit) as problem:
@@ -189,15 +184,18 @@ def _noted(reasons: list[str], notes: list[str]) -> list[str]:
     return ["; ".join(filter(None, both)) for both in zip(reasons, notes, strict=True)]
 
 
-def _orbits(chunk: Chunk, piece: Piece) -> dict[int, Samples]:
-    """The orbits a study keeps, by row; empty where it keeps none."""
-    if not chunk.task.samples:
-        return {}
-    from frictionlab.orbit.sample import sample  # imports numba: only where it is needed
+def _kept(chunk: Chunk, piece: Piece) -> dict[str, KeptRows]:
+    """What a study keeps of orbits, beside the columns that are read from them."""
+    task, kept = chunk.task, dict[str, KeptRows]()
+    if not (task.samples or task.harmonics):
+        return kept
+    from frictionlab.orbit.harmonics import harmonic_columns  # these import numba: only where it is needed
+    from frictionlab.orbit.sample import sample
 
     found = {place: piece.answers.orbit(at) for at, place in enumerate(piece.places)}
-    return {
-        int(chunk.rows[place]): sample(orbit, chunk.scenes[place], chunk.task.samples)
-        for place, orbit in found.items()
-        if orbit is not None
-    }
+    there = [(int(chunk.rows[place]), chunk.scenes[place], one) for place, one in found.items() if one]
+    if task.samples:
+        kept["orbits"] = {row: sample(one, scene, task.samples)._asdict() for row, scene, one in there}
+    if task.harmonics:
+        kept["harmonics"] = {row: harmonic_columns(scene, one, task.harmonics) for row, scene, one in there}
+    return kept

@@ -33,8 +33,11 @@ LARGEST_RANGE = 1_000_000
 LARGEST_CHECK = 20_000
 """Points that are built to check a grid; of a larger one the ends and evenly spaced values of each sweep."""
 MOST_KEPT_SAMPLES = 50_000_000
-MOST_STARTS = 100_000
 """Samples of kept orbits in all."""
+MOST_WITH_HARMONICS = 100_000
+"""Points of a table whose harmonics are held with it."""
+MOST_STARTS = 100_000
+"""Starts from which attractors are looked for, in all."""
 _KEYS = ("start", "stop", "num", "spacing")
 
 _GROUPS = (
@@ -256,6 +259,10 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
             ("keep", "orbit"),
             f"{study.keep_orbit} samples of {size} points are more than {MOST_KEPT_SAMPLES}",
         )
+        return
+    if study.keep_harmonics is not None and size > MOST_WITH_HARMONICS:
+        said = f"harmonics are kept of {MOST_WITH_HARMONICS} points at most, not of {size}"
+        notes.add(("keep", "harmonics"), said)
         return
     if (study.keep_attractors or 0) * size > MOST_STARTS:
         said = f"{study.keep_attractors} starts at {size} points are more than {MOST_STARTS}"

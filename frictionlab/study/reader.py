@@ -42,7 +42,7 @@ STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
     *("sweep", "expect", "keep", "columns", "limit"),
 )
-KEPT = {"orbit": 2, "attractors": 1}
+KEPT = {"orbit": 2, "attractors": 1, "harmonics": 1}
 """What ``keep`` may ask for, and the least count of each."""
 REQUIRED = ("schema", "scene", "laws")
 DEFAULT_TOLERANCE = 1e-8

@@ -162,7 +162,8 @@ class Study:
     words and waveforms, too.
     ranges: those of the sweeps that were given as ranges.
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
-    keep_attractors: starts a point from which every state is looked for, None for none.
+    keep_attractors: starts a point from which every state is looked for, None for none. keep_harmonics: the highest
+    harmonic of velocity and friction to keep, None for none.
     columns: result columns asked for, None for all. seconds_per_point: the time a point may take [s].
     plugins: its law files. code: SHA-256 of every law that is not frictionlab's own, by kind.
     """
@@ -175,6 +176,7 @@ class Study:
     expect: tuple[Expectation, ...] = ()
     keep_orbit: int | None = None
     keep_attractors: int | None = None
+    keep_harmonics: int | None = None
     columns: tuple[str, ...] | None = None
     seconds_per_point: float = SECONDS_PER_POINT
     title: str = ""
@@ -283,7 +285,11 @@ class Study:
                 path: _natural(self.ranges[path].resolved() if path in self.ranges else list(values))
                 for path, values in self.sweep.items()
             }
-        keep = {"orbit": self.keep_orbit, "attractors": self.keep_attractors}
+        keep = {
+            "orbit": self.keep_orbit,
+            "attractors": self.keep_attractors,
+            "harmonics": self.keep_harmonics,
+        }
         if kept := {name: count for name, count in keep.items() if count is not None}:
             told["keep"] = kept
         if self.columns is not None:

@@ -233,7 +233,7 @@ def test_chunks_and_answers_can_cross_to_another_process() -> None:
     parts = pickle.loads(pickle.dumps(solve(pickle.loads(pickle.dumps(piece)))))
 
     assert sorted(row for part in parts for row in part.rows) == list(range(6))
-    assert [sorted(part.orbits) for part in parts] == [[], [0, 2, 4, 5]]
+    assert [sorted(part.kept["orbits"]) for part in parts] == [[], [0, 2, 4, 5]]
 
 
 def test_nothing_is_written_without_an_output_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -90,7 +90,7 @@ CHANGES: dict[str, dict[str, Any]] = {
     "scene": {"scenes": Scenes(OTHER.with_(damping_ratio=0.2), np.array([1.0, 2.0]))},
     "start": {"scenes": Scenes(OTHER.with_(initial=fl.Initial()), np.array([1.0, 2.0]))},
     "tolerance": {"task": Task(1e-9)},
-    "orbits": {"task": Task(1e-8, samples=3)},
+    "orbits": {"task": Task(1e-8, samples=3, harmonics=2)},
     "columns": {"task": Task(1e-8, columns=frozenset({"mean_friction"}))},
     "limit": {"task": Task(1e-8, seconds_per_point=1.0)},
 }
@@ -137,7 +137,7 @@ def test_what_is_made_by_code_that_nobody_knows_has_no_key(own: dict[str, Fricti
 
 def kept_one(folder: Path) -> tuple[KeptChunks, Path]:
     kept = KeptChunks(folder)
-    (part,) = solve(chunk(task=Task(1e-8, samples=3)))
+    (part,) = solve(chunk(task=Task(1e-8, samples=3, harmonics=2)))
     assert kept.keep("ab" + "0" * 62, part)
     (path,) = folder.rglob("*.chunk")
     return kept, path
@@ -145,15 +145,18 @@ def kept_one(folder: Path) -> tuple[KeptChunks, Path]:
 
 def test_a_chunk_comes_back_bit_for_bit(tmp_path: Path) -> None:
     kept, _ = kept_one(tmp_path)
-    (part,) = solve(chunk(task=Task(1e-8, samples=3)))
+    (part,) = solve(chunk(task=Task(1e-8, samples=3, harmonics=2)))
     again = kept.found("ab" + "0" * 62)
 
     assert again is not None
     assert again.text == part.text
-    assert again.orbits.keys() == part.orbits.keys() == {0, 1}
+    assert again.kept.keys() == part.kept.keys() == {"orbits", "harmonics"}
+    for name, rows in part.kept.items():
+        assert again.kept[name].keys() == rows.keys() == {0, 1}
+        for column, values in rows[1].items():
+            np.testing.assert_array_equal(again.kept[name][1][column], values)
     for name in part.numbers.keys() - {"seconds"}:
         np.testing.assert_array_equal(again.numbers[name], part.numbers[name])
-    np.testing.assert_array_equal(again.orbits[1], part.orbits[1])
 
 
 def test_a_damaged_chunk_is_solved_again(tmp_path: Path) -> None:

@@ -82,6 +82,12 @@ def test_a_grid_is_checked_for_its_size_before_its_values_are_built(monkeypatch:
             "has more than 300000 values",
         ),
         (lambda: study(title="x" * 5_000_001), "holds more than 5000000 letters"),
+        (
+            lambda: study(
+                keep={"harmonics": 3}, sweep={"scene.belt_speed": {"start": 1, "stop": 2, "num": 100_001}}
+            ),
+            "harmonics are kept of 100000 points at most, not of 100001",
+        ),
         (lambda: study(keep={"attractors": 10**6}), "1000000 starts at 1 points are more than 100000"),
         (lambda: study(keep={"orbit": 10**9}), "1000000000 samples of 1 points are more than 50000000"),
     ],

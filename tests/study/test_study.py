@@ -317,6 +317,7 @@ def test_loading_a_study_imports_no_compiler_no_tables_and_no_figures(written: A
         ("title=a = b", lambda study: study.title == "a = b"),
         ("keep.orbit=9", lambda study: study.keep_orbit == 9),
         ("keep.attractors=9", lambda study: study.keep_attractors == 9),
+        ("keep.harmonics=9", lambda study: study.keep_harmonics == 9),
         ("expect=[]", lambda study: study.expect == ()),
     ],
 )

@@ -132,7 +132,14 @@ OUTSIDE = {
     "pandas": ["results", "runner", "charts", "report", "cli"],
     "pyarrow": ["results", "runner"],
     "matplotlib": [
-        *("charts", "bench.chart", "bench.orders.chart", "bench.stability.chart", "bench.failures.chart"),
+        *(
+            "charts",
+            "bench.chart",
+            "bench.orders.chart",
+            "bench.stability.chart",
+            "bench.failures.chart",
+            "bench.models.chart",
+        ),
     ],
     # inside functions alone: nothing imports it before it is needed
     "distributed": ["runner"],

@@ -105,7 +105,7 @@ def _rows(
     for contender in _there(work):
         for setting, solver in contender.solvers:
             tell(f"{work.name}: {contender.label}, {setting} ({forecast})")
-            yield _row(bench, work, found, contender, setting, solver)
+            yield measured_row(bench, work, found, contender, setting, solver)
             forecast.done()
 
 
@@ -149,7 +149,7 @@ def _with_first_run(row: Row, work: Workload, tell: Callable[[str], None]) -> Ro
     return replace(row, first=first_run(solver, scenes, work.law, setting.tolerance))
 
 
-def _row(
+def measured_row(
     bench: Bench,
     work: Workload,
     found: Sequence[ReferenceMeans],
@@ -157,6 +157,7 @@ def _row(
     setting: BenchSetting,
     solver: Method | Peer,
 ) -> Row:
+    """One contender at one setting on a curve, errors against these references, timed as the list says."""
     places = chosen(len(work.scenes), contender.points)
     scenes = [work.scenes[place] for place in places]
     outcome = solve_points(solver, scenes, work.law, setting.tolerance)

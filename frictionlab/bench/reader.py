@@ -11,6 +11,7 @@ from typing import Any
 from frictionlab import columns
 from frictionlab.bench.contenders import Defaults, contenders
 from frictionlab.bench.failures.reader import read_failures
+from frictionlab.bench.models import read_models
 from frictionlab.bench.names import file_stem
 from frictionlab.bench.orders import read_orders
 from frictionlab.bench.record import Bench, Workload
@@ -27,6 +28,7 @@ SECTIONS: dict[str, SectionReader] = {
     "orders": read_orders,
     "stability": read_stability,
     "failures": read_failures,
+    "models": read_models,
 }
 """What reads each key of a list that is neither a curve nor about curves."""
 BENCH_KEYS = ("schema", "title", "scenes", "references", "methods", "peers", "repeats", "seconds", *SECTIONS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,8 @@ from frictionlab.charts.figures import PAGE, STYLE
 
 MARKS_OF_METHODS = "osD^v<>phPX*"
 CHART_HEIGHT = 3.4
+TITLE_LETTERS = 56
+"""On a line of the title."""
 FRONT: dict[str, Any] = {
     "color": "0.55",
     "linewidth": 3.0,
@@ -53,11 +56,14 @@ def models_figure(measured: ModelsResult) -> Figure:
     _draw_front(axes, front(measured.rows), known)
     axes.set_xlabel(r"time per point [$\mathrm{\mu s}$]")
     axes.set_ylabel(f"largest distance from {measured.rows[0].model.label}")
-    axes.set_title(measured.title or measured.name, loc="left", fontweight="bold")
+    axes.set_title(
+        textwrap.fill(measured.title or measured.name, TITLE_LETTERS), loc="left", fontweight="bold"
+    )
     axes.grid(which="major", color="0.9", linewidth=0.5)
     axes.set_axisbelow(True)
     axes.axhspan(1e-3 * known, known, color="0.93", zorder=0)
-    axes.set_ylim(0.3 * known)
+    axes.set_ylim(0.1 * known)
+    axes.set_xlim(0.2 * axes.get_xlim()[0])  # room for the name of the cheapest
     seen = {each.row.contender.label for each in drawn}
     entries = [Line2D([], [], label=label, **_look(k, 0)) for k, label in enumerate(labels)]
     entries += [Line2D([], [], linestyle="none", label=" ")]
@@ -109,15 +115,13 @@ def _draw_front(axes: Axes, best: Sequence[ModelRow], known: float) -> None:
     places = [_place(each, known) for each in best]
     if places:
         axes.step(*zip(*places, strict=True), where="post", **FRONT)
+    named: set[tuple[str, str]] = set()
     for each, place in zip(best, places, strict=True):
-        said = f"{each.model.label}\n{each.label}"
-        axes.annotate(
-            said,
-            place,
-            (-4.0, -4.0),
-            textcoords="offset points",
-            fontsize=5.5,
-            ha="right",
-            va="top",
-            color="0.25",
-        )
+        name = each.model.label, each.row.contender.label
+        if name not in named:  # its finer settings follow on its line
+            said = "\n".join(name)
+            axes.annotate(
+                said, place, (-4.0, -4.0), textcoords="offset points", fontsize=5.5, ha="right", va="top",
+                color="0.25",
+            )  # fmt: skip
+        named.add(name)

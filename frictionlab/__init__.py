@@ -49,6 +49,7 @@ _HOMES = {
     "SteadyState": "frictionlab.runner.api",
     "Stiffness": "frictionlab.laws.compliant",
     "Stribeck": "frictionlab.laws.stribeck",
+    "Study": "frictionlab.study.study",
     "Transverse": "frictionlab.scene.scene",
     "TransverseSlip": "frictionlab.scene.scene",
     "attractors": "frictionlab.runner.api",

@@ -17,8 +17,8 @@ from typing import Any
 
 from frictionlab.mistakes.notes import StudyError
 from frictionlab.printable import printable
-from frictionlab.runner.folder import yaml_text
 from frictionlab.study import Study, load_study, parse_study, read_back
+from frictionlab.study.yaml_text import yaml_text
 
 LONGEST = 10.0
 """Time [s] of one processor that one study may take."""

@@ -21,7 +21,7 @@ from frictionlab.bench.stability import read_stability
 from frictionlab.mistakes.notes import Notes, Path, dotted
 from frictionlab.study import Mistake, Study, StudyError
 from frictionlab.study.choices import items
-from frictionlab.study.reader import study_of
+from frictionlab.study.reader import read_study
 from frictionlab.study.yaml_source import Source, read_file
 
 SECTIONS: dict[str, SectionReader] = {
@@ -162,7 +162,7 @@ class _Reading:
         of the sweep are noted elsewhere.
         """
         try:
-            return study_of(_part(self._source, block, path))
+            return read_study(_part(self._source, block, path))
         except StudyError as problem:
             head = dotted(path)
             self._mistakes += [

@@ -19,7 +19,7 @@ from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import counted
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.saved import Saved
-from frictionlab.runner.yaml_text import yaml_text
+from frictionlab.study.yaml_text import yaml_text
 
 REPORT_TEMPLATES = Path(__file__).parent / "templates"
 GENERATOR = f"frictionlab {__version__}"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor
-from contextlib import suppress
 from dataclasses import replace
 from math import inf
 from os import PathLike
@@ -56,6 +55,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import MethodChoice, Study, StudyCurve
 from frictionlab.study.grid import grid_size
+from frictionlab.study.objects import kind_of
 from frictionlab.study.study import law_in_scene
 
 
@@ -319,7 +319,7 @@ def curve(
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     check_executor(executor)
-    kind, wanted = _kind(law), selected(None if columns is None else given_columns(columns, scene))
+    kind, wanted = kind_of(law), selected(None if columns is None else given_columns(columns, scene))
     task = Task(given_tolerance(tolerance), columns=wanted)
     # a method is never given a belt speed twice
     different, places = np.unique(given_speeds(belt_speed), return_inverse=True)
@@ -348,7 +348,7 @@ def attractors(
     if isinstance(starts, bool) or not isinstance(starts, int) or starts < 1:
         raise ValueError(f"starts: a whole number of at least 1, not {starts!r}")
     different = np.unique(given_speeds(belt_speed))
-    whole = _one_curve(_kind(law), law, ready, Scenes(scene, different))
+    whole = _one_curve(kind_of(law), law, ready, Scenes(scene, different))
     return attractor_table([whole], given_tolerance(tolerance), starts)
 
 
@@ -381,14 +381,3 @@ def _in_si(part: Part, scene: Scene) -> dict[str, float]:
     found = {name: part.numbers.get(name, np.full(1, np.nan)) for name in RESULTS}
     scales = {name: np.array([scale]) for name, scale in si_scales(scene).items()}
     return {name: float(column[0]) for name, column in si_columns(found, scales).items()}
-
-
-def _kind(law: FrictionLaw) -> str:
-    """The registered name of a law, of several that of its file; its class's where it is not registered."""
-    names = []
-    for name in registry.law_names():
-        with suppress(registry.BrokenPlugin):  # another law's trouble
-            if registry.law_class(name) is type(law):
-                names.append(name)
-    file = type(law).__module__.rpartition(".")[2].replace("_", "-")
-    return file if file in names else next(iter(names), type(law).__name__)

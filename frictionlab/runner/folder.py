@@ -20,8 +20,8 @@ from frictionlab.printable import printable
 from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.files import damage, remove_leftovers, stamp, stamp_of_file, stamps, write_whole
 from frictionlab.runner.machine import machine_and_versions
-from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study.study import LAW_COPIES
+from frictionlab.study.yaml_text import yaml_text
 
 Existing = Literal["reuse", "replace"]
 PAGE_MARK = '<meta name="generator" content="frictionlab'

@@ -86,9 +86,9 @@ def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name:
     return _study(read_mapping(mapping, name), overrides)
 
 
-def study_of(source: Source) -> Study:
+def read_study(source: Source, bring: LawReader = read_laws) -> Study:
     """The study of values already read, such as a part of a larger file. Raises StudyError with every mistake."""
-    return _study(source, ())
+    return _study(source, (), bring=bring)
 
 
 def _study(

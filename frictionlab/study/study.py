@@ -25,6 +25,7 @@ from frictionlab.scene.scene import Scene, with_values
 from frictionlab.scene.scenes import Scenes
 from frictionlab.scene.waveforms import Form
 from frictionlab.study.ranges import SweepRange
+from frictionlab.study.yaml_text import yaml_text
 
 SCHEMA = 1
 LAW_COPIES = "laws"
@@ -185,6 +186,38 @@ class Study:
     code: dict[str, str] = field(default_factory=dict)
     ranges: dict[str, SweepRange] = field(default_factory=dict)
     path: Path | None = field(default=None, compare=False)
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        laws: Any,
+        methods: Any = "auto",
+        sweep: Mapping[str, Any] | None = None,
+        **told: Any,
+    ) -> Study:
+        """The study of Python objects.
+
+        laws: a friction law, several, or a mapping label -> law, which two laws of one kind need. methods: likewise,
+        names or methods. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values. told: the other keys of a
+        study file, such as ``tolerance=1e-6``, ``title=``, ``keep={"orbit": 200}``.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> study = fl.Study.of(scene, fl.Coulomb(mu=0.4), sweep={"scene.belt_speed": [5, 25]})
+        >>> len(study.cases())
+        2
+
+        Raises StudyError with every mistake, TypeError for what is no scene, law or method.
+        """
+        from frictionlab.study.objects import study_of_objects  # which reads it as a file is read
+
+        return study_of_objects(scene, laws, methods, sweep, **told)
+
+    def to_yaml(self) -> str:
+        """The study as a study file that loads to an equal study; law files of its own have to lie beside it."""
+        return yaml_text(self.resolved())
 
     def cases(self) -> list[StudyCase]:
         """The full grid, a case a row: every law at every value of its sweeps, by every method, in every scene."""

@@ -20,7 +20,7 @@ from fake_methods import Fake, breaks_down, is_broken
 from frictionlab import cli, registry
 from frictionlab.registry.bibliography import read_bibtex
 from frictionlab.runner import api, execute
-from frictionlab.runner.yaml_text import yaml_text
+from frictionlab.study.yaml_text import yaml_text
 
 POINTS = [4.0, 13.0, -2.0, 9.0]
 DOOR = "[frictionlab.methods]\nfake = fake_methods:Fake\n"

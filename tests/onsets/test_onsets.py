@@ -142,7 +142,7 @@ def test_a_table_without_their_columns_has_no_onsets() -> None:
 
 def test_the_command_writes_onsets_and_takes_them_over(tmp_path: Path, monkeypatch: Any) -> None:
     from frictionlab.runner import api
-    from frictionlab.runner.yaml_text import yaml_text
+    from frictionlab.study.yaml_text import yaml_text
 
     file, out = tmp_path / "study.yaml", tmp_path / "out"
     file.write_text(yaml_text(study(LINE, np.linspace(30.0, 55.0, 6))))

@@ -14,7 +14,7 @@ import pytest
 
 from frictionlab import cli, registry
 from frictionlab.registry import smoke_test
-from frictionlab.runner.yaml_text import yaml_text
+from frictionlab.study.yaml_text import yaml_text
 
 HEAD = "from typing import ClassVar\n\nimport frictionlab as fl\n\n\n"
 GOOD = f'''{HEAD}class Good(fl.SlidingLaw):

@@ -35,8 +35,8 @@ from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.open_chunks import open_chunks
 from frictionlab.runner.progress import Meter
 from frictionlab.runner.solve import solve
-from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import load_study, parse_study
+from frictionlab.study.yaml_text import yaml_text
 
 Trouble = Callable[[dict[float, Callable[[], None]]], None]
 

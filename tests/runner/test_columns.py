@@ -17,9 +17,9 @@ from frictionlab.methods.exact.method import _Curve
 from frictionlab.methods.periodic import continuation
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.runner.folder import FolderError
-from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import StudyError, load_study, parse_study
 from frictionlab.study.schema import schema
+from frictionlab.study.yaml_text import yaml_text
 
 SPEEDS = [5.0, 20.0]
 LINE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}

@@ -24,8 +24,8 @@ from frictionlab.runner.api import run_folder
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.files import remove_leftovers
 from frictionlab.runner.saved import read_saved
-from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import load_study
+from frictionlab.study.yaml_text import yaml_text
 
 LAW = '''"""A law."""
 import frictionlab as fl

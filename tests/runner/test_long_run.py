@@ -19,8 +19,8 @@ from frictionlab.results import thinned
 from frictionlab.results.summary import summary
 from frictionlab.runner import api, long_run, saved
 from frictionlab.runner.saved import read_saved
-from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import parse_study
+from frictionlab.study.yaml_text import yaml_text
 
 SCENE: dict[str, Any] = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
 SCENE |= {"drive": {"unbalance": 10, "frequency": 1}}

@@ -18,8 +18,8 @@ import frictionlab as fl
 from frictionlab.mistakes.notes import WrongValues
 from frictionlab.registry.law_file import read_law_file
 from frictionlab.results.state import NoMeanError
-from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import StudyError, parse_study
+from frictionlab.study.yaml_text import yaml_text
 
 GIVEN: dict[str, Any] = {
     "damping_ratio": 0.1,

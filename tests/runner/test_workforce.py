@@ -20,8 +20,8 @@ from frictionlab.runner import workforce
 from frictionlab.runner.kept_chunks import KeptChunks
 from frictionlab.runner.share import run_share
 from frictionlab.runner.workforce import Workforce, processes
-from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import parse_study
+from frictionlab.study.yaml_text import yaml_text
 
 STUDY: dict[str, Any] = {
     "schema": 1,

@@ -14,9 +14,9 @@ from ruamel.yaml import YAML
 
 import frictionlab as fl
 from frictionlab import registry
-from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import StudyError, load_study, parse_study, read_back
 from frictionlab.study.ranges import SweepRange
+from frictionlab.study.yaml_text import yaml_text
 
 SCENE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 1, "drive": {"unbalance": 10, "frequency": 1}}
 

@@ -18,8 +18,8 @@ from frictionlab.registry.law_file import law_name, read_law_file
 from frictionlab.report import write_report
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.saved import read_saved
-from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import StudyError, load_study
+from frictionlab.study.yaml_text import yaml_text
 
 LAW = '''"""A law for tests."""
 

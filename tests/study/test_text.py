@@ -10,8 +10,8 @@ import pytest
 from study_mistakes import GOOD
 
 from frictionlab.printable import one_line, printable
-from frictionlab.runner.yaml_text import yaml_text
 from frictionlab.study import StudyError, load_study, parse_study
+from frictionlab.study.yaml_text import yaml_text
 
 
 def told(path: Path, text: str, overrides: tuple[str, ...] = ()) -> str:

@@ -11,6 +11,7 @@ _HOMES = {
     "Auto": "frictionlab.methods.auto",
     "BeltVibration": "frictionlab.scene.scene",
     "BristleLaw": "frictionlab.laws.memory",
+    "Comparison": "frictionlab.notebook.comparison",
     "CompliantLaw": "frictionlab.laws.compliant",
     "Coulomb": "frictionlab.laws.coulomb",
     "Dahl": "frictionlab.laws.dahl",
@@ -24,6 +25,7 @@ _HOMES = {
     "DimensionalNormalLoadVariation": "frictionlab.scene.dimensional",
     "DimensionalTransverse": "frictionlab.scene.dimensional",
     "Drive": "frictionlab.scene.scene",
+    "Dupont": "frictionlab.laws.elasto_plastic",
     "ElastoPlastic": "frictionlab.laws.elasto_plastic",
     "Exact": "frictionlab.methods.exact.method",
     "Finite": "frictionlab.laws.base",
@@ -53,10 +55,15 @@ _HOMES = {
     "Transverse": "frictionlab.scene.scene",
     "TransverseSlip": "frictionlab.scene.scene",
     "attractors": "frictionlab.runner.api",
+    "compare": "frictionlab.notebook.comparison",
     "curve": "frictionlab.runner.api",
     "run": "frictionlab.runner.api",
     "steady_state": "frictionlab.runner.api",
+    "sweep": "frictionlab.notebook.comparison",
 }
+
+_OTHER_NAMES = {"Dupont": "ElastoPlastic"}
+"""Second names of public classes."""
 
 __all__ = ["__version__", *sorted(_HOMES)]
 
@@ -69,7 +76,7 @@ def __getattr__(name: str) -> Any:
         return version("frictionlab")
     if name not in _HOMES:
         raise AttributeError(f"module 'frictionlab' has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name]), name)
+    return getattr(import_module(_HOMES[name]), _OTHER_NAMES.get(name, name))
 
 
 def __dir__() -> list[str]:

@@ -81,6 +81,7 @@ ARROWS = {
     ],
     "charts": ["columns", "printable"],
     "report": ["charts", "columns", "registry", "results", "runner", "scene", "study"],
+    "notebook": ["charts", "columns", "report", "results", "runner", "scene", "study"],
     "scaffold": ["registry", "runner"],
     "bench": [
         *("charts", "columns", "compile", "laws", "mistakes", "quantities", "runner", "scene", "study"),
@@ -122,14 +123,15 @@ OUTSIDE = {
     ],
     "numpy": [
         *("quantities", "compile", "theory", "shape", "orbit", "numerics", "dynamics", "methods", "study"),
-        *("onsets", "results", "runner", "scene", "charts", "bench", "testing"),
+        *("onsets", "results", "runner", "scene", "charts", "notebook", "bench", "testing"),
     ],
     "hypothesis": ["testing"],
     "numba": ["compile", "bench.peers"],  # the peers' integrators are called with numba's C functions
     "llvmlite": ["compile"],
     "flint": ["methods.exact.proof"],
     "ruamel": ["study", "runner"],
-    "pandas": ["results", "runner", "charts", "report", "cli"],
+    "pandas": ["results", "runner", "charts", "report", "notebook", "cli"],
+    "xarray": ["notebook"],
     "pyarrow": ["results", "runner"],
     "matplotlib": [
         *(

@@ -1,0 +1,164 @@
+"""Laws, methods and scenes compared in memory: one call, one result that holds tables and makes pages of them."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from frictionlab.columns import BELT_SPEEDS
+from frictionlab.columns import belt_speed as column_of_speed
+from frictionlab.notebook.preview import preview_html
+from frictionlab.results.run import Run
+from frictionlab.results.summary import summary
+from frictionlab.results.table import swept_inputs
+from frictionlab.runner.api import run as run_study
+from frictionlab.runner.arguments import given_scene
+from frictionlab.runner.save import save_run
+from frictionlab.scene.scene import Scene
+from frictionlab.study import Study
+from frictionlab.study.objects import LawsGiven, MethodsGiven, study_of_objects
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True, repr=False)
+class Comparison:
+    """A study that was solved in memory; seconds: how long that took.
+
+    Shown as its summary, in a notebook as a small table with the curves drawn in it.
+    """
+
+    run: Run
+    seconds: float
+
+    @property
+    def study(self) -> Study:
+        """The study, which ``.to_yaml()`` writes as a file."""
+        return self.run.study
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """One row per scene, law and method, with every result column."""
+        return self.run.table
+
+    @property
+    def curves(self) -> pd.DataFrame:
+        """One row per curve with its shape, as in ``curves.csv``; empty where belt speed is not swept."""
+        return self.run.curves
+
+    @property
+    def onsets(self) -> pd.DataFrame:
+        """One row per belt speed at which a motion changes its kind, found when first asked for."""
+        return self.run.onsets
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The table over law, belt speed, every input that is swept, and method where there are several.
+
+        Dimensions have the names of columns; select a method by ``.sel({"method": "exact"})``.
+
+        All else is a variable, what laws have of their own included.
+        Raises ImportError without xarray, which ``pip install 'frictionlab[xarray]'`` installs.
+        """
+        try:
+            import xarray  # noqa: F401 - pandas makes the dataset, and tells less well that it is missing
+        except ImportError:
+            raise ImportError("to_xarray needs xarray: pip install 'frictionlab[xarray]'") from None
+        table = self.table
+        methods = ["method"] * (table["method"].nunique() > 1)
+        dimensions = ["law", *methods, *swept_inputs(table), column_of_speed(table.columns)]
+        rest = [name for name in table.columns if name not in dimensions]
+        return table.set_index(dimensions)[rest].to_xarray()
+
+    def save(self, folder: str | PathLike[str]) -> Path:
+        """Write what ``frictionlab run`` writes into a folder, its figures and report included; where it is.
+
+        Raises FolderError where the folder holds results of another study, SaveError.
+        """
+        from frictionlab.notebook.pages import draw_and_report  # with matplotlib, which takes a second
+
+        return draw_and_report(save_run(self.run, Path(folder), self.seconds))
+
+    def report(self, path: str | PathLike[str]) -> Path:
+        """Write the report alone, one HTML file that needs nothing else; where it is. Raises SaveError."""
+        from frictionlab.runner.files import write_whole
+
+        with tempfile.TemporaryDirectory() as folder:
+            page = self.save(Path(folder) / "run") / "report.html"
+            write_whole(Path(path), page.read_bytes())
+        return Path(path)
+
+    def __repr__(self) -> str:
+        """The summary that ``frictionlab run`` prints."""
+        return summary(self.run)
+
+    def _repr_html_(self) -> str:
+        return preview_html(self.table, self.curves)
+
+
+def compare(
+    scene: Scene,
+    laws: LawsGiven,
+    belt_speed: ArrayLike | Mapping[str, float] | None = None,
+    methods: MethodsGiven = "auto",
+    tolerance: float = 1e-8,
+    columns: Sequence[str] | None = None,
+    executor: Executor | None = None,
+) -> Comparison:
+    """Several laws, by one or several methods, along belt speeds of one scene.
+
+    laws: a law, a list of laws of different kinds, or a mapping label -> law. belt_speed: a list, or a range as in a
+    study, ``{"start": 1, "stop": 60, "num": 120}``; that of the scene where it is left out. columns: result columns,
+    all by default.
+
+    >>> import frictionlab as fl
+    >>> drive = fl.Drive(unbalance=10, frequency=1)
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+    >>> found = fl.compare(scene, [fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)], belt_speed=[5, 25, 45])
+    >>> found.table.pivot(index="scene.belt_speed", columns="law", values="mean_friction").round(3).loc[25].tolist()
+    [0.218, 0.218]
+
+    Raises StudyError with every mistake, TypeError for what is no scene, law or method.
+    """
+    over = {} if belt_speed is None else {_speed_path(given_scene(scene)): belt_speed}
+    return sweep(scene, laws, over, methods, tolerance, columns, executor)
+
+
+def sweep(
+    scene: Scene,
+    laws: LawsGiven,
+    over: Mapping[str, Any],
+    methods: MethodsGiven = "auto",
+    tolerance: float = 1e-8,
+    columns: Sequence[str] | None = None,
+    executor: Executor | None = None,
+) -> Comparison:
+    """The full grid of a sweep: ``over`` has lists or ranges by ``scene.<path>`` or ``laws.<label>.<parameter>``.
+
+    >>> import frictionlab as fl
+    >>> drive = fl.Drive(unbalance=10, frequency=1)
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+    >>> found = fl.sweep(scene, fl.Coulomb(mu=0.4), {"scene.drive.frequency": [1, 1.5], "scene.belt_speed": [5, 20]})
+    >>> len(found.table)
+    4
+
+    Raises as ``compare`` does.
+    """
+    told = {"tolerance": tolerance, "columns": None if columns is None else list(columns)}
+    study = study_of_objects(scene, laws, methods, over, **told)
+    start = time.perf_counter()
+    done = run_study(study, executor=executor)
+    return Comparison(done, time.perf_counter() - start)
+
+
+def _speed_path(scene: Scene) -> str:
+    return BELT_SPEEDS[scene.dimensional is not None]

@@ -1,0 +1,36 @@
+"""A run that was solved in memory, written as one that was solved into a folder."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+from frictionlab.results.run import Run
+from frictionlab.runner.api import run_folder
+
+
+def save_run(done: Run, out: Path, seconds: float) -> Run:
+    """Write table, curves and account of a run that took so long [s]; the same run in its folder.
+
+    Raises FolderError where it is the folder of another study, SaveError.
+    """
+    folder = run_folder(done.study, out)
+    folder.check("reuse")
+    folder.open("replace")
+    started = datetime.now(UTC) - timedelta(seconds=seconds)
+    told = {"started": started.isoformat(timespec="seconds"), "overrides": [], "found": 0}
+    account = {
+        "counts": done.counts,
+        "expect": [],
+        "runs": [told | {"computed": done.computed, "seconds": seconds}],
+    }
+    folder.describe(account)
+    folder.save(done.table, done.orbits)
+    folder.save_csv(done.table)
+    folder.save_curves(done.curves)
+    if done.attractors is not None:
+        folder.save_attractors(done.attractors)
+    if done.harmonics is not None:
+        folder.save_harmonics(done.harmonics)
+    return replace(done, folder=out)

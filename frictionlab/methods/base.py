@@ -129,7 +129,13 @@ class Method(Record, ABC):
 
 
 class ReducedModel(Method):
-    """A method that solves a simpler problem than the scene states: most of its work goes into its error."""
+    """A method that solves a simpler problem than the scene states.
+
+    error: how it tells what that leaves out: ``bound``, from its own motion, where there is such a bound, or
+    ``distance`` from the full answer, which is asked for then.
+    """
+
+    error: Literal["bound", "distance"] = "bound"
 
     @abstractmethod
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:

@@ -21,7 +21,7 @@ from frictionlab.methods.prescribed.bristle import BristlePoint
 from frictionlab.methods.prescribed.memory import FORGETS
 from frictionlab.methods.reduced.amplitudes import Balance, balances
 from frictionlab.methods.reduced.common import ROUNDING, Modelled, judged
-from frictionlab.methods.reduced.full_mean import full_mean
+from frictionlab.methods.reduced.full_mean import full_means
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -95,11 +95,11 @@ def _point(scene: Scene, law: BristleLaw) -> _Point:
     balance = found[0]
     if balance.friction.multiplier > FORGETS:
         return _unknown(balance, REMEMBERED)
-    full = full_mean(scene.model_copy(update={"belt_speed": speed}), law)
+    full = full_means([scene.model_copy(update={"belt_speed": speed})], law)
     decay = math.exp(-math.pi * mass.damping / mass.frequency)
-    if full.floquet() > max(STEADY, 0.5 * (1.0 + decay)):
+    if full.floquet()[0] > max(STEADY, 0.5 * (1.0 + decay)):
         return _unknown(balance, UNSTEADY)
-    return _Point(balance, full.mean, full.error, full.reason)
+    return _Point(balance, float(full.mean[0]), float(full.error[0]), full.reasons[0])
 
 
 def _unknown(balance: Balance | None, reason: str) -> _Point:

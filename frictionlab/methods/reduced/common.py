@@ -1,7 +1,7 @@
 """Code of all reduced models of Coulomb friction along a line: accepted scenes, model error, results.
 
-A reduced model gives the motion as one harmonic. What it leaves out is found by bounding the mean friction of the
-full problem independently of any stepping, from motions that reverse twice (bounds.py).
+A reduced model gives the motion as one harmonic. What it leaves out is told by bounds on the mean friction of the
+full problem, from the friction along the model's motion as a trial (gap.py), or by its distance from that mean.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +20,13 @@ from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.exact.method import REDUCED
 from frictionlab.methods.prescribed.motion import displacement, velocity
 from frictionlab.methods.prescribed.quadrature import orbit_of_slip
-from frictionlab.methods.reduced.bounds import Line, bounds
-from frictionlab.methods.reduced.full_mean import full_mean
+from frictionlab.methods.reduced.friction_free_gap import closed_bound
+from frictionlab.methods.reduced.full_mean import full_means
+from frictionlab.methods.reduced.gap import line_bounds
+from frictionlab.methods.reduced.reversals import Driven, one_wave
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import Floats
+from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
@@ -32,9 +34,9 @@ from frictionlab.theory import friction_free_velocity
 from frictionlab.theory.equivalent_drive import equivalent_drive
 
 WIDEST = 0.25
-"""Distance of bounds on the mean, relative to the friction coefficient, above which they are narrowed."""
+"""Error, relative to the friction coefficient, above which a bound is of no use."""
 ROUNDING = 1e-10
-"""Of bounds and models, relative to the friction coefficient: their formulas keep twelve digits or more."""
+"""Of models, relative to the friction coefficient: their formulas keep twelve digits or more."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,19 @@ class Harmonic:
 
     mean: Floats
     velocity: NDArray[np.complex128]
+    reasons: list[str]
+
+
+ToldBy = Literal["bound", "distance"]
+"""How a model's error is told: by a bound on what it leaves out, or by its distance from the full answer."""
+ASK_FOR_THE_DISTANCE = "use error: distance, which asks for the full answer"
+
+
+class LeftOut(NamedTuple):
+    """The error of each point of a model, its kind, and why it is not known or of no use; empty where it is."""
+
+    error: Floats
+    kinds: list[str]
     reasons: list[str]
 
 
@@ -139,42 +154,79 @@ def line_means(scenes: Sequence[Scene], law: FrictionLaw, model: Model) -> Float
 
 
 def answer_line(
-    scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, text: str, model: Model
+    scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, text: str, model: Model, told_by: ToldBy
 ) -> Answers:
-    """Answers of a model on scenes that differ in belt speed alone, its error taken from the bounds."""
+    """Answers of a model on scenes that differ in belt speed alone, their error told by bounds or the full mean."""
     start = time.perf_counter()
-    mu, mass = law.sliding_friction(1.0), scenes[0].mass()
-    friction = mu * mass.normal_load
+    mu = law.sliding_friction(1.0)
     speeds = belt_speeds_of(scenes)
+    friction = mu * scenes[0].mass().normal_load
     found = model(scenes[0], friction, np.abs(speeds))
-    free = friction_free_velocity(scenes[0])
-    low, high = bounds(Line(0.5 * mass.damping, mass.frequency, friction, free), np.abs(speeds))
-    for i in np.flatnonzero(high - low > WIDEST).tolist():
-        low[i], high[i] = _narrowed(scenes[i], law, low[i], high[i])
     mean = mu * np.copysign(found.mean, speeds)
-    error = mu * (np.maximum(high - found.mean, found.mean - low) + ROUNDING)
-    seconds = time.perf_counter() - start
-    reasons = [
-        point_refusal(scene, friction) or own or _too_wide(width, mu)
-        for scene, own, width in zip(scenes, found.reasons, high - low, strict=True)
+    against = [
+        point_refusal(scene, friction) or own for scene, own in zip(scenes, found.reasons, strict=True)
     ]
+    if told_by == "bound":
+        left_out = _left_out(scenes, law, found, tolerance)
+    else:
+        left_out = far_from_full(scenes, law, mean, against)
+    seconds = time.perf_counter() - start
+    reasons = [own or other for own, other in zip(against, left_out.reasons, strict=True)]
     text += REDUCED if scenes[0].degrees_of_freedom == 2 else ""
 
     def orbit(i: int) -> Orbit:
         return _orbit(scenes[i], law, found, i)
 
-    return judged(Modelled(mean, error, seconds), reasons, text, tolerance, orbit)
+    answers = judged(Modelled(mean, left_out.error, seconds), reasons, text, tolerance, orbit)
+    kinds = [kind if ok == "ok" else "" for kind, ok in zip(left_out.kinds, answers.status, strict=True)]
+    return replace(answers, error_kind=kinds)
 
 
-def _narrowed(scene: Scene, law: FrictionLaw, low: float, high: float) -> tuple[float, float]:
-    """Bounds too far apart, narrowed to the mean of the full problem, where it is known."""
-    if scene.damping_ratio == 0.0 or scene.belt_speed == 0.0:
-        return low, high
-    mu, full = law.sliding_friction(1.0), full_mean(scene, law)
-    if full.reason:
-        return low, high
-    mean, margin = math.copysign(1.0, scene.belt_speed) * full.mean / mu, full.error / mu
-    return max(low, min(high, mean - margin)), min(high, max(low, mean + margin))
+def _left_out(scenes: Sequence[Scene], law: FrictionLaw, found: Harmonic, tolerance: float) -> LeftOut:
+    """By bounds: in closed form where the motion is the friction-free one and the tolerance is met by them."""
+    mu, mass, speeds = law.sliding_friction(1.0), scenes[0].mass(), np.abs(belt_speeds_of(scenes))
+    free = mass.force / (mass.damping + 1j * (mass.frequency - mass.stiffness / mass.frequency))
+    body = Driven(0.5 * mass.damping, mass.frequency, mu * mass.normal_load, np.array([free]))
+    reverses = (speeds > 0.0) & (speeds < abs(free))
+    error = np.where(reverses, np.inf, _at_the_ends(body, speeds))
+    proved = ~reverses
+    if np.all(found.velocity == free):
+        error[reverses] = closed_bound(body, speeds[reverses])
+        proved = proved | (mu * error <= tolerance)
+    open_points = np.flatnonzero(~proved)
+    if len(open_points):
+        trial = one_wave(found.velocity[open_points], mass.frequency, speeds[open_points])
+        low, high = line_bounds(body, trial, speeds[open_points])
+        mean = found.mean[open_points]
+        wide = np.maximum(high - mean, mean - low)
+        proved[open_points] = error[open_points] <= wide
+        error[open_points] = np.minimum(error[open_points], wide)
+    kinds = np.where(proved, "guaranteed", "estimated").tolist()
+    return LeftOut(mu * error, kinds, [_too_wide(each, mu) for each in error.tolist()])
+
+
+def _at_the_ends(body: Driven, belt_speeds: Floats) -> Floats:
+    """What rounding leaves open where symmetry or slip without reversal tells the mean, relative to mu."""
+    free = abs(body.free[0]) * (1.0 + body.unsure())
+    share = np.arccos(np.minimum(belt_speeds / free, 1.0)) / math.pi
+    return np.where(belt_speeds > 0.0, 4.0 * share, 0.0) + 4.0 * EPSILON
+
+
+def far_from_full(
+    scenes: Sequence[Scene], law: FrictionLaw, mean: Floats, against: Sequence[str] = ()
+) -> LeftOut:
+    """By the distance of these means from those of the full problem, asked for where nothing speaks against it."""
+    reasons = list(against) or [""] * len(scenes)
+    asked = [i for i, reason in enumerate(reasons) if not reason]
+    error = np.full(len(scenes), np.nan)
+    if asked:
+        full = full_means([scenes[i] for i in asked], law)
+        speeds = np.abs(belt_speeds_of([scenes[i] for i in asked]))
+        size = ROUNDING * np.array([law.sliding_friction(speed) for speed in speeds.tolist()])
+        error[asked] = np.abs(full.mean - mean[asked]) + full.error + size
+        for i, reason in zip(asked, full.reasons, strict=True):
+            reasons[i] = reason
+    return LeftOut(error, ["estimated"] * len(scenes), reasons)
 
 
 def judged(
@@ -201,12 +253,12 @@ def judged(
     )
 
 
-def _too_wide(width: float, mu: float) -> str:
-    if width <= WIDEST:
+def _too_wide(error: float, mu: float) -> str:
+    if error <= WIDEST:
         return ""
     return (
-        f"no useful bound on the model error: because of stick or further reversals the mean may lie anywhere within "
-        f"{width * mu:.2g}; use exact"
+        f"no useful bound on the model error: because of stick or further reversals the mean may be off by "
+        f"{min(error, 2.0) * mu:.2g}; {ASK_FOR_THE_DISTANCE}"
     )
 
 

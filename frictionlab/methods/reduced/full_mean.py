@@ -1,10 +1,11 @@
-"""The mean friction of the full problem, by which a reduced model's error is told."""
+"""The mean friction of the full problem, by which a reduced model's error is told where no bound tells it."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
+
+import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.exact.method import Exact
@@ -14,31 +15,31 @@ from frictionlab.scene.scene import Scene
 
 TOLERANCE = 1e-9
 """On the mean, relative to the friction coefficient in quick slip."""
+NOT_KNOWN = "no useful bound on the model error: the steady state is not known"
 
 
-class FullMean(NamedTuple):
-    """The mean along x1 and its error, NaN where it is not known, and the reason then.
+class FullMeans(NamedTuple):
+    """Means along x1 and their errors, NaN where they are not known, and the reasons then, else ''.
 
-    floquet(): the largest Floquet multiplier of the steady state.
+    floquet(): the largest Floquet multiplier of each steady state.
     """
 
-    mean: float
-    error: float
-    floquet: Callable[[], float]
-    reason: str
+    mean: Floats
+    error: Floats
+    floquet: Callable[[], Floats]
+    reasons: list[str]
 
 
-def full_mean(scene: Scene, law: FrictionLaw) -> FullMean:
-    """By the exact method where it takes the scene, else by shooting."""
-    method = Exact() if Exact().refusal(scene, law) is None else Shooting()
-    free = scene.model_copy(update={"initial": None, "dimensional": None})
-    found = method.solve([free], law, TOLERANCE * law.sliding_friction(1.0))
-    mean, error = float(found.mean[0].real), float(found.error[0])
-    if found.status[0] == "ok":
-        return FullMean(mean, error, lambda: _first(found.floquet), "")
-    unknown = "no useful bound on the model error: the steady state is not known"
-    return FullMean(math.nan, math.nan, lambda: math.nan, f"{unknown} ({found.reason[0]}); use shooting")
-
-
-def _first(floquet: Callable[[], Floats] | None) -> float:
-    return math.nan if floquet is None else float(floquet()[0])
+def full_means(scenes: Sequence[Scene], law: FrictionLaw) -> FullMeans:
+    """Of scenes that differ in belt speed alone: by the exact method where it takes them, else by shooting."""
+    free = [scene.model_copy(update={"initial": None, "dimensional": None}) for scene in scenes]
+    method = Exact() if not any(Exact().refusals(free, law)) else Shooting()
+    found = method.solve(free, law, TOLERANCE * law.sliding_friction(1.0))
+    nothing = np.full(len(scenes), np.nan)
+    known = np.array([status == "ok" for status in found.status])
+    reasons = [
+        "" if ok else f"{NOT_KNOWN} ({reason}); use shooting"
+        for ok, reason in zip(known, found.reason, strict=True)
+    ]
+    mean, error = (np.where(known, values, np.nan) for values in (np.real(found.mean), found.error))
+    return FullMeans(mean, error, found.floquet or (lambda: nothing), reasons)

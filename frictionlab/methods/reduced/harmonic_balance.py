@@ -13,6 +13,7 @@ from frictionlab.methods.base import Answers, ReducedModel
 from frictionlab.methods.reduced.bristle import answer_bristle, bristle_means, bristle_refusal
 from frictionlab.methods.reduced.common import (
     Harmonic,
+    ToldBy,
     answer_line,
     answer_steadied,
     line_means,
@@ -41,7 +42,7 @@ class HarmonicBalance(ReducedModel):
 
     Amplitude and belt speed follow from their ratio without a search (theory.one_harmonic_velocity); only a given
     belt speed asks for that ratio, the one root of a rising function. The error is what the left-out harmonics,
-    stick included, do to the mean: bounds on it come from motions that reverse twice with all their harmonics.
+    stick included, do to the mean: a bound from the friction along its motion (methods/reduced/gap.py).
 
     Bristle friction has a part in phase with the displacement as well, and both parts ask for a loop of the law at
     every amplitude looked at (methods/reduced/bristle.py); its error comes from the mean that shooting finds.
@@ -63,7 +64,9 @@ class HarmonicBalance(ReducedModel):
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
-        return answer_steadied(scenes, lambda others: _balance(law).answer(others, law, tolerance))
+        return answer_steadied(
+            scenes, lambda others: _balance(law).answer(others, law, tolerance, self.error)
+        )
 
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats:
         """Of the one harmonic that balances."""
@@ -113,18 +116,23 @@ class _Balance(NamedTuple):
     """One harmonic balanced for a kind of law."""
 
     refusal: Callable[[str, Scene, Any], str | None]
-    answer: Callable[[Sequence[Scene], Any, float], Answers]
+    answer: Callable[[Sequence[Scene], Any, float, ToldBy], Answers]
     means: Callable[[Sequence[Scene], Any], Floats]
     cost: Callable[[Scene], float]
 
 
 _OF_COULOMB = _Balance(
     line_refusal,
-    lambda scenes, law, tolerance: answer_line(scenes, law, tolerance, TEXT, one_harmonic),
+    lambda scenes, law, tolerance, told_by: answer_line(scenes, law, tolerance, TEXT, one_harmonic, told_by),
     lambda scenes, law: line_means(scenes, law, one_harmonic),
     lambda scene: 5e-5 * max(1.0, 1.0 / scene.frequency),
 )
-_OF_BRISTLES = _Balance(bristle_refusal, answer_bristle, bristle_means, lambda _scene: 4e-2)
+_OF_BRISTLES = _Balance(
+    bristle_refusal,
+    lambda scenes, law, tolerance, _told_by: answer_bristle(scenes, law, tolerance),
+    bristle_means,
+    lambda _scene: 4e-2,
+)
 
 
 def _balance(law: FrictionLaw) -> _Balance:

@@ -19,8 +19,10 @@ from frictionlab.methods.reduced.common import (
     ROUNDING,
     Harmonic,
     Modelled,
+    ToldBy,
     answer_line,
     answer_steadied,
+    far_from_full,
     judged,
     line_means,
     line_refusal,
@@ -28,7 +30,6 @@ from frictionlab.methods.reduced.common import (
     steadied,
     steadied_all,
 )
-from frictionlab.methods.reduced.full_mean import full_mean
 from frictionlab.methods.reduced.waveforms import answer_waveforms, waveform_means
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
@@ -79,7 +80,7 @@ class Mdsm(ReducedModel):
             return _answer_prescribed(scenes, law, tolerance)
         if steadied(scenes[0]) is None:
             return answer_waveforms(scenes, law, tolerance)
-        return answer_steadied(scenes, lambda others: _answer_sines(others, law, tolerance))
+        return answer_steadied(scenes, lambda others: _answer_sines(others, law, tolerance, self.error))
 
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
         """Of the friction-free motion."""
@@ -98,9 +99,9 @@ class Mdsm(ReducedModel):
         return 5e-5 * max(1.0, 1.0 / scene.frequency)
 
 
-def _answer_sines(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+def _answer_sines(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, told_by: ToldBy) -> Answers:
     if _in_closed_form(scenes[0], law):
-        return answer_line(scenes, law, tolerance, ALONG, friction_free)
+        return answer_line(scenes, law, tolerance, ALONG, friction_free, told_by)
     return _answer_plane(scenes, law, tolerance)
 
 
@@ -141,9 +142,19 @@ def friction_free_motion(scene: Scene) -> Motion:
 def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
     start = time.perf_counter()
     motion = friction_free_motion(scenes[0])
-    points = [_point(scene, law, motion) for scene in scenes]
-    reasons = [reason for _, reason in points]
-    means, errors = np.array([row[0] for row, _ in points]), np.array([row[1] for row, _ in points])
+    means, rounding = (
+        np.array(values)
+        for values in zip(*(_plane_mean(scene, law, motion) for scene in scenes), strict=True)
+    )
+    at_rest = [scene.belt_speed == 0.0 for scene in scenes]
+    left_out = far_from_full(
+        scenes, law, means.real, ["the belt is at rest" if rest else "" for rest in at_rest]
+    )
+    reasons = [
+        _at_rest(scene, law) if rest else reason
+        for scene, rest, reason in zip(scenes, at_rest, left_out.reasons, strict=True)
+    ]
+    errors = rounding + np.where(at_rest, 0.0, left_out.error)
 
     def orbit(i: int) -> Orbit:
         return model_orbit(motion, scenes[i].belt_speed, law, _position(scenes[i], means[i]))
@@ -151,25 +162,10 @@ def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -
     return judged(Modelled(means, errors, time.perf_counter() - start), reasons, PLANE, tolerance, orbit)
 
 
-def _point(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[tuple[complex, float], str]:
-    """Mean friction and its error, or the reason why there is none."""
-    mean, rounding = _plane_mean(scene, law, motion)
-    if scene.belt_speed == 0.0:
-        return (mean, rounding), _at_rest(scene, law)
-    error, reason = _error(scene, law, mean.real)
-    return (mean, rounding + error), reason
-
-
 def _plane_mean(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[complex, float]:
     """Mean friction over the friction-free motion, and the error of its quadrature."""
     found = integrals(motion, scene.belt_speed, law, slip_edges(motion, scene.belt_speed))
     return (0j if scene.belt_speed == 0.0 else -found.mean), ROUNDING * found.largest
-
-
-def _error(scene: Scene, law: FrictionLaw, mean: float) -> tuple[float, str]:
-    """The change of the mean because friction changes the motion, or the reason why it is not known."""
-    full = full_mean(scene, law)
-    return abs(full.mean - mean) + full.error, full.reason
 
 
 def _at_rest(scene: Scene, law: FrictionLaw) -> str:

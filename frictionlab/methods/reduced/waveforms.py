@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint, VaryingSlip, piece_at
-from frictionlab.methods.reduced.common import ROUNDING, Modelled, judged
-from frictionlab.methods.reduced.full_mean import full_mean
+from frictionlab.methods.reduced.common import Modelled, far_from_full, judged
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
@@ -62,9 +61,10 @@ def answer_waveforms(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
     start = time.perf_counter()
     motions = [FreeMotions(scene, law) for scene in scenes]
     points = [VaryingPoint(scene, law, free.slip) for scene, free in zip(scenes, motions, strict=True)]
-    rows = [_error(scene, law, point) for scene, point in zip(scenes, points, strict=True)]
     means = np.array([point.found.mean for point in points])
-    errors: Floats = np.array([error for error, _ in rows])
+    against = [_against(scene, law, point) for scene, point in zip(scenes, points, strict=True)]
+    left_out = far_from_full(scenes, law, means.real, against)
+    errors: Floats = left_out.error + np.array([point.found.error for point in points])
 
     def orbit(i: int) -> Orbit:
         mass = scenes[i].mass()
@@ -74,16 +74,12 @@ def answer_waveforms(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
         )
 
     found = Modelled(means, errors, time.perf_counter() - start)
-    answers = judged(found, [reason for _, reason in rows], AVERAGED, tolerance, orbit)
+    answers = judged(found, left_out.reasons, AVERAGED, tolerance, orbit)
     return replace(answers, period=np.where(np.isnan(answers.error), np.nan, float(scenes[0].periods)))
 
 
-def _error(scene: Scene, law: FrictionLaw, point: VaryingPoint) -> tuple[float, str]:
-    """The change of the mean because friction changes the motion, or the reason why it is not known."""
+def _against(scene: Scene, law: FrictionLaw, point: VaryingPoint) -> str:
+    """Why there is no one mean over the friction-free motion, or of the full problem; else empty."""
     if point.status != "ok":
-        return float("nan"), point.reason
-    if stays_at_rest(scene, law):
-        return float("nan"), MAY_STAY
-    full = full_mean(scene, law)
-    rounding = ROUNDING * law.sliding_friction(abs(scene.belt_speed))
-    return abs(full.mean - point.found.mean.real) + full.error + point.found.error + rounding, full.reason
+        return point.reason
+    return MAY_STAY if stays_at_rest(scene, law) else ""

@@ -17,7 +17,6 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.reduced.bounds import Line, bounds
 from frictionlab.methods.reduced.mdsm import Mdsm, friction_free_motion
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.panels import WEIGHTS
@@ -99,19 +98,18 @@ def test_the_reduction_is_not_always_overestimated() -> None:
 
 
 @pytest.mark.parametrize("share", [0.5, 0.6])
-def test_where_neighbours_bound_too_widely_the_full_mean_does(share: float) -> None:
+def test_where_the_bound_is_too_wide_the_distance_to_the_full_answer_is_told(share: float) -> None:
     drive = Drive(amplitude=1.0, frequency=0.5)
     one = scene(0.0, normal_load=0.5, damping_ratio=0.05, drive=drive)
     one = one.model_copy(update={"belt_speed": share * friction_free_velocity(one)})
-    body = Line(0.05, 0.5, 0.2, friction_free_velocity(one))
-    low, high = bounds(body, np.array([one.belt_speed]))
 
-    found, true = solve(one), with_columns(Exact(), [one], LAW, 1e-9)
-    apart = abs(found.columns["mean_friction"][0] - true.columns["mean_friction"][0])
+    bounded, found = Mdsm().solve([one], LAW, 1e-8), Mdsm(error="distance").solve([one], LAW, 1e-8)
+    apart = abs(found.mean[0] - Exact().solve([one], LAW, 1e-9).mean[0])
 
-    assert high[0] - low[0] > 0.5
+    assert bounded.status == ["refused"]
+    assert "error: distance" in bounded.reason[0]
     assert found.status == ["ok"]
-    assert apart <= found.columns["error"][0] < 1.5 * apart + 0.01
+    assert apart <= found.error[0] < apart + 1e-9
 
 
 @pytest.mark.parametrize("omega_r", [0.5, 1, 2, 3, 4, 10])
@@ -414,7 +412,8 @@ def test_points_without_a_useful_bound_are_refused_with_the_reason(one: Scene, b
 def test_friction_that_holds_the_mass_for_most_of_the_period_is_averaged_wrongly_and_the_error_says_so(
     one: Scene,
 ) -> None:
-    found, true = solve(one), with_columns(Shooting(), [one], LAW, 1e-8)
+    found = with_columns(Mdsm(error="distance"), [one], LAW, 1e-8)
+    true = with_columns(Shooting(), [one], LAW, 1e-8)
     apart = abs(found.columns["mean_friction"][0] - true.columns["mean_friction"][0])
 
     assert found.status == true.status == ["ok"]

@@ -1,4 +1,4 @@
-"""Bounds from motions that reverse twice a period, against exact references and their own limits."""
+"""Motions that reverse twice a period, against exact references."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from answered import with_columns
 from hypothesis import given
 from hypothesis import strategies as st
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.reduced.bounds import Line, _free, bounds, consistent, motions
+from frictionlab.methods.reduced.switching import Jumps
+from frictionlab.methods.reduced.two_reversals import Line, consistent, motions, motions_at
 from frictionlab.numerics.roots import monotone_root
 from frictionlab.scene.scene import Drive, Scene
 from frictionlab.theory import friction_free_velocity
@@ -31,21 +31,18 @@ def line(frequency=1.0, friction=0.4, damping=0.1):
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
-def test_where_the_mass_never_sticks_both_bounds_are_the_exact_mean(file: Path) -> None:
+def test_where_the_mass_never_sticks_theirs_is_the_exact_mean(file: Path) -> None:
     with file.open() as lines:
         rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(lines)]
     frequency, load = file.stem.split("_Om")[1].split("_g")
-    speeds, exact, stuck = (
-        np.array([row[name] for row in rows]) for name in ("v_b", "mu_bar_exact", "stick_fraction")
-    )
+    body = line(float(frequency), 0.4 * float(load))
+    slips = [row for row in rows if row["stick_fraction"] == 0.0 and 0.0 < row["v_b"] < body.friction_free]
+    speeds, exact = (np.array([row[name] for row in slips]) for name in ("v_b", "mu_bar_exact"))
 
-    low, high = bounds(line(float(frequency), 0.4 * float(load)), speeds)
+    found = motions_at(body, speeds)
 
-    np.testing.assert_allclose(low[stuck == 0.0], exact[stuck == 0.0] / 0.4, rtol=0, atol=2e-11)
-    np.testing.assert_array_equal((high > low)[stuck == 0.0], False)
-    assert np.all(low[stuck > 0.0] <= exact[stuck > 0.0] / 0.4 + 1e-11)
-    assert np.all(high[stuck > 0.0] >= exact[stuck > 0.0] / 0.4 - 1e-11)
-    assert np.all((high - low)[stuck > 0.0] < 0.15)
+    np.testing.assert_allclose(1.0 - 2.0 * found.share, exact / 0.4, rtol=0, atol=2e-11)
+    assert consistent(body, found).all()
 
 
 @pytest.mark.parametrize(
@@ -59,7 +56,7 @@ def test_where_the_mass_never_sticks_both_bounds_are_the_exact_mean(file: Path) 
 def test_with_the_belt_at_rest_the_motion_is_den_hartogs(damping, frequency, friction, load, peak) -> None:
     free = load * frequency / abs(1 - frequency**2 + 2j * damping * frequency)
     body, half = Line(damping, frequency, friction, free), math.pi / frequency
-    found, green = motions(body, np.array([0.5])), _free(body)
+    found, green = motions(body, np.array([0.5])), Jumps.of(damping, frequency)
     nodes, weights = np.polynomial.legendre.leggauss(40)
     since = 0.5 * half * (1.0 + nodes)
     drive = free * np.sin(found.middle[0] - 0.5 * math.pi + frequency * since)
@@ -80,52 +77,20 @@ def test_a_slow_drive_makes_the_free_oscillation_reverse_the_slip_once_more(rati
     )
     free = friction_free_velocity(one)
     speed = (0.7 if ratio == 0.1 else 0.5) * free
-    exact = with_columns(
-        Exact(), [one.model_copy(update={"belt_speed": speed})], Coulomb(mu=0.4), 1e-9
-    ).columns
+    exact = Exact().solve([one.model_copy(update={"belt_speed": speed})], Coulomb(mu=0.4), 1e-9).mean[0]
     body = Line(0.05, 0.5, ratio, free)
-    shares = np.linspace(0.01, 0.5, 2000)
-    found = motions(body, shares)
-    nearest = np.nanargmin(np.abs(found.belt_speed - speed))
+    found = motions_at(body, np.array([speed]))
 
-    low, high = bounds(body, np.array([speed]))
-
-    assert abs(1 - 2 * shares[nearest] - exact["mean_friction"][0] / 0.4) > 0.01
-    assert low[0] <= exact["mean_friction"][0] / 0.4 <= high[0]
-    assert low[0] < high[0]
+    assert abs(1.0 - 2.0 * found.share[0] - exact / 0.4) > 0.01
+    assert not consistent(body, found)[0]
 
 
 @pytest.mark.parametrize("damping", [0.999999, 1.0, 1.000001])
 def test_critical_damping_is_no_exception(damping: float) -> None:
-    at_one = bounds(line(1.5, 2.0, 1.0), np.array([1.0, 4.0]))
-    near = bounds(line(1.5, 2.0, damping), np.array([1.0, 4.0]))
+    at_one = motions_at(line(1.5, 2.0, 1.0), np.array([1.0, 4.0]))
+    near = motions_at(line(1.5, 2.0, damping), np.array([1.0, 4.0]))
 
-    np.testing.assert_allclose(near, at_one, atol=1e-5)
-
-
-def test_bounds_end_at_rest_and_at_v_lin() -> None:
-    low, high = bounds(line(friction=4.0), np.array([0.0, 50.0, 70.0]))
-
-    np.testing.assert_array_equal(low, [0.0, 1.0, 1.0])
-    np.testing.assert_array_equal(high, [0.0, 1.0, 1.0])
-
-
-def test_friction_above_the_load_leaves_everything_open() -> None:
-    low, high = bounds(line(friction=30.0), np.array([1.0, 20.0]))
-
-    np.testing.assert_array_equal(low, 0.0)
-    np.testing.assert_array_equal(high, 1.0)
-
-
-@given(st.floats(-0.5, 1.0), st.floats(-3.0, 0.5), st.floats(-3.0, 0.0))
-def test_bounds_never_fall_as_the_belt_speeds_up(frequency: float, damping: float, friction: float) -> None:
-    body = line(10.0**frequency, 10.0**friction * 10 * 100.0**frequency, 10.0**damping)
-
-    low, high = bounds(body, body.friction_free * np.linspace(0.0, 1.1, 45))
-
-    assert np.all(np.diff(low) >= -1e-9)
-    assert np.all(np.diff(high) >= -1e-9)
-    assert np.all((low >= 0.0) & (low <= high + 1e-12) & (high <= 1.0))
+    np.testing.assert_allclose(near.share, at_one.share, atol=1e-5)
 
 
 @given(st.lists(st.floats(-0.99, 0.99), min_size=1, max_size=9))

@@ -57,6 +57,7 @@ _HOMES = {
     "attractors": "frictionlab.runner.api",
     "compare": "frictionlab.notebook.comparison",
     "curve": "frictionlab.runner.api",
+    "needs": "frictionlab.least_model.needs",
     "run": "frictionlab.runner.api",
     "steady_state": "frictionlab.runner.api",
     "sweep": "frictionlab.notebook.comparison",

@@ -202,6 +202,24 @@ HARMONICS: dict[str, str] = {
 }
 """The columns of the table of harmonics after the inputs; across the belt by these names after ``transverse_``."""
 
+NEEDS: dict[str, str] = {
+    "curve": "the law and the swept values that tell the curve from others of its study",
+    "without": "what was taken away",
+    "verdict": "needed, not needed, undecided (the error spans the tolerance) or refused (it cannot be taken away)",
+    "change": "of the mean friction coefficient, without minus with, where it is largest along the curve",
+    "change_error": "bound on its error: the errors of both means",
+    "belt_speed": "where that is, in the scale of the scene",
+    "within": "the tolerance on the change",
+    "reduction_change": "of the largest fall of mean friction below that of steady sliding, as a share of that",
+    "reduction_change_error": "bound on its error",
+    "shape": "verdict on the shape of the full curve; empty where it is not read",
+    "shape_without": "the same without",
+    "smallest": "whether this is the smallest model within the tolerance",
+    "model": "what the smaller model is",
+    "reason": "why the verdict is not plain",
+}
+"""The columns of the table of needs, one row per set of things taken away from a curve."""
+
 SHAPES: dict[str, tuple[str, ...]] = {
     "area": ("concave", "convex", "mixed", "undecided"),
     "initial": ("concave", "convex", "undecided"),

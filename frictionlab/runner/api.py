@@ -324,10 +324,15 @@ def curve(
     # a method is never given a belt speed twice
     different, places = np.unique(given_speeds(belt_speed), return_inverse=True)
     whole = _one_curve(kind, law, ready, Scenes(scene, different))
-    gathering = Accumulator(inputs([whole]), columns=wanted)
+    return table_of([whole], task, executor).iloc[places].reset_index(drop=True)
+
+
+def table_of(curves: Sequence[StudyCurve], task: Task, executor: Executor | None = None) -> pd.DataFrame:
+    """The result table of curves whose rows follow one another; nothing is kept. Raises BrokenPlugin."""
+    gathering = Accumulator(inputs(curves), columns=task.columns)
     with workforce(executor) as force:
-        force.solve(list(open_chunks([whole], task)), lambda _, parts: gathering.take(parts), gathering.tick)
-    return gathering.table.iloc[places].reset_index(drop=True)
+        force.solve(list(open_chunks(curves, task)), lambda _, parts: gathering.take(parts), gathering.tick)
+    return gathering.table
 
 
 def attractors(

@@ -1,0 +1,1 @@
+"""What a scene needs: its parts taken away one at a time, and the smallest model within a tolerance."""

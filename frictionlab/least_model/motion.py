@@ -1,0 +1,99 @@
+"""What may go from the way the motion is found: friction's effect on it, its higher harmonics."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from functools import partial
+from typing import Any
+
+from frictionlab import registry
+from frictionlab.least_model.lesser import CannotGo, LesserModel, Taken, Way
+from frictionlab.scene.scene import Scene
+from frictionlab.scene.waveforms import MOST_TERMS, Form, Term
+from frictionlab.theory.linear import friction_free_response, less
+from frictionlab.theory.piecewise import Piecewise, piecewise
+
+UNDRIVEN = "nothing shakes the body: without friction it does not move"
+UNBOUNDED = "the friction-free motion is unbounded: undamped resonance"
+WITH_SPEED = "the friction that moves the body under this normal load changes with belt speed"
+NO_WAVEFORM = "the friction-free motion is no sum of harmonics: no waveform of a prescribed slip says so"
+FRICTION_FREE = "mdsm"
+"""The method of the friction-free motion."""
+ORDERS = (1, 3, 5, 9)
+"""Harmonics to which the motion is cut."""
+
+
+def friction_free(model: LesserModel) -> LesserModel | None:
+    """The motion as if there were no friction, friction averaged over it."""
+    if model.scene.degrees_of_freedom == 0:
+        return None
+    if model.scene.undriven:
+        raise CannotGo(UNDRIVEN)
+    averaged = _method(FRICTION_FREE)
+    if averaged.refusal(model.scene, model.law) is None:
+        return model.with_way(averaged)
+    return LesserModel(_prescribed(model), model.law)
+
+
+def cut_to(harmonics: int) -> Taken:
+    """The motion and friction cut to so many harmonics, which balance."""
+    return partial(_balanced, harmonics)
+
+
+def _balanced(harmonics: int, model: LesserModel) -> LesserModel | None:
+    if model.scene.degrees_of_freedom == 0:
+        return None
+    return model.with_way(_method("harmonic_balance", **({"harmonics": harmonics} if harmonics > 1 else {})))
+
+
+def orders() -> tuple[int, ...]:
+    """The numbers of harmonics that the installed balance can be cut to."""
+    several = "harmonics" in registry.method_class("harmonic_balance").model_fields
+    return ORDERS if several else ORDERS[:1]
+
+
+def _method(name: str, **parameters: Any) -> Way:
+    found: Any = registry.method_class(name)(**parameters)
+    return found
+
+
+def _prescribed(model: LesserModel) -> Scene:
+    """The scene of the friction-free motion as a prescribed slip. Raises CannotGo."""
+    scene, law = model.scene, model.law
+    normal = scene.normal_load_variation
+    if normal is not None and not law.constant_sliding_friction():
+        raise CannotGo(WITH_SPEED)
+    free = friction_free_response(scene, law, 1)
+    if free is None:
+        raise CannotGo(UNBOUNDED)
+    signals = scene.signals()
+    along, across = (
+        _oscillation(less(own, piecewise(belt, signals.edges())), scene.frequency)
+        for own, belt in zip(free, signals.belt, strict=True)
+    )
+    changes: dict[str, Any] = {"slip": {**along, "frequency": scene.frequency}}
+    if scene.planar:
+        changes["transverse_slip"] = across
+    if normal is not None:
+        changes["normal_load_variation"] = normal.model_copy(update={"frequency": None})
+    return Scene(belt_speed=scene.belt_speed, normal_load=scene.normal_load, **changes)
+
+
+def _oscillation(velocity: Piecewise, frequency: float) -> dict[str, Any]:
+    """Amplitude, phase and waveform of a prescribed slip. Raises CannotGo."""
+    if velocity.free is not None and (velocity.free.x.any() or velocity.free.v.any()):
+        raise CannotGo(NO_WAVEFORM)
+    if velocity.middle.any() or velocity.slope.any():
+        raise CannotGo(NO_WAVEFORM)
+    found: dict[int, complex] = {}
+    for each in velocity.waves:
+        order = round(each.frequency / frequency)
+        if not (1 <= order <= MOST_TERMS and math.isclose(order * frequency, each.frequency)):
+            raise CannotGo(NO_WAVEFORM)
+        found[order] = found.get(order, 0j) + each.phasor
+    if set(found) <= {1}:
+        size, phase = cmath.polar(found.get(1, 0j))
+        return {"velocity_amplitude": size, "phase": math.degrees(phase)}
+    terms = tuple(Term(k, abs(z), math.degrees(cmath.phase(z))) for k, z in sorted(found.items()))
+    return {"velocity_amplitude": 1.0, "waveform": Form("harmonics", terms)}

@@ -208,7 +208,7 @@ NEEDS: dict[str, str] = {
     "verdict": "needed, not needed, undecided (the error spans the tolerance) or refused (it cannot be taken away)",
     "change": "of the mean friction coefficient, without minus with, where it is largest along the curve",
     "change_error": "bound on its error: the errors of both means",
-    "belt_speed": "where that is, in the scale of the scene",
+    "belt_speed": "where that is, in the units in which the scene is given",
     "within": "the tolerance on the change",
     "reduction_change": "of the largest fall of mean friction below that of steady sliding, as a share of that",
     "reduction_change_error": "bound on its error",

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import click
 
 from frictionlab.cli import options
-from frictionlab.cli.output import FAILED, OK, print_records, print_result
+from frictionlab.cli.output import FAILED, OK, print_message, print_records, print_result
 
 if TYPE_CHECKING:
-    from frictionlab.least_model.needs import Needs
+    from pandas import DataFrame
+
+    from frictionlab.least_model.result import Needs
     from frictionlab.study import Plugins
 
 
@@ -44,16 +46,22 @@ def needs_command(
     that may go are taken away together, and the smallest model within the tolerance is named. The methods of the
     study do not matter. The plugins that STUDY lists are Python code, which is run, unless --no-plugins is given.
     """
+    import pandas as pd
+
     from frictionlab.least_model.needs import needs_of_study
     from frictionlab.results.table import records
     from frictionlab.study import load_study
 
     asked = load_study(study, overrides, law_files, plugins)
+    if out is not None:
+        _make(out)
     found = []
     for each in needs_of_study(asked, within):
         found.append(each)
         if not as_json:
             print_result("\n".join(_lines(each)))
+    if out is not None:
+        _write(pd.concat([each.table for each in found], ignore_index=True), asked.title or study.stem, out)
     if as_json:
         print_records([record for each in found for record in records(each.table)])
     return FAILED if any(each.failed for each in found) else OK
@@ -63,3 +71,29 @@ def _lines(found: Needs) -> list[str]:
     """The sentences of a curve, below what tells it from the others."""
     head = [f"{found.label}:"] if found.label else []
     return [*head, *(f"{'  ' if head else ''}{line}" for line in found.sentences)]
+
+
+def _make(out: Path) -> None:
+    """Make the folder, before anything is computed. Raises FolderError."""
+    from frictionlab.runner.errors import FolderError
+
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise FolderError(
+            f"cannot make the folder {out}: {problem.strerror}; give another one with -o"
+        ) from problem
+
+
+def _write(table: DataFrame, title: str, out: Path) -> None:
+    """The table and its figure into a folder. Raises SaveError."""
+    from frictionlab.charts.needs import draw_needs  # with matplotlib, which takes a second
+    from frictionlab.runner.errors import SaveError
+    from frictionlab.runner.files import write_whole
+
+    write_whole(out / "needs.csv", table.to_csv(None, index=False, lineterminator="\n").encode())
+    try:
+        draw_needs(table, title, out / "figures")
+    except OSError as problem:
+        raise SaveError(f"cannot write the figure in {out}: {problem.strerror or problem}") from problem
+    print_message(f"table and figure in {out}")

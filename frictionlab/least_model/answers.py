@@ -10,7 +10,6 @@ import pandas as pd
 from frictionlab.columns import OF_SHAPE, selected
 from frictionlab.least_model.lesser import LesserModel, Way
 from frictionlab.least_model.motion import FRICTION_FREE
-from frictionlab.quantities import Floats
 from frictionlab.results.derived import derived_columns
 from frictionlab.runner.api import table_of
 from frictionlab.runner.chunks import Task
@@ -25,13 +24,17 @@ ASKED_FOR = selected([*OF_SHAPE, "model"])
 
 
 class Curves:
-    """The curves of models along one array of belt speeds, each solved once.
+    """The curves of models along the belt speeds of some scenes, each solved once.
 
-    kinds: registered names of laws beside the installed ones.
+    speeds: these in the scale of the scene; given: as they were given [m/s for scenes in SI units].
+    kinds: registered names of laws beside the installed ones. seconds_per_point: the time a point may take [s].
     """
 
-    def __init__(self, speeds: Floats, tolerance: float, kinds: Mapping[type, str]) -> None:
-        self.speeds, self._task = speeds, Task(tolerance, columns=ASKED_FOR)
+    def __init__(
+        self, scenes: Scenes, tolerance: float, kinds: Mapping[type, str], seconds_per_point: float
+    ) -> None:
+        self.speeds, self.given = scenes.belt_speeds, scenes.given
+        self._task = Task(tolerance, columns=ASKED_FOR, seconds_per_point=seconds_per_point)
         self._kinds = kinds
         self._known: dict[LesserModel, pd.DataFrame] = {}
 

@@ -68,8 +68,10 @@ def measures(table: pd.DataFrame, laws: registry.Laws) -> Measures:
     return Measures(reduction(size, known["error"].to_numpy(float) * np.abs(size / mean)), "")
 
 
-def change(full: pd.DataFrame, other: pd.DataFrame, within: float, laws: registry.Laws) -> Change:
-    """Of the other table against that of the full scene, row by row at the same belt speeds."""
+def change(
+    full: pd.DataFrame, other: pd.DataFrame, speeds: Floats, within: float, laws: registry.Laws
+) -> Change:
+    """Of the other table against that of the full scene, row by row at these belt speeds."""
     asked = (full["status"] == "ok").to_numpy()
     known = asked & (other["status"] == "ok").to_numpy()
     why = _without_answer(other, asked & ~known, int(asked.sum()))
@@ -85,10 +87,14 @@ def change(full: pd.DataFrame, other: pd.DataFrame, within: float, laws: registr
     verdict, reason = _judged(np.abs(size), error, within)
     if why and verdict == "not needed":
         verdict = "undecided"
-    speed = float(full["scene.belt_speed"].to_numpy(float)[known][at])
     mean = Estimate(float(size[at]), float(error[at]))
     return Change(
-        mean, speed, less, (here.shape, there.shape), verdict, "; ".join(filter(None, (reason, why)))
+        mean,
+        float(speeds[known][at]),
+        less,
+        (here.shape, there.shape),
+        verdict,
+        "; ".join(filter(None, (reason, why))),
     )
 
 

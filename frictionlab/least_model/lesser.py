@@ -40,6 +40,11 @@ class LesserModel:
     law: FrictionLaw
     way: Way | None = None
 
+    @property
+    def method(self) -> Way | str:
+        """What solves it: a reduced model, or ``auto``."""
+        return self.way or "auto"
+
     def with_scene(self, **changes: Any) -> LesserModel:
         """With other values of the scene, as ``Scene.with_`` takes them. Raises WrongValues."""
         return replace(self, scene=self.scene.with_(**changes))

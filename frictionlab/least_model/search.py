@@ -92,7 +92,7 @@ class Search:
         if isinstance(model, str):
             return Without(chosen, None, refused_change(model))
         tables = self._curves.of(self.full), self._curves.of(model)
-        return Without(chosen, model, change(*tables, self._within, self._laws))
+        return Without(chosen, model, change(*tables, self._curves.given, self._within, self._laws))
 
     def _model(self, chosen: Chosen) -> LesserModel | str | None:
         """The model without these things; why they cannot go; None where it has one of them not."""

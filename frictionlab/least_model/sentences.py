@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import pandas as pd
+
 from frictionlab.least_model.lesser import LesserModel
 from frictionlab.least_model.motion import FRICTION_FREE
 from frictionlab.least_model.search import Without
-from frictionlab.results.words import in_words
+from frictionlab.results.words import counted, in_words
 from frictionlab.shape.verdict import Estimate
 
 DIRECTIONS = {0: "slip prescribed", 1: "motion along the belt alone", 2: "motion along and across the belt"}
@@ -54,7 +56,7 @@ def sentence(each: Without) -> str:
     return f"{names} {verb} {each.change.verdict}: {changes}{why}"
 
 
-def last_sentence(smallest: Without | None, full: LesserModel, within: float) -> str:
+def smallest_in_words(smallest: Without | None, full: LesserModel, within: float) -> str:
     """The smallest model, what it is without, and what that changes."""
     if smallest is None or smallest.model is None:
         return f"the smallest model within {within:.3g} is the full one: {model_in_words(full)}"
@@ -64,6 +66,18 @@ def last_sentence(smallest: Without | None, full: LesserModel, within: float) ->
 
 def _changes(each: Without) -> str:
     return f"the mean changes by {size_of(each.change.mean)} at belt speed {each.change.belt_speed:.6g}"
+
+
+def left_out(answers: pd.DataFrame) -> list[str]:
+    """What is said of belt speeds at which the full scene has no one mean."""
+    rest = answers[answers["status"] != "ok"]
+    if rest.empty:
+        return []
+    why = (rest["status"] + ": " + rest["reason"].astype("str")).value_counts().index[0]
+    if len(rest) == len(answers):
+        return [f"the full scene has no one mean to compare with ({why})"]
+    where = f"{counted(len(rest), 'belt speed')} of {len(answers)}"
+    return [f"left out: {where} at which the full scene has no one mean ({why})"]
 
 
 def _listed(names: Sequence[str]) -> str:

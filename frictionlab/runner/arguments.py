@@ -58,11 +58,11 @@ def given_method(method: str | Method) -> Method:
     return registry.method_class(method)()
 
 
-def given_tolerance(tolerance: float) -> float:
-    """The tolerance. Raises ValueError."""
+def given_tolerance(tolerance: float, name: str = "tolerance") -> float:
+    """The tolerance of this name. Raises ValueError."""
     number = isinstance(tolerance, Real) and not isinstance(tolerance, bool)
     if not (number and isfinite(tolerance) and tolerance > 0.0):
-        raise ValueError(_told("tolerance must be a positive number", tolerance))
+        raise ValueError(_told(f"{name} must be a positive number", tolerance))
     return float(tolerance)
 
 

@@ -1,0 +1,121 @@
+"""What every part of a scene is worth: bars of the change without it, a panel a curve, the tolerance as a line."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import NullLocator
+
+from frictionlab.charts.figures import PAGE, STYLE, write_figure
+from frictionlab.printable import printable
+
+TOGETHER = " + "
+"""Between the things of a set in the column ``without``."""
+BAR, AROUND = 0.19, 0.4  # of a bar and of what stands around a panel [inch]
+BELOW = 5
+"""Decades that the axis goes below the tolerance: less is as good as nothing."""
+SIGNS: dict[str, Any] = {
+    "needed": {"facecolor": "#16324f", "edgecolor": "#16324f"},
+    "undecided": {"facecolor": "#8fa9c4", "edgecolor": "#16324f", "hatch": "xxxx"},
+    "not needed": {"facecolor": "white", "edgecolor": "#16324f", "hatch": "////"},
+}
+SMALLEST = "the smallest model"
+ERROR = "#c2571a"
+LIMIT: Any = {"color": "0.15", "linewidth": 1.0, "linestyle": (0, (4, 2))}
+
+
+def needs_figure(table: pd.DataFrame, title: str = "") -> Figure:
+    """Bars of the largest change of the mean without each thing, and without all that the smallest model lacks."""
+    curves = list(table.groupby("curve", sort=False))
+    names = [name for name in dict.fromkeys(table["without"]) if TOGETHER not in name] + [SMALLEST]
+    wide = min(2, len(curves))
+    high = -(-len(curves) // wide)
+    lines = textwrap.wrap(title.replace("$", r"\$"), 90)
+    height = high * (BAR * len(names) + AROUND) + 0.6 + 0.16 * len(lines)
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(PAGE, height), layout="constrained")
+        FigureCanvasAgg(figure)
+        if lines:
+            figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight="bold")
+        for place, (curve, rows) in enumerate(curves):
+            axes = figure.add_subplot(high, wide, place + 1)
+            _draw_panel_of_needs(axes, names, rows, _ends(table))
+            axes.set_title(str(curve).replace("$", r"\$"), loc="left")
+            if place % wide:
+                axes.set_yticklabels([])
+            if place + wide < len(curves):
+                axes.set_xticklabels([])
+            else:
+                axes.set_xlabel("largest change of the mean friction coefficient")
+        figure.legend(handles=_entries(table), loc="outside lower center", ncols=5)
+    return figure
+
+
+def draw_needs(table: pd.DataFrame, title: str, folder: Path) -> list[Path]:
+    """Draw a table of needs into a folder; the files. Raises OSError where it cannot be written."""
+    if table.empty:
+        return []
+    folder.mkdir(parents=True, exist_ok=True)
+    with mpl.rc_context(STYLE):
+        return write_figure(needs_figure(table, printable(title)), folder / "needs")
+
+
+def _draw_panel_of_needs(axes: Axes, names: list[str], rows: pd.DataFrame, ends: tuple[float, float]) -> None:
+    within, (least, largest) = float(rows["within"].iloc[0]), ends
+    bars = {row["without"]: row for _, row in rows.iterrows() if TOGETHER not in row["without"]}
+    if rows["smallest"].any():
+        bars[SMALLEST] = rows[rows["smallest"]].iloc[0]
+    for place, name in enumerate(names):
+        if name in bars:
+            _draw_bar(axes, place, bars[name], least)
+        else:
+            _say(axes, place, "the full one" if name == SMALLEST else "no such part")
+    axes.axvline(within, color="white", linewidth=2.4, zorder=3)
+    axes.axvline(within, zorder=3, **LIMIT)
+    axes.set_xscale("log")
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlim(least, largest)
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.set_yticks(range(len(names)), names)
+    axes.tick_params(axis="y", length=0)
+
+
+def _ends(table: pd.DataFrame) -> tuple[float, float]:
+    """Of the axis, the same for all curves."""
+    largest = (table["change"].abs() + table["change_error"]).max()
+    return float(table["within"].min()) * 10.0**-BELOW, 3.0 * float(max(largest, table["within"].max()))
+
+
+def _draw_bar(axes: Axes, place: int, row: Any, least: float) -> None:
+    """One bar with its error."""
+    if row["verdict"] not in SIGNS:
+        _say(axes, place, "cannot go alone")
+        return
+    size, error = abs(float(row["change"])), float(row["change_error"])
+    axes.barh(place, max(size - least, 0.0), left=least, height=0.62, linewidth=0.6, **SIGNS[row["verdict"]])
+    if size + error > least:
+        ends = [max(size - error, least), size + error]
+        axes.plot(ends, [place, place], color=ERROR, marker="|", markersize=5, linewidth=1.6, zorder=4)
+    else:
+        _say(axes, place, "0" if size == 0.0 else f"{size:.0e}")
+
+
+def _say(axes: Axes, place: int, text: str) -> None:
+    where = axes.get_yaxis_transform()
+    axes.text(0.01, place, text, transform=where, va="center", fontsize=6.5, color="0.3")
+
+
+def _entries(table: pd.DataFrame) -> list[Any]:
+    used = set(table["verdict"])
+    entries: list[Any] = [Patch(label=name, **look) for name, look in SIGNS.items() if name in used]
+    error = Line2D([], [], color=ERROR, marker="|", linewidth=1.6, label="error")
+    return [*entries, error, Line2D([], [], label="tolerance", **LIMIT)]

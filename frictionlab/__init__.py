@@ -61,6 +61,7 @@ _HOMES = {
     "run": "frictionlab.runner.api",
     "steady_state": "frictionlab.runner.api",
     "sweep": "frictionlab.notebook.comparison",
+    "trajectory": "frictionlab.runner.trajectory",
 }
 
 _OTHER_NAMES = {"Dupont": "ElastoPlastic"}

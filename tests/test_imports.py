@@ -56,7 +56,7 @@ ARROWS = {
         *("compile", "dynamics", "laws", "numerics", "orbit", "quantities", "scene", "theory"),
         *("methods.base", "methods.exact", "methods.prescribed", "methods.refusals", "methods.shooting"),
     ],
-    "methods.auto": ["laws", "methods.base", "methods.exact", "methods.shooting", "scene"],
+    "methods.auto": ["laws", "methods.base", "methods.exact", "methods.shooting", "orbit", "scene"],
     "onsets": ["laws", "methods.base", "methods.periodic", "orbit", "quantities", "scene", "theory"],
     "registry": ["faults", "laws", "methods.base"],
     "study": ["columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],

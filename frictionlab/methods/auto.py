@@ -12,6 +12,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, FoundState, Method
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
+from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 
 METHODS_BY_COST: tuple[Method, ...] = (Exact(), Shooting())
@@ -64,6 +65,11 @@ class Auto(Method):
         """Those that shooting finds: no other method follows motions to wherever they end."""
         shooting = METHODS_BY_COST[-1]
         return [] if any(shooting.refusals(scenes, law)) else shooting.states(scenes, law, tolerance, starts)
+
+    def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
+        """That of shooting: no other method follows a motion from a start."""
+        shooting = METHODS_BY_COST[-1]
+        return [] if any(shooting.refusals([scene], law)) else shooting.motion(scene, law, periods, tolerance)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Solve by the chosen method; points with an error above the tolerance are failed."""

@@ -123,6 +123,13 @@ class Method(Record, ABC):
         """
         return []
 
+    def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
+        """The motion from scene.initial, or from the friction-free one, a record of each period of all that changes.
+
+        Each ends where the next begins. Nothing for a method that knows no motion but the steady one.
+        """
+        return []
+
     @abstractmethod
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Expected kernel time per point [s], once compiled; for planning only."""

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
+import pandas as pd
+
 from frictionlab.methods.base import Status
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
@@ -121,14 +123,18 @@ class SteadyState:
             raise NoMeanError(self._why())
         return self
 
-    def orbit(self, n: int) -> Samples:
-        """One period at n equally spaced times. Raises ValueError where there is no orbit, saying why."""
+    def orbit(self, n: int) -> pd.DataFrame:
+        """One period at n equally spaced times, a row each: tau, x1, v1, x2, v2, friction, load, slip, ...
+
+        Columns as in ``orbits.parquet``, in the scales of the scene, x2 and its like zero along a line.
+        Raises ValueError where there is no orbit, saying why.
+        """
         if n < 1:
             raise ValueError(f"an orbit has at least one sample, not {n}")
         samples = None if self.motion is None else self.motion.sampled(n)
         if samples is None:
             raise ValueError(self._no_orbit())
-        return samples
+        return pd.DataFrame(samples._asdict())
 
     def harmonics(self, highest: int, across: bool = False) -> HarmonicParts:
         """Harmonics 0 ... highest of velocity and friction along the belt, or across it.

@@ -12,9 +12,11 @@ from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.shooting.followed_states import follow_states
+from frictionlab.methods.shooting.motion import follow_motion
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
 from frictionlab.methods.shooting.undriven import solve_undriven
 from frictionlab.methods.shooting.undriven_memory import ACROSS
+from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 
 Applies = Callable[[Scene, FrictionLaw], bool]
@@ -116,6 +118,11 @@ class Shooting(Method):
         """Answer a curve by continuation in belt speed."""
         solve = next(solve for applies, solve in CASES if applies(scenes[0], law))
         return solve(scenes, law, tolerance)
+
+    def motion(self, scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
+        """Of a driven mass, by the period map that closes its orbits."""
+        solve = next(solve for applies, solve in CASES if applies(scene, law))
+        return follow_motion(scene, law, periods, tolerance) if solve is solve_driven else []
 
     def states(
         self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int

@@ -1,4 +1,4 @@
-"""Harmonic balance with one harmonic: the motion a sine, friction by its mean and first harmonic."""
+"""Harmonic balance: the motion a sine or some harmonics, friction by its mean and as many harmonics."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+from pydantic import Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, ReducedModel
@@ -21,6 +22,7 @@ from frictionlab.methods.reduced.common import (
     steadied,
     steadied_all,
 )
+from frictionlab.methods.reduced.coulomb_harmonics import answer_coulomb, coulomb_means, coulomb_refusal
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.numerics.roots import monotone_root
 from frictionlab.quantities import Floats
@@ -37,8 +39,17 @@ AT_REST = (
 )
 
 
+MOST_HARMONICS = 1000
+ONE_HAS_NO_TAIL = "one harmonic has no tail: Eqs. 8 and 9 leave all others out; give harmonics of 2 or more"
+ONE_FOR_BRISTLES = "harmonic_balance balances bristle friction in one harmonic alone; give harmonics: 1"
+
+
 class HarmonicBalance(ReducedModel):
-    """One harmonic of motion and friction balanced along the belt; for Coulomb friction its curve is explicit.
+    """Harmonics of motion and friction balanced along the belt; for one of Coulomb friction the curve is explicit.
+
+    harmonics: how many, from 1 on. tail: the mass beyond them as a free one, whose velocity is piecewise linear
+    between the switches of Coulomb friction, or nothing; true for 2 harmonics or more where left out. Without it the
+    mean is off by the order 1/harmonics, with it by about harmonics^-3 (methods/reduced/switch_response.py).
 
     Amplitude and belt speed follow from their ratio without a search (theory.one_harmonic_velocity); only a given
     belt speed asks for that ratio, the one root of a rising function. The error is what the left-out harmonics,
@@ -51,6 +62,21 @@ class HarmonicBalance(ReducedModel):
     """
 
     name: ClassVar[str] = "harmonic_balance"
+    harmonics: int = Field(default=1, ge=1, le=MOST_HARMONICS, strict=True)
+    tail: bool | None = Field(default=None, validate_default=True, strict=True)
+
+    @field_validator("tail")
+    @classmethod
+    def _has_tail(cls, tail: bool | None, info: ValidationInfo) -> bool:
+        harmonics = info.data.get("harmonics", 2)
+        if tail and harmonics == 1:
+            raise ValueError(ONE_HAS_NO_TAIL)
+        return harmonics > 1 if tail is None else tail
+
+    def _balance(self, law: FrictionLaw) -> _Balance:
+        if self.harmonics > 1:
+            return _of_harmonics(self.harmonics, bool(self.tail))
+        return _OF_BRISTLES if law.memory_kind == "bristle" else _OF_COULOMB
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb or bristle friction on one line under a drive that bounds the friction-free motion."""
@@ -60,24 +86,26 @@ class HarmonicBalance(ReducedModel):
         steady = steadied(scene)
         if steady is None:
             return suggest_shooting(NOT_ONE_SINE, scene, law)
-        return _balance(law).refusal(self.name, steady, law)
+        if self.harmonics > 1 and law.memory_kind == "bristle":
+            return ONE_FOR_BRISTLES
+        return self._balance(law).refusal(self.name, steady, law)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
         return answer_steadied(
-            scenes, lambda others: _balance(law).answer(others, law, tolerance, self.error)
+            scenes, lambda others: self._balance(law).answer(others, law, tolerance, self.error)
         )
 
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats:
         """Of the one harmonic that balances."""
-        return _balance(law).means(steadied_all(scenes), law)
+        return self._balance(law).means(steadied_all(scenes), law)
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Two root searches on whole arrays; slow drives need more samples to be sure of the reversals.
 
         With bristles a search for every amplitude that balances, and shooting.
         """
-        return _balance(law).cost(scene)
+        return self._balance(law).cost(scene)
 
 
 def one_harmonic(scene: Scene, friction: float, belt_speeds: Floats) -> Harmonic:
@@ -135,5 +163,11 @@ _OF_BRISTLES = _Balance(
 )
 
 
-def _balance(law: FrictionLaw) -> _Balance:
-    return _OF_BRISTLES if law.memory_kind == "bristle" else _OF_COULOMB
+def _of_harmonics(harmonics: int, tail: bool) -> _Balance:
+    """Two or more of Coulomb friction."""
+    return _Balance(
+        lambda name, scene, law: coulomb_refusal(name, scene, law, harmonics),
+        lambda scenes, law, tolerance, told_by: answer_coulomb(scenes, law, tolerance, harmonics, tail),
+        lambda scenes, law: coulomb_means(scenes, law, harmonics, tail),
+        lambda _scene: 1e-5 + 1e-6 * harmonics,
+    )

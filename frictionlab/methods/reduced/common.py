@@ -202,7 +202,7 @@ def _left_out(scenes: Sequence[Scene], law: FrictionLaw, found: Harmonic, tolera
         proved[open_points] = error[open_points] <= wide
         error[open_points] = np.minimum(error[open_points], wide)
     kinds = np.where(proved, "guaranteed", "estimated").tolist()
-    return LeftOut(mu * error, kinds, [_too_wide(each, mu) for each in error.tolist()])
+    return LeftOut(mu * error, kinds, [too_wide(each, mu) for each in error.tolist()])
 
 
 def _at_the_ends(body: Driven, belt_speeds: Floats) -> Floats:
@@ -253,7 +253,8 @@ def judged(
     )
 
 
-def _too_wide(error: float, mu: float) -> str:
+def too_wide(error: float, mu: float) -> str:
+    """Why an error, relative to mu, is of no use; empty where it is."""
     if error <= WIDEST:
         return ""
     return (

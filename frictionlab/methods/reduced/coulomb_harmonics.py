@@ -30,8 +30,20 @@ from frictionlab.methods.reduced.balanced_rests import (
     free_mass_line,
 )
 from frictionlab.methods.reduced.balanced_reversals import DrivenLine, balanced_reversals
-from frictionlab.methods.reduced.common import ROUNDING, Modelled, judged, line_refusal, point_refusal
+from frictionlab.methods.reduced.common import (
+    ROUNDING,
+    LeftOut,
+    Modelled,
+    ToldBy,
+    far_from_full,
+    judged,
+    line_refusal,
+    point_refusal,
+    too_wide,
+)
 from frictionlab.methods.reduced.full_mean import TOLERANCE
+from frictionlab.methods.reduced.gap import Bounds, line_bounds
+from frictionlab.methods.reduced.reversals import Driven, Switched
 from frictionlab.methods.reduced.switch_response import harmonic_impedances, switch_response
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -115,18 +127,24 @@ def coulomb_means(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int, tai
 
 
 def answer_coulomb(
-    scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, harmonics: int, tail: bool
+    scenes: Sequence[Scene],
+    law: FrictionLaw,
+    tolerance: float,
+    told_by: ToldBy,
+    harmonics: int,
+    tail: bool,
 ) -> Answers:
     """Answers on scenes that differ in belt speed alone."""
     start = time.perf_counter()
     mu, speeds = law.sliding_friction(1.0), belt_speeds_of(scenes)
     what = Balancing(scenes[0], mu, harmonics, tail)
     found = balanced(what, law, np.abs(speeds))
-    means, errors = mu * np.copysign(1.0, speeds) * found.mean, _errors(what, found, law, scenes)
+    means = mu * np.copysign(1.0, speeds) * found.mean
+    left_out = _left_out(what, found, law, scenes, told_by)
     without = (NOT_FOUND if tail else CROSSES_AGAIN).format(harmonics=harmonics)
     reasons = [
-        point_refusal(scene, what.friction) or (without if math.isnan(mean) else "")
-        for scene, mean in zip(scenes, found.mean.tolist(), strict=True)
+        point_refusal(scene, what.friction) or (without if math.isnan(mean) else other)
+        for scene, mean, other in zip(scenes, found.mean.tolist(), left_out.reasons, strict=True)
     ]
     text = BALANCED.format(harmonics=harmonics, beyond=TAIL if tail else PLAIN)
     text += REDUCED if scenes[0].degrees_of_freedom == 2 else ""
@@ -137,16 +155,41 @@ def answer_coulomb(
         side = math.copysign(1.0, speeds[i])
         return orbit_of(motion, what.lead(), side, mu, position)
 
-    return judged(Modelled(means, errors, time.perf_counter() - start), reasons, text, tolerance, orbit)
-
-
-def _errors(what: Balancing, found: Balanced, law: FrictionLaw, scenes: Sequence[Scene]) -> Floats:
-    """The distance of the means to the exact ones."""
-    still = [scene.model_copy(update={"belt_speed": abs(scene.belt_speed)}) for scene in scenes]
-    full = Exact().solve(still, law, TOLERANCE * what.mu)
-    return np.asarray(
-        np.abs(full.mean.real - what.mu * found.mean) + full.error + ROUNDING * what.mu, np.float64
+    return judged(
+        Modelled(means, left_out.error, time.perf_counter() - start), reasons, text, tolerance, orbit
     )
+
+
+def _left_out(
+    what: Balancing, found: Balanced, law: FrictionLaw, scenes: Sequence[Scene], told_by: ToldBy
+) -> LeftOut:
+    """By bounds from friction that switches as the model's does; where the model rests, it started from the exact
+    mean, and its distance from that is known."""
+    speeds = belt_speeds_of(scenes)
+    if told_by == "distance":
+        known = np.where(np.isnan(found.mean), "no mean", "").tolist()
+        left_out = far_from_full(scenes, law, what.mu * np.copysign(1.0, speeds) * found.mean, known)
+        return left_out._replace(reasons=[""] * len(scenes))
+    error = np.abs(found.full / what.mu - found.mean) + found.full_error / what.mu
+    error[(np.abs(speeds) >= friction_free_velocity(what.scene)) | (speeds == 0.0)] = 0.0
+    bounded = np.flatnonzero(np.isfinite(found.half) & (speeds != 0.0))
+    if len(bounded):
+        low, high = _bounds(what, found, np.abs(speeds), bounded)
+        error[bounded] = np.maximum(high - found.mean[bounded], found.mean[bounded] - low)
+    error = error + ROUNDING
+    return LeftOut(
+        what.mu * error, ["estimated"] * len(scenes), [too_wide(each, what.mu) for each in error.tolist()]
+    )
+
+
+def _bounds(what: Balancing, found: Balanced, speeds: Floats, places: NDArray[np.int64]) -> Bounds:
+    mass = what.scene.mass()
+    free = mass.force / harmonic_impedances(mass, 1)
+    body = Driven(0.5 * mass.damping, mass.frequency, what.friction, free)
+    ends = np.stack([found.middle - found.half, found.middle + found.half], axis=1)[places]
+    switches = (ends - what.lead()) / mass.frequency
+    trial = Switched(switches, np.broadcast_to(np.array([1.0, -1.0]), switches.shape))
+    return line_bounds(body, trial, speeds[places])
 
 
 def balanced(what: Balancing, law: FrictionLaw, speeds: Floats) -> Balanced:

@@ -167,7 +167,9 @@ def _of_harmonics(harmonics: int, tail: bool) -> _Balance:
     """Two or more of Coulomb friction."""
     return _Balance(
         lambda name, scene, law: coulomb_refusal(name, scene, law, harmonics),
-        lambda scenes, law, tolerance, told_by: answer_coulomb(scenes, law, tolerance, harmonics, tail),
+        lambda scenes, law, tolerance, told_by: answer_coulomb(
+            scenes, law, tolerance, told_by, harmonics, tail
+        ),
         lambda scenes, law: coulomb_means(scenes, law, harmonics, tail),
         lambda _scene: 1e-5 + 1e-6 * harmonics,
     )

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.methods.reduced.balanced_rests import Force, Legs
+from frictionlab.methods.reduced.balanced_rests import Force, LegStarts
 from frictionlab.orbit.panels import NODES, WEIGHTS
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 
-PANELS_PER_HARMONIC = 2
-FEWEST_PANELS = 16
+_PANELS_PER_HARMONIC = 2
+_FEWEST_PANELS = 16
 
 
 class BalancedMotion(NamedTuple):
@@ -23,7 +23,7 @@ class BalancedMotion(NamedTuple):
     the force holds all there is of friction. slip: at the first start of a leg.
     """
 
-    legs: Legs
+    legs: LegStarts
     force: Force
     step: float
     friction: float
@@ -51,7 +51,7 @@ def orbit_of(motion: BalancedMotion, lead: float, side: float, mu: float, positi
 
 def _phases(motion: BalancedMotion) -> tuple[Floats, Floats]:
     """Nodes of panels short enough for the highest harmonic, and the kind of leg that each panel lies on."""
-    widest = math.tau / max(FEWEST_PANELS, PANELS_PER_HARMONIC * len(motion.force.coefficients))
+    widest = math.tau / max(_FEWEST_PANELS, _PANELS_PER_HARMONIC * len(motion.force.coefficients))
     edges, kinds = [], []
     for start, length, kind in zip(motion.legs.starts, motion.legs.lengths, motion.legs.kinds, strict=True):
         count = math.ceil(length / widest)

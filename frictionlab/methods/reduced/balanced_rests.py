@@ -24,19 +24,19 @@ from frictionlab.methods.reduced.switch_response import harmonic_impedances
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 
-MOST_STEPS = 30
-MOST_LOST = 0.75
+_MOST_STEPS = 30
+_MOST_LOST = 0.75
 """Of the length of a leg in a step."""
-STEP = 1e-7
+_STEP = 1e-7
 """Of an instant [rad], for its effect."""
-CLOSED = 1e-11
+_CLOSED = 1e-11
 """Slip and friction at the ends of legs, relative to V_lin and to sliding friction, at which they are balanced."""
-NODES_PER_TURN = 1.3
-FEWEST_NODES = 14
-SAMPLES = 24
-"""Of a leg, and as many for each wavelength of the highest harmonic in it divided by PER_WAVE."""
-PER_WAVE = 4.0
-LOOSE = 1e-7
+_NODES_PER_TURN = 1.3
+_FEWEST_NODES = 14
+_SAMPLES = 24
+"""Of a leg, and as many for each wavelength of the highest harmonic in it divided by _PER_WAVE."""
+_PER_WAVE = 4.0
+_LOOSE = 1e-7
 """What signs of slip and friction at rest may be wrong by, in the same units."""
 
 
@@ -52,7 +52,7 @@ class FreeMassLine(NamedTuple):
     compliances: NDArray[np.complex128]
 
 
-class Legs(NamedTuple):
+class LegStarts(NamedTuple):
     """Phases at which legs begin, ascending within a period, and the direction of slip on each, 0 for rest."""
 
     starts: Floats
@@ -65,9 +65,9 @@ class Legs(NamedTuple):
 
 
 class BalancedLegs(NamedTuple):
-    """Legs and the force on them."""
+    """LegStarts and the force on them."""
 
-    legs: Legs
+    legs: LegStarts
     force: Force
 
 
@@ -92,13 +92,13 @@ def free_mass_line(mass: Mass, harmonics: int, friction: float, friction_free: f
     return FreeMassLine(mass.frequency, friction, friction_free, np.concatenate([[1.0], compliances]))
 
 
-def balanced_legs(line: FreeMassLine, trial: Legs, belt_speed: float) -> BalancedLegs | None:
-    """Legs like those of the trial on a belt of speed >= 0; None where Newton's method finds none that hold."""
+def balanced_legs(line: FreeMassLine, trial: LegStarts, belt_speed: float) -> BalancedLegs | None:
+    """LegStarts like those of the trial on a belt of speed >= 0; None where Newton's method finds none that hold."""
     legs, force = trial, force_on(line, trial)
     missing = _missing(line, legs, force, belt_speed)
     effects = np.column_stack([_effect(line, legs, missing, belt_speed, k) for k in range(len(missing))])
-    for _ in range(MOST_STEPS):
-        if np.abs(missing).max() <= CLOSED:
+    for _ in range(_MOST_STEPS):
+        if np.abs(missing).max() <= _CLOSED:
             return BalancedLegs(legs, force) if _holds(line, legs, force) else None
         try:
             step = _shortened(legs, np.linalg.solve(effects, -missing).astype(np.float64))
@@ -114,19 +114,19 @@ def balanced_legs(line: FreeMassLine, trial: Legs, belt_speed: float) -> Balance
     return None
 
 
-def _effect(line: FreeMassLine, legs: Legs, missing: Floats, belt_speed: float, k: int) -> Floats:
+def _effect(line: FreeMassLine, legs: LegStarts, missing: Floats, belt_speed: float, k: int) -> Floats:
     """What moving the start of leg k changes, per radian."""
-    moved = legs._replace(starts=legs.starts + STEP * (np.arange(len(legs.starts)) == k))
-    return np.asarray((_missing(line, moved, force_on(line, moved), belt_speed) - missing) / STEP)
+    moved = legs._replace(starts=legs.starts + _STEP * (np.arange(len(legs.starts)) == k))
+    return np.asarray((_missing(line, moved, force_on(line, moved), belt_speed) - missing) / _STEP)
 
 
-def _shortened(legs: Legs, step: Floats) -> Floats:
-    """A Newton step, shortened where a leg would lose more than MOST_LOST of its length."""
+def _shortened(legs: LegStarts, step: Floats) -> Floats:
+    """A Newton step, shortened where a leg would lose more than _MOST_LOST of its length."""
     lost = float(np.max((step - np.roll(step, -1)) / legs.lengths))
-    return np.asarray(step * min(1.0, MOST_LOST / max(lost, MOST_LOST)))
+    return np.asarray(step * min(1.0, _MOST_LOST / max(lost, _MOST_LOST)))
 
 
-def force_on(line: FreeMassLine, legs: Legs) -> Force:
+def force_on(line: FreeMassLine, legs: LegStarts) -> Force:
     """R and friction's harmonics of legs that need not be balanced yet."""
     q = line.compliances
     orders = np.arange(len(q))
@@ -148,12 +148,12 @@ def force_on(line: FreeMassLine, legs: Legs) -> Force:
     return Force(base + q * held, slips + held / line.friction)
 
 
-def _rest_nodes(line: FreeMassLine, legs: Legs) -> tuple[Floats, Floats]:
+def _rest_nodes(line: FreeMassLine, legs: LegStarts) -> tuple[Floats, Floats]:
     """Gauss nodes of the rests, as many as waves of the highest harmonic ask for."""
     nodes, weights = [], []
     for start, length in zip(legs.starts[legs.kinds == 0], legs.lengths[legs.kinds == 0], strict=True):
         turned = length * len(line.compliances) / 2.0
-        gauss, shares = _gauss(FEWEST_NODES + math.ceil(NODES_PER_TURN * turned))
+        gauss, shares = _gauss(_FEWEST_NODES + math.ceil(_NODES_PER_TURN * turned))
         nodes.append(start + 0.5 * length * (1.0 + gauss))
         weights.append(0.5 * length * shares)
     return np.concatenate(nodes), np.concatenate(weights)
@@ -165,7 +165,7 @@ def _gauss(count: int) -> tuple[Floats, Floats]:
     return nodes.astype(np.float64), weights.astype(np.float64)
 
 
-def _missing(line: FreeMassLine, legs: Legs, force: Force, belt_speed: float) -> Floats:
+def _missing(line: FreeMassLine, legs: LegStarts, force: Force, belt_speed: float) -> Floats:
     """What legs lack of balance: slip at the ends of slips, the mean of slip, friction at the ends of rests."""
     starts, lengths, kinds = legs.starts, legs.lengths, legs.kinds
     ends = starts + lengths
@@ -188,18 +188,18 @@ def _before(gained: Floats, lengths: Floats, slips: NDArray[np.bool_]) -> float:
     return float((np.concatenate([[0.0], np.cumsum(np.where(slips, gained, 0.0))[:-1]]) * lengths).sum())
 
 
-def _holds(line: FreeMassLine, legs: Legs, force: Force) -> bool:
+def _holds(line: FreeMassLine, legs: LegStarts, force: Force) -> bool:
     """Whether slip has its direction on every leg, and friction at rest does not exceed that of sliding."""
     for start, length, kind in zip(legs.starts, legs.lengths, legs.kinds, strict=True):
-        count = SAMPLES + math.ceil(PER_WAVE * length * len(line.compliances))
+        count = _SAMPLES + math.ceil(_PER_WAVE * length * len(line.compliances))
         phase = start + length * (np.arange(count) + 0.5) / count
         if kind == 0:
-            if np.abs(force.at(phase)).max() > line.friction * (1.0 + LOOSE):
+            if np.abs(force.at(phase)).max() > line.friction * (1.0 + _LOOSE):
                 return False
         else:
             slip = (
                 force.at(phase, 1) - force.at(np.array([start]), 1) - line.friction * kind * (phase - start)
             )
-            if (kind * slip).min() < -LOOSE * line.friction_free * line.frequency:
+            if (kind * slip).min() < -_LOOSE * line.friction_free * line.frequency:
                 return False
     return bool(legs.lengths.min() > 0.0)

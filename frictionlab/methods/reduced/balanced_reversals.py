@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 from frictionlab.methods.reduced.switch_response import SwitchResponse
 from frictionlab.quantities import Floats
 
-SHORTEST = 1e-6
+_SHORTEST = 1e-6
 """Half of forward slip [rad] below which none is looked for."""
-MOST_STEPS = 80
-FOUND = 1e-13
+_MOST_STEPS = 80
+_FOUND = 1e-13
 """Change of the half of forward slip [rad] at which the search ends."""
-SAMPLES_PER_HARMONIC = 8
-FEWEST_SAMPLES = 128
-UNSIGNED = 1e-10
+_SAMPLES_PER_HARMONIC = 8
+_FEWEST_SAMPLES = 128
+_UNSIGNED = 1e-10
 """Slip that is taken for none where its sign is looked at [friction-free velocity amplitude]."""
 
 
@@ -75,13 +75,13 @@ def _of(line: DrivenLine, half: Floats) -> _Motions:
 
 def _halves(line: DrivenLine, belt_speeds: Floats) -> Floats:
     """Newton's method between two ends, on all belt speeds at once; cut in two where a step leaves them."""
-    low, high = np.full_like(belt_speeds, SHORTEST), np.full_like(belt_speeds, 0.5 * math.pi)
+    low, high = np.full_like(belt_speeds, _SHORTEST), np.full_like(belt_speeds, 0.5 * math.pi)
     fastest = _of(line, low[:1]).belt_speed
     half = np.arccos(np.minimum(belt_speeds / line.friction_free, 1.0))
-    # On faster belts forward slip is no more than SHORTEST, if there is such a motion at all.
+    # On faster belts forward slip is no more than _SHORTEST, if there is such a motion at all.
     half = np.where(belt_speeds >= fastest, np.nan, half)
     half = np.where(belt_speeds == 0.0, high, half)
-    for _ in range(MOST_STEPS):
+    for _ in range(_MOST_STEPS):
         found = _of(line, half)
         # Where friction allows no such motion it is too short: the belt would run faster than V_lin.
         excess = np.where(np.isnan(found.belt_speed), line.friction_free, found.belt_speed) - belt_speeds
@@ -91,7 +91,7 @@ def _halves(line: DrivenLine, belt_speeds: Floats) -> Floats:
         inside = (following >= low) & (following <= high)
         following = np.where(inside, following, 0.5 * (low + high))
         moved, half = np.abs(following - half), following
-        if not np.any(moved > FOUND):
+        if not np.any(moved > _FOUND):
             break
     return np.where(belt_speeds == 0.0, 0.5 * math.pi, half)
 
@@ -104,13 +104,13 @@ def _keeps_its_signs(line: DrivenLine, found: Reversals, belt_speeds: Floats) ->
     at_once = float(u.slope(np.zeros(1))[0])
     rises = free * np.cos(start) - 2.0 * friction * (at_once - u.slope(-2.0 * half))
     falls = free * np.cos(end) - 2.0 * friction * (u.slope(2.0 * half) - at_once)
-    count = max(FEWEST_SAMPLES, SAMPLES_PER_HARMONIC * len(u.orders))
+    count = max(_FEWEST_SAMPLES, _SAMPLES_PER_HARMONIC * len(u.orders))
     phase = np.arange(count) * (math.tau / count)
     slip = slip_samples(line, found, belt_speeds, count)
     forward = np.cos(phase - middle[:, None]) > np.cos(half)[:, None]
     least = np.where(forward, slip, -slip).min(axis=1)
     with np.errstate(invalid="ignore"):
-        return np.asarray((rises > 0.0) & (falls < 0.0) & (least > -UNSIGNED * free))
+        return np.asarray((rises > 0.0) & (falls < 0.0) & (least > -_UNSIGNED * free))
 
 
 def slip_samples(line: DrivenLine, found: Reversals, belt_speeds: Floats, count: int) -> Floats:

@@ -32,6 +32,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
 from frictionlab.theory.equivalent_drive import equivalent_drive
+from frictionlab.theory.uniqueness import falls_slowly
 
 WIDEST = 0.25
 """Error, relative to the friction coefficient, above which a bound is of no use."""
@@ -95,6 +96,17 @@ def line_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
         return f"{name} has no error bound for mu_static above mu; use shooting"
     if not math.isfinite(friction_free_velocity(scene)):
         return f"{name} starts from the friction-free motion, which is unbounded at undamped resonance; use exact"
+    return None
+
+
+def plane_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
+    """Why the steady state of a motion in the plane may not be unique at any belt speed; None where it is."""
+    mass = scene.mass()
+    damping = [mass.damping] if scene.load_along_belt_only else [mass.damping, mass.transverse_damping]
+    if min(damping) == 0.0:
+        return f"{name} needs damping in every driven direction: without it the motion depends on the start"
+    if not falls_slowly(scene, law):
+        return f"{name} needs damping that outweighs the fall of friction: else the steady state may not be unique"
     return None
 
 

@@ -24,7 +24,7 @@ from frictionlab.methods.reduced.balanced_rests import (
     BalancedLegs,
     Force,
     FreeMassLine,
-    Legs,
+    LegStarts,
     balanced_legs,
     force_on,
     free_mass_line,
@@ -227,12 +227,12 @@ def _add_rests(
             found.mean[place] = -legs.force.friction[0].real
 
 
-def _legs(orbit: Orbit, frequency: float, lead: float) -> Legs:
+def _legs(orbit: Orbit, frequency: float, lead: float) -> LegStarts:
     """The legs of an orbit of Coulomb friction along the belt."""
     assert orbit.stick is not None
     kinds = np.where(orbit.stick, 0, np.sign(orbit.friction[:, 1].real)).astype(np.int64)
     begins = kinds != np.roll(kinds, 1)
-    return Legs(frequency * orbit.tau[begins, 0] + lead, kinds[begins])
+    return LegStarts(frequency * orbit.tau[begins, 0] + lead, kinds[begins])
 
 
 def _motion(what: Balancing, found: Balanced, i: int, speed: float) -> BalancedMotion:
@@ -242,10 +242,10 @@ def _motion(what: Balancing, found: Balanced, i: int, speed: float) -> BalancedM
         legs, force = found.rests[i]
         return BalancedMotion(legs, force, line.friction, line.friction, frequency, speed, 0.0)
     if math.isnan(found.half[i]):
-        legs, slip = Legs(np.zeros(1), np.array([-1])), -speed
+        legs, slip = LegStarts(np.zeros(1), np.array([-1])), -speed
     else:
         ends = found.middle[i] - found.half[i], found.middle[i] + found.half[i]
-        legs, slip = Legs(np.array(ends), np.array([1, -1])), 0.0
+        legs, slip = LegStarts(np.array(ends), np.array([1, -1])), 0.0
     force = force_on(line, legs)
     if what.tail:
         return BalancedMotion(legs, force, line.friction, line.friction, frequency, speed, slip)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw
@@ -23,6 +24,7 @@ from frictionlab.methods.reduced.common import (
     steadied_all,
 )
 from frictionlab.methods.reduced.coulomb_harmonics import answer_coulomb, coulomb_means, coulomb_refusal
+from frictionlab.methods.reduced.planar_harmonics import answer_planar, planar_means, planar_refusal
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.numerics.roots import monotone_root
 from frictionlab.quantities import Floats
@@ -63,19 +65,19 @@ class HarmonicBalance(ReducedModel):
 
     name: ClassVar[str] = "harmonic_balance"
     harmonics: int = Field(default=1, ge=1, le=MOST_HARMONICS, strict=True)
-    tail: bool | None = Field(default=None, validate_default=True, strict=True)
+    tail: bool | None = Field(default=None, strict=True)
 
     @field_validator("tail")
     @classmethod
-    def _has_tail(cls, tail: bool | None, info: ValidationInfo) -> bool:
-        harmonics = info.data.get("harmonics", 2)
-        if tail and harmonics == 1:
+    def _has_tail(cls, tail: bool | None, info: ValidationInfo) -> bool | None:
+        if tail and info.data.get("harmonics", 2) == 1:
             raise ValueError(ONE_HAS_NO_TAIL)
-        return harmonics > 1 if tail is None else tail
+        return tail
 
-    def _balance(self, law: FrictionLaw) -> _Balance:
+    def _balance(self, scene: Scene, law: FrictionLaw) -> _Balance:
         if self.harmonics > 1:
-            return _of_harmonics(self.harmonics, bool(self.tail))
+            of_harmonics = _on_switches if scene.load_along_belt_only else _on_samples
+            return of_harmonics(self.harmonics, self.tail)
         return _OF_BRISTLES if law.memory_kind == "bristle" else _OF_COULOMB
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
@@ -88,24 +90,25 @@ class HarmonicBalance(ReducedModel):
             return suggest_shooting(NOT_ONE_SINE, scene, law)
         if self.harmonics > 1 and law.memory_kind == "bristle":
             return ONE_FOR_BRISTLES
-        return self._balance(law).refusal(self.name, steady, law)
+        return self._balance(steady, law).refusal(self.name, steady, law)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
         return answer_steadied(
-            scenes, lambda others: self._balance(law).answer(others, law, tolerance, self.error)
+            scenes, lambda others: self._balance(others[0], law).answer(others, law, tolerance, self.error)
         )
 
-    def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats:
-        """Of the one harmonic that balances."""
-        return self._balance(law).means(steadied_all(scenes), law)
+    def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
+        """Of the harmonics that balance."""
+        steady = steadied_all(scenes)
+        return self._balance(steady[0], law).means(steady, law)
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Two root searches on whole arrays; slow drives need more samples to be sure of the reversals.
 
         With bristles a search for every amplitude that balances, and shooting.
         """
-        return self._balance(law).cost(scene)
+        return self._balance(scene, law).cost(scene)
 
 
 def one_harmonic(scene: Scene, friction: float, belt_speeds: Floats) -> Harmonic:
@@ -145,7 +148,7 @@ class _Balance(NamedTuple):
 
     refusal: Callable[[str, Scene, Any], str | None]
     answer: Callable[[Sequence[Scene], Any, float, ToldBy], Answers]
-    means: Callable[[Sequence[Scene], Any], Floats]
+    means: Callable[[Sequence[Scene], Any], Floats | NDArray[np.complex128]]
     cost: Callable[[Scene], float]
 
 
@@ -163,13 +166,24 @@ _OF_BRISTLES = _Balance(
 )
 
 
-def _of_harmonics(harmonics: int, tail: bool) -> _Balance:
-    """Two or more of Coulomb friction."""
+def _on_switches(harmonics: int, tail: bool | None) -> _Balance:
+    """Two harmonics or more of Coulomb friction along the belt."""
+    summed = tail is not False
     return _Balance(
         lambda name, scene, law: coulomb_refusal(name, scene, law, harmonics),
         lambda scenes, law, tolerance, told_by: answer_coulomb(
-            scenes, law, tolerance, told_by, harmonics, tail
+            scenes, law, tolerance, told_by, harmonics, summed
         ),
-        lambda scenes, law: coulomb_means(scenes, law, harmonics, tail),
+        lambda scenes, law: coulomb_means(scenes, law, harmonics, summed),
         lambda _scene: 1e-5 + 1e-6 * harmonics,
+    )
+
+
+def _on_samples(harmonics: int, tail: bool | None) -> _Balance:
+    """Two harmonics or more of planar friction without memory."""
+    return _Balance(
+        lambda name, scene, law: planar_refusal(name, scene, law, tail),
+        lambda scenes, law, tolerance, _told_by: answer_planar(scenes, law, tolerance, harmonics),
+        lambda scenes, law: planar_means(scenes, law, harmonics),
+        lambda _scene: 2e-3 + 1e-5 * harmonics**1.5,
     )

@@ -27,6 +27,7 @@ from frictionlab.methods.reduced.common import (
     line_means,
     line_refusal,
     model_orbit,
+    plane_refusal,
     steadied,
     steadied_all,
 )
@@ -42,7 +43,6 @@ from frictionlab.theory import (
     mean_prescribed_transverse,
 )
 from frictionlab.theory.rest import friction_at_rest
-from frictionlab.theory.uniqueness import falls_slowly
 
 ALONG = "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)"
 PLANE = "direct separation of motion: quadrature over the friction-free motion"
@@ -72,7 +72,7 @@ class Mdsm(ReducedModel):
         steady = steadied(scene)
         if steady is not None and _in_closed_form(steady, law):
             return line_refusal(self.name, steady, law)
-        return _plane_refusal(scene, law)
+        return plane_refusal(self.name, scene, law)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
@@ -107,18 +107,6 @@ def _answer_sines(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, t
 
 def _in_closed_form(scene: Scene, law: FrictionLaw) -> bool:
     return scene.load_along_belt_only and law.constant_sliding_friction()
-
-
-def _plane_refusal(scene: Scene, law: FrictionLaw) -> str | None:
-    mass = scene.mass()
-    damping = [mass.damping] if scene.load_along_belt_only else [mass.damping, mass.transverse_damping]
-    if min(damping) == 0.0:
-        return "mdsm needs damping in every driven direction: without it the motion depends on the start"
-    if not falls_slowly(scene, law):
-        return (
-            "mdsm needs damping that outweighs the fall of friction: else the steady state may not be unique"
-        )
-    return None
 
 
 def friction_free(scene: Scene, friction: float, belt_speeds: Floats) -> Harmonic:

@@ -12,14 +12,16 @@ from hypothesis import strategies as st
 import frictionlab as fl
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
+from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.reduced.coulomb_harmonics import Balancing, balanced
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
+from frictionlab.methods.shooting.method import Shooting
 from frictionlab.mistakes.notes import WrongValues
 from frictionlab.orbit.harmonics import harmonic_parts
 from frictionlab.orbit.panels import WEIGHTS
 from frictionlab.orbit.read import read_columns
-from frictionlab.scene.scene import Drive, Scene
+from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 from frictionlab.theory import friction_free_velocity
 
 LAW = Coulomb(mu=0.4)
@@ -168,15 +170,69 @@ def test_errors_cover(frequency, damping, ratio, share, harmonics, tail) -> None
     assert abs(found.mean[0] - exact.mean[0]) <= found.error[0] + exact.error[0]
 
 
+# --- in the plane, on samples ---------------------------------------------------------------------------------------
+
+
+def planar(belt_speed, natural=0.5, **transverse):
+    """Paper, Fig. 9, but for the changes."""
+    across = Transverse(natural_frequency=natural, damping_ratio=0.1, load=Load(unbalance=10.0, **transverse))
+    return FIG_4B.model_copy(update={"belt_speed": belt_speed, "transverse": across})
+
+
+STRIBECK = Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=30.0)
+
+
+@pytest.mark.parametrize("law", [LAW, STRIBECK], ids=["coulomb", "stribeck"])
+def test_in_the_plane_every_harmonic_obeys_its_own_equation(law) -> None:
+    one = planar(-8.0, phase=70.0)
+    mass = one.mass()
+    found = HarmonicBalance(harmonics=6).solve([one], law, 1.0)
+    rate = mass.frequency * np.arange(1.0, 7.0)
+    sides = (
+        (False, mass.damping, mass.stiffness, mass.force),
+        (True, mass.transverse_damping, mass.transverse_stiffness, mass.transverse_force),
+    )
+
+    for across, damping, stiffness, force in sides:
+        parts = harmonic_parts(one, found.orbit(0), 6, across=across)
+        velocity, friction = (
+            size[1:] * np.exp(1j * np.radians(phase[1:]))
+            for size, phase in (
+                (parts.velocity_amplitude, parts.velocity_phase),
+                (parts.friction_amplitude, parts.friction_phase),
+            )
+        )
+        load = np.where(rate == mass.frequency, force, 0.0)
+        missing = (damping + 1j * (rate - stiffness / rate)) * velocity + mass.normal_load * friction - load
+        assert np.abs(missing).max() < 1e-3  # samples: 16 a wave of the highest
+        mean = found.mean[0].imag if across else found.mean[0].real
+        assert parts.friction_amplitude[0] == pytest.approx(-mean, abs=1e-4)
+
+
+def test_in_the_plane_smooth_friction_converges_exponentially_and_errors_tell_how_far() -> None:
+    one = planar(10.0)
+    found = [HarmonicBalance(harmonics=count).solve([one], LAW, 1e-8) for count in (2, 8, 32)]
+    means = [float(each.mean[0].real) for each in found]
+    exact = Shooting().solve([one], LAW, 1e-9)
+    far = [abs(value - float(exact.mean[0].real)) for value in means]
+
+    assert far[0] > 50.0 * far[1] > 1e5 * far[2]
+    assert far[2] < 1e-9
+    assert all(distance <= each.error[0] + exact.error[0] for distance, each in zip(far, found, strict=True))
+    odd = HarmonicBalance(harmonics=8).model_means([planar(-10.0), planar(0.0)], LAW)
+    assert odd[0].real == pytest.approx(-means[1], abs=1e-11)
+    assert odd[1] == 0.0
+
+
 # --- what it refuses ------------------------------------------------------------------------------------------------
 
 
 def test_a_tail_of_one_harmonic_is_refused_by_name() -> None:
     with pytest.raises(WrongValues, match=r"tail.*one harmonic has no tail"):
         HarmonicBalance(tail=True)
-    assert HarmonicBalance().tail is False
-    assert HarmonicBalance(harmonics=2).tail is True
-    assert HarmonicBalance(harmonics=2, tail=False).tail is False
+    assert "no tail in closed form" in HarmonicBalance(harmonics=2, tail=True).refusal(planar(10.0), LAW)
+    assert HarmonicBalance(harmonics=2, tail=True).refusal(FIG_4B, LAW) is None
+    assert mean(FIG_4B, 6) == mean(FIG_4B, 6, tail=True) != mean(FIG_4B, 6, tail=False)
 
 
 @pytest.mark.parametrize("harmonics", [0, 1001, 2.5, True, "3"])

@@ -88,6 +88,7 @@ class Curves:
         )
         if way.name != FRICTION_FREE:
             return found
-        free = self.speeds / derived["velocity_ratio"]
+        ratio = derived["velocity_ratio"]
+        free = np.divide(self.speeds, ratio, where=ratio != 0.0, out=np.full(len(ratio), np.nan))
         reverses = 2.0 * (free > np.abs(self.speeds))
         return found.assign(velocity_amplitude=free, reversals=reverses, stick_fraction=0.0)

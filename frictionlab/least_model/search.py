@@ -46,8 +46,13 @@ class Search:
         self._known: dict[Chosen, Without | None] = {}
 
     def singles(self) -> list[Without]:
-        """Every thing that the full model has, taken away alone."""
-        return self._all((thing,) for thing in things())
+        """Every thing that the full model has, taken away alone.
+
+        Of several of one group that cannot go for the same reason the last.
+        """
+        found = self._all((thing,) for thing in things())
+        last = {_why_not(each): each for each in found}
+        return [each for each in found if each.model is not None or last[_why_not(each)] is each]
 
     def pairs(self, singles: Sequence[Without]) -> list[Without]:
         """Two at a time of those that may go, of each group what takes most away."""
@@ -100,6 +105,10 @@ class Search:
             return taken(self.full, chosen)
         except (CannotGo, WrongValues) as problem:
             return str(problem)
+
+
+def _why_not(single: Without) -> tuple[str, str]:
+    return single.gone[0].group, single.change.reason
 
 
 def _most(singles: Sequence[Without]) -> Chosen:

@@ -28,16 +28,17 @@ def _way(model: LesserModel) -> str:
         return ""
     if model.way.name == FRICTION_FREE:
         return ", friction averaged over the friction-free motion (mdsm)"
-    return f", by {model.way!r}"
+    harmonics = getattr(model.way, "harmonics", 1)
+    return f", {counted(harmonics, 'harmonic')} balanced ({model.way.name})"
 
 
 def size_of(number: Estimate) -> str:
     """A change by its magnitude, and its error where that is not small beside it."""
     size = abs(number.value)
     if size <= number.error:
-        return f"at most {size + number.error:.1e}"
+        return f"at most {size + number.error:.2g}"
     error = f" +- {number.error:.1e}" if number.error > 0.005 * size else ""
-    return f"{size:.2g}{error}"
+    return f"{size:.3g}{error}"
 
 
 def sentence(each: Without) -> str:

@@ -62,6 +62,8 @@ class Keys:
         ]
         digest = hashlib.sha256("\0".join(told).encode())
         digest.update(scenes.belt_speeds.tobytes())
+        if chunk.method.hangs_on_curve(scenes, chunk.law, task.tolerance):
+            digest.update(scenes.curve.belt_speeds.tobytes())
         return digest.hexdigest()
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import Scenes
 from frictionlab.study import Study, StudyCurve
 
 
@@ -49,7 +49,7 @@ def _planned(curves: Sequence[StudyCurve], tolerance: float) -> Planned:
         able = [place for place, reason in enumerate(reasons) if reason is None]
         if able:
             scene = curve.scenes[able[0]]
-            models[_model(method, scene, law)] += len(able)
+            models[_model(method, curve.scenes.taken(able), law, tolerance)] += len(able)
             seconds += len(able) * method.cost(scene, law, tolerance)
     return Planned(
         law=first.law_label,
@@ -63,10 +63,7 @@ def _planned(curves: Sequence[StudyCurve], tolerance: float) -> Planned:
     )
 
 
-def _model(method: Method, scene: Scene, law: FrictionLaw) -> str:
-    """The model that will compute the number, and why; the name of a method that makes no choice."""
+def _model(method: Method, scenes: Scenes, law: FrictionLaw, tolerance: float) -> str:
+    """The model that will compute the numbers, and why; the name of a method that makes no choice."""
     auto: Any = registry.method_class("auto")
-    if not isinstance(method, auto):
-        return method.name
-    chosen, why = auto.choice(method, scene, law)
-    return f"{chosen.name} ({why})"
+    return str(auto.foreseen(method, scenes, law, tolerance)) if isinstance(method, auto) else method.name

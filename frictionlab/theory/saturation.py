@@ -44,3 +44,21 @@ def remaining_share(law: Any, path: Any) -> Any:
     """What is left of a small lack of deflection after a path slid [scene length], of what there was before."""
     limit = law.largest_deflection()
     return np.exp(-path * law.rate(1.0, (1.0 - SHORT) * limit) / (SHORT * limit))
+
+
+def lost_on_reversal(law: Any) -> float:
+    """What bristles lose on a reversal from slip at their limit to slip at the other limit [scene length].
+
+    The integral over the way slid of 1 - friction along the slip/sliding friction: the work that friction at its
+    limit would have done beyond that of the bristles. Of a rate-independent bristle; infinite where its limit is
+    approached more slowly than exponentially.
+    """
+    limit, sliding = law.largest_deflection(), law.sliding_friction(1.0)
+    if law.rate(1.0, (1.0 - SHORT) * limit) < (1.0 - 1e-3) * SHORT:
+        return math.inf
+    deflections = limit * _NODES
+    parts = [(1.0 - law.friction(1.0, z, 0.0) / sliding) / law.rate(1.0, z) for z in deflections.tolist()]
+    return float(limit * (_WEIGHTS @ parts))
+
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)

@@ -1,0 +1,99 @@
+"""Coulomb friction in the place of a stiff bristle, with what the deflection may change in the mean."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from frictionlab.compile.call import KernelCall
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Answers
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.reduced.rung import Rung
+from frictionlab.methods.reduced.stiff_contact import CoulombOrbit, StiffContact, bound_each
+from frictionlab.methods.shooting.saturated import Saturated
+from frictionlab.orbit.record import Orbit
+from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
+from frictionlab.theory import friction_free_velocity
+from frictionlab.theory.saturation import lost_on_reversal, slides_saturated
+
+NO_ERRORS = "; motion and energies are those of Coulomb friction, without errors"
+NO_ANSWER = "the motion under Coulomb friction is open"
+
+
+class StiffBristle(Rung):
+    """Coulomb's motion for a rate-independent bristle of one sliding friction, its error of order sqrt(presliding).
+
+    Source of the error: methods/reduced/stiff_contact.py.
+    """
+
+    name: ClassVar[str] = Exact.name
+    model: ClassVar[str] = "Coulomb friction for a stiff contact"
+    left_out: ClassVar[str] = "the deflection of the contact"
+
+    def takes(self, scene: Scene, law: FrictionLaw) -> bool:
+        """Dahl, Jenkins, LuGre and elasto-plastic friction without a fall, damping or viscosity, along one line."""
+        if not (law.memory_kind == "bristle" and scene.degrees_of_freedom and scene.is_harmonic):
+            return False
+        alone = scene.degrees_of_freedom == 1 or law.damps_across(abs(scene.belt_speed))
+        driven = not scene.undriven and scene.load_along_belt_only and scene.mass().damping > 0.0
+        bristle: Any = law
+        return bool(alone and driven and bristle.rate_independent() and slides_saturated(law))
+
+    def may_meet(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> bool:
+        """By the steepest reversals that loads and friction could make, and twice the error that these leave."""
+        contact, lasts = _contact(scenes[0], law), 2.0 * math.pi / scenes[0].frequency
+        free, fastest = friction_free_velocity(scenes[0]), float(np.abs(belt_speeds_of(scenes)).max())
+        steepest = free * scenes[0].frequency + 2.0 * contact.friction
+        level = math.sqrt(contact.lost_on_reversal / steepest)
+        if float(np.abs(belt_speeds_of(scenes)).min()) >= free:
+            level = contact.lost_on_reversal / (free + fastest)
+        return contact.coefficient * 2.0 * level / lasts <= tolerance
+
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        """Coulomb's answers; refused where Coulomb's motion is not the only one."""
+        contact, speeds = _contact(scenes[0], law), belt_speeds_of(scenes)
+        found = Exact().solve(scenes, Saturated(mu=contact.coefficient), tolerance)
+        assert found.orbits is not None
+        orbits, left = found.orbits(), np.full(len(scenes), np.nan)
+        seen = CoulombOrbit(orbits.tau, orbits.v, orbits.friction, orbits.stick)
+        _, seconds = KernelCall(bound_each).timed(
+            contact, seen, orbits.ends, speeds, left, points=len(scenes)
+        )
+        known = np.isfinite(left) & (np.array(found.status) == "ok")
+        own = np.zeros(len(scenes)) if found.seconds is None else found.seconds
+        texts = [f"{self.model}: {text.partition('; ')[0]}{NO_ERRORS}" for text in found.model]
+
+        def orbit(i: int) -> Orbit | None:
+            one = orbits.one(i)
+            return (
+                None if one is None else replace(one, stick=None)
+            )  # bristles move where Coulomb's mass rests
+
+        return Answers(
+            status=["ok" if each else "refused" for each in known],
+            reason=[
+                "" if each else f"{NO_ANSWER}: {why}" for each, why in zip(known, found.reason, strict=True)
+            ],
+            model=[text if each else "" for each, text in zip(known, texts, strict=True)],
+            error_kind=["estimated" if each else "" for each in known],
+            mean=np.where(known, found.mean, np.nan),
+            error=np.where(known, found.error + left, np.nan),
+            period=found.period,
+            seconds=own + seconds / len(scenes),
+            orbit=orbit,
+            balanced=False,
+        )
+
+
+def _contact(scene: Scene, law: Any) -> StiffContact:
+    mass = scene.mass()
+    bristle = law.under_load(mass.normal_load)
+    mu = bristle.sliding_friction(1.0)
+    lost = lost_on_reversal(bristle)
+    return StiffContact(bristle.largest_deflection(), lost, mu, mu * mass.normal_load, mass.damping)

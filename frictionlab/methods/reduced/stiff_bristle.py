@@ -20,14 +20,14 @@ from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
-from frictionlab.theory.saturation import lost_on_reversal, slides_saturated
+from frictionlab.theory.saturation import follows_the_way, lost_on_reversal
 
 NO_ERRORS = "; motion and energies are those of Coulomb friction, without errors"
 NO_ANSWER = "the motion under Coulomb friction is open"
 
 
 class StiffBristle(Rung):
-    """Coulomb's motion for a rate-independent bristle of one sliding friction, its error of order sqrt(presliding).
+    """Coulomb's motion for a bristle of one sliding friction, its error of the order of sqrt(presliding).
 
     Source of the error: methods/reduced/stiff_contact.py.
     """
@@ -37,13 +37,12 @@ class StiffBristle(Rung):
     left_out: ClassVar[str] = "the deflection of the contact"
 
     def takes(self, scene: Scene, law: FrictionLaw) -> bool:
-        """Dahl, Jenkins, LuGre and elasto-plastic friction without a fall, damping or viscosity, along one line."""
+        """Dahl, Jenkins, LuGre and elasto-plastic friction without a fall or viscosity, along one line."""
         if not (law.memory_kind == "bristle" and scene.degrees_of_freedom and scene.is_harmonic):
             return False
         alone = scene.degrees_of_freedom == 1 or law.damps_across(abs(scene.belt_speed))
         driven = not scene.undriven and scene.load_along_belt_only and scene.mass().damping > 0.0
-        bristle: Any = law
-        return bool(alone and driven and bristle.rate_independent() and slides_saturated(law))
+        return alone and driven and follows_the_way(law)
 
     def may_meet(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> bool:
         """By the steepest reversals that loads and friction could make, and twice the error that these leave."""
@@ -94,6 +93,6 @@ class StiffBristle(Rung):
 def _contact(scene: Scene, law: Any) -> StiffContact:
     mass = scene.mass()
     bristle = law.under_load(mass.normal_load)
-    mu = bristle.sliding_friction(1.0)
-    lost = lost_on_reversal(bristle)
-    return StiffContact(bristle.largest_deflection(), lost, mu, mu * mass.normal_load, mass.damping)
+    mu, deflection = bristle.sliding_friction(1.0), bristle.largest_deflection()
+    lag = bristle.friction(0.0, 0.0, 1.0) * deflection / mu
+    return StiffContact(deflection, lost_on_reversal(bristle), lag, mu, mu * mass.normal_load, mass.damping)

@@ -27,6 +27,10 @@ times their length: the terms of e' in slip cancel, and
 the latter at most 2 |phi| (G/f)^1/2 by the impulse that stops the mass; the deflection in rest adds terms of its own
 size. The lesser of both bounds counts.
 
+Dashpots beside the springs add lag lambda' to lambda, lag their damping over stiffness. Their own work only lowers
+G; that on Coulomb's slip is lag <(lambda - lambda_C) w_C'> by parts, so that |w_C| counts less by lag max|w_C'|. The
+mean of lag lambda' is zero, that of phi lag lambda' at most lag times the change of phi.
+
 Source: this derivation; the energy of a difference as Leine & van de Wouw (2008).
 """
 
@@ -67,10 +71,11 @@ NODE_AT = np.array([int(np.argmin(np.abs(NODES - at))) if at in NODES else -1 fo
 
 class StiffContact(NamedTuple):
     """A contact beside Coulomb's motion: how far it deflects [scene length], what a reversal loses [scene length],
-    friction in sliding [-] and as a force, and the damping 2 b of the mass."""
+    damping over stiffness [scene time], friction in sliding [-] and as a force, and the damping 2 b of the mass."""
 
     deflection: float
     lost_on_reversal: float
+    lag: float
     coefficient: float
     friction: float
     damping: float
@@ -131,6 +136,30 @@ def slip_at_point(orbit: Any, panel: int, point: int, belt_speed: float) -> floa
 
 
 @inner
+def steepest_slip(orbit: Any) -> float:
+    """The largest rate of change of the slip velocity, from node to node."""
+    steepest = 0.0
+    for panel in range(orbit.tau.shape[0]):
+        for node in range(1, NODES.size):
+            time = orbit.tau[panel, node] - orbit.tau[panel, node - 1]
+            if time > 0.0:
+                change = abs(orbit.v[panel, node].real - orbit.v[panel, node - 1].real)
+                steepest = max(steepest, change / time)
+    return steepest
+
+
+@inner
+def change_of_weight(table: Any, rows: int) -> float:
+    """Of |weight| from stretch to stretch and along each, at most."""
+    change = 0.0
+    for row in range(rows):
+        change += abs(table[row, 4] - table[row, 3]) + abs(
+            table[row, 3] - table[row - 1 if row > 0 else rows - 1, 4]
+        )
+    return change
+
+
+@inner
 def start_of_slip(orbit: Any) -> float:
     """When the slip began in which the orbit starts, before its first instant."""
     panels = orbit.tau.shape[0]
@@ -150,6 +179,7 @@ def tabulate(orbit: Any, belt_speed: float, weighed: bool, slopes: Any, contact:
     start of the slip that the panel lies in, and nothing where the mass rests; else by 1.
     """
     panels, row, start = orbit.tau.shape[0], 0, start_of_slip(orbit)
+    slower = contact.lag * steepest_slip(orbit)
     for panel in range(panels):
         leg = leg_of(orbit, panel, belt_speed)
         if weighed and leg == 0.0:
@@ -163,7 +193,9 @@ def tabulate(orbit: Any, belt_speed: float, weighed: bool, slopes: Any, contact:
         for point in range(LOOKED_AT.size):
             if NODE_AT[point] < 0 and not (turned if LOOKED_AT[point] < 0.0 else turns):
                 continue
-            here = abs(slip_at_point(orbit, panel, point, belt_speed)) if leg != 0.0 else 0.0
+            here = 0.0
+            if leg != 0.0:
+                here = max(0.0, abs(slip_at_point(orbit, panel, point, belt_speed)) - slower)
             phi = 1.0
             if weighed:
                 own = weight_after(contact.damping, first + 0.5 * (1.0 + LOOKED_AT[point]) * length - start)
@@ -321,5 +353,6 @@ def bound_one(contact: StiffContact, orbit: CoulombOrbit, belt_speed: float) -> 
     added = add_rests(orbit, contact, lost, slopes)
     if added < found:
         rows = tabulate(orbit, belt_speed, True, slopes, contact, table)
-        found = min(found, added + bound_by_level_set(table, rows, lost))
+        weighed = bound_by_level_set(table, rows, lost) + contact.lag * change_of_weight(table, rows)
+        found = min(found, added + weighed)
     return found / length

@@ -40,6 +40,7 @@ LAWS = {
     "soft dahl": lambda length: Dahl(mu=0.4, presliding_length=length, exponent=0.5),
     "jenkins": lambda length: Jenkins(mu=0.4, presliding_length=length),
     "lugre": lambda length: LuGre(mu_kinetic=0.4, presliding_length=length),
+    "damped lugre": lambda length: LuGre(mu_kinetic=0.4, presliding_length=length, damping=0.01 / length),
     "elasto-plastic": lambda length: ElastoPlastic(mu_kinetic=0.4, presliding_length=length),
 }
 
@@ -50,7 +51,7 @@ LAWS = {
     damping=st.floats(0.05, 1.5),
     frequency=st.floats(0.3, 4.0),
     share=st.floats(-5.0, -1.0),
-    name=st.sampled_from(["dahl", "jenkins"]),
+    name=st.sampled_from(["dahl", "jenkins", "damped lugre"]),
 )
 def test_the_error_covers_what_the_deflection_changes(ratio, damping, frequency, share, name):
     scenes, swing = scenes_of(ratio, damping, frequency)
@@ -74,6 +75,8 @@ def test_every_law_it_takes_is_covered_and_errors_fall_as_the_root_of_the_length
             true = Shooting().solve(scenes, law, 1e-5)
             assert true.status == ours.status == ["ok"] * len(scenes)
             assert np.all(np.abs(ours.mean - true.mean.real) <= ours.error + true.error)
+    if name == "damped lugre":  # as much damping over stiffness for both
+        return
     falls = errors[0] / errors[1]  # a hundred times stiffer
     assert np.all((falls[:2] > 8.0) & (falls[:2] < 12.0))
     assert np.all(falls > 4.0)  # next to V_lin, where the mass rests for a moment
@@ -92,7 +95,6 @@ def test_it_tells_what_coulomb_friction_cannot():
 
 REFUSED = {
     "falling friction": (LuGre(mu_kinetic=0.4, mu_static=0.5, presliding_length=1e-4), {}),
-    "damped bristles": (LuGre(mu_kinetic=0.4, presliding_length=1e-4, damping=1.0), {}),
     "viscosity": (LuGre(mu_kinetic=0.4, presliding_length=1e-4, viscosity=0.1), {}),
     "no memory": (Coulomb(mu=0.4), {}),
     "a limit never reached by a ductile contact": (Dahl(mu=0.4, presliding_length=1e-4, exponent=2.0), {}),

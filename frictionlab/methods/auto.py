@@ -110,13 +110,13 @@ class Auto(Method):
         """With what was left out, what that may cost, and what the full model would have cost."""
         method, _why = self.choice(scene, law)
         assert method is not None
-        model = [
-            f"{model} (auto: {rung.name}, least model within {tolerance:.0e}: leaves out {rung.left_out}, which may "
-            f"change the mean by {error:.1e}; {method.name} on the full model takes about "
+        why = (
+            f"(auto: {rung.name}, least model within {tolerance:.0e} along the curve: leaves out {rung.left_out}, "
+            f"which changes the mean by no more than error; {method.name} on the full model takes about "
             f"{_spoken(method.cost(scene, law, tolerance))} a point)"
-            for model, error in zip(answers.model, answers.error, strict=True)
-        ]
-        return replace(answers, model=model)
+        )
+        named = {model: f"{model} {why}" for model in set(answers.model)}
+        return replace(answers, model=[named[model] for model in answers.model])
 
     def _by_method(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         method, why = self.choice(scenes[0], law)

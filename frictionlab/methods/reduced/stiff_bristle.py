@@ -42,17 +42,22 @@ class StiffBristle(Rung):
             return False
         alone = scene.degrees_of_freedom == 1 or law.damps_across(abs(scene.belt_speed))
         driven = not scene.undriven and scene.load_along_belt_only and scene.mass().damping > 0.0
-        return alone and driven and follows_the_way(law)
+        return alone and driven and law.constant_sliding_friction()
 
     def may_meet(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> bool:
-        """By the steepest reversals that loads and friction could make, and twice the error that these leave."""
-        contact, lasts = _contact(scenes[0], law), 2.0 * math.pi / scenes[0].frequency
-        free, fastest = friction_free_velocity(scenes[0]), float(np.abs(belt_speeds_of(scenes)).max())
-        steepest = free * scenes[0].frequency + 2.0 * contact.friction
-        level = math.sqrt(contact.lost_on_reversal / steepest)
-        if float(np.abs(belt_speeds_of(scenes)).min()) >= free:
-            level = contact.lost_on_reversal / (free + fastest)
-        return contact.coefficient * 2.0 * level / lasts <= tolerance
+        """By the steepest reversals that loads and friction could make; then by what the law loses on one."""
+        free, speeds = friction_free_velocity(scenes[0]), np.abs(belt_speeds_of(scenes))
+        bristle, normal_load = law.under_load(scenes[0].mass().normal_load), scenes[0].mass().normal_load
+        mu, lasts = law.sliding_friction(1.0), 2.0 * math.pi / scenes[0].frequency
+
+        def least_error(lost: float) -> float:
+            if speeds.min() >= free:
+                return 2.0 * mu * lost / ((free + speeds.max()) * lasts)
+            steepest = free * scenes[0].frequency + 2.0 * mu * normal_load
+            return 2.0 * mu * math.sqrt(lost / steepest) / lasts
+
+        near = least_error(bristle.presliding()) <= tolerance  # a reversal loses as much or more
+        return near and follows_the_way(bristle) and least_error(lost_on_reversal(bristle)) <= tolerance
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Coulomb's answers; refused where Coulomb's motion is not the only one."""

@@ -16,12 +16,15 @@ from frictionlab.methods.reduced.stiff_bristle import StiffBristle
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.scenes import Scenes
+from frictionlab.scene.scenes import MOST_TOLD, Scenes
 
 METHODS_BY_COST: tuple[Method, ...] = (Exact(), Shooting())
 """From the cheapest method to the most general one."""
 RUNGS: tuple[Rung, ...] = (StiffBristle(),)
 """Smaller models, the least first."""
+LONG_SHARE = 0.5
+"""Share of the tolerance that a smaller model must meet at the belt speeds by which pieces of a long curve know it: at
+those between them its error is about as large."""
 
 
 class Auto(Method):
@@ -140,11 +143,11 @@ def _by_rung(rung: Rung, scenes: Sequence[Scene], law: FrictionLaw, tolerance: f
     A piece of a curve solves the curve as well, or of a long one some of it: every piece comes to the same choice.
     """
     curve = Scenes.of(scenes).curve
-    whole = len(curve) == len(scenes)
-    if not whole and not _within(rung.solve(curve, law, tolerance), tolerance):
+    asked = tolerance if len(curve) < MOST_TOLD else LONG_SHARE * tolerance
+    if len(curve) != len(scenes) and not _within(rung.solve(curve, law, asked), asked):
         return None
     answers = rung.solve(scenes, law, tolerance)
-    return answers if _within(answers, tolerance) else None
+    return answers if _within(answers, tolerance if len(curve) != len(scenes) else asked) else None
 
 
 def _within(answers: Answers, tolerance: float) -> bool:

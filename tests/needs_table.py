@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from frictionlab.charts.needs import TOGETHER, draw_needs
+from frictionlab.charts.needs import PLUS, draw_needs
 from frictionlab.least_model.needs import needs_of_study
 from frictionlab.least_model.result import Needs
 from frictionlab.study import load_study
@@ -43,7 +43,7 @@ def paper() -> list[Path]:
 def row(name: str, found: Needs) -> str:
     """One curve."""
     table = found.table
-    alone = table[~table["without"].str.contains(TOGETHER, regex=False) & (table["without"] != DOUBLE)]
+    alone = table[~table["without"].str.contains(PLUS, regex=False) & (table["without"] != DOUBLE)]
     told = [
         "; ".join(
             f"{each.without} {told_size(each)}" for each in alone.itertuples() if each.verdict == verdict
@@ -51,7 +51,7 @@ def row(name: str, found: Needs) -> str:
         for verdict in ("needed", "not needed")
     ]
     least = table[table["smallest"]]
-    without = least["without"].iloc[0].replace(TOGETHER, ", ") if len(least) else "nothing"
+    without = least["without"].iloc[0].replace(PLUS, ", ") if len(least) else "nothing"
     change = told_size(next(least.itertuples())) if len(least) else "0"
     cells = [name.partition("_")[0], found.label or "-", *(each or "-" for each in told), without, change]
     return f"| {' | '.join(cells)} |\n"

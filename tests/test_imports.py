@@ -114,7 +114,7 @@ ARROWS = {
             "shape",
             "study",
         ),
-        "theory",
+        *("methods.reduced", "theory"),
     ],
     "cli": [
         "bench",

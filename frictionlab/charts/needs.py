@@ -18,25 +18,25 @@ from matplotlib.ticker import NullLocator
 from frictionlab.charts.figures import PAGE, STYLE, write_figure
 from frictionlab.printable import printable
 
-TOGETHER = " + "
+PLUS = " + "
 """Between the things of a set in the column ``without``."""
 BAR, AROUND = 0.19, 0.4  # of a bar and of what stands around a panel [inch]
 BELOW = 5
 """Decades that the axis goes below the tolerance: less is as good as nothing."""
-SIGNS: dict[str, Any] = {
+VERDICT_LOOKS: dict[str, Any] = {
     "needed": {"facecolor": "#16324f", "edgecolor": "#16324f"},
     "undecided": {"facecolor": "#8fa9c4", "edgecolor": "#16324f", "hatch": "xxxx"},
     "not needed": {"facecolor": "white", "edgecolor": "#16324f", "hatch": "////"},
 }
 SMALLEST = "the smallest model"
 ERROR = "#c2571a"
-LIMIT: Any = {"color": "0.15", "linewidth": 1.0, "linestyle": (0, (4, 2))}
+LINE_OF_TOLERANCE: Any = {"color": "0.15", "linewidth": 1.0, "linestyle": (0, (4, 2))}
 
 
 def needs_figure(table: pd.DataFrame, title: str = "") -> Figure:
     """Bars of the largest change of the mean without each thing, and without all that the smallest model lacks."""
     curves = list(table.groupby("curve", sort=False))
-    names = [name for name in dict.fromkeys(table["without"]) if TOGETHER not in name] + [SMALLEST]
+    names = [name for name in dict.fromkeys(table["without"]) if PLUS not in name] + [SMALLEST]
     wide = min(2, len(curves))
     high = -(-len(curves) // wide)
     lines = textwrap.wrap(title.replace("$", r"\$"), 90)
@@ -71,7 +71,7 @@ def draw_needs(table: pd.DataFrame, title: str, folder: Path) -> list[Path]:
 
 def _draw_panel_of_needs(axes: Axes, names: list[str], rows: pd.DataFrame, ends: tuple[float, float]) -> None:
     within, (least, largest) = float(rows["within"].iloc[0]), ends
-    bars = {row["without"]: row for _, row in rows.iterrows() if TOGETHER not in row["without"]}
+    bars = {row["without"]: row for _, row in rows.iterrows() if PLUS not in row["without"]}
     if rows["smallest"].any():
         bars[SMALLEST] = rows[rows["smallest"]].iloc[0]
     for place, name in enumerate(names):
@@ -80,7 +80,7 @@ def _draw_panel_of_needs(axes: Axes, names: list[str], rows: pd.DataFrame, ends:
         else:
             _say(axes, place, "the full one" if name == SMALLEST else "no such part")
     axes.axvline(within, color="white", linewidth=2.4, zorder=3)
-    axes.axvline(within, zorder=3, **LIMIT)
+    axes.axvline(within, zorder=3, **LINE_OF_TOLERANCE)
     axes.set_xscale("log")
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlim(least, largest)
@@ -97,11 +97,13 @@ def _ends(table: pd.DataFrame) -> tuple[float, float]:
 
 def _draw_bar(axes: Axes, place: int, row: Any, least: float) -> None:
     """One bar with its error."""
-    if row["verdict"] not in SIGNS:
+    if row["verdict"] not in VERDICT_LOOKS:
         _say(axes, place, "cannot go alone")
         return
     size, error = abs(float(row["change"])), float(row["change_error"])
-    axes.barh(place, max(size - least, 0.0), left=least, height=0.62, linewidth=0.6, **SIGNS[row["verdict"]])
+    axes.barh(
+        place, max(size - least, 0.0), left=least, height=0.62, linewidth=0.6, **VERDICT_LOOKS[row["verdict"]]
+    )
     if size + error > least:
         ends = [max(size - error, least), size + error]
         axes.plot(ends, [place, place], color=ERROR, marker="|", markersize=5, linewidth=1.6, zorder=4)
@@ -116,6 +118,6 @@ def _say(axes: Axes, place: int, text: str) -> None:
 
 def _entries(table: pd.DataFrame) -> list[Any]:
     used = set(table["verdict"])
-    entries: list[Any] = [Patch(label=name, **look) for name, look in SIGNS.items() if name in used]
+    entries: list[Any] = [Patch(label=name, **look) for name, look in VERDICT_LOOKS.items() if name in used]
     error = Line2D([], [], color=ERROR, marker="|", linewidth=1.6, label="error")
-    return [*entries, error, Line2D([], [], label="tolerance", **LIMIT)]
+    return [*entries, error, Line2D([], [], label="tolerance", **LINE_OF_TOLERANCE)]

@@ -43,6 +43,7 @@ class Search:
 
     def __init__(self, full: LesserModel, curves: Curves, within: float, laws: registry.Laws) -> None:
         self.full, self._curves, self._within, self._laws = full, curves, within, laws
+        self._rests = bool((curves.of(full)["stick_fraction"] > 0.0).any())
         self._known: dict[Chosen, Without | None] = {}
 
     def singles(self) -> list[Without]:
@@ -50,7 +51,7 @@ class Search:
 
         Of several of one group that cannot go for the same reason the last.
         """
-        found = self._all((thing,) for thing in things())
+        found = self._all((thing,) for thing in things(self._rests))
         last = {_why_not(each): each for each in found}
         return [each for each in found if each.model is not None or last[_why_not(each)] is each]
 

@@ -9,6 +9,7 @@ import pandas as pd
 from frictionlab.least_model.lesser import LesserModel
 from frictionlab.least_model.motion import FRICTION_FREE
 from frictionlab.least_model.search import Without
+from frictionlab.least_model.without_rest import WithoutRest
 from frictionlab.results.words import counted, in_words
 from frictionlab.shape.verdict import Estimate
 
@@ -28,6 +29,8 @@ def _way(model: LesserModel) -> str:
         return ""
     if model.way.name == FRICTION_FREE:
         return ", friction averaged over the friction-free motion (mdsm)"
+    if isinstance(model.way, WithoutRest):
+        return ", a motion of two reversals a period without rest"
     harmonics = getattr(model.way, "harmonics", 1)
     return f", {counted(harmonics, 'harmonic')} balanced ({model.way.name})"
 
@@ -69,7 +72,7 @@ def _changes(each: Without) -> str:
     return f"the mean changes by {size_of(each.change.mean)} at belt speed {each.change.belt_speed:.6g}"
 
 
-def left_out(answers: pd.DataFrame) -> list[str]:
+def missing_means(answers: pd.DataFrame) -> list[str]:
     """What is said of belt speeds at which the full scene has no one mean."""
     rest = answers[answers["status"] != "ok"]
     if rest.empty:

@@ -8,6 +8,7 @@ from frictionlab.least_model.contact import rigid, undamped_bristles, without_fa
 from frictionlab.least_model.lesser import LesserModel, Taken
 from frictionlab.least_model.motion import cut_to, friction_free, orders
 from frictionlab.least_model.shaking import on_a_line, sines, steady_normal_load, without_load_across
+from frictionlab.least_model.without_rest import slipping
 
 
 class Thing(NamedTuple):
@@ -22,8 +23,11 @@ class Thing(NamedTuple):
     away: Taken
 
 
-def things() -> tuple[Thing, ...]:
-    """In the order in which several are taken away; of a group the later ones take more away."""
+def things(rests: bool) -> tuple[Thing, ...]:
+    """In the order in which several are taken away; of a group the later ones take more away.
+
+    rests: whether the full motion rests at some belt speed.
+    """
     cuts = [
         Thing(f"harmonics above {n}", "motion", 20 + 10 * rank, cut_to(n))
         for rank, n in enumerate(reversed(orders()))
@@ -37,6 +41,7 @@ def things() -> tuple[Thing, ...]:
         Thing("contact compliance", "bristles", 400, rigid),
         Thing("fall of friction with speed", "fall", 1, without_fall),
         Thing("viscosity", "viscosity", 1, without_viscosity),
+        *([Thing("stick", "motion", 10, slipping)] if rests else []),
         *cuts,
         Thing("friction's effect on the motion", "motion", 200, friction_free),
     )

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import frictionlab as fl
-from frictionlab.least_model.needs import Needs
+from frictionlab.least_model.result import Needs
+from frictionlab.least_model.without_rest import WithoutRest
+from frictionlab.scene.scenes import Scenes
 
 STRONG = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
 
@@ -41,3 +43,15 @@ def test_a_scene_that_needs_nothing_comes_down_to_the_closed_form() -> None:
     assert found.smallest.law == fl.Coulomb(mu=0.4)
     assert found.smallest.way is not None
     assert found.smallest.way.name == "mdsm"
+
+
+def test_the_motion_without_rest_is_the_motion_where_that_never_rests() -> None:
+    speeds = np.linspace(2, 48, 8)
+    table = fl.curve(STRONG, fl.Coulomb(mu=0.4), speeds)
+    slips = table["stick_fraction"] == 0.0
+    means = WithoutRest().model_means(Scenes(STRONG, speeds), fl.Coulomb(mu=0.4))
+
+    assert 3 <= slips.sum() < len(speeds)
+    apart = np.abs(means - table["mean_friction"])
+    assert apart[slips].max() < 1e-12
+    assert apart[~slips].min() > 1e-6

@@ -90,6 +90,7 @@ ARROWS = {
     "charts": ["columns", "printable"],
     "report": ["charts", "columns", "registry", "results", "runner", "scene", "study"],
     "notebook": ["charts", "columns", "report", "results", "runner", "scene", "study"],
+    "explore": ["charts", "columns", "report", "results", "runner"],
     "scaffold": ["registry", "runner"],
     "bench": [
         *("charts", "columns", "compile", "laws", "mistakes", "quantities", "runner", "scene", "study"),
@@ -119,6 +120,7 @@ ARROWS = {
     "cli": [
         "bench",
         "charts",
+        "explore",
         "faults",
         "least_model",
         "printable",
@@ -155,7 +157,7 @@ OUTSIDE = {
     "llvmlite": ["compile"],
     "flint": ["methods.exact.proof"],
     "ruamel": ["study", "runner"],
-    "pandas": ["results", "runner", "charts", "report", "notebook", "cli", "least_model"],
+    "pandas": ["results", "runner", "charts", "report", "notebook", "explore", "cli", "least_model"],
     "xarray": ["notebook"],
     "pyarrow": ["results", "runner"],
     "matplotlib": [

@@ -31,7 +31,10 @@ from frictionlab.cli.output import (
     results_apart,
 )
 
-COMMANDS = ("bench", "check", "laws", "methods", "needs", "new", "plot", "report", "run", "schema", "warm")
+COMMANDS = (
+    *("bench", "check", "explore", "laws", "methods", "needs", "new", "plot", "report", "run"),
+    *("schema", "warm"),
+)
 """Each is the function ``NAME_command`` of the module of its name."""
 MOMENT = 0.2
 """Seconds in which the threads of an interrupted command may end."""

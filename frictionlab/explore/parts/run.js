@@ -1,0 +1,120 @@
+"use strict";
+/* The part of the page that shows the table of a run: a slider for each swept quantity, and the curves of every law. */
+
+const COLOURS = ["#0b3d6e", "#c2410c", "#2e7d32", "#7a1fa2", "#8a6d00", "#00838f"];
+const DASHES = ["none", "9 4", "2 3", "9 3 2 3", "5 2", "12 3 2 3 2 3"];
+/* Curves differ in dashes, too, for print in grey. */
+
+const VISIBLE = 0.004;
+/* Share of the axis: a narrower error band is thinner than its curve. */
+
+const run = JSON.parse(document.getElementById("run-data").textContent);
+const places = run.swept.map(() => 0);
+let along = Math.floor((run.abscissa.values.length - 1) / 2);
+
+/** How a law with a method is drawn. */
+function lookOf(look) {
+  const dashes = DASHES[(look + Math.floor(look / COLOURS.length)) % DASHES.length];
+  return { stroke: COLOURS[look % COLOURS.length], "stroke-width": 2.3, "stroke-dasharray": dashes };
+}
+
+/** A slider over given values; ``chosen`` is told the index. */
+function addSlider(id, label, values, start, chosen) {
+  const box = document.createElement("div"), name = document.createElement("label");
+  const range = document.createElement("input"), value = document.createElement("output");
+  box.className = "slider";
+  name.htmlFor = range.id = id;
+  write(name, label);
+  Object.assign(range, { type: "range", min: 0, max: values.length - 1, step: 1, value: start });
+  const choose = () => {
+    const found = values[Number(range.value)];
+    value.textContent = typeof found === "number" ? String(Number(found.toPrecision(6))) : found;
+    range.setAttribute("aria-valuetext", value.textContent);
+  };
+  range.addEventListener("input", () => { choose(); chosen(Number(range.value)); });
+  choose();
+  box.append(name, range, value);
+  document.getElementById("run-sliders").append(box);
+}
+
+/** The curves at the values chosen; a quantity that a law does not have chooses nothing. */
+function curvesChosen() {
+  return run.curves.filter((curve) => curve.at.every((at, i) => at === null || at === places[i]));
+}
+
+function drawRun() {
+  const curves = curvesChosen(), here = run.abscissa.values[along];
+  const values = run.curves.flatMap((curve) => [...curve.mean, ...curve.low, ...curve.high]).filter((v) => v !== null);
+  const spanned = spanOf(values.length ? [...values, 0] : [0, 1], 0.05);
+  const chart = drawAxes(document.getElementById("run-curves"),
+    { label: run.abscissa.label, span: spanOf(run.abscissa.values, 0.02) }, { label: "mean friction coefficient", span: spanned });
+  chart.upright(here, { stroke: "#1b1f24" });
+  chart.level(0, { stroke: "#8c959f" });
+  const drawn = curves.filter((curve) => curve.look !== null);
+  for (const curve of drawn) drawBand(chart, curve, spanned);
+  for (const curve of drawn) {
+    const look = lookOf(curve.look);
+    for (const part of partsOf(curve)) chart.line(part, look);
+    const at = curve.x.indexOf(here);
+    if (at >= 0 && curve.mean[at] !== null) chart.dot([here, curve.mean[at]], { fill: look.stroke, stroke: "#fff" });
+  }
+  // Curves of one scene have one V_{lin}, known to rounding: one mark for all of them.
+  for (const kink of new Set(curves.filter((curve) => curve.kink !== null).map((curve) => Number(curve.kink.toPrecision(9))))) {
+    chart.upright(kink, { "stroke-dasharray": "2 4" });
+    chart.text(chart.px(kink) - 4, chart.top + 12, "V_{lin}", { "text-anchor": "end" });
+  }
+  listValues(curves, here);
+}
+
+/** The stretches of a curve that have numbers. */
+function partsOf(curve) {
+  const parts = [[]];
+  curve.x.forEach((x, i) => {
+    if (curve.mean[i] === null) parts.push([]); else parts.at(-1).push([x, curve.mean[i]]);
+  });
+  return parts.filter((part) => part.length > 0).map((part) => (part.length > 1 ? part : [...part, ...part]));
+}
+
+function drawBand(chart, curve, span) {
+  const fill = lookOf(curve.look).stroke, wide = VISIBLE * (span[1] - span[0]);
+  const known = curve.x.map((x, i) => i).filter((i) => curve.mean[i] !== null && curve.error[i] !== null);
+  if (known.some((i) => curve.error[i] > wide)) {
+    const edge = (side) => known.map((i) => [curve.x[i], clamp(curve.mean[i] + side * curve.error[i], span)]);
+    chart.area([...edge(1), ...edge(-1).reverse()], { fill, opacity: 0.16 });
+  }
+  curve.x.forEach((x, i) => {
+    if (curve.low[i] !== null) chart.line([[x, curve.low[i]], [x, curve.high[i]]], { stroke: fill, "stroke-width": 3, opacity: 0.5 });
+  });
+}
+
+function clamp(value, [low, high]) {
+  return Math.min(Math.max(value, low), high);
+}
+
+/** The table beside the chart, which is its legend, too. */
+function listValues(curves, here) {
+  const table = document.getElementById("run-values");
+  write(table.caption, `${run.abscissa.label} = ${Number(here.toPrecision(6))}`);
+  table.tBodies[0].replaceChildren(...curves.map((curve) => {
+    const at = curve.x.indexOf(here), row = document.createElement("tr"), head = document.createElement("th");
+    head.scope = "row";
+    const swatch = svgElement(head, "svg", { viewBox: "0 0 40 12", "aria-hidden": "true" });
+    if (curve.look !== null) svgElement(swatch, "line", { x1: 0, x2: 40, y1: 6, y2: 6, ...lookOf(curve.look) });
+    head.append(curve.law);
+    row.append(head);
+    const status = at < 0 ? "no point here" : curve.status[at], mean = at < 0 ? null : curve.mean[at];
+    const range = at >= 0 && curve.low[at] !== null ? `${shown(curve.low[at], 6)} ... ${shown(curve.high[at], 6)}` : "";
+    const error = mean === null || curve.error[at] === null ? "" : curve.error[at].toExponential(1);
+    for (const text of [curve.method, mean === null ? range : shown(mean, 6), error, status]) {
+      row.insertCell().textContent = text;
+    }
+    return row;
+  }));
+}
+
+run.swept.forEach((quantity, i) => {
+  addSlider(`run-${i}`, quantity.label, quantity.values, 0, (at) => { places[i] = at; drawRun(); });
+});
+addSlider("run-along", run.abscissa.label, run.abscissa.values, along, (at) => { along = at; drawRun(); });
+drawRun();
+addEventListener("resize", drawRun);

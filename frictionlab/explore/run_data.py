@@ -1,0 +1,114 @@
+"""What the explorer shows of a run: its curves with errors, and the swept quantities that select among them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from html import unescape
+from typing import Any
+
+import pandas as pd
+
+from frictionlab.charts.curves import CurveData, Family, family_of, kinks
+from frictionlab.columns import word
+from frictionlab.report.markup import html
+from frictionlab.runner.errors import FolderError
+from frictionlab.runner.saved import Saved
+
+Quantity = tuple[str, str]
+"""A swept input and the law whose parameter it is, "" for one of the scene."""
+
+
+def run_data(saved: Saved) -> dict[str, Any]:
+    """The curves of a run as numbers, words and None, for JSON. Raises FolderError where it has none."""
+    family = family_of(saved.table)
+    if family is None:
+        raise FolderError(f"{saved.folder}: its study sweeps no number, so there is no curve to explore")
+    swept = _swept(family)
+    looks = list(dict.fromkeys((curve.law, curve.method) for curve in family.curves if _has_numbers(curve)))
+    places = sorted({float(value) for curve in family.curves for value in curve.rows[family.abscissa]})
+    return {
+        "abscissa": {"label": label(family.abscissa), "values": places},
+        "swept": [{"label": label(*quantity), "values": values} for quantity, values in swept.items()],
+        "curves": [_curve(curve, family.abscissa, swept, looks) for curve in family.curves],
+    }
+
+
+def label(name: str, law: str = "") -> str:
+    """Words, symbol and unit of an input, and the law it belongs to; subscripts after "_"."""
+    marked = str(html(word(name))).replace("<sub>", "_{").replace("</sub>", "}")
+    plain = unescape(re.sub(r"<[^>]*>", "", marked))
+    return f"{plain[:1].upper()}{plain[1:]}{f' of {law}' if law else ''}"
+
+
+def _has_numbers(curve: CurveData) -> bool:
+    """Whether any point can be drawn: a mean, or the range of one that is not unique."""
+    return bool(curve.rows.reindex(columns=["mean_friction", "mean_low"]).notna().to_numpy().any())
+
+
+def _settings(curve: CurveData) -> dict[Quantity, float | str]:
+    """What selects a curve among those of its law and method."""
+    given = [*curve.panel, *([] if curve.member is None else [curve.member])]
+    return {
+        (name, curve.law if name.startswith("law.") else ""): value
+        for name, value in given
+        if value is not None
+    }
+
+
+def _swept(family: Family) -> dict[Quantity, list[float | str]]:
+    """The swept quantities beside the abscissa, each with its values: numbers ascending, words as they come."""
+    found: dict[Quantity, dict[float | str, None]] = {}
+    for curve in family.curves:
+        for quantity, value in _settings(curve).items():
+            found.setdefault(quantity, {})[value] = None
+    return {quantity: _in_order(values) for quantity, values in found.items() if len(values) > 1}
+
+
+def _in_order(values: Iterable[float | str]) -> list[float | str]:
+    numbers = [value for value in values if not isinstance(value, str)]
+    return [*sorted(numbers), *(value for value in values if isinstance(value, str))]
+
+
+def _curve(
+    curve: CurveData,
+    abscissa: str,
+    swept: dict[Quantity, list[float | str]],
+    looks: list[tuple[str, str]],
+) -> dict[str, Any]:
+    """One curve.
+
+    at: for each swept quantity the index of its value, None where the law does not have it. look: a number for each
+    law and method, None where no point of the two can be drawn.
+    """
+    settings, rows = _settings(curve), curve.rows
+    at = [
+        values.index(settings[quantity]) if quantity in settings else None
+        for quantity, values in swept.items()
+    ]
+    return {
+        "law": curve.law,
+        "method": curve.method,
+        "look": looks.index(pair) if (pair := (curve.law, curve.method)) in looks else None,
+        "at": at,
+        "x": _numbers(rows[abscissa]),
+        "mean": _numbers(rows["mean_friction"]),
+        "error": _numbers(rows["error"]),
+        "low": _numbers(rows.get("mean_low")) or [None] * len(rows),
+        "high": _numbers(rows.get("mean_high")) or [None] * len(rows),
+        "status": rows["status"].astype(str).tolist(),
+        "kink": _kink(curve),
+    }
+
+
+def _kink(curve: CurveData) -> float | None:
+    needed = {"velocity_ratio", "normalized_friction", "transverse_velocity_amplitude"}
+    found = kinks(curve) if needed <= set(curve.rows.columns) else []
+    return found[-1] if found else None
+
+
+def _numbers(column: pd.Series | None) -> list[float | None]:
+    """A column as JSON can hold it."""
+    found = [] if column is None else column.astype(float).tolist()
+    return [value if math.isfinite(value) else None for value in found]

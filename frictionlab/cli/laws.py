@@ -38,9 +38,7 @@ def laws_command(names: tuple[str, ...], law_files: tuple[Path, ...], **given: A
     known = laws_of_files(law_files)
     testing = names[:1] == ("test",)
     asked = names[1:] if testing else names
-    for name in asked:
-        if name not in known.names():
-            raise click.UsageError(f"no law '{name}'; installed: {', '.join(known.names())}")
+    options.check_laws(asked, known)
     if testing:
         return _test(asked or _to_test(known, law_files), known, TestOptions(**given))
     if len(names) > 1 or given["markdown"] or given["examples"]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
+
+if TYPE_CHECKING:
+    from frictionlab.registry import Laws
 
 overrides = click.option(
     "--set",
@@ -37,3 +40,13 @@ def folder(default: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """The option ``-o``, the folder that a command writes to."""
     help_text = f"Where to; {default} if left out."
     return click.option("-o", "out", type=click.Path(path_type=Path), metavar="DIR", help=help_text)
+
+
+def check_laws(names: Iterable[str], known: Laws) -> None:
+    """Raises UsageError for the first name that no law has."""
+    from frictionlab.mistakes.notes import unknown_name
+
+    for name in names:
+        if name not in known.names():
+            said, hint = unknown_name("law", name, list(known.names()))
+            raise click.UsageError(f"{said}; {hint}" if hint else said)

@@ -23,9 +23,7 @@ def warm_command(names: tuple[str, ...], law_files: tuple[Path, ...]) -> None:
     from frictionlab.study import laws_of_files
 
     known = laws_of_files(law_files)
-    for name in names:
-        if name not in known.names():
-            raise click.UsageError(f"no law '{name}'; installed: {', '.join(known.names())}")
+    options.check_laws(names, known)
     for done in warm({name: known.named(name) for name in names or known.usable()}):
         told = f"{done.kernels} compiled in {done.seconds:.0f} s" if done.kernels else "all kept already"
         print_result(f"{done.law}, {done.scene}: {told}")

@@ -450,6 +450,15 @@ def test_a_check_in_json_is_a_record_per_law_and_method(frictionlab: Any) -> Non
     assert list(second["models"].values()) == [4]
 
 
+def test_a_law_that_is_not_installed_is_code_2_with_the_one_that_is_meant(frictionlab: Any) -> None:
+    for arguments in (["laws", "dupond"], ["laws", "test", "dupond"], ["warm", "dupond"]):
+        said = frictionlab(*arguments)
+
+        assert (said.code, said.out) == (2, "")
+        assert "unknown law 'dupond'" in said.err
+        assert said.err.endswith("did you mean 'dupont'?\n")
+
+
 def test_laws_are_listed_with_parameters_limits_and_what_they_declare(frictionlab: Any) -> None:
     assert "coulomb" in frictionlab("laws").out
     assert "Amontons (1699)" in frictionlab("laws", "coulomb").out

@@ -75,4 +75,4 @@ def friction_at(law, v):
 
 def test_an_unknown_law_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["warm", "colomb"]) == 2
-    assert "no law 'colomb'; installed: " in capsys.readouterr().err
+    assert "unknown law 'colomb'; installed: " in capsys.readouterr().err

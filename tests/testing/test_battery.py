@@ -160,7 +160,7 @@ def test_the_command_prints_a_table_records_or_markdown(
     assert main(["laws", "test", "coulomb", "--markdown", "--examples", "10"]) == 0
     assert "| frozen | passed | 1 |  |" in capsys.readouterr().out
     assert main(["laws", "test", "coulom"]) == 2
-    assert "no law 'coulom'; installed: " in capsys.readouterr().err
+    assert "unknown law 'coulom'; installed: " in capsys.readouterr().err
 
 
 def test_the_command_ends_with_3_where_a_check_fails(monkeypatch: Any) -> None:

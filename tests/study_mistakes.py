@@ -114,6 +114,10 @@ EDITS = [
     ("kind: coulomb, mu: 0.4", "kind: 3, mu: 0.4", "14:12: laws[0].kind: must be the name of a law, got 3"),
     ("kind: coulomb, mu: 0.4", "kind: [], mu: 0.4", "14:6: laws[0].kind: must be the name of a law, got a list"),
     ("kind: coulomb, mu: 0.4", "mu: 0.4", "14:5: laws[0].kind: required key is missing"),
+    ("{kind: coulomb, mu: 0.4}", "coulomb: {mu: 0.4}", "14:5: laws[0].coulomb: a name goes after kind"),
+    ("{kind: coulomb, mu: 0.4}", "coulomb:\n    mu: 0.4", "14:5: laws[0].coulomb: a name goes after kind"),
+    ("kind: coulomb, mu: 0.4", "kind: lugre, mu: 0.4, stiffness: 40, label: coulomb", "14:19: laws[0].mu: unknown key"),
+    ("kind: coulomb, mu: 0.4", "kind: coulomb, mu_kinetic: 0.4", "14:21: laws[0].mu_kinetic: unknown key"),
     ("label: soft", "label: coulomb", "15:37: laws[1].label: laws[0] has the label 'coulomb' too"),
     ("label: soft", "label: ''", "15:37: laws[1].label: must be one line of visible text"),
     ("label: soft", "label: 4", "15:37: laws[1].label: must be text, got 4"),
@@ -125,6 +129,7 @@ EDITS = [
     # methods
     ("methods: [auto, ", "methods: [autto, ", "16:11: methods[0]: unknown method 'autto'; installed: auto"),
     ("methods: [auto, ", "methods: [auto, auto, ", "16:17: methods[1]: methods[0] has the label 'auto' too"),
+    ("{kind: shooting, label: second}", "{march: {steps: 100}}", "16:18: methods[1].march: a name goes after kind"),
     ("methods: [auto, ", "methods: [5, ", "16:11: methods[0]: must be the name of a method, got 5"),
     ("label: second", "steps: 5, label: second", "16:34: methods[1].steps: unknown key; allowed: none"),
     ("kind: shooting, label", "label", "16:17: methods[1].kind: required key is missing"),
@@ -249,4 +254,17 @@ EDITS = [
      "scene.drive.waveform: [sine, square]\nexpect:\n  - {where: {law: coulomb, scene.drive.waveform: sinus}",
      "22:50: expect[0].where.scene.drive.waveform: must be 'sine', 'square', 'triangle', 'sawtooth' or {harmonics: [...]}"),
 ]
+
+HINTS = [
+    ("schema: 1\n", "", "write schema: 1"),
+    ("{kind: coulomb, mu: 0.4}", "coulomb: {mu: 0.4, mu_static: 0.5}", "write {kind: coulomb, mu: 0.4, mu_static: 0.5}"),
+    ("{kind: coulomb, mu: 0.4}", "coulomb:\n    mu: 0.4", "write {kind: coulomb, mu: 0.4}"),
+    ("{kind: coulomb, mu: 0.4}", "coulomb: 0.4", "write {kind: coulomb, ...}"),
+    ("{kind: shooting, label: second}", "{march: {steps: 100}}", "write {kind: march, steps: 100}"),
+    ("kind: coulomb, mu: 0.4", "kind: lugre, mu: 0.4, stiffness: 40, label: coulomb", "did you mean 'mu_kinetic'?"),
+    ("kind: coulomb, mu: 0.4", "kind: stribeck, mu: 0.4, mu_static: 0.5, label: coulomb", "did you mean 'mu_kinetic'?"),
+    ("kind: coulomb, mu: 0.4", "kind: coulomb, mu_kinetic: 0.4", "did you mean 'mu'?"),
+    ("kind: coulomb, mu: 0.4", "kind: coulomb, mu: 0.4, mu_kinetic: 0.4", "did you mean 'mu_static'?"),
+]
+"""Mistakes with a remedy: the last line of the message."""
 # fmt: on

@@ -111,19 +111,25 @@ def dotted(path: Path) -> str:
     return text.removeprefix(".")
 
 
-def closest(name: str, among: Iterable[str]) -> str | None:
-    """The most similar name, if any is close; else the only name that begins with this one and a unit."""
+def closest(name: str, among: Iterable[str], missing: Iterable[str] = ()) -> str | None:
+    """The most similar name, if any is close; else the only name that begins with this one and a unit.
+
+    missing: required names that were not given. One that differs by words at its end is taken first: mu, mu_kinetic.
+    """
     if len(name) > _LONGEST_NAME:
         return None
+    for wanted in missing:
+        if wanted.startswith(f"{name}_") or name.startswith(f"{wanted}_"):
+            return wanted
     names = list(islice(among, _MOST_NAMES))
     found = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1, cutoff=0.6)
     begun = [n for n in names if n.lower().startswith(f"{name.lower()}_")]
     return next((n for n in names if found and n.lower() == found[0]), begun[0] if len(begun) == 1 else None)
 
 
-def did_you_mean(name: str, among: Iterable[str]) -> str:
-    """``did you mean 'x'?``, or nothing where no name is close."""
-    found = closest(name, among)
+def did_you_mean(name: str, among: Iterable[str], missing: Iterable[str] = ()) -> str:
+    """``did you mean 'x'?``, or nothing where no name is close. missing: as for ``closest``."""
+    found = closest(name, among, missing)
     return f"did you mean '{found}'?" if found is not None else ""
 
 
@@ -219,14 +225,17 @@ class Notes:
             self._mark(path)
             self.all.append(Note(path, what, hint))
 
-    def unknown_key(self, path: Path, allowed: Iterable[str], given: Iterable[str] = ()) -> None:
+    def unknown_key(
+        self, path: Path, allowed: Iterable[str], given: Iterable[str] = (), required: Iterable[str] = ()
+    ) -> None:
         """An unknown key beside those given; one of the others is more likely to be meant."""
         if path not in self._misspelt:
             self._misspelt.add(path)
             self._mark(path)
             names = list(allowed)
             left = [name for name in names if name not in (*given,)]
-            hint = did_you_mean(str(path[-1]), left) or did_you_mean(str(path[-1]), names)
+            missing = [name for name in required if name in left]
+            hint = did_you_mean(str(path[-1]), left, missing) or did_you_mean(str(path[-1]), names)
             what = f"unknown key; allowed: {', '.join(names) or 'none'}"
             self.all.append(Note(path, what, hint, on_key=True))
 
@@ -255,7 +264,8 @@ class Notes:
         """Note the required keys that a file lacks, and a schema that is not this one."""
         for key in required:
             if key not in tree:
-                self.add((key,), "required key is missing")
+                hint = f"write schema: {schema}" if key == "schema" else ""
+                self.add((key,), "required key is missing", hint)
         given = tree.get("schema", schema)
         if isinstance(given, bool) or given != schema:
             self.add(("schema",), f"must be {schema}, got {value_text(given)}")

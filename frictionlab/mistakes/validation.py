@@ -237,11 +237,13 @@ class _Check:
     def _unknown(self, inside: Path) -> bool:
         """An unknown key; the check continues as if the most similar key were given."""
         record, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
-        allowed = list(record.model_fields) if record else []
-        self._notes.unknown_key(self._path + inside, allowed, tree)
+        fields = record.model_fields if record else {}
+        allowed, required = list(fields), [name for name, field in fields.items() if field.is_required()]
+        self._notes.unknown_key(self._path + inside, allowed, tree, required)
         value = tree.pop(inside[-1])
-        meant = closest(str(inside[-1]), [name for name in allowed if name not in tree])
-        if meant is not None and closest(str(inside[-1]), allowed) in (None, meant):
+        missing = [name for name in required if name not in tree]
+        meant = closest(str(inside[-1]), [name for name in allowed if name not in tree], missing)
+        if meant is not None and closest(str(inside[-1]), allowed, missing) in (None, meant):
             tree[meant] = value
             self._spelt[(*inside[:-1], meant)] = inside
         return True

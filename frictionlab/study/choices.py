@@ -28,6 +28,8 @@ def law_choice(given: Any, path: Path, laws: registry.Laws, notes: Notes) -> Law
     if not isinstance(given, dict):
         notes.add(path, f"must be a mapping such as {{kind: coulomb, mu: 0.4}}, got {value_text(given)}")
         return None
+    if _named_by_its_key(given, laws.names(), path, notes):
+        return None
     if given.get("kind") not in laws.names() and notes.below(("plugins",)):
         return None  # an unreadable law file may define it
     kind = _kind(given, path, _name_reader("law", laws.names(), notes), notes)
@@ -48,6 +50,8 @@ def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:
     if not isinstance(given, dict):
         name = named(given, path)
         return None if name is None else MethodChoice(name, name, {})
+    if _named_by_its_key(given, registry.method_names(), path, notes):
+        return None
     name = _kind(given, path, named, notes)
     label = _label(given, name, path, notes)
     parameters = {key: value for key, value in given.items() if key not in ("kind", "label")}
@@ -128,6 +132,19 @@ def _name_reader(what: str, installed: Iterable[str], notes: Notes) -> Callable[
         return None
 
     return name
+
+
+def _named_by_its_key(given: dict[str, Any], installed: Iterable[str], path: Path, notes: Notes) -> bool:
+    """Whether an item is written as ``name: {...}``, which is noted with the way to write it."""
+    name = next((key for key in given if key in installed), None)
+    if name is None or "kind" in given:
+        return False
+    values = {key: value for key, value in given.items() if key != name}
+    values |= given[name] if isinstance(given[name], dict) else {}
+    plain = all(isinstance(value, int | float) for value in values.values())
+    inside = [f"{key}: {value_text(value)}" for key, value in values.items()] if plain and values else ["..."]
+    notes.on_key((*path, name), "a name goes after kind", f"write {{kind: {name}, {', '.join(inside)}}}")
+    return True
 
 
 def _kind(

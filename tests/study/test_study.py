@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from study_mistakes import EDITS, GOOD
+from study_mistakes import EDITS, GOOD, HINTS
 
 from frictionlab import columns, registry
 from frictionlab.study import Expectation, Study, StudyError, load_study, parse_study
@@ -477,6 +477,15 @@ def test_one_mistake_gives_one_message_at_its_place(written: Any, old: str, new:
 
     assert len(found) == 1
     assert found[0].startswith(f"study.yaml:{said}")
+
+
+@pytest.mark.parametrize(("old", "new", "hint"), HINTS)
+def test_a_common_slip_is_told_with_what_to_write(written: Any, old: str, new: str, hint: str) -> None:
+    with pytest.raises(StudyError) as caught:
+        load_study(written(GOOD.replace(old, new, 1)))
+
+    assert len(caught.value.mistakes) == 1
+    assert str(caught.value).splitlines()[-1].strip() == hint
 
 
 @pytest.mark.parametrize(

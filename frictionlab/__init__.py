@@ -48,7 +48,7 @@ _HOMES = {
     "SlidingLaw": "frictionlab.laws.base",
     "Slip": "frictionlab.scene.scene",
     "Speed": "frictionlab.laws.base",
-    "SteadyState": "frictionlab.runner.api",
+    "SteadyState": "frictionlab.results.state",
     "Stiffness": "frictionlab.laws.compliant",
     "Stribeck": "frictionlab.laws.stribeck",
     "Study": "frictionlab.study.study",
@@ -59,7 +59,7 @@ _HOMES = {
     "curve": "frictionlab.runner.api",
     "needs": "frictionlab.least_model.needs",
     "run": "frictionlab.runner.api",
-    "steady_state": "frictionlab.runner.api",
+    "steady_state": "frictionlab.runner.steady_state",
     "sweep": "frictionlab.notebook.comparison",
     "trajectory": "frictionlab.runner.trajectory",
 }

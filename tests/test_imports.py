@@ -123,6 +123,7 @@ ARROWS = {
         "explore",
         "faults",
         "least_model",
+        "mistakes",
         "printable",
         "registry",
         "report",
@@ -291,6 +292,25 @@ def test_importing_the_package_brings_in_nothing_heavy() -> None:
     code = "import sys; before = {*sys.modules}; import frictionlab; print(*{*sys.modules} - before)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert {"importlib.metadata", "numpy", "scipy", "pydantic"}.isdisjoint(loaded.split())
+
+
+HEAVY = "hypothesis", "matplotlib", "pandas", "pyarrow"
+
+
+def test_tables_figures_and_drawn_examples_are_imported_where_they_are_needed() -> None:
+    """A fresh interpreter: a steady state needs no table, a study no figure, and neither needs hypothesis."""
+    steps = {
+        "import frictionlab as fl": "",
+        "scene = fl.Scene(slip=fl.Slip(velocity_amplitude=2, frequency=1), belt_speed=1)": "",
+        "fl.steady_state(scene, fl.Coulomb(mu=0.4))": "",
+        "import frictionlab.cli, frictionlab.study": "",
+        "fl.run, fl.curve": "pandas pyarrow",
+    }
+    seen = f"import sys\ndef seen(): print(*(name for name in {HEAVY} if name in sys.modules))\n"
+    code = seen + "".join(f"{step}\nseen()\n" for step in steps)
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+
+    assert told.splitlines() == list(steps.values())
 
 
 @pytest.mark.parametrize("name", frictionlab.__all__)

@@ -23,8 +23,8 @@ METHODS_BY_COST: tuple[Method, ...] = (Exact(), Shooting())
 RUNGS: tuple[Rung, ...] = (StiffBristle(),)
 """Smaller models, the least first."""
 LONG_SHARE = 0.5
-"""Share of the tolerance that a smaller model must meet at the belt speeds by which pieces of a long curve know it: at
-those between them its error is about as large."""
+"""Share of the tolerance that a smaller model must meet at the belt speeds by which pieces of a long curve know it:
+at those between them its error is about as large."""
 
 
 class Auto(Method):

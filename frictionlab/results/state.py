@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
-import pandas as pd
-
 from frictionlab.methods.base import Status
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from frictionlab.orbit.harmonics import HarmonicParts
     from frictionlab.orbit.sample import Samples
 
@@ -134,6 +134,8 @@ class SteadyState:
         samples = None if self.motion is None else self.motion.sampled(n)
         if samples is None:
             raise ValueError(self._no_orbit())
+        import pandas as pd  # takes half a second, which a mean alone need not
+
         return pd.DataFrame(samples._asdict())
 
     def harmonics(self, highest: int, across: bool = False) -> HarmonicParts:

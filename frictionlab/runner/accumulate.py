@@ -17,8 +17,9 @@ from frictionlab.results.expectations import Verdict
 from frictionlab.results.harmonic_table import harmonic_table
 from frictionlab.results.part import KeptRows, Part
 from frictionlab.results.table import Inputs, Results, finished_rows, orbit_rows
+from frictionlab.runner.arguments import Existing
 from frictionlab.runner.errors import SaveError
-from frictionlab.runner.folder import Existing, RunFolder
+from frictionlab.runner.folder import RunFolder
 from frictionlab.runner.progress import Progress, silent
 
 ALL = selected(None)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor
 from dataclasses import replace
-from math import inf
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -15,20 +14,19 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from frictionlab import __version__, registry
-from frictionlab.columns import RESULTS, selected
+from frictionlab.columns import selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.results.attractor_table import attractor_table
 from frictionlab.results.curve_table import curve_table
-from frictionlab.results.derived import si_columns, si_scales
 from frictionlab.results.expectations import judge
 from frictionlab.results.part import Part
 from frictionlab.results.run import Run
-from frictionlab.results.state import OrbitOf, SteadyState
 from frictionlab.results.table import inputs
 from frictionlab.results.thinned import LONG_TABLE
 from frictionlab.runner.accumulate import Accumulator
 from frictionlab.runner.arguments import (
+    Existing,
     check_executor,
     check_ways,
     given_columns,
@@ -39,24 +37,21 @@ from frictionlab.runner.arguments import (
     given_study,
     given_tolerance,
 )
-from frictionlab.runner.chunks import Chunk, Task, task_of
+from frictionlab.runner.chunks import Task, task_of
 from frictionlab.runner.code_digest import code_digest
 from frictionlab.runner.errors import SaveError
-from frictionlab.runner.folder import Existing, Identity, RunFolder
+from frictionlab.runner.folder import Identity, RunFolder
 from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, KeptChunks, Keys, kept_beside
 from frictionlab.runner.long_run import LongRun
 from frictionlab.runner.onsets import onset_table
 from frictionlab.runner.open_chunks import OpenChunk, answered, each_once, open_chunks
 from frictionlab.runner.progress import Progress, silent
-from frictionlab.runner.solve import answer, parts
-from frictionlab.runner.workers import within
 from frictionlab.runner.workforce import Workforce, workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import MethodChoice, Study, StudyCurve
 from frictionlab.study.grid import grid_size
 from frictionlab.study.objects import kind_of
-from frictionlab.study.study import law_in_scene
 
 
 class Interrupted(KeyboardInterrupt):
@@ -357,32 +352,5 @@ def attractors(
     return attractor_table([whole], given_tolerance(tolerance), starts)
 
 
-def steady_state(
-    scene: Scene, law: FrictionLaw, method: str | Method = "auto", tolerance: float = 1e-8
-) -> SteadyState:
-    """The steady state of one scene, refused and failed ones included: see ``status`` and ``reason``.
-
-    tolerance [-]: absolute, on mean_friction. Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
-    """
-    scene, law, ready = given_scene(scene), given_law(law), given_method(method)
-    task = Task(given_tolerance(tolerance))
-    chunk = Chunk(np.zeros(1, np.int64), Scenes.of([scene]), law_in_scene(law, scene), ready, task)
-    (piece,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
-    (part,) = within(inf, parts, chunk, [piece])
-    numbers = {name: float(column[0]) for name, column in part.numbers.items()}
-    words = {name: column[0] for name, column in part.text.items()}
-    motion = OrbitOf(piece.answers.orbit, scene)
-    return SteadyState(**words, **numbers, si=_in_si(part, scene), motion=motion)  # type: ignore[arg-type]
-
-
 def _one_curve(kind: str, law: FrictionLaw, method: Method, scenes: Scenes) -> StudyCurve:
     return StudyCurve(kind, kind, law, MethodChoice.of(method), scenes, range(len(scenes)))
-
-
-def _in_si(part: Part, scene: Scene) -> dict[str, float]:
-    """The columns in SI units; none where the scene is not given in them."""
-    if scene.dimensional is None:
-        return {}
-    found = {name: part.numbers.get(name, np.full(1, np.nan)) for name in RESULTS}
-    scales = {name: np.array([scale]) for name, scale in si_scales(scene).items()}
-    return {name: float(column[0]) for name, column in si_columns(found, scales).items()}

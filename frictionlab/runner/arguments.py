@@ -8,7 +8,7 @@ from dataclasses import replace
 from math import isfinite
 from numbers import Real
 from os import PathLike
-from typing import Any, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,10 +19,12 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.mistakes.notes import closest, did_you_mean, python_text, unknown_name
 from frictionlab.quantities import Floats, rebuilt
-from frictionlab.runner.folder import Existing
 from frictionlab.runner.workforce import Workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Study, load_study, parse_study
+
+Existing = Literal["reuse", "replace"]
+"""What becomes of results that are in the folder of a run already."""
 
 
 def given_scene(scene: Scene) -> Scene:

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from frictionlab.runner.api import run_folder
+from frictionlab.runner.arguments import Existing
 from frictionlab.runner.errors import FolderError
-from frictionlab.runner.folder import Existing, check_page
+from frictionlab.runner.folder import check_page
 from frictionlab.study import Mistake, Plugins, Study, StudyError, load_study
 
 

@@ -11,19 +11,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import pandas as pd
 
 from frictionlab.faults import INTERNAL, MARK
 from frictionlab.printable import printable
+from frictionlab.runner.arguments import Existing
 from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.files import damage, remove_leftovers, stamp, stamp_of_file, stamps, write_whole
 from frictionlab.runner.machine import machine_and_versions
 from frictionlab.study.study import LAW_COPIES
 from frictionlab.study.yaml_text import yaml_text
 
-Existing = Literal["reuse", "replace"]
 PAGE_MARK = '<meta name="generator" content="frictionlab'
 MOST_DIFFERENCES = 2
 """Lines shown of each of two studies that differ."""

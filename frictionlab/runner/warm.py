@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 from frictionlab.compile.call import compiling_at_once
 from frictionlab.compile.notice import compiled_here
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.runner.api import curve, steady_state
+from frictionlab.runner.api import curve
+from frictionlab.runner.steady_state import steady_state
 from frictionlab.scene.scene import Drive, Scene, Slip, Transverse, TransverseSlip
 
 _DRIVEN = Scene(damping_ratio=0.1, normal_load=1.0, belt_speed=1.0, drive=Drive(amplitude=2.0, frequency=1.5))

@@ -1,0 +1,48 @@
+"""One steady state from Python: solved on a thread of its own, without a table."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+
+from frictionlab.columns import RESULTS
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
+from frictionlab.results.derived import si_columns, si_scales
+from frictionlab.results.part import Part
+from frictionlab.results.state import OrbitOf, SteadyState
+from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
+from frictionlab.runner.chunks import Chunk, Task
+from frictionlab.runner.solve import answer, parts
+from frictionlab.runner.workers import within
+from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import Scenes
+from frictionlab.study.study import law_in_scene
+
+
+def steady_state(
+    scene: Scene, law: FrictionLaw, method: str | Method = "auto", tolerance: float = 1e-8
+) -> SteadyState:
+    """The steady state of one scene, refused and failed ones included: see ``status`` and ``reason``.
+
+    tolerance [-]: absolute, on mean_friction. Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
+    """
+    scene, law, ready = given_scene(scene), given_law(law), given_method(method)
+    task = Task(given_tolerance(tolerance))
+    chunk = Chunk(np.zeros(1, np.int64), Scenes.of([scene]), law_in_scene(law, scene), ready, task)
+    (piece,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
+    (part,) = within(inf, parts, chunk, [piece])
+    numbers = {name: float(column[0]) for name, column in part.numbers.items()}
+    words = {name: column[0] for name, column in part.text.items()}
+    motion = OrbitOf(piece.answers.orbit, scene)
+    return SteadyState(**words, **numbers, si=_in_si(part, scene), motion=motion)  # type: ignore[arg-type]
+
+
+def _in_si(part: Part, scene: Scene) -> dict[str, float]:
+    """The columns in SI units; none where the scene is not given in them."""
+    if scene.dimensional is None:
+        return {}
+    found = {name: part.numbers.get(name, np.full(1, np.nan)) for name in RESULTS}
+    scales = {name: np.array([scale]) for name, scale in si_scales(scene).items()}
+    return {name: float(column[0]) for name, column in si_columns(found, scales).items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib.metadata import distribution
 from importlib.metadata import version as version_of
 from pathlib import Path
 
@@ -12,16 +13,18 @@ project = "frictionlab"
 author = project_copyright = "The frictionlab authors"
 version = release = version_of("frictionlab")
 
-extensions = ["myst_parser", "mathml", "outside_pages"]
+extensions = ["myst_parser", "sphinx.ext.mathjax", "outside_pages"]
 
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
 
 html_theme = "furo"
 html_title = f"frictionlab {version}"
-html_static_path = ["_static"]
+# one file that draws formulas as SVG and loads nothing else, copied into the site
+MATHJAX = distribution("sphinx-mathjax-offline").locate_file("sphinx-mathjax-offline/static/mathjax")
+html_static_path = ["_static", f"{MATHJAX}/tex-svg-full.js"]
+mathjax_path = "tex-svg-full.js"
 html_css_files = ["site.css"]
-html_math_renderer = "mathml"
 html_show_sphinx = False
 html_copy_source = False
 html_theme_options = {"footer_icons": []}

@@ -22,7 +22,7 @@ from frictionlab.bench.names import file_stem
 from frictionlab.bench.record import Contender
 from frictionlab.bench.report import largest, point_remark
 from frictionlab.bench.sections import BenchPicture, SectionResult
-from frictionlab.charts.figures import PAGE, STYLE
+from frictionlab.charts.style import PAGE, STYLE
 from frictionlab.runner.errors import SaveError
 
 OURS = ("#08306b", "#7f0000", "#00441b", "#4a1486", "#662506", "#252525")

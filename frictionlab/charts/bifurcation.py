@@ -19,7 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.charts.figures import PAGE, STYLE, write_figure
+from frictionlab.charts.style import PAGE, STYLE, write_figure
 from frictionlab.columns import ATTRACTORS, word
 from frictionlab.printable import printable
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,9 @@ from pandas.api.types import is_numeric_dtype
 
 from frictionlab.columns import SCALED, belt_speed, given
 
-MOST_CURVES_IN_A_PICTURE = 12  # of several laws; more cannot be distinguished
+MOST_PICTURES = 12  # in which several laws are compared; of more values each law has a picture of its own
+LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
+_ROUNDING = 1e-15  # rounding of a mean of order one
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
 SweptValue = tuple[
     str, float | str | None
@@ -25,7 +28,8 @@ class CurveData:
     """The rows of one law and method whose inputs differ in the abscissa alone, sorted along it.
 
     member: the swept value that distinguishes the curve within its picture, if any; panel: the values that select its
-    picture. place: the indices of its law, member and method among those of the table.
+    picture. place: the indices of its law, member and method among those of the table. same: other methods whose
+    curve is this very line.
     """
 
     law: str
@@ -34,6 +38,7 @@ class CurveData:
     member: SweptValue | None
     place: tuple[int, int, int]
     rows: pd.DataFrame
+    same: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -49,19 +54,14 @@ class Family:
         """The pictures the curves belong to, in order."""
         return list(dict.fromkeys(curve.panel for curve in self.curves))
 
-    @property
-    def sizes(self) -> tuple[int, int, int]:
-        """How many laws, members and methods there are."""
-        laws, members, methods = zip(*(curve.place for curve in self.curves), strict=True)
-        return max(laws) + 1, max(members) + 1, max(methods) + 1
-
 
 def family_of(table: pd.DataFrame) -> Family | None:
     """The curves of a table; None where no number is swept.
 
     Along the axis: belt speed, or the swept number of most values where belt speed takes too few for a curve.
-    Of the others the one of most values tells neighbours apart, unless it is one of the scene and several laws
-    have too many curves then; each further one sets up panels.
+    Several laws are compared in a picture for each value of the scene, and the parameter of most values tells the
+    curves of a law apart; where that makes too many pictures, each law has its own. Of one law the quantity of most
+    values tells curves apart. Each further one sets up pictures.
     """
     table = table.rename(columns=_names_in_si(table.columns))
     swept = sorted(_swept_inputs(table), key=lambda name: table[name].nunique())
@@ -69,15 +69,17 @@ def family_of(table: pd.DataFrame) -> Family | None:
     if not numbers:
         return None
     abscissa = _along_the_axis(table, numbers)
-    others = [name for name in swept if name != abscissa]
-    member = others.pop() if others and not _merge_crowded(table, others[-1]) else None
-    return Family(abscissa, member, _curves(table, abscissa, others, member))
-
-
-def _merge_crowded(table: pd.DataFrame, member: str) -> bool:
-    laws = table["law"].nunique()
-    curves = laws * table[member].nunique()
-    return laws > 1 and member.startswith("scene.") and curves > MOST_CURVES_IN_A_PICTURE
+    panels = [name for name in swept if name != abscissa]
+    if table["law"].nunique() == 1:
+        member = panels.pop() if panels else None
+        return Family(abscissa, member, _curves(table, abscissa, panels, member))
+    parameters = [name for name in panels if name.startswith("law.")]
+    if member := parameters[-1] if parameters else None:
+        panels.remove(member)
+    elif math.prod(table[name].nunique() for name in panels) > MOST_PICTURES:
+        member = panels.pop()
+        return Family(abscissa, member, _curves(table, abscissa, ["law", *panels], member))
+    return Family(abscissa, member, _curves(table, abscissa, panels, member))
 
 
 def _along_the_axis(table: pd.DataFrame, swept: list[str]) -> str:
@@ -107,12 +109,15 @@ def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str |
     members = table[member].dropna().unique().tolist() if member else []
     if member and is_numeric_dtype(table[member]):
         members = sorted(members)
+    apart = "law" in panels
+    panels = [name for name in panels if name != "law"]
     names = [*panels, member] if member else panels
     curves = []
     for (law, method, *values), rows in table.groupby(["law", "method", *names], sort=False, dropna=False):
         settings = [_setting(name, value) for name, value in zip(names, values, strict=True)]
         own = settings.pop() if member else None
-        place = laws.index(law), _index(members, own), methods.index(method)
+        settings = [*([("law", law)] if apart else []), *settings]
+        place = 0 if apart else laws.index(law), _index(members, own), methods.index(method)
         curves.append(CurveData(law, method, tuple(settings), own, place, rows.sort_values(abscissa)))
     seen = list(dict.fromkeys(curve.panel for curve in curves))
     return sorted(curves, key=lambda curve: (_heights(curve), seen.index(curve.panel), curve.place))
@@ -130,6 +135,58 @@ def _heights(curve: CurveData) -> list[tuple[bool, float]]:
     """By which pictures are ordered: swept numbers by their size; those of words stay in the order of the table."""
     numbers = [None if isinstance(value, str) else value for _, value in curve.panel]
     return [(value is not None, value or 0.0) for value in numbers]
+
+
+def drawn_once(curves: Sequence[CurveData], columns: Sequence[str]) -> list[CurveData]:
+    """The curves without those of a method that are the line of an earlier one in all of these columns.
+
+    That is: no point is further off than both errors allow, nor far enough to be seen. Methods are counted anew.
+    """
+    kept: list[CurveData] = []
+    for curve in curves:
+        at = next((at for at, one in enumerate(kept) if _is_line_of(curve, one, curves, columns)), None)
+        if at is None:
+            kept.append(curve)
+        else:
+            kept[at] = replace(kept[at], same=(*kept[at].same, curve.method))
+    left = sorted({curve.place[2] for curve in kept})
+    return [replace(each, place=(*each.place[:2], left.index(each.place[2]))) for each in kept]
+
+
+def _is_line_of(
+    curve: CurveData, one: CurveData, all_of_them: Sequence[CurveData], columns: Sequence[str]
+) -> bool:
+    """Whether a curve of another method lies on this one, of the same law and values, wherever it has numbers."""
+    if (curve.law, curve.member, curve.panel) != (
+        one.law,
+        one.member,
+        one.panel,
+    ) or curve.method == one.method:
+        return False
+    if len(curve.rows) != len(one.rows) or (curve.rows["status"] == "not_unique").any():
+        return False
+    if not curve.rows[list(columns)].notna().any(axis=None):
+        return False
+    return all(_coincide(curve, one, column, _span(all_of_them, curve, column)) for column in columns)
+
+
+def _coincide(curve: CurveData, one: CurveData, column: str, span: float) -> bool:
+    here, there = (each.rows[column].to_numpy(dtype=float) for each in (curve, one))
+    known = np.isfinite(here)
+    near = LEAST_VISIBLE * span * np.ones(len(here))
+    if column == "mean_friction":
+        both = sum(each.rows["error"].to_numpy(dtype=float) for each in (curve, one))
+        near = np.minimum(near, both + _ROUNDING * np.abs(here))
+    return bool(np.all(np.abs(here - there)[known] <= near[known]))
+
+
+def _span(curves: Sequence[CurveData], of: CurveData, column: str) -> float:
+    """The range of a column in the picture of a curve."""
+    values = np.concatenate(
+        [each.rows[column].to_numpy(dtype=float) for each in curves if each.panel == of.panel]
+    )
+    known = values[np.isfinite(values)]
+    return float(np.ptp(known)) if known.size else 0.0
 
 
 def kinks(curve: CurveData) -> list[float]:

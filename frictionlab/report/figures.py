@@ -98,13 +98,18 @@ def _capital(text: Markup) -> Markup:
 
 
 def _lines(family: Family) -> list[Markup]:
-    """Laws, methods and members, each named where there are several."""
+    """Laws, methods and swept values, each named where there are several."""
     laws = list(dict.fromkeys(curve.law for curve in family.curves))
     methods = list(dict.fromkeys(curve.method for curve in family.curves))
-    told = [Markup("{} {}").format("Law" if len(laws) == 1 else "A colour per law:", joined_values(laws))]
+    told = [
+        Markup("{} {}").format(
+            "Law" if len(laws) == 1 else "A colour and dashes for each law:", joined_values(laws)
+        )
+    ]
     told += [
         Markup("{} {}").format(
-            "method" if len(methods) == 1 else "a line style per method:", joined_values(methods)
+            "method" if len(methods) == 1 else "methods, one line where their curves coincide:",
+            joined_values(methods),
         )
     ]
     sentence = Markup("; ").join(told)

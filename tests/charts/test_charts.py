@@ -13,12 +13,14 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from oracle import table_in_the_plane, table_of_one_degree_of_freedom
 
 from frictionlab.charts import figures
 from frictionlab.charts.curves import family_of, is_logarithmic, kinks
 from frictionlab.charts.figures import FIGURES, draw_figures
+from frictionlab.charts.looks import MOST_VALUES_IN_LEGEND
 from frictionlab.columns import RESULTS, symbol, word
 
 
@@ -133,22 +135,74 @@ def test_curves_differ_in_black_and_white(plane: pd.DataFrame, resonance: pd.Dat
         assert len(set(looks)) == 3
 
 
-def test_one_colour_per_law_and_one_line_style_per_method(resonance: pd.DataFrame) -> None:
-    both = pd.concat([resonance, resonance.assign(method="shooting")])
+def _other(table: pd.DataFrame, method: str, off: float = 0.05) -> pd.DataFrame:
+    """The same curve by another method, so far off."""
+    return table.assign(method=method, mean_friction=table["mean_friction"] + off)
+
+
+def test_laws_differ_in_colour_and_dashes_and_methods_in_markers(resonance: pd.DataFrame) -> None:
+    both = pd.concat([resonance, _other(resonance, "mdsm")])
     table = pd.concat([both, both.assign(law="other")], ignore_index=True)
 
     figure = _figure(table)
     first, second, third, fourth = figure.axes[0].lines[:4]
 
     assert _legend(figure) == [
-        f"{law}, {method}" for law in ("coulomb", "other") for method in ("auto", "shooting")
+        f"{law}, {method}" for law in ("coulomb", "other") for method in ("auto", "mdsm")
     ]
     assert first.get_color() == second.get_color() != third.get_color() == fourth.get_color()
-    assert first.get_linestyle() == third.get_linestyle() != second.get_linestyle() == fourth.get_linestyle()
+    dashes = [str(line._unscaled_dash_pattern) for line in (first, second, third, fourth)]
+    assert dashes[0] == dashes[1] != dashes[2] == dashes[3]
+    assert first.get_marker() == third.get_marker() != second.get_marker() == fourth.get_marker()
+    assert all(line.get_markevery() for line in (first, second, third, fourth))
+
+
+def test_laws_are_of_different_grey(resonance: pd.DataFrame) -> None:
+    table = pd.concat([resonance.assign(law=law) for law in "abcd"], ignore_index=True)
+
+    lines = _figure(table).axes[0].lines[:4]
+
+    greys = sorted(float(np.dot(to_rgb(line.get_color()), (0.299, 0.587, 0.114))) for line in lines)
+    assert min(np.diff(greys)) > 0.04
+    assert len({str(line._unscaled_dash_pattern) for line in lines}) == 4
+
+
+def test_methods_whose_curves_are_one_line_are_drawn_once(resonance: pd.DataFrame) -> None:
+    far, near = _other(resonance, "mdsm"), _other(resonance, "shooting", 1e-9)
+    table = pd.concat([resonance, near.assign(error=1e-8), far], ignore_index=True)
+
+    figure = _figure(table)
+
+    assert len(_curves(figure)) == 2
+    assert _legend(figure) == ["auto = shooting", "mdsm"]
+
+
+def test_methods_that_differ_by_more_than_their_errors_are_both_drawn(resonance: pd.DataFrame) -> None:
+    wrong = _other(resonance, "march", 1e-5).assign(error=1e-9)
+
+    figure = _figure(pd.concat([resonance.assign(error=1e-9), wrong], ignore_index=True))
+
+    assert len(_curves(figure)) == 2
+    assert _legend(figure) == ["auto", "march"]
+
+
+def test_a_wide_error_does_not_hide_a_curve_that_can_be_seen(resonance: pd.DataFrame) -> None:
+    rough = _other(resonance, "mdsm").assign(error=0.2)
+
+    assert len(_curves(_figure(pd.concat([resonance, rough], ignore_index=True)))) == 2
+
+
+def test_no_two_lines_of_a_figure_are_equal(line: pd.DataFrame) -> None:
+    methods = [line.assign(method=method) for method in ("auto", "exact", "shooting")]
+    figure = _figure(pd.concat(methods, ignore_index=True))
+
+    for panel in range(len(figure.axes)):
+        drawn = {(tuple(x), tuple(y)) for x, y in _curves(figure, panel)}
+        assert len(drawn) == len(_curves(figure, panel))
 
 
 def _of_ten_methods(table: pd.DataFrame) -> pd.DataFrame:
-    return pd.concat([table.assign(method=f"method{i}") for i in range(10)], ignore_index=True)
+    return pd.concat([_other(table, f"method{i}", 0.02 * i) for i in range(10)], ignore_index=True)
 
 
 def test_ten_methods_are_told_apart_in_colour_and_in_black_and_white(resonance: pd.DataFrame) -> None:
@@ -170,12 +224,13 @@ def test_markers_of_methods_that_coincide_lie_side_by_side(resonance: pd.DataFra
 
 
 def test_of_two_methods_the_first_lies_broad_below_the_second(resonance: pd.DataFrame) -> None:
-    both = pd.concat([resonance, resonance.assign(method="shooting")], ignore_index=True)
+    both = pd.concat([resonance, _other(resonance, "shooting")], ignore_index=True)
 
     below, above = _figure(both).axes[0].lines[:2]
 
     assert (below.get_linewidth(), above.get_linewidth()) == (2.0, 1.1)
-    assert below.get_color() == above.get_color()
+    assert below.get_color() != above.get_color()
+    assert str(below._unscaled_dash_pattern) != str(above._unscaled_dash_pattern)
     assert below.get_markevery() == above.get_markevery() == []
 
 
@@ -219,7 +274,7 @@ def test_a_long_family_is_drawn_whole_and_named_from_end_to_end(resonance: pd.Da
     figure = _figure(table)
 
     assert len(_curves(figure)) == 30
-    assert len(_legend(figure)) == figures.MOST_VALUES_IN_LEGEND
+    assert len(_legend(figure)) == MOST_VALUES_IN_LEGEND
     assert _legend(figure)[0] == "1"
     assert _legend(figure)[-1] == "30"
 
@@ -273,6 +328,25 @@ def test_curves_of_several_laws_too_many_for_one_picture_are_drawn_in_several(li
     titles = [axes.get_title(loc="left") for axes in _figure(table).axes]
 
     assert titles == [rf"drive frequency $\Omega$ = {f:g}" for f in line["scene.drive.frequency"].unique()]
+
+
+def test_frequencies_of_several_laws_are_never_in_one_picture(line: pd.DataFrame) -> None:
+    figure = _figure(pd.concat([line, line.assign(law="other")], ignore_index=True))
+
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert titles == [rf"drive frequency $\Omega$ = {value}" for value in ("1", "1.5")]
+    assert _legend(figure) == ["coulomb", "other"]
+
+
+def test_of_too_many_pictures_for_comparison_each_law_has_one(resonance: pd.DataFrame) -> None:
+    loads = [resonance.assign(**{"scene.normal_load": float(load)}) for load in range(1, 14)]
+    both = [table.assign(law=law) for law in ("soft", "rough") for table in loads]
+
+    figure = _figure(pd.concat(both, ignore_index=True))
+
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["soft", "rough"]
+    assert [len(_curves(figure, panel)) for panel in (0, 1)] == [13, 13]
+    assert _legend(figure)[0] == "1"
 
 
 def test_a_parameter_that_differs_between_laws_is_no_sweep(resonance: pd.DataFrame) -> None:
@@ -336,7 +410,20 @@ def test_v_lin_is_marked_where_friction_has_its_kink(line: pd.DataFrame) -> None
     assert family is not None
     assert [kinks(curve) for curve in family.curves] == [[pytest.approx(50)], [pytest.approx(26.254457)]]
     (above,) = [axes for axes in _figure(line).axes[0].child_axes]
-    assert [label.get_text() for label in above.get_xticklabels()] == [r"$V_\mathrm{lin}$"] * 2
+    names = [label.get_text().strip() for label in above.get_xticklabels()]
+    assert names == [rf"$V_\mathrm{{lin}}$, $\Omega$ = {frequency}" for frequency in ("1.5", "1")]
+
+
+def test_v_lin_has_the_look_of_the_curve_it_belongs_to(line: pd.DataFrame) -> None:
+    axes = _figure(line).axes[0]
+
+    for mark in (one for one in axes.lines if list(one.get_ydata()) == [1.0]):
+        (of,) = [one for one in axes.lines[:2] if one.get_color() == mark.get_color()]
+        kink = [
+            curve for curve in family_of(line).curves if kinks(curve) == [pytest.approx(mark.get_xdata()[0])]
+        ]
+        np.testing.assert_array_equal(of.get_ydata(), kink[0].rows["mean_friction"])
+        assert of.get_marker() == mark.get_marker()
 
 
 def test_a_belt_that_also_runs_backward_has_a_kink_on_either_side(resonance: pd.DataFrame) -> None:
@@ -431,3 +518,9 @@ def test_the_legend_names_what_a_picture_shows_and_nothing_else(resonance: pd.Da
     assert _legend(_figure(table))[:2] == ["flat", "falls"]
     assert _legend(_figure(table, "energy_viscous"))[0] == "flat"
     assert "falls" not in _legend(_figure(table, "energy_viscous"))
+
+
+def test_the_style_can_be_used_by_its_name() -> None:
+    with mpl.style.context("frictionlab.charts.frictionlab"):
+        assert mpl.rcParams["legend.frameon"] is False
+        assert mpl.rcParams["axes.prop_cycle"].by_key()["color"][0] == "#08306b"

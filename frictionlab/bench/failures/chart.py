@@ -27,7 +27,7 @@ from frictionlab.bench.failures.boundaries import free_velocities, rest_edge, un
 from frictionlab.bench.failures.measure import MapOutcome, MapTruth
 from frictionlab.bench.failures.record import OF_FRICTION_TO_LOAD
 from frictionlab.bench.sections import BenchPicture
-from frictionlab.charts.figures import PAGE
+from frictionlab.charts.style import PAGE
 from frictionlab.columns import word
 from frictionlab.quantities import Floats
 

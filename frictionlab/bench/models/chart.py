@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from frictionlab.bench.chart import OURS, save_figure
 from frictionlab.bench.models.section import ModelRow, ModelsResult, front
 from frictionlab.bench.report import largest
-from frictionlab.charts.figures import PAGE, STYLE
+from frictionlab.charts.style import PAGE, STYLE
 
 MARKS_OF_METHODS = "osD^v<>phPX*"
 CHART_HEIGHT = 3.4

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 
 from frictionlab.bench.chart import LINE_STYLES, OURS, THEIRS, save_figure
 from frictionlab.bench.orders.section import OrderRow
-from frictionlab.charts.figures import PAGE, STYLE
+from frictionlab.charts.style import PAGE, STYLE
 
 COLUMNS, PANEL = 3, 1.95
 LOWEST = 1e-16

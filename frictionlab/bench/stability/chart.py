@@ -17,7 +17,7 @@ from matplotlib.patches import Patch
 
 from frictionlab.bench.chart import save_figure
 from frictionlab.bench.stability.record import StabilityMap, StepLimit
-from frictionlab.charts.figures import PAGE, STYLE
+from frictionlab.charts.style import PAGE, STYLE
 
 MAP_HEIGHT, WIDEST_MAP = 2.9, 2.6
 BEST, WORST = 1e-9, 1.0

@@ -1,0 +1,119 @@
+"""What tells the curves of a figure apart, in colour and in grey print.
+
+Laws differ in colour and in dashes; where there is one law, so do the words of a sweep, else the methods. A swept
+number runs from dark to light within a colour, with a marker for each value. What is left has markers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_rgb
+from numpy.typing import NDArray
+
+from frictionlab.charts.curves import CurveData
+from frictionlab.charts.style import CYCLE
+
+MARKERS = "os^Dvph<>d"
+MOST_VALUES_IN_LEGEND = 8
+BROADEST = 0.9  # what the first of several methods is broader than the last, however many [point]
+
+
+@dataclass(frozen=True)
+class Looks:
+    """The looks of these curves; each has a place among the laws, swept values and methods of its table."""
+
+    curves: Sequence[CurveData]
+
+    @cached_property
+    def sizes(self) -> tuple[int, int, int]:
+        """How many laws, swept values and methods there are."""
+        laws, members, methods = zip(*(curve.place for curve in self.curves), strict=True)
+        return max(laws) + 1, max(members) + 1, max(methods) + 1
+
+    def line(self, curve: CurveData) -> dict[str, Any]:
+        """Colour, dashes and marker. Of several methods the first is broad, the last lies thin on top."""
+        _, _, method = curve.place
+        _, members, methods = self.sizes
+        broader = BROADEST * (methods - 1 - method) / max(1, methods - 1)
+        return {
+            "color": self.color(curve),
+            "linestyle": CYCLE[self._hue(curve) % len(CYCLE)]["linestyle"],
+            "linewidth": (1.1 if members <= MOST_VALUES_IN_LEGEND else 0.6) + broader,
+            "marker": MARKERS[self._sign(curve) % len(MARKERS)],
+            "markeredgecolor": "white",
+            "markeredgewidth": 0.4,
+        }
+
+    def color(self, curve: CurveData) -> tuple[float, float, float]:
+        """The colour of what sets it, from dark to light along a swept number."""
+        full = to_rgb(CYCLE[self._hue(curve) % len(CYCLE)]["color"])
+        _, member, _ = curve.place
+        _, members, _ = self.sizes
+        if members == 1 or self._words:
+            return full
+        share = member / (members - 1)  # first half as dark as black allows, then towards white
+        toward, part = (0.0, 0.5 - share) if share < 0.5 else (1.0, 1.3 * (share - 0.5))
+        red, green, blue = (level + part * (toward - level) for level in full)
+        return red, green, blue
+
+    def marked(self, y: NDArray[np.float64], curve: CurveData) -> list[int]:
+        """The points that get a marker: some of a curve with neighbours, and all that no line reaches."""
+        known = np.isfinite(y)
+        neighbours = np.concatenate([known[1:], [False]]) | np.concatenate([[False], known[:-1]])
+        marks = known & ~neighbours
+        if self._signs > 1 and curve.place[1] in self.shown:
+            first, step = self._stagger(len(y), curve)
+            marks[first::step] = True
+        return [int(place) for place in np.flatnonzero(marks & known)]
+
+    @cached_property
+    def shown(self) -> set[int]:
+        """The swept values that get markers and a place in the legend: all of a few, else some, first to last."""
+        members = self.sizes[1]
+        places = np.linspace(0, members - 1, min(members, MOST_VALUES_IN_LEGEND)).round()
+        return set(places.astype(int).tolist())
+
+    @cached_property
+    def _words(self) -> bool:
+        """Whether the swept values are words, which are no steps of a scale."""
+        return any(curve.member is not None and isinstance(curve.member[1], str) for curve in self.curves)
+
+    def _hue(self, curve: CurveData) -> int:
+        law, member, method = curve.place
+        if self.sizes[0] > 1:
+            return law
+        return member if self._words else method
+
+    def _sign(self, curve: CurveData) -> int:
+        """The number of its marker."""
+        _, member, method = curve.place
+        return member + self.sizes[1] * method if self._methods_have_markers else member
+
+    def sample(self, curve: CurveData) -> dict[str, Any]:
+        """The look of its line in the legend: without a marker where its curve has none."""
+        return self.line(curve) | ({} if self._signs > 1 else {"marker": ""})
+
+    @property
+    def _signs(self) -> int:
+        _, members, methods = self.sizes
+        return members * methods if self._methods_have_markers else members
+
+    @property
+    def _methods_have_markers(self) -> bool:
+        """Whether neither colour and dashes tell methods apart, or they are many."""
+        laws, _, methods = self.sizes
+        return methods > 2 or (methods > 1 and (laws > 1 or self._words))
+
+    def _stagger(self, points: int, curve: CurveData) -> tuple[int, int]:
+        """The first marker of a curve and the step to the next: about ten, fewer where many methods coincide."""
+        (law, member, method), (laws, members, methods) = curve.place, self.sizes
+        step = max(1, points // 10)
+        if not self._methods_have_markers:
+            return step * (member + law) // (laws + members) % step, step
+        step = max(step, min(methods, points // 3))
+        return (method * step // methods + law + member) % step, step

@@ -1,0 +1,29 @@
+"""What figures of every kind share: widths, text sizes, and the file in which a figure is written."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+COLUMN, PAGE = 85 / 25.4, 175 / 25.4  # widths of a journal's column and page [inch]
+PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
+LEGEND_FONT = 7  # [point]
+_FILE = mpl.rc_params_from_file(Path(__file__).with_name("frictionlab.mplstyle"), use_default_template=False)
+STYLE: Any = {name: value for name, value in _FILE.items() if name != "axes.prop_cycle"}
+"""Of ``plt.style.use("frictionlab.charts.frictionlab")``, too, but for the looks of lines."""
+CYCLE: list[dict[str, Any]] = list(_FILE["axes.prop_cycle"])
+"""Colour and dashes of the first curve, the second, ..."""
+_UNDATED = {"svg": {"Date": None}, "png": {"Software": None}, "pdf": {"CreationDate": None}}
+
+
+def write_figure(figure: Figure, path: Path, formats: Sequence[str] = ("svg", "png")) -> list[Path]:
+    """Write a figure as a drawing and as pixels; the files. Raises OSError."""
+    files = [path.with_suffix(f".{each}") for each in formats]
+    for file in files:
+        figure.savefig(file, metadata=_UNDATED[file.suffix[1:]])
+        figure.set_layout_engine("none")  # the layout found for the first file serves the others
+    return files

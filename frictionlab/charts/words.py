@@ -1,0 +1,31 @@
+"""Values and labels of a study as figures write them."""
+
+from __future__ import annotations
+
+from frictionlab.charts.curves import SweptValue
+from frictionlab.columns import word
+
+LONGEST_LABEL, BESIDE = 36, 22  # letters of a name alone, and beside another name or a count
+
+
+def plain(text: str) -> str:
+    """Words of the study: a dollar sign in them is one, and begins no formula."""
+    return text.replace("$", r"\$")
+
+
+def shortened(label: str, room: int) -> str:
+    """A label of the study, as many letters of it as there is room for."""
+    return plain(label if len(label) <= room else f"{label[: room - 1]}…")
+
+
+def swept_text(value: float | str | None) -> str:
+    """A swept value."""
+    return shortened(value, LONGEST_LABEL) if isinstance(value, str) else f"{value:.5g}"
+
+
+def sentence(setting: SweptValue) -> str:
+    """The title of a picture: what is the same along its curves."""
+    name, value = setting
+    if name == "law":
+        return swept_text(value)
+    return f"no {word(name)}" if value is None else f"{word(name)} = {swept_text(value)}"

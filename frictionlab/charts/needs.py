@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
-from frictionlab.charts.figures import PAGE, STYLE, write_figure
+from frictionlab.charts.style import PAGE, STYLE, write_figure
 from frictionlab.printable import printable
 
 PLUS = " + "

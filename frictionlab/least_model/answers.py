@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from frictionlab.columns import OF_SHAPE, selected
-from frictionlab.least_model.lesser import LesserModel, Way
+from frictionlab.least_model.lesser import LesserModel, MotionWay
 from frictionlab.least_model.motion import FRICTION_FREE
 from frictionlab.results.derived import derived_columns
 from frictionlab.runner.api import table_of
@@ -19,7 +19,7 @@ from frictionlab.study.study import MethodChoice, StudyCurve
 
 OF_A_MODEL = 1e-8
 """Error of the numbers of a reduced model, relative to the friction coefficient: its formulas, loops and balances."""
-NO_ANSWER = "the reduced model has no answer here"
+NO_BALANCE_HERE = "the reduced model has no answer here"
 ASKED_FOR = selected([*OF_SHAPE, "model"])
 
 
@@ -70,7 +70,7 @@ class Curves:
     def _kind(self, model: LesserModel) -> str:
         return self._kinds.get(type(model.law)) or kind_of(model.law)
 
-    def _reduced(self, model: LesserModel, way: Way, full: pd.DataFrame) -> pd.DataFrame:
+    def _reduced(self, model: LesserModel, way: MotionWay, full: pd.DataFrame) -> pd.DataFrame:
         """The table with the means of a reduced model in place of those of the full motion."""
         scenes = Scenes(model.scene, self.speeds)
         means = np.asarray(way.model_means(scenes, model.law)).real
@@ -82,7 +82,7 @@ class Curves:
                 known, OF_A_MODEL * model.law.sliding_friction(float(np.abs(self.speeds).max())), np.nan
             ),
             status=np.where(known, "ok", "refused"),
-            reason=np.where(known, "", NO_ANSWER),
+            reason=np.where(known, "", NO_BALANCE_HERE),
             normalized_friction=derived["normalized_friction"],
             model=way.name,
         )

@@ -68,7 +68,7 @@ def measures(table: pd.DataFrame, laws: registry.Laws) -> Measures:
     return Measures(reduction(size, known["error"].to_numpy(float) * np.abs(size / mean)), "")
 
 
-def change(
+def change_of_curve(
     full: pd.DataFrame, other: pd.DataFrame, speeds: Floats, within: float, laws: registry.Laws
 ) -> Change:
     """Of the other table against that of the full scene, row by row at these belt speeds."""

@@ -8,7 +8,7 @@ from frictionlab.laws.stribeck import Stribeck
 from frictionlab.laws.stribeck_bristle import StribeckBristle
 from frictionlab.least_model.lesser import CannotGo, LesserModel
 
-UNKNOWN = "no law without memory is known with the steady friction of this law"
+NO_SUCH_LAW = "no law without memory is known with the steady friction of this law"
 NO_FRICTION = "without its fall this law has no friction: mu_kinetic is 0"
 
 
@@ -24,7 +24,7 @@ def _steady(law: FrictionLaw) -> FrictionLaw:
     if law.constant_sliding_friction():
         return Coulomb(mu=law.sliding_friction(0.0))
     if not isinstance(law, StribeckBristle):
-        raise CannotGo(UNKNOWN)
+        raise CannotGo(NO_SUCH_LAW)
     return Stribeck(
         mu_kinetic=law.mu_kinetic,
         mu_static=law.peak,

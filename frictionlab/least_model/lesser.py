@@ -18,7 +18,7 @@ class CannotGo(Exception):
     """Why a part of a model cannot be taken away, as a sentence."""
 
 
-class Way(Protocol):
+class MotionWay(Protocol):
     """A reduced model of the motion, as far as it is needed here: what it refuses, and its means without an error."""
 
     @property
@@ -38,10 +38,10 @@ class LesserModel:
 
     scene: Scene
     law: FrictionLaw
-    way: Way | None = None
+    way: MotionWay | None = None
 
     @property
-    def method(self) -> Way | str:
+    def method(self) -> MotionWay | str:
         """What solves it: a reduced model, or ``auto``."""
         return self.way or "auto"
 
@@ -53,7 +53,7 @@ class LesserModel:
         """With another law."""
         return replace(self, law=law)
 
-    def with_way(self, way: Way) -> LesserModel:
+    def with_way(self, way: MotionWay) -> LesserModel:
         """With a reduced model of the motion. Raises CannotGo where that refuses."""
         if reason := way.refusal(self.scene, self.law):
             raise CannotGo(reason)

@@ -8,23 +8,23 @@ from functools import partial
 from typing import Any
 
 from frictionlab import registry
-from frictionlab.least_model.lesser import CannotGo, LesserModel, Taken, Way
+from frictionlab.least_model.lesser import CannotGo, LesserModel, MotionWay, Taken
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import MOST_TERMS, Form, Term
 from frictionlab.theory.linear import friction_free_response, less
 from frictionlab.theory.piecewise import Piecewise, piecewise
 
 UNDRIVEN = "nothing shakes the body: without friction it does not move"
-UNBOUNDED = "the friction-free motion is unbounded: undamped resonance"
+UNBOUNDED_MOTION = "the friction-free motion is unbounded: undamped resonance"
 WITH_SPEED = "the friction that moves the body under this normal load changes with belt speed"
 NO_WAVEFORM = "the friction-free motion is no sum of harmonics: no waveform of a prescribed slip says so"
 FRICTION_FREE = "mdsm"
 """The method of the friction-free motion."""
-ORDERS = (1, 3, 5, 9)
+ORDERS_KEPT = (1, 3, 5, 9)
 """Harmonics to which the motion is cut."""
 
 
-def friction_free(model: LesserModel) -> LesserModel | None:
+def friction_free_of(model: LesserModel) -> LesserModel | None:
     """The motion as if there were no friction, friction averaged over it."""
     if model.scene.degrees_of_freedom == 0:
         return None
@@ -50,10 +50,10 @@ def _balanced(harmonics: int, model: LesserModel) -> LesserModel | None:
 def orders() -> tuple[int, ...]:
     """The numbers of harmonics that the installed balance can be cut to."""
     several = "harmonics" in registry.method_class("harmonic_balance").model_fields
-    return ORDERS if several else ORDERS[:1]
+    return ORDERS_KEPT if several else ORDERS_KEPT[:1]
 
 
-def _method(name: str, **parameters: Any) -> Way:
+def _method(name: str, **parameters: Any) -> MotionWay:
     found: Any = registry.method_class(name)(**parameters)
     return found
 
@@ -66,7 +66,7 @@ def _prescribed(model: LesserModel) -> Scene:
         raise CannotGo(WITH_SPEED)
     free = friction_free_response(scene, law, 1)
     if free is None:
-        raise CannotGo(UNBOUNDED)
+        raise CannotGo(UNBOUNDED_MOTION)
     signals = scene.signals()
     along, across = (
         _oscillation(less(own, piecewise(belt, signals.edges())), scene.frequency)

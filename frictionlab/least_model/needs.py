@@ -14,7 +14,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.least_model.answers import Curves
 from frictionlab.least_model.lesser import LesserModel
 from frictionlab.least_model.result import Needs, needs_from
-from frictionlab.least_model.search import Search
+from frictionlab.least_model.search import LeastSearch
 from frictionlab.quantities import Floats
 from frictionlab.results.words import in_words
 from frictionlab.runner.arguments import given_law, given_scene, given_speeds, given_tolerance
@@ -23,9 +23,9 @@ from frictionlab.scene.scenes import Scenes
 from frictionlab.study import Study, StudyCurve
 from frictionlab.study.study import law_in_scene
 
-SHARE = 0.01
+USUAL_SHARE = 0.01
 """The tolerance on the mean, of the friction of steady sliding at the quickest belt speed, where none is given."""
-FINER = 1e-3
+ANSWERS_FINER = 1e-3
 """The error of the means asked for, of that tolerance."""
 
 
@@ -85,11 +85,11 @@ def _of_curve(scenes: Scenes, law: FrictionLaw, within: float | None, asked: _As
     scene, scenes = scenes.scene, Scenes(scenes.scene, np.unique(scenes.given))
     full = LesserModel(scene.model_copy(update={"dimensional": None}), law_in_scene(law, scene))
     tolerance = _usual(full.law, scenes.belt_speeds) if within is None else within
-    curves = Curves(scenes, FINER * tolerance, asked.kinds, asked.seconds_per_point)
+    curves = Curves(scenes, ANSWERS_FINER * tolerance, asked.kinds, asked.seconds_per_point)
     answers = curves.of(full)
     if not (answers["status"] == "ok").any():
         return needs_from(full, answers, [], None, tolerance)
-    search = Search(full, curves, tolerance, asked.laws)
+    search = LeastSearch(full, curves, tolerance, asked.laws)
     singles = search.singles()
     pairs = search.pairs(singles)
     smallest = search.smallest(singles, pairs)
@@ -100,4 +100,4 @@ def _of_curve(scenes: Scenes, law: FrictionLaw, within: float | None, asked: _As
 
 
 def _usual(law: FrictionLaw, speeds: Floats) -> float:
-    return SHARE * law.sliding_friction(float(np.abs(speeds).max()))
+    return USUAL_SHARE * law.sliding_friction(float(np.abs(speeds).max()))

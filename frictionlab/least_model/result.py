@@ -11,7 +11,7 @@ import pandas as pd
 from frictionlab.columns import NEEDS
 from frictionlab.least_model.lesser import LesserModel
 from frictionlab.least_model.search import Without
-from frictionlab.least_model.sentences import missing_means, model_in_words, sentence, smallest_in_words
+from frictionlab.least_model.sentences import missing_means, model_in_words, sentence_of, smallest_in_words
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ def needs_from(
     full: LesserModel, answers: pd.DataFrame, rows: Sequence[Without], smallest: Without | None, within: float
 ) -> Needs:
     """The result for a full model with these answers. rows: what was taken away, the smallest model among them."""
-    told = [*missing_means(answers), *map(sentence, rows)]
+    told = [*missing_means(answers), *map(sentence_of, rows)]
     if (answers["status"] == "ok").any():
         told.append(smallest_in_words(smallest, full, within))
     table = pd.DataFrame([_record(each, within, each is smallest) for each in rows], columns=[*NEEDS])

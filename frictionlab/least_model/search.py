@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from frictionlab import registry
 from frictionlab.least_model.answers import Curves
-from frictionlab.least_model.change import Change, change, refused_change
+from frictionlab.least_model.change import Change, change_of_curve, refused_change
 from frictionlab.least_model.lesser import CannotGo, LesserModel
-from frictionlab.least_model.things import Thing, taken, things
+from frictionlab.least_model.things import Thing, things, without_these
 from frictionlab.mistakes.notes import WrongValues
 
 Chosen = tuple[Thing, ...]
@@ -35,7 +35,7 @@ class Without:
         return self.change.verdict == "not needed"
 
 
-class Search:
+class LeastSearch:
     """Models smaller than a full one, compared with it; each set of things is looked at once.
 
     within: the tolerance on the mean.
@@ -98,12 +98,12 @@ class Search:
         if isinstance(model, str):
             return Without(chosen, None, refused_change(model))
         tables = self._curves.of(self.full), self._curves.of(model)
-        return Without(chosen, model, change(*tables, self._curves.given, self._within, self._laws))
+        return Without(chosen, model, change_of_curve(*tables, self._curves.given, self._within, self._laws))
 
     def _model(self, chosen: Chosen) -> LesserModel | str | None:
         """The model without these things; why they cannot go; None where it has one of them not."""
         try:
-            return taken(self.full, chosen)
+            return without_these(self.full, chosen)
         except (CannotGo, WrongValues) as problem:
             return str(problem)
 

@@ -13,7 +13,11 @@ from frictionlab.least_model.without_rest import WithoutRest
 from frictionlab.results.words import counted, in_words
 from frictionlab.shape.verdict import Estimate
 
-DIRECTIONS = {0: "slip prescribed", 1: "motion along the belt alone", 2: "motion along and across the belt"}
+WHERE_IT_MOVES = {
+    0: "slip prescribed",
+    1: "motion along the belt alone",
+    2: "motion along and across the belt",
+}
 
 
 def model_in_words(model: LesserModel) -> str:
@@ -21,7 +25,7 @@ def model_in_words(model: LesserModel) -> str:
     law = type(model.law).__name__
     values = model.law.model_dump(exclude_none=True, mode="json", exclude_defaults=True)
     told = ", ".join(f"{name} {in_words(value)}" for name, value in values.items())
-    return f"{DIRECTIONS[model.scene.degrees_of_freedom]}, {law} friction ({told}){_way(model)}"
+    return f"{WHERE_IT_MOVES[model.scene.degrees_of_freedom]}, {law} friction ({told}){_way(model)}"
 
 
 def _way(model: LesserModel) -> str:
@@ -35,7 +39,7 @@ def _way(model: LesserModel) -> str:
     return f", {counted(harmonics, 'harmonic')} balanced ({model.way.name})"
 
 
-def size_of(number: Estimate) -> str:
+def written_size(number: Estimate) -> str:
     """A change by its magnitude, and its error where that is not small beside it."""
     size = abs(number.value)
     if size <= number.error:
@@ -44,7 +48,7 @@ def size_of(number: Estimate) -> str:
     return f"{size:.3g}{error}"
 
 
-def sentence(each: Without) -> str:
+def sentence_of(each: Without) -> str:
     """Whether what is gone is needed, and what the mean changes by without it."""
     names = " and ".join(each.names)
     plural = len(each.names) > 1 or names.startswith("harmonics")
@@ -69,7 +73,7 @@ def smallest_in_words(smallest: Without | None, full: LesserModel, within: float
 
 
 def _changes(each: Without) -> str:
-    return f"the mean changes by {size_of(each.change.mean)} at belt speed {each.change.belt_speed:.6g}"
+    return f"the mean changes by {written_size(each.change.mean)} at belt speed {each.change.belt_speed:.6g}"
 
 
 def missing_means(answers: pd.DataFrame) -> list[str]:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from frictionlab.least_model.contact import rigid, undamped_bristles, without_fall, without_viscosity
 from frictionlab.least_model.lesser import LesserModel, Taken
-from frictionlab.least_model.motion import cut_to, friction_free, orders
+from frictionlab.least_model.motion import cut_to, friction_free_of, orders
 from frictionlab.least_model.shaking import on_a_line, sines, steady_normal_load, without_load_across
 from frictionlab.least_model.without_rest import slipping
 
@@ -43,11 +43,11 @@ def things(rests: bool) -> tuple[Thing, ...]:
         Thing("viscosity", "viscosity", 1, without_viscosity),
         *([Thing("stick", "motion", 10, slipping)] if rests else []),
         *cuts,
-        Thing("friction's effect on the motion", "motion", 200, friction_free),
+        Thing("friction's effect on the motion", "motion", 200, friction_free_of),
     )
 
 
-def taken(model: LesserModel, chosen: tuple[Thing, ...]) -> LesserModel | None:
+def without_these(model: LesserModel, chosen: tuple[Thing, ...]) -> LesserModel | None:
     """The model without these things; None where it has one of them not. Raises CannotGo, WrongValues."""
     found: LesserModel | None = model
     for thing in chosen:

@@ -10,6 +10,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import matplotlib as mpl
+import matplotlib.style  # else its name is not there
 import numpy as np
 import pandas as pd
 import pytest

@@ -10,7 +10,7 @@ import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.least_model.contact import rigid, undamped_bristles, without_fall, without_viscosity
 from frictionlab.least_model.lesser import CannotGo, LesserModel
-from frictionlab.least_model.motion import friction_free
+from frictionlab.least_model.motion import friction_free_of
 from frictionlab.least_model.shaking import on_a_line, sines, steady_normal_load, without_load_across
 
 COULOMB = fl.Coulomb(mu=0.4)
@@ -114,7 +114,7 @@ def test_bristles_on_the_friction_free_motion_have_their_slip_prescribed() -> No
         transverse=ACROSS | {"load": {"amplitude": 1, "phase": 40}},
         belt_vibration={"velocity_amplitude": 0.5, "phase": 70, "direction": 90},
     )
-    left = friction_free(full)
+    left = friction_free_of(full)
 
     assert left is not None
     assert left.scene.degrees_of_freedom == 0
@@ -126,12 +126,12 @@ def test_bristles_on_the_friction_free_motion_have_their_slip_prescribed() -> No
 
 def test_what_has_no_friction_free_motion_says_so() -> None:
     with pytest.raises(CannotGo, match="nothing shakes"):
-        friction_free(model())
+        friction_free_of(model())
     with pytest.raises(CannotGo, match="undamped resonance"):
-        friction_free(
+        friction_free_of(
             model(fl.Dahl(mu=0.4, stiffness=40), damping_ratio=0, drive={"amplitude": 1, "frequency": 1})
         )
     with pytest.raises(CannotGo, match="no sum of harmonics"):
-        friction_free(
+        friction_free_of(
             model(fl.Dahl(mu=0.4, stiffness=40), drive={"amplitude": 1, "frequency": 2, "waveform": "square"})
         )

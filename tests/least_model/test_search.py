@@ -11,8 +11,8 @@ import pytest
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.least_model.lesser import LesserModel
-from frictionlab.least_model.search import Search
-from frictionlab.least_model.sentences import sentence, smallest_in_words
+from frictionlab.least_model.search import LeastSearch
+from frictionlab.least_model.sentences import sentence_of, smallest_in_words
 
 SPEEDS = np.array([1.0, 2.0])
 WITHIN = 4e-3
@@ -56,8 +56,8 @@ class MadeUp:
         return pd.DataFrame(columns)
 
 
-def search(**worth: float) -> Search:
-    return Search(FULL, MadeUp(**worth), WITHIN, registry.INSTALLED_LAWS)  # type: ignore[arg-type]
+def search(**worth: float) -> LeastSearch:
+    return LeastSearch(FULL, MadeUp(**worth), WITHIN, registry.INSTALLED_LAWS)  # type: ignore[arg-type]
 
 
 def names(found: Sequence[object]) -> list[str]:
@@ -112,7 +112,7 @@ def test_what_cannot_go_alone_goes_with_others() -> None:
 
     assert alone["friction's effect on the motion"].change.verdict == "needed"
     assert alone["harmonics above 1"].change.verdict == "refused"
-    said = sentence(alone["harmonics above 1"])
+    said = sentence_of(alone["harmonics above 1"])
     assert said.startswith("harmonics above 1 cannot be taken away: harmonic_balance")
     assert smallest is not None
     assert "harmonics above 1" in smallest.names

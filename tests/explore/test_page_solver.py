@@ -156,6 +156,19 @@ def test_the_orbit_drawn_closes_and_obeys_the_law_of_friction() -> None:
     assert -impulse / found["period"] == pytest.approx(found["mean"], abs=1e-4)
 
 
+def test_newton_closes_the_period_within_a_few_maps() -> None:
+    script = """
+    told(given.map((each) => {
+      const scene = sceneOf(each);
+      return [0.05, 0.2, 0.4, 0.6, 0.8, 0.95].map((r) => solver.solvePoint(scene, r * scene.limitSpeed).maps);
+    }));
+    """
+    maps = np.array(in_node(script, SHAPES))
+
+    assert maps.mean() < 8.0
+    assert maps.max() < 20
+
+
 def test_a_curve_of_120_points_takes_less_than_a_tenth_of_a_second() -> None:
     script = """
     const spent = [];

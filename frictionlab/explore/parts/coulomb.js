@@ -69,7 +69,7 @@ function drawAll() {
 /** What is seen, in sentences and numbers. */
 function tell(scene, shape, state, samples) {
   write(byId("verdict"), `Up to V_{lin} the curve is ${shape.verdict} by area: ${WORDS[shape.verdict]} `
-    + `(area ${shown(shape.area, 3)}). From V_{lin} on slip never reverses and mean friction is \u03bc.`);
+    + `(area ${areaWords(shape)}). From V_{lin} on slip never reverses and mean friction is \u03bc.`);
   write(byId("point"), state.unique ? pointSentence(state) : restSentence(scene));
   const velocities = state.unique ? samples.map((sample) => sample.w) : [0];
   const swing = (Math.max(...velocities) - Math.min(...velocities)) / 2;
@@ -89,6 +89,10 @@ function tell(scene, shape, state, samples) {
     pair.append(term, told);
     return pair;
   }));
+}
+
+function areaWords({ verdict, area, above, below }) {
+  return verdict === "mixed" ? `${significant(above)} above, ${significant(below)} below` : shown(area, 3);
 }
 
 function restSentence(scene) {

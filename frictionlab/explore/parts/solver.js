@@ -256,7 +256,7 @@ function steadyState(scene, belt, guess) {
     const step = newtonStep(state, image);
     plain = share < 1e-6 || !(Math.abs(step.x) + Math.abs(step.w) < Infinity);
     next = plain
-      ? { x: image.x + periodsOfStick(scene, belt, image), w: image.w }
+      ? { x: image.x, w: image.w }
       : { x: state.x + share * step.x, w: state.w + share * step.w };
   }
   if (!image) return { x: NaN, w: NaN, mean: NaN, work: NaN, stick: NaN, residual: Infinity, maps };
@@ -264,7 +264,8 @@ function steadyState(scene, belt, guess) {
   return { ...state, mean: -image.impulse / period, work, stick: image.stick / period, residual: size, maps };
 }
 
-/** The state at t = 0 of a body that slips one way, back along the belt, all the time. */
+/** The state at t = 0 of a body that slips one way, back along the belt, all the time: the belt has drawn the spring as
+    far as friction can hold it, so that no periods of rest have to be waited for. */
 function slippingState(scene, belt) {
   const start = response(scene, 0);
   return { x: start.x + scene.friction, w: start.v - belt };
@@ -276,14 +277,6 @@ function newtonStep(state, image) {
   if (Math.abs(determinant) < 1e-14) return { x: Infinity, w: Infinity };
   const rx = image.x - state.x, rw = image.w - state.w;
   return { x: (d * rx - b * rw) / determinant, w: (a * rw - c * rx) / determinant };
-}
-
-/** How far the belt carries a body that rests for a whole period, over all whole periods until the load frees it. */
-function periodsOfStick(scene, belt, image) {
-  if (image.stick < scene.period || belt === 0) return 0;
-  const carried = belt * scene.period;
-  const room = scene.friction - 1 - 2 * scene.damping * belt - image.x - carried;
-  return Math.max(Math.floor(room / carried), 0) * carried;
 }
 
 /** Mean friction over mu at `count` belt speeds up to V_lin, denser towards it, where the curve rises steeply: V_lin
@@ -344,27 +337,22 @@ function sampleOrbit(scene, belt, state, count) {
   return samples;
 }
 
-/** The area between a curve of solveCurve and its chord, twice, in shares of both spans; above and below apart.
-    Trapezoids in the angle, in which the curve is smooth; the change by half as many points is the error. */
+/** The area between a curve of solveCurve and its chord up to a share of V_lin, twice, in shares of both spans; above and
+    below apart. error: the area between the curves through all points and through every second one. */
 function chordArea(curve, window) {
-  const count = curve.speeds.length, start = curve.start;
-  const last = window < 1 ? curve.speeds.findLastIndex((speed) => speed <= window) : count - 1;
-  const chord = (speed) => start + (curve.means[last] - start) * speed / curve.speeds[last];
-  const rise = curve.means[last] - start;
-  const sum = (stride) => {
-    const parts = { above: 0, below: 0 };
-    for (let i = -1; i < last; i += stride) {
-      const places = [i, Math.min(i + stride, last)];
-      const [a, b] = places.map((k) => (k < 0 ? 0 : curve.speeds[k]));
-      const height = places.map((k) => (k < 0 ? 0 : (curve.means[k] - chord(curve.speeds[k])) / rise));
-      const part = (b - a) / curve.speeds[last] * (height[0] + height[1]);
-      if (part > 0) parts.above += part; else parts.below -= part;
-    }
-    return parts;
-  };
-  const fine = sum(1), coarse = sum(2);
-  const error = Math.abs(fine.above - coarse.above) + Math.abs(fine.below - coarse.below) + 1e-9;
-  return { area: fine.above - fine.below, above: fine.above, below: fine.below, error };
+  const places = [0, ...curve.speeds], heights = [curve.start, ...curve.means];
+  let last = places.length - 1;
+  while (places[last] > window) last -= 1;
+  const excess = (i) => (heights[i] - heights[0]) / (heights[last] - heights[0]) - places[i] / places[last];
+  const panel = (from, to) => (places[to] - places[from]) / places[last] * (excess(from) + excess(to));
+  let above = 0, below = 0, error = 1e-9;
+  for (let i = 0; i < last; i += 2) {
+    const middle = Math.min(i + 1, last), end = Math.min(i + 2, last);
+    const parts = [panel(i, middle), panel(middle, end)];
+    for (const part of parts) if (part > 0) above += part; else below -= part;
+    error += Math.abs(parts[0] + parts[1] - panel(i, end));
+  }
+  return { area: above - below, above, below, error };
 }
 
 /** The verdict of shape by area: concave, convex, mixed or undecided. */

@@ -115,7 +115,8 @@ def test_finding_its_error_is_what_a_reduced_model_is_slow_for(monkeypatch: pyte
     def slow_bounds(*given: object) -> object:
         raise AssertionError("the model alone asks for no bounds")
 
-    monkeypatch.setattr(common, "bounds", slow_bounds)
+    for name in ("line_bounds", "closed_bound", "full_means"):
+        monkeypatch.setattr(common, name, slow_bounds)
     from frictionlab import Coulomb, Drive, Scene
     from frictionlab.bench.solvers import model_task
     from frictionlab.methods.reduced.mdsm import Mdsm

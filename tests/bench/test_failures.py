@@ -139,7 +139,8 @@ def test_the_methods_here_are_never_silently_wrong_on_a_small_map() -> None:
     assert [result.label for result in found] == ["exact", "shooting", "mdsm", "harmonic_balance"]
     for result in found:
         assert result.counts()["silent"] == 0
-        assert result.counts()["ok"] >= 8
+        reduced = result.label in ("mdsm", "harmonic_balance")  # refused where no bound is useful
+        assert result.counts()["ok"] >= (7 if reduced else 8)
     assert max(point.true for point in found[0].outcomes[0].points) < 1e-9
     assert max(point.true for point in found[2].outcomes[0].points) > 1e-3  # what friction does to the motion
 

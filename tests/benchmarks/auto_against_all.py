@@ -54,11 +54,12 @@ class Timed:
 
 
 def timed(methods: Sequence[Method], scenes: Scenes, law: FrictionLaw, tolerance: float) -> dict[str, Timed]:
-    """Of each by name; they take turns, so that what else the machine does strikes all. The first call compiles."""
+    """Of each by name; they take turns, so that what else the machine does meets all. The first call compiles."""
     found = {method.name: Timed(method.solve(scenes, law, tolerance), np.inf) for method in methods}
     spent = dict.fromkeys(found, 0.0)
-    for _ in range(REPEATS):
-        for method in methods:
+    for repeat in range(REPEATS):
+        # forth and back: auto and the method that it takes are each called next after the other's kernels
+        for method in methods if repeat % 2 else reversed(methods):
             if spent[method.name] < LONG:
                 start = time.process_time()
                 method.solve(scenes, law, tolerance)
@@ -196,7 +197,11 @@ def compare(
     """Every curve at every tolerance; rows are printed as they are so far to stderr."""
     rows: dict[tuple[str, float], Row] = defaultdict(Row)
     for kind, scenes, law in curves:
-        reference = reference_of(scenes, law)
+        try:
+            reference = reference_of(scenes, law)
+        except np.linalg.LinAlgError as problem:  # a run halves its chunk then; here the curve is left out
+            print(f"left out: {kind}, {law}: {problem}", file=sys.stderr)
+            continue
         taking = [
             method
             for method in SINGLE

@@ -23,7 +23,7 @@ from frictionlab.theory import friction_free_velocity
 from frictionlab.theory.saturation import follows_the_way, lost_on_reversal
 
 NO_ERRORS = "; motion and energies are those of Coulomb friction, without errors"
-NO_ANSWER = "the motion under Coulomb friction is open"
+COULOMB_IS_OPEN = "the motion under Coulomb friction is open"
 
 
 class StiffBristle(Rung):
@@ -82,7 +82,7 @@ class StiffBristle(Rung):
         return Answers(
             status=["ok" if each else "refused" for each in known],
             reason=[
-                "" if each else f"{NO_ANSWER}: {why}" for each, why in zip(known, found.reason, strict=True)
+                "" if each else f"{COULOMB_IS_OPEN}: {why}" for each, why in zip(known, found.reason, strict=True)
             ],
             model=[text if each else "" for each, text in zip(known, texts, strict=True)],
             error_kind=["estimated" if each else "" for each in known],

@@ -13,10 +13,13 @@ project = "frictionlab"
 author = project_copyright = "The frictionlab authors"
 version = release = version_of("frictionlab")
 
-extensions = ["myst_parser", "sphinx.ext.mathjax", "outside_pages"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "docstrings", "outside_pages"]
 
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
+
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
 
 html_theme = "furo"
 html_title = f"frictionlab {version}"

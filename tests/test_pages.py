@@ -1,0 +1,73 @@
+"""What the pages for beginners show is what happens; the page of the Python interface has every public name."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import frictionlab as fl
+from frictionlab.study import load_study
+
+DOCS = Path(__file__).parent.parent / "docs"
+
+
+def _block(page: str, name: str) -> str:
+    """The one fenced block below the comment of this name."""
+    (block,) = re.findall(rf"<!-- {name} -->\n```\w+\n(.*?)```", (DOCS / page).read_text(), re.DOTALL)
+    return str(block)
+
+
+def _names(block: str) -> dict[str, object]:
+    names: dict[str, object] = {}
+    exec(block, names)
+    return names
+
+
+def test_the_study_of_the_first_page_keeps_its_promise(tmp_path: Path) -> None:
+    study = tmp_path / "soft.yaml"
+    study.write_text(_block("start.md", "study"))
+
+    done = fl.run(study)
+
+    assert [verdict.passed for verdict in done.verdicts] == [True]
+    softer, rigid = (
+        done.table[done.table["law"] == law]["mean_friction"].to_numpy() for law in ("soft Dahl", "coulomb")
+    )
+    assert np.all(softer[:42] > rigid[:42])  # the title; from V_lin = 42.6 on both are mu
+
+
+def test_the_study_in_si_units_of_the_first_page_is_one(tmp_path: Path) -> None:
+    study = tmp_path / "si.yaml"
+    study.write_text(_block("start.md", "si"))
+
+    table = fl.run(load_study(study)).table
+
+    assert list(table["status"]) == ["ok"] * 60
+    assert {"mean_friction_N", "error_N"} <= set(table)
+
+
+def test_the_python_of_the_first_page_runs() -> None:
+    table = _names(_block("start.md", "python"))["table"]
+
+    assert list(table["status"]) == ["ok"] * 120  # type: ignore[index]
+
+
+def test_a_solver_for_smooth_equations_gives_other_means_from_starts_that_hardly_differ() -> None:
+    state = _names(_block("ode_solvers.md", "exact"))["state"]
+    means = np.array(_names(_block("ode_solvers.md", "solver"))["means"])
+
+    assert isinstance(state, fl.SteadyState)
+    assert state.mean_friction == pytest.approx(0.02557230631053, abs=1e-13)
+    assert state.unique == "proved"
+    assert np.ptp(means[:3]) > 1e-4
+    assert np.abs(means / state.mean_friction - 1.0).max() > 0.02
+
+
+def test_the_page_of_the_python_interface_has_every_public_name() -> None:
+    page = (DOCS / "api.md").read_text()
+    shown = set(re.findall(r":: frictionlab\.(\w+)", page)) | set(re.findall(r"`(\w+)`", page))
+
+    assert sorted(set(fl.__all__) - shown) == []

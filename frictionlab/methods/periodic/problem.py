@@ -204,11 +204,11 @@ class PeriodicProblem:
         if self.lanes is not None and len(places) >= FEWEST_IN_LANES:
             matrices = self.lanes.differentiate(belt_speeds_of(Scenes.of(scenes).taken(places)), known)
             regular = ~np.isnan(matrices).any(axis=(1, 2))
-            found[np.array(places)[regular]] = _largest_modulus(matrices[regular])
+            found[np.array(places)[regular]] = largest_modulus(matrices[regular])
             places, known = [i for i in places if math.isnan(found[i])], known[~regular]
         if places:
             curve, _ = self._called(Scenes.of(scenes).taken(places), known, self.goal, MULTIPLIERS)
-            found[places] = _largest_modulus(curve.matrices)
+            found[places] = largest_modulus(curve.matrices)
         return found
 
     def _known(self, states: Sequence[Floats | None]) -> tuple[list[int], Floats]:
@@ -303,9 +303,12 @@ class PeriodicProblem:
         return (x, v) if isinstance(self.like, complex) else (x.real, v.real)
 
 
-def _largest_modulus(matrices: Floats) -> Floats:
-    """That of the eigenvalues of each matrix."""
-    return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=1))
+def largest_modulus(matrices: Floats) -> Floats:
+    """That of the eigenvalues of each matrix; NaN of one that holds numbers that are not finite."""
+    found = np.full(len(matrices), np.nan)
+    known = np.isfinite(matrices).all(axis=(1, 2))
+    found[known] = np.abs(np.linalg.eigvals(matrices[known])).max(axis=1)
+    return found
 
 
 def _orbits_at(places: list[int], track: Track, ends: Any, n: int) -> Orbits:

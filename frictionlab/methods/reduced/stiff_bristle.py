@@ -82,7 +82,8 @@ class StiffBristle(Rung):
         return Answers(
             status=["ok" if each else "refused" for each in known],
             reason=[
-                "" if each else f"{COULOMB_IS_OPEN}: {why}" for each, why in zip(known, found.reason, strict=True)
+                "" if each else f"{COULOMB_IS_OPEN}: {why}"
+                for each, why in zip(known, found.reason, strict=True)
             ],
             model=[text if each else "" for each, text in zip(known, texts, strict=True)],
             error_kind=["estimated" if each else "" for each in known],

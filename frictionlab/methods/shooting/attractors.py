@@ -14,7 +14,7 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit
 from frictionlab.methods.periodic.continuation import Curve
-from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
+from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, largest_modulus
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.linear import velocity_scale
@@ -106,7 +106,7 @@ class Trial:
 
 def multiplier(curve: Curve, row: int = 0) -> float:
     """The largest modulus of an orbit's Floquet multipliers."""
-    return float(np.abs(np.linalg.eigvals(curve.matrices[row])).max())
+    return float(largest_modulus(curve.matrices[row : row + 1])[0])
 
 
 def closed_orbit(curve: Curve, means: Floats, points: Floats | None = None) -> Attractor | None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import NOT_UNIQUE, PROVED, TESTED, Answers, Multipliers, Status
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
-from frictionlab.methods.periodic.problem import PeriodicProblem, map_kind
+from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus, map_kind
 from frictionlab.methods.periodic.sharpened import ClosedMotion, sharpened
 from frictionlab.methods.shooting.attractors import (
     FEWEST,
@@ -394,4 +394,4 @@ def _multipliers(curve: Curve) -> Floats:
     """The largest modulus of each orbit's; NaN where the maps were not differentiated."""
     if not len(curve.matrices):
         return np.full(len(curve.states), np.nan)
-    return np.asarray(np.abs(np.linalg.eigvals(curve.matrices)).max(axis=1))
+    return largest_modulus(curve.matrices)

@@ -20,7 +20,9 @@ class ElastoPlastic(StribeckBristle):
     z.v <= 0 or |z| <= z_ba, 1 where |z| >= z_max = g/stiffness, in between (1 + sin(pi (|z| - (z_max + z_ba)/2)
     /(z_max - z_ba)))/2, with z_ba = breakaway_ratio*mu_kinetic/stiffness. Below z_ba nothing drifts.
 
-    breakaway_ratio [-], > 0, < 1 (0.7). The other parameters are those of LuGre friction:
+    breakaway_ratio [-], > 0, < 1 (0.7): z_ba in shares of mu_kinetic/stiffness.
+
+    The other parameters are those of LuGre friction:
     mu_kinetic [-], > 0; mu_static [-], >= mu_kinetic, the same where left out; stribeck_speed [scene velocity], > 0
     (1); stribeck_exponent [-], > 0 (2); stiffness [1/scene length], presliding_length [scene length]
     (mu_kinetic/stiffness) or contact_stiffness [K_1]; damping [1/scene velocity] or contact_damping [M omega_1],

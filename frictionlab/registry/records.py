@@ -7,6 +7,8 @@ import re
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal, get_args, get_origin
 
+from pydantic import BaseModel
+
 from frictionlab import registry
 from frictionlab.faults import home_of_law
 from frictionlab.laws.base import Dimension, FrictionLaw, Record
@@ -72,12 +74,10 @@ def _returns_a_truth_value(method: Any) -> bool:
 
 
 def _parameters(record: type[Record]) -> list[dict[str, Any]]:
-    return [
-        _parameter(name, field, _text(_owner(record, name))) for name, field in record.model_fields.items()
-    ]
+    return [_parameter(name, field, meaning(record, name)) for name, field in record.model_fields.items()]
 
 
-def _owner(record: type[Record], name: str) -> type[Record]:
+def _owner(record: type[BaseModel], name: str) -> type[BaseModel]:
     """The class that defines a parameter and documents it."""
     return next(kind for kind in record.__mro__ if name in inspect.get_annotations(kind))
 
@@ -97,7 +97,7 @@ def _power(unit: str, power: int) -> str:
     return unit if power == 1 else f"{unit}^{power}"
 
 
-def _parameter(name: str, field: Any, text: str) -> dict[str, Any]:
+def _parameter(name: str, field: Any, meant: str) -> dict[str, Any]:
     limits = [
         f"{sign} {bound:g}"
         for rule in _rules(field)
@@ -110,7 +110,7 @@ def _parameter(name: str, field: Any, text: str) -> dict[str, Any]:
         "default": None if field.is_required() else field.default,
         "limits": _each(field) + " and ".join(limits) or " | ".join(_choices(field)),
         "unit": _unit(field),
-        "meaning": _meaning(name, text),
+        "meaning": meant,
     }
 
 
@@ -133,10 +133,19 @@ def _choices(field: Any) -> list[str]:
     )
 
 
-def _meaning(name: str, text: str) -> str:
-    """The text on a parameter in a docstring: from its name at the start of a line to a blank line."""
-    found = re.search(rf"^{re.escape(name)}\b(.*(?:\n(?!\s*$|\w+ \[).*)*)", text, re.MULTILINE)
-    return " ".join(found[1].split()).lstrip(":, ") if found else ""
+def meaning(record: type[BaseModel], name: str) -> str:
+    """The text on a field in the docstring of its class, its name left out; '' without one.
+
+    It goes from the name at the start of a line to a blank line, the sources, or a line beginning with another field.
+    """
+    text, fields = _text(_owner(record, name)), "|".join(map(re.escape, record.model_fields))
+    found = re.search(
+        rf"^{re.escape(name)}\b([ :,].*(?:\n(?!\s*$|Sources?:|\w+ \[|(?:{fields})\b ?[:,>(]).*)*)",
+        text,
+        re.MULTILINE,
+    )
+    said = " ".join(found[1].split()).lstrip(":, ") if found else ""
+    return re.sub("[,;] or instead$", "", said)  # the next line goes on
 
 
 def one_line_each(records: Sequence[dict[str, Any]]) -> str:

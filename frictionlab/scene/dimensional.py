@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from functools import cache, lru_cache
 from typing import Any, Literal, NamedTuple, TypeVar, get_args
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from frictionlab.quantities import Dimension, Finite, NonNegative, Positive, Record
 from frictionlab.scene.rules import SHAKEN, problems_of_parts
@@ -46,7 +46,11 @@ class Units(NamedTuple):
 
 
 class _Force(Record):
-    """A periodic force by its unbalance [kg m] or its amplitude [N]; phase in degrees."""
+    """A periodic force by its unbalance or its amplitude; what has no unit as in the nondimensional scene.
+
+    unbalance_kg_m [kg m], >= 0: the force has the amplitude unbalance_kg_m*omega^2; or instead
+    amplitude_N [N], >= 0: its amplitude.
+    """
 
     unbalance_kg_m: NonNegative | None = None
     amplitude_N: NonNegative | None = None
@@ -70,7 +74,7 @@ class _Force(Record):
 class DimensionalDrive(_Force):
     """The force along x1: unbalance_kg_m*omega^2 (or amplitude_N) times waveform(omega t + phase).
 
-    frequency_rad_per_s > 0: omega. waveform, direction: as for ``Drive``.
+    frequency_rad_per_s [rad/s], > 0: omega, of the drive; everything else that vibrates has it in some ratio.
     """
 
     frequency_rad_per_s: Positive
@@ -86,8 +90,8 @@ class DimensionalLoad(_Force):
 class DimensionalBeltVibration(Record):
     """The belt's velocity beside belt_speed_m_per_s: velocity_amplitude_m_per_s times the waveform.
 
-    phase, waveform, direction, frequency_ratio: as for ``BeltVibration``; frequency_rad_per_s in place of the ratio
-    where nothing else has a frequency.
+    velocity_amplitude_m_per_s [m/s], >= 0: of the belt's vibration.
+    frequency_rad_per_s [rad/s], > 0: only where nothing else has a frequency.
     """
 
     velocity_amplitude_m_per_s: NonNegative
@@ -106,7 +110,7 @@ class DimensionalBeltVibration(Record):
 class DimensionalNormalLoadVariation(Record):
     """The normal load as its mean times 1 + amplitude*waveform; all as for ``NormalLoadVariation``.
 
-    amplitude [-] >= 0: a share of the mean load. frequency_rad_per_s: where nothing else has a frequency.
+    frequency_rad_per_s [rad/s], > 0: only where nothing else has a frequency.
     """
 
     amplitude: NonNegative
@@ -135,7 +139,11 @@ def _scaled_frequency(part: Any, scales: Units) -> dict[str, float]:
 
 
 class DimensionalTransverse(Record):
-    """The motion of the same mass along x2: stiffness_N_per_m > 0, damping_N_s_per_m >= 0, its load."""
+    """The motion of the same mass along x2, across the belt.
+
+    stiffness_N_per_m [N/m], > 0: K_2, of the spring across the belt.
+    damping_N_s_per_m [N s/m], >= 0: C_2, of the dashpot across the belt.
+    """
 
     stiffness_N_per_m: Positive
     damping_N_s_per_m: NonNegative
@@ -143,7 +151,13 @@ class DimensionalTransverse(Record):
 
 
 class DimensionalInitial(Record):
-    """Where the mass starts: positions [m] and velocities [m/s]."""
+    """Where the mass starts, for scenes whose steady state depends on it.
+
+    x_m [m]: position along the belt, from where the spring is undeflected.
+    velocity_m_per_s [m/s]: along the belt.
+    x2_m [m]: position across the belt.
+    velocity2_m_per_s [m/s]: across the belt.
+    """
 
     x_m: Finite = 0.0
     velocity_m_per_s: Finite = 0.0
@@ -154,18 +168,22 @@ class DimensionalInitial(Record):
 class Dimensional(Record):
     """A body on a moving belt, shaken, in SI units.
 
-    mass_kg > 0: M. stiffness_N_per_m > 0, damping_N_s_per_m >= 0: K_1 and C_1, along the belt. length_m > 0: L,
-    the length scale. belt_speed_m_per_s. The normal load is the weight, by
-    gravity_m_per_s2 > 0 (9.81), or normal_load_N > 0 instead. Leave ``transverse`` out for one degree of freedom.
+    mass_kg [kg], > 0: M.
+    stiffness_N_per_m [N/m], > 0: K_1, of the spring along the belt.
+    damping_N_s_per_m [N s/m], >= 0: C_1, of the dashpot along the belt.
+    length_m [m], > 0: L, the length scale of the nondimensional columns; no result in SI units depends on it.
+    gravity_m_per_s2 [m/s^2], > 0: the normal load is the weight; 9.81 where normal_load_N is left out.
+    normal_load_N [N], > 0: the normal load, instead of gravity_m_per_s2.
+    belt_speed_m_per_s [m/s]: V_b.
+
+    Leave ``transverse`` out for one degree of freedom.
     """
 
     mass_kg: Positive
     stiffness_N_per_m: Positive
     damping_N_s_per_m: NonNegative
     length_m: Positive
-    gravity_m_per_s2: Positive | None = Field(
-        default=None, description=f"{STANDARD_GRAVITY} where normal_load_N is left out"
-    )
+    gravity_m_per_s2: Positive | None = None
     normal_load_N: Positive | None = None
     belt_speed_m_per_s: Finite
     drive: DimensionalDrive | None = None

@@ -50,6 +50,11 @@ class _Part(Record):
 class _Force(_Part):
     """A periodic force given by an unbalance or by its amplitude.
 
+    unbalance [L], >= 0: the force has the amplitude unbalance*frequency^2; or instead
+    amplitude [K_1 L], >= 0: its amplitude.
+    phase [degrees]: the force is the waveform at frequency*tau + phase.
+    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [{order, amplitude, phase}, ...]}.
+
     Waveforms of such a force are compared by Michaux, Ferri & Cunefare (2008).
     """
 
@@ -78,8 +83,8 @@ class _Force(_Part):
 class Drive(_Force):
     """The force along x1: unbalance*frequency^2 (or amplitude) times waveform(frequency*tau + phase).
 
-    unbalance [L] or amplitude [K_1 L], >= 0; frequency [omega_1], > 0; phase [degrees]; waveform: sine where left
-    out. direction [degrees]: from x1 towards x2, in scenes with ``transverse``.
+    frequency [omega_1], > 0: of the drive; everything else that vibrates has it in some ratio.
+    direction [degrees]: from x1 towards x2, in scenes with ``transverse``; along x1 where left out.
     """
 
     frequency: Positive
@@ -89,14 +94,18 @@ class Drive(_Force):
 class Load(_Force):
     """The force along x2; units as for ``Drive``, of whose frequency an unbalance takes the square.
 
-    frequency_ratio: its frequency in shares of the drive's, p/q; 1 where left out.
+    frequency_ratio [-]: its frequency in shares of the drive's, p/q; 1 where left out.
     """
 
     frequency_ratio: Ratio | None = None
 
 
 class Transverse(_Part):
-    """The motion along x2, across the belt: natural_frequency [omega_1] > 0, damping_ratio >= 0, its load."""
+    """The motion along x2, across the belt.
+
+    natural_frequency [omega_1], > 0: omega_r, of the motion along x2.
+    damping_ratio [-], >= 0: of the motion along x2.
+    """
 
     natural_frequency: Positive
     damping_ratio: NonNegative
@@ -104,9 +113,13 @@ class Transverse(_Part):
 
 
 class Slip(_Part):
-    """Prescribed oscillation: velocity_amplitude*waveform(frequency*tau + phase). Phase in degrees.
+    """Prescribed oscillation: velocity_amplitude*waveform(frequency*tau + phase).
 
-    waveform: sine where left out. direction [degrees]: from x1 towards x2; along x1 where left out.
+    velocity_amplitude [omega_1 L], >= 0: of the slip velocity beside the belt's.
+    frequency [omega_1], > 0: of the oscillation.
+    phase [degrees]: the slip velocity is the waveform at frequency*tau + phase.
+    waveform: of the slip velocity; sine where left out, square, triangle, sawtooth or {harmonics: [...]}.
+    direction [degrees]: from x1 towards x2; along x1 where left out.
     """
 
     velocity_amplitude: NonNegative
@@ -117,7 +130,13 @@ class Slip(_Part):
 
 
 class TransverseSlip(_Part):
-    """Prescribed oscillation along x2; a frequency of its own only where there is none along x1."""
+    """Prescribed oscillation along x2, across the belt.
+
+    velocity_amplitude [omega_1 L], >= 0: of the slip velocity along x2.
+    phase [degrees]: the slip velocity is the waveform at frequency*tau + phase.
+    frequency [omega_1], > 0: only where ``slip`` is left out, whose frequency else holds for both.
+    waveform: of the slip velocity; sine where left out, square, triangle, sawtooth or {harmonics: [...]}.
+    """
 
     velocity_amplitude: NonNegative
     phase: Finite = 0.0
@@ -128,9 +147,14 @@ class TransverseSlip(_Part):
 class BeltVibration(_Part):
     """The belt's velocity beside belt_speed: velocity_amplitude*waveform(ratio*frequency*tau + phase).
 
-    velocity_amplitude [omega_1 L] >= 0; phase [degrees]; direction [degrees] from x1 towards x2, in scenes with
-    ``transverse``. frequency_ratio: in shares of the drive's frequency, p/q; frequency [omega_1] instead where
-    nothing else has one. A slider pulled through its spring over a vibrating plate, in any direction, is this scene
+    velocity_amplitude [omega_1 L], >= 0: of the belt's vibration.
+    phase [degrees]: the belt's vibration is the waveform at its frequency*tau + phase.
+    waveform: of the velocity; sine where left out, square, triangle, sawtooth or {harmonics: [...]}.
+    direction [degrees]: from x1 towards x2, in scenes with ``transverse``; along x1 where left out.
+    frequency_ratio [-]: its frequency in shares of the drive's, p/q; 1 where left out.
+    frequency [omega_1], > 0: only where nothing else has one.
+
+    A slider pulled through its spring over a vibrating plate, in any direction, is this scene
     (Gutowski & Leus, 2020).
     """
 
@@ -145,11 +169,15 @@ class BeltVibration(_Part):
 class NormalLoadVariation(_Part):
     """The normal load as normal_load*(1 + amplitude*waveform(ratio*frequency*tau + phase)), always positive.
 
-    amplitude [-] >= 0; phase [degrees]; frequencies as for ``BeltVibration``. contact: ``per_load``, the stiffness
-    and damping of bristles follow the load, as in laws per unit normal load (Canudas de Wit & Tsiotras, 1999);
-    ``constant``, they stay those of the mean load, and the load changes the limit of friction alone (a spring in
-    series with Coulomb friction, as in Teidelt, Starcevic & Popov, 2012, Popov, Popov & Popov, 2017, and Mao et al.,
-    2017).
+    amplitude [-], >= 0: the varying share of the normal load.
+    phase [degrees]: the share is the waveform at its frequency*tau + phase.
+    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [...]}.
+    frequency_ratio [-]: its frequency in shares of the drive's, p/q; 1 where left out.
+    frequency [omega_1], > 0: only where nothing else has one.
+    contact: ``per_load``, the stiffness and damping of bristles follow the load, as in laws per unit normal load
+    (Canudas de Wit & Tsiotras, 1999); ``constant``, they stay those of the mean load, and the load changes the limit
+    of friction alone (a spring in series with Coulomb friction, as in Teidelt, Starcevic & Popov, 2012, Popov, Popov
+    & Popov, 2017, and Mao et al., 2017).
     """
 
     amplitude: NonNegative
@@ -161,7 +189,13 @@ class NormalLoadVariation(_Part):
 
 
 class Initial(_Part):
-    """Where the mass starts, for scenes whose steady state depends on it: positions [L], velocities."""
+    """Where the mass starts, for scenes whose steady state depends on it.
+
+    x [L]: position along the belt, from where the spring is undeflected.
+    velocity [omega_1 L]: along the belt.
+    x2 [L]: position across the belt.
+    velocity2 [omega_1 L]: across the belt.
+    """
 
     x: Finite = 0.0
     velocity: Finite = 0.0
@@ -172,7 +206,10 @@ class Initial(_Part):
 class Scene(_Part):
     """A body on a moving belt, shaken: damping_ratio and drive, or a prescribed slip instead of both.
 
-    damping_ratio (>= 0, may exceed 1), normal_load (gamma^2 > 0; 1 by default for prescribed slip), belt_speed.
+    damping_ratio [-], >= 0: beta_1, along the belt; may exceed 1.
+    normal_load [K_1 L], > 0: gamma^2, friction force per friction coefficient; 1 where left out with prescribed slip.
+    belt_speed [omega_1 L]: v_b.
+
     Leave ``transverse`` out for one degree of freedom, ``drive`` for a scene that nothing drives, or that
     ``belt_vibration`` or ``normal_load_variation`` shakes. ``dimensional`` gives all of it in SI units instead; every
     other field is then filled from it (Eq. 2).

@@ -124,9 +124,14 @@ def _is_number(value: Any) -> bool:
 _TERM_SCHEMA = {
     "type": "object",
     "properties": {
-        "order": {"type": "integer", "minimum": 1, "maximum": MOST_TERMS},
-        "amplitude": {"type": "number"},
-        "phase": {"type": "number", "default": 0},
+        "order": {
+            "description": "whole number that multiplies the frequency",
+            "type": "integer",
+            "minimum": 1,
+            "maximum": MOST_TERMS,
+        },
+        "amplitude": {"description": "of amplitude*sin(order*theta + phase)", "type": "number"},
+        "phase": {"description": "[degrees]: of this term", "type": "number", "default": 0},
     },
     "required": ["order", "amplitude"],
     "additionalProperties": False,
@@ -137,7 +142,13 @@ _FORM_SCHEMA = {
         {
             "type": "object",
             "properties": {
-                "harmonics": {"type": "array", "minItems": 1, "maxItems": MOST_TERMS, "items": _TERM_SCHEMA}
+                "harmonics": {
+                    "description": "the waveform as a sum of sines",
+                    "type": "array",
+                    "minItems": 1,
+                    "maxItems": MOST_TERMS,
+                    "items": _TERM_SCHEMA,
+                }
             },
             "required": ["harmonics"],
             "additionalProperties": False,

@@ -2,17 +2,64 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import Any
 
 from pydantic import BaseModel, TypeAdapter
 
 from frictionlab import columns, registry
+from frictionlab.mistakes.validation import nested
+from frictionlab.registry.records import meaning
+from frictionlab.scene import dimensional, scene
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
 from frictionlab.study.grid import LARGEST_GRID
 from frictionlab.study.study import LIMIT_KEY, SCHEMA, SECONDS_PER_POINT
 
+_KEYS = {
+    "schema": "version of the rules that the study is written by",
+    "title": "heading of figures and report",
+    "source": "where the scene comes from, such as a paper and its figure",
+    "plugins": "Python files with laws of your own, by their paths from the study; their code is run",
+    "laws": "the friction laws, one set of rows each; frictionlab laws lists them",
+    "methods": "how steady states are found, one set of rows each; frictionlab methods lists them",
+    "tolerance": "largest absolute error of mean_friction that auto lets pass",
+    "sweep": "values to vary, by dotted path: scene.<value> or laws.<label>.<parameter>; all combinations are solved",
+    "expect": "what the table is expected to say; where it does not, run ends with exit code 3",
+    "columns": "result columns to find; inputs, mean_friction, error, status and reason always; all where left out",
+    "limit": "what a point may cost",
+    "keep": "what to write beside the table",
+    LIMIT_KEY: "seconds that a point may take, compiling left out, until it counts as killed",
+    "orbit": "samples per period of every orbit, written to orbits.parquet",
+    "attractors": "starts followed at every belt speed; all states they end in are written to attractors.csv",
+    "harmonics": "harmonics of velocity and friction of every orbit, written to harmonics.csv",
+    "kind": "registered name",
+    "label": "name of its rows; kind where left out",
+    "start": "first value",
+    "stop": "last value",
+    "num": "number of values, both ends included",
+    "spacing": "equal differences (linear) or equal ratios (log)",
+    "where": "the rows that are meant, by the values of input columns; all where left out",
+    "because": "why that is expected, such as a source",
+    "column": "result column that is compared",
+    "within": "absolute difference that equals lets pass",
+    "equals": "the value of the column, but for within",
+    "below": "the column, or the largest difference, is less than this",
+    "above": "the column is more than this",
+    "status": "the status of the rows",
+    "max_difference": "labels of two methods whose means are compared",
+    "shape": "verdict on the shape of the curves, without belt speed in where",
+    "measure": "the measure that the verdict is read from; area where left out",
+}
+"""What the keys of a study mean, apart from those of scenes, laws and methods, whose docstrings tell them."""
+_SAME_AS: dict[type[BaseModel], type[BaseModel]] = {
+    dimensional.DimensionalDrive: scene.Drive,
+    dimensional.DimensionalLoad: scene.Load,
+    dimensional.DimensionalBeltVibration: scene.BeltVibration,
+    dimensional.DimensionalNormalLoadVariation: scene.NormalLoadVariation,
+}
+"""The parts of a scene in SI units, and those that tell what their values without a unit mean."""
 _NUMBER = {"type": "number"}
 _WORD_OR_NUMBER: dict[str, Any] = {
     "anyOf": [_NUMBER, {"type": "string"}, TypeAdapter(Waveform).json_schema()]
@@ -27,12 +74,11 @@ _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", 
 def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of a study; rules on several keys at once are left to ``check``."""
     definitions: dict[str, Any] = {}
-    scene = _record(Scene, definitions)
     properties = {
         "schema": {"const": SCHEMA},
         "title": _TEXT,
         "source": _TEXT,
-        "scene": scene,
+        "scene": _record(Scene, definitions),
         "plugins": {"type": "array", "items": _TEXT, "uniqueItems": True},
         "laws": {"type": "array", "minItems": 1, "items": {"oneOf": _laws(laws, definitions)}},
         "methods": {
@@ -59,14 +105,39 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
 
 
 def _closed_object(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:
-    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
+    described = {
+        key: {"description": _KEYS[key], **value} if key in _KEYS and "description" not in value else value
+        for key, value in properties.items()
+    }
+    return {"type": "object", "properties": described, "required": required, "additionalProperties": False}
 
 
 def _record(record: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:
     """The schema of a record; those of the records inside it are added to the definitions."""
     made: dict[str, Any] = _study_schema(record.model_json_schema(ref_template="#/$defs/{model}"))
-    definitions.update(made.pop("$defs", {}))
+    inside = made.pop("$defs", {})
+    _describe(record, made, inside)
+    definitions.update(inside)
     return made
+
+
+def _describe(record: type[BaseModel], made: dict[str, Any], inside: dict[str, Any]) -> None:
+    """Put into the schema of a record, and of those inside it, what docstrings say of every field."""
+    for key, field in made.get("properties", {}).items():
+        part = nested(record, key)
+        if told := meaning(record, key) or (part and _first_paragraph(part)) or _same(record, key):
+            field.setdefault("description", told)
+        if part is not None:
+            _describe(part, inside[part.__name__], inside)
+
+
+def _same(record: type[BaseModel], key: str) -> str:
+    alike = _SAME_AS.get(record)
+    return meaning(alike, key) if alike is not None else ""
+
+
+def _first_paragraph(record: type[BaseModel]) -> str:
+    return " ".join((inspect.getdoc(record) or "").partition("\n\n")[0].split())
 
 
 def _study_schema(schema: Any) -> Any:
@@ -98,7 +169,10 @@ def _methods(definitions: dict[str, Any]) -> list[dict[str, Any]]:
 
 def _kind(name: str, record: dict[str, Any]) -> dict[str, Any]:
     """A law or method: its parameters, its registered name and a label."""
-    own = {"kind": {"const": name}, "label": _TEXT}
+    own = {
+        "kind": {"const": name, "description": _KEYS["kind"]},
+        "label": _TEXT | {"description": _KEYS["label"]},
+    }
     closed = _closed_object({**own, **record.get("properties", {})}, ["kind"])
     return {"title": name, "description": record.get("description", ""), **closed}
 

@@ -796,6 +796,34 @@ def test_the_schema_and_the_reader_allow_the_same_keys_in_expectations_and_range
     assert set(_allowed(probe, "keep.zzz")) == set(made["keep"]["properties"])
 
 
+def _properties(made: Any, path: str = "") -> dict[str, Any]:
+    """Every property of a schema at any depth, by its path in the schema."""
+    if isinstance(made, list):
+        return {
+            key: each
+            for i, item in enumerate(made)
+            for key, each in _properties(item, f"{path}[{i}]").items()
+        }
+    if not isinstance(made, dict):
+        return {}
+    own = made["properties"] if made.get("type") == "object" and "properties" in made else {}
+    found = {f"{path}/{key}": value for key, value in own.items()}
+    for key, value in made.items():
+        found |= _properties(value, f"{path}/{key}")
+    return found
+
+
+def test_every_property_of_the_schema_says_what_it_means() -> None:
+    made = _properties(schema())
+
+    assert len(made) > 300
+    assert [path for path, each in made.items() if not each.get("description")] == []
+    assert made["/$defs/Drive/properties/unbalance"]["description"].endswith(
+        "amplitude unbalance*frequency^2"
+    )
+    assert made["/$defs/DimensionalDrive/properties/phase"] == made["/$defs/Drive/properties/phase"]
+
+
 def test_the_schema_gives_bounds_and_no_null_and_lets_a_sweep_give_any_value() -> None:
     made = schema()
     scene = made["properties"]["scene"]["properties"]

@@ -49,9 +49,10 @@ ONE_FOR_BRISTLES = "harmonic_balance balances bristle friction in one harmonic a
 class HarmonicBalance(ReducedModel):
     """Harmonics of motion and friction balanced along the belt; for one of Coulomb friction the curve is explicit.
 
-    harmonics: how many, from 1 on. tail: the mass beyond them as a free one, whose velocity is piecewise linear
-    between the switches of Coulomb friction, or nothing; true for 2 harmonics or more where left out. Without it the
-    mean is off by the order 1/harmonics, with it by about harmonics^-3 (methods/reduced/switch_response.py).
+    harmonics: how many, from 1 on.
+    tail: the mass beyond them as a free one, whose velocity is piecewise linear between the switches of Coulomb
+    friction, or nothing; true for 2 harmonics or more where left out. Without it the mean is off by the order
+    1/harmonics, with it by about harmonics^-3 (methods/reduced/switch_response.py).
 
     Amplitude and belt speed follow from their ratio without a search (theory.one_harmonic_velocity); only a given
     belt speed asks for that ratio, the one root of a rising function. The error is what the left-out harmonics,

@@ -269,10 +269,9 @@ def too_wide(error: float, mu: float) -> str:
     """Why an error, relative to mu, is of no use; empty where it is."""
     if error <= WIDEST:
         return ""
-    return (
-        f"no useful bound on the model error: because of stick or further reversals the mean may be off by "
-        f"{min(error, 2.0) * mu:.2g}; {ASK_FOR_THE_DISTANCE}"
-    )
+    off = f"may be off by {min(error, 2.0) * mu:.2g}" if error < math.inf else "may be anything"
+    because = "because of stick, nearly resting slip or further reversals"
+    return f"no useful bound on the model error: {because} the mean {off}; {ASK_FOR_THE_DISTANCE}"
 
 
 def model_orbit(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:

@@ -18,6 +18,7 @@ from frictionlab.methods.prescribed.quadrature import integrals, slip_edges
 from frictionlab.methods.reduced.common import (
     ROUNDING,
     Harmonic,
+    LeftOut,
     Modelled,
     ToldBy,
     answer_line,
@@ -30,12 +31,15 @@ from frictionlab.methods.reduced.common import (
     plane_refusal,
     steadied,
     steadied_all,
+    too_wide,
 )
+from frictionlab.methods.reduced.plane_gap import plane_bounds
 from frictionlab.methods.reduced.waveforms import answer_waveforms, waveform_means
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import (
     friction_free_velocity,
     mean_prescribed_circular,
@@ -53,8 +57,8 @@ class Mdsm(ReducedModel):
 
     Along the belt a closed form, in the plane a quadrature over the friction-free ellipse. A prescribed slip has no
     motion to separate: its mean is exact, in closed form along the belt, across it and for a circle, by quadrature
-    for other ellipses. The error is what friction does to the motion: along the belt bounded by motions that
-    reverse twice, in the plane told by the mean that shooting finds.
+    for other ellipses. The error is what friction does to the motion, bounded from the friction along the
+    friction-free motion (methods/reduced/gap.py, plane_gap.py).
 
     Source: Sulollari, van Dalen & Cabboi, Eqs. 5 and 6; in the plane the same mean over both components.
     """
@@ -102,7 +106,7 @@ class Mdsm(ReducedModel):
 def _answer_sines(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, told_by: ToldBy) -> Answers:
     if _in_closed_form(scenes[0], law):
         return answer_line(scenes, law, tolerance, ALONG, friction_free, told_by)
-    return _answer_plane(scenes, law, tolerance)
+    return _answer_plane(scenes, law, tolerance, told_by)
 
 
 def _in_closed_form(scene: Scene, law: FrictionLaw) -> bool:
@@ -127,7 +131,7 @@ def friction_free_motion(scene: Scene) -> Motion:
     return Motion(mass.normal_load, mass.frequency, mass.force / along, sideways)
 
 
-def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, told_by: ToldBy) -> Answers:
     start = time.perf_counter()
     motion = friction_free_motion(scenes[0])
     means, rounding = (
@@ -135,9 +139,10 @@ def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -
         for values in zip(*(_plane_mean(scene, law, motion) for scene in scenes), strict=True)
     )
     at_rest = [scene.belt_speed == 0.0 for scene in scenes]
-    left_out = far_from_full(
-        scenes, law, means.real, ["the belt is at rest" if rest else "" for rest in at_rest]
-    )
+    if told_by == "bound" and not scenes[0].load_along_belt_only:
+        left_out = _bounded(scenes, law, means.real)
+    else:
+        left_out = far_from_full(scenes, law, means.real, ["at rest" if rest else "" for rest in at_rest])
     reasons = [
         _at_rest(scene, law) if rest else reason
         for scene, rest, reason in zip(scenes, at_rest, left_out.reasons, strict=True)
@@ -148,6 +153,16 @@ def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -
         return model_orbit(motion, scenes[i].belt_speed, law, _position(scenes[i], means[i]))
 
     return judged(Modelled(means, errors, time.perf_counter() - start), reasons, PLANE, tolerance, orbit)
+
+
+def _bounded(scenes: Sequence[Scene], law: FrictionLaw, means: Floats) -> LeftOut:
+    """What the friction-free motion leaves out at most; two directions are driven, and slip turns."""
+    speeds = belt_speeds_of(scenes)
+    low, high = plane_bounds(scenes[0].mass(), law, speeds, means)
+    error = np.maximum(high - means, means - low)
+    size = np.array([law.sliding_friction(speed) for speed in np.abs(speeds).tolist()])
+    reasons = [too_wide(share, mu) for share, mu in zip((error / size).tolist(), size.tolist(), strict=True)]
+    return LeftOut(error, ["estimated"] * len(scenes), reasons)
 
 
 def _plane_mean(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[complex, float]:

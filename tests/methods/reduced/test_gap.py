@@ -94,6 +94,34 @@ def test_more_switches_that_change_nothing_leave_the_bounds_as_they_are() -> Non
     np.testing.assert_allclose(_bounds(slower, twice, speeds, fine), plain, rtol=0.0, atol=1e-4)
 
 
+@pytest.mark.parametrize(("start", "length"), [(0.05, 0.35), (0.1, 0.5), (-0.1, 0.2)])
+def test_the_bounds_are_the_largest_and_least_mean_that_the_gap_allows(start: float, length: float) -> None:
+    """Friction turned round where slip of the linear response is smallest, by its Fourier series, up to the gap."""
+    one = driven(1.3, 0.1, 0.2, 0.5)
+    body, speeds, period = body_of(one), np.array([one.belt_speed]), 2.0 * math.pi / 1.3
+    trial = Switched(np.array([[start, start + length]]) * period, np.array([[1.0, -1.0]]))
+    at = (np.arange(20_000) + 0.5) / 20_000
+    signs = np.where(np.mod(at - start, 1.0) < length, 1.0, -1.0)
+    orders = np.arange(1, 4_000)
+    ends = np.exp(-2j * np.pi * orders * start), np.exp(-2j * np.pi * orders * (start + length))
+    rates = 1.3 * orders
+    waves = np.zeros(10_001, np.complex128)
+    waves[orders] = (ends[0] - ends[1]) / (1j * np.pi * orders) / (0.2 + 1j * (rates - 1.0 / rates))
+    turned = waves * np.exp(1j * np.pi * np.arange(10_001) / 20_000)
+    slip = body.free_velocity(at * period)[0] - 20_000 * body.friction * np.fft.irfft(turned) - speeds[0]
+    gap = np.mean(np.abs(slip) - signs * slip)
+
+    wanted = []
+    for side in (1.0, -1.0):
+        against = np.sort(np.abs(slip[side * slip < 0.0]))
+        count = np.searchsorted(np.cumsum(2.0 * against) / 20_000, gap)
+        wanted.append(-side * np.mean(np.sign(slip)) - 2.0 * count / 20_000)
+
+    low, high = _bounds(body, trial, speeds, _Mesh(1e-4, 300, 600))
+    assert wanted[0] - 3e-3 <= low[0] <= wanted[0] + 3e-4  # the samples tell a mean to 1e-4
+    assert -wanted[1] - 3e-4 <= high[0] <= -wanted[1] + 3e-3
+
+
 def test_the_gap_of_a_trial_falls_with_its_fault_squared_and_the_bounds_with_its_fault() -> None:
     one = driven(1.3, 0.1, 0.1, 0.5)
     body, speeds = body_of(one), np.array([one.belt_speed])

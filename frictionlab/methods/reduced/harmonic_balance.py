@@ -24,6 +24,7 @@ from frictionlab.methods.reduced.common import (
     steadied_all,
 )
 from frictionlab.methods.reduced.coulomb_harmonics import answer_coulomb, coulomb_means, coulomb_refusal
+from frictionlab.methods.reduced.line_harmonics import answer_sliding, sliding_means, sliding_refusal
 from frictionlab.methods.reduced.planar_harmonics import answer_planar, planar_means, planar_refusal
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.numerics.roots import monotone_root
@@ -77,12 +78,14 @@ class HarmonicBalance(ReducedModel):
 
     def _balance(self, scene: Scene, law: FrictionLaw) -> _Balance:
         if self.harmonics > 1:
-            of_harmonics = _on_switches if scene.load_along_belt_only else _on_samples
-            return of_harmonics(self.harmonics, self.tail)
+            if not scene.load_along_belt_only:
+                return _on_samples(self.harmonics, self.tail)
+            varies = law.memory_kind == "none" and not law.constant_sliding_friction()
+            return (_on_legs if varies else _on_switches)(self.harmonics, self.tail)
         return _OF_BRISTLES if law.memory_kind == "bristle" else _OF_COULOMB
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
-        """Anything but Coulomb or bristle friction on one line under a drive that bounds the friction-free motion."""
+        """Where the model has no motion to start from, or no friction that it can balance."""
         if scene.degrees_of_freedom == 0:
             reason = "harmonic_balance needs a mass: with a prescribed slip there is no motion to solve for"
             return suggest_shooting(reason, scene, law)
@@ -177,6 +180,16 @@ def _on_switches(harmonics: int, tail: bool | None) -> _Balance:
         ),
         lambda scenes, law: coulomb_means(scenes, law, harmonics, summed),
         lambda _scene: 1e-5 + 1e-6 * harmonics,
+    )
+
+
+def _on_legs(harmonics: int, tail: bool | None) -> _Balance:
+    """Two harmonics or more, along the belt, of friction that varies with the slip speed."""
+    return _Balance(
+        lambda name, scene, law: sliding_refusal(name, scene, law, harmonics, tail),
+        lambda scenes, law, tolerance, _told_by: answer_sliding(scenes, law, tolerance, harmonics),
+        lambda scenes, law: sliding_means(scenes, law, harmonics),
+        lambda _scene: 2e-2 + 4e-3 * harmonics,
     )
 
 

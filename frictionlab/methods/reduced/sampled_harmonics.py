@@ -150,7 +150,7 @@ def _newton_step(
     mirrored = spectra[:, :, orders[:, None] + orders[None, :]]
     for direction in range(2):
         direct[direction, direction] += np.diag(what.impedance[direction])
-    whole = np.block([[_real_block(direct[a, b], mirrored[a, b]) for b in range(2)] for a in range(2)])
+    whole = np.block([[real_block(direct[a, b], mirrored[a, b]) for b in range(2)] for a in range(2)])
     side = np.concatenate([part for row in missing for part in (row.real, row.imag)])
     try:
         change = np.linalg.solve(whole, -side).reshape(2, 2, harmonics)
@@ -159,7 +159,7 @@ def _newton_step(
     return np.asarray(change[:, 0] + 1j * change[:, 1])
 
 
-def _real_block(direct: NDArray[np.complex128], mirrored: NDArray[np.complex128]) -> Floats:
+def real_block(direct: NDArray[np.complex128], mirrored: NDArray[np.complex128]) -> Floats:
     """Of direct*V + mirrored*conj(V), by the real and the imaginary part of V."""
     together, apart = direct + mirrored, direct - mirrored
     return np.block([[together.real, -apart.imag], [together.imag, apart.real]])

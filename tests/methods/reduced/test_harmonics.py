@@ -16,6 +16,7 @@ from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.reduced.coulomb_harmonics import Balancing, balanced
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
+from frictionlab.methods.reduced.sliding_harmonics import balanced_sliding, sliding_balance
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.mistakes.notes import WrongValues
 from frictionlab.orbit.harmonics import harmonic_parts
@@ -222,6 +223,65 @@ def test_in_the_plane_smooth_friction_converges_exponentially_and_errors_tell_ho
     odd = HarmonicBalance(harmonics=8).model_means([planar(-10.0), planar(0.0)], LAW)
     assert odd[0].real == pytest.approx(-means[1], abs=1e-11)
     assert odd[1] == 0.0
+
+
+# --- along the belt, friction that varies with the slip speed -------------------------------------------------------
+
+
+@pytest.mark.parametrize("belt_speed", [10.0, -40.0])
+def test_friction_on_legs_balances_coulomb_friction_as_its_switches_do(belt_speed) -> None:
+    one = scene(belt_speed, phase=70.0)
+    for harmonics in (1, 4, 16):
+        what = sliding_balance(one.mass(), LAW, harmonics)
+        motion = balanced_sliding(what, belt_speed, what.friction_free())
+        expected = HarmonicBalance(harmonics=harmonics, tail=False if harmonics > 1 else None)
+        assert -motion.friction.mean == pytest.approx(expected.model_means([one], LAW)[0], abs=1e-11)
+
+
+def test_friction_that_varies_with_speed_converges_on_the_full_mean_and_errors_tell_how_far() -> None:
+    scenes = [scene(speed) for speed in (10.0, 40.0, 70.0)]
+    full = Shooting().solve(scenes, STRIBECK, 1e-9)
+
+    first = sliding_balance(scenes[0].mass(), STRIBECK, 1)
+    alone = [balanced_sliding(first, one.belt_speed, first.friction_free()) for one in scenes]
+    far = [np.abs([-each.friction.mean for each in alone] - full.mean.real)]
+    for harmonics in (4, 16):
+        found = HarmonicBalance(harmonics=harmonics).solve(scenes, STRIBECK, 1.0)
+        far.append(np.abs(found.mean - full.mean.real))
+        assert found.status == ["ok"] * 3
+        assert np.all(far[-1] <= found.error + full.error)
+    assert far[0][0] > 3e-4 > 4e-5 > far[2][0]
+    assert far[0][1] > 3.0 * far[2][1]
+
+
+def test_every_harmonic_of_friction_that_varies_with_speed_obeys_its_own_equation() -> None:
+    one = scene(-10.0, phase=70.0)
+    mass = one.mass()
+    found = HarmonicBalance(harmonics=6).solve([one], STRIBECK, 1.0)
+    parts = harmonic_parts(one, found.orbit(0), 6)
+    velocity, friction = (
+        size[1:] * np.exp(1j * np.radians(phase[1:]))
+        for size, phase in (
+            (parts.velocity_amplitude, parts.velocity_phase),
+            (parts.friction_amplitude, parts.friction_phase),
+        )
+    )
+    rate = mass.frequency * np.arange(1.0, 7.0)
+    load = np.where(rate == mass.frequency, abs(mass.force), 0.0)
+
+    missing = (mass.damping + 1j * (rate - 1.0 / rate)) * velocity + mass.normal_load * friction - load
+    assert np.abs(missing).max() < 1e-8
+
+
+def test_where_slip_of_few_harmonics_cannot_rest_the_point_is_refused() -> None:
+    falls = Stribeck(mu_kinetic=0.39, mu_static=0.4, stribeck_speed=3.0)
+    falls_fast = Stribeck(mu_kinetic=0.1, mu_static=0.4, stribeck_speed=1.0)
+    found = HarmonicBalance(harmonics=12).solve([STICKS], falls, 1.0)
+
+    assert found.status == ["refused"]
+    assert "does not settle on a motion of 12 harmonics" in found.reason[0]
+    assert "no tail in closed form" in HarmonicBalance(harmonics=2, tail=True).refusal(FIG_4B, STRIBECK)
+    assert "outweighs the fall" in HarmonicBalance(harmonics=2).refusal(FIG_4B, falls_fast)
 
 
 # --- what it refuses ------------------------------------------------------------------------------------------------

@@ -18,6 +18,10 @@ UNDRIVEN = "nothing shakes the body: without friction it does not move"
 UNBOUNDED_MOTION = "the friction-free motion is unbounded: undamped resonance"
 WITH_SPEED = "the friction that moves the body under this normal load changes with belt speed"
 NO_WAVEFORM = "the friction-free motion is no sum of harmonics: no waveform of a prescribed slip says so"
+ON_SAMPLES = (
+    "in the plane harmonics are balanced on samples of a period, and what those miss is not told apart from what the "
+    "harmonics do"
+)
 FRICTION_FREE = "mdsm"
 """The method of the friction-free motion."""
 ORDERS_KEPT = (1, 3, 5, 9)
@@ -44,6 +48,8 @@ def cut_to(harmonics: int) -> Taken:
 def _balanced(harmonics: int, model: LesserModel) -> LesserModel | None:
     if model.scene.degrees_of_freedom == 0:
         return None
+    if not model.scene.load_along_belt_only:
+        raise CannotGo(ON_SAMPLES)
     return model.with_way(_method("harmonic_balance", **({"harmonics": harmonics} if harmonics > 1 else {})))
 
 

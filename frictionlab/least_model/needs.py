@@ -14,7 +14,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.least_model.answers import Curves
 from frictionlab.least_model.lesser import LesserModel
 from frictionlab.least_model.result import Needs, needs_from
-from frictionlab.least_model.search import LeastSearch
+from frictionlab.least_model.search import LeastSearch, each_reason_once
 from frictionlab.quantities import Floats
 from frictionlab.results.words import in_words
 from frictionlab.runner.arguments import given_law, given_scene, given_speeds, given_tolerance
@@ -93,7 +93,7 @@ def _of_curve(scenes: Scenes, law: FrictionLaw, within: float | None, asked: _As
     singles = search.singles()
     pairs = search.pairs(singles)
     smallest = search.smallest(singles, pairs)
-    rows = [*singles, *pairs, *search.whole(singles)]
+    rows = [*each_reason_once(singles), *pairs, *search.whole(singles)]
     if smallest is not None and smallest not in rows:
         rows.append(smallest)
     return needs_from(full, answers, rows, smallest, tolerance)

@@ -47,13 +47,8 @@ class LeastSearch:
         self._known: dict[Chosen, Without | None] = {}
 
     def singles(self) -> list[Without]:
-        """Every thing that the full model has, taken away alone.
-
-        Of several of one group that cannot go for the same reason the last.
-        """
-        found = self._all((thing,) for thing in things(self._rests))
-        last = {_why_not(each): each for each in found}
-        return [each for each in found if each.model is not None or last[_why_not(each)] is each]
+        """Every thing that the full model has, taken away alone."""
+        return self._all((thing,) for thing in things(self._rests))
 
     def pairs(self, singles: Sequence[Without]) -> list[Without]:
         """Two at a time of those that may go, of each group what takes most away."""
@@ -106,6 +101,12 @@ class LeastSearch:
             return without_these(self.full, chosen)
         except (CannotGo, WrongValues) as problem:
             return str(problem)
+
+
+def each_reason_once(singles: Sequence[Without]) -> list[Without]:
+    """Without those that cannot go for the reason for which a later one of their group cannot."""
+    last = {_why_not(each): each for each in singles}
+    return [each for each in singles if each.model is not None or last[_why_not(each)] is each]
 
 
 def _why_not(single: Without) -> tuple[str, str]:

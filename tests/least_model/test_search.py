@@ -11,7 +11,7 @@ import pytest
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.least_model.lesser import LesserModel
-from frictionlab.least_model.search import LeastSearch
+from frictionlab.least_model.search import LeastSearch, each_reason_once
 from frictionlab.least_model.sentences import sentence_of, smallest_in_words
 
 SPEEDS = np.array([1.0, 2.0])
@@ -48,6 +48,7 @@ class MadeUp:
             "flat": model.law.constant_sliding_friction(),
             "free": model.scene.degrees_of_freedom == 0 or getattr(model.way, "name", "") == "mdsm",
             "one": getattr(model.way, "name", "") == "harmonic_balance",
+            "only": getattr(model.way, "harmonics", 0) == 1,
         }
         mean = 0.2 + sum(self.worth.get(part, 0.0) for part, is_gone in lacking.items() if is_gone)
         numbers = {"mean_friction": mean, "error": self.error, "normalized_friction": mean / 0.3}
@@ -113,9 +114,21 @@ def test_what_cannot_go_alone_goes_with_others() -> None:
     assert alone["friction's effect on the motion"].change.verdict == "needed"
     assert alone["harmonics above 1"].change.verdict == "refused"
     said = sentence_of(alone["harmonics above 1"])
-    assert said.startswith("harmonics above 1 cannot be taken away: harmonic_balance")
+    assert said.startswith("harmonics above 1 cannot be taken away: in the plane")
     assert smallest is not None
     assert "harmonics above 1" in smallest.names
+
+
+def test_of_cuts_that_no_method_makes_alone_the_strongest_within_the_tolerance_goes() -> None:
+    looked = search(free=1.0, only=1.0)
+    singles = looked.singles()
+    smallest = looked.smallest(singles, looked.pairs(singles))
+
+    assert len([each for each in singles if each.model is None]) == 4
+    assert names(each_reason_once(singles))[-2:] == ["harmonics above 1", "friction's effect on the motion"]
+    assert len(each_reason_once(singles)) == len(singles) - 3
+    assert smallest is not None
+    assert "harmonics above 3" in smallest.names
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 from pathlib import Path
 
 import numpy as np
@@ -71,3 +72,16 @@ def test_the_page_of_the_python_interface_has_every_public_name() -> None:
     shown = set(re.findall(r":: frictionlab\.(\w+)", page)) | set(re.findall(r"`(\w+)`", page))
 
     assert sorted(set(fl.__all__) - shown) == []
+
+
+def test_the_gallery_shows_every_study_that_it_speaks_of() -> None:
+    gallery = runpy.run_path(str(DOCS / "gallery" / "make.py"))
+    shown = gallery["exhibits"]()
+
+    assert (DOCS / "gallery" / "index.md").read_text() == gallery["index"](shown)
+    for exhibit in shown:
+        page = (DOCS / "gallery" / f"{exhibit.name}.md").read_text()
+        (printed,) = re.findall(r"```text\n(.*?)\n```", page, re.DOTALL)
+        assert page == exhibit.page(printed)
+        assert re.search(r"expect: \d+ passed$", printed)
+        assert (DOCS / "gallery" / "figures" / f"{exhibit.name}.svg").stat().st_size < 250_000

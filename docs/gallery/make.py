@@ -1,0 +1,126 @@
+"""Run the studies of the gallery and write its pages and figures: ``python docs/gallery/make.py [STUDY ...]``.
+
+About two minutes, and as much again for kernels on a machine that has none. The site shows what is kept here.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+from ruamel.yaml import YAML
+
+GALLERY = Path(__file__).parent
+STUDIES = GALLERY.parent.parent / "studies"
+COMMAND = Path(sys.executable).parent / "frictionlab"
+
+
+class Exhibit(NamedTuple):
+    """A study in the gallery: its name and title, and what is said of it."""
+
+    name: str
+    title: str
+    question: str
+    read: str
+    found: str
+    figure: str = "mean_friction"
+
+    def page(self, printed: str) -> str:
+        """The page of the study; printed: what the command says."""
+        study = f"../../studies/{self.name}.yaml"
+        return f"""# {self.question}
+
+**{self.title}.**
+
+![{self.title}](figures/{self.name}.svg)
+
+**How to read it.** {self.read}
+
+**What comes out.** {self.found}
+
+## The study
+
+```sh
+frictionlab run studies/{self.name}.yaml
+```
+
+prints
+
+```text
+{printed}
+```
+
+from [{self.name}.yaml]({study}):
+
+```{{literalinclude}} {study}
+:language: yaml
+```
+"""
+
+    def card(self) -> str:
+        """Its entry on the first page."""
+        return f"""## {self.question}
+
+[![{self.title}](figures/{self.name}.svg)]({self.name}.md)
+
+{self.found} [More]({self.name}.md)
+"""
+
+
+def exhibits() -> list[Exhibit]:
+    """Every study that has words, in their order."""
+    yaml = YAML(typ="safe")
+    words = yaml.load(GALLERY / "words.yaml")
+    return [
+        Exhibit(name, yaml.load(STUDIES / f"{name}.yaml")["title"], **said) for name, said in words.items()
+    ]
+
+
+def make(exhibit: Exhibit) -> None:
+    """Run the study; write its page and its figure."""
+    with tempfile.TemporaryDirectory() as folder:
+        study = f"studies/{exhibit.name}.yaml"
+        done = subprocess.run(
+            [COMMAND, "run", study, "-o", f"{folder}/run"],
+            cwd=STUDIES.parent,
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
+        )
+        figure = Path(folder, "run", "figures", f"{exhibit.figure}.svg").read_text()
+    lines = [line for line in done.stdout.splitlines()[1:] if not line.startswith(("model ", "table in "))]
+    (GALLERY / "figures" / f"{exhibit.name}.svg").write_text(figure)
+    (GALLERY / f"{exhibit.name}.md").write_text(exhibit.page("\n".join(lines).strip()))
+
+
+def index(shown: list[Exhibit]) -> str:
+    """The first page."""
+    names = "\n".join(exhibit.name for exhibit in shown)
+    return f"""# Gallery
+
+Each picture is a study of the repository, and each asks one question. `python docs/gallery/make.py` runs the studies
+and draws all of it again.
+
+```{{toctree}}
+:hidden:
+
+{names}
+```
+
+{chr(10).join(exhibit.card() for exhibit in shown)}"""
+
+
+def main(wanted: list[str]) -> None:
+    """All studies, or those named."""
+    shown = exhibits()
+    for exhibit in shown:
+        if not wanted or exhibit.name in wanted:
+            make(exhibit)
+    (GALLERY / "index.md").write_text(index(shown))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

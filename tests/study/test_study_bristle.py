@@ -354,10 +354,11 @@ def test_the_schema_knows_every_parameter_of_every_law() -> None:
     for kind in LAWS:
         assert set(said[kind]) == {"kind", "label", *registry.law_class(kind).model_fields}
         assert said[kind]["planar"]["enum"] == ["vectorial", "rotated", "per-axis"]
-        assert said[kind]["contact_stiffness"] | {"title": ""} == {
+        assert said[kind]["contact_stiffness"] | {"title": "", "description": ""} == {
             "type": "number",
             "exclusiveMinimum": 0,
             "title": "",
+            "description": "",
         }
 
 

@@ -153,6 +153,8 @@ def results(names: Sequence[str]) -> list[str]:
 CURVES: dict[str, str] = {
     "reversal_end": "belt speed above which slip neither reverses nor sticks",
     "reversal_end_error": "bound on its error",
+    "shape_start": "mean friction in the limit of a vanishing belt speed, where the chord begins",
+    "shape_start_error": "bound on its error",
     "shape_area": "signed area between the curve and its chord up to there, > 0 above the chord: concave",
     "shape_area_error": "bound on its error",
     "shape_half": "mean friction at half that belt speed over mean friction there",
@@ -240,6 +242,7 @@ _NAMES = {
     "energy_viscous": ("viscous loss", r"E_\mathrm{v}"),
     "energy_friction": ("work absorbed by friction", r"E_\mathrm{f}"),
     "energy_contact": ("heat in the contact", r"E_\mathrm{c}"),
+    "velocity_ratio": ("relative belt speed", r"v_b/V_\mathrm{lin}"),
     "scene.belt_speed": ("belt speed", "v_b"),
     "scene.damping_ratio": ("damping ratio", r"\beta_1"),
     "scene.normal_load": ("normal load", r"\gamma^2"),

@@ -87,7 +87,7 @@ ARROWS = {
         ),
         *("registry", "results", "scene", "study", "theory"),
     ],
-    "charts": ["columns", "printable"],
+    "charts": ["columns", "printable", "study"],
     "report": ["charts", "columns", "registry", "results", "runner", "scene", "study"],
     "notebook": ["charts", "columns", "report", "results", "runner", "scene", "study"],
     "explore": ["charts", "columns", "report", "results", "runner"],

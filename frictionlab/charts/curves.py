@@ -12,10 +12,11 @@ import pandas as pd
 from numpy.typing import NDArray
 from pandas.api.types import is_numeric_dtype
 
-from frictionlab.columns import SCALED, belt_speed, given
+from frictionlab.columns import BELT_SPEEDS, SCALED, belt_speed, given
 
 MOST_PICTURES = 12  # in which several laws are compared; of more values each law has a picture of its own
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
+READ_FOR_KINKS = "velocity_ratio", "mean_friction", "normalized_friction", "transverse_velocity_amplitude"
 _ROUNDING = 1e-15  # rounding of a mean of order one
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
 SweptValue = tuple[
@@ -28,8 +29,8 @@ class CurveData:
     """The rows of one law and method whose inputs differ in the abscissa alone, sorted along it.
 
     member: the swept value that distinguishes the curve within its picture, if any; panel: the values that select its
-    picture. place: the indices of its law, member and method among those of the table. same: other methods whose
-    curve is this very line.
+    picture. place: the indices of its law, member and method among those of the table. kinks: V_lin and its mirror
+    image where it has its kink there, in the units of the axis. same: other methods whose curve is this very line.
     """
 
     law: str
@@ -38,6 +39,7 @@ class CurveData:
     member: SweptValue | None
     place: tuple[int, int, int]
     rows: pd.DataFrame
+    kinks: tuple[float, ...] = ()
     same: tuple[str, ...] = ()
 
 
@@ -118,7 +120,9 @@ def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str |
         own = settings.pop() if member else None
         settings = [*([("law", law)] if apart else []), *settings]
         place = 0 if apart else laws.index(law), _index(members, own), methods.index(method)
-        curves.append(CurveData(law, method, tuple(settings), own, place, rows.sort_values(abscissa)))
+        rows = rows.sort_values(abscissa)
+        kinks = kinks_of(rows) if abscissa in BELT_SPEEDS else ()
+        curves.append(CurveData(law, method, tuple(settings), own, place, rows, kinks))
     seen = list(dict.fromkeys(curve.panel for curve in curves))
     return sorted(curves, key=lambda curve: (_heights(curve), seen.index(curve.panel), curve.place))
 
@@ -189,25 +193,27 @@ def _span(curves: Sequence[CurveData], of: CurveData, column: str) -> float:
     return float(np.ptp(known)) if known.size else 0.0
 
 
-def kinks(curve: CurveData) -> list[float]:
+def kinks_of(curve: pd.DataFrame) -> tuple[float, ...]:
     """V_lin, and its mirror image, inside the belt speeds of a curve that has its closed-form kink there.
 
     That is a curve whose body moves along the belt alone and whose friction of steady sliding is the same at
     every speed: from V_lin on slip no longer reverses. V_lin is read from velocity_ratio. Friction on bristles that
     keep their stiffness lags behind a normal load that changes, and has no kink there.
     """
-    contact = curve.rows.get("scene.normal_load_variation.contact")
+    if any(name not in curve for name in READ_FOR_KINKS):
+        return ()
+    contact = curve.get("scene.normal_load_variation.contact")
     if contact is not None and (contact == "constant").any():
-        return []
-    rows = curve.rows[curve.rows["velocity_ratio"].abs() > 0]
+        return ()
+    rows = curve[curve["velocity_ratio"].abs() > 0]
     sliding = (rows["mean_friction"] / rows["normalized_friction"]).dropna().abs()
     across = rows["transverse_velocity_amplitude"].abs().max() > 0
     if across or sliding.empty or sliding.max() - sliding.min() > 1e-9 * sliding.max():
-        return []
-    speeds = curve.rows[belt_speed(curve.rows.columns)]
+        return ()
+    speeds = curve[belt_speed(curve.columns)]
     limit = float((speeds[rows.index] / rows["velocity_ratio"]).median())
     low, high = speeds.min(), speeds.max()
-    return [speed for speed in (-limit, limit) if low < speed < high]
+    return tuple(speed for speed in (-limit, limit) if low < speed < high)
 
 
 def is_logarithmic(values: NDArray[np.float64]) -> bool:

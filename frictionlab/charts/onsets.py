@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from typing import Any, NamedTuple
 
 import pandas as pd
@@ -29,20 +29,33 @@ class OnsetMark(NamedTuple):
     at: float
 
 
-def onsets_on(curve: CurveData, onsets: pd.DataFrame | None) -> list[OnsetMark]:
-    """Those of a curve, by the inputs that are equal along it; nothing where they are not among its columns."""
+def onsets_on(curve: CurveData, onsets: pd.DataFrame | None, along: str | None = None) -> list[OnsetMark]:
+    """Those of a curve, by the inputs that are equal along it; nothing where they are not among its columns.
+
+    along: the column that they are marked along, the belt speed as given where left out.
+    """
     if onsets is None or onsets.empty:
         return []
-    keys = [name for name in onsets.columns if name not in ONSETS and name in curve.rows]
-    own = curve.rows.iloc[0]
-    same = pd.Series(True, onsets.index)
-    for name in keys:
-        same &= onsets[name].isna() if pd.isna(own[name]) else onsets[name] == own[name]
-    speed = belt_speed(curve.rows.columns)
-    scales = (curve.rows[speed] / curve.rows[BELT_SPEED]).replace([float("inf")], float("nan")).dropna()
-    scale = 1.0 if speed == BELT_SPEED or scales.empty else float(scales.median())
-    found = onsets[same]
+    found = rows_of_curve(curve, onsets, ONSETS)
+    scale = speed_scale(curve, along)
     return [OnsetMark(name, scale * at) for name, at in zip(found["onset"], found["belt_speed"], strict=True)]
+
+
+def rows_of_curve(curve: CurveData, table: pd.DataFrame, columns: Container[str]) -> pd.DataFrame:
+    """The rows of a table that are those of a curve, by their inputs: what is not among these columns."""
+    keys = [name for name in table.columns if name not in columns and name in curve.rows]
+    own = curve.rows.iloc[0]
+    same = pd.Series(True, table.index)
+    for name in keys:
+        same &= table[name].isna() if pd.isna(own[name]) else table[name] == own[name]
+    return table[same]
+
+
+def speed_scale(curve: CurveData, along: str | None = None) -> float:
+    """A belt speed in the units of the axis over the nondimensional one."""
+    speeds = curve.rows[along or belt_speed(curve.rows.columns)]
+    scales = (speeds / curve.rows[BELT_SPEED]).replace([float("inf")], float("nan")).dropna()
+    return 1.0 if scales.empty else float(scales.median())
 
 
 def draw_onsets(axes: Axes, marks: Sequence[OnsetMark], color: Any) -> None:

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.textpath import TextPath
 from matplotlib.ticker import NullLocator
 
-from frictionlab.charts.curves import CurveData, kinks
+from frictionlab.charts.curves import CurveData
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.words import swept_text
 from frictionlab.columns import symbol
@@ -29,7 +29,7 @@ def speed_marks(curves: Sequence[CurveData]) -> list[SpeedMark]:
     """Every V_lin of these curves once, in the order of belt speed."""
     found: list[SpeedMark] = []
     for curve in curves:
-        for at in kinks(curve):
+        for at in curve.kinks:
             if all(abs(at - mark.at) > 1e-9 * abs(at) for mark in found):
                 found.append(SpeedMark(at, curve))
     return sorted(found, key=lambda mark: mark.at)

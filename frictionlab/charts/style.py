@@ -9,7 +9,10 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-COLUMN, PAGE = 85 / 25.4, 175 / 25.4  # widths of a journal's column and page [inch]
+from frictionlab.study.figure_options import WIDTHS
+
+COLUMN, PAGE = (millimetres / 25.4 for millimetres in WIDTHS.values())
+"""Widths of a journal's column and page [inch]."""
 PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
 LEGEND_FONT = 7  # [point]
 _FILE = mpl.rc_params_from_file(Path(__file__).with_name("frictionlab.mplstyle"), use_default_template=False)
@@ -27,3 +30,10 @@ def write_figure(figure: Figure, path: Path, formats: Sequence[str] = ("svg", "p
         figure.savefig(file, metadata=_UNDATED[file.suffix[1:]])
         figure.set_layout_engine("none")  # the layout found for the first file serves the others
     return files
+
+
+def page_of(pictures: int, width: str | None = None) -> tuple[float, int]:
+    """The width of a figure [inch], as asked for or as it needs, and how many pictures stand side by side."""
+    abreast = min(2, pictures)
+    wide = PAGE if width == "double" or (width is None and abreast == 2) else COLUMN
+    return wide, abreast if wide == PAGE else 1

@@ -1,6 +1,10 @@
-"""Values and labels of a study as figures write them."""
+"""Values, labels and the title of a study as figures write them."""
 
 from __future__ import annotations
+
+import textwrap
+
+from matplotlib.figure import Figure
 
 from frictionlab.charts.curves import SweptValue
 from frictionlab.columns import word
@@ -29,3 +33,11 @@ def sentence(setting: SweptValue) -> str:
     if name == "law":
         return swept_text(value)
     return f"no {word(name)}" if value is None else f"{word(name)} = {swept_text(value)}"
+
+
+def write_title(figure: Figure, title: str) -> int:
+    """Write it above the pictures; the lines it takes."""
+    lines = textwrap.wrap(plain(title), round(figure.get_figwidth() * 13))
+    if lines:
+        figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight="bold")
+    return len(lines)

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+    from frictionlab.runner.saved import Saved
+    from frictionlab.study.figure_options import FigureOptions
+
 
 def draw_into(
     table: DataFrame,
@@ -15,15 +18,27 @@ def draw_into(
     folder: Path,
     onsets: DataFrame | None = None,
     attractors: DataFrame | None = None,
+    curves: DataFrame | None = None,
+    options: FigureOptions | None = None,
 ) -> list[Path]:
-    """Draw the figures of a run into its folder, onsets marked; the files. Raises SaveError."""
+    """Draw the figures of a run into its folder, onsets marked; the files. Raises SaveError.
+
+    curves: of ``curves.csv``, with the shapes.
+    """
     from frictionlab.charts.bifurcation import draw_bifurcations
     from frictionlab.charts.figures import draw_figures  # with matplotlib, which takes a second
     from frictionlab.runner.errors import SaveError
+    from frictionlab.study.figure_options import USUAL_FIGURES
 
     try:
-        files = draw_figures(table, title, folder / "figures", onsets)
+        files = draw_figures(table, title, folder / "figures", onsets, curves, options or USUAL_FIGURES)
         more = [] if attractors is None else draw_bifurcations(attractors, title, folder / "figures")
         return files + more
     except OSError as problem:
         raise SaveError(f"cannot write the figures in {folder}: {problem.strerror or problem}") from problem
+
+
+def draw_saved(saved: Saved, folder: Path) -> list[Path]:
+    """Draw the figures of a saved run anew, as its study wants them; the files. Raises SaveError."""
+    more = saved.onsets, saved.attractors, saved.curves, saved.study.figures
+    return draw_into(saved.table, saved.title, folder, *more)

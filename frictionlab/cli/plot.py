@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from frictionlab.cli.figures import draw_into
+from frictionlab.cli.figures import draw_saved
 from frictionlab.cli.output import print_message, print_result
 
 
@@ -19,7 +19,7 @@ def plot_command(run: Path) -> None:
     saved = read_saved(run)
     for line in saved.damaged:
         print_message(line)
-    if files := draw_into(saved.table, saved.title, run, saved.onsets, saved.attractors):
+    if files := draw_saved(saved, run):
         print_result("\n".join(map(str, files)))
     else:
         print_message(f"no figures: the study of {run} sweeps nothing")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from frictionlab.cli.figures import draw_into
+from frictionlab.cli.figures import draw_saved
 from frictionlab.cli.output import print_message, print_result
 
 
@@ -20,5 +20,5 @@ def report_command(run: Path) -> None:
     saved = read_saved(run)
     for line in saved.damaged:
         print_message(line)
-    draw_into(saved.table, saved.title, run, saved.onsets, saved.attractors)
+    draw_saved(saved, run)
     print_result(str(write_report(saved)))

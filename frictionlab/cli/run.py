@@ -254,7 +254,8 @@ def _draw(job: Job, result: Run, asked: RunOptions) -> None:
 
     table = result.table if asked.figures else result.to_show
     onsets = None if result.curves.empty else result.onsets
-    if draw_into(whole(table), job.study.title or job.name, job.out, onsets, result.attractors):
+    title, curves = job.study.title or job.name, None if result.curves.empty else result.curves
+    if draw_into(whole(table), title, job.out, onsets, result.attractors, curves, job.study.figures):
         print_message(f"figures in {job.out / 'figures'}")
 
 

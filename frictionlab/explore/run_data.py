@@ -10,7 +10,7 @@ from typing import Any
 
 import pandas as pd
 
-from frictionlab.charts.curves import CurveData, Family, family_of, kinks
+from frictionlab.charts.curves import CurveData, Family, family_of
 from frictionlab.columns import word
 from frictionlab.report.markup import html
 from frictionlab.runner.errors import FolderError
@@ -103,9 +103,7 @@ def _curve(
 
 
 def _kink(curve: CurveData) -> float | None:
-    needed = {"velocity_ratio", "normalized_friction", "transverse_velocity_amplitude"}
-    found = kinks(curve) if needed <= set(curve.rows.columns) else []
-    return found[-1] if found else None
+    return curve.kinks[-1] if curve.kinks else None
 
 
 def _numbers(column: pd.Series | None) -> list[float | None]:

@@ -15,6 +15,7 @@ def draw_and_report(written: Run) -> Path:
     """The folder of a run, with its figures and its report in it. Raises SaveError, OSError."""
     written = with_onsets(written)
     saved = saved_as(written)
-    draw_figures(saved.table, saved.title, saved.folder / "figures", saved.onsets)
+    folder = saved.folder / "figures"
+    draw_figures(saved.table, saved.title, folder, saved.onsets, saved.curves, saved.study.figures)
     write_report(saved)
     return saved.folder

@@ -12,7 +12,8 @@ from pandas import DataFrame
 
 from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.charts.curves import Family, family_of
-from frictionlab.charts.figures import figure_columns
+from frictionlab.charts.derived import reference_law
+from frictionlab.charts.figures import OTHER_FIGURES, figure_columns
 from frictionlab.report.markup import symbol_html, unit_html, word_html
 from frictionlab.report.question import values_listed
 from frictionlab.report.tables import joined_values, setting
@@ -42,8 +43,20 @@ def pictures(saved: Saved) -> list[Picture]:
     family = family_of(saved.table)
     found = {} if family is None else figure_columns(saved.table)
     usual = [_picture(saved, family, name, columns) for name, columns in found.items()] if family else []
+    usual += _others(saved, family) if family else []
     several = {} if saved.attractors is None else bifurcations(saved.attractors)
     return usual + [_bifurcation(saved, name, rows) for name, rows in several.items()]
+
+
+def _others(saved: Saved, family: Family) -> list[Picture]:
+    """The figures that only some tables have, where they were drawn."""
+    reference = reference_law(family, saved.study.figures.against)
+    found = []
+    for name, told in OTHER_FIGURES.items():
+        if data := address(saved.folder / "figures" / name):
+            caption = escape(f"{told.format(reference=reference)}.")
+            found.append(Picture(name, data, Markup(caption), str(caption), len(family.panels) == 1))
+    return found
 
 
 def _bifurcation(saved: Saved, name: str, rows: DataFrame) -> Picture:

@@ -141,6 +141,7 @@ def _measures(rows: Rows, loads: Loads) -> dict[str, Any]:
         end, kinked = end_of_reversal(rows, loads)
         found |= _entry("reversal_end", end)
         start = start_friction(rows, loads)
+        found |= _entry("shape_start", start)
         shape = shape_of(FrictionCurve(rows.belt_speed, rows.mean_friction, rows.error, start, end, kinked))
     except UnreadableCurve as problem:
         return found | {"reason": str(problem)}

@@ -23,6 +23,7 @@ from frictionlab.study.choices import (
     note_equal_labels,
 )
 from frictionlab.study.expectations import Table, expectations, result_column
+from frictionlab.study.figure_options import read_figure_options
 from frictionlab.study.grid import Sweeps, note_impossible_points, read_sweeps
 from frictionlab.study.law_files import (
     LawReader,
@@ -40,7 +41,7 @@ from frictionlab.study.yaml_source import SAVED, Source, read_file
 
 STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
-    *("sweep", "expect", "keep", "columns", "limit"),
+    *("sweep", "expect", "keep", "columns", "limit", "figures"),
 )
 KEPT = {"orbit": 2, "attractors": 1, "harmonics": 1}
 """What ``keep`` may ask for, and the least count of each."""
@@ -189,6 +190,9 @@ class _StudyReader:
         limit = notes.mapping(tree.get("limit", {}), ("limit",), (LIMIT_KEY,)) or {}
         if LIMIT_KEY in limit:
             told[LIMIT_KEY] = notes.positive(limit[LIMIT_KEY], ("limit", LIMIT_KEY))
+        if "figures" in tree:
+            labels = certain_law_labels(tree.get("laws"), self._known)
+            told["figures"] = read_figure_options(tree["figures"], labels, notes)
         return told
 
     def _columns(self, scene: Scene | None) -> tuple[str, ...] | None:

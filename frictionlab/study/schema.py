@@ -14,6 +14,7 @@ from frictionlab.scene import dimensional, scene
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
+from frictionlab.study.figure_options import FIGURE_KEYS, FLAGS, FORMATS, WIDTHS
 from frictionlab.study.grid import LARGEST_GRID
 from frictionlab.study.study import LIMIT_KEY, SCHEMA, SECONDS_PER_POINT
 
@@ -29,6 +30,7 @@ _KEYS = {
     "expect": "what the table is expected to say; where it does not, run ends with exit code 3",
     "columns": "result columns to find; inputs, mean_friction, error, status and reason always; all where left out",
     "limit": "what a point may cost",
+    "figures": "how figures are drawn",
     "keep": "what to write beside the table",
     LIMIT_KEY: "seconds that a point may take, compiling left out, until it counts as killed",
     "orbit": "samples per period of every orbit, written to orbits.parquet",
@@ -92,6 +94,7 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
         "expect": {"type": "array", "items": {"oneOf": _expectations()}},
         "columns": {"type": "array", "minItems": 1, "items": {"enum": [*columns.RESULTS, *columns.SI]}},
         "limit": _closed_object({LIMIT_KEY: _TIME}, []),
+        "figures": _figures(),
         "keep": _closed_object(
             {name: {"type": "integer", "minimum": least} for name, least in reader.KEPT.items()}, []
         ),
@@ -175,6 +178,16 @@ def _kind(name: str, record: dict[str, Any]) -> dict[str, Any]:
     }
     closed = _closed_object({**own, **record.get("properties", {})}, ["kind"])
     return {"title": name, "description": record.get("description", ""), **closed}
+
+
+def _figures() -> dict[str, Any]:
+    """How figures are drawn; the same words mean other things elsewhere in a study."""
+    formats = {"type": "array", "minItems": 1, "uniqueItems": True, "items": {"enum": list(FORMATS)}}
+    words: dict[str, Any] = {"against": _TEXT, "width": {"enum": list(WIDTHS)}, "formats": formats}
+    kinds: dict[str, Any] = {name: {"type": "boolean"} for name in FLAGS} | words
+    return _closed_object(
+        {name: {**kinds[name], "description": FIGURE_KEYS[name]} for name in FIGURE_KEYS}, []
+    )
 
 
 def _sweep() -> dict[str, Any]:

@@ -24,6 +24,7 @@ from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.scene.scene import Scene, with_values
 from frictionlab.scene.scenes import Scenes
 from frictionlab.scene.waveforms import Form
+from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 from frictionlab.study.ranges import SweepRange
 from frictionlab.study.yaml_text import yaml_text
 
@@ -166,7 +167,7 @@ class Study:
     keep_attractors: starts a point from which every state is looked for, None for none. keep_harmonics: the highest
     harmonic of velocity and friction to keep, None for none.
     columns: result columns asked for, None for all. seconds_per_point: the time a point may take [s].
-    plugins: its law files. code: SHA-256 of every law that is not frictionlab's own, by kind.
+    figures: how they are drawn. plugins: its law files. code: SHA-256 of every law that is not frictionlab's own.
     """
 
     scene: Scene
@@ -180,6 +181,7 @@ class Study:
     keep_harmonics: int | None = None
     columns: tuple[str, ...] | None = None
     seconds_per_point: float = SECONDS_PER_POINT
+    figures: FigureOptions = USUAL_FIGURES
     title: str = ""
     source: str = ""
     plugins: tuple[LawFile, ...] = ()
@@ -329,6 +331,8 @@ class Study:
             told["columns"] = list(self.columns)
         if self.seconds_per_point != SECONDS_PER_POINT:
             told["limit"] = {LIMIT_KEY: self.seconds_per_point}
+        if figures := self.figures.resolved():
+            told["figures"] = figures
         if self.expect:
             told["expect"] = [expectation.resolved() for expectation in self.expect]
         return told

@@ -14,14 +14,17 @@ import matplotlib.style  # else its name is not there
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib import style as styles
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from oracle import table_in_the_plane, table_of_one_degree_of_freedom
 
 from frictionlab.charts import figures
-from frictionlab.charts.curves import family_of, is_logarithmic, kinks
+from frictionlab.charts.curve_figure import CurveFigure
+from frictionlab.charts.curves import family_of, is_logarithmic
 from frictionlab.charts.figures import FIGURES, draw_figures
 from frictionlab.charts.looks import MOST_VALUES_IN_LEGEND
+from frictionlab.charts.style import STYLE
 from frictionlab.columns import RESULTS, symbol, word
 
 
@@ -44,8 +47,8 @@ def resonance(line: pd.DataFrame) -> pd.DataFrame:
 def _figure(table: pd.DataFrame, *columns: str) -> Figure:
     family = family_of(table)
     assert family is not None
-    with mpl.rc_context(figures.STYLE):
-        return figures._figure(family, columns or ("mean_friction",), "A title")
+    with mpl.rc_context(STYLE):
+        return CurveFigure(family, columns or ("mean_friction",), "A title").draw()
 
 
 def _legend(figure: Figure) -> list[str]:
@@ -409,7 +412,7 @@ def test_v_lin_is_marked_where_friction_has_its_kink(line: pd.DataFrame) -> None
     family = family_of(line)
 
     assert family is not None
-    assert [kinks(curve) for curve in family.curves] == [[pytest.approx(50)], [pytest.approx(26.254457)]]
+    assert [list(curve.kinks) for curve in family.curves] == [[pytest.approx(50)], [pytest.approx(26.254457)]]
     (above,) = [axes for axes in _figure(line).axes[0].child_axes]
     names = [label.get_text().strip() for label in above.get_xticklabels()]
     assert names == [rf"$V_\mathrm{{lin}}$, $\Omega$ = {frequency}" for frequency in ("1.5", "1")]
@@ -421,7 +424,9 @@ def test_v_lin_has_the_look_of_the_curve_it_belongs_to(line: pd.DataFrame) -> No
     for mark in (one for one in axes.lines if list(one.get_ydata()) == [1.0]):
         (of,) = [one for one in axes.lines[:2] if one.get_color() == mark.get_color()]
         kink = [
-            curve for curve in family_of(line).curves if kinks(curve) == [pytest.approx(mark.get_xdata()[0])]
+            curve
+            for curve in family_of(line).curves
+            if list(curve.kinks) == [pytest.approx(mark.get_xdata()[0])]
         ]
         np.testing.assert_array_equal(of.get_ydata(), kink[0].rows["mean_friction"])
         assert of.get_marker() == mark.get_marker()
@@ -447,7 +452,7 @@ def test_v_lin_is_not_marked_where_there_is_no_kink(plane: pd.DataFrame, resonan
     for table in (plane, below, falling):
         family = family_of(table)
         assert family is not None
-        assert [kinks(curve) for curve in family.curves if kinks(curve)] == []
+        assert [list(curve.kinks) for curve in family.curves if curve.kinks] == []
 
 
 def test_a_point_alone_between_gaps_is_still_seen(resonance: pd.DataFrame) -> None:
@@ -507,7 +512,7 @@ def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
     laws = [resonance.assign(law=label) for label in (r"$\nope{$", "costs $5", "L" * 200)]
     table = pd.concat(laws, ignore_index=True)
 
-    assert len(draw_figures(table, r"$\bad{ 摩擦 and $3", tmp_path)) == 2 * len(figures.figure_columns(table))
+    assert len(draw_figures(table, r"$\bad{ 摩擦 and $3", tmp_path)) == 2 * len(figures.figures_of(table))
     assert _legend(_figure(table)) == [r"\$\nope{\$", r"costs \$5", "L" * 35 + "…"]
 
 
@@ -522,6 +527,6 @@ def test_the_legend_names_what_a_picture_shows_and_nothing_else(resonance: pd.Da
 
 
 def test_the_style_can_be_used_by_its_name() -> None:
-    with mpl.style.context("frictionlab.charts.frictionlab"):
+    with styles.context("frictionlab.charts.frictionlab"):
         assert mpl.rcParams["legend.frameon"] is False
         assert mpl.rcParams["axes.prop_cycle"].by_key()["color"][0] == "#08306b"

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from frictionlab.charts import figures
 from frictionlab.charts.curves import family_of
-from frictionlab.charts.onsets import SIGNS, onsets_on
+from frictionlab.charts.onsets import SIGNS, onset_entries, onsets_on
 
 SPEEDS = np.linspace(1.0, 60.0, 12)
 
@@ -88,5 +88,5 @@ def test_a_figure_draws_them_and_names_each_kind_once(
     assert sorted(drawn) == [(44.0, ">"), (50.0, "<"), (50.0, "d")]
     family = family_of(TABLE)
     assert family is not None
-    legend = figures.onset_entries([mark for one in family.curves for mark in onsets_on(one, ONSETS)])
+    legend = onset_entries([mark for one in family.curves for mark in onsets_on(one, ONSETS)])
     assert [entry.get_label() for entry in legend] == ["stick begins", "stick ends", "reversal ends"]

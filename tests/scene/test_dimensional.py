@@ -15,7 +15,8 @@ from strategies import LAWS, scenes_in_the_plane, scenes_on_the_line, sizes
 
 import frictionlab as fl
 from frictionlab.charts import figures
-from frictionlab.charts.curves import family_of, kinks
+from frictionlab.charts.curve_figure import CurveFigure
+from frictionlab.charts.curves import family_of
 from frictionlab.columns import RESULTS, SI
 from frictionlab.laws.base import Dimension, Positive, Record
 from frictionlab.mistakes.notes import WrongValues
@@ -577,7 +578,7 @@ def test_figures_are_in_si_units_where_the_scene_is() -> None:
         "scene.dimensional.belt_speed_m_per_s",
         "scene.dimensional.mass_kg",
     )
-    figure = figures._figure(family, figures._as_given(["velocity_amplitude", "energy_input"], table), "")
+    figure = CurveFigure(family, figures._as_given(["velocity_amplitude", "energy_input"], table)).draw()
     assert [axes.get_ylabel() for axes in figure.axes] == [
         r"velocity amplitude $\hat V_1$ [m/s]",
         r"work of the loads $E_\mathrm{in}$ [J]",
@@ -586,7 +587,7 @@ def test_figures_are_in_si_units_where_the_scene_is() -> None:
     assert figures._as_given(["mean_friction"], table) == ["mean_friction"]
     limits = [friction_free_velocity(si_scene(**BODY | {"mass_kg": mass})) for mass in (2, 3)]
     wanted = [limit * math.sqrt(800 / mass) * 1e-3 for limit, mass in zip(limits, (2, 3), strict=True)]
-    assert [kinks(curve) for curve in family.curves] == [[pytest.approx(speed)] for speed in wanted]
+    assert [list(curve.kinks) for curve in family.curves] == [[pytest.approx(speed)] for speed in wanted]
 
 
 def test_every_si_value_has_its_word_its_symbol_and_its_unit() -> None:

@@ -1,0 +1,202 @@
+"""What a study asks of its figures, and what is then drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from oracle import table_of_one_degree_of_freedom
+
+from frictionlab.charts.figures import draw_figures, figures_of
+from frictionlab.charts.style import STYLE
+from frictionlab.study import StudyError
+from frictionlab.study.figure_options import FigureOptions
+from frictionlab.study.reader import parse_study
+from frictionlab.study.schema import schema
+
+
+@pytest.fixture(scope="module")
+def laws() -> pd.DataFrame:
+    """Two laws at two frequencies."""
+    table = table_of_one_degree_of_freedom()
+    higher = table.assign(law="other", mean_friction=table["mean_friction"] * 1.02, error=1e-3)
+    return pd.concat([higher.assign(kind="dahl"), table.assign(error=1e-9)], ignore_index=True)
+
+
+SHAPES = pd.DataFrame(
+    [
+        ("coulomb", "coulomb", "auto", 1.0, 50.0, 0.05, 0.5446, 0.0574, 1e-3, "concave"),
+        ("coulomb", "coulomb", "auto", 1.5, 26.254457, 0.0, 0.3627, -0.2071, 4e-2, "convex"),
+    ],
+    columns=[
+        *("law", "kind", "method", "scene.drive.frequency"),
+        *("reversal_end", "shape_start", "shape_half", "shape_area", "shape_area_error", "shape"),
+    ],
+)
+
+
+def _drawn(table: pd.DataFrame, name: str = "mean_friction", **options: Any) -> Figure:
+    curves = SHAPES if options.get("shape") else None
+    with mpl.rc_context(STYLE):
+        return figures_of(table, "A title", None, curves, FigureOptions(**options))[name]()
+
+
+def _legend(figure: Figure) -> list[str]:
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
+def _lines(axes: Axes) -> list[tuple[np.ndarray, np.ndarray]]:
+    return [
+        (np.asarray(one.get_xdata()), np.asarray(one.get_ydata()))
+        for one in axes.lines
+        if len(one.get_xdata()) > 2
+    ]
+
+
+def test_normalized_axes_are_shares_of_v_lin_and_of_steady_friction(laws: pd.DataFrame) -> None:
+    figure = _drawn(laws, normalized=True)
+
+    assert "V_" in figure.axes[0].get_xlabel()
+    rows = laws[(laws["law"] == "coulomb") & (laws["scene.drive.frequency"] == 1.0)]
+    x, y = _lines(figure.axes[0])[1]
+    np.testing.assert_allclose(x, rows["velocity_ratio"], rtol=1e-12)
+    np.testing.assert_allclose(y, rows["normalized_friction"], rtol=1e-12)
+    for axes in figure.axes:
+        assert list(axes.child_axes[0].get_xticks()) == [1.0]
+
+
+def test_a_curve_without_v_lin_keeps_the_axes_as_they_are(laws: pd.DataFrame) -> None:
+    undriven = laws.assign(velocity_ratio=laws["velocity_ratio"].mask(laws["law"] == "other"))
+
+    assert _drawn(undriven, normalized=True).axes[0].get_xlabel() == "belt speed $v_b$"
+
+
+@pytest.mark.parametrize(("against", "law", "sign"), [(None, "coulomb", 1.0), ("other", "other", -1.0)])
+def test_differences_are_taken_from_coulomb_or_the_law_asked_for(
+    laws: pd.DataFrame, against: str | None, law: str, sign: float
+) -> None:
+    figure = _drawn(laws, "differences", against=against)
+
+    axes = figure.axes[0]
+    assert axes.get_ylabel().endswith(law)
+    rows = laws[(laws["law"] == "coulomb") & (laws["scene.drive.frequency"] == 1.0)]
+    ((_, y),) = _lines(axes)
+    np.testing.assert_allclose(y, sign * 0.02 * rows["mean_friction"], atol=1e-12)
+    (band,) = axes.collections
+    heights = np.ptp(band.get_paths()[0].vertices[:, 1])
+    assert heights == pytest.approx(np.ptp(0.02 * rows["mean_friction"]) + 2e-3, rel=1e-2)
+
+
+def test_one_law_has_no_differences(laws: pd.DataFrame) -> None:
+    assert "differences" not in figures_of(laws[laws["law"] == "coulomb"])
+
+
+def test_a_shape_is_drawn_with_its_chord_its_area_and_the_verdict(laws: pd.DataFrame) -> None:
+    one = laws[laws["law"] == "coulomb"]
+
+    figure = _drawn(one, "shape", shape=True)
+
+    told = [axes.get_title(loc="left").splitlines()[-1] for axes in figure.axes]
+    assert told == ["concave: area 0.057 ± 0.001", "convex: area \N{MINUS SIGN}0.21 ± 0.04"]
+    for axes, (_, row) in zip(figure.axes, SHAPES.iterrows(), strict=True):
+        (chord,) = [line for line in axes.lines if len(line.get_xdata()) == 2]
+        assert list(chord.get_xdata()) == pytest.approx([0.0, row["reversal_end"]])
+        assert list(chord.get_ydata()) == pytest.approx([row["shape_start"], 0.4], abs=1e-3)
+        (area,) = axes.collections
+        assert area.get_paths()[0].vertices[:, 0].max() == pytest.approx(row["reversal_end"])
+
+
+def test_stick_is_a_band_along_the_points_where_it_is(laws: pd.DataFrame) -> None:
+    sticky = laws.assign(stick_fraction=np.where(laws["scene.belt_speed"] > 40.0, 0.2, 0.0))
+
+    figure = _drawn(sticky, stick=True)
+
+    (band, _) = [line for line in figure.axes[0].lines if line.get_alpha()]
+    held = np.isfinite(np.asarray(band.get_ydata(), dtype=float))
+    np.testing.assert_array_equal(held, laws["scene.belt_speed"][:120].to_numpy() > 40.0)
+    assert _legend(figure)[-1] == "stick in part of the period"
+    assert "stick" not in " ".join(_legend(_drawn(sticky)))
+
+
+def test_a_closer_view_stands_where_half_of_the_axis_is_level(laws: pd.DataFrame) -> None:
+    one = laws[laws["law"] == "coulomb"]
+    first, second = (one[one["scene.drive.frequency"] == value] for value in (1.0, 1.5))
+
+    def views(table: pd.DataFrame) -> list[Axes]:
+        return [child for child in _drawn(table, inset=True).axes[0].child_axes if child.lines]
+
+    (view,) = views(second)
+    assert view.get_xlim()[1] < 30.0
+    assert views(first) == []  # of 60 the last 10 are level
+
+
+@pytest.mark.parametrize(("width", "millimetres"), [("single", 85.0), ("double", 175.0)])
+def test_widths_are_those_of_a_journal(laws: pd.DataFrame, width: str, millimetres: float) -> None:
+    assert _drawn(laws, width=width).get_figwidth() * 25.4 == pytest.approx(millimetres)
+
+
+def test_formats_and_title_are_as_asked_for(laws: pd.DataFrame, tmp_path: Path) -> None:
+    draw_figures(laws, "Of before", tmp_path)
+    files = draw_figures(laws, "T", tmp_path, None, None, FigureOptions(formats=("pdf",), title=False))
+
+    assert {file.suffix for file in tmp_path.iterdir()} == {".pdf"}
+    assert len(files) == 4
+    assert _drawn(laws, title=False).get_suptitle() == ""
+
+
+STUDY = {
+    "schema": 1,
+    "scene": {
+        "damping_ratio": 0.1,
+        "normal_load": 1,
+        "belt_speed": 1,
+        "drive": {"amplitude": 2, "frequency": 1},
+    },
+    "laws": [{"kind": "coulomb", "mu": 0.4}],
+}
+
+
+def test_a_study_says_how_its_figures_are_drawn() -> None:
+    given = {"normalized": True, "against": "coulomb", "width": "double", "formats": ["pdf"], "title": False}
+
+    study = parse_study(STUDY | {"figures": given})
+
+    assert study.figures == FigureOptions(True, "coulomb", False, "double", ("pdf",), False)
+    assert study.resolved()["figures"] == given
+    assert parse_study(study.resolved()).figures == study.figures
+    assert study.digest() == parse_study(STUDY).digest()
+    assert "figures" not in parse_study(STUDY).resolved()
+
+
+@pytest.mark.parametrize(
+    ("figures", "message"),
+    [
+        ({"normalised": True}, "unknown key"),
+        ({"inset": 1}, "must be true or false, got 1"),
+        ({"against": "columb"}, "must be one of coulomb"),
+        ({"width": "wide"}, "must be one of single, double"),
+        ({"formats": "svg"}, "must be a list such as [svg, pdf]"),
+        ({"formats": ["gif"]}, "must be one of svg, png, pdf"),
+        ([], "must be a mapping"),
+    ],
+)
+def test_mistakes_in_it_are_told(figures: Any, message: str) -> None:
+    with pytest.raises(StudyError) as problem:
+        parse_study(STUDY | {"figures": figures})
+
+    (mistake,) = problem.value.mistakes
+    assert message in str(mistake)
+    assert mistake.path.startswith("figures")
+
+
+def test_the_schema_has_every_key_with_its_meaning() -> None:
+    keys = schema()["properties"]["figures"]["properties"]
+
+    assert set(keys) == set(FigureOptions.__dataclass_fields__)
+    assert all(each["description"] for each in keys.values())

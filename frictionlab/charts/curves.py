@@ -66,11 +66,11 @@ def family_of(table: pd.DataFrame) -> Family | None:
     values tells curves apart. Each further one sets up pictures.
     """
     table = table.rename(columns=_names_in_si(table.columns))
-    swept = sorted(_swept_inputs(table), key=lambda name: table[name].nunique())
+    swept = sorted(swept_columns(table), key=lambda name: table[name].nunique())
     numbers = [name for name in swept if is_numeric_dtype(table[name])]
     if not numbers:
         return None
-    abscissa = _along_the_axis(table, numbers)
+    abscissa = along_the_axis(table, numbers)
     panels = [name for name in swept if name != abscissa]
     if table["law"].nunique() == 1:
         member = panels.pop() if panels else None
@@ -84,7 +84,8 @@ def family_of(table: pd.DataFrame) -> Family | None:
     return Family(abscissa, member, _curves(table, abscissa, panels, member))
 
 
-def _along_the_axis(table: pd.DataFrame, swept: list[str]) -> str:
+def along_the_axis(table: pd.DataFrame, swept: list[str]) -> str:
+    """Of these swept numbers, the fewest values first, the one along the axis."""
     speed = belt_speed(table.columns)
     if speed not in swept:
         return swept[-1]
@@ -98,7 +99,7 @@ def _names_in_si(columns: Iterable[str]) -> dict[str, str]:
     return {f"law.{name}": f"law.dimensional.{name}" for name in scaled}
 
 
-def _swept_inputs(table: pd.DataFrame) -> list[str]:
+def swept_columns(table: pd.DataFrame) -> list[str]:
     """Inputs of more than one value, as given; a law's parameter counts only where it varies within one law."""
     names = given(table.columns)
     scene = [name for name in names if name.startswith("scene.") and table[name].nunique() > 1]
@@ -116,7 +117,7 @@ def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str |
     names = [*panels, member] if member else panels
     curves = []
     for (law, method, *values), rows in table.groupby(["law", "method", *names], sort=False, dropna=False):
-        settings = [_setting(name, value) for name, value in zip(names, values, strict=True)]
+        settings = [swept_value(name, value) for name, value in zip(names, values, strict=True)]
         own = settings.pop() if member else None
         settings = [*([("law", law)] if apart else []), *settings]
         place = 0 if apart else laws.index(law), _index(members, own), methods.index(method)
@@ -127,7 +128,8 @@ def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str |
     return sorted(curves, key=lambda curve: (_heights(curve), seen.index(curve.panel), curve.place))
 
 
-def _setting(name: str, value: Any) -> SweptValue:
+def swept_value(name: str, value: Any) -> SweptValue:
+    """A swept input and its value as figures tell them."""
     return name, None if pd.isna(value) else value if isinstance(value, str) else float(value)
 
 

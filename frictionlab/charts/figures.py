@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import family_of
 from frictionlab.charts.derived import differences, is_along_speed, normalized, reference_law
+from frictionlab.charts.maps import map_of, map_of_curves
 from frictionlab.charts.shape_figure import ShapeFigure
 from frictionlab.charts.style import STYLE, write_figure
 from frictionlab.charts.words import plain
@@ -28,6 +29,7 @@ FIGURES = {
 }
 OTHER_FIGURES = {
     "differences": "Mean friction of each law less that of {reference}, with the sum of both errors as a band",
+    "map": "Measures of the curves over what else is swept: shades with lines of equal value",
     "shape": "Each curve with its chord from rest to the end of reversal; the shaded area decides the verdict",
 }
 """Those that only some tables have, and what they show."""
@@ -81,6 +83,13 @@ def figures_of(
         return {}
     of_speed = onsets if is_along_speed(family) else None
     shares = normalized(family) if options.normalized else None
+    if (maps := map_of(table)) is not None:
+        maps = replace(maps, title=title, options=options)
+        columns = {
+            name: [*shown, *(["error"] if name == "mean_friction" else [])]
+            for name, shown in figure_columns(table).items()
+        }
+        return {name: replace(maps, columns=shown).draw for name, shown in columns.items()}
     one = CurveFigure(shares or family, (), title, of_speed, options, SHARES if shares else {})
     found = {
         name: replace(one, columns=columns, words=one.words if name == "mean_friction" else {}).draw
@@ -91,6 +100,8 @@ def figures_of(
         found["differences"] = compared.draw
     if options.shape and curves is not None and (shapes := ShapeFigure.of(family, curves, title, options)):
         found["shape"] = shapes.draw
+    if curves is not None and (measures := map_of_curves(curves)) is not None:
+        found["map"] = replace(measures, title=title, options=options).draw
     return found
 
 

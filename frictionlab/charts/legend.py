@@ -27,7 +27,11 @@ def add_legend(
     figure: Figure, family: Family, looks: Looks, columns: Sequence[str], more: Sequence[Line2D]
 ) -> int:
     """Below the pictures: what tells curves apart, how much has no number, and more; the lines it takes."""
-    entries = [*_curve_entries(looks, columns), *_status_entries(family), *more]
+    entries = [
+        *_curve_entries(looks, columns),
+        *status_entries(pd.concat([curve.rows[["method", "status"]] for curve in family.curves])),
+        *more,
+    ]
     if not entries:
         return 0
     abreast = _abreast([str(entry.get_label()) for entry in entries], HANDLE, 72 * figure.get_figwidth())
@@ -85,17 +89,16 @@ def _joined(methods: Sequence[str], room: int) -> str:
     return joined if len(joined) <= 2 * room else f"{names[0]} = {len(names) - 1} others"
 
 
-def _status_entries(family: Family) -> list[Line2D]:
+def status_entries(table: pd.DataFrame) -> list[Line2D]:
     """One entry per method and status that gives no number, with how many points it has."""
-    several = len({curve.method for curve in family.curves}) > 1
+    several = table["method"].nunique() > 1
     entries = []
-    for method in dict.fromkeys(curve.method for curve in family.curves):
-        rows = pd.concat([curve.rows["status"] for curve in family.curves if curve.method == method])
+    for method, rows in table.groupby("method", sort=False):
         for status, mark in LEGEND_MARKS.items():
-            if count := int((rows == status).sum()):
+            if count := int((rows["status"] == status).sum()):
                 points = "1 point" if count == 1 else f"{count} points"
                 label = f"{points} {status.replace('_', ' ')}" + (
-                    f" ({shortened(method, BESIDE)})" if several else ""
+                    f" ({shortened(str(method), BESIDE)})" if several else ""
                 )
                 entries.append(Line2D([], [], color="0.3", linestyle="none", marker=mark, label=label))
     return entries

@@ -14,6 +14,7 @@ from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.charts.curves import Family, family_of
 from frictionlab.charts.derived import reference_law
 from frictionlab.charts.figures import OTHER_FIGURES, figure_columns
+from frictionlab.charts.maps import MapFigure, map_of
 from frictionlab.report.markup import symbol_html, unit_html, word_html
 from frictionlab.report.question import values_listed
 from frictionlab.report.tables import joined_values, setting
@@ -42,7 +43,10 @@ def pictures(saved: Saved) -> list[Picture]:
     """The figures of a run; one that is not in its folder has no address."""
     family = family_of(saved.table)
     found = {} if family is None else figure_columns(saved.table)
-    usual = [_picture(saved, family, name, columns) for name, columns in found.items()] if family else []
+    maps = map_of(saved.table)
+    usual = (
+        [_picture(saved, family, name, columns, maps) for name, columns in found.items()] if family else []
+    )
     usual += _others(saved, family) if family else []
     several = {} if saved.attractors is None else bifurcations(saved.attractors)
     return usual + [_bifurcation(saved, name, rows) for name, rows in several.items()]
@@ -74,11 +78,13 @@ def _bifurcation(saved: Saved, name: str, rows: DataFrame) -> Picture:
     return Picture(name, address(saved.folder / "figures" / name), Markup(caption), str(caption), False)
 
 
-def _picture(saved: Saved, family: Family, name: str, columns: Sequence[str]) -> Picture:
-    caption = _caption(saved, family, columns)
+def _picture(
+    saved: Saved, family: Family, name: str, columns: Sequence[str], maps: MapFigure | None
+) -> Picture:
+    caption = _caption(saved, family, columns) if maps is None else _caption_of_map(saved, maps, columns)
     spans = [_span(saved, column) for column in columns]
     description = f"{caption.striptags()} {' '.join(spans)}"
-    alone = len(family.panels) * len(columns) == 1
+    alone = maps is None and len(family.panels) * len(columns) == 1
     return Picture(name, address(saved.folder / "figures" / name), caption, description, alone)
 
 
@@ -100,7 +106,22 @@ def _caption(saved: Saved, family: Family, columns: Sequence[str]) -> Markup:
         Markup("{} against {}").format(_capital(shown), word_html(family.abscissa)),
         *_lines(family),
         *_panels(family),
-        *_fixed(saved, family),
+        *_fixed(saved),
+        *_missing(saved),
+    ]
+    return Markup(". ").join(parts) + "."
+
+
+def _caption_of_map(saved: Saved, maps: MapFigure, columns: Sequence[str]) -> Markup:
+    """What is drawn over which two numbers, what has a map of its own, what is held fixed, what has no number."""
+    shown = Markup(", ").join(word_html(column) for column in columns)
+    over = Markup(" and ").join(word_html(name) for name in maps.over)
+    parts = [
+        Markup("{} over {}, in shades with lines of equal value").format(_capital(shown), over),
+        Markup("Laws: {}; methods: {}").format(
+            joined_values(saved.table["law"]), joined_values(saved.table["method"])
+        ),
+        *_fixed(saved),
         *_missing(saved),
     ]
     return Markup(". ").join(parts) + "."
@@ -145,7 +166,7 @@ def _panels(family: Family) -> list[Markup]:
     return [Markup("A picture for each {}").format(Markup(", ").join(symbol_html(name) for name in names))]
 
 
-def _fixed(saved: Saved, family: Family) -> list[Markup]:
+def _fixed(saved: Saved) -> list[Markup]:
     """The values of the scene that are the same in every point."""
     values = {f"scene.{path}": value for path, value in saved.study.scene.given_values().items()}
     fixed = [setting(name, value) for name, value in values.items() if name not in saved.study.sweep]

@@ -1,0 +1,120 @@
+"""Two swept numbers are a map: its shades, its lines of equal value, what has no number."""
+
+from __future__ import annotations
+
+import itertools
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.collections import QuadMesh
+from matplotlib.contour import QuadContourSet
+from matplotlib.figure import Figure
+
+from frictionlab.charts.figures import figures_of
+from frictionlab.charts.maps import map_of
+from frictionlab.charts.style import STYLE
+
+FREQUENCIES, LOADS = np.linspace(0.5, 2.0, 7), np.geomspace(1.0, 100.0, 5)
+COLUMNS = ("velocity_amplitude", "transverse_velocity_amplitude", "energy_input", "energy_viscous")
+
+
+def grid(law: str = "coulomb", method: str = "auto", **more: object) -> pd.DataFrame:
+    points = list(itertools.product(FREQUENCIES, LOADS))
+    values = [0.1 * frequency + 0.05 * np.log10(load) for frequency, load in points]
+    found = {"mean_friction": values, "error": 1e-9, "status": "ok", "normalized_friction": values}
+    inputs = {"law": law, "kind": law, "method": method, "scene.belt_speed": 5.0}
+    rows = pd.DataFrame(points, columns=["scene.drive.frequency", "scene.normal_load"])
+    empty = dict.fromkeys(
+        (*COLUMNS, "energy_friction", "energy_contact", "velocity_ratio", "mean_low"), np.nan
+    )
+    return rows.assign(**inputs, **found, **empty).assign(**more)
+
+
+def drawn(table: pd.DataFrame, name: str = "mean_friction", curves: pd.DataFrame | None = None) -> Figure:
+    with mpl.rc_context(STYLE):
+        return figures_of(table, "A title", None, curves)[name]()
+
+
+def meshes(figure: Figure) -> list[QuadMesh]:
+    return [one for axes in figure.axes[:-1] for one in axes.collections if isinstance(one, QuadMesh)]
+
+
+def test_the_mean_is_a_map_of_every_point_with_lines_of_equal_value() -> None:
+    figure = drawn(grid())
+
+    mean = figure.axes[0]
+    (shades,) = [one for one in mean.collections if isinstance(one, QuadMesh)]
+    np.testing.assert_allclose(
+        np.ma.getdata(shades.get_array()), grid()["mean_friction"].to_numpy().reshape(7, 5).T
+    )
+    (lines,) = [one for one in mean.collections if isinstance(one, QuadContourSet)]
+    assert all(0.05 < level < 0.3 for level in lines.levels)
+    assert len(lines.levels) >= 3
+    assert mean.get_xlabel() == r"drive frequency $\Omega$"
+    assert mean.get_ylabel() == r"normal load $\gamma^2$"
+    assert mean.get_yscale() == "log"
+
+
+def test_its_error_stands_beside_it_and_no_curve_is_drawn() -> None:
+    figure = drawn(grid())
+
+    names = [axes.get_ylabel() for axes in figure.axes]
+    assert any("error" in name for name in names)
+    assert not any(axes.lines for axes in figure.axes[:2])
+
+
+def test_shades_of_laws_mean_the_same() -> None:
+    table = pd.concat([grid(), grid("dahl", mean_friction=0.6)], ignore_index=True)
+
+    first, second, *_ = meshes(drawn(table))
+
+    assert first.norm.vmax == second.norm.vmax == 0.6
+    assert [axes.get_title(loc="left") for axes in drawn(table).axes[:2]] == ["coulomb", "dahl"]
+
+
+def test_a_method_whose_map_is_the_same_is_named_and_not_drawn_again() -> None:
+    table = pd.concat(
+        [grid(), grid(method="exact"), grid(method="mdsm", mean_friction=0.2)], ignore_index=True
+    )
+
+    names = [picture.methods for picture in map_of(table).pictures]
+
+    assert names == [("auto", "exact"), ("mdsm",)]
+    assert drawn(table).axes[0].get_title(loc="left") == "auto = exact"
+
+
+def test_a_point_without_a_number_is_white_marked_and_counted() -> None:
+    table = grid()
+    table.loc[[3, 4], ["status", "mean_friction", "error"]] = ["failed", np.nan, np.nan]
+
+    figure = drawn(table)
+
+    assert meshes(figure)[0].get_array().mask.sum() == 2
+    (marks,) = figure.axes[0].lines
+    assert list(marks.get_ydata()) == pytest.approx(LOADS[[3, 4]])
+    labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert labels == ["2 points failed", "no number"]
+
+
+def test_few_values_are_lines() -> None:
+    assert map_of(grid()[lambda rows: rows["scene.normal_load"] < 50.0]) is None
+
+
+def test_beside_belt_speed_the_measures_of_curves_are_a_map() -> None:
+    heads = grid().drop(columns=["scene.belt_speed", "status", "error", "mean_friction"])
+    curves = heads.assign(
+        reduction=np.linspace(0.2, 0.9, len(heads)), shape_area=np.linspace(-0.2, 0.3, len(heads))
+    )
+    table = pd.concat(
+        [grid().assign(**{"scene.belt_speed": speed}) for speed in range(1, 10)], ignore_index=True
+    )
+
+    figure = drawn(table, "map", curves)
+
+    assert map_of(table) is None
+    areas = [one for one in figure.axes[2].collections if isinstance(one, QuadContourSet)]
+    assert 0.0 in areas[0].levels
+    broadest = areas[0].get_linewidths()[list(areas[0].levels).index(0.0)]
+    assert broadest == max(areas[0].get_linewidths()) > min(areas[0].get_linewidths())

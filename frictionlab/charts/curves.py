@@ -74,13 +74,18 @@ def family_of(table: pd.DataFrame) -> Family | None:
     panels = [name for name in swept if name != abscissa]
     if table["law"].nunique() == 1:
         member = panels.pop() if panels else None
-        return Family(abscissa, member, _curves(table, abscissa, panels, member))
+        return family_by(table, abscissa, panels, member)
     parameters = [name for name in panels if name.startswith("law.")]
     if member := parameters[-1] if parameters else None:
         panels.remove(member)
     elif math.prod(table[name].nunique() for name in panels) > MOST_PICTURES:
         member = panels.pop()
-        return Family(abscissa, member, _curves(table, abscissa, ["law", *panels], member))
+        return family_by(table, abscissa, ["law", *panels], member)
+    return family_by(table, abscissa, panels, member)
+
+
+def family_by(table: pd.DataFrame, abscissa: str, panels: list[str], member: str | None) -> Family:
+    """The curves of a table along this column. panels: what sets up pictures, ``law`` where each law has its own."""
     return Family(abscissa, member, _curves(table, abscissa, panels, member))
 
 

@@ -6,15 +6,18 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import matplotlib as mpl
 import pandas as pd
 from matplotlib.figure import Figure
 
 from frictionlab.charts.curve_figure import CurveFigure
-from frictionlab.charts.curves import family_of
+from frictionlab.charts.curves import Family, family_of
 from frictionlab.charts.derived import differences, is_along_speed, normalized, reference_law
+from frictionlab.charts.harmonics import harmonic_figures
 from frictionlab.charts.maps import map_of, map_of_curves
+from frictionlab.charts.orbit_figures import orbit_figures
 from frictionlab.charts.shape_figure import ShapeFigure
 from frictionlab.charts.style import STYLE, write_figure
 from frictionlab.charts.words import plain
@@ -31,10 +34,24 @@ OTHER_FIGURES = {
     "differences": "Mean friction of each law less that of {reference}, with the sum of both errors as a band",
     "map": "Measures of the curves over what else is swept: shades with lines of equal value",
     "shape": "Each curve with its chord from rest to the end of reversal; the shaded area decides the verdict",
+    "hysteresis": "Friction coefficient over position of kept orbits: the area of a loop is what friction takes "
+    "per period, over the normal load",
+    "phase": "Velocity over position of kept orbits, with their Poincaré points; where a loop runs along the line of "
+    "belt speed, the body sticks",
+    "time_series": "Velocity and friction coefficient of kept orbits over one period",
+    "velocity_harmonics": "Amplitudes of the harmonics of the velocity, a line each",
+    "friction_harmonics": "Amplitudes of the harmonics of the friction coefficient, a line each",
 }
 """Those that only some tables have, and what they show."""
 IN_SI = {made.column: name for name, made in SI.items() if made.scale != "load"}
-SHARES = {"mean_friction": "mean friction over steady\nsliding friction " + r"$\bar\mu/\mu$"}
+IN_SHARES = {"mean_friction": "mean friction over steady\nsliding friction " + r"$\bar\mu/\mu$"}
+
+
+class Kept(NamedTuple):
+    """What a run kept beside its table: what reads the orbits of rows, and harmonics.csv."""
+
+    orbits: Callable[[Sequence[int]], pd.DataFrame | None]
+    harmonics: pd.DataFrame | None
 
 
 def draw_figures(
@@ -44,13 +61,14 @@ def draw_figures(
     onsets: pd.DataFrame | None = None,
     curves: pd.DataFrame | None = None,
     options: FigureOptions = USUAL_FIGURES,
+    kept: Kept | None = None,
 ) -> list[Path]:
     """Draw every figure of a result table into a folder, onsets marked along belt speed; the files written.
 
     curves: of ``curves.csv``, with the shapes. A table without a sweep has no figure, nor has a quantity that applies
     nowhere. Raises OSError where the folder cannot be written.
     """
-    found = figures_of(table, printable(title), onsets, curves, options)
+    found = figures_of(table, printable(title), onsets, curves, options, kept)
     if not found:
         return []
     folder.mkdir(parents=True, exist_ok=True)
@@ -76,11 +94,30 @@ def figures_of(
     onsets: pd.DataFrame | None = None,
     curves: pd.DataFrame | None = None,
     options: FigureOptions = USUAL_FIGURES,
+    kept: Kept | None = None,
 ) -> dict[str, Callable[[], Figure]]:
     """What draws each figure of a table, by its name."""
     family = family_of(table)
     if family is None:
         return {}
+    found = _of_table(table, family, title, onsets, curves, options)
+    if kept is None:
+        return found
+    if (loops := orbit_figures(family, kept.orbits, title, options)) is not None:
+        found |= loops.figures()
+    if kept.harmonics is not None:
+        found |= harmonic_figures(kept.harmonics, title, options)
+    return found
+
+
+def _of_table(
+    table: pd.DataFrame,
+    family: Family,
+    title: str,
+    onsets: pd.DataFrame | None,
+    curves: pd.DataFrame | None,
+    options: FigureOptions,
+) -> dict[str, Callable[[], Figure]]:
     of_speed = onsets if is_along_speed(family) else None
     shares = normalized(family) if options.normalized else None
     if (maps := map_of(table)) is not None:
@@ -90,7 +127,7 @@ def figures_of(
             for name, shown in figure_columns(table).items()
         }
         return {name: replace(maps, columns=shown).draw for name, shown in columns.items()}
-    one = CurveFigure(shares or family, (), title, of_speed, options, SHARES if shares else {})
+    one = CurveFigure(shares or family, (), title, of_speed, options, IN_SHARES if shares else {})
     found = {
         name: replace(one, columns=columns, words=one.words if name == "mean_friction" else {}).draw
         for name, columns in figure_columns(table).items()

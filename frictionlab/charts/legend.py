@@ -28,7 +28,7 @@ def add_legend(
 ) -> int:
     """Below the pictures: what tells curves apart, how much has no number, and more; the lines it takes."""
     entries = [
-        *_curve_entries(looks, columns),
+        *curve_entries(looks, columns),
         *status_entries(pd.concat([curve.rows[["method", "status"]] for curve in family.curves])),
         *more,
     ]
@@ -55,7 +55,7 @@ def _abreast(labels: Sequence[str], handle: float, room: float) -> int:
     return 1
 
 
-def _curve_entries(looks: Looks, columns: Sequence[str]) -> list[Line2D]:
+def curve_entries(looks: Looks, columns: Sequence[str]) -> list[Line2D]:
     """One entry per look that is drawn; of a long family only values spread over it."""
     if math.prod(looks.sizes) == 1 and not any(curve.same for curve in looks.curves):
         return []

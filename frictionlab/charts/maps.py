@@ -44,7 +44,7 @@ from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 LEAST_VALUES = 5  # of both numbers: fewer are told apart by lines
 OF_CURVES = "reduction", "shape_area"
 MOST_LEVELS, LEVEL_EDGE = 6, 0.02  # of lines of equal value, and what they keep from the ends of the range
-OUTLINE = withStroke(linewidth=2.4, foreground="white")
+OUTLINE = withStroke(linewidth=2.8, foreground="white")
 MEASURE_NAMES = {
     "error": "error bound of the mean",
     "reduction": "largest fall of mean friction\nbelow steady sliding",
@@ -236,7 +236,7 @@ def _draw_contours(
     levels = [at for at in MaxNLocator(MOST_LEVELS).tick_values(low, high) if low + edge < at < high - edge]
     if not levels:
         return
-    broad = [1.4 if at == 0.0 else 0.7 for at in levels]
+    broad = [1.8 if at == 0.0 else 0.7 for at in levels]
     look: Any = {"colors": "0.1", "linewidths": broad, "linestyles": "solid"}
     lines = axes.contour(x, y, np.ma.masked_invalid(known), levels, **look)
     lines.set(path_effects=[OUTLINE])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+    from frictionlab.charts.figures import Kept
     from frictionlab.runner.saved import Saved
     from frictionlab.study.figure_options import FigureOptions
 
@@ -20,6 +21,7 @@ def draw_into(
     attractors: DataFrame | None = None,
     curves: DataFrame | None = None,
     options: FigureOptions | None = None,
+    kept: Kept | None = None,
 ) -> list[Path]:
     """Draw the figures of a run into its folder, onsets marked; the files. Raises SaveError.
 
@@ -31,7 +33,7 @@ def draw_into(
     from frictionlab.study.figure_options import USUAL_FIGURES
 
     try:
-        files = draw_figures(table, title, folder / "figures", onsets, curves, options or USUAL_FIGURES)
+        files = draw_figures(table, title, folder / "figures", onsets, curves, options or USUAL_FIGURES, kept)
         more = [] if attractors is None else draw_bifurcations(attractors, title, folder / "figures")
         return files + more
     except OSError as problem:
@@ -41,4 +43,11 @@ def draw_into(
 def draw_saved(saved: Saved, folder: Path) -> list[Path]:
     """Draw the figures of a saved run anew, as its study wants them; the files. Raises SaveError."""
     more = saved.onsets, saved.attractors, saved.curves, saved.study.figures
-    return draw_into(saved.table, saved.title, folder, *more)
+    return draw_into(saved.table, saved.title, folder, *more, kept_of(saved))
+
+
+def kept_of(saved: Saved) -> Kept:
+    """The orbits and harmonics of a saved run; of a long table, whose rows are not all there, no orbits."""
+    from frictionlab.charts.figures import Kept
+
+    return Kept(saved.orbits_of if saved.rows is None else lambda rows: None, saved.harmonics)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import click
 
 from frictionlab.cli import options
-from frictionlab.cli.figures import draw_into
+from frictionlab.cli.figures import draw_into, kept_of
 from frictionlab.cli.output import (
     BROKEN_PLUGIN,
     FAILED,
@@ -251,11 +251,21 @@ def _show_failed(result: Run) -> None:
 
 def _draw(job: Job, result: Run, asked: RunOptions) -> None:
     from frictionlab.results.table import whole
+    from frictionlab.runner.saved import saved_as
 
     table = result.table if asked.figures else result.to_show
     onsets = None if result.curves.empty else result.onsets
     title, curves = job.study.title or job.name, None if result.curves.empty else result.curves
-    if draw_into(whole(table), title, job.out, onsets, result.attractors, curves, job.study.figures):
+    if draw_into(
+        whole(table),
+        title,
+        job.out,
+        onsets,
+        result.attractors,
+        curves,
+        job.study.figures,
+        kept_of(saved_as(result)),
+    ):
         print_message(f"figures in {job.out / 'figures'}")
 
 

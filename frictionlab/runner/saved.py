@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -56,6 +57,18 @@ class Saved:
     def attractors(self) -> pd.DataFrame | None:
         """attractors.csv; None where there is none. Raises FolderError."""
         return _text_table(self.folder / "attractors.csv")
+
+    @cached_property
+    def harmonics(self) -> pd.DataFrame | None:
+        """harmonics.csv; None where there is none. Raises FolderError."""
+        return _text_table(self.folder / "harmonics.csv")
+
+    def orbits_of(self, rows: Sequence[int]) -> pd.DataFrame | None:
+        """The kept orbits of these rows; None where none are kept, or their file is damaged."""
+        file = self.folder / "orbits.parquet"
+        if not file.exists() or any(str(file) in told for told in self.damaged):
+            return None
+        return pd.read_parquet(file, filters=[("row", "in", list(rows))])
 
     @property
     def size(self) -> int:

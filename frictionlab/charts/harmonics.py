@@ -1,0 +1,45 @@
+"""Figures of kept harmonics: amplitudes along a sweep, a line for each harmonic, a picture for each law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from frictionlab.charts.curve_figure import CurveFigure
+from frictionlab.charts.curves import Family, along_the_axis, family_by, swept_columns
+from frictionlab.columns import BELT_SPEED
+from frictionlab.study.figure_options import FigureOptions
+
+HARMONIC = "harmonic"
+AMPLITUDES = {
+    "velocity_harmonics": ("velocity_amplitude", "amplitude of a harmonic\nof the velocity"),
+    "friction_harmonics": ("friction_amplitude", "amplitude of a harmonic\nof the friction coefficient"),
+}
+
+
+def harmonic_figures(
+    harmonics: pd.DataFrame, title: str, options: FigureOptions
+) -> dict[str, Callable[[], Figure]]:
+    """What draws each, by its name; none where nothing is swept. harmonics: of ``harmonics.csv``, means left out."""
+    family = _family(harmonics)
+    if family is None:
+        return {}
+    return {
+        name: CurveFigure(family, [column], title, None, options, {column: label}).draw
+        for name, (column, label) in AMPLITUDES.items()
+    }
+
+
+def _family(harmonics: pd.DataFrame) -> Family | None:
+    rows = harmonics[harmonics[HARMONIC] > 0].rename(columns={"belt_speed": BELT_SPEED})
+    rows = rows.assign(status="ok", **{HARMONIC: rows[HARMONIC].astype(float)})
+    swept = sorted(swept_columns(rows), key=lambda name: rows[name].nunique())
+    numbers = [name for name in swept if pd.api.types.is_numeric_dtype(rows[name])]
+    if not numbers:
+        return None
+    abscissa = along_the_axis(rows, numbers)
+    others = [name for name in swept if name != abscissa]
+    laws = ["law"] if rows["law"].nunique() > 1 else []
+    return family_by(rows, abscissa, [*laws, *others], HARMONIC)

@@ -1,0 +1,220 @@
+"""Figures of kept orbits: hysteresis loops, phase portraits with Poincaré points, and time series.
+
+Of many points some are drawn, spread over the axis: every picture is one point, with a line for each law.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from frictionlab.charts.curves import CurveData, Family, SweptValue
+from frictionlab.charts.legend import HANDLE, curve_entries
+from frictionlab.charts.looks import Looks
+from frictionlab.charts.style import LINE, PANEL_HEIGHT, page_of
+from frictionlab.charts.words import sentence, write_title
+from frictionlab.columns import BELT_SPEED
+from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
+
+T = TypeVar("T")
+MOST_ORBITS, MOST_OF_A_PANEL = 6, 3  # pictures of a figure, and of them along one axis
+POSITION, VELOCITY = "position $x_1$", "velocity $\\dot x_1$"
+COEFFICIENT = "friction coefficient\nagainst the mass"
+POINCARE: Any = {"marker": "o", "markersize": 3.5, "markerfacecolor": "white", "markeredgewidth": 0.9}
+FREQUENCIES = tuple(
+    f"scene.{part}.frequency" for part in ("drive", "belt_vibration", "normal_load_variation", "slip")
+)
+
+
+class DrawnOrbit(NamedTuple):
+    """One orbit: its curve, its row of the table, and its samples, the first of them again at the end."""
+
+    curve: CurveData
+    row: pd.Series
+    samples: pd.DataFrame
+
+    def column(self, name: str) -> NDArray[np.float64]:
+        """A column of the samples."""
+        return self.samples[name].to_numpy(dtype=float)
+
+    @property
+    def drive_period(self) -> float | None:
+        """The time between two starts of the drive; None where nothing drives."""
+        known = [float(self.row[name]) for name in FREQUENCIES if name in self.row and self.row[name] > 0.0]
+        return 2.0 * np.pi / known[0] if known else None
+
+
+class OrbitPicture(NamedTuple):
+    """The orbits of one picture and what they have in common."""
+
+    settings: tuple[SweptValue, ...]
+    loops: list[DrawnOrbit]
+
+
+@dataclass(frozen=True)
+class OrbitFigures:
+    """The orbits of some points of a table, and the figures of them."""
+
+    points: Sequence[OrbitPicture]
+    looks: Looks
+    total: int
+    title: str = ""
+    options: FigureOptions = USUAL_FIGURES
+
+    def figures(self) -> dict[str, Callable[[], Figure]]:
+        """What draws each, by its name."""
+        return {
+            "hysteresis": lambda: self._draw([_draw_hysteresis]),
+            "phase": lambda: self._draw([_draw_phase]),
+            "time_series": lambda: self._draw([_draw_velocity, _draw_friction]),
+        }
+
+    def _draw(self, kinds: Sequence[Callable[[Axes, DrawnOrbit, Looks], None]]) -> Figure:
+        pictures = [(point, kind) for point in self.points for kind in kinds]
+        width, wide = page_of(len(pictures), self.options.width)
+        high = -(-len(pictures) // wide)
+        figure = Figure(figsize=(width, high * PANEL_HEIGHT), layout="constrained")
+        FigureCanvasAgg(figure)
+        above = write_title(figure, self.title if self.options.title else "")
+        below = self._add_legend(figure, poincare=_draw_phase in kinds)
+        figure.set_figheight(high * PANEL_HEIGHT + LINE * (above + below))
+        of_friction: list[Axes] = []
+        for place, (point, kind) in enumerate(pictures, start=1):
+            axes = figure.add_subplot(high, wide, place)
+            of_friction += [axes] if kind in (_draw_hysteresis, _draw_friction) else []
+            for loop in point.loops:
+                kind(axes, loop, self.looks)
+            if kind is _draw_phase:
+                axes.axhline(float(point.loops[0].row[BELT_SPEED]), color="0.45", linewidth=0.6, zorder=0)
+            axes.set_title(", ".join(sentence(setting) for setting in point.settings), loc="left")
+        _scale_friction(of_friction)
+        return figure
+
+    def _add_legend(self, figure: Figure, poincare: bool) -> int:
+        drawn = [loop.curve for point in self.points for loop in point.loops]
+        entries = curve_entries(Looks(drawn), ["mean_friction"])
+        if poincare:
+            look: Any = {"linestyle": "none", "color": "0.2", **POINCARE}
+            entries.append(Line2D([], [], label="start of a drive period", **look))
+            entries.append(Line2D([], [], color="0.45", linewidth=0.6, label="belt speed"))
+        if len(self.points) < self.total:
+            entries.append(
+                Line2D([], [], linestyle="none", label=f"{len(self.points)} of {self.total} points")
+            )
+        if entries:
+            figure.legend(handles=entries, loc="outside lower center", ncols=4, handlelength=HANDLE)
+        return -(-len(entries) // 4)
+
+
+def orbit_figures(
+    family: Family, orbits: Callable[[Sequence[int]], pd.DataFrame | None], title: str, options: FigureOptions
+) -> OrbitFigures | None:
+    """Those of some points of a table; None where none of them has an orbit. orbits: those of rows of the table."""
+    chosen = list(_chosen(family))
+    wanted = [int(row.name) for _, rows in chosen for _, row in rows]
+    found = orbits(wanted)
+    if found is None or found.empty:
+        return None
+    by_row = dict(list(found.groupby("row")))
+    points = []
+    for settings, rows in chosen:
+        loops = [
+            DrawnOrbit(curve, row, _closed(by_row[int(row.name)]))
+            for curve, row in rows
+            if int(row.name) in by_row
+        ]
+        if loops := list({(loop.curve.law, loop.curve.member): loop for loop in reversed(loops)}.values()):
+            points.append(OrbitPicture(settings, loops[::-1]))
+    if not points:
+        return None
+    drawn = [loop.curve for point in points for loop in point.loops]
+    total = sum(len(_values(family, panel)) for panel in family.panels)
+    return OrbitFigures(points, Looks(drawn), total, title, options)
+
+
+def _values(family: Family, panel: tuple[SweptValue, ...], turning: bool = False) -> list[float]:
+    """Those along the axis of a panel, or those of them at which slip of some curve reverses."""
+    rows = [curve.rows for curve in family.curves if curve.panel == panel]
+    if turning:
+        rows = [each[each["reversals"] > 0] if "reversals" in each else each.iloc[:0] for each in rows]
+    return sorted({float(value) for each in rows for value in each[family.abscissa].dropna()})
+
+
+def _chosen(family: Family) -> Iterator[tuple[tuple[SweptValue, ...], list[tuple[CurveData, pd.Series]]]]:
+    """Points spread over pictures and, where slip reverses, along their axis: settings and rows of curves."""
+    looks = Looks(family.curves)
+    panels = _spread(family.panels, MOST_ORBITS)
+    each = max(1, min(MOST_OF_A_PANEL, MOST_ORBITS // len(panels)))
+    for panel in panels:
+        curves = [one for one in family.curves if one.panel == panel and one.place[1] in looks.shown]
+        values = _values(family, panel, turning=True) or _values(family, panel)
+        for value in _spread(values, each + 2)[1:-1] or values[:1]:
+            rows = [
+                (curve, curve.rows.iloc[at])
+                for curve in curves
+                for at in np.flatnonzero(curve.rows[family.abscissa].to_numpy(dtype=float) == value)[:1]
+            ]
+            yield (*panel, (family.abscissa, value)), rows
+
+
+def _spread(values: Sequence[T], most: int) -> list[T]:
+    places = np.unique(np.linspace(0, len(values) - 1, min(len(values), most)).round().astype(int))
+    return [values[place] for place in places]
+
+
+def _closed(samples: pd.DataFrame) -> pd.DataFrame:
+    """The samples in time, and the first again after the last."""
+    inside = samples.sort_values("tau")
+    step = inside["tau"].iloc[1] - inside["tau"].iloc[0] if len(inside) > 1 else 0.0
+    again = inside.iloc[:1].assign(tau=inside["tau"].iloc[-1] + step)
+    return pd.concat([inside, again], ignore_index=True)
+
+
+def _line(loop: DrawnOrbit, looks: Looks) -> dict[str, Any]:
+    return looks.line(loop.curve) | {"marker": ""}
+
+
+def _scale_friction(pictures: Sequence[Axes]) -> None:
+    """One scale for all: friction that is constant but for rounding is a level line on it."""
+    ranges = [axes.get_ylim() for axes in pictures]
+    for axes in pictures:
+        axes.set_ylim(min(low for low, _ in ranges), max(high for _, high in ranges))
+
+
+def _draw_hysteresis(axes: Axes, loop: DrawnOrbit, looks: Looks) -> None:
+    axes.plot(loop.column("x1"), loop.column("friction"), **_line(loop, looks))
+    axes.set(xlabel=POSITION, ylabel=COEFFICIENT)
+
+
+def _draw_phase(axes: Axes, loop: DrawnOrbit, looks: Looks) -> None:
+    x, v = loop.column("x1"), loop.column("v1")
+    axes.plot(x, v, **_line(loop, looks))
+    if (period := loop.drive_period) is not None:
+        tau = loop.column("tau")[:-1]
+        starts = np.arange(0.0, tau[-1] + 1e-9, period)
+        at = np.searchsorted(tau, starts - 1e-9 * period)
+        axes.plot(x[at], v[at], linestyle="none", color=looks.color(loop.curve), zorder=4, **POINCARE)
+    axes.set(xlabel=POSITION, ylabel=VELOCITY)
+
+
+def _draw_velocity(axes: Axes, loop: DrawnOrbit, looks: Looks) -> None:
+    _draw_in_time(axes, loop, looks, "v1", VELOCITY)
+
+
+def _draw_friction(axes: Axes, loop: DrawnOrbit, looks: Looks) -> None:
+    _draw_in_time(axes, loop, looks, "friction", COEFFICIENT)
+
+
+def _draw_in_time(axes: Axes, loop: DrawnOrbit, looks: Looks, name: str, label: str) -> None:
+    period = loop.drive_period
+    axes.plot(loop.column("tau") / (period or 1.0), loop.column(name), **_line(loop, looks))
+    axes.set(xlabel="time $\\tau$" if period is None else "drive periods $\\Omega\\tau/2\\pi$", ylabel=label)

@@ -1,0 +1,119 @@
+"""Figures of kept orbits and harmonics: which points, which lines, where the Poincaré points lie."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+
+from frictionlab.charts.figures import Kept, figures_of
+from frictionlab.charts.style import STYLE
+
+SPEEDS = np.arange(1.0, 13.0)
+OMEGA, SAMPLES = 2.0, 40
+ENERGIES = ("energy_input", "energy_viscous", "energy_friction", "energy_contact")
+
+
+def curve(law: str, reversals: float = 2.0) -> pd.DataFrame:
+    inputs = {
+        "law": law,
+        "kind": law,
+        "method": "auto",
+        "scene.belt_speed": SPEEDS,
+        "scene.drive.frequency": OMEGA,
+    }
+    found = {"mean_friction": 0.01 * SPEEDS, "error": 1e-9, "status": "ok"}
+    empty = dict.fromkeys(
+        ("velocity_amplitude", "transverse_velocity_amplitude", "velocity_ratio", "mean_low", *ENERGIES),
+        np.nan,
+    )
+    turning = {"reversals": np.where(SPEEDS < 8.0, reversals, 0.0), "normalized_friction": np.nan}
+    return pd.DataFrame(inputs | found | empty | turning)
+
+
+TABLE = pd.concat([curve("coulomb"), curve("dahl")], ignore_index=True)
+
+
+def orbits_of(rows: Sequence[int], periods: int = 2) -> pd.DataFrame:
+    """Circles of so many drive periods, of a size that tells the row."""
+    tau = np.linspace(0.0, periods * 2.0 * np.pi / OMEGA, SAMPLES, endpoint=False)
+    size = 1.0 + 0.5 * np.sin(0.5 * OMEGA * tau)
+    return pd.concat(
+        [
+            pd.DataFrame(
+                {
+                    "row": row,
+                    "tau": tau,
+                    "x1": (row + 1) * size * np.cos(OMEGA * tau),
+                    "v1": (row + 1) * size * np.sin(OMEGA * tau),
+                    "friction": 0.4,
+                }
+            )
+            for row in rows
+        ]
+    )
+
+
+def drawn(name: str, harmonics: pd.DataFrame | None = None) -> Figure:
+    with mpl.rc_context(STYLE):
+        return figures_of(TABLE, "A title", kept=Kept(orbits_of, harmonics))[name]()
+
+
+def test_orbits_are_of_points_at_which_slip_reverses_each_law_a_line() -> None:
+    figure = drawn("hysteresis")
+
+    assert [axes.get_title(loc="left") for axes in figure.axes] == [
+        f"belt speed $v_b$ = {at}" for at in (3, 4, 5)
+    ]
+    for axes, speed in zip(figure.axes, (3.0, 4.0, 5.0), strict=True):
+        for line, row in zip(axes.lines, (speed - 1.0, speed + 11.0), strict=True):
+            orbit = orbits_of([int(row)])
+            np.testing.assert_array_equal(line.get_xdata()[:-1], orbit["x1"])
+            assert line.get_xdata()[-1] == line.get_xdata()[0]
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == ["coulomb", "dahl", "3 of 12 points"]
+
+
+def test_poincare_points_lie_at_every_start_of_a_drive_period() -> None:
+    figure = drawn("phase")
+
+    points = [line for line in figure.axes[0].lines if line.get_linestyle() == "None"]
+    assert len(points) == 2
+    orbit = orbits_of([2])
+    np.testing.assert_allclose(points[0].get_xdata(), orbit["x1"].iloc[[0, SAMPLES // 2]])
+    belts = [line for line in figure.axes[0].lines if list(line.get_ydata()) == [3.0, 3.0]]
+    assert len(belts) == 1
+
+
+def test_time_runs_in_drive_periods_and_constant_friction_is_level() -> None:
+    velocity, friction, *_ = drawn("time_series").axes
+
+    assert velocity.lines[0].get_xdata()[-1] == pytest.approx(2.0)
+    assert np.ptp(friction.lines[0].get_ydata()) == 0.0
+
+
+def test_without_orbits_there_are_no_such_figures() -> None:
+    names = figures_of(TABLE, kept=Kept(lambda rows: None, None))
+
+    assert {"hysteresis", "phase", "time_series"}.isdisjoint(names)
+
+
+def test_every_harmonic_is_a_line_and_every_law_a_picture() -> None:
+    inputs = TABLE[["law", "kind", "method"]].assign(belt_speed=TABLE["scene.belt_speed"])
+    rows = [
+        inputs.assign(harmonic=k, velocity_amplitude=1.0 / (k + 1), friction_amplitude=0.1 * k + inputs.index)
+        for k in range(4)
+    ]
+
+    figure = drawn("friction_harmonics", pd.concat(rows, ignore_index=True))
+
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["coulomb", "dahl"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["1", "2", "3"]
+    for axes, first in zip(figure.axes, (0, 12), strict=True):
+        lines = [line for line in axes.lines if len(line.get_xdata()) > 2]
+        for k, line in enumerate(lines, start=1):
+            np.testing.assert_allclose(line.get_ydata(), 0.1 * k + first + np.arange(12))

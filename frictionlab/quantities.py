@@ -83,7 +83,7 @@ def rebuilt(record: _RecordT) -> _RecordT:
     Raises WrongValues where ``model_copy`` put in what the record refuses.
     """
     made = type(record)(**given_values(record))
-    return record if repr(made) == repr(record) else made
+    return record if repr(dict(made)) == repr(dict(record)) else made
 
 
 def given_values(record: Record) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, ClassVar, Literal, Self
 
+from frictionlab.laws.labelled import Labelled
 from frictionlab.quantities import Dimension, Finite, NonNegative, PerSpeed, Positive, Record, Speed
 
 __all__ = [
@@ -31,7 +32,7 @@ Number = float | int | tuple[float, ...]
 """A parameter as compiled code receives it: a number, a whole number, or a tuple of numbers to index."""
 
 
-class FrictionLaw(Record, ABC):
+class FrictionLaw(Labelled, ABC):
     """A law of dry friction: the friction coefficient, per unit normal load, that resists slip.
 
     The docstring of a law names its sources as in "Source: Dahl (1968)". ``bibtex`` holds their BibTeX entries as one

@@ -116,9 +116,9 @@ def compare(
 ) -> Comparison:
     """Several laws, by one or several methods, along belt speeds of one scene.
 
-    laws: a law, a list of laws of different kinds, or a mapping label -> law. belt_speed: a list, or a range as in a
-    study, ``{"start": 1, "stop": 60, "num": 120}``; that of the scene where it is left out. columns: result columns,
-    all by default.
+    laws: a law, a list of laws, of which two of one kind need a ``label=``, or a mapping label -> law.
+    belt_speed: a list, or a range as in a study, ``{"start": 1, "stop": 60, "num": 120}``; that of the scene where it
+    is left out. columns: result columns, all by default.
 
     >>> import frictionlab as fl
     >>> drive = fl.Drive(unbalance=10, frequency=1)

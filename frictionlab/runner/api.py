@@ -353,4 +353,4 @@ def attractors(
 
 
 def _one_curve(kind: str, law: FrictionLaw, method: Method, scenes: Scenes) -> StudyCurve:
-    return StudyCurve(kind, kind, law, MethodChoice.of(method), scenes, range(len(scenes)))
+    return StudyCurve(law.label or kind, kind, law, MethodChoice.of(method), scenes, range(len(scenes)))

@@ -76,7 +76,7 @@ def _labelled(given: Any, name: str, kind: Any, what: str) -> Iterator[tuple[str
         pairs = list(given.items())
     else:
         one = isinstance(given, str) or not isinstance(given, Sequence)
-        pairs = [("", each) for each in ([given] if one else given)]
+        pairs = [(getattr(each, "label", ""), each) for each in ([given] if one else given)]
     for label, each in pairs:
         if not isinstance(each, kind):
             raise TypeError(f"{name} must be {what}, several of them or a mapping, got {python_text(each)}")

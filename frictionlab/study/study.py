@@ -200,9 +200,9 @@ class Study:
     ) -> Study:
         """The study of Python objects.
 
-        laws: a friction law, several, or a mapping label -> law, which two laws of one kind need. methods: likewise,
-        names or methods. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values. told: the other keys of a
-        study file, such as ``tolerance=1e-6``, ``title=``, ``keep={"orbit": 200}``.
+        laws: a friction law, several, of which two of one kind need a ``label=``, or a mapping label -> law.
+        methods: likewise, names or methods. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values.
+        told: the other keys of a study file, such as ``tolerance=1e-6``, ``title=``, ``keep={"orbit": 200}``.
 
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)

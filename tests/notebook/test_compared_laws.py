@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -86,6 +87,27 @@ def test_mistakes_are_told_before_anything_is_solved() -> None:
         fl.sweep(SCENE, LAWS, {"scene.belt_sped": [1.0]})
     with pytest.raises(TypeError, match=r"scene must be an fl.Scene"):
         fl.compare({}, LAWS, [1.0])  # type: ignore[arg-type]
+
+
+def test_laws_of_one_kind_are_told_apart_by_their_labels() -> None:
+    soft, stiff = (fl.Dahl(mu=0.4, stiffness=k, label=f"Dahl {k}") for k in (4.0, 40.0))
+    study = fl.Study.of(SCENE, [soft, stiff])
+    assert [law.label for law in study.laws] == ["Dahl 4.0", "Dahl 40.0"]
+    assert "label: Dahl 40.0" in study.to_yaml()
+    assert repr(soft).endswith("label='Dahl 4.0')")
+    assert soft.under_load(2.0).label == "Dahl 4.0"
+    assert soft == fl.Dahl(mu=0.4, stiffness=4.0)
+    assert pickle.loads(pickle.dumps(soft)).label == "Dahl 4.0"
+    assert "label" not in soft.model_dump_json()
+    rough = fl.Coulomb(mu=0.4, label="rough")
+    assert fl.curve(SCENE, rough, [60.0])["law"].tolist() == ["rough"]
+
+    with pytest.raises(StudyError, match=r"laws\[1\].label: laws\[0\] has the label 'rough' too"):
+        fl.compare(SCENE, [rough, fl.Dahl(mu=0.4, stiffness=4, label="rough")])
+    with pytest.raises(StudyError, match=r"laws\[1\]: laws\[0\] has the label 'coulomb' too"):
+        fl.compare(SCENE, [fl.Coulomb(mu=0.4), fl.Coulomb(mu=0.2)])
+    with pytest.raises(ValueError, match="label must be one line of visible text, got 3"):
+        fl.Coulomb(mu=0.4, label=3)
 
 
 def test_dupont_is_the_elasto_plastic_law() -> None:

@@ -11,7 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
+from frictionlab.as_typed import keywords, typed
 from frictionlab.mistakes.validation import unnamed, wrong_values
+
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass as _ModelType
+else:
+    _ModelType = type(BaseModel)
 
 
 def _a_number(value: object) -> object:
@@ -54,15 +60,25 @@ EPSILON = 2.0**-52
 """Distance from one to the next floating-point number."""
 
 
-class Record(BaseModel):
-    """A frozen record that refuses keys it does not know. Made in Python it raises WrongValues, which tells mistakes
-    as a study does, and TypeError for values without names."""
+class _Listed(_ModelType):
+    """The type of records: ``dir``, ``help`` and completion tell what a record adds to those of pydantic."""
+
+    def __dir__(cls) -> list[str]:  # noqa: N805 - of a class
+        return [name for name in super().__dir__() if not hasattr(BaseModel, name) and name[:2] != "__"]
+
+
+class Record(BaseModel, metaclass=_Listed):
+    """A frozen record that refuses keys it does not know, shown as one would type it.
+
+    Made in Python it raises WrongValues, which tells mistakes as a study does; TypeError for values without names.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     if not TYPE_CHECKING:  # type checkers and pydantic take the signature from the fields
 
         def __init__(self, /, *without_names: Any, **values: Any) -> None:
+            """Raises WrongValues with every mistake in the values, TypeError for values without names."""
             if without_names:
                 raise unnamed(type(self), without_names)
             try:
@@ -72,6 +88,52 @@ class Record(BaseModel):
 
         __init__.__signature__ = inspect.signature(BaseModel.__init__)
         __init__.__pydantic_base_init__ = True  # mappings inside other mappings are not made by __init__
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_options: Any) -> None:
+        cls.__signature__ = keywords((name, cls.model_fields[name]) for name in cls._in_order())
+
+    @classmethod
+    def _in_order(cls) -> list[str]:
+        """The names of its values in the order in which they are shown: choices among words last."""
+        fields = cls.model_fields
+        return sorted(fields, key=lambda name: isinstance(fields[name].default, str))
+
+    def _shown(self) -> dict[str, Any]:
+        """Values of which it can be made again, without those it has anyway."""
+        fields, held = type(self).model_fields, dict(self)
+        given = {name: held[name] for name in self._in_order() if held[name] != fields[name].default}
+        return {name: value for name, value in given.items() if self._differs_without(name, given)}
+
+    def _differs_without(self, name: str, given: dict[str, Any]) -> bool:
+        """Whether the record that is made without this value is another, or none."""
+        if type(self).model_fields[name].is_required():
+            return True
+        try:
+            return bool(type(self).model_validate({key: given[key] for key in given if key != name}) != self)
+        except ValidationError:
+            return True
+
+    def __repr__(self) -> str:
+        """What one would type to make it again."""
+        values = ", ".join(f"{name}={typed(value)}" for name, value in self.__repr_args__())
+        return f"{type(self).__name__}({values})"
+
+    __str__ = __repr__
+
+    def __repr_args__(self) -> list[tuple[str, Any]]:
+        """The same for rich and other printers."""
+        return [*self._shown().items()]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Raises AttributeError: a record is made again to be changed."""
+        again = f"{name}={typed(value)}"
+        hint = f"scene.with_({again})" if hasattr(self, "with_") else f"another with {again}"
+        raise AttributeError(f"a {type(self).__name__} cannot be changed: make {hint}")
+
+    def __dir__(self) -> list[str]:
+        """Its values, and what its class adds to that of pydantic."""
+        return [*type(self).model_fields, *dir(type(self))]
 
 
 _RecordT = TypeVar("_RecordT", bound=Record)
@@ -83,7 +145,12 @@ def rebuilt(record: _RecordT) -> _RecordT:
     Raises WrongValues where ``model_copy`` put in what the record refuses.
     """
     made = type(record)(**given_values(record))
-    return record if repr(dict(made)) == repr(dict(record)) else made
+    return record if _exactly(made) == _exactly(record) else made
+
+
+def _exactly(record: Record) -> str:
+    """Everything a record holds, numbers with their types."""
+    return repr({name: _exactly(value) if isinstance(value, Record) else value for name, value in record})
 
 
 def given_values(record: Record) -> dict[str, Any]:

@@ -21,8 +21,9 @@ PROJECT = HOUSE.parent
 # one too. room -> the rooms it may import. Modules of one room may import each other, but no law another law.
 ARROWS = {
     "printable": [],
+    "as_typed": [],
     "mistakes": ["printable"],
-    "quantities": ["mistakes"],
+    "quantities": ["as_typed", "mistakes"],
     "columns": [],
     "laws": ["quantities"],
     "faults": ["laws"],
@@ -67,7 +68,7 @@ ARROWS = {
     ],
     "onsets": ["laws", "methods.base", "methods.periodic", "orbit", "quantities", "scene", "theory"],
     "registry": ["faults", "laws", "methods.base"],
-    "study": ["columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
+    "study": ["as_typed", "columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
     "results": [
         *("columns", "laws", "methods.base", "orbit", "quantities", "registry", "scene", "shape", "study"),
         "theory",
@@ -139,6 +140,7 @@ ROOMS = list(ARROWS)
 # what is not Python's own -> the rooms that may bring it in
 OUTSIDE = {
     "pydantic": [
+        "as_typed",
         "mistakes",
         "quantities",
         "laws",

@@ -48,6 +48,11 @@ class FrictionLaw(Labelled, ABC):
     memory_kind: ClassVar[Literal["undeclared", "none", "bristle", "deflections", "scalars"]] = "undeclared"
     compliant: ClassVar[bool] = False
 
+    @classmethod
+    def _in_order(cls) -> list[str]:
+        """Coefficients first, since those of the contact are inherited by several laws."""
+        return sorted(super()._in_order(), key=lambda name: not cls.model_fields[name].is_required())
+
     @abstractmethod
     def sliding_friction(self, speed: float) -> float:
         """Friction coefficient [-] at steady sliding with this speed (>= 0) [scene length / scene time]."""

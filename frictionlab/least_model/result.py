@@ -14,7 +14,7 @@ from frictionlab.least_model.search import Without
 from frictionlab.least_model.sentences import missing_means, model_in_words, sentence_of, smallest_in_words
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Needs:
     """What one curve needs.
 
@@ -29,6 +29,10 @@ class Needs:
     smallest: LesserModel
     label: str = ""
     failed: bool = False
+
+    def __repr__(self) -> str:
+        """Its sentences, a line each."""
+        return "\n".join(self.sentences)
 
     def plot(self) -> Any:
         """A matplotlib figure: bars of the change without each thing, against the tolerance."""

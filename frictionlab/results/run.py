@@ -11,10 +11,11 @@ import pandas as pd
 
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.table import status_counts
+from frictionlab.results.words import counted
 from frictionlab.study import Study
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """A study and what came of it: its tables, its kept orbits, and the verdicts on what it expects.
 
@@ -38,6 +39,12 @@ class Run:
     found: Mapping[str, int] | None = None
     attractors: pd.DataFrame | None = None
     harmonics: pd.DataFrame | None = None
+
+    def __repr__(self) -> str:
+        """How many points there are of each status, and where the table is."""
+        told = ", ".join(f"{count} {status}" for status, count in self.counts.items())
+        where = f"; table in {self.table_file}" if self.table_file else ""
+        return f"Run({counted(self.size, 'point')}: {told}{where})"
 
     @cached_property
     def table(self) -> pd.DataFrame:

@@ -275,6 +275,10 @@ class Scene(_Part):
         missing = [name for name in ("damping_ratio", "normal_load") if getattr(self, name) is None]
         return [*(f"{name}: required" for name in missing), *problems_of_parts(self, "frequency")]
 
+    def _shown(self) -> dict[str, Any]:
+        """``dimensional`` alone where that gives all the rest."""
+        return super()._shown() if self.dimensional is None else {"dimensional": self.dimensional}
+
     @property
     def degrees_of_freedom(self) -> int:
         """0 for a prescribed slip, 1 along the belt alone, 2 in the plane."""

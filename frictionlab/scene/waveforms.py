@@ -47,6 +47,15 @@ class Form(NamedTuple):
     shape: str
     terms: tuple[Term, ...] = ()
 
+    @staticmethod
+    def given_as() -> str:
+        """The types of what it is made of, for signatures."""
+        return "str | dict"
+
+    def __repr__(self) -> str:
+        """As one would type it: 'square', or the mapping of its harmonics."""
+        return repr(self.plain())
+
     def plain(self) -> Any:
         """As a study gives it."""
         return {"harmonics": [term._asdict() for term in self.terms]} if self.terms else self.shape

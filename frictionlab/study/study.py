@@ -156,7 +156,7 @@ class StudyCurve:
         return law_in_scene(self.given_law, self.scenes.scene)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study:
     """Scenes, laws and methods, their full grid, and the expectations of the table.
 
@@ -216,6 +216,12 @@ class Study:
         from frictionlab.study.objects import study_of_objects  # which reads it as a file is read
 
         return study_of_objects(scene, laws, methods, sweep, **told)
+
+    def __repr__(self) -> str:
+        """What one would type to make it of objects; of long lists the ends."""
+        from frictionlab.study.objects import study_as_typed
+
+        return study_as_typed(self)
 
     def to_yaml(self) -> str:
         """The study as a study file that loads to an equal study; law files of its own have to lie beside it."""

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from pydantic import ValidationError
 from strategies import BRISTLE_LAWS, EXAMPLES, LAWS, angles, sizes, speeds, velocities, velocities_on_the_line
 
 from frictionlab.compile.cache import compiled
@@ -176,7 +175,7 @@ def test_a_law_is_frozen_hashes_and_survives_pickling(name, data):
     assert hash(twin) == hash(law)
     assert type(twin) is type(law)
     for field in type(law).model_fields:
-        with pytest.raises(ValidationError, match="frozen"):
+        with pytest.raises(AttributeError, match="cannot be changed"):
             setattr(law, field, 1.0)
 
 

@@ -62,11 +62,13 @@ def draw_figures(
     curves: pd.DataFrame | None = None,
     options: FigureOptions = USUAL_FIGURES,
     kept: Kept | None = None,
+    told: Callable[[int, int], None] = lambda done, total: None,
 ) -> list[Path]:
     """Draw every figure of a result table into a folder, onsets marked along belt speed; the files written.
 
-    curves: of ``curves.csv``, with the shapes. A table without a sweep has no figure, nor has a quantity that applies
-    nowhere. Raises OSError where the folder cannot be written.
+    curves: of ``curves.csv``, with the shapes. told: called with the number of figures done and of all. A table
+    without a sweep has no figure, nor has a quantity that applies nowhere. Raises OSError where the folder cannot be
+    written.
     """
     found = figures_of(table, printable(title), onsets, curves, options, kept)
     if not found:
@@ -75,7 +77,8 @@ def draw_figures(
     files = []
     with mpl.rc_context(STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # of a title: an empty box says it
-        for name, draw in found.items():
+        for number, (name, draw) in enumerate(found.items()):
+            told(number, len(found))
             files += write_figure(draw(), folder / name, options.formats)
     _remove_others(folder, files)
     return files

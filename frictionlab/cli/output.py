@@ -8,11 +8,14 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
 from frictionlab.printable import printable
+
+if TYPE_CHECKING:
+    from frictionlab.runner.progress import Meter
 
 STDOUT, STDERR = 1, 2
 """File descriptors."""
@@ -85,8 +88,31 @@ def _results() -> TextIO:
     return _apart[-1] if _apart else sys.stdout
 
 
+_meters: list[Meter] = []
+"""What tells progress at this moment, if anything."""
+
+
+@contextmanager
+def metered(whose: str = "") -> Iterator[Meter]:
+    """Progress on stderr, its line erased before anything else is printed. whose: words in front of it."""
+    from frictionlab.runner.progress import Meter
+
+    with Meter(sys.stderr, whose) as meter:
+        _meters.append(meter)
+        try:
+            yield meter
+        finally:
+            _meters.remove(meter)
+
+
+def _erase_progress() -> None:
+    for meter in _meters:
+        meter.clear()
+
+
 def print_result(text: str) -> None:
     """A result, on stdout; a reader that closed the pipe is no error."""
+    _erase_progress()
     try:
         click.echo(printable(text), _results())
         _results().flush()
@@ -102,6 +128,7 @@ def print_records(records: list[dict[str, Any]]) -> None:
 
 def print_message(message: str) -> None:
     """A message, on stderr; a closed stderr is no error."""
+    _erase_progress()
     with suppress(OSError, ValueError):
         click.echo(printable(message), err=True)
 

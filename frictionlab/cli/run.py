@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -19,6 +18,7 @@ from frictionlab.cli.output import (
     INTERRUPTED,
     OK,
     CommandError,
+    metered,
     print_message,
     print_records,
     print_result,
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from frictionlab.results.run import Run
     from frictionlab.runner.batch import Job
+    from frictionlab.runner.progress import Meter
     from frictionlab.runner.workforce import Workforce
     from frictionlab.study import Plugins
 
@@ -153,7 +154,10 @@ def run_command(**given: Any) -> int:
         for job in jobs:
             _run_part(job, asked, asked.part)
         return OK
-    done = [_run(job, asked) for job in jobs]
+    done = []
+    for number, job in enumerate(jobs, 1):
+        with metered(f"study {number} of {len(jobs)}: " if len(jobs) > 1 else "") as meter:
+            done.append(_run(job, asked, meter))
     if index is not None:
         _write_index(index, done)
     if asked.as_json:
@@ -165,14 +169,12 @@ def run_command(**given: Any) -> int:
     return max(_exit_code(result) for result in done)
 
 
-def _run(job: Job, asked: RunOptions) -> Run:
+def _run(job: Job, asked: RunOptions, meter: Meter) -> Run:
     """Run one study, print its summary, then draw it: the summary does not wait for the figures."""
     from frictionlab.runner import api
-    from frictionlab.runner.progress import Meter
 
     for line in [] if asked.force else api.run_folder(job.study, job.out).damaged():
         print_message(line)
-    meter = Meter(sys.stderr)
     try:
         with _force(asked) as force:
             result = api.run(
@@ -191,11 +193,12 @@ def _run(job: Job, asked: RunOptions) -> Run:
     except api.UnsavedError as problem:
         print_records(_rows(job, problem.run, asked)) if asked.as_json else _show(problem.run)
         raise
-    finally:
-        meter.close()
     _show_failed(result) if asked.as_json or asked.cite else _show(result)
+    meter.begins("finding onsets")
     result = api.with_onsets(result)
-    _draw(job, result, asked)
+    meter.begins("drawing", "figures")
+    _draw(job, result, asked, meter)
+    meter.begins("writing the report")
     _report(result)
     return result
 
@@ -214,15 +217,11 @@ def _force(asked: RunOptions) -> AbstractContextManager[Workforce]:
 def _run_part(job: Job, asked: RunOptions, part: tuple[int, int]) -> None:
     """Solve a share of the chunks of a study and keep them; the table is for the run that gathers them."""
     from frictionlab.runner.kept_chunks import kept_beside
-    from frictionlab.runner.progress import Meter
     from frictionlab.runner.share import run_share
 
-    kept, meter = kept_beside(job.out, asked.cache, asked.cache_size), Meter(sys.stderr)
-    try:
-        with _force(asked) as force:
-            done = run_share(job.study, part, kept, force, meter)
-    finally:
-        meter.close()
+    kept = kept_beside(job.out, asked.cache, asked.cache_size)
+    with metered() as meter, _force(asked) as force:
+        done = run_share(job.study, part, kept, force, meter)
     print_result(
         f"{job.name}, part {part[0]} of {part[1]}: {done.computed} points solved and {done.found} found of "
         f"{done.points}, kept in {kept.folder}"
@@ -249,7 +248,7 @@ def _show_failed(result: Run) -> None:
         print_message(line)
 
 
-def _draw(job: Job, result: Run, asked: RunOptions) -> None:
+def _draw(job: Job, result: Run, asked: RunOptions, meter: Meter) -> None:
     from frictionlab.results.table import whole
     from frictionlab.runner.saved import saved_as
 
@@ -265,6 +264,7 @@ def _draw(job: Job, result: Run, asked: RunOptions) -> None:
         curves,
         job.study.figures,
         kept_of(saved_as(result)),
+        meter,
     ):
         print_message(f"figures in {job.out / 'figures'}")
 

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from collections.abc import Callable
-from typing import TextIO
+from contextlib import suppress
+from threading import Event, Lock, Thread
+from types import TracebackType
+from typing import Self, TextIO
 
 from frictionlab.compile.notice import compiled_here, kernel_at_work
+from frictionlab.runner.progress_line import RunStage, fitted, kernel_words, stage_words
 
 Progress = Callable[[int, int], None]
 """Called now and then with the number of points done and of all points."""
 
 QUIET = 2.0
 """Time [s] before a run prints its progress."""
+OFTEN, NOW_AND_THEN = 0.2, 5.0
+"""Time [s] between two states of the updating line, and between two lines where none can be updated."""
 
 
 def silent(done: int, total: int) -> None:
@@ -31,53 +38,87 @@ def compiling() -> bool:
     return not free
 
 
-def _compiling_what() -> str:
-    kernel = kernel_at_work()
-    return f", compiling kernel {len(compiled_here) + 1}{kernel and f' ({kernel})'}, once per machine"
-
-
 class Meter:
-    """Progress lines on a stream, from the third second on."""
+    """What a run is at, told on a stream from the third second on; no run below that prints anything.
 
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._updating = stream.isatty()
-        self._interval = 0.2 if self._updating else 5.0
-        self._start = self._last = time.monotonic()
+    Within ``with`` a thread tells it, so that it goes on while kernels compile or figures are drawn.
+    """
+
+    def __init__(self, stream: TextIO, whose: str = "") -> None:
+        self._stream, self._whose = stream, whose
+        self._updating = stream.isatty() and os.environ.get("TERM") != "dumb"
+        self._start = time.monotonic()
         self._next = self._start + QUIET
-        self._solving = 0.0
-        self._first: int | None = None
-        self._width = 0
+        self._stage = RunStage("solving", "points", self._start)
+        self._compiled_before = len(compiled_here)
+        self._shown = 0
+        self._one_at_a_time, self._ended, self._thread = Lock(), Event(), Thread(target=self._go_on)
 
     def __call__(self, done: int, total: int) -> None:
-        """Tell how far the run is, if it is time to."""
-        now, waiting = time.monotonic(), compiling()
-        self._solving += 0.0 if waiting else now - self._last
-        self._last = now
-        self._first = done if self._first is None else self._first
-        if now < self._next:
-            return
-        self._next = now + self._interval
-        news = _compiling_what() if waiting else self._time_left(done, total)
-        self._write(f"{done} of {total} points, {now - self._start:.0f} s{news}")
+        """Tell how far the stage is, if it is time to."""
+        self._stage.reaches(done, total)
+        self.look()
 
-    def _time_left(self, done: int, total: int) -> str:
-        """At the speed so far, compiling not counted: it does not come again."""
-        fresh = done - (self._first or 0)
-        left = self._solving * (total - done) / fresh if fresh else 0.0
-        return f", about {left:.0f} s left" if left > 0.5 else ""
+    def begins(self, doing: str, things: str = "") -> None:
+        """The next stage of the run, and what is counted in it."""
+        self._stage = RunStage(doing, things, time.monotonic())
 
-    def _write(self, line: str) -> None:
-        if self._updating:
-            self._stream.write("\r" + line.ljust(self._width))
-            self._width = len(line)
-        else:
-            self._stream.write(line + "\n")
-        self._stream.flush()
+    def look(self) -> None:
+        """Tell what goes on, if it is time to."""
+        with self._one_at_a_time:
+            now, waiting, stage = time.monotonic(), compiling(), self._stage
+            stage.passes(now, waiting)
+            if now < self._next or self._ended.is_set():
+                return
+            self._next = now + (OFTEN if self._updating else NOW_AND_THEN)
+            kernel = kernel_words(len(compiled_here) - self._compiled_before + 1, kernel_at_work())
+            facts = stage_words(stage, now - self._start, kernel if waiting else "")
+            self._write([f"{self._whose}{facts[0]}", *facts[1:]], stage.share)
+
+    def _write(self, facts: list[str], share: float | None) -> None:
+        with suppress(OSError, ValueError):  # a stream that was closed is no error
+            if self._updating:
+                line = fitted(facts, share, self._room())
+                self._stream.write("\r" + line.ljust(self._shown))
+                self._shown = len(line)
+            else:
+                self._stream.write(", ".join(facts) + "\n")
+            self._stream.flush()
+
+    def _room(self) -> int:
+        """Letters that a line takes: one less than there are columns, as some terminals wrap at the last one."""
+        try:
+            return (os.get_terminal_size(self._stream.fileno()).columns or 80) - 1
+        except (OSError, ValueError):
+            return 79
+
+    def clear(self) -> None:
+        """Erase the updating line: something else is about to be printed."""
+        with self._one_at_a_time, suppress(OSError, ValueError):
+            self._erase()
+
+    def _erase(self) -> None:
+        if self._shown:
+            self._stream.write("\r" + " " * min(self._shown, self._room()) + "\r")
+            self._stream.flush()
+            self._shown = 0
 
     def close(self) -> None:
-        """End the updating line, if there is one."""
-        if self._width:
-            self._stream.write("\n")
-            self._stream.flush()
-            self._width = 0
+        """Tell nothing more."""
+        self._ended.set()
+        self.clear()
+
+    def _go_on(self) -> None:
+        while not self._ended.wait(OFTEN):
+            self.look()
+
+    def __enter__(self) -> Self:
+        self._thread.daemon = True
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, problem: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+        self._thread.join()

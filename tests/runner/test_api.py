@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import errno
-import io
 import json
 import math
 import os
@@ -26,14 +25,12 @@ from run_folders import without_stamps
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.columns import RESULTS, TEXT
-from frictionlab.compile.notice import named_while_it_compiles
 from frictionlab.results.summary import summary
 from frictionlab.results.table import inputs, records
 from frictionlab.runner import accumulate, api, folder
 from frictionlab.runner.chunks import Task, cuts
 from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.open_chunks import open_chunks
-from frictionlab.runner.progress import Meter
 from frictionlab.runner.solve import solve
 from frictionlab.study import load_study, parse_study
 from frictionlab.study.yaml_text import yaml_text
@@ -662,56 +659,6 @@ def test_methods_and_tolerances_that_make_no_sense_are_refused_by_name() -> None
     for tolerance in (0.0, -1e-8, math.nan, math.inf):
         with pytest.raises(ValueError, match="tolerance must be a positive number"):
             fl.steady_state(SCENE, LAW, method="fake", tolerance=tolerance)
-
-
-class Screen(io.StringIO):
-    """A stream that says it is a terminal."""
-
-    def isatty(self) -> bool:
-        return True
-
-
-@pytest.mark.parametrize("stream", [io.StringIO, Screen])
-def test_progress_is_told_after_two_seconds_and_not_before(
-    stream: type[io.StringIO], monkeypatch: Any
-) -> None:
-    now = [100.0]
-    monkeypatch.setattr("frictionlab.runner.progress.time.monotonic", lambda: now[0])
-    told = stream()
-    meter = Meter(told)
-    meter(100, 400)
-    now[0] = 101.9
-    meter(200, 400)
-    assert told.getvalue() == ""
-
-    now[0] = 104.0
-    meter(200, 400)
-    meter.close()
-    line = "200 of 400 points, 4 s, about 8 s left"
-    assert told.getvalue() == ("\r" if stream is Screen else "") + line + "\n"
-
-
-def test_time_spent_compiling_is_named_and_not_held_against_the_points(monkeypatch: Any) -> None:
-    from numba.core.compiler_lock import global_compiler_lock
-
-    now = [100.0]
-    monkeypatch.setattr("frictionlab.runner.progress.time.monotonic", lambda: now[0])
-    told = io.StringIO()
-    meter = Meter(told)
-    meter(0, 400)
-    monkeypatch.setattr("frictionlab.runner.progress.compiled_here", [])
-    with ThreadPoolExecutor(1) as elsewhere, named_while_it_compiles("some kernel for Coulomb"):
-        now[0] = 130.0
-        elsewhere.submit(global_compiler_lock.acquire).result()
-        meter(100, 400)
-        elsewhere.submit(global_compiler_lock.release).result()
-    now[0] = 136.0
-    meter(200, 400)
-
-    assert told.getvalue().splitlines() == [
-        "100 of 400 points, 30 s, compiling kernel 1 (some kernel for Coulomb), once per machine",
-        "200 of 400 points, 36 s, about 6 s left",
-    ]
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,411 @@
+"""The formulas that docs/theory displays, written out here by their labels, are what the code computes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from numpy import cos, exp, log, pi, sin, sqrt
+from scipy.integrate import quad
+from scipy.special import ellipe, ellipk
+
+import frictionlab as fl
+from frictionlab import theory
+from frictionlab.laws.elasto_plastic import breakaway_share
+from frictionlab.theory.linear import friction_free_velocity
+from frictionlab.theory.sliding_stability import SteadySliding
+
+PAGES = Path(__file__).parents[2] / "docs" / "theory"
+
+kappa, v, z, softness = 0.37, -1.3 + 0.8j, -0.11 + 0.07j, 0.02
+"""Belt speed over slip amplitude; a slip velocity and a deflection in the plane, and their parts along the belt."""
+s, w, y = abs(v), v.real, 0.17
+mu, mu_k, mu_s, v_s, delta, sigma_0, sigma_1, sigma_2, r_ba = 0.4, 0.3, 0.45, 1.7, 0.2, 2.0, 0.05, 0.03, 0.7
+beta, gamma2, v_b, alpha, omega, n, phi = 0.1, 10.0, 5.0, 10.0, 1.5, 0.3, 0.6
+
+coulomb = fl.Coulomb(mu=mu)
+dahl = fl.Dahl(mu=mu, presliding_length=delta)
+bent = fl.Dahl(mu=mu, presliding_length=delta, exponent=1.4)
+jenkins = fl.Jenkins(mu=mu, stiffness=sigma_0)
+falling = {"mu_kinetic": mu_k, "mu_static": mu_s, "stribeck_speed": v_s, "viscosity": sigma_2}
+lugre = fl.LuGre(**falling, stiffness=sigma_0, damping=sigma_1)
+dupont = fl.ElastoPlastic(**falling, stiffness=sigma_0, damping=sigma_1, breakaway_ratio=r_ba)
+scene = fl.Scene(
+    damping_ratio=beta, normal_load=gamma2, belt_speed=v_b, drive=fl.Drive(unbalance=alpha, frequency=omega)
+)
+shaken = fl.Scene(
+    damping_ratio=beta,
+    normal_load=gamma2,
+    belt_speed=v_b,
+    transverse=fl.Transverse(natural_frequency=2.0, damping_ratio=beta),
+    drive=fl.Drive(amplitude=3.0, frequency=omega, phase=20.0, waveform="triangle", direction=40.0),
+    belt_vibration=fl.BeltVibration(
+        velocity_amplitude=0.7, phase=50.0, frequency_ratio="3/2", waveform="sawtooth", direction=60.0
+    ),
+    normal_load_variation=fl.NormalLoadVariation(amplitude=n, phase=35.0, waveform="square"),
+)
+TIMES = np.linspace(0.05, 12.0, 40)
+
+
+class Formula(NamedTuple):
+    """One displayed equation: its page and label, what it says, and what the code says."""
+
+    page: str
+    label: str
+    says: Callable[[], Any]
+    code: Callable[[], Any]
+    within: float = 1e-13
+
+
+def wave(name: str, theta: Any) -> Any:
+    """The table of waveforms below the equation of a load."""
+    return {
+        "sine": sin(theta),
+        "square": np.sign(sin(theta)),
+        "triangle": 2.0 / pi * np.arcsin(sin(theta)),
+        "sawtooth": (np.mod(theta + pi, 2.0 * pi) - pi) / pi,
+    }[name]
+
+
+def g(speed: float, exponent: float = 2.0) -> float:
+    """The exponential Stribeck curve."""
+    return mu_k + (mu_s - mu_k) * float(exp(-((speed / v_s) ** exponent)))
+
+
+def curve(name: str) -> float:
+    """The table of Stribeck curves, at the speed s."""
+    u, d = s / v_s, mu_s - mu_k
+    return {
+        "exponential": g(s),
+        "hyperbolic": mu_k + d / (1.0 + u),
+        "hess-soom": mu_k + d / (1.0 + u**2),
+        "cubic": mu_s - 0.5 * d * (3.0 * u - u**3),
+    }[name]
+
+
+def alpha_of(size: float) -> float:
+    """The share of slip that elasto-plastic bristles do not follow, at the slip speed s."""
+    z_max, z_ba = g(s) / sigma_0, r_ba * mu_k / sigma_0
+    if size <= z_ba or size >= z_max:
+        return float(size >= z_max)
+    return 0.5 + 0.5 * float(sin(pi * (size - 0.5 * (z_max + z_ba)) / (z_max - z_ba)))
+
+
+def stribeck_vector(name: str) -> complex:
+    return fl.Stribeck(**falling, curve=name).sliding_vector(v)
+
+
+def bristle_friction(law: Any, slip: Any, deflection: Any) -> Any:
+    return law.friction(slip, deflection, law.rate(slip, deflection))
+
+
+def back_and_forth() -> tuple[float, float]:
+    t = np.arccos(kappa)
+    back = 2.0 * (sin(t) - t * cos(t))
+    return back, back + 2.0 * pi * kappa
+
+
+def mean_of(slip: Callable[[float], complex], of: Callable[[complex], float]) -> float:
+    """Mean over one turn of a function of the slip velocity."""
+    return quad(lambda theta: of(slip(theta)), 0.0, 2.0 * pi, epsabs=1e-12, limit=200)[0] / (2.0 * pi)
+
+
+def one_harmonic_residual() -> float:
+    """Left-hand side over right-hand side, at the velocity of the code."""
+    a_, a, c, load = 1.0 - omega**2, 2.0 * beta * omega, 4.0 * mu * gamma2 / pi, alpha * omega**2
+    velocity = float(theory.one_harmonic_velocity(scene, mu * gamma2, kappa))
+    left = (a_ * velocity) ** 2 + (a * velocity + c * omega * sqrt(1.0 - kappa**2)) ** 2
+    return left / (load * omega) ** 2
+
+
+def one_harmonic_solved() -> float:
+    a_, a, c, load = 1.0 - omega**2, 2.0 * beta * omega, 4.0 * mu * gamma2 / pi, alpha * omega**2
+    held = c * sqrt(1.0 - kappa**2)
+    return omega * (-a * held + sqrt(load**2 * (a_**2 + a**2) - (a_ * held) ** 2)) / (a_**2 + a**2)
+
+
+def soft_dahl(exponent: float) -> float:
+    back, forth = back_and_forth()
+    r = (back / forth) ** (1.0 / exponent)
+    return (1.0 - r) / (1.0 + r)
+
+
+def impedance(p: complex) -> complex:
+    slope = -(mu_s - mu_k) * 2.0 * s / v_s**2 * exp(-((s / v_s) ** 2))
+    lag = g(s) / (sigma_0 * s)
+    return slope * (1.0 + p * sigma_1 / sigma_0) / (1.0 + p * lag) + sigma_2
+
+
+def linearized() -> SteadySliding:
+    """Of the code's own LuGre law: its slope by differences."""
+    step = 1e-6
+    ends = [lugre.sliding_friction(s + side * step) - sigma_2 * (s + side * step) for side in (-1.0, 1.0)]
+    return SteadySliding(
+        (ends[1] - ends[0]) / (2.0 * step), lugre.sliding_friction(s) / (sigma_0 * s) - sigma_2 / sigma_0,
+        sigma_1 / sigma_0, sigma_2,
+    )  # fmt: skip
+
+
+def stable_by_routh(damping: float, slope: float) -> bool:
+    lag, lead = 0.3, 0.1
+    c, h = damping, slope
+    second, first = 1.0 + c * lag + h * lead, c + h + lag
+    return second > 0.0 and first > 0.0 and second * first > lag
+
+
+@cache
+def state() -> fl.SteadyState:
+    """The steady state of the scene, by its own method."""
+    return fl.steady_state(scene, coulomb)
+
+
+@cache
+def orbit() -> Any:
+    return state().orbit(4000)
+
+
+def acceleration_less_forces() -> float:
+    """The largest residual of the equation of motion, at samples next to which slip does not reverse."""
+    tau, x, u, t = (orbit()[name].to_numpy() for name in ("tau", "x1", "v1", "friction"))
+    middle = (u[2:] - u[:-2]) / (tau[2:] - tau[:-2])
+    load = alpha * omega**2 * sin(omega * tau)
+    residual = middle + (2.0 * beta * u + x + gamma2 * t - load)[1:-1]
+    same = (abs(t[2:] - t[1:-1]) < 1e-9) & (abs(t[1:-1] - t[:-2]) < 1e-9)
+    assert same.mean() > 0.9
+    return float(np.abs(residual[same]).max())
+
+
+def energy(integrand: Callable[[Any], Any]) -> float:
+    """Over one period of the samples, by the rule of rectangles."""
+    return float(np.mean(integrand(orbit()))) * 2.0 * pi / omega
+
+
+FORMULAS = [
+    Formula("model", "motion", lambda: 0.0, acceleration_less_forces, 2e-3),
+    Formula("model", "slip", lambda: (orbit()["v1"] - v_b).to_numpy(), lambda: orbit()["slip"].to_numpy()),
+    Formula(
+        "model",
+        "load",
+        lambda: 3.0 * cos(np.radians(40.0)) * wave("triangle", omega * TIMES + np.radians(20.0)),
+        lambda: shaken.signals().load[0](TIMES),
+        1e-12,
+    ),
+    Formula(
+        "model",
+        "varying",
+        lambda: 0.7 * sin(np.radians(60.0)) * wave("sawtooth", 1.5 * omega * TIMES + np.radians(50.0)),
+        lambda: shaken.signals().belt[1](TIMES),
+        1e-12,
+    ),
+    Formula(
+        "model",
+        "varying",
+        lambda: gamma2 * (1.0 + n * wave("square", omega * TIMES + np.radians(35.0))),
+        lambda: gamma2 + shaken.signals().normal_load(TIMES),
+        1e-12,
+    ),
+    Formula("model", "mean", lambda: -orbit()["friction"].mean(), lambda: state().mean_friction, 1e-3),
+    Formula("model", "balance", lambda: orbit()["x1"].mean(), lambda: gamma2 * state().mean_friction, 1e-8),
+    Formula(
+        "model",
+        "vlin",
+        lambda: alpha * omega**3 / sqrt((1.0 - omega**2) ** 2 + (2.0 * beta * omega) ** 2),
+        lambda: friction_free_velocity(scene),
+        1e-12,
+    ),
+    Formula(
+        "model",
+        "energies",
+        lambda: energy(lambda o: 2.0 * beta * o["v1"] ** 2),
+        lambda: state().energy_viscous,
+        1e-3,
+    ),
+    Formula(
+        "model",
+        "energies",
+        lambda: energy(lambda o: gamma2 * o["friction"] * (o["v1"] - v_b)),
+        lambda: state().energy_contact,
+        0.5,
+    ),
+    Formula(
+        "model",
+        "energy-balance",
+        lambda: state().energy_friction + v_b * gamma2 * state().mean_friction * 2.0 * pi / omega,
+        lambda: state().energy_contact,
+        1e-8,
+    ),
+    Formula("laws", "coulomb", lambda: mu * v / s, lambda: coulomb.sliding_vector(v)),
+    *(
+        Formula(
+            "laws",
+            "stribeck",
+            lambda name=name: (curve(name) + sigma_2 * s) * v / s,
+            lambda name=name: stribeck_vector(name),
+        )
+        for name in ("exponential", "hyperbolic", "hess-soom", "cubic")
+    ),
+    Formula("laws", "bristle", lambda: v - s / (g(s) / sigma_0) * z, lambda: lugre.rate(v, z)),
+    Formula(
+        "laws",
+        "dahl",
+        lambda: (mu / delta) * abs(1.0 + sigma_0 * y / mu) ** 1.4 * w,
+        lambda: (mu / delta) * bent.rate(w, y),
+    ),
+    Formula("laws", "dahl-vector", lambda: v - s / delta * z, lambda: dahl.rate(v, z)),
+    Formula("laws", "dahl-vector", lambda: mu / delta * z, lambda: bristle_friction(dahl, v, z)),
+    Formula("laws", "dahl-path", lambda: 1.0 - 1.6 * exp(-0.8), lambda: theory.dahl_path(-0.6, 0.8)),
+    Formula(
+        "laws",
+        "dahl-path",
+        lambda: 1.0 - (1.6 ** (1.0 - 1.4) + 0.4 * 0.8) ** (1.0 / (1.0 - 1.4)),
+        lambda: theory.dahl_path(-0.6, 0.8, 1.4),
+    ),
+    Formula("laws", "jenkins", lambda: v, lambda: jenkins.rate(v, 0.5 * mu / sigma_0 * v / s)),
+    Formula(
+        "laws",
+        "jenkins",
+        lambda: v - (z / abs(z)) * (z * v.conjugate()).real / abs(z),
+        lambda: jenkins.rate(v, mu / sigma_0 * z / abs(z)),
+    ),
+    Formula(
+        "laws",
+        "lugre",
+        lambda: sigma_0 * z + sigma_1 * (v - sigma_0 * s / g(s) * z) + sigma_2 * v,
+        lambda: bristle_friction(lugre, v, z),
+    ),
+    *(
+        Formula(
+            "laws",
+            "passive",
+            lambda viscosity=viscosity: viscosity >= sigma_1 * (mu_s / mu_k - 1.0),
+            lambda viscosity=viscosity: lugre.model_copy(update={"viscosity": viscosity}).passive(),
+        )
+        for viscosity in (0.024, 0.026)
+    ),
+    Formula("laws", "elasto-plastic", lambda: w, lambda: dupont.rate(w, y)),  # unloading
+    Formula(
+        "laws",
+        "elasto-plastic",
+        lambda: v - alpha_of(abs(z)) * sigma_0 * s / g(s) * z,
+        lambda: dupont.rate(v, z),
+    ),
+    *(
+        Formula(
+            "laws",
+            "breakaway",
+            lambda size=size: alpha_of(size),
+            lambda size=size: breakaway_share(size, r_ba * mu_k / sigma_0, g(s) / sigma_0),
+        )
+        for size in (0.05, 0.13, 0.3)
+    ),
+    Formula(
+        "means",
+        "gradient",
+        lambda: mean_of(lambda theta: kappa + 1j * sin(theta), lambda slip: slip.real / abs(slip)),
+        lambda: theory.mean_prescribed_transverse(kappa),
+        1e-8,
+    ),
+    *(
+        Formula(
+            "means",
+            "distribution",
+            lambda name=name: 2.0 * np.mean(wave(name, np.linspace(0.0, 2.0 * pi, 1_000_001)) < kappa) - 1.0,
+            lambda name=name: theory.mean_prescribed_longitudinal(kappa, name),
+            1e-5,
+        )
+        for name in ("sine", "triangle", "sawtooth", "square")
+    ),
+    Formula(
+        "means",
+        "pulsating",
+        lambda: 2.0 / pi * (np.arcsin(kappa) - n * sqrt(1.0 - kappa**2) * cos(phi)),
+        lambda: theory.mean_prescribed_pulsating(kappa, n, phi),
+    ),
+    Formula(
+        "means",
+        "across",
+        lambda: 2.0 / pi * (kappa / sqrt(1.0 + kappa**2)) * ellipk(1.0 / (1.0 + kappa**2)),
+        lambda: theory.mean_prescribed_transverse(kappa),
+    ),
+    Formula(
+        "means",
+        "circle",
+        lambda: 2.0 / pi * (ellipe(kappa**2) - (1.0 - kappa**2) * ellipk(kappa**2)) / kappa,
+        lambda: theory.mean_prescribed_circular(kappa),
+    ),
+    Formula(
+        "means",
+        "circle",
+        lambda: 2.0 / pi * ellipe(kappa**2),
+        lambda: theory.mean_prescribed_circular(1.0 / kappa),
+    ),
+    Formula(
+        "means",
+        "mdsm",
+        lambda: 2.0 * mu / pi * np.arcsin(v_b / friction_free_velocity(scene)),
+        lambda: fl.steady_state(scene, coulomb, fl.Mdsm(error="bound")).mean_friction,
+    ),
+    Formula("means", "one-harmonic", lambda: 1.0, one_harmonic_residual),
+    Formula(
+        "means",
+        "one-harmonic-solved",
+        one_harmonic_solved,
+        lambda: theory.one_harmonic_velocity(scene, mu * gamma2, kappa),
+        1e-12,
+    ),
+    Formula(
+        "means",
+        "concave",
+        lambda: 1.0 - 4.0 / pi + 8.0 * 0.29 / pi**2,
+        lambda: theory.chord_area_at_resonance(0.29),
+    ),
+    Formula("means", "concave", lambda: pi / 16.0, lambda: theory.CONCAVE_BY_INITIAL_CURVATURE),
+    Formula(
+        "means",
+        "stiff",
+        lambda: 2.0 / (3.0 * pi) * 2.0 ** (1.0 - 0.6) / (2.0 - 0.6) * kappa / (1.0 - kappa**2),
+        lambda: theory.stiff_correction(kappa, 0.6),
+    ),
+    Formula("means", "soft", lambda: soft_dahl(1.4), lambda: theory.mean_soft_dahl(kappa, 1.4)),
+    Formula("means", "soft", lambda: back_and_forth(), lambda: theory.slip_back_and_forth(kappa)),
+    Formula(
+        "means",
+        "drift",
+        lambda: log((1.0 - 0.2**2) / (1.0 - 0.7**2)),
+        lambda: theory.dahl_drift(-0.2, 0.7),
+    ),
+    Formula("means", "impedance", lambda: impedance(0.7j), lambda: linearized().impedance(0.7j), 1e-8),
+    *(
+        Formula(
+            "means",
+            "routh",
+            lambda slope=slope: stable_by_routh(0.2, slope),
+            lambda slope=slope: SteadySliding(slope, 0.3, 0.1).stable(0.2, 1.0),
+        )
+        for slope in (-0.6, -0.24, -0.15, 0.1)
+    ),
+]
+WITHOUT_A_NUMBER = {"motion-si", "stick", "prescribed"}
+"""The same motion in SI units, the condition of stick and a given slip: checked where SI units and events are."""
+
+
+@pytest.mark.parametrize("formula", FORMULAS, ids=lambda each: f"{each.page}-{each.label}")
+def test_a_displayed_formula_is_what_the_code_computes(formula: Formula) -> None:
+    assert formula.code() == pytest.approx(formula.says(), rel=formula.within, abs=formula.within)
+
+
+def test_every_labelled_formula_of_the_model_the_laws_and_the_means_is_checked() -> None:
+    shown = {
+        (page, label)
+        for page in ("model", "laws", "means")
+        for label in re.findall(r"^\$\$ \(([\w-]+)\)$", (PAGES / f"{page}.md").read_text(), re.MULTILINE)
+    }
+
+    assert {(each.page, each.label) for each in FORMULAS} == {
+        (page, label) for page, label in shown if label not in WITHOUT_A_NUMBER
+    }

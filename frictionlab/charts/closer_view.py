@@ -1,4 +1,4 @@
-"""A closer view of curves inside their picture, where they are level over half of the axis."""
+"""A closer view of curves inside their picture, where they are level over much of the axis."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from frictionlab.charts.curves import LEAST_VISIBLE
 
 Points = tuple[NDArray[np.float64], NDArray[np.float64]]
-LEVEL_SHARE = 0.5
+LEVEL_SHARE = 0.4
 DIFFER_MOST = 0.3  # of the largest difference: from there on curves are shown closer
 GAP = 0.07  # to the level part around, in shares of the picture
 
@@ -19,7 +19,7 @@ GAP = 0.07  # to the level part around, in shares of the picture
 def draw_closer_view(axes: Axes, curves: Sequence[Points], draw: Callable[[Axes], None]) -> Axes | None:
     """Draw the lines anew where they differ, or where they change, in the room under or over their level part.
 
-    None, and nothing drawn, where no half of a linear axis, up to its right end, is level.
+    None, and nothing drawn, where less than LEVEL_SHARE of a linear axis, up to its right end, is level.
     """
     window = level_from(curves)
     if window is None or axes.get_xscale() != "linear" or axes.get_yscale() != "linear":
@@ -44,7 +44,7 @@ def draw_closer_view(axes: Axes, curves: Sequence[Points], draw: Callable[[Axes]
 
 
 def level_from(curves: Sequence[Points]) -> tuple[float, float] | None:
-    """From where on, and at which level, all curves stay within what can be seen; None for less than half."""
+    """From where on, and at which level, all curves stay within what can be seen; None for less than LEVEL_SHARE."""
     known = [(x, y) for x, y in curves if len(x) > 2]
     if not known:
         return None

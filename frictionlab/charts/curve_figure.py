@@ -14,7 +14,6 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
@@ -27,7 +26,7 @@ from frictionlab.charts.legend import WITHOUT_NUMBER, add_legend
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.onsets import draw_onsets, onset_entries, onsets_on
 from frictionlab.charts.speed_marks import draw_speed_marks
-from frictionlab.charts.style import LINE, PANEL_HEIGHT, page_of
+from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
 from frictionlab.charts.words import sentence, write_title
 from frictionlab.columns import word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
@@ -63,8 +62,7 @@ class CurveFigure:
         pictures = [(panel, column) for panel in self.family.panels for column in self.columns]
         width, wide = page_of(len(pictures), self.options.width)
         high = -(-len(pictures) // wide)
-        figure = Figure(figsize=(width, high * PANEL_HEIGHT), layout="constrained")
-        FigureCanvasAgg(figure)
+        figure = blank_figure(width, high * PANEL_HEIGHT)
         above = write_title(figure, self.title if self.options.title else "")
         below = add_legend(figure, self.family, looks, self.columns, self._more_entries(looks))
         figure.set_figheight(high * PANEL_HEIGHT + LINE * (above + below))

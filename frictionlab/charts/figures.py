@@ -113,6 +113,30 @@ def figures_of(
     return found
 
 
+def figure_of(
+    table: pd.DataFrame,
+    name: str = "mean_friction",
+    title: str = "",
+    onsets: pd.DataFrame | None = None,
+    curves: pd.DataFrame | None = None,
+    options: FigureOptions = USUAL_FIGURES,
+    kept: Kept | None = None,
+) -> Figure:
+    """One figure of a table, as ``draw_figures`` would write it; nothing is written, and pyplot knows nothing of it.
+
+    Raises ValueError, with the names there are, where the table has no such figure.
+    """
+    wanted = replace(options, shape=True) if name == "shape" else options
+    found = figures_of(table, printable(title), onsets, curves, wanted, kept)
+    if name not in found:
+        has = ", ".join(sorted(found)) if found else "none, for no number is swept"
+        raise ValueError(f"no figure {name!r}; this table has: {has}")
+    with mpl.rc_context(STYLE):
+        figure = found[name]()
+        figure.draw_without_rendering()  # ticks are made when first drawn, in the style of that moment
+    return figure
+
+
 def _of_table(
     table: pd.DataFrame,
     family: Family,

@@ -15,7 +15,6 @@ import numpy as np
 import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
@@ -36,7 +35,7 @@ from frictionlab.charts.curves import (
     swept_value,
 )
 from frictionlab.charts.legend import LEGEND_MARKS, status_entries
-from frictionlab.charts.style import LINE, PANEL_HEIGHT, page_of
+from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
 from frictionlab.charts.words import BESIDE, sentence, shortened, write_title
 from frictionlab.columns import BELT_SPEEDS, word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
@@ -87,8 +86,7 @@ class MapFigure:
         lines = -(-len(self.pictures) // wide)
         of_a_column = lines if len(self.pictures) > 1 else 1 / wide
         high = math.ceil(of_a_column * len(self.columns))
-        figure = Figure(figsize=(width, high * PANEL_HEIGHT), layout="constrained")
-        FigureCanvasAgg(figure)
+        figure = blank_figure(width, high * PANEL_HEIGHT)
         above = write_title(figure, self.title if self.options.title else "")
         below = self._add_legend(figure)
         figure.set_figheight(high * PANEL_HEIGHT + LINE * (above + below))

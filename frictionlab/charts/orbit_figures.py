@@ -12,7 +12,6 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
@@ -20,7 +19,7 @@ from numpy.typing import NDArray
 from frictionlab.charts.curves import CurveData, Family, SweptValue
 from frictionlab.charts.legend import HANDLE, curve_entries
 from frictionlab.charts.looks import Looks
-from frictionlab.charts.style import LINE, PANEL_HEIGHT, page_of
+from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
 from frictionlab.charts.words import sentence, write_title
 from frictionlab.columns import BELT_SPEED
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
@@ -82,8 +81,7 @@ class OrbitFigures:
         pictures = [(point, kind) for point in self.points for kind in kinds]
         width, wide = page_of(len(pictures), self.options.width)
         high = -(-len(pictures) // wide)
-        figure = Figure(figsize=(width, high * PANEL_HEIGHT), layout="constrained")
-        FigureCanvasAgg(figure)
+        figure = blank_figure(width, high * PANEL_HEIGHT)
         above = write_title(figure, self.title if self.options.title else "")
         below = self._add_legend(figure, poincare=_draw_phase in kinds)
         figure.set_figheight(high * PANEL_HEIGHT + LINE * (above + below))

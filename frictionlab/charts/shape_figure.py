@@ -10,13 +10,12 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from frictionlab.charts.curves import CurveData, Family, drawn_once
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.onsets import rows_of_curve, speed_scale
-from frictionlab.charts.style import LINE, PANEL_HEIGHT, page_of
+from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
 from frictionlab.charts.words import BESIDE, sentence, shortened, write_title
 from frictionlab.columns import BELT_SPEEDS, CURVES, word
 from frictionlab.study.figure_options import FigureOptions
@@ -38,8 +37,9 @@ class Chord(NamedTuple):
     @property
     def sentence(self) -> str:
         """The verdict and what it was made of."""
-        digits = max(0, min(6, -math.floor(math.log10(max(self.error, 1e-6)))))
-        return f"{self.verdict}: area {self.area:.{digits}f} ± {self.error:.1g}".replace(
+        error = float(f"{max(self.error, 1e-6):.0e}")
+        digits = max(0, -math.floor(math.log10(error)))
+        return f"{self.verdict}: area {self.area:.{digits}f} ± {error:.{digits}f}".replace(
             "-", "\N{MINUS SIGN}"
         )
 
@@ -76,8 +76,7 @@ class ShapeFigure:
         """The figure, with matplotlib's settings as they are."""
         width, wide = page_of(len(self.chosen), self.options.width)
         high = -(-len(self.chosen) // wide)
-        figure = Figure(figsize=(width, high * PANEL_HEIGHT), layout="constrained")
-        FigureCanvasAgg(figure)
+        figure = blank_figure(width, high * PANEL_HEIGHT)
         above = write_title(figure, self.title if self.options.title else "")
         if self.left_out:
             said = f"{len(self.chosen)} of {len(self.chosen) + self.left_out} curves"

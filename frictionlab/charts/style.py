@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from frictionlab.study.figure_options import WIDTHS
@@ -21,6 +23,25 @@ STYLE: Any = {name: value for name, value in _FILE.items() if name != "axes.prop
 CYCLE: list[dict[str, Any]] = list(_FILE["axes.prop_cycle"])
 """Colour and dashes of the first curve, the second, ..."""
 _UNDATED = {"svg": {"Date": None}, "png": {"Software": None}, "pdf": {"CreationDate": None}}
+
+NOTEBOOK_DPI = 200
+
+
+class NotebookFigure(Figure):
+    """A figure that a notebook shows by itself, though pyplot knows nothing of it."""
+
+    def _repr_png_(self) -> bytes:
+        drawn = BytesIO()
+        with mpl.rc_context(STYLE):
+            self.savefig(drawn, format="png", dpi=NOTEBOOK_DPI)
+        return drawn.getvalue()
+
+
+def blank_figure(width: float, height: float) -> Figure:
+    """A figure of this size [inch], without pictures."""
+    figure = NotebookFigure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
 
 
 def write_figure(figure: Figure, path: Path, formats: Sequence[str] = ("svg", "png")) -> list[Path]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from frictionlab.mistakes.notes import Notes, value_text
+from frictionlab.mistakes.notes import Mistake, Notes, WrongValues, dotted, value_text
 
 WIDTHS = {"single": 85.0, "double": 175.0}
 """Of a journal's column and page [mm]."""
@@ -36,7 +37,7 @@ USUAL_FIGURES = FigureOptions()
 FIGURE_KEYS = {
     "normalized": "mean over steady sliding friction against belt speed over V_lin",
     "against": "label of the law that others are subtracted from in the figure of differences",
-    "inset": "a closer view of where curves differ, where they are level over half of the axis",
+    "inset": "a closer view of where curves differ, where they are level over much of the axis",
     "width": "of a journal's column (single, 85 mm) or page (double, 175 mm); what the figure needs where left out",
     "formats": "of the files; the report shows svg or png",
     "title": "whether the study's title stands above",
@@ -67,6 +68,17 @@ def read_figure_options(given: Any, laws: tuple[str, ...] | None, notes: Notes) 
     if "formats" in tree:
         told["formats"] = _formats(tree["formats"], notes)
     return FigureOptions(**told)
+
+
+def figure_options(given: Mapping[str, Any], laws: tuple[str, ...]) -> FigureOptions:
+    """Those of keywords in Python, checked as a study's are. laws: the labels of the study. Raises WrongValues."""
+    notes = Notes()
+    read = read_figure_options(dict(given), laws, notes)
+    if notes.all:
+        raise WrongValues(
+            [Mistake("figures", None, dotted(note.path[1:]), note.what, note.hint) for note in notes.all]
+        )
+    return read
 
 
 def _formats(given: Any, notes: Notes) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,13 @@ import pandas as pd
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.image import imread
 from oracle import table_of_one_degree_of_freedom
 
-from frictionlab.charts.figures import draw_figures, figures_of
+from frictionlab.charts.figures import draw_figures, figure_of, figures_of
 from frictionlab.charts.style import STYLE
 from frictionlab.study import StudyError
-from frictionlab.study.figure_options import FigureOptions
+from frictionlab.study.figure_options import FigureOptions, figure_options
 from frictionlab.study.reader import parse_study
 from frictionlab.study.schema import schema
 
@@ -124,7 +126,7 @@ def test_stick_is_a_band_along_the_points_where_it_is(laws: pd.DataFrame) -> Non
     assert "stick" not in " ".join(_legend(_drawn(sticky)))
 
 
-def test_a_closer_view_stands_where_half_of_the_axis_is_level(laws: pd.DataFrame) -> None:
+def test_a_closer_view_stands_where_much_of_the_axis_is_level(laws: pd.DataFrame) -> None:
     one = laws[laws["law"] == "coulomb"]
     first, second = (one[one["scene.drive.frequency"] == value] for value in (1.0, 1.5))
 
@@ -200,3 +202,34 @@ def test_the_schema_has_every_key_with_its_meaning() -> None:
 
     assert set(keys) == set(FigureOptions.__dataclass_fields__)
     assert all(each["description"] for each in keys.values())
+
+
+def test_one_figure_is_had_without_files_or_pyplot(laws: pd.DataFrame) -> None:
+    before = dict(mpl.rcParams)
+
+    figure = figure_of(laws, "differences", options=FigureOptions(against="other", width="single"))
+
+    assert dict(mpl.rcParams) == before
+    assert figure.axes[0].get_ylabel().endswith("other")
+    assert figure.axes[0].xaxis.get_ticklabels()[0].get_fontsize() == STYLE["xtick.labelsize"]
+    pixels = imread(BytesIO(figure._repr_png_()))
+    assert pixels.shape[1] == pytest.approx(85.0 / 25.4 * 200, abs=1)
+    shape = figure_of(laws[laws["law"] == "coulomb"], "shape", curves=SHAPES)
+    assert len(shape.axes) == 2
+
+
+def test_a_figure_that_is_not_there_is_refused_with_those_that_are(laws: pd.DataFrame) -> None:
+    with pytest.raises(
+        ValueError, match="no figure 'shapes'; this table has: differences, energies, mean_fr"
+    ):
+        figure_of(laws, "shapes")
+    with pytest.raises(ValueError, match="none, for no number is swept"):
+        figure_of(laws.iloc[:1])
+
+
+def test_keywords_are_checked_as_the_keys_of_a_study_are() -> None:
+    assert figure_options({"normalized": True, "against": "dahl"}, ("dahl",)) == FigureOptions(True, "dahl")
+    with pytest.raises(
+        ValueError, match=r"against: must be one of dahl(.|\n)*width: must be one of single, do"
+    ):
+        figure_options({"against": "dahls", "width": 85}, ("dahl",))

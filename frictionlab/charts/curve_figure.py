@@ -33,6 +33,7 @@ from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
 DEGREES = [1, 1.5, 3, 4.5, 9, 10]  # between ticks of an angle, times a power of ten
 ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
+SAME_SPEED = 1e-6  # share of a belt speed: an onset and V_lin closer than this are one
 LIKE_RANGES = 2.5  # ranges of pictures of one quantity that differ by less have one scale
 BAND_LOOK: Any = {
     "linewidth": 6.0,
@@ -45,7 +46,7 @@ BAND_LOOK: Any = {
 class CurveFigure:
     """What a figure of curves shows. words: of a column, where they are not its own; level: whether zero is a line.
 
-    onsets: of the whole study, None where none are marked.
+    left_out: what is not drawn, in words. onsets: of the whole study, None where none are marked.
     """
 
     family: Family
@@ -55,6 +56,7 @@ class CurveFigure:
     options: FigureOptions = USUAL_FIGURES
     words: Mapping[str, str] = field(default_factory=dict)
     level: bool = False
+    left_out: str = ""
 
     def draw(self) -> Figure:
         """The figure, with matplotlib's settings as they are."""
@@ -76,16 +78,24 @@ class CurveFigure:
         return figure
 
     def onsets_of(self, curve: CurveData) -> list[Any]:
-        """The marks on the axis under a curve."""
-        along = is_along_speed(self.family)
-        return onsets_on(curve, self.onsets, self.family.abscissa) if along else []
+        """The marks on the axis under a curve, but for the end of reversal where the mark of V_lin says it."""
+        if not is_along_speed(self.family):
+            return []
+        marks = onsets_on(curve, self.onsets, self.family.abscissa)
+        return [mark for mark in marks if mark.onset != "reversal_ends" or not _is_kink(mark.at, curve)]
 
     def _more_entries(self, looks: Looks) -> list[Line2D]:
         marks = [mark for curve in self.family.curves for mark in self.onsets_of(curve)]
         entries: list[Line2D] = list(onset_entries(marks))
         if self.options.stick and any(sticks(curve.rows).any() for curve in looks.curves):
             entries.append(Line2D([], [], color="0.3", label="stick in part of the period", **BAND_LOOK))
+        if self.left_out:
+            entries.append(Line2D([], [], linestyle="none", label=self.left_out))
         return entries
+
+
+def _is_kink(at: float, curve: CurveData) -> bool:
+    return any(abs(at - kink) <= SAME_SPEED * abs(kink) for kink in curve.kinks)
 
 
 def sticks(rows: pd.DataFrame) -> NDArray[np.bool_]:

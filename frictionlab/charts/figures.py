@@ -39,8 +39,8 @@ OTHER_FIGURES = {
     "phase": "Velocity over position of kept orbits, with their Poincaré points; where a loop runs along the line of "
     "belt speed, the body sticks",
     "time_series": "Velocity and friction coefficient of kept orbits over one period",
-    "velocity_harmonics": "Amplitudes of the harmonics of the velocity, a line each",
-    "friction_harmonics": "Amplitudes of the harmonics of the friction coefficient, a line each",
+    "velocity_harmonics": "Amplitudes of the harmonics of the velocity, a picture each",
+    "friction_harmonics": "Amplitudes of the harmonics of the friction coefficient, a picture each",
 }
 """Those that only some tables have, and what they show."""
 IN_SI = {made.column: name for name, made in SI.items() if made.scale != "load"}
@@ -147,19 +147,17 @@ def _of_table(
 ) -> dict[str, Callable[[], Figure]]:
     of_speed = onsets if is_along_speed(family) else None
     shares = normalized(family) if options.normalized else None
-    if (maps := map_of(table)) is not None:
-        maps = replace(maps, title=title, options=options)
-        columns = {
-            name: [*shown, *(["error"] if name == "mean_friction" else [])]
-            for name, shown in figure_columns(table).items()
-        }
-        return {name: replace(maps, columns=shown).draw for name, shown in columns.items()}
     one = CurveFigure(shares or family, (), title, of_speed, options, IN_SHARES if shares else {})
-    found = {
-        name: replace(one, columns=columns, words=one.words if name == "mean_friction" else {}).draw
-        for name, columns in figure_columns(table).items()
-    }
-    compared = _difference_figure(one)
+    maps = map_of(table)
+    found: dict[str, Callable[[], Figure]] = {}
+    for name, columns in figure_columns(table).items():
+        of_mean = name == "mean_friction"
+        if maps is not None:
+            shown = [*columns, "error"] if of_mean else columns
+            found[name] = replace(maps, columns=shown, title=title, options=options).draw
+        else:
+            found[name] = replace(one, columns=columns, words=one.words if of_mean else {}).draw
+    compared = _difference_figure(one) if maps is None else None
     if compared is not None and "mean_friction" in found:
         found["differences"] = compared.draw
     if options.shape and curves is not None and (shapes := ShapeFigure.of(family, curves, title, options)):

@@ -1,4 +1,4 @@
-"""Figures of kept harmonics: amplitudes along a sweep, a line for each harmonic, a picture for each law."""
+"""Figures of kept harmonics: amplitudes along a sweep, a picture for each harmonic, a line for each law."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from frictionlab.charts.curve_figure import CurveFigure
-from frictionlab.charts.curves import Family, along_the_axis, family_by, swept_columns
+from frictionlab.charts.curves import MOST_PICTURES, Family, along_the_axis, family_by, swept_columns
 from frictionlab.columns import BELT_SPEED
 from frictionlab.study.figure_options import FigureOptions
 
 HARMONIC = "harmonic"
 AMPLITUDES = {
-    "velocity_harmonics": ("velocity_amplitude", "amplitude of a harmonic\nof the velocity"),
-    "friction_harmonics": ("friction_amplitude", "amplitude of a harmonic\nof the friction coefficient"),
+    "velocity_harmonics": ("velocity_amplitude", "amplitude of the harmonic\nof the velocity"),
+    "friction_harmonics": ("friction_amplitude", "amplitude of the harmonic\nof the friction coefficient"),
 }
 
 
@@ -26,8 +26,13 @@ def harmonic_figures(
     family = _family(harmonics)
     if family is None:
         return {}
+    orders = list(dict.fromkeys(dict(panel)[HARMONIC] for panel in family.panels))
+    most = orders[: max(1, MOST_PICTURES * len(orders) // len(family.panels))]
+    shown = [curve for curve in family.curves if dict(curve.panel)[HARMONIC] in most]
+    told = f"{len(most)} of {len(orders)} harmonics" if len(most) < len(orders) else ""
+    first = Family(family.abscissa, family.member, shown)
     return {
-        name: CurveFigure(family, [column], title, None, options, {column: label}).draw
+        name: CurveFigure(first, [column], title, None, options, {column: label}, left_out=told).draw
         for name, (column, label) in AMPLITUDES.items()
     }
 
@@ -41,5 +46,6 @@ def _family(harmonics: pd.DataFrame) -> Family | None:
         return None
     abscissa = along_the_axis(rows, numbers)
     others = [name for name in swept if name != abscissa]
-    laws = ["law"] if rows["law"].nunique() > 1 else []
-    return family_by(rows, abscissa, [*laws, *others], HARMONIC)
+    apart = others if rows["law"].nunique() == 1 else [name for name in others if name.startswith("law.")]
+    member = apart[-1] if apart else None
+    return family_by(rows, abscissa, [HARMONIC, *(name for name in others if name != member)], member)

@@ -34,8 +34,12 @@ def add_legend(
     ]
     if not entries:
         return 0
+    return add_entries(figure, entries, word(family.member) if family.member else None)
+
+
+def add_entries(figure: Figure, entries: Sequence[Line2D], title: str | None = None) -> int:
+    """A legend below the pictures; the lines it takes."""
     abreast = _abreast([str(entry.get_label()) for entry in entries], HANDLE, 72 * figure.get_figwidth())
-    title = word(family.member) if family.member else None
     figure.legend(
         handles=entries, loc="outside lower center", ncols=abreast, title=title, handlelength=HANDLE
     )

@@ -1,7 +1,8 @@
 """Maps: a quantity over two swept numbers as shades with contours, in place of a line for each value.
 
-Without a sweep of belt speed the mean, its error and whatever else a figure shows; beside one, the measures of the
-curves: how far friction falls, and the area that decides on their shape.
+The mean, its error and whatever else a figure shows, where belt speed is not swept, or beside it a number of more
+values than lines can tell apart. Of two numbers beside belt speed the measures of the curves: how far friction falls,
+and the area that decides on their shape.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ from frictionlab.charts.curves import (
     swept_columns,
     swept_value,
 )
+from frictionlab.charts.derived import SPEED_RATIO
 from frictionlab.charts.legend import LEGEND_MARKS, status_entries
 from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
 from frictionlab.charts.words import BESIDE, sentence, shortened, write_title
@@ -41,9 +43,12 @@ from frictionlab.columns import BELT_SPEEDS, word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
 LEAST_VALUES = 5  # of both numbers: fewer are told apart by lines
+MOST_CURVES = 12  # values of a number beside belt speed that are lines; more are a map
+RASTERIZED = 100  # cells: more are pixels in a drawing
 OF_CURVES = "reduction", "shape_area"
 MOST_LEVELS, LEVEL_EDGE = 6, 0.02  # of lines of equal value, and what they keep from the ends of the range
 OUTLINE = withStroke(linewidth=2.8, foreground="white")
+DARK_EDGE = withStroke(linewidth=2.2, foreground="0.2")
 MEASURE_NAMES = {
     "error": "error bound of the mean",
     "reduction": "largest fall of mean friction\nbelow steady sliding",
@@ -110,8 +115,11 @@ class MapFigure:
     def _draw_map(self, axes: Axes, picture: MapPicture, column: str, norm: Normalize) -> QuadMesh:
         x, y, known = picture.over(self.over, column)
         edges = [_edges(values) for values in (x, y)]
-        mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(known), norm=norm, rasterized=known.size > 400)
+        mesh = axes.pcolormesh(
+            *edges, np.ma.masked_invalid(known), norm=norm, rasterized=known.size > RASTERIZED
+        )
         _draw_contours(axes, x, y, known, norm)
+        _draw_v_lin(axes, x, y, picture.over(self.over, SPEED_RATIO)[2] if self._along_speed else known[:0])
         for values, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
             if is_logarithmic(values):
                 scale("log")
@@ -125,6 +133,10 @@ class MapFigure:
         axes.spines[["top", "right"]].set_visible(True)
         axes.set_title(self._name(picture), loc="left")
         return mesh
+
+    @property
+    def _along_speed(self) -> bool:
+        return self.over[0] in BELT_SPEEDS and SPEED_RATIO in self.table
 
     def _name(self, picture: MapPicture) -> str:
         laws = len({each.law for each in self.pictures}) > 1
@@ -140,18 +152,28 @@ class MapFigure:
             entries.append(Line2D([], [], linestyle="none", label=told))
         if any(picture.rows[column].isna().any() for picture in self.pictures for column in self.columns):
             entries.append(Patch(facecolor="white", edgecolor="0.3", linewidth=0.5, label="no number"))
+        if self._along_speed:
+            look: Any = {"color": "white", "linestyle": "dashed", "path_effects": [DARK_EDGE]}
+            entries.append(Line2D([], [], label=r"belt speed $V_\mathrm{lin}$", **look))
         if entries:
             figure.legend(handles=entries, loc="outside lower center", ncols=2)
         return -(-len(entries) // 2)
 
 
 def map_of(table: pd.DataFrame) -> MapFigure | None:
-    """The maps of a table without a sweep of belt speed; None where not two numbers take values enough."""
+    """The maps of a table; None where not two numbers take values enough.
+
+    Along a sweep of belt speed that is a number of the scene whose values are more than lines can tell apart.
+    """
     swept = swept_columns(table)
     numbers = [name for name in swept if is_numeric_dtype(table[name])]
-    if not numbers or along_the_axis(table, _by_values(table, numbers)) in BELT_SPEEDS:
+    if not numbers:
         return None
-    return _figure(table, swept, numbers)
+    along = along_the_axis(table, _by_values(table, numbers))
+    if along not in BELT_SPEEDS:
+        return _figure(table, swept, numbers)
+    others = [name for name in numbers if name != along and table[name].nunique() > MOST_CURVES]
+    return _figure(table, swept, others, along)
 
 
 def map_of_curves(curves: pd.DataFrame) -> MapFigure | None:
@@ -166,10 +188,14 @@ def _by_values(table: pd.DataFrame, names: Sequence[str]) -> list[str]:
     return sorted(names, key=lambda name: table[name].nunique())
 
 
-def _figure(table: pd.DataFrame, swept: Sequence[str], numbers: Sequence[str]) -> MapFigure | None:
+def _figure(
+    table: pd.DataFrame, swept: Sequence[str], numbers: Sequence[str], along: str | None = None
+) -> MapFigure | None:
+    """Those over the two numbers of most values, one of them the one given."""
     most = [
         name for name in _by_values(table, numbers) if name.startswith("scene.") or _of_every_law(table, name)
     ]
+    most += [along] if along else []
     if len(most) < 2 or table[most[-2]].nunique() < LEAST_VALUES:
         return None
     y, x = most[-2:]
@@ -180,13 +206,18 @@ def _figure(table: pd.DataFrame, swept: Sequence[str], numbers: Sequence[str]) -
         if "status" in rows and (rows["status"] == "refused").all():
             continue
         _add(pictures, MapPicture(str(law), (str(method),), settings, rows))
-    if not pictures:
+    if not all(_is_grid(picture.rows, (x, y)) for picture in pictures) or not pictures:
         return None
     chosen = np.unique(
         np.linspace(0, len(pictures) - 1, min(len(pictures), MOST_PICTURES)).round().astype(int)
     )
     drawn = [pictures[place] for place in chosen]
     return MapFigure((x, y), drawn, table, left_out=len(pictures) - len(drawn))
+
+
+def _is_grid(rows: pd.DataFrame, over: tuple[str, str]) -> bool:
+    """Whether every value of one number meets every value of the other: else a map is full of holes."""
+    return len(rows) == rows[over[0]].nunique() * rows[over[1]].nunique()
 
 
 def _of_every_law(table: pd.DataFrame, name: str) -> bool:
@@ -240,6 +271,17 @@ def _draw_contours(
     lines.set(path_effects=[OUTLINE])
     for label in axes.clabel(lines, fontsize=6, fmt="%.3g"):
         label.set(path_effects=[OUTLINE])
+
+
+def _draw_v_lin(
+    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], ratio: NDArray[np.float64]
+) -> None:
+    """The line on which the belt runs at V_lin, from the ratio of both speeds; none where no part of it is inside."""
+    known = np.abs(ratio[np.isfinite(ratio)])
+    if not known.size or not known.min() < 1.0 < known.max():
+        return
+    line = axes.contour(x, y, np.ma.masked_invalid(np.abs(ratio)), [1.0], colors="white", linestyles="dashed")
+    line.set(linewidth=1.1, path_effects=[DARK_EDGE])
 
 
 def _edges(values: NDArray[np.float64]) -> NDArray[np.float64]:

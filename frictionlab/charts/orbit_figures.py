@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from frictionlab.charts.curves import CurveData, Family, SweptValue
-from frictionlab.charts.legend import HANDLE, curve_entries
+from frictionlab.charts.legend import add_entries, curve_entries
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
 from frictionlab.charts.words import sentence, write_title
@@ -26,6 +26,7 @@ from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
 T = TypeVar("T")
 MOST_ORBITS, MOST_OF_A_PANEL = 6, 3  # pictures of a figure, and of them along one axis
+MOST_IN_TIME = 4  # points with a picture of velocity and one of friction
 POSITION, VELOCITY = "position $x_1$", "velocity $\\dot x_1$"
 COEFFICIENT = "friction coefficient\nagainst the mass"
 POINCARE: Any = {"marker": "o", "markersize": 3.5, "markerfacecolor": "white", "markeredgewidth": 0.9}
@@ -78,12 +79,13 @@ class OrbitFigures:
         }
 
     def _draw(self, kinds: Sequence[Callable[[Axes, DrawnOrbit, Looks], None]]) -> Figure:
-        pictures = [(point, kind) for point in self.points for kind in kinds]
+        points = self.points if len(kinds) == 1 else _spread(self.points, MOST_IN_TIME)
+        pictures = [(point, kind) for point in points for kind in kinds]
         width, wide = page_of(len(pictures), self.options.width)
         high = -(-len(pictures) // wide)
         figure = blank_figure(width, high * PANEL_HEIGHT)
         above = write_title(figure, self.title if self.options.title else "")
-        below = self._add_legend(figure, poincare=_draw_phase in kinds)
+        below = self._add_legend(figure, points, poincare=_draw_phase in kinds)
         figure.set_figheight(high * PANEL_HEIGHT + LINE * (above + below))
         of_friction: list[Axes] = []
         for place, (point, kind) in enumerate(pictures, start=1):
@@ -97,20 +99,16 @@ class OrbitFigures:
         _scale_friction(of_friction)
         return figure
 
-    def _add_legend(self, figure: Figure, poincare: bool) -> int:
-        drawn = [loop.curve for point in self.points for loop in point.loops]
+    def _add_legend(self, figure: Figure, points: Sequence[OrbitPicture], poincare: bool) -> int:
+        drawn = [loop.curve for point in points for loop in point.loops]
         entries = curve_entries(Looks(drawn), ["mean_friction"])
         if poincare:
             look: Any = {"linestyle": "none", "color": "0.2", **POINCARE}
             entries.append(Line2D([], [], label="start of a drive period", **look))
             entries.append(Line2D([], [], color="0.45", linewidth=0.6, label="belt speed"))
-        if len(self.points) < self.total:
-            entries.append(
-                Line2D([], [], linestyle="none", label=f"{len(self.points)} of {self.total} points")
-            )
-        if entries:
-            figure.legend(handles=entries, loc="outside lower center", ncols=4, handlelength=HANDLE)
-        return -(-len(entries) // 4)
+        if len(points) < self.total:
+            entries.append(Line2D([], [], linestyle="none", label=f"{len(points)} of {self.total} points"))
+        return add_entries(figure, entries) if entries else 0
 
 
 def orbit_figures(

@@ -98,7 +98,7 @@ class ShapeFigure:
         )
         axes.plot(x, y, **self.looks.sample(curve))
         axes.set_xlabel(word(self.family.abscissa))
-        axes.set_ylabel(word("mean_friction", 28))
+        axes.set_ylabel(word("mean_friction", 16))  # two lines of title leave less height
         axes.margins(x=0.02)
         axes.set_ylim(min(0.0, axes.get_ylim()[0]), None)
         settings = [sentence(each) for each in (*curve.panel, *([curve.member] if curve.member else []))]

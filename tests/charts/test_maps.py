@@ -114,7 +114,38 @@ def test_beside_belt_speed_the_measures_of_curves_are_a_map() -> None:
     figure = drawn(table, "map", curves)
 
     assert map_of(table) is None
+    assert "differences" not in figures_of(table)
     areas = [one for one in figure.axes[2].collections if isinstance(one, QuadContourSet)]
     assert 0.0 in areas[0].levels
     broadest = areas[0].get_linewidths()[list(areas[0].levels).index(0.0)]
     assert broadest == max(areas[0].get_linewidths()) > min(areas[0].get_linewidths())
+
+
+def along_speed(values: int, missing: int = 0) -> pd.DataFrame:
+    """A curve over belt speed for each value of the drive frequency, V_lin at twice that."""
+    points = [(speed, 1.0 + 0.1 * at) for at in range(values) for speed in range(1, 10)]
+    rows = pd.DataFrame(points, columns=["scene.belt_speed", "scene.drive.frequency"])
+    ratio = rows["scene.belt_speed"] / (2.0 * rows["scene.drive.frequency"])
+    head = grid().iloc[[0] * len(rows)].reset_index(drop=True).drop(columns=list(rows))
+    found = pd.concat([rows, head], axis="columns").assign(velocity_ratio=ratio, mean_friction=0.1 * ratio)
+    return found.iloc[: len(found) - missing].assign(**{"scene.normal_load": 1.0})
+
+
+def test_more_curves_than_lines_can_tell_apart_are_a_map_with_v_lin_in_it() -> None:
+    figure = drawn(along_speed(13))
+
+    mean = figure.axes[0]
+    assert mean.get_xlabel() == "belt speed $v_b$"
+    assert mean.get_ylabel() == r"drive frequency $\Omega$"
+    (line,) = [
+        one for one in mean.collections if isinstance(one, QuadContourSet) and list(one.levels) == [1.0]
+    ]
+    for speed, frequency in line.get_paths()[0].vertices:
+        assert speed == pytest.approx(2.0 * frequency)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [r"belt speed $V_\mathrm{lin}$"]
+    assert len(drawn(along_speed(12)).axes[0].lines) == 12
+
+
+def test_a_grid_with_holes_is_lines() -> None:
+    assert map_of(along_speed(13)) is not None
+    assert map_of(along_speed(13, missing=1)) is None

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from frictionlab.charts import figures
+from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import family_of
 from frictionlab.charts.onsets import SIGNS, onset_entries, onsets_on
 
@@ -90,3 +91,20 @@ def test_a_figure_draws_them_and_names_each_kind_once(
     assert family is not None
     legend = onset_entries([mark for one in family.curves for mark in onsets_on(one, ONSETS)])
     assert [entry.get_label() for entry in legend] == ["stick begins", "stick ends", "reversal ends"]
+
+
+def test_the_end_of_reversal_is_not_marked_again_where_v_lin_is() -> None:
+    speeds = np.linspace(1.0, 60.0, 12)
+    known = curve(0.2).assign(
+        velocity_ratio=speeds / 50.0, normalized_friction=np.minimum(speeds / 50.0, 1.0)
+    )
+    family = family_of(pd.concat([known, curve(0.4)], ignore_index=True))
+    assert family is not None
+    onsets = pd.concat([ONSETS, ONSETS.assign(onset="reversal_ends", belt_speed=50.0)], ignore_index=True)
+
+    first, other = (
+        CurveFigure(family, ["mean_friction"], onsets=onsets).onsets_of(one) for one in family.curves
+    )
+
+    assert first == []
+    assert [mark.onset for mark in other] == ["stick_begins", "stick_ends", "reversal_ends", "reversal_ends"]

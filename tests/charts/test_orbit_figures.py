@@ -102,18 +102,27 @@ def test_without_orbits_there_are_no_such_figures() -> None:
     assert {"hysteresis", "phase", "time_series"}.isdisjoint(names)
 
 
-def test_every_harmonic_is_a_line_and_every_law_a_picture() -> None:
+def harmonics_of(most: int) -> pd.DataFrame:
     inputs = TABLE[["law", "kind", "method"]].assign(belt_speed=TABLE["scene.belt_speed"])
     rows = [
         inputs.assign(harmonic=k, velocity_amplitude=1.0 / (k + 1), friction_amplitude=0.1 * k + inputs.index)
-        for k in range(4)
+        for k in range(most + 1)
     ]
+    return pd.concat(rows, ignore_index=True)
 
-    figure = drawn("friction_harmonics", pd.concat(rows, ignore_index=True))
 
-    assert [axes.get_title(loc="left") for axes in figure.axes] == ["coulomb", "dahl"]
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["1", "2", "3"]
-    for axes, first in zip(figure.axes, (0, 12), strict=True):
-        lines = [line for line in axes.lines if len(line.get_xdata()) > 2]
-        for k, line in enumerate(lines, start=1):
+def test_every_harmonic_is_a_picture_and_every_law_a_line() -> None:
+    figure = drawn("friction_harmonics", harmonics_of(3))
+
+    assert [axes.get_title(loc="left") for axes in figure.axes] == [f"harmonic = {k}" for k in (1, 2, 3)]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["coulomb", "dahl"]
+    for k, axes in enumerate(figure.axes, start=1):
+        for first, line in zip((0, 12), axes.lines, strict=True):
             np.testing.assert_allclose(line.get_ydata(), 0.1 * k + first + np.arange(12))
+
+
+def test_of_many_harmonics_the_first_are_drawn_and_the_rest_are_told() -> None:
+    figure = drawn("velocity_harmonics", harmonics_of(20))
+
+    assert len(figure.axes) == 12
+    assert figure.legends[0].get_texts()[-1].get_text() == "12 of 20 harmonics"

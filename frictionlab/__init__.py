@@ -59,6 +59,7 @@ _HOMES = {
     "curve": "frictionlab.runner.api",
     "needs": "frictionlab.least_model.needs",
     "run": "frictionlab.runner.api",
+    "sensitivities": "frictionlab.sensitivity.mean",
     "steady_state": "frictionlab.runner.steady_state",
     "sweep": "frictionlab.notebook.comparison",
     "trajectory": "frictionlab.runner.trajectory",

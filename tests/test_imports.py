@@ -88,6 +88,10 @@ ARROWS = {
         ),
         *("registry", "results", "scene", "study", "theory"),
     ],
+    "sensitivity": [
+        *("laws", "methods.base", "methods.periodic", "mistakes", "quantities", "results", "runner", "scene"),
+        "study",
+    ],
     "charts": ["columns", "printable", "study"],
     "report": ["charts", "columns", "registry", "results", "runner", "scene", "study"],
     "notebook": ["charts", "columns", "report", "results", "runner", "scene", "study"],
@@ -154,13 +158,26 @@ OUTSIDE = {
     "numpy": [
         *("quantities", "compile", "theory", "shape", "orbit", "numerics", "dynamics", "methods", "study"),
         *("onsets", "results", "runner", "scene", "charts", "notebook", "bench", "testing", "least_model"),
+        "sensitivity",
     ],
     "hypothesis": ["testing"],
     "numba": ["compile", "bench.peers"],  # the peers' integrators are called with numba's C functions
     "llvmlite": ["compile"],
     "flint": ["methods.exact.proof"],
     "ruamel": ["study", "runner"],
-    "pandas": ["results", "runner", "charts", "report", "notebook", "explore", "cli", "least_model"],
+    "pandas": [
+        *(
+            "results",
+            "runner",
+            "charts",
+            "report",
+            "notebook",
+            "explore",
+            "cli",
+            "least_model",
+            "sensitivity",
+        ),
+    ],
     "xarray": ["notebook"],
     "pyarrow": ["results", "runner"],
     "matplotlib": [

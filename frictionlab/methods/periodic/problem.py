@@ -38,6 +38,7 @@ from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT
 from frictionlab.methods.periodic.near_rest import answer_near_rest
 from frictionlab.methods.periodic.period_map import size_of, unpack
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
+from frictionlab.orbit.panels import WEIGHTS
 from frictionlab.orbit.record import Orbits
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
@@ -116,6 +117,7 @@ class PeriodicProblem:
         constant = scene.is_harmonic and not isinstance(self.like, complex) and slides_saturated(law)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), asks, constant)
         self.size = interpreted(size_of)(law, self.like)  # of a state
+        self.kind = map_kind(law, isinstance(self.like, complex))
 
     @property
     def by_implicit_steps(self) -> Self | None:
@@ -269,6 +271,19 @@ class PeriodicProblem:
             body, belt_speeds, states.copy(), self.goal, MAPPED, points=len(states), first=first
         )
         return np.asarray(found[0].states)
+
+    def repeated_once(self, scene: Scene, states: Floats) -> tuple[Floats, Floats]:
+        """These states [n, size] after all that changes in time has repeated once, and the mean friction along x1
+        meanwhile [n], of motions as fine as the tolerance asks."""
+        scenes = [scene] * len(states)
+        ends = self.mapped(belt_speeds_of(scenes), states)
+        found, means = self._recorded(list(range(len(states))), scenes, states), np.full(len(states), np.nan)
+        for i in range(len(states)):
+            orbit = found.one(i)
+            if orbit is not None:
+                lengths = orbit.tau[:, -1] - orbit.tau[:, 0]
+                means[i] = -0.5 * (lengths * (orbit.friction.real @ WEIGHTS)).sum() / lengths.sum()
+        return ends, means
 
     def _iterate(
         self,

@@ -29,27 +29,113 @@ def _a_number(value: object) -> object:
     return float(value)
 
 
+def document(kind: Any, text: str) -> None:
+    """Give a type of numbers the docstring that ``help`` shows."""
+    kind.__doc__ = inspect.cleandoc(text)
+
+
 Finite = Annotated[float, BeforeValidator(_a_number), Field(allow_inf_nan=False)]
+document(
+    Finite,
+    """Any real number, as the parameter of a law; without a dimension.
+
+    Text, booleans, NaN and infinities raise WrongValues.
+
+    >>> import frictionlab as fl
+    >>> class Tilted(fl.SlidingLaw):
+    ...     mu: fl.Positive
+    ...     slope: fl.Finite = 0.0
+    ...     def sliding_friction(self, speed):
+    ...         return self.mu + self.slope * speed / (1 + speed)
+    >>> Tilted(mu=0.5, slope=-0.25).sliding_friction(1.0)
+    0.375
+    """,
+)
 NonNegative = Annotated[float, BeforeValidator(_a_number), Field(allow_inf_nan=False, ge=0)]
+document(
+    NonNegative,
+    """A number of at least 0, as the parameter of a law; without a dimension. Smaller ones raise WrongValues.
+
+    >>> import frictionlab as fl
+    >>> class Lubricated(fl.SlidingLaw):
+    ...     mu: fl.NonNegative = 0
+    ...     def sliding_friction(self, speed):
+    ...         return self.mu
+    >>> Lubricated(mu=-0.1)
+    Traceback (most recent call last):
+    frictionlab.mistakes.notes.WrongValues: Lubricated: mu: must be >= 0, got -0.1
+    """,
+)
 Positive = Annotated[float, BeforeValidator(_a_number), Field(allow_inf_nan=False, gt=0)]
+document(
+    Positive,
+    """A number above 0, as the parameter of a law; without a dimension. Others raise WrongValues.
+
+    >>> import frictionlab as fl
+    >>> class Rough(fl.SlidingLaw):
+    ...     mu: fl.Positive
+    ...     def sliding_friction(self, speed):
+    ...         return self.mu
+    >>> Rough(mu=0)
+    Traceback (most recent call last):
+    frictionlab.mistakes.notes.WrongValues: Rough: mu: must be > 0, got 0
+    """,
+)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Dimension:
     """Physical dimension of a number as powers of force, length and time; written beside its limits in an annotation.
 
     It gives the unit of the number where a scene is given in SI units. A number without it is dimensionless.
+
+    >>> from typing import Annotated
+    >>> import frictionlab as fl
+    >>> Acceleration = Annotated[fl.Positive, fl.Dimension(length=1, time=-2)]
+    >>> fl.Dimension(length=1, time=-2)
+    Dimension(length=1, time=-2)
     """
 
     force: int = 0
     length: int = 0
     time: int = 0
 
+    def __repr__(self) -> str:
+        """What one would type to make it again."""
+        powers = ", ".join(f"{name}={power}" for name, power in vars(self).items() if power)
+        return f"Dimension({powers})"
+
 
 Speed = Annotated[Positive, Dimension(length=1, time=-1)]
-"""A speed > 0 [m/s in SI, else scene velocity]."""
+document(
+    Speed,
+    """A speed > 0 [m/s in a scene given in SI units, else omega_1 L], as the parameter of a law.
+
+    >>> import frictionlab as fl
+    >>> class Falling(fl.SlidingLaw):
+    ...     mu: fl.Positive
+    ...     fall_speed: fl.Speed
+    ...     def sliding_friction(self, speed):
+    ...         return self.mu / (1 + speed / self.fall_speed)
+    >>> Falling(mu=0.4, fall_speed=2).sliding_friction(2.0)
+    0.2
+    """,
+)
 PerSpeed = Annotated[NonNegative, Dimension(length=-1, time=1)]
-"""A coefficient >= 0 per speed [s/m in SI, else 1/scene velocity]."""
+document(
+    PerSpeed,
+    """A coefficient >= 0 per speed [s/m in a scene given in SI units, else 1/(omega_1 L)], as the parameter of a law.
+
+    >>> import frictionlab as fl
+    >>> class Viscous(fl.SlidingLaw):
+    ...     mu: fl.Positive
+    ...     viscosity: fl.PerSpeed = 0
+    ...     def sliding_friction(self, speed):
+    ...         return self.mu + self.viscosity * speed
+    >>> Viscous(mu=0.5, viscosity=0.25).sliding_friction(2.0)
+    1.0
+    """,
+)
 
 
 Floats = NDArray[np.float64]

@@ -16,9 +16,14 @@ MARKS = re.compile(r"([\\*|_`])")
 
 
 def _plain(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
-    """Every entry a paragraph, and nothing in it markup but code."""
+    """Every entry a paragraph, and nothing in it markup but code; examples as they are."""
     found: list[str] = []
+    example = False
     for line in lines:
+        example = line.startswith(">>> ") or (example and bool(line))
+        if example:
+            found.append(line)
+            continue
         if ENTRY.match(line) and found and found[-1]:
             found.append("")
         code_and_text = enumerate(CODE.split(line))

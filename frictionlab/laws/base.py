@@ -41,6 +41,12 @@ class FrictionLaw(Labelled, ABC):
     ``memory_kind`` says what friction depends on beside slip: nothing, the deflection of one bristle, or several
     deflections or scalars; no method solves a law that declares none of them. ``compliant``: whether one bristle has
     a stiffness and a presliding length.
+
+    >>> import frictionlab as fl
+    >>> isinstance(fl.Dahl(mu=0.4, stiffness=40), fl.FrictionLaw)
+    True
+    >>> fl.Dahl(mu=0.4, stiffness=40).sliding_friction(3.0)
+    0.4
     """
 
     bibtex: ClassVar[str] = ""
@@ -141,6 +147,16 @@ class SlidingLaw(FrictionLaw, ABC):
     """A law without memory: the slip velocity alone determines friction, which is set-valued at rest.
 
     At rest friction is any vector up to the static coefficient; the method determines which one.
+
+    >>> import frictionlab as fl
+    >>> class Falling(fl.SlidingLaw):
+    ...     mu: fl.Positive
+    ...     fall_speed: fl.Speed
+    ...     def sliding_friction(self, speed):
+    ...         return self.mu / (1 + speed / self.fall_speed)
+    >>> law = Falling(mu=0.4, fall_speed=1)
+    >>> law, law.static_friction(), law.sliding_friction(1.0)
+    (Falling(mu=0.4, fall_speed=1), 0.4, 0.2)
     """
 
     memory_kind: ClassVar[Literal["none"]] = "none"

@@ -9,11 +9,38 @@ from pydantic import model_validator
 
 from frictionlab.laws.base import Dimension, NonNegative, Positive
 from frictionlab.laws.memory import BristleLaw
+from frictionlab.quantities import document
 
 Stiffness = Annotated[Positive, Dimension(length=-1)]
-"""A bristle stiffness > 0 per unit normal load [1/m in SI, else 1/scene length]."""
+document(
+    Stiffness,
+    """A bristle stiffness > 0 per unit normal load [1/m in a scene given in SI units, else 1/L].
+
+    >>> import frictionlab as fl
+    >>> class Spring(fl.SlidingLaw):
+    ...     mu: fl.Positive
+    ...     stiffness: fl.Stiffness
+    ...     def sliding_friction(self, speed):
+    ...         return self.mu
+    >>> Spring(mu=0.4, stiffness=40)
+    Spring(mu=0.4, stiffness=40)
+    """,
+)
 Length = Annotated[Positive, Dimension(length=1)]
-"""A length > 0 [m in SI, else scene length]."""
+document(
+    Length,
+    """A length > 0 [m in a scene given in SI units, else L], as the parameter of a law.
+
+    >>> import frictionlab as fl
+    >>> class Asperities(fl.SlidingLaw):
+    ...     mu: fl.Positive
+    ...     width: fl.Length
+    ...     def sliding_friction(self, speed):
+    ...         return self.mu
+    >>> Asperities(mu=0.4, width=0.01)
+    Asperities(mu=0.4, width=0.01)
+    """,
+)
 ContactStiffness = Annotated[Positive, Dimension(force=1, length=-1)]
 """A stiffness > 0 of the contact [N/m in SI, else K_1]."""
 Damping = Annotated[NonNegative, Dimension(length=-1, time=1)]
@@ -28,6 +55,12 @@ class CompliantLaw(BristleLaw, ABC):
     stiffness [1/scene length], > 0: friction coefficient per deflection, or instead
     presliding_length [scene length], > 0: friction coefficient in slow sliding over stiffness, or instead
     contact_stiffness [K_1], > 0: stiffness times normal load.
+
+    >>> import frictionlab as fl
+    >>> fl.Dahl(mu=0.4, presliding_length=0.01).bristle_stiffness
+    40.0
+    >>> fl.Dahl(mu=0.4, contact_stiffness=400).under_load(10).stiffness
+    40.0
     """
 
     compliant: ClassVar[bool] = True
@@ -80,6 +113,10 @@ class DampedLaw(CompliantLaw, ABC):
 
     damping [1/scene velocity], >= 0: friction coefficient per rate of deflection, 0 where left out; or instead
     contact_damping [M omega_1], >= 0: damping times normal load.
+
+    >>> import frictionlab as fl
+    >>> fl.LuGre(mu_kinetic=0.4, stiffness=40, contact_damping=5).under_load(10).bristle_damping
+    0.5
     """
 
     damping: Damping | None = None

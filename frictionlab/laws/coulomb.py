@@ -16,6 +16,13 @@ class Coulomb(SlidingLaw):
     mu_static [-], >= mu: friction coefficient at rest; mu where left out.
 
     Sources: Amontons (1699); Coulomb (1785); in the notation of Sulollari, van Dalen & Cabboi, Eq. 3.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction, 4)
+    0.0506
+    >>> fl.Coulomb(mu=0.4, mu_static=0.5).static_friction()
+    0.5
     """
 
     mu: Positive

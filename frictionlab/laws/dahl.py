@@ -19,6 +19,12 @@ class Dahl(CompliantLaw):
     vector form. The sign function makes friction beyond its limit return to it for every exponent.
     Sources: Dahl (1968); Dahl (1976); in the plane z' = v - |v| z stiffness/mu, as Velenis, Tsiotras & Canudas de Wit
     (2002) write LuGre friction.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> law = fl.Dahl(mu=0.4, stiffness=40)
+    >>> round(fl.steady_state(scene, law).mean_friction, 4), law.presliding()
+    (0.0507, 0.01)
     """
 
     mu: Positive

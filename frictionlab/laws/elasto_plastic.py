@@ -30,6 +30,12 @@ class ElastoPlastic(StribeckBristle):
 
     Sources: Dupont, Armstrong & Hayward (2000); Dupont, Hayward, Armstrong & Altpeter (2002). In the plane alpha
     is that of |z|, switched off wherever z.v <= 0.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> law = fl.ElastoPlastic(mu_kinetic=0.4, stiffness=40)
+    >>> round(fl.steady_state(scene, law).mean_friction, 4), round(law.elastic_deflection(), 4)
+    (0.0507, 0.007)
     """
 
     breakaway_ratio: Share = 0.7

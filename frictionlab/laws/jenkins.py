@@ -18,6 +18,12 @@ class Jenkins(CompliantLaw):
 
     In the plane the slider moves along the spring while the spring force is mu: its path is a tractrix.
     Sources: Jenkins (1962); Griffin (1980); the spring is the contact stiffness of Menq, Bielak & Griffin (1986).
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> law = fl.Jenkins(mu=0.4, stiffness=40)
+    >>> round(fl.steady_state(scene, law).mean_friction, 4), law.presliding()
+    (0.0507, 0.01)
     """
 
     mu: Positive

@@ -23,6 +23,12 @@ class LuGre(StribeckBristle):
 
     Sources: Canudas de Wit, Olsson, Åström & Lischinsky (1995); in the plane Velenis, Tsiotras, Canudas de Wit &
     Sorine (2005); passivity: Barahanov & Ortega (2000).
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> law = fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=2, stiffness=40)
+    >>> round(fl.steady_state(scene, law).mean_friction, 4)
+    0.0306
     """
 
     def rate(self, v: Any, z: Any) -> Any:

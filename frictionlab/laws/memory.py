@@ -21,6 +21,19 @@ class BristleLaw(FrictionLaw, ABC):
     planar: how the law of one direction extends to the plane. ``vectorial``: v and z are vectors (isotropic; Velenis
     & Tsiotras, 2002); ``rotated``: one scalar deflection along the current slip direction (isotropic, without memory
     of direction); ``per-axis``: one law per axis (not isotropic: its yield set is a square).
+
+    >>> import frictionlab as fl
+    >>> class Brush(fl.BristleLaw):
+    ...     mu: fl.Positive
+    ...     stiffness: fl.Stiffness
+    ...     def sliding_friction(self, speed):
+    ...         return self.mu
+    ...     def rate(self, v, z):
+    ...         return v - abs(v) * z * self.stiffness / self.mu
+    ...     def friction(self, v, z, dz):
+    ...         return self.stiffness * z
+    >>> Brush(mu=0.4, stiffness=40).rate(1.0, 0.01)  # at its limit a bristle moves no further
+    0.0
     """
 
     memory_kind: ClassVar[Literal["bristle"]] = "bristle"
@@ -134,6 +147,21 @@ class MemoryLaw(FrictionLaw, ABC):
 
     memory_kind: ``deflections`` [scene length] reverse and rotate with the slip: ``float`` on the line and
     ``complex`` (x1 + i x2) in the plane, as the slip velocity. ``scalars`` have no direction: always ``float``.
+
+    >>> import frictionlab as fl
+    >>> class TwoSpringsInSeriesWithSliders(fl.MemoryLaw):
+    ...     mu: fl.Positive
+    ...     stiffness: fl.Stiffness
+    ...     def count(self):
+    ...         return 2
+    ...     def sliding_friction(self, speed):
+    ...         return self.mu
+    ...     def rate(self, v, memory, k):
+    ...         return v - abs(v) * memory[k] * (k + 1) * self.stiffness / self.mu
+    ...     def friction(self, v, memory, rates):
+    ...         return 0.5 * self.stiffness * (memory[0] + 2 * memory[1])
+    >>> TwoSpringsInSeriesWithSliders(mu=0.4, stiffness=40).friction(1.0, (0.01, 0.005), (0.0, 0.0))
+    0.4
     """
 
     memory_kind: ClassVar[Literal["deflections", "scalars"]] = "deflections"

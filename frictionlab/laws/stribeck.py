@@ -27,6 +27,12 @@ class Stribeck(SlidingLaw):
 
     Sources: exponential: Bo & Pavelescu (1982), Armstrong-Hélouvry (1991); hyperbolic: Leine, van Campen, de
     Kraker & van den Steen (1998); hess-soom: Hess & Soom (1990); cubic: Thomsen (1999), Thomsen & Fidlin (2003).
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> law = fl.Stribeck(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=2)
+    >>> round(fl.steady_state(scene, law).mean_friction, 4)
+    0.0306
     """
 
     mu_kinetic: NonNegative

@@ -22,6 +22,14 @@ class Needs:
     smallest: the smallest model within the tolerance (scene, law, method), nondimensional; the full one where nothing
     may go. label: what tells this curve from others of its study. failed: whether the full scene lacks an answer that
     it should have at some points.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> found = fl.needs(scene, fl.Coulomb(mu=0.4))
+    >>> found.table[["without", "verdict"]].values.tolist()[-1]
+    ["friction's effect on the motion", 'needed']
+    >>> found.smallest.method
+    HarmonicBalance()
     """
 
     table: pd.DataFrame
@@ -35,7 +43,14 @@ class Needs:
         return "\n".join(self.sentences)
 
     def plot(self) -> Any:
-        """A matplotlib figure: bars of the change without each thing, against the tolerance."""
+        """A matplotlib figure: bars of the change without each thing, against the tolerance.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> figure = fl.needs(scene, fl.Coulomb(mu=0.4)).plot()
+        >>> figure.savefig("needs.svg")
+        """
         from frictionlab.charts.needs import needs_figure  # with matplotlib, which takes a second
 
         return needs_figure(self.table)

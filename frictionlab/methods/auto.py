@@ -33,6 +33,14 @@ class Auto(Method):
     A smaller model answers where its error covers what it leaves out and is within the tolerance at every belt speed
     of the curve: one model and one method solve a whole curve, since a change inside a curve would look like physics.
     An answer whose error is above the tolerance counts as failed.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method="auto")
+    >>> round(state.mean_friction, 4), state.error < 1e-8
+    (0.0506, True)
+    >>> fl.Auto().choice(scene, fl.Dahl(mu=0.4, stiffness=40))
+    (Shooting(), 'cheapest method that applies: exact needs friction without memory (Coulomb)')
     """
 
     name: ClassVar[str] = "auto"

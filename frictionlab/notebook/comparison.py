@@ -35,7 +35,14 @@ if TYPE_CHECKING:
 class Comparison:
     """A study that was solved in memory; seconds: how long that took.
 
-    Shown as its summary, in a notebook as a small table with the curves drawn in it.
+    Shown as its summary, in a notebook as a small table with the curves drawn in it. ``fl.compare`` and ``fl.sweep``
+    make it.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> done = fl.compare(scene, fl.Coulomb(mu=0.4), belt_speed=[5, 25, 45])
+    >>> print(str(done).splitlines()[0])
+    3 points: 3 ok
     """
 
     run: Run
@@ -43,22 +50,54 @@ class Comparison:
 
     @property
     def study(self) -> Study:
-        """The study, which ``.to_yaml()`` writes as a file."""
+        """The study, which ``.to_yaml()`` writes as a file.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> done = fl.compare(scene, [fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)], belt_speed=[5, 25, 45])
+        >>> done.study.laws[1].law()
+        Dahl(mu=0.4, stiffness=40)
+        """
         return self.run.study
 
     @property
     def table(self) -> pd.DataFrame:
-        """One row per scene, law and method, with every result column."""
+        """One row per scene, law and method, with every result column.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> done = fl.compare(scene, [fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)], belt_speed=[5, 25, 45])
+        >>> done.table[["law", "scene.belt_speed", "mean_friction"]].round(4).values.tolist()[:2]
+        [['coulomb', 5.0, 0.0506], ['coulomb', 25.0, 0.2178]]
+        """
         return self.run.table
 
     @property
     def curves(self) -> pd.DataFrame:
-        """One row per curve with its shape, as in ``curves.csv``; empty where belt speed is not swept."""
+        """One row per curve with its shape, as in ``curves.csv``; empty where belt speed is not swept.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> done = fl.compare(scene, fl.Coulomb(mu=0.4), belt_speed={"start": 1, "stop": 60, "num": 30})
+        >>> done.curves[["law", "shape"]].values.tolist()
+        [['coulomb', 'concave']]
+        """
         return self.run.curves
 
     @property
     def onsets(self) -> pd.DataFrame:
-        """One row per belt speed at which a motion changes its kind, found when first asked for."""
+        """One row per belt speed at which a motion changes its kind, found when first asked for.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> done = fl.compare(scene, [fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)], belt_speed=[5, 25, 45])
+        >>> done.onsets[["law", "onset", "belt_speed"]].round(2).values.tolist()[0]
+        ['coulomb', 'stick_begins', 43.9]
+        """
         return self.run.onsets
 
     def to_xarray(self) -> xarray.Dataset:
@@ -67,6 +106,15 @@ class Comparison:
         Dimensions have the names of columns; select a method by ``.sel({"method": "exact"})``.
 
         All else is a variable, what laws have of their own included.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> done = fl.compare(scene, [fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)], belt_speed=[5, 25, 45])
+        >>> arrays = done.to_xarray()
+        >>> arrays["mean_friction"].sel({"law": "coulomb", "scene.belt_speed": 25}).round(4).item()
+        0.2178
+
         Raises ImportError without xarray, which ``pip install 'frictionlab[xarray]'`` installs.
         """
         try:
@@ -82,6 +130,13 @@ class Comparison:
     def save(self, folder: str | PathLike[str]) -> Path:
         """Write what ``frictionlab run`` writes into a folder, its figures and report included; where it is.
 
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> done = fl.compare(scene, fl.Coulomb(mu=0.4))
+        >>> {"results.csv", "report.html", "study.yaml"} < {file.name for file in done.save("laws").iterdir()}
+        True
+
         Raises FolderError where the folder holds results of another study, SaveError.
         """
         from frictionlab.notebook.pages import draw_and_report  # with matplotlib, which takes a second
@@ -89,7 +144,17 @@ class Comparison:
         return draw_and_report(save_run(self.run, Path(folder), self.seconds))
 
     def report(self, path: str | PathLike[str]) -> Path:
-        """Write the report alone, one HTML file that needs nothing else; where it is. Raises SaveError."""
+        """Write the report alone, one HTML file that needs nothing else; where it is.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> done = fl.compare(scene, fl.Coulomb(mu=0.4))
+        >>> print(done.report("laws.html"))
+        laws.html
+
+        Raises SaveError.
+        """
         from frictionlab.runner.files import write_whole
 
         with tempfile.TemporaryDirectory() as folder:

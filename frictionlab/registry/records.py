@@ -22,7 +22,7 @@ def law_record(name: str, law: type[FrictionLaw]) -> dict[str, Any]:
     """A law under this name: its description, parameters and declarations."""
     return {
         "name": name,
-        "description": _text(law),
+        "description": description(law),
         "parameters": _parameters(law),
         "declares": _declared(law),
         "sources": _sources(law),
@@ -35,7 +35,7 @@ def method_record(name: str) -> dict[str, Any]:
     method = registry.method_class(name)
     return {
         "name": name,
-        "description": _text(method),
+        "description": description(method),
         "refuses": inspect.getdoc(method.refusal) or "",
         "parameters": _parameters(method),
         "sources": _sources(method),
@@ -49,12 +49,14 @@ def _class(law: type[FrictionLaw]) -> str:
     return f"{home}:{law.__qualname__}" if home.endswith(".py") else f"{home}.{law.__qualname__}"
 
 
-def _text(kind: type) -> str:
-    return inspect.getdoc(kind) or ""
+def description(kind: type) -> str:
+    """The docstring without its examples, which are for Python."""
+    paragraphs = (inspect.getdoc(kind) or "").split("\n\n")
+    return "\n\n".join(each for each in paragraphs if not each.startswith(">>> "))
 
 
 def _sources(kind: type[FrictionLaw] | type[Method]) -> list[str]:
-    return [each.text for each in publications(_text(kind), kind.bibtex)]
+    return [each.text for each in publications(description(kind), kind.bibtex)]
 
 
 def _declared(law: type[FrictionLaw]) -> dict[str, str]:
@@ -138,7 +140,7 @@ def meaning(record: type[BaseModel], name: str) -> str:
 
     It goes from the name at the start of a line to a blank line, the sources, or a line beginning with another field.
     """
-    text, fields = _text(_owner(record, name)), "|".join(map(re.escape, record.model_fields))
+    text, fields = description(_owner(record, name)), "|".join(map(re.escape, record.model_fields))
     found = re.search(
         rf"^{re.escape(name)}\b([ :,].*(?:\n(?!\s*$|Sources?:|\w+ \[|(?:{fields})\b ?[:,>(]).*)*)",
         text,

@@ -25,6 +25,12 @@ class Run:
     harmonics: a row per harmonic of every orbit, None where the study does not keep them.
     shown, found: of a table too long to be held, the rows that figures and pages show, and how many of all rows have
     each status.
+
+    >>> import frictionlab as fl
+    >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
+    >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
+    >>> done
+    Run(1 point: 1 ok)
     """
 
     study: Study
@@ -48,35 +54,85 @@ class Run:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """One row per scene, law and method."""
+        """One row per scene, law and method, with the inputs and every result column.
+
+        >>> import frictionlab as fl
+        >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
+        >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
+        >>> done.table["mean_friction"].round(4).tolist()
+        [0.1333]
+        """
         return self.made()
 
     @cached_property
     def orbits(self) -> pd.DataFrame | None:
-        """The kept orbits; None where none are kept."""
+        """The kept orbits, a row per instant; None where the study keeps none.
+
+        >>> import frictionlab as fl
+        >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
+        >>> study = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}], "keep": {"orbit": 4}}
+        >>> fl.run(study).orbits["slip"].round(6).tolist()
+        [-1.0, 1.0, -1.0, -3.0]
+        """
         return self.orbits_made()
 
     @cached_property
     def onsets(self) -> pd.DataFrame:
-        """One row per onset of a curve, found when first asked for: belt speeds where stick begins, ends, ..."""
+        """One row per onset of a curve, found when first asked for: belt speeds where stick begins, ends, ...
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> study = fl.Study.of(scene, fl.Coulomb(mu=0.4), sweep={"scene.belt_speed": [30, 40, 60]})
+        >>> fl.run(study).onsets[["onset", "belt_speed"]].round(2).values.tolist()
+        [['stick_begins', 43.9], ['reversal_ends', 50.0], ['stick_ends', 50.0]]
+        """
         return self.onsets_made()
 
     @property
     def to_show(self) -> pd.DataFrame:
-        """The table, or of a long one the rows that are shown."""
+        """The table, or of a long one the rows that figures and pages show.
+
+        >>> import frictionlab as fl
+        >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
+        >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
+        >>> len(done.to_show)
+        1
+        """
         return self.table if self.shown is None else self.shown
 
     @property
     def table_file(self) -> Path | None:
-        """Where the table is, if it was written."""
+        """Where the table is; None if it was not written.
+
+        >>> import frictionlab as fl
+        >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
+        >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
+        >>> print(done.table_file)
+        None
+        """
         return self.folder / "results.parquet" if self.folder is not None else None
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many rows have each status."""
+        """How many rows have each status.
+
+        >>> import frictionlab as fl
+        >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
+        >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
+        >>> done.counts
+        {'ok': 1}
+        """
         return status_counts(self.table) if self.found is None else dict(self.found)
 
     @property
     def size(self) -> int:
-        """How many rows there are."""
+        """How many rows there are.
+
+        >>> import frictionlab as fl
+        >>> scene = {"belt_speed": 1, "slip": {"velocity_amplitude": 2, "frequency": 1}}
+        >>> done = fl.run({"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}]})
+        >>> done.size
+        1
+        """
         return sum(self.counts.values())

@@ -63,7 +63,15 @@ def _kept(orbit: Orbit | None, _place: int) -> Orbit | None:
 class SteadyState:
     """A steady state: the result columns of the table, in its units; NaN or "" where one does not apply.
 
-    si: the columns in SI units by name, where the scene is given in them.
+    mean_friction, error [-]: the mean friction coefficient along the belt and the bound on its error; lengths in L,
+    velocities in omega_1 L, energies of one period in K_1 L^2, period in those of the drive. All columns are
+    told in docs/study.md. si: the columns in SI units by name, where the scene is given in them.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4))
+    >>> state.status, round(state.mean_friction, 4), state.error < 1e-8, state.reversals
+    ('ok', 0.0506, True, 2.0)
     """
 
     status: Status
@@ -109,7 +117,7 @@ class SteadyState:
         """The mean with its error, or what there is instead of one and why."""
         if self.status == "ok":
             said = f"mean_friction={self.mean_friction!r}, error={self.error:.1e}"
-            return f"SteadyState(ok, {said}, {self.model}{f'; {self.reason}' if self.reason else ''})"
+            return f"SteadyState(ok, {said}{f'; {self.reason}' if self.reason else ''})"
         return f"SteadyState({self._why()})"
 
     def _why(self) -> str:
@@ -118,7 +126,14 @@ class SteadyState:
         return f"{self.status}, {none}: {self.reason}"
 
     def raise_for_status(self) -> SteadyState:
-        """This steady state if its status is ``ok``. Raises NoMeanError with status and reason for every other."""
+        """This steady state if its status is ``ok``. Raises NoMeanError with status and reason for every other.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).raise_for_status().mean_friction, 4)
+        0.0506
+        """
         if self.status != "ok":
             raise NoMeanError(self._why())
         return self
@@ -127,6 +142,14 @@ class SteadyState:
         """One period at n equally spaced times, a row each: tau, x1, v1, x2, v2, friction, load, slip, ...
 
         Columns as in ``orbits.parquet``, in the scales of the scene, x2 and its like zero along a line.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4))
+        >>> state.orbit(4)[["tau", "slip"]].round(2).values.tolist()
+        [[0.0, -4.95], [1.57, 20.02], [3.14, -4.62], [4.71, -30.21]]
+
         Raises ValueError where there is no orbit, saying why.
         """
         if n < 1:
@@ -139,7 +162,14 @@ class SteadyState:
         return pd.DataFrame(samples._asdict())
 
     def harmonics(self, highest: int, across: bool = False) -> HarmonicParts:
-        """Harmonics 0 ... highest of velocity and friction along the belt, or across it.
+        """Harmonics 0 ... highest of velocity [omega_1 L] and friction [-] along the belt, or across it.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4))
+        >>> state.harmonics(3).velocity_amplitude[1:].round(3).tolist()
+        [25.057, 0.651, 0.525]
 
         Raises ValueError where there is no orbit, saying why.
         """

@@ -91,6 +91,14 @@ def run(
     so many gigabytes those used longest ago are removed. Without ``out`` and ``cache`` nothing is written.
     as_csv: write a table of more than 1e5 rows as text, too; it is read from its file where ``.table`` is asked for.
     columns: result columns, in place of those of the study; inputs, mean_friction, error, status and reason always.
+
+    >>> import frictionlab as fl
+    >>> scene = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
+    >>> study = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["auto", "mdsm"]}
+    >>> done = fl.run(study, overrides=["scene.belt_speed=25"])
+    >>> done.table[["method", "mean_friction"]].round(4).values.tolist()
+    [['auto', 0.2178], ['mdsm', 0.1333]]
+
     Raises StudyError, FolderError, UnsavedError, Interrupted, BrokenPlugin, ValueError or TypeError for what makes no
     sense, such as an unknown column.
     """
@@ -304,12 +312,19 @@ def curve(
     columns: Sequence[str] | None = None,
     executor: Executor | None = None,
 ) -> pd.DataFrame:
-    """The result table of one law over belt speeds, in the order given.
+    """The result table of one law over belt speeds: a row each, in the order given.
 
-    belt_speed [scene velocity; m/s for a scene given in SI units]: one-dimensional.
-    tolerance [-]: absolute, on mean_friction.
+    belt_speed [omega_1 L; m/s for a scene given in SI units]: a number, or a list or array of one dimension.
+    method: a name, or a method such as ``fl.March(steps=1000)``. tolerance [-]: absolute, on mean_friction.
     columns: result columns, all by default; inputs, mean_friction, error, status and reason always.
     executor: any; threads of this process by default.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> table = fl.curve(scene, fl.Coulomb(mu=0.4), belt_speed=[5, 25, 45])
+    >>> table["mean_friction"].round(4).tolist()
+    [0.0506, 0.2178, 0.3613]
+
     Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
@@ -342,7 +357,15 @@ def attractors(
 
     So many starts are followed at each belt speed [scene velocity], as shooting does, and every state found is
     carried on to the next belt speed from both sides. Rows rise in belt speed; columns as in ``attractors.csv`` of a
-    study. Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
+    study: period in those of the drive, mean_friction [-], position x [L] and velocity [omega_1 L] of the point.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> found = fl.attractors(scene, fl.Coulomb(mu=0.4), belt_speed=[1, 5], starts=4)
+    >>> found[["belt_speed", "period", "x"]].round(2).values.tolist()
+    [[1.0, 1.0, -24.51], [5.0, 1.0, -24.93]]
+
+    Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     if isinstance(starts, bool) or not isinstance(starts, int) or starts < 1:

@@ -26,7 +26,15 @@ def steady_state(
 ) -> SteadyState:
     """The steady state of one scene, refused and failed ones included: see ``status`` and ``reason``.
 
-    tolerance [-]: absolute, on mean_friction. Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
+    method: a name, or a method such as ``fl.March(steps=1000)``. tolerance [-]: absolute, on mean_friction.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4))
+    >>> round(state.mean_friction, 4), state.error < 1e-8, state.status
+    (0.0506, True, 'ok')
+
+    Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
     task = Task(given_tolerance(tolerance))

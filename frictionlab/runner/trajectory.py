@@ -38,7 +38,7 @@ def trajectory(
     >>> drive = fl.Drive(unbalance=10, frequency=1)
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
     >>> motion = fl.trajectory(scene, fl.Coulomb(mu=0.4), periods=3, samples=50, initial=fl.Initial(x=3))
-    >>> len(motion), motion.x1[0]
+    >>> len(motion), float(motion.x1[0])
     (151, 3.0)
 
     Raises ValueError where no method follows such a motion, ValueError or TypeError for what makes no sense.

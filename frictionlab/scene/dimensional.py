@@ -74,7 +74,16 @@ class _Force(Record):
 class DimensionalDrive(_Force):
     """The force along x1: unbalance_kg_m*omega^2 (or amplitude_N) times waveform(omega t + phase).
 
+    unbalance_kg_m [kg m], >= 0: the force has the amplitude unbalance_kg_m*omega^2; or instead
+    amplitude_N [N], >= 0: its amplitude.
+    phase [degrees]: the force is the waveform at its frequency*time + phase.
+    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [{order, amplitude, phase}, ...]}.
     frequency_rad_per_s [rad/s], > 0: omega, of the drive; everything else that vibrates has it in some ratio.
+    direction [degrees]: from x1 towards x2, in scenes with ``transverse``; along x1 where left out.
+
+    >>> import frictionlab as fl
+    >>> fl.DimensionalDrive(amplitude_N=20, frequency_rad_per_s=300, waveform="square")
+    DimensionalDrive(amplitude_N=20, waveform='square', frequency_rad_per_s=300)
     """
 
     frequency_rad_per_s: Positive
@@ -82,7 +91,18 @@ class DimensionalDrive(_Force):
 
 
 class DimensionalLoad(_Force):
-    """The force along x2, at the frequency of the drive or, with ``frequency_ratio``, at p/q times that."""
+    """The force along x2, across the belt, beside a drive along x1.
+
+    unbalance_kg_m [kg m], >= 0: the force has the amplitude unbalance_kg_m*(frequency of the drive)^2; or instead
+    amplitude_N [N], >= 0: its amplitude.
+    phase [degrees]: the force is the waveform at its frequency*time + phase.
+    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [{order, amplitude, phase}, ...]}.
+    frequency_ratio [-]: its frequency in shares of the drive's, p/q; 1 where left out.
+
+    >>> import frictionlab as fl
+    >>> fl.DimensionalLoad(unbalance_kg_m=0.01, frequency_ratio=2)
+    DimensionalLoad(unbalance_kg_m=0.01, frequency_ratio=2)
+    """
 
     frequency_ratio: Ratio | None = None
 
@@ -92,6 +112,12 @@ class DimensionalBeltVibration(Record):
 
     velocity_amplitude_m_per_s [m/s], >= 0: of the belt's vibration.
     frequency_rad_per_s [rad/s], > 0: only where nothing else has a frequency.
+
+    What has no unit is as for ``BeltVibration``.
+
+    >>> import frictionlab as fl
+    >>> fl.DimensionalBeltVibration(velocity_amplitude_m_per_s=0.02, frequency_rad_per_s=300)
+    DimensionalBeltVibration(velocity_amplitude_m_per_s=0.02, frequency_rad_per_s=300)
     """
 
     velocity_amplitude_m_per_s: NonNegative
@@ -110,7 +136,12 @@ class DimensionalBeltVibration(Record):
 class DimensionalNormalLoadVariation(Record):
     """The normal load as its mean times 1 + amplitude*waveform; all as for ``NormalLoadVariation``.
 
+    amplitude [-], >= 0: the varying share of the normal load.
     frequency_rad_per_s [rad/s], > 0: only where nothing else has a frequency.
+
+    >>> import frictionlab as fl
+    >>> fl.DimensionalNormalLoadVariation(amplitude=0.3, frequency_rad_per_s=300)
+    DimensionalNormalLoadVariation(amplitude=0.3, frequency_rad_per_s=300)
     """
 
     amplitude: NonNegative
@@ -143,6 +174,11 @@ class DimensionalTransverse(Record):
 
     stiffness_N_per_m [N/m], > 0: K_2, of the spring across the belt.
     damping_N_s_per_m [N s/m], >= 0: C_2, of the dashpot across the belt.
+    load: the force across the belt; none where left out.
+
+    >>> import frictionlab as fl
+    >>> fl.DimensionalTransverse(stiffness_N_per_m=500, damping_N_s_per_m=2)
+    DimensionalTransverse(stiffness_N_per_m=500, damping_N_s_per_m=2)
     """
 
     stiffness_N_per_m: Positive
@@ -157,6 +193,10 @@ class DimensionalInitial(Record):
     velocity_m_per_s [m/s]: along the belt.
     x2_m [m]: position across the belt.
     velocity2_m_per_s [m/s]: across the belt.
+
+    >>> import frictionlab as fl
+    >>> fl.DimensionalInitial(x_m=0.001)
+    DimensionalInitial(x_m=0.001)
     """
 
     x_m: Finite = 0.0
@@ -177,6 +217,18 @@ class Dimensional(Record):
     belt_speed_m_per_s [m/s]: V_b.
 
     Leave ``transverse`` out for one degree of freedom.
+    Raises WrongValues with every mistake in the values.
+
+    >>> import frictionlab as fl
+    >>> body = {"mass_kg": 1, "stiffness_N_per_m": 400, "damping_N_s_per_m": 4, "length_m": 0.001}
+    >>> drive = fl.DimensionalDrive(amplitude_N=20, frequency_rad_per_s=20)
+    >>> scene = fl.Scene(dimensional=fl.Dimensional(**body, belt_speed_m_per_s=0.05, drive=drive))
+    >>> scene.damping_ratio, scene.normal_load, scene.belt_speed
+    (0.1, 24.525, 2.5)
+    >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).si["mean_friction_N"], 4)
+    0.0332
+
+    Source: Sulollari, van Dalen & Cabboi, Eq. 2.
     """
 
     mass_kg: Positive

@@ -83,8 +83,20 @@ class _Force(_Part):
 class Drive(_Force):
     """The force along x1: unbalance*frequency^2 (or amplitude) times waveform(frequency*tau + phase).
 
+    unbalance [L], >= 0: the force has the amplitude unbalance*frequency^2; or instead
+    amplitude [K_1 L], >= 0: its amplitude.
+    phase [degrees]: the force is the waveform at frequency*tau + phase.
+    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [{order, amplitude, phase}, ...]}.
     frequency [omega_1], > 0: of the drive; everything else that vibrates has it in some ratio.
     direction [degrees]: from x1 towards x2, in scenes with ``transverse``; along x1 where left out.
+
+    >>> import frictionlab as fl
+    >>> fl.Drive(unbalance=10, frequency=2).size(2)
+    40.0
+    >>> fl.Drive(amplitude=3, frequency=2, waveform="square", phase=90)
+    Drive(amplitude=3, phase=90, waveform='square', frequency=2)
+
+    Waveforms of such a force are compared by Michaux, Ferri & Cunefare (2008).
     """
 
     frequency: Positive
@@ -92,19 +104,36 @@ class Drive(_Force):
 
 
 class Load(_Force):
-    """The force along x2; units as for ``Drive``, of whose frequency an unbalance takes the square.
+    """The force along x2, across the belt, beside a drive along x1.
 
+    unbalance [L], >= 0: the force has the amplitude unbalance*(frequency of the drive)^2; or instead
+    amplitude [K_1 L], >= 0: its amplitude.
+    phase [degrees]: the force is the waveform at its frequency*tau + phase.
+    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [{order, amplitude, phase}, ...]}.
     frequency_ratio [-]: its frequency in shares of the drive's, p/q; 1 where left out.
+
+    >>> import frictionlab as fl
+    >>> fl.Load(amplitude=3, frequency_ratio="3/2", phase=90)
+    Load(amplitude=3, phase=90, frequency_ratio=1.5)
     """
 
     frequency_ratio: Ratio | None = None
 
 
 class Transverse(_Part):
-    """The motion along x2, across the belt.
+    """The motion along x2, across the belt: a second degree of freedom, which friction couples to the first.
 
     natural_frequency [omega_1], > 0: omega_r, of the motion along x2.
     damping_ratio [-], >= 0: of the motion along x2.
+    load: the force along x2; none where left out.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> across = fl.Transverse(natural_frequency=0.5, damping_ratio=0.1, load=fl.Load(unbalance=10))
+    >>> round(fl.steady_state(scene.with_(transverse=across), fl.Coulomb(mu=0.4)).mean_friction, 4)
+    0.0426
+
+    Source: Sulollari, van Dalen & Cabboi, Eqs. 1 and 2.
     """
 
     natural_frequency: Positive
@@ -113,13 +142,18 @@ class Transverse(_Part):
 
 
 class Slip(_Part):
-    """Prescribed oscillation: velocity_amplitude*waveform(frequency*tau + phase).
+    """Prescribed slip along the belt: -belt_speed + velocity_amplitude*waveform(frequency*tau + phase).
 
     velocity_amplitude [omega_1 L], >= 0: of the slip velocity beside the belt's.
     frequency [omega_1], > 0: of the oscillation.
     phase [degrees]: the slip velocity is the waveform at frequency*tau + phase.
     waveform: of the slip velocity; sine where left out, square, triangle, sawtooth or {harmonics: [...]}.
     direction [degrees]: from x1 towards x2; along x1 where left out.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
+    >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction, 4)
+    0.1333
     """
 
     velocity_amplitude: NonNegative
@@ -136,6 +170,11 @@ class TransverseSlip(_Part):
     phase [degrees]: the slip velocity is the waveform at frequency*tau + phase.
     frequency [omega_1], > 0: only where ``slip`` is left out, whose frequency else holds for both.
     waveform: of the slip velocity; sine where left out, square, triangle, sawtooth or {harmonics: [...]}.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(belt_speed=1, transverse_slip=fl.TransverseSlip(velocity_amplitude=2, frequency=1))
+    >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction, 4)
+    0.2571
     """
 
     velocity_amplitude: NonNegative
@@ -156,6 +195,12 @@ class BeltVibration(_Part):
 
     A slider pulled through its spring over a vibrating plate, in any direction, is this scene
     (Gutowski & Leus, 2020).
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> scene = scene.with_(belt_vibration=fl.BeltVibration(velocity_amplitude=2))
+    >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction, 4)
+    0.0548
     """
 
     velocity_amplitude: NonNegative
@@ -178,6 +223,12 @@ class NormalLoadVariation(_Part):
     (Canudas de Wit & Tsiotras, 1999); ``constant``, they stay those of the mean load, and the load changes the limit
     of friction alone (a spring in series with Coulomb friction, as in Teidelt, Starcevic & Popov, 2012, Popov, Popov
     & Popov, 2017, and Mao et al., 2017).
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> scene = scene.with_(normal_load_variation=fl.NormalLoadVariation(amplitude=0.3))
+    >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).mean_friction, 4)
+    -0.0245
     """
 
     amplitude: NonNegative
@@ -195,6 +246,12 @@ class Initial(_Part):
     velocity [omega_1 L]: along the belt.
     x2 [L]: position across the belt.
     velocity2 [omega_1 L]: across the belt.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> motion = fl.trajectory(scene, fl.Coulomb(mu=0.4), periods=1, initial=fl.Initial(x=3, velocity=1))
+    >>> motion[["tau", "x1", "v1"]].values.tolist()[0]
+    [0.0, 3.0, 1.0]
     """
 
     x: Finite = 0.0
@@ -210,9 +267,18 @@ class Scene(_Part):
     normal_load [K_1 L], > 0: gamma^2, friction force per friction coefficient; 1 where left out with prescribed slip.
     belt_speed [omega_1 L]: v_b.
 
+    Nondimensional: times in 1/omega_1, lengths in L, forces in K_1 L, for a mass on a spring K_1.
     Leave ``transverse`` out for one degree of freedom, ``drive`` for a scene that nothing drives, or that
     ``belt_vibration`` or ``normal_load_variation`` shakes. ``dimensional`` gives all of it in SI units instead; every
     other field is then filled from it (Eq. 2).
+    Raises WrongValues with every mistake in the values, TypeError for values without names.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> scene.degrees_of_freedom, scene.with_(belt_speed=2).belt_speed
+    (1, 2.0)
+
+    Source: Sulollari, van Dalen & Cabboi, Eqs. 1 and 2.
     """
 
     damping_ratio: NonNegative | None = None
@@ -408,7 +474,14 @@ class Scene(_Part):
     def with_(self, **changes: Any) -> Scene:
         """The same scene with other values: ``with_(normal_load=3, **{"drive.frequency": 2})``; None leaves one out.
 
-        Raises WrongValues. A scene in SI units is changed in them: ``**{"dimensional.mass_kg": 2}``.
+        A scene in SI units is changed in them: ``**{"dimensional.mass_kg": 2}``.
+
+        >>> import frictionlab as fl
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5)
+        >>> scene.with_(belt_speed=2, drive=fl.Drive(amplitude=3, frequency=1))
+        Scene(damping_ratio=0.1, normal_load=10, belt_speed=2, drive=Drive(amplitude=3, frequency=1))
+
+        Raises WrongValues.
         """
         given = given_values(self)
         tree = given if self.dimensional is None else {"dimensional": given["dimensional"]}

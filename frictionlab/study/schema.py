@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
 from typing import Any
 
 from pydantic import BaseModel, TypeAdapter
 
 from frictionlab import columns, registry
 from frictionlab.mistakes.validation import nested
-from frictionlab.registry.records import meaning
+from frictionlab.registry.records import description, meaning
 from frictionlab.scene import dimensional, scene
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
@@ -125,7 +124,8 @@ def _record(record: type[BaseModel], definitions: dict[str, Any]) -> dict[str, A
 
 
 def _describe(record: type[BaseModel], made: dict[str, Any], inside: dict[str, Any]) -> None:
-    """Put into the schema of a record, and of those inside it, what docstrings say of every field."""
+    """Put into the schema of a record, and of those inside it, what docstrings say of it and of every field."""
+    made["description"] = description(record)
     for key, field in made.get("properties", {}).items():
         part = nested(record, key)
         if told := meaning(record, key) or (part and _first_paragraph(part)) or _same(record, key):
@@ -140,7 +140,7 @@ def _same(record: type[BaseModel], key: str) -> str:
 
 
 def _first_paragraph(record: type[BaseModel]) -> str:
-    return " ".join((inspect.getdoc(record) or "").partition("\n\n")[0].split())
+    return " ".join(description(record).partition("\n\n")[0].split())
 
 
 def _study_schema(schema: Any) -> Any:

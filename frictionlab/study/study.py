@@ -168,6 +168,15 @@ class Study:
     harmonic of velocity and friction to keep, None for none.
     columns: result columns asked for, None for all. seconds_per_point: the time a point may take [s].
     figures: how they are drawn. plugins: its law files. code: SHA-256 of every law that is not frictionlab's own.
+    ``Study.of`` makes one of Python objects, ``fl.run`` solves it.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
+    >>> fl.Study.of(scene, fl.Coulomb(mu=0.4))
+    Study.of(Scene(belt_speed=1, slip=Slip(velocity_amplitude=2, frequency=1)), Coulomb(mu=0.4))
+    >>> study = fl.Study.of(scene, fl.Coulomb(mu=0.4), sweep={"scene.belt_speed": [1, 2]})
+    >>> fl.run(study)
+    Run(2 points: 2 ok)
     """
 
     scene: Scene
@@ -224,11 +233,28 @@ class Study:
         return study_as_typed(self)
 
     def to_yaml(self) -> str:
-        """The study as a study file that loads to an equal study; law files of its own have to lie beside it."""
+        """The study as a study file that loads to an equal study; law files of its own have to lie beside it.
+
+        >>> import frictionlab as fl
+        >>> scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
+        >>> print(fl.Study.of(scene, fl.Coulomb(mu=0.4)).to_yaml().rstrip())
+        schema: 1
+        scene: {normal_load: 1, belt_speed: 1, slip: {velocity_amplitude: 2, frequency: 1, phase: 0}}
+        laws: [{kind: coulomb, mu: 0.4}]
+        methods: [auto]
+        tolerance: 1.0e-08
+        """
         return yaml_text(self.resolved())
 
     def cases(self) -> list[StudyCase]:
-        """The full grid, a case a row: every law at every value of its sweeps, by every method, in every scene."""
+        """The full grid, a case a row: every law at every value of its sweeps, by every method, in every scene.
+
+        >>> import frictionlab as fl
+        >>> scene = fl.Scene(belt_speed=1, slip=fl.Slip(velocity_amplitude=2, frequency=1))
+        >>> study = fl.Study.of(scene, fl.Coulomb(mu=0.4), ["auto", "march"], {"scene.belt_speed": [1, 2]})
+        >>> [(case.method_label, case.scene.belt_speed) for case in study.cases()]
+        [('auto', 1.0), ('auto', 2.0), ('march', 1.0), ('march', 2.0)]
+        """
         found = {
             row: StudyCase(
                 each.law_label, each.kind, each.given_law, each.method.label, each.method.method, scene

@@ -89,6 +89,12 @@ class Exact(Method):
     ``pip install 'frictionlab[certify]'`` installs.
 
     Sources: Den Hartog (1931); of saltation Leine & Nijmeijer (2004); of the map Leine & van de Wouw (2008).
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method="exact")
+    >>> round(state.mean_friction, 10), state.error < 1e-13
+    (0.0505839238, True)
     """
 
     name: ClassVar[str] = "exact"

@@ -85,6 +85,12 @@ class March(Method):
 
     Sources: moreau: Moreau (1988), Jean (1999); rk4: Kutta (1901); smoothed: Hairer, Nørsett & Wanner (1993);
     exponential: Strang (1968); sdirk2: Alexander (1977).
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method=fl.March(steps=1000))
+    >>> round(state.mean_friction, 3), state.error < 1e-2
+    (0.051, True)
     """
 
     name: ClassVar[str] = "march"

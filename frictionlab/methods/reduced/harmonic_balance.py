@@ -63,6 +63,12 @@ class HarmonicBalance(ReducedModel):
     every amplitude looked at (methods/reduced/bristle.py); its error comes from the mean that shooting finds.
 
     Source: Sulollari, van Dalen & Cabboi, Eqs. 5, 8 and 9 and appendix A.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method=fl.HarmonicBalance(harmonics=9))
+    >>> round(state.mean_friction, 4), state.error < 1e-5
+    (0.0506, True)
     """
 
     name: ClassVar[str] = "harmonic_balance"

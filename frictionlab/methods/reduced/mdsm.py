@@ -61,6 +61,12 @@ class Mdsm(ReducedModel):
     friction-free motion (methods/reduced/gap.py, plane_gap.py).
 
     Source: Sulollari, van Dalen & Cabboi, Eqs. 5 and 6; in the plane the same mean over both components.
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method="mdsm")
+    >>> round(state.mean_friction, 4), state.error < 0.03
+    (0.0255, True)
     """
 
     name: ClassVar[str] = "mdsm"

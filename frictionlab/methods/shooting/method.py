@@ -82,6 +82,12 @@ class Shooting(Method):
     closed loop of the memory.
 
     Sources: DOP853: Hairer, Nørsett & Wanner (1993); Broyden (1965); Rodas5P: Steinebach (2023).
+
+    >>> import frictionlab as fl
+    >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))
+    >>> state = fl.steady_state(scene, fl.Coulomb(mu=0.4), method="shooting")
+    >>> round(state.mean_friction, 4), state.error < 1e-8
+    (0.0506, True)
     """
 
     name: ClassVar[str] = "shooting"

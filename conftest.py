@@ -7,15 +7,16 @@ golden row. Plugins enter by the door they use when installed.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import tempfile
 import tomllib
+from importlib import import_module
 from pathlib import Path
 
 import hypothesis
 import pytest
-from hypothesis.internal.conjecture import providers
 
 # The tests ask so much of every kernel that it is compiled in the end: Python would only run it before that.
 os.environ.setdefault("FRICTIONLAB_COMPILE", "always")
@@ -24,8 +25,11 @@ hypothesis.settings.register_profile(
     "deep", max_examples=500, deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
 )
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE") or "default")
-# Hypothesis also draws numbers that it reads in whichever modules are loaded: no test may depend on those.
-setattr(providers, "is_local_module_file", lambda path: False)  # noqa: B010
+# Newer hypothesis also draws numbers that it reads in whichever modules are loaded: no test may depend on those.
+with contextlib.suppress(ImportError):
+    setattr(
+        import_module("hypothesis.internal.conjecture.providers"), "is_local_module_file", lambda path: False
+    )
 
 FOLDERS = sorted(path.parent for path in Path(__file__).parent.glob("plugins/*/pyproject.toml"))
 collect_ignore_glob = (

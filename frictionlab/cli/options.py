@@ -29,8 +29,8 @@ law_files = click.option(
 no_plugins = click.option(
     "--no-plugins",
     "plugins",
-    flag_value="refuse",
-    default="run",
+    is_flag=True,
+    callback=lambda context, parameter, refused: "refuse" if refused else "run",
     help="Refuse a study that lists plugins: their code would be run.",
 )
 as_json = click.option("--json", "as_json", is_flag=True, help="Print a list of records instead of text.")

@@ -61,7 +61,7 @@ def curve_inputs(columns: Iterable[str]) -> list[str]:
 
 def _frame(read: list[dict[str, Any]]) -> pd.DataFrame:
     columns = {name: [found.get(name) for found in read] for name in CURVES}
-    types = {name: "str" if name in CURVE_TEXT else "float" for name in CURVES}
+    types = {name: pd.StringDtype(na_value=np.nan) if name in CURVE_TEXT else "float" for name in CURVES}
     return pd.DataFrame(columns, dtype=object).astype(types)
 
 

@@ -208,7 +208,7 @@ def _column_of_words_or_numbers(column: pd.Series) -> pd.Series:
     """Numbers with gaps as floats; words as strings, the empty word as a gap."""
     if all(value is None or isinstance(value, float | int) for value in column):
         return column.astype(float)
-    return column.where(column != "", None).astype("str")
+    return column.where(column != "", None).astype(pd.StringDtype(na_value=np.nan))
 
 
 def status_counts(table: pd.DataFrame) -> dict[str, int]:

@@ -607,7 +607,7 @@ def test_an_output_that_takes_nothing_is_code_3(surroundings: dict[str, str]) ->
         (["run", "--help"], ["numpy", "scipy", "pandas", "numba", "pydantic", "matplotlib", "jinja2"]),
         (["laws"], ["pandas", "scipy", "numba", "matplotlib"]),
         (["run", "missing.yaml"], ["numba", "matplotlib"]),
-        (["run", "study.yaml", "-o", "out"], ["numba"]),
+        (["run", "study.yaml", "-o", "out"], ["numba", "hypothesis"]),
     ],
 )
 def test_a_command_imports_what_it_needs_and_no_more(

@@ -27,9 +27,7 @@ hypothesis.settings.register_profile(
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE") or "default")
 # Newer hypothesis also draws numbers that it reads in whichever modules are loaded: no test may depend on those.
 with contextlib.suppress(ImportError):
-    setattr(
-        import_module("hypothesis.internal.conjecture.providers"), "is_local_module_file", lambda path: False
-    )
+    import_module("hypothesis.internal.conjecture.providers").is_local_module_file = lambda path: False
 
 FOLDERS = sorted(path.parent for path in Path(__file__).parent.glob("plugins/*/pyproject.toml"))
 collect_ignore_glob = (

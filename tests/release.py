@@ -29,6 +29,7 @@ OLDEST = "oldest"
 EXTRAS = "certify", "xarray"
 TESTS = (
     "tests/test_readme.py",
+    "tests/cli",
     "tests/explore",
     "tests/laws",
     "tests/methods/exact",

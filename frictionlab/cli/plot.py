@@ -14,12 +14,15 @@ from frictionlab.cli.output import print_message, print_result
 @click.argument("run", type=click.Path(path_type=Path))
 def plot_command(run: Path) -> None:
     """Draw the figures of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
+    from frictionlab.runner.in_use import alone_in
     from frictionlab.runner.saved import read_saved
 
-    saved = read_saved(run)
-    for line in saved.damaged:
-        print_message(line)
-    if files := draw_saved(saved, run):
+    with alone_in(run, make=False):
+        saved = read_saved(run)
+        for line in saved.damaged:
+            print_message(line)
+        files = draw_saved(saved, run)
+    if files:
         print_result("\n".join(map(str, files)))
     else:
         print_message(f"no figures: the study of {run} sweeps nothing")

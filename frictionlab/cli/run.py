@@ -143,11 +143,12 @@ def run_command(**given: Any) -> int:
     # This process is the command's own: pages that arrow frees go back at once, a quarter of a long run's memory.
     os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
     from frictionlab.runner import batch  # with pandas
+    from frictionlab.runner.in_use import alone_in
 
     asked = RunOptions(**given)
     asked.check()
     jobs = batch.jobs(asked.study, asked.out, asked.changes, asked.law_files, asked.plugins)
-    batch.check_folders(jobs, asked.existing)
+    batch.check_folders(jobs, asked.existing, alone=asked.part is None)
     index = batch.index_folder(asked.study, asked.out)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     if asked.part is not None:
@@ -156,7 +157,8 @@ def run_command(**given: Any) -> int:
         return OK
     done = []
     for number, job in enumerate(jobs, 1):
-        with metered(f"study {number} of {len(jobs)}: " if len(jobs) > 1 else "") as meter:
+        whose = f"study {number} of {len(jobs)}: " if len(jobs) > 1 else ""
+        with alone_in(job.out), metered(whose) as meter:
             done.append(_run(job, asked, meter))
     if index is not None:
         _write_index(index, done)

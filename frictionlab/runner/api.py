@@ -41,6 +41,7 @@ from frictionlab.runner.chunks import Task, task_of
 from frictionlab.runner.code_digest import code_digest
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.folder import Identity, RunFolder
+from frictionlab.runner.in_use import alone_in
 from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, KeptChunks, Keys, kept_beside
 from frictionlab.runner.long_run import LongRun
 from frictionlab.runner.onsets import onset_table
@@ -104,10 +105,26 @@ def run(
     """
     check_ways(existing, executor)
     ready = given_study(study, overrides, columns)
-    folder = run_folder(ready, Path(out)) if out is not None else None
-    if folder is not None:
-        folder.check(existing)
     kept = kept_beside(out, cache, cache_gigabytes)
+    how = overrides, existing, executor, progress, as_csv
+    if out is None:
+        return _run_into(None, ready, kept, *how)
+    folder = run_folder(ready, Path(out))
+    with alone_in(folder.path):
+        folder.check(existing)
+        return _run_into(folder, ready, kept, *how)
+
+
+def _run_into(
+    folder: RunFolder | None,
+    ready: Study,
+    kept: KeptChunks | None,
+    overrides: Sequence[str],
+    existing: Existing,
+    executor: Executor | Workforce | None,
+    progress: Progress,
+    as_csv: bool,
+) -> Run:
     if folder is not None and kept is not None and grid_size(ready) > LONG_TABLE:
         return _run_long(
             LongRun(ready, folder, kept, overrides), folder, existing, executor, progress, as_csv

@@ -10,6 +10,7 @@ from frictionlab.runner.api import run_folder
 from frictionlab.runner.arguments import Existing
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.folder import check_page
+from frictionlab.runner.in_use import check_free
 from frictionlab.study import Mistake, Plugins, Study, StudyError, load_study
 
 
@@ -68,12 +69,17 @@ def _all_read(files: Sequence[Path], read: Callable[[Path], Study]) -> list[Stud
     return studies
 
 
-def check_folders(found: Sequence[Job], existing: Existing) -> None:
-    """Raises FolderError with every folder to which its study cannot be written."""
+def check_folders(found: Sequence[Job], existing: Existing, alone: bool = True) -> None:
+    """Raises FolderError with every folder to which its study cannot be written.
+
+    alone: also where another run is at work in it; parts of a run work side by side.
+    """
     problems = []
     for job in found:
         try:
             run_folder(job.study, job.out).check(existing)
+            if alone:
+                check_free(job.out)
         except FolderError as problem:
             problems.append(str(problem))
     if problems:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from frictionlab.results.run import Run
 from frictionlab.runner.api import run_folder
+from frictionlab.runner.in_use import alone_in
 
 
 def save_run(done: Run, out: Path, seconds: float) -> Run:
@@ -15,6 +16,11 @@ def save_run(done: Run, out: Path, seconds: float) -> Run:
 
     Raises FolderError where it is the folder of another study, SaveError.
     """
+    with alone_in(out):
+        return _saved_alone(done, out, seconds)
+
+
+def _saved_alone(done: Run, out: Path, seconds: float) -> Run:
     folder = run_folder(done.study, out)
     folder.check("reuse")
     folder.open("replace")

@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +21,7 @@ from fake_methods import Fake, breaks_down, is_broken
 from frictionlab import cli, registry
 from frictionlab.registry.bibliography import read_bibtex
 from frictionlab.runner import api, execute
+from frictionlab.runner.in_use import alone_in
 from frictionlab.study.yaml_text import yaml_text
 
 POINTS = [4.0, 13.0, -2.0, 9.0]
@@ -557,6 +559,29 @@ def test_an_interrupted_run_does_not_wait_for_a_method_that_takes_for_ever(
 
     assert left == [130]
     assert "interrupted: 0 of 4 points are done; the same command continues" in said.err
+
+
+def test_two_runs_into_one_folder_and_parts_of_one(frictionlab: Any) -> None:
+    began, ends = threading.Event(), threading.Event()
+
+    def work() -> None:
+        with alone_in(Path("out")):
+            began.set()
+            ends.wait()
+
+    other = threading.Thread(target=work)
+    other.start()
+    began.wait()
+    run = "run", study(), "-o", "out"
+    refused, part, plot = frictionlab(*run), frictionlab(*run, "--part", "1/2"), frictionlab("plot", "out")
+    ends.set()
+    other.join()
+
+    assert (refused.code, part.code, plot.code) == (2, 0, 2)
+    assert "out is in use by another run" in refused.err
+    assert "out is in use by another run" in plot.err
+    assert "study, part 1 of 2: " in part.out
+    assert not Path("out").exists()
 
 
 def test_every_command_is_a_module_of_its_name() -> None:

@@ -48,6 +48,12 @@ def _planned_lines(name: str, planned: Sequence[Planned]) -> list[str]:
         lines.append(f"  {entry.law} by {entry.method}: points {entry.points}, curves {entry.curves}")
         lines += [f"    {count} by {model}" for model, count in entry.models.items()]
         lines += [f"    {count} refused: {reason}" for reason, count in entry.refused.items()]
+        if entry.shapeless:
+            which = (
+                f"{entry.shapeless} of {entry.curves} curves lack" if entry.curves > 1 else "the curve lacks"
+            )
+            speeds = ", ".join(f"{speed:g}" for speed in entry.add_belt_speeds)
+            lines.append(f"    {which} points for a measure of shape; add belt speeds {speeds}")
     return lines
 
 

@@ -10,13 +10,17 @@ from typing import Any
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
+from frictionlab.results.shape_points import speeds_to_add
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import Study, StudyCurve
 
 
 @dataclass(frozen=True)
 class Planned:
-    """The points of one law and one method. seconds: expected kernel time on one core, once compiled."""
+    """The points of one law and one method. seconds: expected kernel time on one core, once compiled.
+
+    shapeless: curves that lack points for a measure of their shape, which ``add_belt_speeds`` would give them.
+    """
 
     law: str
     kind: str
@@ -26,6 +30,8 @@ class Planned:
     refused: dict[str, int]
     models: dict[str, int]
     seconds: float
+    shapeless: int
+    add_belt_speeds: list[float]
 
     def record(self) -> dict[str, Any]:
         """As a record of plain values."""
@@ -51,6 +57,7 @@ def _planned(curves: Sequence[StudyCurve], tolerance: float) -> Planned:
             scene = curve.scenes[able[0]]
             models[_model(method, curve.scenes.taken(able), law, tolerance)] += len(able)
             seconds += len(able) * method.cost(scene, law, tolerance)
+    shapeless, add_belt_speeds = speeds_to_add((curve.scenes, curve.law) for curve in curves)
     return Planned(
         law=first.law_label,
         kind=first.kind,
@@ -60,6 +67,8 @@ def _planned(curves: Sequence[StudyCurve], tolerance: float) -> Planned:
         refused=dict(refusals),
         models=dict(models),
         seconds=seconds,
+        shapeless=shapeless,
+        add_belt_speeds=add_belt_speeds,
     )
 
 

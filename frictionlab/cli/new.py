@@ -19,11 +19,20 @@ def new_command() -> None:
 @new_command.command("study")
 @click.argument("path", type=click.Path(path_type=Path))
 def study(path: Path) -> None:
-    """Write a commented study to the file PATH, which ``run`` takes as it is. Never replaces a file."""
-    from frictionlab.scaffold.study import new_study
+    """Write a commented study to the file PATH, which ``run`` takes as it is. Never replaces a file.
+
+    Beside it frictionlab.schema.json is written: by it editors complete and check the study as you type.
+    """
+    from frictionlab.scaffold.study import SCHEMA_FILE, new_study, put_schema_beside
+    from frictionlab.study.schema import schema_text
 
     file = new_study(path)
     print_result(str(file))
+    if put_schema_beside(file, f"{schema_text()}\n") is None:
+        print_message(
+            f"{file.with_name(SCHEMA_FILE)} is that of other laws or another version and stays; "
+            f"'frictionlab schema' prints the one for editors"
+        )
     print_message(f"change what it says, then: frictionlab run {shlex.quote(str(file))}")
 
 

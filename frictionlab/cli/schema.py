@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import click
@@ -14,8 +13,8 @@ from frictionlab.cli.output import print_result
 @click.command("schema")
 @options.law_files
 def schema_command(law_files: tuple[Path, ...]) -> None:
-    """Print the JSON Schema of a study file."""
+    """Print the JSON Schema of a study file, by which editors complete and check it as you type."""
     from frictionlab.study import laws_of_files
-    from frictionlab.study.schema import schema
+    from frictionlab.study.schema import schema_text
 
-    print_result(json.dumps(schema(laws_of_files(law_files)), indent=2))
+    print_result(schema_text(laws_of_files(law_files)))

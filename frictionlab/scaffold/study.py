@@ -8,6 +8,8 @@ from frictionlab.runner.errors import FolderError, not_written
 
 TEMPLATE = Path(__file__).with_suffix(".yaml")
 ENDINGS = (".yaml", ".yml")
+SCHEMA_FILE = "frictionlab.schema.json"
+"""Beside a study, whose first line names it to editors."""
 
 
 def new_study(path: Path) -> Path:
@@ -22,6 +24,21 @@ def new_study(path: Path) -> Path:
     try:
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
+    except OSError as problem:
+        raise not_written(file, problem) from problem
+    return file
+
+
+def put_schema_beside(study: Path, schema: str) -> Path | None:
+    """Write the JSON Schema for editors beside a study; where it is, None where another one is there already.
+
+    Raises FolderError, SaveError.
+    """
+    file = study.with_name(SCHEMA_FILE)
+    try:
+        if file.exists():
+            return file if file.read_bytes() == schema.encode() else None
+        file.write_bytes(schema.encode())
     except OSError as problem:
         raise not_written(file, problem) from problem
     return file

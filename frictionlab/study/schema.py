@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from pydantic import BaseModel, TypeAdapter
@@ -104,6 +105,11 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
         **_closed_object(properties, list(reader.REQUIRED)),
         "$defs": definitions,
     }
+
+
+def schema_text(laws: registry.Laws = registry.INSTALLED_LAWS) -> str:
+    """The JSON Schema as the text of a file."""
+    return json.dumps(schema(laws), indent=2)
 
 
 def _closed_object(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:

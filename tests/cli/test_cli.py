@@ -224,6 +224,19 @@ def test_a_new_study_is_written_once_and_runs_as_it_is(frictionlab: Any) -> None
     assert again.err == "my study.yaml is there already and stays as it is; choose another name\n"
 
 
+def test_a_new_study_names_its_schema_to_editors_who_find_it_beside_the_file(frictionlab: Any) -> None:
+    assert frictionlab("new", "study", "mine").code == 0
+    line, schema = Path("mine.yaml").read_text().splitlines()[0], Path("frictionlab.schema.json")
+    assert line == f"# yaml-language-server: $schema=./{schema.name}"
+    assert schema.read_text() == frictionlab("schema").out
+
+    schema.write_text("{}")
+    said = frictionlab("new", "study", "another")
+    assert said.code == 0
+    assert "frictionlab.schema.json is that of other laws or another version and stays" in said.err
+    assert schema.read_text() == "{}"
+
+
 def test_the_table_is_on_disk_before_the_drawing_begins(frictionlab: Any, monkeypatch: Any) -> None:
     seen = []
     monkeypatch.setattr(

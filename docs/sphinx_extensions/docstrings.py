@@ -8,7 +8,7 @@ from typing import Any
 from sphinx.application import Sphinx
 
 ENTRY = re.compile(
-    r"(?:``)?[a-z_]\w*(?:``)?(?:(?:,| or) (?:``)?[a-z_]\w*(?:``)?)*(?: \[[^\]]*\])?[^.:;]{0,80}: |Sources?: |Raises "
+    r"(?:``)?[a-z_]\w*(?:``)?(?:(?:,| or) (?:``)?[a-z_]\w*(?:``)?)*(?: \[[^\]]*\])?[^.:;\"{]{0,80}: |Sources?: |Raises "
 )
 """How a line of its own begins: names, perhaps with unit and range, and a colon; a source; what is raised."""
 CODE = re.compile(r"(``[^`]+``)")
@@ -16,11 +16,11 @@ MARKS = re.compile(r"([\\*|_`])")
 
 
 def _plain(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
-    """Every entry a paragraph, and nothing in it markup but code; examples as they are."""
+    """Every entry a paragraph, and nothing in it markup but code; an example, up to the next empty line, as it is."""
     found: list[str] = []
     example = False
     for line in lines:
-        example = line.startswith(">>> ") or (example and bool(line))
+        example = line.startswith(">>>") or (example and line != "")
         if example:
             found.append(line)
             continue

@@ -8,7 +8,8 @@ from typing import Any
 from sphinx.application import Sphinx
 
 ENTRY = re.compile(
-    r"(?:``)?[a-z_]\w*(?:``)?(?:(?:,| or) (?:``)?[a-z_]\w*(?:``)?)*(?: \[[^\]]*\])?[^.:;\"{]{0,80}: |Sources?: |Raises "
+    r"(?:``)?[a-z_]\w*(?:``)?(?:(?:,| or) (?:``)?[a-z_]\w*(?:``)?)*(?: \[[^\]]*\])?[^.:;\"{]{0,80}: "
+    r"|Sources?: |Raises "
 )
 """How a line of its own begins: names, perhaps with unit and range, and a colon; a source; what is raised."""
 CODE = re.compile(r"(``[^`]+``)")

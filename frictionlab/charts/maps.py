@@ -43,7 +43,7 @@ from frictionlab.columns import BELT_SPEEDS, word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
 LEAST_VALUES = 5  # of both numbers: fewer are told apart by lines
-MOST_LINES = 12  # values of a number beside belt speed that are lines; more are a map
+MOST_SEPARATE = 12  # values of a number beside belt speed that are lines; more are a map
 RASTERIZED = 100  # cells: more are pixels in a drawing
 OF_CURVES = "reduction", "shape_area"
 MOST_LEVELS, LEVEL_EDGE = 6, 0.02  # of lines of equal value, and what they keep from the ends of the range
@@ -172,7 +172,7 @@ def map_of(table: pd.DataFrame) -> MapFigure | None:
     along = along_the_axis(table, _by_values(table, numbers))
     if along not in BELT_SPEEDS:
         return _figure(table, swept, numbers)
-    others = [name for name in numbers if name != along and table[name].nunique() > MOST_LINES]
+    others = [name for name in numbers if name != along and table[name].nunique() > MOST_SEPARATE]
     return _figure(table, swept, others, along)
 
 

@@ -27,7 +27,7 @@ from frictionlab.charts.looks import Looks
 from frictionlab.charts.onsets import draw_onsets, onset_entries, onsets_on
 from frictionlab.charts.speed_marks import draw_speed_marks
 from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
-from frictionlab.charts.words import sentence, write_title
+from frictionlab.charts.words import label_once, sentence, write_title
 from frictionlab.columns import word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
@@ -75,6 +75,7 @@ class CurveFigure:
             drawn.setdefault(column, []).append(axes)
         for of_a_column in drawn.values():
             _scale_alike(of_a_column)
+        label_once(figure.axes, wide)
         return figure
 
     def onsets_of(self, curve: CurveData) -> list[Any]:

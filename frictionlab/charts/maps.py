@@ -38,7 +38,7 @@ from frictionlab.charts.curves import (
 from frictionlab.charts.derived import SPEED_RATIO
 from frictionlab.charts.legend import LEGEND_MARKS, status_entries
 from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
-from frictionlab.charts.words import BESIDE, sentence, shortened, write_title
+from frictionlab.charts.words import BESIDE, label_once, sentence, shortened, write_title
 from frictionlab.columns import BELT_SPEEDS, word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
@@ -99,6 +99,7 @@ class MapFigure:
             first = number * lines * wide if len(self.pictures) > 1 else number
             places = [figure.add_subplot(high, wide, first + at + 1) for at in range(len(self.pictures))]
             self._draw(figure, places, column)
+            label_once(places, wide)
         return figure
 
     def _draw(self, figure: Figure, places: Sequence[Axes], column: str) -> None:

@@ -20,7 +20,7 @@ from frictionlab.charts.curves import CurveData, Family, SweptValue
 from frictionlab.charts.legend import add_entries, curve_entries
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
-from frictionlab.charts.words import sentence, write_title
+from frictionlab.charts.words import label_once, sentence, write_title
 from frictionlab.columns import BELT_SPEED
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
@@ -97,6 +97,7 @@ class OrbitFigures:
                 axes.axhline(float(point.loops[0].row[BELT_SPEED]), color="0.45", linewidth=0.6, zorder=0)
             axes.set_title(", ".join(sentence(setting) for setting in point.settings), loc="left")
         _scale_friction(of_friction)
+        label_once(figure.axes, wide)
         return figure
 
     def _add_legend(self, figure: Figure, points: Sequence[OrbitPicture], poincare: bool) -> int:

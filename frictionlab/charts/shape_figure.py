@@ -16,7 +16,7 @@ from frictionlab.charts.curves import CurveData, Family, drawn_once
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.onsets import rows_of_curve, speed_scale
 from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
-from frictionlab.charts.words import BESIDE, sentence, shortened, write_title
+from frictionlab.charts.words import BESIDE, label_once, sentence, shortened, write_title
 from frictionlab.columns import BELT_SPEEDS, CURVES, word
 from frictionlab.study.figure_options import FigureOptions
 
@@ -84,6 +84,7 @@ class ShapeFigure:
         figure.set_figheight(high * PANEL_HEIGHT + LINE * (above + (self.left_out > 0)))
         for place, (curve, chord) in enumerate(self.chosen, start=1):
             self._draw(figure.add_subplot(high, wide, place), curve, chord)
+        label_once(figure.axes, wide)
         return figure
 
     def _draw(self, axes: Axes, curve: CurveData, chord: Chord) -> None:

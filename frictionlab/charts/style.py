@@ -39,7 +39,7 @@ class NotebookFigure(Figure):
 
 def blank_figure(width: float, height: float) -> Figure:
     """A figure of this size [inch], without pictures."""
-    figure = NotebookFigure(figsize=(width, height), layout="constrained")
+    figure = NotebookFigure(figsize=(width, height), layout="constrained", dpi=STYLE["savefig.dpi"])
     FigureCanvasAgg(figure)
     return figure
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictionlab.charts.curves import SweptValue
@@ -33,6 +35,15 @@ def sentence(setting: SweptValue) -> str:
     if name == "law":
         return swept_text(value)
     return f"no {word(name)}" if value is None else f"{word(name)} = {swept_text(value)}"
+
+
+def label_once(pictures: Sequence[Axes], abreast: int) -> None:
+    """Of equal labels under each other, and side by side, only the lowest and the first are left."""
+    for at, axes in enumerate(pictures):
+        if at + abreast < len(pictures) and pictures[at + abreast].get_xlabel() == axes.get_xlabel():
+            axes.xaxis.label.set_visible(False)
+        if at % abreast and pictures[at - 1].get_ylabel() == axes.get_ylabel():
+            axes.yaxis.label.set_visible(False)
 
 
 def write_title(figure: Figure, title: str) -> int:

@@ -25,6 +25,7 @@ ARROWS = {
     "mistakes": ["printable"],
     "quantities": ["as_typed", "mistakes"],
     "columns": [],
+    "rounded": [],
     "laws": ["quantities"],
     "faults": ["laws"],
     "compile": ["faults", "laws"],
@@ -71,7 +72,7 @@ ARROWS = {
     "study": ["as_typed", "columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
     "results": [
         *("columns", "laws", "methods.base", "orbit", "quantities", "registry", "scene", "shape", "study"),
-        "theory",
+        *("rounded", "theory"),
     ],
     "runner": [
         *(
@@ -92,8 +93,8 @@ ARROWS = {
         *("laws", "methods.base", "methods.periodic", "mistakes", "quantities", "results", "runner", "scene"),
         "study",
     ],
-    "charts": ["columns", "printable", "study"],
-    "report": ["charts", "columns", "registry", "results", "runner", "scene", "study"],
+    "charts": ["columns", "printable", "rounded", "study"],
+    "report": ["charts", "columns", "registry", "results", "rounded", "runner", "scene", "study"],
     "notebook": ["charts", "columns", "report", "results", "runner", "scene", "study"],
     "explore": ["charts", "columns", "report", "results", "runner"],
     "scaffold": ["registry", "runner"],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -18,6 +17,7 @@ from frictionlab.charts.onsets import rows_of_curve, speed_scale
 from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
 from frictionlab.charts.words import BESIDE, label_once, sentence, shortened, write_title
 from frictionlab.columns import BELT_SPEEDS, CURVES, word
+from frictionlab.rounded import with_error
 from frictionlab.study.figure_options import FigureOptions
 
 MOST_SHAPES = 12
@@ -37,11 +37,8 @@ class Chord(NamedTuple):
     @property
     def sentence(self) -> str:
         """The verdict and what it was made of."""
-        error = float(f"{max(self.error, 1e-6):.0e}")
-        digits = max(0, -math.floor(math.log10(error)))
-        return f"{self.verdict}: area {self.area:.{digits}f} ± {error:.{digits}f}".replace(
-            "-", "\N{MINUS SIGN}"
-        )
+        area = with_error(self.area, self.error).replace("-", "\N{MINUS SIGN}")
+        return f"{self.verdict}: area {area}"
 
 
 @dataclass(frozen=True)

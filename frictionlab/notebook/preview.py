@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 
 from frictionlab.columns import BELT_SPEEDS
+from frictionlab.results.summary import mean_span
 from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import in_words
 
@@ -23,8 +24,7 @@ def preview_html(table: pd.DataFrame, curves: pd.DataFrame) -> str:
     heads = [
         *(name.removeprefix("scene.") for name in keys),
         "mean friction",
-        "from",
-        "to",
+        "least … greatest",
         "shape",
         "points",
     ]
@@ -35,15 +35,13 @@ def preview_html(table: pd.DataFrame, curves: pd.DataFrame) -> str:
 
 
 def _row(inputs: dict[str, Any], rows: pd.DataFrame, curves: pd.DataFrame) -> str:
-    found = rows["mean_friction"].dropna()
-    ends = (f"{found.min():.4g}", f"{found.max():.4g}") if len(found) else ("", "")
     statuses = ", ".join(f"{count} {status}" for status, count in rows["status"].value_counts().items())
     words = [
         *(str(inputs.pop(name)) for name in ("law", "method")),
         *(in_words(each) for each in inputs.values()),
     ]
     shape = _shape(rows.iloc[0], curves)
-    cells = [*map(escape, words), _drawing(rows), *ends, escape(shape), escape(statuses)]
+    cells = [*map(escape, words), _drawing(rows), mean_span(rows), escape(shape), escape(statuses)]
     return f"<tr>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>"
 
 

@@ -40,26 +40,35 @@ class Picture(NamedTuple):
 
 
 def pictures(saved: Saved) -> list[Picture]:
-    """The figures of a run; one that is not in its folder has no address."""
+    """The figures of a run, the one that answers its question first; one that is not in its folder has no address.
+
+    The first caption says what lines mean and what is held fixed; the others lead to it.
+    """
     family = family_of(saved.table)
-    found = {} if family is None else figure_columns(saved.table)
+    found = figure_columns(saved.table) if family else {}
     maps = map_of(saved.table)
-    usual = (
-        [_picture(saved, family, name, columns, maps) for name, columns in found.items()] if family else []
-    )
-    usual += _others(saved, family) if family else []
+    usual = [
+        _picture(saved, family, name, columns, maps, not place)
+        for place, (name, columns) in enumerate(found.items())
+        if family
+    ]
     several = {} if saved.attractors is None else bifurcations(saved.attractors)
-    return usual + [_bifurcation(saved, name, rows) for name, rows in several.items()]
+    return [
+        *usual,
+        *_others(saved, family),
+        *(_bifurcation(saved, name, rows) for name, rows in several.items()),
+    ]
 
 
-def _others(saved: Saved, family: Family) -> list[Picture]:
+def _others(saved: Saved, family: Family | None) -> list[Picture]:
     """The figures that only some tables have, where they were drawn."""
-    reference = reference_law(family, saved.study.figures.against)
+    reference = reference_law(family, saved.study.figures.against) if family else None
+    narrow = family is None or len(family.panels) == 1
     found = []
     for name, told in OTHER_FIGURES.items():
         if data := address(saved.folder / "figures" / name):
             caption = escape(f"{told.format(reference=reference)}.")
-            found.append(Picture(name, data, Markup(caption), str(caption), len(family.panels) == 1))
+            found.append(Picture(name, data, Markup(caption), str(caption), narrow))
     return found
 
 
@@ -79,9 +88,10 @@ def _bifurcation(saved: Saved, name: str, rows: DataFrame) -> Picture:
 
 
 def _picture(
-    saved: Saved, family: Family, name: str, columns: Sequence[str], maps: MapFigure | None
+    saved: Saved, family: Family, name: str, columns: Sequence[str], maps: MapFigure | None, first: bool
 ) -> Picture:
-    caption = _caption(saved, family, columns) if maps is None else _caption_of_map(saved, maps, columns)
+    drawn = _drawn(family, columns) if maps is None else _mapped(maps, columns)
+    caption = Markup(". ").join([drawn, *(_told(saved, family, maps) if first else _as_before(maps))]) + "."
     spans = [_span(saved, column) for column in columns]
     description = f"{caption.striptags()} {' '.join(spans)}"
     alone = maps is None and len(family.panels) * len(columns) == 1
@@ -99,32 +109,32 @@ def address(path: Path) -> str:
     return f"data:{_KINDS[first.suffix]};base64,{base64.b64encode(first.read_bytes()).decode('ascii')}"
 
 
-def _caption(saved: Saved, family: Family, columns: Sequence[str]) -> Markup:
-    """What is drawn against what, what tells curves apart, what is held fixed, what has no number."""
+def _drawn(family: Family, columns: Sequence[str]) -> Markup:
+    """What is drawn against what."""
     shown = Markup(", ").join(word_html(column) for column in columns)
-    parts = [
-        Markup("{} against {}").format(_capital(shown), word_html(family.abscissa)),
-        *_lines(family),
-        *_panels(family),
-        *_fixed(saved),
-        *_missing(saved),
-    ]
-    return Markup(". ").join(parts) + "."
+    return Markup("{} against {}").format(_capital(shown), word_html(family.abscissa))
 
 
-def _caption_of_map(saved: Saved, maps: MapFigure, columns: Sequence[str]) -> Markup:
-    """What is drawn over which two numbers, what has a map of its own, what is held fixed, what has no number."""
+def _mapped(maps: MapFigure, columns: Sequence[str]) -> Markup:
+    """What is drawn over which two numbers."""
     shown = Markup(", ").join(word_html(column) for column in columns)
     over = Markup(" and ").join(word_html(name) for name in maps.over)
-    parts = [
-        Markup("{} over {}, in shades with lines of equal value").format(_capital(shown), over),
-        Markup("Laws: {}; methods: {}").format(
-            joined_values(saved.table["law"]), joined_values(saved.table["method"])
-        ),
-        *_fixed(saved),
-        *_missing(saved),
-    ]
-    return Markup(". ").join(parts) + "."
+    return Markup("{} over {}, in shades with lines of equal value").format(_capital(shown), over)
+
+
+def _told(saved: Saved, family: Family, maps: MapFigure | None) -> list[Markup]:
+    """What tells curves apart, what is held fixed, what has no number."""
+    laws, methods = (joined_values(saved.table[name]) for name in ("law", "method"))
+    lines = (
+        [Markup("Laws: {}; methods: {}").format(laws, methods)]
+        if maps
+        else [*_lines(family), *_panels(family)]
+    )
+    return [*lines, *_fixed(saved), *_missing(saved)]
+
+
+def _as_before(maps: MapFigure | None) -> list[Markup]:
+    return [] if maps else [Markup("Lines as in Figure 1")]
 
 
 def _capital(text: Markup) -> Markup:

@@ -12,10 +12,14 @@ from markupsafe import Markup
 
 from frictionlab import __version__
 from frictionlab.report import findings, question
+from frictionlab.report.answer import sentences
+from frictionlab.report.compared import laws_compared, methods_compared
+from frictionlab.report.curves import curves_grid, onset_grid
 from frictionlab.report.figures import pictures
+from frictionlab.report.shapes import shape_grid
 from frictionlab.report.sources import bibtex, published, sources
 from frictionlab.report.tables import Grid, grid
-from frictionlab.results.table import swept_inputs
+from frictionlab.report.trouble import trouble_grid
 from frictionlab.results.words import counted
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.saved import Saved
@@ -63,16 +67,12 @@ def _style() -> Markup:
 
 
 def _head(saved: Saved) -> dict[str, Any]:
-    verdicts = saved.verdicts
-    passed = sum(verdict.passed for verdict in verdicts)
+    shown = pictures(saved)
     return {
-        "size": counted(saved.size, "point"),
+        "sentences": sentences(saved),
+        "first": shown[:1],
+        "pictures": shown[1:],
         "thinned": counted(len(saved.table), "point") if len(saved.table) < saved.size else "",
-        "counts": saved.counts,
-        "passed": passed,
-        "failed": len(verdicts) - passed,
-        "wall": wall(saved.seconds),
-        "unfinished": _unfinished(saved),
     }
 
 
@@ -106,26 +106,20 @@ def _asked(saved: Saved) -> dict[str, Any]:
 
 
 def _found(saved: Saved) -> dict[str, Any]:
-    curves = findings.curves_of(saved)
     verdicts = saved.verdicts
     return {
-        "brief": findings.brief_grid(curves),
+        "curves": curves_grid(saved.table, saved.study.tolerance),
         "whole": findings.whole_grid(saved.table),
-        "shape": None
-        if saved.curves is None
-        else findings.shape_grid(saved.curves, swept_inputs(saved.table)),
-        "onsets": None
-        if saved.onsets is None
-        else findings.onset_grid(saved.onsets, swept_inputs(saved.table)),
-        "pictures": pictures(saved),
+        "shape": shape_grid(saved),
+        "pairs": [laws_compared(saved.table), methods_compared(saved.table)],
+        "onsets": None if saved.onsets is None else onset_grid(saved.onsets, saved.table),
         "verdicts": findings.verdicts_grid(verdicts),
+        "passed": sum(verdict.passed for verdict in verdicts),
         "fold": len(verdicts) > MOST_SHOWN_AT_ONCE and all(verdict.passed for verdict in verdicts),
         "expected": len(saved.study.expect),
-        "odd": findings.trouble_grid(saved.table),
+        "odd": trouble_grid(saved.table),
         "unique": findings.uniqueness_grid(saved.table),
         "models": findings.models_grid(saved.table),
-        "errors": findings.errors_grid(curves, saved.study.tolerance),
-        "errors_sentence": findings.sentence_of_errors(saved),
     }
 
 
@@ -137,6 +131,8 @@ def _last(saved: Saved) -> dict[str, Any]:
         "bibtex": bibtex([saved]),
         "versions": _versions(saved),
         "runs": _runs(saved.account["runs"]),
+        "wall": wall(saved.seconds),
+        "size": counted(saved.size, "point"),
         "commands": _commands(saved),
     }
 

@@ -11,6 +11,8 @@ from markupsafe import Markup, escape
 from frictionlab.report.markup import symbol_html, unit_html
 
 Cell = str | Markup
+SHORT_SETTING = 32
+"""Letters of a setting that no line ends in."""
 MOST_ROWS = 200
 """Rows of one table on a page; how many more there are is said below it."""
 
@@ -37,13 +39,24 @@ class CurveRows(NamedTuple):
         """What tells the curve from the others of its law and method."""
         return settings(self.where)
 
+    @property
+    def key(self) -> str:
+        """Law, method and values as one word, the same in every table that has the curve."""
+        return f"{self.law}, {self.method}, {self.name}"
 
-def grid(caption: str, head: Sequence[Cell], rows: Sequence[Sequence[Cell]], what: str = "rows") -> Grid:
-    """A table without columns that are empty in every row, of at most ``MOST_ROWS`` rows."""
+
+def grid(
+    caption: str,
+    head: Sequence[Cell],
+    rows: Sequence[Sequence[Cell]],
+    what: str = "rows",
+    file: str = "results.csv",
+) -> Grid:
+    """A table without columns that are empty in every row, of at most ``MOST_ROWS`` rows; file: has all of them."""
     kept = [place for place in range(len(head)) if any(row[place] for row in rows)]
     shown = [[row[place] for place in kept] for row in rows[:MOST_ROWS]]
     left = len(rows) - len(shown)
-    below = f"... and {left} more {what}, all of them in results.csv" if left else ""
+    below = f"... and {left} more {what}, all of them in {file}" if left else ""
     return Grid(caption, [head[place] for place in kept], shown, below)
 
 
@@ -63,8 +76,13 @@ def settings(values: Mapping[str, Any]) -> Markup:
 
 
 def setting(name: str, value: Any) -> Markup:
-    """One input with its value and unit."""
-    return Markup("{} = {}{}").format(symbol_html(name), number(value), unit_html(name))
+    """One input with its value and unit, on one line where it is short."""
+    told = Markup("{} = {}{}").format(symbol_html(name), number(value), unit_html(name))
+    return (
+        Markup('<span class="short">{}</span>').format(told)
+        if len(told.striptags()) <= SHORT_SETTING
+        else told
+    )
 
 
 def number(value: Any) -> str:
@@ -81,14 +99,23 @@ def size(value: float) -> str:
     return "" if pd.isna(value) else f"{value:.1e}"
 
 
-def value_range(values: pd.Series) -> str:
-    """The least and the greatest of some numbers."""
-    found = values.dropna()
-    if found.empty:
-        return ""
-    return " … ".join(dict.fromkeys(f"{value:.6g}" for value in (found.min(), found.max())))
-
-
 def joined_values(words: Iterable[Cell]) -> Markup:
     """Words, each once, with commas."""
     return Markup(", ").join(dict.fromkeys(escape(word) for word in words))
+
+
+def listed(parts: Sequence[Cell]) -> Markup:
+    """Words in a row, the last one after ``and``; what holds commas itself is parted by semicolons."""
+    *most, last = [escape(part) for part in parts]
+    between = "; " if any("," in part for part in (*most, last)) else ", "
+    return Markup("{} and {}").format(Markup(between).join(most), last) if most else last
+
+
+def named(values: Mapping[str, Any], one_law: bool) -> Markup:
+    """A curve by its law, left out where there is only one, and the values that tell it apart."""
+    law = escape(str(values["law"]))
+    told = [setting(name, value) for name, value in values.items() if name != "law" and not pd.isna(value)]
+    where = Markup(" and ").join(told)
+    if not where:
+        return law
+    return where if one_law else Markup("{} with {}").format(law, where)

@@ -9,6 +9,7 @@ import pandas as pd
 from frictionlab.columns import INPUTS, belt_speed
 from frictionlab.results.curve_table import curve_table
 from frictionlab.results.words import counted, in_words
+from frictionlab.rounded import with_error
 from frictionlab.study import Expectation
 
 # Numbers of a study are written in decimal and swept by formula: equal means equal to nine digits.
@@ -131,7 +132,7 @@ def _shape(expectation: Expectation, curves: pd.DataFrame) -> Verdict:
 
 
 def _measured(row: pd.Series, name: str) -> str:
-    return f"{in_words(float(row[name]))} +- {row[f'{name}_error']:.1g}"
+    return with_error(float(row[name]), float(row[f"{name}_error"]), between=" +- ")
 
 
 def _difference(expectation: Expectation, rows: pd.DataFrame) -> Verdict:

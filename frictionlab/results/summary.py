@@ -12,6 +12,7 @@ from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
 from frictionlab.results.table import swept_inputs, whole
 from frictionlab.results.words import counted, in_words
+from frictionlab.rounded import PLUS_MINUS, with_error
 
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
 
@@ -74,11 +75,19 @@ def _model_lines(table: pd.DataFrame) -> list[str]:
 def _curve_line(inputs: dict[str, Any], rows: pd.DataFrame, models: dict[str, int]) -> tuple[str, ...]:
     law, method = str(inputs.pop("law")), str(inputs.pop("method"))
     where = ", ".join(f"{_brief(name)} {in_words(x)}" for name, x in inputs.items() if x == x)
-    found = rows["mean_friction"].dropna()
-    span = dict.fromkeys(f"{value:.6g}" for value in (found.min(), found.max())) if len(found) else {}
     error = f"{rows['error'].max():.1e}" if rows["error"].notna().any() else ""
     used = ", ".join(dict.fromkeys(str(models[model]) for model in rows["model"].dropna().unique()))
-    return law, method, where, statuses(rows), " ... ".join(span), error, used
+    return law, method, where, statuses(rows), mean_span(rows, " ... ", " +- "), error, used
+
+
+def mean_span(rows: pd.DataFrame, to: str = " \N{HORIZONTAL ELLIPSIS} ", between: str = PLUS_MINUS) -> str:
+    """The least and the greatest mean friction of rows, each with its error; '' where none has a number."""
+    found = rows[rows["mean_friction"].notna()]
+    if found.empty:
+        return ""
+    ends = [found.loc[at] for at in (found["mean_friction"].idxmin(), found["mean_friction"].idxmax())]
+    told = [with_error(float(end["mean_friction"]), float(end["error"]), between=between) for end in ends]
+    return to.join(dict.fromkeys(told))
 
 
 def _brief(name: str) -> str:

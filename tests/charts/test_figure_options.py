@@ -105,7 +105,7 @@ def test_a_shape_is_drawn_with_its_chord_its_area_and_the_verdict(laws: pd.DataF
     figure = _drawn(one, "shape", shape=True)
 
     told = [axes.get_title(loc="left").splitlines()[-1] for axes in figure.axes]
-    assert told == ["concave: area 0.057 ± 0.001", "convex: area \N{MINUS SIGN}0.21 ± 0.04"]
+    assert told == ["concave: area 0.0574 ± 0.0010", "convex: area \N{MINUS SIGN}0.207 ± 0.041"]
     for axes, (_, row) in zip(figure.axes, SHAPES.iterrows(), strict=True):
         (chord,) = [line for line in axes.lines if len(line.get_xdata()) == 2]
         assert list(chord.get_xdata()) == pytest.approx([0.0, row["reversal_end"]])

@@ -128,11 +128,11 @@ CURVES = pd.DataFrame(
 @pytest.mark.parametrize(
     ("where", "claim", "passed", "found"),
     [
-        ({"method": "exact"}, {"shape": "convex"}, True, "convex, -0.2 +- 0.001"),
-        ({"method": "shooting"}, {"shape": "convex"}, False, "concave, 0.1 +- 0.002"),
-        ({"method": "exact"}, {"shape": "concave", "measure": "initial"}, True, "concave, -0.5 +- 0.001"),
+        ({"method": "exact"}, {"shape": "convex"}, True, "convex, -0.200 +- 0.001"),
+        ({"method": "shooting"}, {"shape": "convex"}, False, "concave, 0.100 +- 0.002"),
+        ({"method": "exact"}, {"shape": "concave", "measure": "initial"}, True, "concave, -0.500 +- 0.001"),
         ({"method": "march"}, {"shape": "convex"}, False, "slip still reverses at the highest belt speed, 2"),
-        ({}, {"shape": "convex"}, False, "concave, 0.1 +- 0.002 in the first of 2 of 3 curves"),
+        ({}, {"shape": "convex"}, False, "concave, 0.100 +- 0.002 in the first of 2 of 3 curves"),
         ({"law": "dahl"}, {"shape": "convex"}, False, "no row of the table matches"),
     ],
 )

@@ -1,0 +1,94 @@
+"""The curves of a run, a row each: where mean friction lies, its largest error; and the onsets along them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pandas as pd
+from markupsafe import Markup
+
+from frictionlab.columns import BELT_SPEED, belt_speed
+from frictionlab.report.markup import symbol_html, unit_html
+from frictionlab.report.tables import Cell, CurveRows, Grid, curve_rows, grid, joined_values, setting, size
+from frictionlab.results.summary import mean_span, statuses
+from frictionlab.results.table import swept_inputs
+from frictionlab.results.words import counted
+from frictionlab.rounded import with_error
+
+
+def curves_grid(table: pd.DataFrame, tolerance: float) -> Grid:
+    """One line per curve: everything equal but belt speed."""
+    head = [
+        *("law", "method", "curve", "points"),
+        Markup("mean friction {}, least … greatest").format(symbol_html("mean_friction")),
+        *("largest error", "at", "kind of error", "errors above the tolerance"),
+    ]
+    rows = [
+        [
+            curve.law,
+            curve.method,
+            curve.name,
+            statuses(curve.rows),
+            mean_span(curve.rows),
+            *_errors(curve, tolerance),
+        ]
+        for curve in curve_rows(table, swept_inputs(table))
+    ]
+    return grid("Curves: everything equal but belt speed", head, rows, "curves")
+
+
+def _errors(curve: CurveRows, tolerance: float) -> list[Cell]:
+    """The largest error and where it is, of which kind the errors are, how many are above the tolerance."""
+    error = curve.rows["error"]
+    if error.isna().all():
+        return [""] * 4
+    worst = curve.rows.loc[error.idxmax()]
+    speed = belt_speed(worst.index)
+    above = int((error > tolerance).sum())
+    kinds = joined_values(curve.rows.loc[error.notna(), "error_kind"].dropna())
+    return [
+        size(float(error.max())),
+        setting(speed, worst[speed]),
+        kinds,
+        counted(above, "point") if above else "",
+    ]
+
+
+def onset_grid(onsets: pd.DataFrame, table: pd.DataFrame) -> Grid:
+    """The onsets of onsets.csv, each with its error, curve by curve."""
+    scales = speed_scales(table)
+    rows = [
+        [
+            curve.law,
+            curve.method,
+            curve.name,
+            row["onset"].replace("_", " "),
+            in_given_units(row, "belt_speed", scales.get(curve.key, 1.0)),
+            row["how"],
+        ]
+        for curve in curve_rows(onsets, _told(table, onsets))
+        for _, row in curve.rows.iterrows()
+    ]
+    speed = Markup("belt speed{}").format(unit_html(belt_speed(table)))
+    head = ["law", "method", "curve", "what", speed, "how it was found"]
+    return grid("Onsets along rising belt speed", head, rows, "onsets", "onsets.csv")
+
+
+def _told(table: pd.DataFrame, others: pd.DataFrame) -> Sequence[str]:
+    return [name for name in swept_inputs(table) if name in others]
+
+
+def in_given_units(row: pd.Series, name: str, scale: float) -> str:
+    """A belt speed of a row with its error, in the units given."""
+    return with_error(scale * float(row[name]), scale * float(row[f"{name}_error"]))
+
+
+def speed_scales(table: pd.DataFrame) -> dict[str, float]:
+    """Of each curve by its key a belt speed in the units given over the nondimensional one."""
+    return {curve.key: _scale(curve.rows) for curve in curve_rows(table, swept_inputs(table))}
+
+
+def _scale(rows: pd.DataFrame) -> float:
+    ratios = rows[belt_speed(rows)] / rows[BELT_SPEED]
+    known = ratios[ratios.abs() < float("inf")].dropna()
+    return 1.0 if known.empty else float(known.median())

@@ -1,0 +1,157 @@
+"""Curves compared in pairs: where the means of two laws, or of two methods, differ most, and by how much."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from frictionlab.columns import given
+from frictionlab.results.table import swept_inputs
+
+MOST_BY_SETTING = 24
+"""Rows up to which pairs are told for each set of swept values; beyond, each pair has one row."""
+_FRICTION = "law.mu", "law.mu_kinetic"
+"""Of each law the one that scales friction of steady sliding."""
+ROUNDING_OF_MEANS = 1e-15
+_OTHER = " other"
+
+
+class Difference(NamedTuple):
+    """Two laws or methods where their means differ most: value is that of one less that of the other.
+
+    law: whose curves they are, where methods are compared; '' where laws are. error: of the value, the sum of both.
+    where: the inputs that are swept, in the units given. shared: points where both have a number; apart: those of
+    them where they differ by more than their errors; most: largest difference that the errors allow anywhere.
+    """
+
+    law: str
+    one: str
+    other: str
+    where: Mapping[str, Any]
+    value: float
+    error: float
+    shared: int
+    apart: int
+    most: float
+
+
+def best_rows(table: pd.DataFrame) -> pd.DataFrame:
+    """The rows with a number; of those that differ in their method alone the one with the smallest error."""
+    found = table[table["mean_friction"].notna()]
+    keys = ["law", *_varied(table)]
+    return found.sort_values("error", kind="stable").drop_duplicates(keys).sort_index()
+
+
+def law_pairs(table: pd.DataFrame) -> list[Difference]:
+    """Every two laws at the same points, each by its most exact method."""
+    best = best_rows(table)
+    on = shared_inputs(best)
+    best = with_friction(best)
+    laws = [best[best["law"] == law] for law in best["law"].unique()]
+    return _told([("", pair, on) for pair in combinations(laws, 2)], "law")
+
+
+def method_pairs(table: pd.DataFrame) -> list[Difference]:
+    """Every two methods at the same points of each law."""
+    found = table[table["mean_friction"].notna()]
+    on = _varied(table)
+    pairs = []
+    for law, rows in found.groupby("law", sort=False):
+        methods = [rows[rows["method"] == method] for method in rows["method"].unique()]
+        pairs += [(str(law), pair, on) for pair in combinations(methods, 2)]
+    return _told(pairs, "method")
+
+
+def shared_inputs(table: pd.DataFrame) -> list[str]:
+    """The inputs that say that two laws are at the same point: the scene, and the laws' parameters swept together.
+
+    Friction coefficients are swept together where each law has several; they are then the column ``law.mu`` of
+    `with_friction`.
+    """
+    swept = [name for name in swept_inputs(table) if name.startswith("law.")] if len(table) else []
+    within = with_friction(table).groupby("law")
+    together = [name for name in dict.fromkeys(_own_name(name) for name in swept) if _in_all(within, name)]
+    return [name for name in _varied(table) if name.startswith("scene.")] + together
+
+
+def own_parameters(table: pd.DataFrame, on: Sequence[str]) -> list[str]:
+    """The swept parameters of laws that are not among these inputs, which all laws share."""
+    return [name for name in swept_inputs(table) if name.startswith("law.") and _own_name(name) not in on]
+
+
+def with_friction(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with the friction coefficient of every law as ``law.mu``."""
+    known = [name for name in _FRICTION if name in table]
+    return table.assign(**{_FRICTION[0]: table[known].bfill(axis=1).iloc[:, 0]}) if known else table
+
+
+def _own_name(name: str) -> str:
+    return _FRICTION[0] if name in _FRICTION else name
+
+
+def _in_all(within: Any, name: str) -> bool:
+    return bool((within[name].nunique() > 1).all())
+
+
+def _varied(table: pd.DataFrame) -> list[str]:
+    """The inputs of more than one value, in the units given."""
+    return [name for name in given(table.columns) if table[name].nunique(dropna=False) > 1]
+
+
+def _told(
+    pairs: Sequence[tuple[str, tuple[pd.DataFrame, pd.DataFrame], list[str]]], what: str
+) -> list[Difference]:
+    """For each set of swept values where these are few, else once."""
+    apart = [each for law, pair, on in pairs for each in _differences(law, pair, on, what, _settings(on))]
+    if len(apart) <= MOST_BY_SETTING:
+        return apart
+    return [each for law, pair, on in pairs for each in _differences(law, pair, on, what, [])]
+
+
+def _settings(on: Sequence[str]) -> list[str]:
+    return [name for name in on if "belt_speed" not in name]
+
+
+def _differences(
+    law: str, pair: tuple[pd.DataFrame, pd.DataFrame], on: list[str], what: str, by: list[str]
+) -> Iterator[Difference]:
+    one, other = pair
+    both = (
+        one.merge(other, on=on, suffixes=("", _OTHER))
+        if on
+        else one.merge(other, "cross", suffixes=("", _OTHER))
+    )
+    for _, rows in both.groupby(by, sort=False, dropna=False) if by else [((), both)]:
+        if len(rows):
+            yield _largest_difference(law, rows, on, what)
+
+
+def _largest_difference(law: str, rows: pd.DataFrame, on: list[str], what: str) -> Difference:
+    value = (rows["mean_friction"] - rows[f"mean_friction{_OTHER}"]).to_numpy(dtype=float)
+    error = (rows["error"] + rows[f"error{_OTHER}"]).to_numpy(dtype=float)
+    size = np.abs(value)
+    apart = size > error + ROUNDING_OF_MEANS
+    at = int(np.argmax(np.where(apart, size, -1.0) if apart.any() else size))
+    row = rows.iloc[at]
+    where = {name: row[name] for name in on} | _own(rows, row, on)
+    names = str(row[what]), str(row[f"{what}{_OTHER}"])
+    counts = len(rows), int(apart.sum())
+    return Difference(
+        law, *names, where, float(value[at]), float(error[at]), *counts, float((size + error).max())
+    )
+
+
+def _own(rows: pd.DataFrame, row: pd.Series, on: Sequence[str]) -> dict[str, Any]:
+    """The values that only one of the two sweeps: parameters of its law."""
+    names = [name for name in given(rows.columns) if name.startswith("law.") and not name.endswith(_OTHER)]
+    return {
+        name: row[own]
+        for name in names
+        if name not in on
+        for own in (name, f"{name}{_OTHER}")
+        if own in rows and rows[own].nunique() > 1
+    }

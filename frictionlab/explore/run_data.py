@@ -12,6 +12,7 @@ import pandas as pd
 
 from frictionlab.charts.curves import CurveData, Family, family_of
 from frictionlab.columns import word
+from frictionlab.explore.page_scene import page_scene
 from frictionlab.report.markup import html
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.saved import Saved
@@ -28,10 +29,23 @@ def run_data(saved: Saved) -> dict[str, Any]:
     swept = _swept(family)
     looks = list(dict.fromkeys((curve.law, curve.method) for curve in family.curves if _has_numbers(curve)))
     places = sorted({float(value) for curve in family.curves for value in curve.rows[family.abscissa]})
+    curves = [_curve(curve, family.abscissa, swept, looks) for curve in family.curves]
     return {
         "abscissa": {"label": label(family.abscissa), "values": places},
         "swept": [{"label": label(*quantity), "values": values} for quantity, values in swept.items()],
-        "curves": [_curve(curve, family.abscissa, swept, looks) for curve in family.curves],
+        "curves": curves,
+        "start": _start(curves, places[(len(places) - 1) // 2]),
+    }
+
+
+def _start(curves: list[dict[str, Any]], speed: float) -> dict[str, float] | None:
+    """What the sliders of the page's solver begin with: the first scene shown that it solves, to six digits."""
+    shown = (curve["coulomb"] for curve in curves if curve["coulomb"] and not any(curve["at"]))
+    if (first := next(shown, None)) is None:
+        return None
+    chosen = {name: first[name] for name in ("frequency", "damping", "friction")}
+    return {
+        name: float(f"{value:.6g}") for name, value in {**chosen, "belt": abs(speed) / first["limit"]}.items()
     }
 
 
@@ -80,9 +94,10 @@ def _curve(
     """One curve.
 
     at: for each swept quantity the index of its value, None where the law does not have it. look: a number for each
-    law and method, None where no point of the two can be drawn.
+    law and method, None where no point of the two can be drawn. coulomb: the scene for the page's solver, None where
+    it takes none.
     """
-    settings, rows = _settings(curve), curve.rows
+    settings, rows, solved = _settings(curve), curve.rows, page_scene(curve, abscissa)
     at = [
         values.index(settings[quantity]) if quantity in settings else None
         for quantity, values in swept.items()
@@ -99,6 +114,7 @@ def _curve(
         "high": _numbers(rows.get("mean_high")) or [None] * len(rows),
         "status": rows["status"].astype(str).tolist(),
         "kink": _kink(curve),
+        "coulomb": solved and solved._asdict(),
     }
 
 

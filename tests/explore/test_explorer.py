@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,9 @@ from pages import Page, complaints
 
 import frictionlab as fl
 from frictionlab import cli
+from frictionlab.charts.curves import CurveData, family_of
 from frictionlab.explore.page import explorer
+from frictionlab.explore.page_scene import page_scene
 from frictionlab.explore.run_data import label, run_data
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.saved import Saved, saved_as
@@ -100,6 +103,41 @@ def test_what_has_no_number_is_empty_and_has_no_look(saved: Saved) -> None:
     assert all(mean is None for curve in data["curves"] if curve["law"] == "other" for mean in curve["mean"])
 
 
+def curve_of(saved: Saved, **changed: Any) -> CurveData:
+    """The first curve of the run with columns changed, or left out where they are None."""
+    family = family_of(saved.table)
+    assert family is not None
+    rows = (
+        family.curves[0]
+        .rows.assign(**changed)
+        .drop(columns=[name for name in changed if changed[name] is None])
+    )
+    return replace(family.curves[0], rows=rows)
+
+
+def test_the_solver_of_the_page_takes_the_scenes_that_are_its_own(saved: Saved) -> None:
+    speed = "scene.belt_speed"
+
+    assert page_scene(curve_of(saved), speed) == pytest.approx((1.0, 0.1, 0.4, 0.4, 50.0), rel=1e-14)
+    for changed in (
+        {"scene.damping_ratio": 0.0},
+        {"scene.drive.waveform": "square"},
+        {"scene.transverse.natural_frequency": 1.0, "scene.transverse.damping_ratio": 0.1},
+        {"friction_to_drive": np.linspace(0.3, 0.4, 11)},
+        {"velocity_ratio": None},
+    ):
+        assert page_scene(curve_of(saved, **changed), speed) is None
+    assert page_scene(curve_of(saved), "scene.drive.frequency") is None
+
+
+def test_the_sliders_begin_at_the_scene_of_the_run(saved: Saved) -> None:
+    start = {"frequency": 1.0, "damping": 0.1, "friction": 0.4, "belt": 0.6}
+
+    assert run_data(saved)["start"] == start
+    undamped = saved.table.assign(**{"scene.damping_ratio": 0.0})
+    assert run_data(Saved(saved.folder, saved.study, undamped, saved.curves, saved.account))["start"] is None
+
+
 def test_labels_are_words_with_marked_subscripts() -> None:
     assert label("scene.drive.frequency") == "Drive frequency \u03a9"
     assert label("scene.dimensional.belt_speed_m_per_s") == "Belt speed V_{b} [m/s]"
@@ -113,7 +151,7 @@ def test_the_command_writes_the_page_and_says_where(
     assert cli.main(["explore"]) == 0
     assert cli.main(["explore", str(saved.folder), "-o", "mine.html"]) == 0
     assert capsys.readouterr().out == "explorer.html\nmine.html\n"
-    assert "run-data" not in Path("explorer.html").read_text(encoding="utf-8")
+    assert 'id="run-data"' not in Path("explorer.html").read_text(encoding="utf-8")
     assert "Two laws &lt;/script&gt; &amp; more" in Path("mine.html").read_text(encoding="utf-8")
 
 
@@ -151,6 +189,7 @@ function read(page) {
     chosen, rows, verdict: text("verdict"), point: text("point"),
     mean: Number(text("number-mean")), stick: Number(text("number-stick").replace(" %", "")),
     work: Number(text("number-work")), milliseconds: Number(text("timing").match(/took (\\d+) ms/)[1]),
+    solved: page.querySelectorAll("#run-curves path[stroke-width='7']").length,
     line: page.querySelector("#curve path[stroke-width='2.5']").getAttribute("d"),
   };
 }
@@ -217,7 +256,7 @@ def exact_state(chosen: dict[str, float]) -> fl.SteadyState:
 def test_moving_a_slider_changes_the_numbers_to_those_of_exact(opened: Any) -> None:
     assert opened["errors"] == []
     first, faster, third, fourth, _ = opened["states"]
-    assert first["chosen"] == {"frequency": 1, "damping": 0.1, "friction": 0.4, "belt": 0.4}
+    assert first["chosen"] == {"frequency": 1, "damping": 0.1, "friction": 0.4, "belt": 0.6}
     assert faster["chosen"]["frequency"] == 2
     assert third["chosen"] == {"frequency": 2, "damping": 0.1, "friction": 0.9, "belt": 0.25}
     assert fourth["chosen"]["damping"] == 0.123
@@ -253,7 +292,14 @@ def test_the_table_of_the_run_follows_its_sliders(opened: Any, saved: Saved) -> 
         here = table[(table["scene.drive.frequency"] == frequency) & (table["scene.belt_speed"] == speed)]
         here = here[(here["law"] == "coulomb") | (here["law.mu"] == 0.2)]
         wanted = [[row["law"], row["method"], f"{row['mean_friction']:.6f}"] for _, row in here.iterrows()]
-        assert sorted(row[:3] for row in rows) == sorted(wanted)
+        by_exact = {
+            row["law.mu"]: row["mean_friction"] for _, row in here[here["method"] == "exact"].iterrows()
+        }
+        solved = [
+            [f"Coulomb, \u03bc = {mu}", "solved on this page", f"{by_exact[mu]:.6f}"] for mu in (0.4, 0.2)
+        ]
+        assert sorted(row[:3] for row in rows) == sorted([*wanted, *solved])
+    assert [state["solved"] for state in opened["states"]] == [2] * 5
 
 
 def test_nothing_is_wider_than_the_screen(opened: Any) -> None:

@@ -34,12 +34,14 @@ function write(element, text) {
   }));
 }
 
-/** Round numbers within the span, about as many as asked for. */
+/** Round numbers within the span, two at least and about as many as asked for. */
 function ticksOf(low, high, most) {
   const rough = (high - low) / most, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].find((factor) => factor * power >= rough) * power;
   const ticks = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) ticks.push(i * step);
+  // One number is no scale.
+  if (ticks.length < 2 && most < 20) return ticksOf(low, high, 2 * most);
   return { ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
 }
 

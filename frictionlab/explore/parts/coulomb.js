@@ -9,6 +9,10 @@ const SLIDERS = {
   friction: { low: 0, high: 1.5, start: 0.4, step: 0.01 },
   belt: { low: 0, high: 1.2, start: 0.4, step: 0.005 },
 };
+const held = document.getElementById("run-data");
+/* The run that the page shows, if any; its scene is where the sliders begin, within limits that hold it. */
+const run = held && JSON.parse(held.textContent);
+
 const WORDS = {
   concave: "it lies above its chord",
   convex: "it lies below its chord",
@@ -154,6 +158,9 @@ function stretches(flags) {
   return found;
 }
 
-for (const [name, limits] of Object.entries(SLIDERS)) setUpSlider(name, limits);
+for (const [name, limits] of Object.entries(SLIDERS)) {
+  const start = run?.start?.[name] ?? limits.start;
+  setUpSlider(name, { ...limits, start, low: Math.min(limits.low, start), high: Math.max(limits.high, start) });
+}
 update(true);
 addEventListener("resize", drawAll);

@@ -8,7 +8,9 @@ const DASHES = ["none", "9 4", "2 3", "9 3 2 3", "5 2", "12 3 2 3 2 3"];
 const VISIBLE = 0.004;
 /* Share of the axis: a narrower error band is thinner than its curve. */
 
-const run = JSON.parse(document.getElementById("run-data").textContent);
+const SOLVED = { stroke: "#b9c2cd", "stroke-width": 7 };
+/* The Coulomb curve that the page solves: wide and below those of the run, so that it is seen where they coincide. */
+
 const places = run.swept.map(() => 0);
 let along = Math.floor((run.abscissa.values.length - 1) / 2);
 
@@ -42,6 +44,34 @@ function curvesChosen() {
   return run.curves.filter((curve) => curve.at.every((at, i) => at === null || at === places[i]));
 }
 
+/** The scenes of these curves that the page solves, each once; solved when first shown. */
+const solutions = new Map();
+function coulombCurves(curves) {
+  const keys = new Set(curves.filter((curve) => curve.coulomb).map(({ coulomb }) => JSON.stringify(coulomb)));
+  return [...keys].map((key) => {
+    if (!solutions.has(key)) {
+      const given = JSON.parse(key), scene = makeScene(given.frequency, given.damping, given.friction);
+      solutions.set(key, { ...given, scene, curve: solveCurve(scene, POINTS) });
+    }
+    return solutions.get(key);
+  });
+}
+
+/** A solved curve in the units of the run, over a span of belt speeds; friction turns round with the belt. */
+function inUnitsOfRun({ mu, limit, curve }, [low, high]) {
+  const forth = [[0, curve.start], ...curve.speeds.map((speed, i) => [speed, curve.means[i]])];
+  const half = (sign, end) => (sign * end <= 0 ? [] : [...forth, [Math.max(sign * end / limit, 1), 1]]
+    .map(([speed, mean]) => [sign * speed * limit, sign * mean * mu])
+    .filter(([speed]) => sign * speed <= sign * end));
+  return [half(-1, low), half(1, high)].filter((part) => part.length > 1);
+}
+
+/** Mean friction of a solved scene at a belt speed of the run; null where it is not unique. */
+function solvedMean({ mu, limit, scene }, speed) {
+  const state = solvePoint(scene, Math.abs(speed) / limit * scene.limitSpeed);
+  return state.unique ? Math.sign(speed) * mu * state.mean : null;
+}
+
 function drawRun() {
   const curves = curvesChosen(), here = run.abscissa.values[along];
   const values = run.curves.flatMap((curve) => [...curve.mean, ...curve.low, ...curve.high]).filter((v) => v !== null);
@@ -50,6 +80,8 @@ function drawRun() {
     { label: run.abscissa.label, span: spanOf(run.abscissa.values, 0.02) }, { label: "mean friction coefficient", span: spanned });
   chart.upright(here, { stroke: "#1b1f24" });
   chart.level(0, { stroke: "#8c959f" });
+  const solved = coulombCurves(curves), ends = [run.abscissa.values[0], run.abscissa.values.at(-1)];
+  for (const each of solved) for (const part of inUnitsOfRun(each, ends)) chart.line(part, SOLVED);
   const drawn = curves.filter((curve) => curve.look !== null);
   for (const curve of drawn) drawBand(chart, curve, spanned);
   for (const curve of drawn) {
@@ -63,7 +95,7 @@ function drawRun() {
     chart.upright(kink, { "stroke-dasharray": "2 4" });
     chart.text(chart.px(kink) - 4, chart.top + 12, "V_{lin}", { "text-anchor": "end" });
   }
-  listValues(curves, here);
+  listValues(curves, here, solved);
 }
 
 /** The stretches of a curve that have numbers. */
@@ -92,24 +124,35 @@ function clamp(value, [low, high]) {
 }
 
 /** The table beside the chart, which is its legend, too. */
-function listValues(curves, here) {
+function listValues(curves, here, solved) {
   const table = document.getElementById("run-values");
   write(table.caption, `${run.abscissa.label} = ${Number(here.toPrecision(6))}`);
-  table.tBodies[0].replaceChildren(...curves.map((curve) => {
-    const at = curve.x.indexOf(here), row = document.createElement("tr"), head = document.createElement("th");
-    head.scope = "row";
-    const swatch = svgElement(head, "svg", { viewBox: "0 0 40 12", "aria-hidden": "true" });
-    if (curve.look !== null) svgElement(swatch, "line", { x1: 0, x2: 40, y1: 6, y2: 6, ...lookOf(curve.look) });
-    head.append(curve.law);
-    row.append(head);
+  const rows = curves.map((curve) => {
+    const at = curve.x.indexOf(here);
     const status = at < 0 ? "no point here" : curve.status[at], mean = at < 0 ? null : curve.mean[at];
     const range = at >= 0 && curve.low[at] !== null ? `${shown(curve.low[at], 6)} ... ${shown(curve.high[at], 6)}` : "";
     const error = mean === null || curve.error[at] === null ? "" : curve.error[at].toExponential(1);
-    for (const text of [curve.method, mean === null ? range : shown(mean, 6), error, status]) {
-      row.insertCell().textContent = text;
-    }
-    return row;
-  }));
+    const look = curve.look === null ? null : lookOf(curve.look);
+    return listed(look, curve.law, [curve.method, mean === null ? range : shown(mean, 6), error, status]);
+  });
+  const own = solved.map((each) => {
+    const mean = solvedMean(each, here);
+    return listed(SOLVED, `Coulomb, \u03bc = ${Number(each.mu.toPrecision(6))}`,
+      ["solved on this page", mean === null ? "" : shown(mean, 6), "", mean === null ? "not_unique" : "ok"]);
+  });
+  table.tBodies[0].replaceChildren(...rows, ...own);
+}
+
+/** A row of the table: how its curve is drawn, whose it is, and what there is to read. */
+function listed(look, name, cells) {
+  const row = document.createElement("tr"), head = document.createElement("th");
+  head.scope = "row";
+  const swatch = svgElement(head, "svg", { viewBox: "0 0 40 12", "aria-hidden": "true" });
+  if (look !== null) svgElement(swatch, "line", { x1: 0, x2: 40, y1: 6, y2: 6, ...look });
+  head.append(name);
+  row.append(head);
+  for (const text of cells) row.insertCell().textContent = text;
+  return row;
 }
 
 run.swept.forEach((quantity, i) => {

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 INPUTS: dict[str, str] = {
     "law": "label of the law",
@@ -119,6 +119,31 @@ SCALED = "law.nondimensional."
 def belt_speed(names: Iterable[str]) -> str:
     """The column of the belt speed, in the units in which the scene was given."""
     return BELT_SPEEDS[1] if BELT_SPEEDS[1] in names else BELT_SPEEDS[0]
+
+
+def leading(names: Sequence[str], cells: Mapping[str, Sequence[Any]]) -> list[str]:
+    """Of these inputs those whose values do not follow from those of another, law by law, as linked ones do.
+
+    Of two that follow from each other the first. cells: of each input and of ``law``, row by row.
+    """
+    rows = dict.fromkeys(zip(*(map(_comparable, cells[name]) for name in ("law", *names)), strict=True))
+    columns = dict(zip(("law", *names), zip(*rows, strict=True), strict=True))
+
+    def different(*of: str) -> int:
+        return len(set(zip(columns["law"], *(columns[name] for name in of), strict=True)))
+
+    alone = {name: different(name) for name in names}
+    found = list(names)
+    for name in reversed(names):
+        others = [other for other in found if other != name]
+        if any(different(name, other) == alone[other] for other in others):
+            found.remove(name)
+    return found
+
+
+def _comparable(cell: Any) -> Any:
+    """None for an empty cell, which does not equal another."""
+    return cell if cell == cell else None
 
 
 def given(names: Iterable[str]) -> list[str]:

@@ -12,7 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from pandas.api.types import is_numeric_dtype
 
-from frictionlab.columns import BELT_SPEEDS, SCALED, belt_speed, given
+from frictionlab.columns import BELT_SPEEDS, SCALED, belt_speed, given, leading
 
 MOST_PICTURES = 12  # in which several laws are compared; of more values each law has a picture of its own
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
@@ -65,7 +65,7 @@ def family_of(table: pd.DataFrame) -> Family | None:
     curves of a law apart; where that makes too many pictures, each law has its own. Of one law the quantity of most
     values tells curves apart. Each further one sets up pictures.
     """
-    table = table.rename(columns=_names_in_si(table.columns))
+    table = _with_one_friction(table.rename(columns=_names_in_si(table.columns)))
     swept = sorted(swept_columns(table), key=lambda name: table[name].nunique())
     numbers = [name for name in swept if is_numeric_dtype(table[name])]
     if not numbers:
@@ -105,11 +105,28 @@ def _names_in_si(columns: Iterable[str]) -> dict[str, str]:
 
 
 def swept_columns(table: pd.DataFrame) -> list[str]:
-    """Inputs of more than one value, as given; a law's parameter counts only where it varies within one law."""
-    names = given(table.columns)
+    """Inputs of more than one value, as given; a law's parameter counts only where it varies within one law.
+
+    Of those that change together, the first; belt speed comes first.
+    """
+    names = sorted(given(table.columns), key=lambda name: name != belt_speed(table.columns))
     scene = [name for name in names if name.startswith("scene.") and table[name].nunique() > 1]
     parameters = [name for name in names if name.startswith("law.") and is_numeric_dtype(table[name])]
-    return scene + [name for name in parameters if table.groupby("law")[name].nunique().max() > 1]
+    laws = [name for name in parameters if table.groupby("law")[name].nunique().max() > 1]
+    return leading(scene + laws, table)
+
+
+def _with_one_friction(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with mu_kinetic under mu, where both are swept over the same values: friction of every law."""
+    mu, kinetic = "law.mu", "law.mu_kinetic"
+    if mu not in table or kinetic not in table or not {mu, kinetic} <= set(swept_columns(table)):
+        return table
+    if (
+        set(table[mu].dropna()) != set(table[kinetic].dropna())
+        or table[[mu, kinetic]].notna().all(axis=1).any()
+    ):
+        return table
+    return table.assign(**{mu: table[mu].fillna(table[kinetic])}).drop(columns=kinetic)
 
 
 def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str | None) -> list[CurveData]:

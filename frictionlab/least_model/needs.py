@@ -21,7 +21,8 @@ from frictionlab.runner.arguments import given_law, given_scene, given_speeds, g
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import Study, StudyCurve
-from frictionlab.study.study import law_in_scene
+from frictionlab.study.axes import FRICTION
+from frictionlab.study.study import coefficient_of, law_in_scene
 
 USUAL_SHARE = 0.01
 """The tolerance on the mean, of the friction of steady sliding at the quickest belt speed, where none is given."""
@@ -84,6 +85,9 @@ def _label(study: Study, curve: StudyCurve) -> str:
         inside = path.removeprefix("scene.")
         if path.startswith("scene.") and not name.startswith("belt_speed"):
             told.append(f"{inside} {in_words(scene.get(inside))}")
+        elif path == FRICTION:
+            name = coefficient_of(type(curve.given_law))
+            told.append(f"{name} {in_words(law[name])}")
         elif owner == f"laws.{curve.law_label}":
             told.append(f"{name} {in_words(law[name])}")
     return ", ".join(told)

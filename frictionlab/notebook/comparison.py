@@ -25,6 +25,7 @@ from frictionlab.runner.arguments import given_scene
 from frictionlab.runner.save import save_run
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Study
+from frictionlab.study.axes import FRICTION
 from frictionlab.study.objects import LawsGiven, MethodsGiven, study_of_objects
 
 if TYPE_CHECKING:
@@ -122,8 +123,13 @@ class Comparison:
         except ImportError:
             raise ImportError("to_xarray needs xarray: pip install 'frictionlab[xarray]'") from None
         table = self.table
+        if FRICTION in self.study.sweep:  # one dimension for what each law calls mu or mu_kinetic
+            table = table.assign(**{FRICTION: _friction(table)})
+            table = table[[FRICTION, *(name for name in table.columns if name != FRICTION)]]
         methods = ["method"] * (table["method"].nunique() > 1)
-        dimensions = ["law", *methods, *swept_inputs(table), column_of_speed(table.columns)]
+        swept = [name for name in swept_inputs(table) if FRICTION not in table or name not in _COEFFICIENTS]
+        shared = [FRICTION] * (FRICTION in table)
+        dimensions = ["law", *methods, *shared, *swept, column_of_speed(table.columns)]
         rest = [name for name in table.columns if name not in dimensions]
         return table.set_index(dimensions)[rest].to_xarray()
 
@@ -223,6 +229,15 @@ def sweep(
     start = time.perf_counter()
     done = run_study(study, executor=executor)
     return Comparison(done, time.perf_counter() - start)
+
+
+_COEFFICIENTS = "law.mu", "law.mu_kinetic", "law.mu_static"
+
+
+def _friction(table: pd.DataFrame) -> pd.Series:
+    """The friction coefficient of sliding of every row."""
+    sliding = [table[name] for name in _COEFFICIENTS[:2] if name in table]
+    return sliding[0] if len(sliding) == 1 else sliding[0].fillna(sliding[1])
 
 
 def _speed_path(scene: Scene) -> str:

@@ -17,6 +17,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signal
 from frictionlab.scene.waveforms import SINE, as_fraction
 from frictionlab.study import GridValue, LawChoice, Study
+from frictionlab.study.axes import FRICTION, Axis
 
 MOST_LISTED = 8
 """Values of a sweep that are listed one by one; of more, the ends and how many."""
@@ -201,8 +202,7 @@ def _first_line(text: str) -> str:
 
 
 def _law_parameters(law: LawChoice, study: Study) -> Cell:
-    swept = {name: study.sweep.get(f"laws.{law.label}.{name}") for name in law.parameters}
-    told = {name: f"swept: {values_listed(values)}" for name, values in swept.items() if values is not None}
+    told = {name: f"swept: {values_listed(values)}" for name, values in study.swept_parameters(law).items()}
     return _set(law.parameters | told)
 
 
@@ -217,11 +217,24 @@ def _set(parameters: Mapping[str, Any]) -> Cell:
 
 def sweep_grid(study: Study) -> Grid:
     """What is swept, and over what."""
-    rows = [[_sweep_name(study, path), path, values_listed(values)] for path, values in study.sweep.items()]
+    rows = [
+        [_together(study, axis, path), path, values_listed(values)]
+        for axis in study.axes
+        for path, values in axis.values.items()
+    ]
     return grid("The sweep: every combination of these is a point", ["quantity", "key", "values"], rows)
 
 
+def _together(study: Study, axis: Axis, path: str) -> Cell:
+    """What is swept; of several that advance together, with which."""
+    first = next(iter(axis.values))
+    name = _sweep_name(study, path)
+    return name if path == first else Markup("{}, together with {}").format(name, _sweep_name(study, first))
+
+
 def _sweep_name(study: Study, path: str) -> Cell:
+    if path == FRICTION:
+        return Markup("friction coefficient of every law")
     if path.startswith("scene."):
         return html(word(path))
     owner, _, name = path.rpartition(".")

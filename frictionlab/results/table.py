@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from frictionlab.columns import BELT_SPEEDS, RESULTS, SCALED, SI, TEXT, belt_speed, given
+from frictionlab.columns import BELT_SPEEDS, RESULTS, SCALED, SI, TEXT, belt_speed, given, leading
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import si_columns, si_scales
@@ -217,10 +217,16 @@ def status_counts(table: pd.DataFrame) -> dict[str, int]:
 
 
 def swept_inputs(table: pd.DataFrame) -> list[str]:
-    """Inputs besides belt speed that take several values within one law; its label distinguishes laws."""
-    names = [name for name in given(table.columns) if name != belt_speed(table.columns)]
+    """Inputs besides belt speed that take several values within one law; its label distinguishes laws.
+
+    Of those that change together, the first; belt speed may be one of them.
+    """
+    speed = belt_speed(table.columns)
+    names = [speed, *(name for name in given(table.columns) if name != speed)]
+    names = [name for name in names if name in table]
     within = table.groupby("law", sort=False)[names].nunique(dropna=False).max()
-    return [name for name in names if within[name] > 1]
+    swept = [name for name in names if within[name] > 1]
+    return [name for name in leading(swept, table) if name != speed]
 
 
 def finished_rows(given: Inputs, earlier: pd.DataFrame) -> tuple[list[int], pd.DataFrame]:

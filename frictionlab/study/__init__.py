@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from frictionlab.mistakes.notes import Mistake, StudyError
+from frictionlab.study.axes import GridValue
 from frictionlab.study.law_files import Plugins, laws_of_files
 from frictionlab.study.reader import load_study, parse_study, read_back
 from frictionlab.study.study import (
     Expectation,
-    GridValue,
     LawChoice,
     MethodChoice,
     Study,

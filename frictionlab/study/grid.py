@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -24,9 +24,10 @@ from frictionlab.mistakes.validation import (
 )
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
+from frictionlab.study.axes import FRICTION, LINKED, SCENE, STATIC, GridValue, grid_points, owner_of
 from frictionlab.study.choices import label_of, possible_labels
 from frictionlab.study.ranges import SPACINGS, SweepRange
-from frictionlab.study.study import GridValue, Study, owner
+from frictionlab.study.study import Study, coefficient_of
 
 LARGEST_GRID = 100_000_000
 LARGEST_RANGE = 1_000_000
@@ -52,10 +53,14 @@ _GROUPS = (
 
 @dataclass
 class Sweeps:
-    """The sweeps of a study, the ranges among them, and where first values stand in for what the study left out."""
+    """The sweeps of a study, the ranges and the links among them.
+
+    stand_ins: where first values stand in for what the study left out.
+    """
 
     sweep: dict[str, tuple[GridValue, ...]] = field(default_factory=dict)
     ranges: dict[str, SweepRange] = field(default_factory=dict)
+    links: tuple[tuple[str, ...], ...] = ()
     stand_ins: dict[Path, Path] = field(default_factory=dict)
 
 
@@ -75,22 +80,79 @@ class _Target:
 
 def read_sweeps(tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> Sweeps:
     """Read the sweeps; a swept value that the study leaves out is put into the tree."""
-    found = Sweeps()
     given = notes.mapping(tree.get("sweep", {}), ("sweep",)) or {}
     too_large = _note_too_large(given, notes)
-    targets = _Targets(tree, laws, notes)
+    reader = _SweepReader(tree, laws, notes, too_large)
     for key, values in given.items():
-        target = targets.target(key)
-        read = _read_values(values, target, ("sweep", key), notes)
+        if key == LINKED:
+            reader.read_linked(values)
+        else:
+            reader.read(key, values, ("sweep", key))
+    return reader.found
+
+
+class _SweepReader:
+    """The sweeps of a study, read one after another."""
+
+    def __init__(self, tree: dict[str, Any], laws: registry.Laws, notes: Notes, too_large: bool) -> None:
+        self._tree, self._notes, self._too_large = tree, notes, too_large
+        self._targets = _Targets(tree, laws, notes)
+        self.found = Sweeps()
+
+    def read(self, key: str, values: Any, path: Path, linked: bool = False) -> None:
+        """One list or range, of a path by itself or of one among those of a linked entry."""
+        targets = self._targets.at(key, path)
+        if key in self.found.sweep:
+            self._notes.on_key(path, f"{key} is swept already")
+            return
+        first = targets[0] if targets else None
+        read = _read_values(values, first, path, self._notes, unique=not linked)
         if isinstance(read, SweepRange):
-            found.ranges[key] = read
-            if target is not None:
-                _check_ends(read, target, ("sweep", key), notes)
-        built = _ends(read) if too_large else _built(read, ("sweep", key), notes)
-        if target is not None:
-            _stand_in(tree, target, built, found.stand_ins, key)
-        found.sweep[key] = built
-    return found
+            self.found.ranges[key] = read
+        for target in targets if isinstance(read, SweepRange) else targets[1:]:
+            values_to_check = _ends(read) if isinstance(read, SweepRange) else read
+            _check_values(values_to_check, target, path, self._notes)
+        built = _ends(read) if self._too_large else _built(read, path, self._notes)
+        for target in targets:
+            _stand_in(self._tree, target, built, self.found.stand_ins, path)
+        self.found.sweep[key] = built
+
+    def read_linked(self, given: Any) -> None:
+        """The entries of lists that advance together."""
+        if not isinstance(given, list):
+            what = (
+                "must be a list of entries such as {scene.drive.frequency: [1, 2], scene.normal_load: [5, 9]}"
+            )
+            self._notes.add(("sweep", LINKED), f"{what}, got {value_text(given)}")
+            return
+        if not given:
+            self._notes.add(("sweep", LINKED), "the list is empty; give at least one entry")
+        for index, entry in enumerate(given):
+            path: Path = ("sweep", LINKED, index)
+            if (lists := self._notes.mapping(entry, path)) is None:
+                continue
+            if len(lists) < 2:
+                self._notes.add(
+                    path, "one list alone links nothing: give two or more, or write it under sweep"
+                )
+            for key, values in lists.items():
+                self.read(key, values, (*path, key), linked=True)
+            if not self._notes.below(path):
+                self._check_entry({key: self.found.sweep[key] for key in lists}, path)
+
+    def _check_entry(self, lists: dict[str, tuple[GridValue, ...]], path: Path) -> None:
+        sizes = {key: len(values) for key, values in lists.items()}
+        first = next(iter(sizes))
+        for key, size in sizes.items():
+            if size != sizes[first] and not self._too_large:
+                what = f"has {size} values, {first} {sizes[first]}: lists of one entry advance together"
+                self._notes.add((*path, key), what)
+                return
+        points = list(zip(*lists.values(), strict=True))
+        twice = next((at for at, point in enumerate(points) if points.index(point) < at), None)
+        if twice is not None:
+            self._notes.add(path, f"its places {points.index(points[twice])} and {twice} are the same point")
+        self.found.links += (tuple(lists),)
 
 
 def _ends(read: tuple[GridValue, ...] | SweepRange) -> tuple[GridValue, ...]:
@@ -100,10 +162,16 @@ def _ends(read: tuple[GridValue, ...] | SweepRange) -> tuple[GridValue, ...]:
 
 def _note_too_large(given: Mapping[str, Any], notes: Notes) -> bool:
     """Whether the sweeps alone give too large a grid, noted before their values are built."""
-    sizes: dict[str, int] = {}
-    for key, values in given.items():
-        sizes[owner(key)] = sizes.get(owner(key), 1) * max(1, _size(values))
-    size = sizes.pop("scene.", 1) * max(1, sum(sizes.values()))
+    scene, laws = 1, dict[str, int]()
+    entries = given[LINKED] if isinstance(given.get(LINKED), list) else []
+    alone = [{key: values} for key, values in given.items() if key != LINKED]
+    for lists in [*alone, *(entry for entry in entries if isinstance(entry, dict) and entry)]:
+        size, owners = max(1, *map(_size, lists.values())), {owner_of(str(key)) for key in lists}
+        if owners & {SCENE, ""}:
+            scene *= size
+        else:
+            laws |= {owner: laws.get(owner, 1) * size for owner in owners}
+    size = scene * max(1, sum(laws.values()))
     if size > LARGEST_GRID:
         notes.add(("sweep",), f"the grid has at least {size} points, more than {LARGEST_GRID}")
     return size > LARGEST_GRID
@@ -143,17 +211,50 @@ class _Targets:
     def _possible_labels(self) -> Container[str]:
         return possible_labels(self._tree.get("laws"), self._laws)
 
-    def target(self, key: str) -> _Target | None:
-        """What a sweep of this name varies; None, noted, where it is nothing."""
+    def at(self, key: str, path: Path) -> list[_Target]:
+        """What a sweep of this name, at this path, varies; nothing, noted, where there is no such thing."""
+        if key == FRICTION:
+            return self._of_every_law(path)
         head, *steps = key.split(".")
         if head == "scene" and key.removeprefix("scene.") in value_paths(Scene):
-            return self._of_scene(steps, ("sweep", key))
-        if head == "laws":
-            return self._of_law(key)
-        what = "only scene.<value> and laws.<label>.<parameter> can be swept"
-        what = "no such value in a scene" if head == "scene" else what
-        self._notes.on_key(("sweep", key), what, did_you_mean(key, self._sweepable))
-        return None
+            found = self._of_scene(steps, path)
+        elif head == "laws":
+            found = self._of_law(key, path)
+        else:
+            what = "only scene.<value>, laws.<label>.<parameter>, friction and linked can be swept"
+            what = "no such value in a scene" if head == "scene" else what
+            self._notes.on_key(path, what, did_you_mean(key, [*self._sweepable, FRICTION, LINKED]))
+            found = None
+        return [] if found is None else [found]
+
+    @cached_property
+    def _with_friction(self) -> bool:
+        """Whether the study sweeps the friction coefficient of every law."""
+        given = self._tree["sweep"]
+        entries = given[LINKED] if isinstance(given.get(LINKED), list) else []
+        return any(FRICTION in lists for lists in (given, *entries) if isinstance(lists, dict))
+
+    def _of_every_law(self, path: Path) -> list[_Target]:
+        """The friction coefficient of sliding of every law of a known kind."""
+        found = []
+        for label, index in self._labels.items():
+            given = self._tree["laws"][index]
+            if given.get("kind") not in self._laws.names():
+                continue
+            law = self._laws.named(given["kind"])
+            name = coefficient_of(law)
+            if not name:
+                what = f"the law '{label}' has neither mu nor mu_kinetic to set"
+                self._notes.on_key(path, what, "sweep laws.<label>.<parameter> of the others")
+            elif name not in number_paths(law):
+                self._notes.on_key(path, f"{name} of the law '{label}' is not one number")
+            else:
+                if given.get(STATIC) is not None and not given.get(name):
+                    said = f"{name} is {'missing' if name not in given else number_text(0)}"
+                    what = f"friction keeps the ratio of {STATIC} to {name}: of the law '{label}' {said}"
+                    self._notes.on_key(path, what)
+                found.append(_Target(("laws", index), name, law))
+        return found
 
     def _of_scene(self, steps: list[str], path: Path) -> _Target | None:
         parent: Path = ("scene", *steps[:-1])
@@ -175,24 +276,27 @@ class _Targets:
         record = record_at(Scene, tuple(steps[:-1]))
         return _Target(parent, steps[-1], record) if record else None
 
-    def _of_law(self, key: str) -> _Target | None:
+    def _of_law(self, key: str, path: Path) -> _Target | None:
         label, _, parameter = key.removeprefix("laws.").rpartition(".")
         index = self._labels.get(label)
         if index is None and label in self._possible_labels:
             return None
         if index is None:
             what = f"no law is labelled '{label}'" if label else "write laws.<label>.<parameter>"
-            self._notes.on_key(("sweep", key), what, did_you_mean(key, self._sweepable))
+            self._notes.on_key(path, what, did_you_mean(key, self._sweepable))
             return None
         kind = self._tree["laws"][index].get("kind")
         return (
-            self._of_parameter(("laws", index), kind, label, parameter)
+            self._of_parameter(("laws", index), kind, label, parameter, path)
             if kind in self._laws.names()
             else None
         )
 
-    def _of_parameter(self, at: Path, kind: str, label: str, parameter: str) -> _Target | None:
-        law, path = self._laws.named(kind), ("sweep", f"laws.{label}.{parameter}")
+    def _of_parameter(self, at: Path, kind: str, label: str, parameter: str, path: Path) -> _Target | None:
+        law = self._laws.named(kind)
+        if self._with_friction and parameter in (coefficient_of(law), STATIC):
+            self._notes.on_key(path, f"the study sweeps friction, which sets {parameter} of every law")
+            return None
         if parameter not in number_paths(law):
             what = f"the law '{label}' has no parameter '{parameter}' to sweep"
             if parameter in law.model_fields:
@@ -224,9 +328,9 @@ def _at(tree: Any, path: Path) -> Any:
     return tree
 
 
-def _check_ends(values: SweepRange, target: _Target, path: Path, notes: Notes) -> None:
-    """Check the ends of a range, which decide whether its values are allowed."""
-    for index, value in enumerate(_ends(values)):
+def _check_values(values: Sequence[GridValue], target: _Target, path: Path, notes: Notes) -> None:
+    """Check values, such as the ends of a range, which decide whether all of them are allowed."""
+    for index, value in enumerate(values):
         if what := wrong_value(target.record, target.key, value):
             notes.add((*path, index), what)
 
@@ -236,7 +340,7 @@ def _stand_in(
     target: _Target,
     values: tuple[GridValue, ...],
     stand_ins: dict[Path, Path],
-    key: str,
+    path: Path,
 ) -> None:
     """Complete a scene or law with the first of the swept values, which need not be given a second time."""
     within = _at(tree, target.parent)
@@ -245,7 +349,7 @@ def _stand_in(
     good = [value for value in values if wrong_value(target.record, target.key, value) is None]
     if good or target.is_number:
         within[target.key] = good[0] if good else valid_number(target.record, target.key)
-        stand_ins[(*target.parent, target.key)] = ("sweep", key)
+        stand_ins[(*target.parent, target.key)] = path
 
 
 def note_impossible_points(study: Study, notes: Notes) -> None:
@@ -269,9 +373,10 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
         notes.add(("keep", "attractors"), said)
         return
     study = _thinned(study)
-    _build(lambda: study.scenes_along, study.sweep, "scene.", notes)
+    _build(lambda: study.scenes_along, (SCENE,), study, notes)
     for index, choice in enumerate(study.laws if not notes.all else ()):
-        _build(lambda law=choice: study.laws_in_scenes(law), study.sweep, f"laws.{choice.label}.", notes)  # type: ignore[misc]
+        own = f"laws.{choice.label}.", ""
+        _build(lambda law=choice: study.laws_in_scenes(law), own, study, notes)  # type: ignore[misc]
         if not notes.all and not all(map(_has_a_stiffness, study.laws_in_scenes(choice))):
             notes.on_key(("laws", index), "these values give no finite stiffness > 0: check their units")
 
@@ -286,37 +391,45 @@ def _has_a_stiffness(law: Any) -> bool:
 def _thinned(study: Study) -> Study:
     """The study with few enough values of each sweep, its ends among them, to build every point."""
     while grid_size(study) > LARGEST_CHECK:
-        path, values = max(study.sweep.items(), key=lambda item: len(item[1]))
-        if len(values) == 2:
+        longest = max(study.axes, key=len)
+        if len(longest) == 2:
             break
-        study = replace(study, sweep={**study.sweep, path: (*values[:-1:2], values[-1])})
+        study = replace(study, sweep=study.sweep | longest.thinned().values)
     return study
 
 
 def grid_size(study: Study) -> int:
     """The number of rows of the table."""
-    sizes = {prefix: math.prod(map(len, sweeps.values())) for prefix, sweeps in study.sweeps_by_owner.items()}
-    laws = sum(sizes.get(f"laws.{law.label}.", 1) for law in study.laws)
-    return sizes.get("scene.", 1) * laws * len(study.methods)
+    laws = sum(grid_points(study.own_axes(law)) for law in study.laws)
+    return grid_points(study.scene_axes) * laws * len(study.methods)
 
 
-def _build(build: Callable[[], Any], sweep: Mapping[str, Any], prefix: str, notes: Notes) -> None:
-    """Note values that are right one by one but invalid together."""
+def _build(build: Callable[[], Any], owners: Container[str], study: Study, notes: Notes) -> None:
+    """Note values that are right one by one but invalid together. owners: of the sweeps they are of."""
     try:
         build()
     except StudyError as problem:
-        own = [path for path in sweep if path.startswith(prefix)]
-        path: Path = ("sweep", own[-1]) if own else ("laws",)
+        own = [path for path in study.sweep if owner_of(path) in owners]
+        path: Path = _place(own[-1], study) if own else ("laws",)
         notes.on_key(path, problem.mistakes[0].what)
 
 
+def _place(swept: str, study: Study) -> Path:
+    """Where in a study a sweep is."""
+    entry = next((index for index, paths in enumerate(study.links) if swept in paths), None)
+    return ("sweep", swept) if entry is None else ("sweep", LINKED, entry, swept)
+
+
 def _read_values(
-    given: Any, target: _Target | None, path: Path, notes: Notes
+    given: Any, target: _Target | None, path: Path, notes: Notes, unique: bool
 ) -> tuple[GridValue, ...] | SweepRange:
     """The values of one sweep, from a list or a range not yet built; empty, noted, where there is a mistake."""
     words = target is not None and not target.is_number
     if isinstance(given, list):
-        return _list_values(given, target, path, notes)
+        values = _list_values(given, target, path, notes)
+        if unique:
+            _note_doubles(values, path, notes)
+        return tuple(value for value in values if value is not None)
     if isinstance(given, dict) and not words:
         return _read_range(given, path, notes) or ()
     wanted = "must be a list" if words else "must be a list or {start, stop, num, spacing}"
@@ -324,16 +437,20 @@ def _read_values(
     return ()
 
 
-def _list_values(given: list[Any], target: _Target | None, path: Path, notes: Notes) -> tuple[GridValue, ...]:
+def _list_values(
+    given: list[Any], target: _Target | None, path: Path, notes: Notes
+) -> list[GridValue | None]:
     if not given:
         notes.add(path, "the list is empty; give at least one value")
-    values = [_list_value(item, target, (*path, index), notes) for index, item in enumerate(given)]
+    return [_list_value(item, target, (*path, index), notes) for index, item in enumerate(given)]
+
+
+def _note_doubles(values: Sequence[GridValue | None], path: Path, notes: Notes) -> None:
     seen: dict[GridValue, int] = {}
     for index, value in enumerate(values):
         if value is not None and seen.setdefault(value, index) != index:
             told = number_text(value) if isinstance(value, float) else str(value)
             notes.add((*path, index), f"{told} is in the list twice")
-    return tuple(value for value in values if value is not None)
 
 
 def _list_value(item: Any, target: _Target | None, path: Path, notes: Notes) -> GridValue | None:

@@ -13,6 +13,7 @@ from frictionlab.mistakes.notes import Notes, Path, StudyError
 from frictionlab.mistakes.validation import build_record, number_paths, value_paths
 from frictionlab.scene.dimensional import dimensions
 from frictionlab.scene.scene import Scene
+from frictionlab.study.axes import FRICTION, LINKED, STATIC, GridValue
 from frictionlab.study.choices import (
     certain_labels,
     certain_law_labels,
@@ -36,7 +37,7 @@ from frictionlab.study.law_files import (
 )
 from frictionlab.study.mapping_source import read_mapping
 from frictionlab.study.overrides import apply_overrides
-from frictionlab.study.study import LIMIT_KEY, SCHEMA, GridValue, LawChoice, MethodChoice, Study
+from frictionlab.study.study import LIMIT_KEY, SCHEMA, LawChoice, MethodChoice, Study, coefficient_of
 from frictionlab.study.yaml_source import SAVED, Source, read_file
 
 STUDY_KEYS = (
@@ -132,7 +133,7 @@ class _StudyReader:
             return None
         told["code"] = brought.code(choice.kind for choice in laws)
         told["plugins"] = brought.files
-        told["ranges"] = sweep.ranges
+        told["ranges"], told["links"] = sweep.ranges, sweep.links
         study = Study(scene=scene, laws=laws, methods=methods, sweep=sweep.sweep, **told)
         note_impossible_points(study, self._notes)
         return study
@@ -153,14 +154,22 @@ class _StudyReader:
             elif place := self._source.keys.get(sweep):
                 self._source.values[missing] = place
         for path in self._source.origins:
-            if (name := self._swept_name(path)) in found.sweep and path not in found.stand_ins:
-                self._notes.add(path, f"the study sweeps {name}: set sweep.{name} instead")
+            name = self._swept_name(path, found)
+            if name in found.sweep and path not in found.stand_ins:
+                key = LINKED if any(name in entry for entry in found.links) else name
+                self._notes.add(path, f"the study sweeps {name}: set sweep.{key} instead")
         return found
 
-    def _swept_name(self, path: Path) -> str:
+    def _swept_name(self, path: Path, found: Sweeps) -> str:
         """The name under which a sweep would vary the value at this path."""
         if len(path) == 3 and path[0] == "laws" and isinstance(path[1], int):
-            return f"laws.{label_of(self._tree['laws'][path[1]])}.{path[2]}"
+            law = self._tree["laws"][path[1]]
+            kind = law.get("kind")
+            if FRICTION in found.sweep and kind in self._known.names():
+                name = coefficient_of(self._known.named(kind))
+                if path[2] == name and law.get(STATIC) is None:
+                    return FRICTION
+            return f"laws.{label_of(law)}.{path[2]}"
         return ".".join(map(str, path))
 
     def _laws(self) -> tuple[LawChoice, ...]:
@@ -222,12 +231,20 @@ class _StudyReader:
         texts = dict(zip(columns.INPUTS, (laws, kinds, methods), strict=True))
         words = _words(values, sweep.sweep)
         numbers = tuple(name for name in inputs if name not in words)
-        swept = self._tree.get("sweep")
-        swept = tuple(swept) if isinstance(swept, Mapping) else ()
+        swept = _swept_paths(self._tree.get("sweep"))
         given = self._tree.get("scene")
         in_si = isinstance(given, Mapping) and "dimensional" in given
         speed = columns.belt_speed(inputs) if in_si else columns.BELT_SPEED
         return Table(texts, numbers, tuple(columns.results(inputs)), words, swept, speed)
+
+
+def _swept_paths(sweep: Any) -> tuple[str, ...]:
+    """The paths of sweeps, those of linked entries included."""
+    if not isinstance(sweep, Mapping):
+        return ()
+    entries = sweep[LINKED] if isinstance(sweep.get(LINKED), list) else []
+    lists = [sweep, *(entry for entry in entries if isinstance(entry, Mapping))]
+    return tuple(key for each in lists for key in each if key != LINKED)
 
 
 def _words(

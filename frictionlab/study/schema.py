@@ -14,6 +14,7 @@ from frictionlab.scene import dimensional, scene
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
+from frictionlab.study.axes import FRICTION, LINKED
 from frictionlab.study.figure_options import FIGURE_KEYS, FLAGS, FORMATS, WIDTHS
 from frictionlab.study.grid import LARGEST_GRID
 from frictionlab.study.study import LIMIT_KEY, SCHEMA, SECONDS_PER_POINT
@@ -26,7 +27,8 @@ _KEYS = {
     "laws": "the friction laws, one set of rows each; frictionlab laws lists them",
     "methods": "how steady states are found, one set of rows each; frictionlab methods lists them",
     "tolerance": "largest absolute error of mean_friction that auto lets pass",
-    "sweep": "values to vary, by dotted path: scene.<value> or laws.<label>.<parameter>; all combinations are solved",
+    "sweep": "values to vary, by dotted path: scene.<value>, laws.<label>.<parameter> or friction; "
+    "all combinations are solved",
     "expect": "what the table is expected to say; where it does not, run ends with exit code 3",
     "columns": "result columns to find; inputs, mean_friction, error, status and reason always; all where left out",
     "limit": "what a point may cost",
@@ -42,6 +44,8 @@ _KEYS = {
     "stop": "last value",
     "num": "number of values, both ends included",
     "spacing": "equal differences (linear) or equal ratios (log)",
+    FRICTION: "friction coefficients: mu or mu_kinetic of every law, mu_static keeping its ratio",
+    LINKED: "lists that advance together, by dotted path; entries and other sweeps make the grid",
     "where": "the rows that are meant, by the values of input columns; all where left out",
     "because": "why that is expected, such as a source",
     "column": "result column that is compared",
@@ -207,8 +211,23 @@ def _sweep() -> dict[str, Any]:
         },
         ["start", "stop", "num"],
     )
-    names = {"pattern": r"^(scene\..+|laws\..+\..+)$"}
-    return {"type": "object", "propertyNames": names, "additionalProperties": {"oneOf": [listed, ranged]}}
+    values = {"oneOf": [listed, ranged]}
+    together = {"type": "array", "minItems": 1, "items": _WORD_OR_NUMBER}
+    entry = {
+        "type": "object",
+        "minProperties": 2,
+        "propertyNames": {"pattern": r"^(scene\..+|laws\..+\..+|friction)$"},
+        "additionalProperties": {"oneOf": [together, ranged]},
+    }
+    return {
+        "type": "object",
+        "properties": {
+            FRICTION: {"description": _KEYS[FRICTION], **values},
+            LINKED: {"description": _KEYS[LINKED], "type": "array", "items": entry},
+        },
+        "propertyNames": {"pattern": r"^(scene\..+|laws\..+\..+|friction|linked)$"},
+        "additionalProperties": values,
+    }
 
 
 def _expectations() -> list[dict[str, Any]]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from frictionlab import columns, registry
@@ -24,6 +24,19 @@ from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.scene.scene import Scene, with_values
 from frictionlab.scene.scenes import Scenes
 from frictionlab.scene.waveforms import Form
+from frictionlab.study.axes import (
+    FRICTION,
+    LINKED,
+    SCENE,
+    STATIC,
+    Axis,
+    GridValue,
+    axes_of,
+    grid_points,
+    owner_of,
+    places,
+    point_at,
+)
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 from frictionlab.study.ranges import SweepRange
 from frictionlab.study.yaml_text import yaml_text
@@ -34,8 +47,6 @@ LAW_COPIES = "laws"
 LIMIT_KEY = "seconds_per_point"
 SECONDS_PER_POINT = 300.0
 """The time [s] that a point may take where a study does not say."""
-GridValue = float | str | Form
-"""What a sweep runs over: numbers, words or waveforms."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +62,28 @@ class LawChoice:
         """The law, with some parameters replaced by these values."""
         return self.law_class.model_validate(self.parameters | dict(values or {}))
 
+    def under_friction(self, coefficients: tuple[GridValue, ...]) -> dict[str, tuple[GridValue, ...]]:
+        """The parameters of the law that has these friction coefficients, ``mu_static`` in the ratio it has."""
+        name = coefficient_of(self.law_class)
+        given, static = self.parameters[name], self.parameters.get(STATIC)
+        if static is None:
+            return {name: coefficients}
+        numbers = [each for each in coefficients if isinstance(each, float)]
+        ratio = static / given
+        return {
+            name: coefficients,
+            STATIC: tuple(static if mu == given else mu * ratio for mu in numbers),
+        }
+
     def resolved(self) -> dict[str, Any]:
         """The entry of a study file."""
         label = {} if self.label == self.kind else {"label": self.label}
         return {"kind": self.kind, **_natural(self.parameters), **label}
+
+
+def coefficient_of(law: type[FrictionLaw]) -> str:
+    """The name of the parameter that is the friction coefficient of sliding: mu or mu_kinetic; '' without one."""
+    return next((name for name in ("mu", "mu_kinetic") if name in law.model_fields), "")
 
 
 @dataclass(frozen=True)
@@ -160,8 +189,8 @@ class StudyCurve:
 class Study:
     """Scenes, laws and methods, their full grid, and the expectations of the table.
 
-    scene: the scene without sweeps. sweep: ``scene.<path>`` or ``laws.<label>.<parameter>`` -> values, in a scene
-    words and waveforms, too.
+    scene: the scene without sweeps. sweep: ``scene.<path>``, ``laws.<label>.<parameter>`` or ``friction`` -> values,
+    in a scene words and waveforms, too. links: the paths among them that advance together, which follow one another.
     ranges: those of the sweeps that were given as ranges.
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
     keep_attractors: starts a point from which every state is looked for, None for none. keep_harmonics: the highest
@@ -196,6 +225,7 @@ class Study:
     plugins: tuple[LawFile, ...] = ()
     code: dict[str, str] = field(default_factory=dict)
     ranges: dict[str, SweepRange] = field(default_factory=dict)
+    links: tuple[tuple[str, ...], ...] = ()
     path: Path | None = field(default=None, compare=False)
 
     @classmethod
@@ -271,10 +301,13 @@ class Study:
         """
         first = 0
         for choice in self.laws:
-            for law, method in itertools.product(self.laws_of(choice), self.methods):
-                for scenes, rows in self.scenes_along:
-                    own = range(first + rows.start, first + rows.stop, rows.step)
-                    yield StudyCurve(choice.label, choice.kind, law, method, scenes, own)
+            own = self.own_axes(choice)
+            values = [_of_law(axis, choice) for axis in own]
+            for at, method in itertools.product(places(own), self.methods):
+                laws = self._laws_along(choice, point_at(values, at))
+                for (scenes, rows), law in zip(self.scenes_along, laws, strict=True):
+                    shifted = range(first + rows.start, first + rows.stop, rows.step)
+                    yield StudyCurve(choice.label, choice.kind, law, method, scenes, shifted)
                 first += sum(len(rows) for _, rows in self.scenes_along)
 
     @cached_property
@@ -283,22 +316,22 @@ class Study:
 
         The last sweep runs fastest. Raises StudyError where one cannot be built.
         """
-        own = self.sweeps_by_owner.get("scene.", {})
-        path = next((name for name in own if f"scene.{name}" in columns.BELT_SPEEDS), "")
-        given = self.scene.dimensional.belt_speed_m_per_s if self.scene.dimensional else self.scene.belt_speed
-        speeds = np.array(own.get(path, [given]), dtype=np.float64)
-        # of the belt speeds the largest: where that makes a scene, all do
-        ones = own | ({path: (float(speeds[np.argmax(np.abs(speeds))]),)} if path else {})
-        names, sizes, tree = list(own), [len(values) for values in own.values()], self.scene.given()
-        within = math.prod(sizes[names.index(path) + 1 :]) if path else 1
+        axes, along = self.scene_axes, self.speed_axis
+        others, top = [axis for axis in axes if axis is not along], dict[str, GridValue]()
+        if along is not None:  # of the belt speeds the largest: where that makes a scene, all do
+            speeds = _speeds(self.scene, along)
+            top = dict.fromkeys(along.of(SCENE), float(speeds[np.argmax(np.abs(speeds))]))
+        values, tree = [axis.of(SCENE) for axis in others], self.scene.given()
         try:
-            built = [Scene.model_validate(with_values(tree, point)) for point in _grid(ones)]
+            points = (point_at(values, at) | top for at in places(others))
+            built = [Scene.model_validate(with_values(tree, point)) for point in points]
         except (ValidationError, OverflowError) as problem:
             raise self._impossible(problem) from None
-        block = within * len(speeds)
+        within = grid_points(axes[axes.index(along) + 1 :]) if along else 1
+        block = within * (len(along) if along else 1)
         starts = [at // within * block + at % within for at in range(len(built))]
         return tuple(
-            (Scenes(scene, speeds), range(start, start + block, within))
+            (Scenes(scene, _speeds(scene, along)), range(start, start + block, within))
             for scene, start in zip(built, starts, strict=True)
         )
 
@@ -309,32 +342,64 @@ class Study:
         name = "study" if self.path is None else str(self.path)
         return StudyError([Mistake(name, None, "sweep", f"a point of the grid cannot be built: {what}")])
 
-    def laws_of(self, choice: LawChoice) -> tuple[FrictionLaw, ...]:
-        """The law at every value of its own sweeps. Raises StudyError where one cannot be built."""
+    def _laws_along(self, choice: LawChoice, own: dict[str, GridValue]) -> list[FrictionLaw]:
+        """The law with these values, in every scene of the grid: another one where its values advance with a scene's.
+
+        Raises StudyError where one cannot be built.
+        """
+        others = [axis for axis in self.scene_axes if axis is not self.speed_axis]
+        values, made = [_of_law(axis, choice) for axis in others], dict[tuple[Any, ...], FrictionLaw]()
+        points = [own | point_at(values, at) for at in places(others)]
         try:
-            return tuple(choice.law(point) for point in self.law_points(choice))
+            for point in points:
+                if (key := tuple(point.items())) not in made:
+                    made[key] = choice.law(point)
         except (ValidationError, OverflowError) as problem:
             raise self._impossible(problem) from None
+        return [made[tuple(point.items())] for point in points]
 
     def laws_in_scenes(self, choice: LawChoice) -> set[FrictionLaw]:
         """The different laws that result in the scales and under the normal loads of the scenes."""
-        laws = self.laws_of(choice)
-        units = {
-            (None if scene.dimensional is None else scene.dimensional.scales, scene.normal_load)
-            for scene in (along.scene for along, _ in self.scenes_along)
-        }
-        return {_in_scene(law, scales, load) for law in laws for scales, load in units}
-
-    def law_points(self, choice: LawChoice) -> Iterator[dict[str, GridValue]]:
-        """The swept parameters of this law, one mapping per combination."""
-        return _grid(self.sweeps_by_owner.get(f"laws.{choice.label}.", {}))
+        own, found = self.own_axes(choice), set[tuple[FrictionLaw, Units | None, float | None]]()
+        for at in places(own):
+            laws = self._laws_along(choice, point_at([_of_law(axis, choice) for axis in own], at))
+            for law, (scenes, _) in zip(laws, self.scenes_along, strict=True):
+                si = scenes.scene.dimensional
+                found.add((law, None if si is None else si.scales, scenes.scene.normal_load))
+        return {_in_scene(*each) for each in found}
 
     @cached_property
-    def sweeps_by_owner(self) -> dict[str, dict[str, tuple[GridValue, ...]]]:
-        """The sweeps of the scene, ``scene.``, and of each law, ``laws.<label>.``, by what comes after that."""
-        found: dict[str, dict[str, tuple[GridValue, ...]]] = {}
-        for path, values in self.sweep.items():
-            found.setdefault(owner(path), {})[path.removeprefix(owner(path))] = values
+    def axes(self) -> tuple[Axis, ...]:
+        """The axes of the grid."""
+        return axes_of(self.sweep, self.links)
+
+    @cached_property
+    def scene_axes(self) -> tuple[Axis, ...]:
+        """Those along which the scene varies."""
+        return tuple(axis for axis in self.axes if axis.is_of_scene)
+
+    @cached_property
+    def speed_axis(self) -> Axis | None:
+        """That along which belt speed alone varies: of curves."""
+        alone = [axis for axis in self.axes if len(axis.values) == 1]
+        return next((axis for axis in alone if not axis.values.keys().isdisjoint(columns.BELT_SPEEDS)), None)
+
+    def own_axes(self, choice: LawChoice) -> tuple[Axis, ...]:
+        """Those along which this law varies, and the scene does not."""
+        found = self._places_of_owners.get(f"laws.{choice.label}.", []) + self._places_of_owners.get("", [])
+        return tuple(self.axes[place] for place in dict.fromkeys(sorted(found)))
+
+    def swept_parameters(self, choice: LawChoice) -> dict[str, tuple[GridValue, ...]]:
+        """The values that sweeps give the parameters of a law."""
+        return {name: values for axis in self.axes for name, values in _of_law(axis, choice).items()}
+
+    @cached_property
+    def _places_of_owners(self) -> dict[str, list[int]]:
+        """Which axes, apart from those of the scene, vary ``laws.<label>.``; of '': every law."""
+        found: dict[str, list[int]] = {}
+        for place, axis in enumerate(self.axes):
+            for path in axis.values if not axis.is_of_scene else ():
+                found.setdefault(owner_of(path), []).append(place)
         return found
 
     def resolved(self) -> dict[str, Any]:
@@ -348,10 +413,7 @@ class Study:
         told["methods"] = [method.resolved() for method in self.methods]
         told["tolerance"] = self.tolerance
         if self.sweep:
-            told["sweep"] = {
-                path: _natural(self.ranges[path].resolved() if path in self.ranges else list(values))
-                for path, values in self.sweep.items()
-            }
+            told["sweep"] = self._told_sweep()
         keep = {
             "orbit": self.keep_orbit,
             "attractors": self.keep_attractors,
@@ -367,6 +429,19 @@ class Study:
             told["figures"] = figures
         if self.expect:
             told["expect"] = [expectation.resolved() for expectation in self.expect]
+        return told
+
+    def _told_sweep(self) -> dict[str, Any]:
+        told: dict[str, Any] = {}
+        for axis in self.axes:
+            values = {
+                path: _natural(self.ranges[path].resolved() if path in self.ranges else list(values))
+                for path, values in axis.values.items()
+            }
+            if tuple(values) in self.links:
+                told.setdefault(LINKED, []).append(values)
+            else:
+                told |= values
         return told
 
     def selected(self) -> frozenset[str]:
@@ -397,17 +472,29 @@ class Study:
             "tolerance": self.tolerance,
             "sweep": {path: list(values) for path, values in self.sweep.items()},
             **({"code": self.code} if self.code else {}),
+            **({"links": [list(entry) for entry in self.links]} if self.links else {}),
         }
+        if FRICTION in self.sweep:
+            under = {law.label: law.under_friction(self.sweep[FRICTION]) for law in self.laws}
+            numbers["friction"] = [[label, list(map(list, each.values()))] for label, each in under.items()]
         return hashlib.sha256(json.dumps(_natural(numbers), sort_keys=True).encode()).hexdigest()
 
     def _fixed(self, law: LawChoice) -> dict[str, Any]:
-        swept = self.sweeps_by_owner.get(f"laws.{law.label}.", {})
+        swept = self.swept_parameters(law)
         return {name: v for name, v in law.parameters.items() if name not in swept}
 
 
-def _grid(sweeps: Mapping[str, tuple[GridValue, ...]]) -> Iterator[dict[str, GridValue]]:
-    """Every combination of the values of sweeps, by their names."""
-    return (dict(zip(sweeps, point, strict=True)) for point in itertools.product(*sweeps.values()))
+def _of_law(axis: Axis, choice: LawChoice) -> dict[str, tuple[GridValue, ...]]:
+    """What varies along an axis of the parameters of a law."""
+    found = axis.of(f"laws.{choice.label}.")
+    return found | choice.under_friction(axis.values[FRICTION]) if FRICTION in axis.values else found
+
+
+def _speeds(scene: Scene, along: Axis | None) -> NDArray[np.float64]:
+    """The belt speeds of an axis, else that of the scene, in the units in which the scene is given."""
+    si = scene.dimensional
+    own: tuple[GridValue, ...] = (scene.belt_speed if si is None else si.belt_speed_m_per_s,)
+    return np.array(own if along is None else next(iter(along.values.values())), dtype=np.float64)
 
 
 def law_in_scene(law: FrictionLaw, scene: Scene) -> FrictionLaw:
@@ -421,11 +508,6 @@ def _in_scene(law: FrictionLaw, scales: Units | None, normal_load: float | None)
     assert normal_load is not None  # every valid scene has one
     scaled = law if scales is None else scaled_law(law, scales)
     return scaled.under_load(normal_load)
-
-
-def owner(path: str) -> str:
-    """The part that a sweep varies: ``scene.`` or ``laws.<label>.`` (a label may contain points)."""
-    return "scene." if path.startswith("scene.") else f"{path.rpartition('.')[0]}."
 
 
 def _natural(value: Any) -> Any:

@@ -154,7 +154,7 @@ def test_a_point_inside_a_large_grid_that_cannot_be_built_is_a_mistake_when_it_i
 
     ready = parse_study(tree)
     with pytest.raises(StudyError, match=r"study: sweep: a point of the grid cannot be built: .*seven twice"):
-        ready.laws_of(ready.laws[0])
+        list(ready.curves())
 
 
 def calls(tree: dict[str, Any]) -> int:

@@ -22,7 +22,7 @@ from frictionlab.runner.steady_state import steady_state
 from frictionlab.scene.scene import Scene
 from frictionlab.sensitivity.one_period import OnePeriod
 from frictionlab.sensitivity.parameters import Pair, asked_for
-from frictionlab.sensitivity.quotients import MAPS_PER_TRY, Derivative, derivative
+from frictionlab.sensitivity.quotients import CORNER, MAPS_PER_TRY, Derivative, derivative
 
 _FEW_PARTS = 0.02
 """Of the size of a state or of a parameter: the first offset of difference quotients."""
@@ -101,7 +101,7 @@ def sensitivities(
     try:
         _check(pair.scene, state)
         for turn in _TURNS:
-            left = [path for path in asked if found[path].reason]
+            left = [path for path in asked if found[path].reason in (CORNER, _NOTHING.reason)]
             told, more = _at_turn(pair, turn, state, left, numbers, ready)
             found, maps = found | told, maps + more
     except _Refused as refused:

@@ -7,7 +7,8 @@ numbers are drawn. The reference is the difference of two steady states over eac
 each to the next; its doubt is the least change from one to the next. A number counts as
 
 - agrees: the derivative is within its error and the doubt of the reference;
-- refused: it is empty, with its reason; no reference: steady states beside this one have no mean;
+- refused: it is empty, with its reason; no reference: steady states beside this one have no mean, or an onset lies
+  between them and it;
 - doubtful: the doubt of the reference is larger than the derivative; blunt: the stated error is;
 - wrong: none of these. Each is printed.
 """
@@ -32,13 +33,15 @@ from frictionlab.sensitivity.parameters import Pair
 
 OFFSETS = 1e-2, 2e-3, 4e-4, 8e-5
 """Of the size of a number."""
+ONE_SIDED = 0.05
+"""Difference of the one-sided slopes over the least offset, of the slope, from which on an onset lies within it."""
 TOLERANCE = 1e-11
 
 
 def reference(pair: Pair, path: str, number: float) -> tuple[float, float]:
     """The derivative by differences of steady states, and its doubt; NaN where there is no reference."""
     size = 90.0 if path.endswith("phase") else abs(number) or 1.0
-    slopes, noise = [], []
+    slopes, noise, bends = [], [], 0.0
     for offset in OFFSETS:
         try:
             states = [
@@ -53,6 +56,11 @@ def reference(pair: Pair, path: str, number: float) -> tuple[float, float]:
         means = [state.mean_friction if ok else np.nan for state in states]
         slopes.append((means[0] - means[1]) / (2.0 * offset * size))
         noise.append((states[0].error + states[1].error + 1e-15) / (2.0 * offset * size))
+        # the steady state itself is the same at every offset
+        middle = fl.steady_state(*pair, tolerance=TOLERANCE).mean_friction
+        bends = abs(means[0] - 2.0 * middle + means[1]) / (offset * size)
+    if bends > ONE_SIDED * abs(slopes[-1]) + 2.0 * noise[-1]:
+        return np.nan, np.nan
     ratio = (OFFSETS[0] / OFFSETS[1]) ** 2
     better = [(ratio * b - a) / (ratio - 1.0) for a, b in pairwise(slopes)]
     doubts = [abs(b - a) + n for (a, b), n in zip(pairwise(slopes), noise[1:], strict=True)]

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import io
+import re
+from contextlib import redirect_stdout
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -51,6 +55,16 @@ def test_slip_that_never_reverses_leaves_friction_alone_to_decide() -> None:
     assert table.derivative["law.mu"] == pytest.approx(1.0, abs=1e-10)
     assert table.elasticity["law.mu"] == pytest.approx(1.0, abs=1e-9)
     assert table.derivative.drop("law.mu").abs().max() < 1e-11
+
+
+def test_scales_of_force_and_time_are_arbitrary() -> None:
+    by = fl.sensitivities(STICKS, fl.Coulomb(mu=0.4, mu_static=0.5)).set_index("parameter").elasticity
+    # the mean coefficient is one of its own scale times a function of coefficient times load ...
+    assert by["law.mu"] + by["law.mu_static"] == pytest.approx(1.0 + by["scene.normal_load"], abs=1e-6)
+    # ... and all forces and speeds ten times as large leave it as it is
+    assert by["scene.normal_load"] + by["scene.drive.amplitude"] == pytest.approx(
+        -by["scene.belt_speed"], abs=1e-6
+    )
 
 
 def test_a_square_load_is_differentiated_from_an_instant_at_which_it_does_not_jump() -> None:
@@ -117,3 +131,15 @@ def test_a_load_across_the_belt_that_is_zero_cannot_be_changed_along_it() -> Non
 def test_mistakes_are_told(parameters: object, error: type[Exception], told: str) -> None:
     with pytest.raises(error, match=told):
         fl.sensitivities(SCENE, COULOMB, parameters)  # type: ignore[arg-type]
+
+
+def test_the_page_shows_what_happens() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "sensitivities.md").read_text()
+    code, shown = re.findall(r"```(?:python|text)\n(.*?)```", page, re.DOTALL)[:2]
+    printed = io.StringIO()
+    with redirect_stdout(printed):
+        exec(code, {})
+    for line, told in zip(shown.splitlines(), printed.getvalue().splitlines(), strict=True):
+        assert (
+            line.split()[:3] == told.split()[:3] or "phase" in line
+        )  # the derivative of nothing is rounding

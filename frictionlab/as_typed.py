@@ -25,9 +25,15 @@ class _Type(str):
     __repr__ = str.__str__
 
 
-def keywords(fields: Iterable[tuple[str, FieldInfo]]) -> inspect.Signature:
-    """The signature of what takes these fields by name: plain types and defaults, without how each is checked."""
-    return inspect.Signature([_keyword(name, field) for name, field in fields])
+def keywords(
+    fields: Iterable[tuple[str, FieldInfo]], others: Iterable[inspect.Parameter]
+) -> inspect.Signature:
+    """The signature of what takes these fields by name: plain types and defaults, without how each is checked.
+
+    others: parameters of which those by name follow.
+    """
+    beside = [each for each in others if each.kind is inspect.Parameter.KEYWORD_ONLY]
+    return inspect.Signature([*(_keyword(name, field) for name, field in fields), *beside])
 
 
 def _keyword(name: str, field: FieldInfo) -> inspect.Parameter:

@@ -177,7 +177,8 @@ class Record(BaseModel, metaclass=_Listed):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_options: Any) -> None:
-        cls.__signature__ = keywords((name, cls.model_fields[name]) for name in cls._in_order())
+        beside = inspect.signature(cls.__init__).parameters.values()
+        cls.__signature__ = keywords([(name, cls.model_fields[name]) for name in cls._in_order()], beside)
 
     @classmethod
     def _in_order(cls) -> list[str]:

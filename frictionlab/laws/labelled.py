@@ -27,7 +27,7 @@ class Labelled(Record):
             vars(self)[_LABEL] = label
 
         _own, _values = inspect.signature(Record.__init__).parameters.values()
-        _label_of = inspect.Parameter("label", inspect.Parameter.KEYWORD_ONLY, default="", annotation="str")
+        _label_of = inspect.Parameter("label", inspect.Parameter.KEYWORD_ONLY, default="", annotation=str)
         __init__.__signature__ = inspect.Signature([_own, _label_of, _values])
         __init__.__pydantic_base_init__ = True  # as for Record
         del _own, _label_of, _values

@@ -98,7 +98,7 @@ def _is_of_load(problem: AttributeError) -> bool:
     """Whether the module was imported and only lacks the name of the entry point."""
     frames = inspect.getinnerframes(problem.__traceback__) if problem.__traceback__ else []
     return bool(frames) and frames[-1].filename.endswith(
-        ("importlib/metadata/__init__.py", "metadata\\__init__.py")
+        ("importlib/metadata/__init__.py", "importlib_metadata/__init__.py", "metadata\\__init__.py")
     )
 
 

@@ -184,6 +184,7 @@ OUTSIDE = {
     "matplotlib": [
         *(
             "charts",
+            "notebook.comparison",  # the type of a figure alone
             "bench.chart",
             "bench.orders.chart",
             "bench.stability.chart",

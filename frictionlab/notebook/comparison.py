@@ -19,17 +19,19 @@ from frictionlab.columns import belt_speed as column_of_speed
 from frictionlab.notebook.preview import preview_html
 from frictionlab.results.run import Run
 from frictionlab.results.summary import summary
-from frictionlab.results.table import swept_inputs
+from frictionlab.results.table import swept_inputs, whole
 from frictionlab.runner.api import run as run_study
 from frictionlab.runner.arguments import given_scene
 from frictionlab.runner.save import save_run
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Study
 from frictionlab.study.axes import FRICTION
+from frictionlab.study.figure_options import figure_options
 from frictionlab.study.objects import LawsGiven, MethodsGiven, study_of_objects
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,6 +134,34 @@ class Comparison:
         dimensions = ["law", *methods, *shared, *swept, column_of_speed(table.columns)]
         rest = [name for name in table.columns if name not in dimensions]
         return table.set_index(dimensions)[rest].to_xarray()
+
+    def plot(self, figure: str = "mean_friction", onsets: bool = False, **options: Any) -> Figure:
+        """One of its figures as matplotlib has it, to show, change and save; nothing is written.
+
+        figure: mean_friction, velocity, energies, differences, shape or map, where there is one. onsets: mark them,
+        which takes a while to find. options: the keys of ``figures`` of a study, such as ``normalized=True``,
+        ``width="single"``, ``against="coulomb"``.
+
+        >>> import frictionlab as fl
+        >>> drive = fl.Drive(unbalance=10, frequency=1)
+        >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=drive)
+        >>> figure = fl.compare(scene, fl.Coulomb(mu=0.4), belt_speed=[5, 25, 45, 60]).plot(width="single")
+        >>> round(25.4 * figure.get_figwidth())
+        85
+
+        Raises ValueError for a figure that there is none of, and for options that mean nothing.
+        """
+        from frictionlab.charts.figures import Kept, figure_of  # with matplotlib, which takes a second
+
+        study, orbits = self.study, self.run.orbits
+        asked = figure_options(study.figures.resolved() | options, tuple(law.label for law in study.laws))
+        kept = None
+        if orbits is not None or self.run.harmonics is not None:
+            kept = Kept(
+                lambda rows: None if orbits is None else orbits[orbits["row"].isin(rows)], self.run.harmonics
+            )
+        marked = self.onsets if onsets else None
+        return figure_of(whole(self.table), figure, study.title, marked, self.curves, asked, kept)
 
     def save(self, folder: str | PathLike[str]) -> Path:
         """Write what ``frictionlab run`` writes into a folder, its figures and report included; where it is.

@@ -76,6 +76,21 @@ def test_a_notebook_shows_a_row_for_each_curve(compared: fl.Comparison) -> None:
     assert repr(compared).startswith("40 points: 40 ok")
 
 
+def test_a_figure_is_handed_over_and_nothing_is_written(
+    compared: fl.Comparison, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    figure = compared.plot("differences", width="single", title=False, against="smooth")
+    assert "smooth" in figure.axes[0].get_ylabel()
+    assert figure.get_figwidth() == pytest.approx(85 / 25.4)
+    assert not list(tmp_path.iterdir())
+
+    with pytest.raises(ValueError, match="no figure 'shapes'; this table has: differences"):
+        compared.plot("shapes")
+    with pytest.raises(ValueError, match=r"figures: widths: unknown key"):
+        compared.plot(widths="single")
+
+
 def test_names_of_laws_are_text_not_markup() -> None:
     shown = fl.compare(SCENE, {"<b>": LAWS["rough"]}, [5.0])._repr_html_()
     assert "&lt;b&gt;" in shown

@@ -45,7 +45,8 @@ def check_command(
 def _planned_lines(name: str, planned: Sequence[Planned]) -> list[str]:
     lines = [name]
     for entry in planned:
-        lines.append(f"  {entry.law} by {entry.method}: points {entry.points}, curves {entry.curves}")
+        about = "about " if entry.about else ""
+        lines.append(f"  {entry.law} by {entry.method}: points {about}{entry.points}, curves {entry.curves}")
         lines += [f"    {count} by {model}" for model, count in entry.models.items()]
         lines += [f"    {count} refused: {reason}" for reason, count in entry.refused.items()]
         if entry.shapeless:

@@ -166,6 +166,12 @@ class Results:
         for name, column in self._numbers.items():
             column[rows] = earlier[name].to_numpy(dtype=float)
 
+    def put_rows(self, rows: Places, other: Results, there: Places) -> None:
+        """Fill rows from as many rows of other results with the same columns."""
+        for mine, theirs in ((self._words, other._words), (self._numbers, other._numbers)):
+            for name, column in mine.items():
+                column[rows] = theirs[name][there]
+
     def lacking(self, earlier: pd.DataFrame) -> bool:
         """Whether an earlier table has not every column asked for."""
         return any(name in RESULTS and name not in earlier for name in self._columns)

@@ -15,7 +15,7 @@ import pandas as pd
 from frictionlab.columns import selected
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.harmonic_table import harmonic_table
-from frictionlab.results.part import KeptRows, Part
+from frictionlab.results.part import KeptRows, Part, Places
 from frictionlab.results.table import Inputs, Results, finished_rows, orbit_rows
 from frictionlab.runner.arguments import Existing
 from frictionlab.runner.errors import SaveError
@@ -57,19 +57,22 @@ class Accumulator:
         self._verdicts: list[dict[str, Any]] = []
         self.finished = np.zeros(given.size, np.bool_)
 
-    def resume(self, existing: Existing, samples: int, in_part: bool = True) -> None:
+    def resume(
+        self, existing: Existing, samples: int, in_part: bool = True, folder: RunFolder | None = None
+    ) -> None:
         """Take over the rows an earlier run of the same study finished. Raises FolderError.
 
-        in_part: also where it did not finish all of them.
+        in_part: also where it did not finish all of them. folder: where it is, if nothing is written there now.
         """
-        earlier = self._folder.earlier(existing) if self._folder is not None else None
-        if self._folder is None or earlier is None:
+        source = self._folder if folder is None else folder
+        earlier = source.earlier(existing) if source is not None else None
+        if source is None or earlier is None:
             return
-        self._runs = self._folder.previous_runs()
+        self._runs = source.previous_runs()
         if self._results.lacking(earlier):
             return
         if samples:
-            self._earlier_orbits = self._folder.earlier_orbits(existing)
+            self._earlier_orbits = source.earlier_orbits(existing)
             if not _has_samples(self._earlier_orbits, samples):
                 self._earlier_orbits = None
                 return
@@ -91,6 +94,17 @@ class Accumulator:
         for part in parts:
             self._put(part)
             self._run["found"] += len(part.rows)
+
+    def take_over(self, other: Accumulator, there: Places, rows: Places) -> None:
+        """Enter rows that were gathered elsewhere, but for those finished before."""
+        new = ~self.finished[rows]
+        there, rows = there[new], rows[new]
+        self._results.put_rows(rows, other._results, there)
+        here = dict(zip(there.tolist(), rows.tolist(), strict=True))
+        for name, found in other._kept.items():
+            self._kept[name] |= {here[row]: kept for row, kept in found.items() if row in here}
+        for count in ("computed", "found"):
+            self._run[count] += other._run[count]
 
     def _put(self, part: Part) -> None:
         self._results.put(part)

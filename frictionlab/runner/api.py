@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -37,6 +37,7 @@ from frictionlab.runner.arguments import (
     given_study,
     given_tolerance,
 )
+from frictionlab.runner.chosen_speeds import Chosen, choose_speeds, rows_of_round
 from frictionlab.runner.chunks import Task, task_of
 from frictionlab.runner.code_digest import code_digest
 from frictionlab.runner.errors import SaveError
@@ -129,19 +130,60 @@ def _run_into(
         return _run_long(
             LongRun(ready, folder, kept, overrides), folder, existing, executor, progress, as_csv
         )
-    curves = list(ready.curves())
     attractors, harmonics = _earlier_texts(folder, existing)
+    chosen = None
+    if ready.chosen_range is not None:
+        chosen = choose_speeds(ready, _RoundSolver(folder, kept, existing, executor, progress).solve)
+        ready = chosen.study
+    curves = list(ready.curves())
     gathering = Accumulator(inputs(curves), folder, progress, overrides, ready.selected())
     task = task_of(ready)
     if ready.keep_harmonics is None or harmonics is not None:
         gathering.resume(existing, task.samples, in_part=ready.keep_harmonics is None)
-    left = [] if gathering.complete else list(open_chunks(curves, task, gathering.finished, Keys(ready.code)))
+    complete = gathering.complete
+    left = [] if complete or chosen else list(open_chunks(curves, task, gathering.finished, Keys(ready.code)))
     if folder is not None:
         folder.open(existing)
-    stopped = _solve(gathering, left, kept, executor)
+    if chosen is None or complete:
+        stopped = _solve(gathering, left, kept, executor)
+    else:
+        stopped = _take_over(chosen, curves, gathering)
     attractors, harmonics = (attractors, harmonics) if gathering.complete else (None, None)
     done = _finished(ready, gathering, folder, stopped)
     return _with_attractors(_with_harmonics(done, harmonics, gathering, folder), attractors, folder)
+
+
+@dataclass
+class _RoundSolver:
+    """Solves the rounds in which belt speeds are chosen; points of an earlier run in the folder are taken over."""
+
+    folder: RunFolder | None
+    kept: KeptChunks | None
+    existing: Existing
+    executor: Executor | Workforce | None
+    progress: Progress
+    points: int = 0
+
+    def solve(self, study: Study, curves: list[StudyCurve]) -> tuple[Accumulator, bool]:
+        """The rows of these curves, and whether that was interrupted."""
+        task, before = task_of(study), self.points
+        gathering = Accumulator(
+            inputs(curves),
+            progress=lambda done, total: self.progress(before + done, before + total),
+            columns=study.selected(),
+        )
+        if study.keep_harmonics is None:
+            gathering.resume(self.existing, task.samples, folder=self.folder)
+        left = list(open_chunks(curves, task, gathering.finished, Keys(study.code)))
+        self.points += sum(len(each.rows) for each in curves)
+        return gathering, _solve(gathering, left, self.kept, self.executor)
+
+
+def _take_over(chosen: Chosen, curves: Sequence[StudyCurve], gathering: Accumulator) -> bool:
+    """Enter the rows of every round; True where the last was interrupted."""
+    for one in chosen.rounds:
+        gathering.take_over(one.gathering, *rows_of_round(one, curves))
+    return chosen.stopped
 
 
 def _earlier_texts(

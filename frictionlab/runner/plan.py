@@ -19,6 +19,7 @@ from frictionlab.study import Study, StudyCurve
 class Planned:
     """The points of one law and one method. seconds: expected kernel time on one core, once compiled.
 
+    about: belt speeds are chosen as the run goes, so that points and seconds are not known better.
     shapeless: curves that lack points for a measure of their shape, which ``add_belt_speeds`` would give them.
     """
 
@@ -30,6 +31,7 @@ class Planned:
     refused: dict[str, int]
     models: dict[str, int]
     seconds: float
+    about: bool
     shapeless: int
     add_belt_speeds: list[float]
 
@@ -41,12 +43,13 @@ class Planned:
 def plan(study: Study) -> list[Planned]:
     """One entry per law and method, in the order of the study. Raises BrokenPlugin."""
     groups: dict[tuple[str, str], list[StudyCurve]] = {}
-    for curve in study.curves():
+    about = study.chosen_range is not None
+    for curve in study.foreseen().curves():
         groups.setdefault((curve.law_label, curve.method.label), []).append(curve)
-    return [_planned(group, study.tolerance) for group in groups.values()]
+    return [_planned(group, study.tolerance, about) for group in groups.values()]
 
 
-def _planned(curves: Sequence[StudyCurve], tolerance: float) -> Planned:
+def _planned(curves: Sequence[StudyCurve], tolerance: float, about: bool) -> Planned:
     first, refusals, models, seconds = curves[0], Counter[str](), Counter[str](), 0.0
     for curve in curves:
         method, law = curve.method.method, curve.law
@@ -67,6 +70,7 @@ def _planned(curves: Sequence[StudyCurve], tolerance: float) -> Planned:
         refused=dict(refusals),
         models=dict(models),
         seconds=seconds,
+        about=about,
         shapeless=shapeless,
         add_belt_speeds=add_belt_speeds,
     )

@@ -7,13 +7,15 @@ import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from frictionlab import __version__
-from frictionlab.columns import INPUTS, RESULTS, TEXT
+from frictionlab.columns import INPUTS, RESULTS, TEXT, belt_speed
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
 from frictionlab.results.table import status_counts, whole
@@ -106,6 +108,7 @@ def read_saved(folder: Path) -> Saved:
     for name in REPORT_FILES & wrong.keys():
         raise FolderError(wrong[name])
     table = _table(folder, study)
+    study = _with_chosen_speeds(study, table)
     rows = rows_of_file(folder / "results.parquet")
     long = rows if rows > LONG_TABLE else None
     saved = Saved(
@@ -181,6 +184,17 @@ def _table(folder: Path, study: Study) -> pd.DataFrame:
     if wrong := _wrong(table, study):
         raise FolderError(f"{file} is not a result table: {wrong}; {_remedy(folder)}")
     return table
+
+
+def _with_chosen_speeds(study: Study, table: pd.DataFrame) -> Study:
+    """The study with the belt speeds that its run chose: of each scene they rise from the start of their range."""
+    along = study.chosen_range
+    if along is None:
+        return study
+    speeds = table[belt_speed(table.columns)].to_numpy(dtype=float)
+    starts = [*np.flatnonzero(speeds == along.start).tolist(), len(speeds)]
+    scenes = pairwise(starts[: len(study.scenes_along) + 1])
+    return study.with_speeds([speeds[start:stop].tolist() for start, stop in scenes])
 
 
 def _wrong(table: pd.DataFrame, study: Study) -> str:

@@ -11,7 +11,7 @@ from frictionlab.runner.kept_chunks import KeptChunks, Keys
 from frictionlab.runner.open_chunks import OpenChunk, answered, each_once, open_chunks
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.workforce import Workforce, workforce
-from frictionlab.study import Study
+from frictionlab.study import Mistake, Study, StudyError
 
 
 @dataclass
@@ -34,8 +34,12 @@ def run_share(
 
     Which chunks those are hangs on the study alone. Points that fail by a defect are not kept: the run that gathers
     all parts tries them again. Raises BrokenPlugin, SaveError, BrokenExecutor, KeyboardInterrupt; what was solved by
-    then is kept.
+    then is kept. Raises StudyError where belt speeds are chosen as a run goes.
     """
+    if study.chosen_range is not None:
+        within = f"belt speeds within {study.chosen_range.within:g} are chosen as a run goes"
+        what = f"{within}, and a part of it cannot know them: run it whole, or give num"
+        raise StudyError([Mistake("--part", None, "", what)])
     number, count = part
     done, unknown = ShareDone(), []
     for index, chunk in enumerate(open_chunks(study.curves(), task_of(study), keys=Keys(study.code))):

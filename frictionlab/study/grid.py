@@ -12,6 +12,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from frictionlab import registry
+from frictionlab.columns import BELT_SPEEDS
 from frictionlab.mistakes.notes import Notes, Path, StudyError, did_you_mean, number_text, value_text
 from frictionlab.mistakes.validation import (
     checked_value,
@@ -26,7 +27,7 @@ from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
 from frictionlab.study.axes import FRICTION, LINKED, SCENE, STATIC, GridValue, grid_points, owner_of
 from frictionlab.study.choices import label_of, possible_labels
-from frictionlab.study.ranges import SPACINGS, SweepRange
+from frictionlab.study.ranges import SPACINGS, SpeedRange, SweepRange
 from frictionlab.study.study import Study, coefficient_of
 
 LARGEST_GRID = 100_000_000
@@ -40,6 +41,12 @@ MOST_WITH_HARMONICS = 100_000
 MOST_STARTS = 100_000
 """Starts from which attractors are looked for, in all."""
 _KEYS = ("start", "stop", "num", "spacing")
+WITHIN = "within"
+"""The key of a range out of which belt speeds are chosen as a run goes."""
+FINEST = 10.0
+"""Tolerances within which straight lines may be asked to be: a point's own error is as large as that."""
+MOST_CHOSEN = 100_000
+"""Points of a table whose belt speeds are chosen as a run goes."""
 
 _GROUPS = (
     ("unbalance", "amplitude"),
@@ -59,7 +66,7 @@ class Sweeps:
     """
 
     sweep: dict[str, tuple[GridValue, ...]] = field(default_factory=dict)
-    ranges: dict[str, SweepRange] = field(default_factory=dict)
+    ranges: dict[str, SweepRange | SpeedRange] = field(default_factory=dict)
     links: tuple[tuple[str, ...], ...] = ()
     stand_ins: dict[Path, Path] = field(default_factory=dict)
 
@@ -107,11 +114,15 @@ class _SweepReader:
             return
         first = targets[0] if targets else None
         read = _read_values(values, first, path, self._notes, unique=not linked)
-        if isinstance(read, SweepRange):
+        if isinstance(read, SpeedRange) and (linked or key not in BELT_SPEEDS):
+            what = "belt speeds alone are chosen so, where no others are linked to them; give num"
+            self._notes.on_key((*path, WITHIN), what)
+            return
+        is_range = isinstance(read, SweepRange | SpeedRange)
+        if isinstance(read, SweepRange | SpeedRange):
             self.found.ranges[key] = read
-        for target in targets if isinstance(read, SweepRange) else targets[1:]:
-            values_to_check = _ends(read) if isinstance(read, SweepRange) else read
-            _check_values(values_to_check, target, path, self._notes)
+        for target in targets if is_range else targets[1:]:
+            _check_values(read if isinstance(read, tuple) else _ends(read), target, path, self._notes)
         built = _ends(read) if self._too_large else _built(read, path, self._notes)
         for target in targets:
             _stand_in(self._tree, target, built, self.found.stand_ins, path)
@@ -155,9 +166,13 @@ class _SweepReader:
         self.found.links += (tuple(lists),)
 
 
-def _ends(read: tuple[GridValue, ...] | SweepRange) -> tuple[GridValue, ...]:
+Read = tuple[GridValue, ...] | SweepRange | SpeedRange
+"""A list of values, or a range of them not yet built."""
+
+
+def _ends(read: Read) -> tuple[GridValue, ...]:
     """The ends of a range, which decide whether its values are allowed; of a list the first value."""
-    return (read.start, read.stop) if isinstance(read, SweepRange) else read[:1]
+    return read[:1] if isinstance(read, tuple) else (read.start, read.stop)
 
 
 def _note_too_large(given: Mapping[str, Any], notes: Notes) -> bool:
@@ -358,6 +373,11 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
     if size > LARGEST_GRID:
         notes.add(("sweep",), f"the grid has {size} points, more than {LARGEST_GRID}")
         return
+    if study.chosen_range is not None:
+        _build(lambda: study.scenes_along, (SCENE,), study, notes)
+        if notes.all or not _may_be_chosen(study, study.chosen_range, notes):
+            return
+        size = grid_size(study.foreseen())
     if (study.keep_orbit or 0) * size > MOST_KEPT_SAMPLES:
         notes.add(
             ("keep", "orbit"),
@@ -381,6 +401,20 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
             notes.on_key(("laws", index), "these values give no finite stiffness > 0: check their units")
 
 
+def _may_be_chosen(study: Study, along: SpeedRange, notes: Notes) -> bool:
+    path: Path = ("sweep", next(path for path, each in study.ranges.items() if each is along), WITHIN)
+    about = grid_size(study.foreseen())
+    if along.within < FINEST * study.tolerance:
+        least = number_text(FINEST * study.tolerance)
+        notes.add(path, f"must be >= {least}, {FINEST:g} times tolerance, got {number_text(along.within)}")
+    elif about > MOST_CHOSEN:
+        what = (
+            f"the grid has about {about} points; belt speeds are chosen for {MOST_CHOSEN} at most: give num"
+        )
+        notes.add(path, what)
+    return not notes.all
+
+
 def _has_a_stiffness(law: Any) -> bool:
     """Whether a compliant law keeps a presliding length and a stiffness > 0, neither infinite."""
     if not law.compliant:
@@ -401,7 +435,8 @@ def _thinned(study: Study) -> Study:
 def grid_size(study: Study) -> int:
     """The number of rows of the table."""
     laws = sum(grid_points(study.own_axes(law)) for law in study.laws)
-    return grid_points(study.scene_axes) * laws * len(study.methods)
+    points = sum(map(len, study.chosen)) if study.chosen else grid_points(study.scene_axes)
+    return points * laws * len(study.methods)
 
 
 def _build(build: Callable[[], Any], owners: Container[str], study: Study, notes: Notes) -> None:
@@ -420,9 +455,7 @@ def _place(swept: str, study: Study) -> Path:
     return ("sweep", swept) if entry is None else ("sweep", LINKED, entry, swept)
 
 
-def _read_values(
-    given: Any, target: _Target | None, path: Path, notes: Notes, unique: bool
-) -> tuple[GridValue, ...] | SweepRange:
+def _read_values(given: Any, target: _Target | None, path: Path, notes: Notes, unique: bool) -> Read:
     """The values of one sweep, from a list or a range not yet built; empty, noted, where there is a mistake."""
     words = target is not None and not target.is_number
     if isinstance(given, list):
@@ -467,9 +500,10 @@ def _list_value(item: Any, target: _Target | None, path: Path, notes: Notes) -> 
     return value
 
 
-def _read_range(given: dict[str, Any], path: Path, notes: Notes) -> SweepRange | None:
-    notes.mapping(given, path, _KEYS)
-    for key in ("start", "stop", "num"):
+def _read_range(given: dict[str, Any], path: Path, notes: Notes) -> SweepRange | SpeedRange | None:
+    chosen = WITHIN in given
+    notes.mapping(given, path, ("start", "stop", WITHIN) if chosen else (*_KEYS, WITHIN))
+    for key in ("start", "stop") if chosen else ("start", "stop", "num"):
         if key not in given:
             notes.add((*path, key), "required key is missing")
     ends = [notes.number(given[key], (*path, key)) if key in given else None for key in ("start", "stop")]
@@ -482,14 +516,18 @@ def _read_range(given: dict[str, Any], path: Path, notes: Notes) -> SweepRange |
         notes.add((*path, "stop"), f"must be > start = {number_text(start)}, got {number_text(stop)}")
     if num is not None and num > LARGEST_RANGE:
         notes.add((*path, "num"), f"must be <= {LARGEST_RANGE}, got {num}")
+    within = notes.positive(given[WITHIN], (*path, WITHIN)) if chosen else None
+    if chosen and start is not None and stop is not None and within is not None:
+        return None if notes.below(path) else SpeedRange(start, stop, within)
     if notes.below(path) or start is None or stop is None or num is None or spacing is None:
         return None
     return SweepRange(start, stop, num, spacing)
 
 
-def _built(read: tuple[GridValue, ...] | SweepRange, path: Path, notes: Notes) -> tuple[GridValue, ...]:
+def _built(read: Read, path: Path, notes: Notes) -> tuple[GridValue, ...]:
+    """The values; of belt speeds that are chosen as a run goes the ends."""
     if not isinstance(read, SweepRange):
-        return read
+        return _ends(read) if isinstance(read, SpeedRange) else read
     values = read.values()
     if not all(map(operator.lt, values, values[1:])):
         notes.add(path, f"there are no {read.num} different numbers between start and stop")

@@ -9,7 +9,7 @@ from typing import Any
 from frictionlab.mistakes.notes import Note, Path, StudyError, did_you_mean
 from frictionlab.study.yaml_source import DEEPEST, Source, read_text
 
-_RANGE = ("start", "stop", "num", "spacing")
+_RANGE = ("start", "stop", "num", "spacing", "within")
 
 
 def apply_overrides(source: Source, overrides: Iterable[str]) -> None:

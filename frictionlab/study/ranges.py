@@ -41,3 +41,41 @@ class SweepRange:
         low, high = math.log(self.start), math.log(self.stop)
         inner = (math.exp(low + (high - low) * k / (self.num - 1)) for k in range(1, self.num - 1))
         return (self.start, *inner, self.stop)
+
+
+FIRST_SPEEDS = 17
+"""Belt speeds, evenly spaced, from which others are chosen."""
+CLOSEST = 2.0**-20
+"""Share of a range within which no belt speed is chosen beside another: there a jump of friction is left."""
+_KNOWN_SPEEDS = 187
+"""Belt speeds by which methods know the curve: as many as of the longest that is solved in one piece."""
+
+
+@dataclass(frozen=True)
+class SpeedRange:
+    """Belt speeds from start to stop (> start), to be chosen until straight lines between them are near the curve.
+
+    within: how near [-], absolute in mean friction.
+    """
+
+    start: float
+    stop: float
+    within: float
+
+    def first(self) -> tuple[float, ...]:
+        """Those to begin with."""
+        return SweepRange(self.start, self.stop, FIRST_SPEEDS).values()
+
+    def known(self) -> tuple[float, ...]:
+        """Those by which methods know the curve, whichever are chosen: its model does not change as others come."""
+        return SweepRange(self.start, self.stop, _KNOWN_SPEEDS).values()
+
+    def about(self) -> tuple[float, ...]:
+        """About as many as will be chosen, evenly spaced: mostly where the curve bends at V_lin."""
+        return SweepRange(
+            self.start, self.stop, FIRST_SPEEDS + math.ceil(0.8 / math.sqrt(self.within))
+        ).values()
+
+    def resolved(self) -> dict[str, Any]:
+        """The entry of a study file."""
+        return asdict(self)

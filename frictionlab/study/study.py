@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -38,7 +38,7 @@ from frictionlab.study.axes import (
     point_at,
 )
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
-from frictionlab.study.ranges import SweepRange
+from frictionlab.study.ranges import SpeedRange, SweepRange
 from frictionlab.study.yaml_text import yaml_text
 
 SCHEMA = 1
@@ -191,7 +191,8 @@ class Study:
 
     scene: the scene without sweeps. sweep: ``scene.<path>``, ``laws.<label>.<parameter>`` or ``friction`` -> values,
     in a scene words and waveforms, too. links: the paths among them that advance together, which follow one another.
-    ranges: those of the sweeps that were given as ranges.
+    ranges: those of the sweeps that were given as ranges. chosen: where belt speeds are chosen as a run goes,
+    those of each scene.
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
     keep_attractors: starts a point from which every state is looked for, None for none. keep_harmonics: the highest
     harmonic of velocity and friction to keep, None for none.
@@ -224,8 +225,9 @@ class Study:
     source: str = ""
     plugins: tuple[LawFile, ...] = ()
     code: dict[str, str] = field(default_factory=dict)
-    ranges: dict[str, SweepRange] = field(default_factory=dict)
+    ranges: dict[str, SweepRange | SpeedRange] = field(default_factory=dict)
     links: tuple[tuple[str, ...], ...] = ()
+    chosen: tuple[tuple[float, ...], ...] = field(default=(), compare=False)
     path: Path | None = field(default=None, compare=False)
 
     @classmethod
@@ -327,6 +329,8 @@ class Study:
             built = [Scene.model_validate(with_values(tree, point)) for point in points]
         except (ValidationError, OverflowError) as problem:
             raise self._impossible(problem) from None
+        if self.chosen:
+            return self._along_chosen(built)
         within = grid_points(axes[axes.index(along) + 1 :]) if along else 1
         block = within * (len(along) if along else 1)
         starts = [at // within * block + at % within for at in range(len(built))]
@@ -334,6 +338,29 @@ class Study:
             (Scenes(scene, _speeds(scene, along)), range(start, start + block, within))
             for scene, start in zip(built, starts, strict=True)
         )
+
+    def _along_chosen(self, built: list[Scene]) -> tuple[tuple[Scenes, range], ...]:
+        assert self.chosen_range is not None
+        known = np.array(self.chosen_range.known())
+        ends = list(itertools.accumulate(map(len, self.chosen), initial=0))
+        return tuple(
+            (Scenes(scene, np.array(speeds, dtype=np.float64), known), range(start, start + len(speeds)))
+            for scene, speeds, start in zip(built, self.chosen, ends[:-1], strict=True)
+        )
+
+    @property
+    def chosen_range(self) -> SpeedRange | None:
+        """The range out of which belt speeds are chosen as a run goes, if they are."""
+        return next((each for each in self.ranges.values() if isinstance(each, SpeedRange)), None)
+
+    def with_speeds(self, speeds: Sequence[Iterable[float]]) -> Study:
+        """The study with these belt speeds chosen, of one scene after another in the order of ``scenes_along``."""
+        return replace(self, chosen=tuple(tuple(each) for each in speeds))
+
+    def foreseen(self) -> Study:
+        """The study with about as many belt speeds as will be chosen; itself where none are."""
+        along = self.chosen_range
+        return self if along is None else self.with_speeds([along.about()] * len(self.scenes_along))
 
     def _impossible(self, problem: ValidationError | OverflowError) -> StudyError:
         what = str(problem)
@@ -470,7 +497,7 @@ class Study:
             "laws": [[law.label, law.kind, self._fixed(law)] for law in self.laws],
             "methods": [[method.label, method.name, method.parameters] for method in self.methods],
             "tolerance": self.tolerance,
-            "sweep": {path: list(values) for path, values in self.sweep.items()},
+            "sweep": {path: self._swept(path) for path in self.sweep},
             **({"code": self.code} if self.code else {}),
             **({"links": [list(entry) for entry in self.links]} if self.links else {}),
         }
@@ -478,6 +505,10 @@ class Study:
             under = {law.label: law.under_friction(self.sweep[FRICTION]) for law in self.laws}
             numbers["friction"] = [[label, list(map(list, each.values()))] for label, each in under.items()]
         return hashlib.sha256(json.dumps(_natural(numbers), sort_keys=True).encode()).hexdigest()
+
+    def _swept(self, path: str) -> Any:
+        along = self.ranges.get(path)
+        return along.resolved() if isinstance(along, SpeedRange) else list(self.sweep[path])
 
     def _fixed(self, law: LawChoice) -> dict[str, Any]:
         swept = self.swept_parameters(law)

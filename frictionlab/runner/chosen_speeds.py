@@ -1,0 +1,131 @@
+"""Belt speeds chosen as a run goes: in rounds, each the ordinary run of the speeds that the one before asked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.quantities import Floats
+from frictionlab.results.bends import halves_to_add
+from frictionlab.results.part import Places
+from frictionlab.runner.accumulate import Accumulator
+from frictionlab.scene.scene import Scene
+from frictionlab.study import Mistake, Study, StudyCurve, StudyError
+from frictionlab.study.grid import MOST_CHOSEN, WITHIN, grid_size
+from frictionlab.study.ranges import CLOSEST, SpeedRange
+from frictionlab.theory import friction_free_velocity
+
+Known = tuple[Floats, Floats, Floats]
+"""Belt speeds of a curve, ascending, their mean friction and its error; NaN where there is no number."""
+
+
+@dataclass(frozen=True)
+class Round:
+    """The curves of a round, at the belt speeds that are new in it, and what came of them."""
+
+    curves: list[StudyCurve]
+    gathering: Accumulator
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A study with its belt speeds, the rounds in which they were solved, and whether the last was interrupted."""
+
+    study: Study
+    rounds: list[Round]
+    stopped: bool
+
+
+def choose_speeds(
+    study: Study, solve: Callable[[Study, list[StudyCurve]], tuple[Accumulator, bool]]
+) -> Chosen:
+    """Solve at more and more belt speeds until chords are within what the study says; those of a scene are shared.
+
+    Every law and method of a scene is solved at all of its belt speeds: begin with evenly spaced ones and V_lin, then
+    halve each interval in which a curve asks for it. Raises StudyError where that would take too many points.
+    """
+    along = study.chosen_range
+    assert along is not None
+    curves = list(study.with_speeds([along.first()] * len(study.scenes_along)).curves())
+    count = len(study.scenes_along)
+    breaks = [
+        _breaks([each.law for each in curves[at::count]], curves[at].scenes.scene, along)
+        for at in range(count)
+    ]
+    new = [_first(along, each) for each in breaks]
+    speeds, known, rounds, stopped = new, [_nothing()] * len(curves), list[Round](), False
+    while any(map(len, new)) and not stopped:
+        one = study.with_speeds([each.tolist() for each in new])
+        curves = list(one.curves())
+        gathering, stopped = solve(one, curves)
+        rounds.append(Round(curves, gathering))
+        known = [_merged(*both) for both in zip(known, _found(curves, gathering), strict=True)]
+        asked = [_asked(known[at::count], breaks[at], along) for at in range(count)]
+        new = [each if not stopped else np.empty(0) for each in asked]
+        speeds = [np.union1d(*both) for both in zip(speeds, new, strict=True)]
+        _check_size(study.with_speeds([each.tolist() for each in speeds]), along)
+    return Chosen(study.with_speeds([each.tolist() for each in speeds]), rounds, stopped)
+
+
+def _check_size(study: Study, along: SpeedRange) -> None:
+    if (size := grid_size(study)) > MOST_CHOSEN:
+        name = "study" if study.path is None else str(study.path)
+        path = next(path for path, each in study.ranges.items() if each is along)
+        what = (
+            f"takes more than {size} points, and {MOST_CHOSEN} at most are chosen: give a larger one, or num"
+        )
+        raise StudyError([Mistake(name, None, f"sweep.{path}.{WITHIN}", what)])
+
+
+def _breaks(laws: Sequence[FrictionLaw], scene: Scene, along: SpeedRange) -> Floats:
+    """V_lin of a scene under each of its laws, and its mirror image, where they lie inside the range."""
+    si = scene.dimensional
+    scale = 1.0 if si is None else si.scales.velocity
+    sizes = {scale * friction_free_velocity(scene, law) for law in laws}
+    found = [sign * size for size in sizes if math.isfinite(size) for sign in (-1.0, 1.0)]
+    near = CLOSEST * (along.stop - along.start)
+    return np.unique([each for each in found if along.start + near < each < along.stop - near])
+
+
+def _first(along: SpeedRange, breaks: Floats) -> Floats:
+    """Evenly spaced belt speeds, and V_lin in place of one that is nearly there."""
+    even, near = np.array(along.first()), CLOSEST * (along.stop - along.start)
+    far = [bool((np.abs(breaks - each) > near).all()) for each in even]
+    return np.union1d(even[far], breaks)
+
+
+def _asked(known: Sequence[Known], breaks: Floats, along: SpeedRange) -> Floats:
+    """The belt speeds that the curves of one scene still need."""
+    closest = CLOSEST * (along.stop - along.start)
+    return np.unique(np.concatenate([halves_to_add(*each, breaks, along.within, closest) for each in known]))
+
+
+def _nothing() -> Known:
+    return np.empty(0), np.empty(0), np.empty(0)
+
+
+def _found(curves: Sequence[StudyCurve], gathering: Accumulator) -> list[Known]:
+    table = gathering.table
+    means, errors = (table[name].to_numpy(dtype=float) for name in ("mean_friction", "error"))
+    rows = [np.arange(each.rows.start, each.rows.stop) for each in curves]
+    return [(each.scenes.given, means[own], errors[own]) for each, own in zip(curves, rows, strict=True)]
+
+
+def _merged(known: Known, found: Known) -> Known:
+    speeds, means, errors = (np.concatenate(both) for both in zip(known, found, strict=True))
+    rising = np.argsort(speeds, kind="stable")
+    return speeds[rising], means[rising], errors[rising]
+
+
+def rows_of_round(one: Round, curves: Sequence[StudyCurve]) -> tuple[Places, Places]:
+    """The rows of a round, and where they are in the table of these curves, which hold all belt speeds."""
+    there = [np.arange(each.rows.start, each.rows.stop) for each in one.curves]
+    here = [
+        whole.rows.start + np.searchsorted(whole.scenes.given, each.scenes.given)
+        for each, whole in zip(one.curves, curves, strict=True)
+    ]
+    return np.concatenate(there), np.concatenate(here)

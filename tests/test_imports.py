@@ -25,7 +25,6 @@ ARROWS = {
     "mistakes": ["printable"],
     "quantities": ["as_typed", "mistakes"],
     "columns": [],
-    "rounded": [],
     "laws": ["quantities"],
     "faults": ["laws"],
     "compile": ["faults", "laws"],
@@ -72,7 +71,7 @@ ARROWS = {
     "study": ["as_typed", "columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
     "results": [
         *("columns", "laws", "methods.base", "orbit", "quantities", "registry", "scene", "shape", "study"),
-        *("rounded", "theory"),
+        *("printable", "theory"),
     ],
     "runner": [
         *(
@@ -93,8 +92,8 @@ ARROWS = {
         *("laws", "methods.base", "methods.periodic", "mistakes", "quantities", "results", "runner", "scene"),
         "study",
     ],
-    "charts": ["columns", "printable", "rounded", "study"],
-    "report": ["charts", "columns", "registry", "results", "rounded", "runner", "scene", "study"],
+    "charts": ["columns", "printable", "study"],
+    "report": ["charts", "columns", "printable", "registry", "results", "runner", "scene", "study"],
     "notebook": ["charts", "columns", "report", "results", "runner", "scene", "study"],
     "explore": ["charts", "columns", "report", "results", "runner"],
     "scaffold": ["registry", "runner"],
@@ -113,6 +112,7 @@ ARROWS = {
             "columns",
             "laws",
             "mistakes",
+            "printable",
             "quantities",
             "registry",
             "results",

@@ -17,7 +17,7 @@ from frictionlab.charts.onsets import rows_of_curve, speed_scale
 from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
 from frictionlab.charts.words import BESIDE, label_once, sentence, shortened, write_title
 from frictionlab.columns import BELT_SPEEDS, CURVES, word
-from frictionlab.rounded import with_error
+from frictionlab.printable import with_error
 from frictionlab.study.figure_options import FigureOptions
 
 MOST_SHAPES = 12

@@ -10,6 +10,7 @@ from frictionlab.least_model.lesser import LesserModel
 from frictionlab.least_model.motion import FRICTION_FREE
 from frictionlab.least_model.search import Without
 from frictionlab.least_model.without_rest import WithoutRest
+from frictionlab.printable import with_error
 from frictionlab.results.words import counted, in_words
 from frictionlab.shape.verdict import Estimate
 
@@ -44,8 +45,7 @@ def written_size(number: Estimate) -> str:
     size = abs(number.value)
     if size <= number.error:
         return f"at most {size + number.error:.2g}"
-    error = f" +- {number.error:.1e}" if number.error > 0.005 * size else ""
-    return f"{size:.3g}{error}"
+    return with_error(size, number.error, 3, " +- ")
 
 
 def sentence_of(each: Without) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import pandas as pd
@@ -10,6 +10,7 @@ from markupsafe import Markup, escape
 
 from frictionlab.charts.curves import family_of
 from frictionlab.columns import belt_speed
+from frictionlab.printable import with_error
 from frictionlab.report.shapes import shape_sentence
 from frictionlab.report.tables import listed, named, settings
 from frictionlab.report.trouble import with_remark
@@ -17,7 +18,6 @@ from frictionlab.results.pairs import best_rows, method_pairs
 from frictionlab.results.ranking import NOBODY, Ranking, ranking_of
 from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import counted
-from frictionlab.rounded import with_error
 from frictionlab.runner.saved import Saved
 
 MOST_STRETCHES = 4
@@ -44,7 +44,13 @@ def height_sentence(table: pd.DataFrame, along: str) -> Markup:
         return Markup("No point has a number.")
     ranking = ranking_of(table, along)
     told = _span(best, along) if ranking is None else _ranking_in_words(ranking, along)
-    return Markup("{}{}.").format(told, _methods(table) if table["law"].nunique() == 1 else "")
+    silent = [law for law in table["law"].unique() if law not in set(best["law"])]
+    without = Markup("; {} no number").format(_have(silent)) if silent else ""
+    return Markup("{}{}{}.").format(told, _methods(table) if table["law"].nunique() == 1 else "", without)
+
+
+def _have(laws: Sequence[str]) -> Markup:
+    return Markup("{} {}").format(listed(laws), "has" if len(laws) == 1 else "have")
 
 
 def _methods(table: pd.DataFrame) -> Markup:
@@ -211,7 +217,15 @@ def _unanswered(saved: Saved) -> Iterator[Markup]:
         rows = saved.table[saved.table["status"] == status]
         of = "the only point" if saved.size == 1 else f"{count} of {saved.size} points"
         said = f"{'is' if count == 1 else 'are'} {status.replace('_', ' ')}"
-        yield Markup('<a href="#odd">{} {}</a>{}').format(of, said, _who(rows, saved.table))
+        yield Markup('<a href="#odd">{} {}</a>{}{}').format(of, said, _who(rows, saved.table), _seen(rows))
+
+
+def _seen(rows: pd.DataFrame) -> str:
+    """Between what means lie that are not unique."""
+    known = rows[rows["mean_low"].notna()] if "mean_low" in rows else rows.iloc[:0]
+    if known.empty:
+        return ""
+    return f", with means from {known['mean_low'].min():.3g} to {known['mean_high'].max():.3g}"
 
 
 def _rough(saved: Saved) -> Iterator[Markup]:

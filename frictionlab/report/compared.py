@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from frictionlab.printable import with_error
 from frictionlab.report.tables import Cell, Grid, grid, settings
 from frictionlab.results.pairs import Difference, law_pairs, method_pairs
-from frictionlab.rounded import with_error
 
 
 def laws_compared(table: pd.DataFrame) -> Grid:

@@ -8,12 +8,22 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.columns import BELT_SPEED, belt_speed
+from frictionlab.printable import with_error
 from frictionlab.report.markup import symbol_html, unit_html
-from frictionlab.report.tables import Cell, CurveRows, Grid, curve_rows, grid, joined_values, setting, size
+from frictionlab.report.tables import (
+    Cell,
+    CurveRows,
+    Grid,
+    curve_rows,
+    grid,
+    joined_values,
+    setting,
+    size,
+    whose,
+)
 from frictionlab.results.summary import mean_span, statuses
 from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import counted
-from frictionlab.rounded import with_error
 
 
 def curves_grid(table: pd.DataFrame, tolerance: float) -> Grid:
@@ -23,18 +33,16 @@ def curves_grid(table: pd.DataFrame, tolerance: float) -> Grid:
         Markup("mean friction {}, least … greatest").format(symbol_html("mean_friction")),
         *("largest error", "at", "kind of error", "errors above the tolerance"),
     ]
+    curves = curve_rows(table, swept_inputs(table))
     rows = [
-        [
-            curve.law,
-            curve.method,
-            curve.name,
-            statuses(curve.rows),
-            mean_span(curve.rows),
-            *_errors(curve, tolerance),
-        ]
-        for curve in curve_rows(table, swept_inputs(table))
+        [*who, _statuses(curve.rows), mean_span(curve.rows), *_errors(curve, tolerance)]
+        for who, curve in zip(whose(curves), curves, strict=True)
     ]
     return grid("Curves: everything equal but belt speed", head, rows, "curves")
+
+
+def _statuses(rows: pd.DataFrame) -> str:
+    return statuses(rows).replace("_", " ")
 
 
 def _errors(curve: CurveRows, tolerance: float) -> list[Cell]:
@@ -57,21 +65,19 @@ def _errors(curve: CurveRows, tolerance: float) -> list[Cell]:
 def onset_grid(onsets: pd.DataFrame, table: pd.DataFrame) -> Grid:
     """The onsets of onsets.csv, each with its error, curve by curve."""
     scales = speed_scales(table)
+    curves = curve_rows(onsets, _told(table, onsets))
     rows = [
-        [
-            curve.law,
-            curve.method,
-            curve.name,
-            row["onset"].replace("_", " "),
-            in_given_units(row, "belt_speed", scales.get(curve.key, 1.0)),
-            row["how"],
-        ]
-        for curve in curve_rows(onsets, _told(table, onsets))
+        [*who, row["onset"].replace("_", " "), _at(row, scales.get(curve.key, 1.0)), row["how"]]
+        for who, curve in zip(whose(curves), curves, strict=True)
         for _, row in curve.rows.iterrows()
     ]
     speed = Markup("belt speed{}").format(unit_html(belt_speed(table)))
     head = ["law", "method", "curve", "what", speed, "how it was found"]
     return grid("Onsets along rising belt speed", head, rows, "onsets", "onsets.csv")
+
+
+def _at(row: pd.Series, scale: float) -> str:
+    return in_given_units(row, "belt_speed", scale)
 
 
 def _told(table: pd.DataFrame, others: pd.DataFrame) -> Sequence[str]:

@@ -9,6 +9,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.columns import RESULTS, SI
+from frictionlab.printable import with_error
 from frictionlab.report.markup import symbol_html
 from frictionlab.report.tables import Cell, Grid, grid, joined_values
 from frictionlab.report.trouble import SAYS_PROVED, SAYS_TESTED, place_of
@@ -16,7 +17,6 @@ from frictionlab.results.expectations import Verdict
 from frictionlab.results.summary import alike, pattern
 from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import counted
-from frictionlab.rounded import with_error
 
 FEW_ROWS = 4
 """A table of so few rows is shown whole."""

@@ -9,13 +9,13 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.columns import belt_speed
+from frictionlab.printable import with_error
 from frictionlab.report.curves import in_given_units, speed_scales
 from frictionlab.report.markup import symbol_html, unit_html
-from frictionlab.report.tables import Grid, curve_rows, grid, listed, named
+from frictionlab.report.tables import Grid, curve_rows, grid, listed, named, whose
 from frictionlab.results.summary import alike, pattern
 from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import counted
-from frictionlab.rounded import with_error
 from frictionlab.runner.saved import Saved
 
 MOST_CURVES_NAMED = 6
@@ -24,7 +24,7 @@ MEANING = {
     "concave": ("above its chord", "above their chords"),
     "convex": ("below its chord", "below their chords"),
     "mixed": ("on both sides of its chord", "on both sides of their chords"),
-    "undecided": ("as near to its chord as its errors", "as near to their chords as their errors"),
+    "undecided": ("its errors leave it open", "their errors leave it open"),
 }
 """Of each verdict what it says of one curve, and of several."""
 MEASURES = {
@@ -156,14 +156,10 @@ def shape_grid(saved: Saved) -> Grid | None:
         return None
     own = [name for name in MEASURES if name in curves]
     scales = speed_scales(saved.table)
+    found = curve_rows(curves, _told(saved, curves))
     rows = [
-        [
-            curve.law,
-            curve.method,
-            curve.name,
-            *(_measure(curve.rows.iloc[0], name, scales.get(curve.key, 1.0)) for name in own),
-        ]
-        for curve in curve_rows(curves, _told(saved, curves))
+        [*who, *(_measure(curve.rows.iloc[0], name, scales.get(curve.key, 1.0)) for name in own)]
+        for who, curve in zip(whose(found), found, strict=True)
     ]
     unit = unit_html(belt_speed(saved.table))
     heads = [Markup("{}{}").format(MEASURES[name], unit if name == "reversal_end" else "") for name in own]

@@ -69,6 +69,12 @@ def curve_rows(table: pd.DataFrame, told: Sequence[str]) -> list[CurveRows]:
     ]
 
 
+def whose(curves: Sequence[CurveRows]) -> list[list[Cell]]:
+    """Of each curve its law, its method where there are several, and what tells it from the others."""
+    several = len({curve.method for curve in curves}) > 1
+    return [[curve.law, curve.method if several else "", curve.name] for curve in curves]
+
+
 def settings(values: Mapping[str, Any]) -> Markup:
     """Inputs with their values, those that do not apply left out."""
     told = [setting(name, value) for name, value in values.items() if not pd.isna(value)]

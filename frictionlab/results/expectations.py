@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import pandas as pd
 
 from frictionlab.columns import INPUTS, belt_speed
+from frictionlab.printable import with_error
 from frictionlab.results.curve_table import curve_table
 from frictionlab.results.words import counted, in_words
-from frictionlab.rounded import with_error
 from frictionlab.study import Expectation
 
 # Numbers of a study are written in decimal and swept by formula: equal means equal to nine digits.

@@ -8,11 +8,11 @@ from typing import Any
 
 import pandas as pd
 
+from frictionlab.printable import PLUS_MINUS, with_error
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
 from frictionlab.results.table import swept_inputs, whole
 from frictionlab.results.words import counted, in_words
-from frictionlab.rounded import PLUS_MINUS, with_error
 
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
 

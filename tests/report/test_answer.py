@@ -264,11 +264,18 @@ def test_that_nothing_needs_attention_is_said_with_what_was_looked_at() -> None:
 
 
 def test_points_without_an_answer_are_told_with_whose_they_are() -> None:
-    rows = curve("dahl", [0.1, math.nan, 0.3])
+    rows = curve("dahl", [0.1, math.nan, 0.3]).assign(mean_low=[0.0731, math.nan, math.nan], mean_high=0.366)
     rows.loc[0, ["status", "mean_friction"]] = ["not_unique", math.nan]
 
     assert told(curve("coulomb", [0.1, 0.2, 0.3]), rows)[2] == (
-        "Needs attention: 1 of 6 points is not unique (dahl); 1 of 6 points is refused (dahl)."
+        "Needs attention: 1 of 6 points is not unique (dahl), with means from 0.0731 to 0.366; "
+        "1 of 6 points is refused (dahl)."
+    )
+
+
+def test_a_law_without_a_number_anywhere_is_named() -> None:
+    assert told(curve("coulomb", [0.1, 0.2]), curve("dahl", [math.nan] * 2))[0] == (
+        "Mean friction of coulomb rises from 0.1 at vb = 1 to 0.2 at vb = 2; dahl has no number."
     )
 
 

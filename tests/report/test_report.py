@@ -227,10 +227,10 @@ def test_there_is_a_line_for_every_curve_and_what_tells_it_apart(ran: Runner) ->
     head, *rows = Page(report(ran(sweep=sweep))).table("Curves")
 
     mean = "mean friction μ̄, least … greatest"
-    assert head[:7] == ["law", "method", "curve", "points", mean, "largest error", "at"]
-    assert [row[:5] for row in rows] == [
-        ["coulomb", "fake", "Ω = 1", "2 ok, 1 refused", "0.101546 … 0.128537"],
-        ["coulomb", "fake", "Ω = 1.5", "2 ok, 1 refused", "0.101546 … 0.128537"],
+    assert head[:6] == ["law", "curve", "points", mean, "largest error", "at"]
+    assert [row[:4] for row in rows] == [
+        ["coulomb", "Ω = 1", "2 ok, 1 refused", "0.101546 … 0.128537"],
+        ["coulomb", "Ω = 1.5", "2 ok, 1 refused", "0.101546 … 0.128537"],
     ]
 
 
@@ -247,8 +247,8 @@ def test_the_measures_of_curves_are_shown_with_their_errors_where_there_are_any(
     without = Page(report(read_saved(saved.folder)))
 
     assert with_them.table("Shape") == [
-        ["law", "method", "shape", "area between curve and chord", "end of reversal"],
-        ["coulomb", "fake", "concave", "0.0577 ± 0.0002", "50"],
+        ["law", "shape", "area between curve and chord", "end of reversal"],
+        ["coulomb", "concave", "0.0577 ± 0.0002", "50"],
     ]
     assert not any("Shape" in caption.text for caption in without.all("caption"))
 
@@ -528,7 +528,7 @@ def test_a_scene_in_si_units_is_told_in_them_throughout(ran: Runner) -> None:
     assert "against belt speed Vb [m/s]. " in caption
     assert "A curve for each F1 = 5, 6 N. Held fixed: M = 3 kg, K1 = 300 N/m," in caption
     for name in ("Curves", "Shape"):
-        assert [row[2] for row in page.table(name)[1:]] == ["F1 = 5 N", "F1 = 6 N"]
+        assert [row[1] for row in page.table(name)[1:]] == ["F1 = 5 N", "F1 = 6 N"]
 
 
 def test_a_run_without_a_sweep_has_no_figures_and_no_heading_for_them(ran: Runner) -> None:

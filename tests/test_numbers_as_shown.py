@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from frictionlab.rounded import with_error
+from frictionlab.printable import with_error
 
 
 @pytest.mark.parametrize(

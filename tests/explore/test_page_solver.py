@@ -50,6 +50,13 @@ def draw(rng: np.random.Generator) -> dict[str, Any]:
     return {"frequency": frequency, "damping": damping, "friction": friction, "ratios": ratios}
 
 
+def draw_of_a_run(rng: np.random.Generator) -> dict[str, Any]:
+    """A scene that a run may have, beyond where the sliders end on their own."""
+    frequency, damping, friction = 10.0 ** rng.uniform([-1.3, -3.0, -3.0], [1.3, 0.7, 0.7])
+    ratios = [0.0, 1.0 - 1e-6, 10.0 ** rng.uniform(-3.0, 0.0), *rng.uniform(0.0, 1.2, 3)]
+    return {"frequency": frequency, "damping": damping, "friction": friction, "ratios": ratios}
+
+
 def v_lin(scene: dict[str, Any]) -> float:
     frequency = scene["frequency"]
     stiffness = (1.0 - frequency) * (1.0 + frequency)
@@ -72,10 +79,18 @@ told(given.map((each) => each.ratios.map((ratio) => {
 """
 
 
-@pytest.mark.parametrize(("seed", "size"), [(1, 60), pytest.param(2, 500, marks=deep("five hundred scenes"))])
-def test_the_page_finds_what_exact_finds(seed: int, size: int) -> None:
+@pytest.mark.parametrize(
+    ("drawn", "seed", "size"),
+    [
+        (draw, 1, 60),
+        (draw_of_a_run, 3, 20),
+        pytest.param(draw, 2, 500, marks=deep("five hundred scenes")),
+        pytest.param(draw_of_a_run, 4, 500, marks=deep("five hundred scenes of runs")),
+    ],
+)
+def test_the_page_finds_what_exact_finds(drawn: Any, seed: int, size: int) -> None:
     rng = np.random.default_rng(seed)
-    scenes = [draw(rng) for _ in range(size)]
+    scenes = [drawn(rng) for _ in range(size)]
 
     found = in_node(POINTS, scenes)
 

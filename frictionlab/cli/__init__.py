@@ -36,6 +36,8 @@ COMMANDS = (
     *("schema", "warm"),
 )
 """Each is the function ``NAME_command`` of the module of its name."""
+OUT_OF_REACH = {errno.EACCES, errno.EPERM, errno.EROFS, errno.ENAMETOOLONG, errno.ELOOP}
+"""What is wrong with a path that somebody gave, not with frictionlab."""
 MOMENT = 0.2
 """Seconds in which the threads of an interrupted command may end."""
 
@@ -103,6 +105,8 @@ def _diagnose(problem: BaseException) -> tuple[int, str]:
         return BROKEN_PLUGIN, str(problem)
     if isinstance(problem, OSError) and problem.errno in (errno.ENOSPC, errno.EDQUOT):
         return FAILED, f"cannot write the output: {problem.strerror}"
+    if isinstance(problem, OSError) and problem.errno in OUT_OF_REACH and problem.filename is not None:
+        return WRONG, f"{problem.filename}: {problem.strerror}"
     if law := failing_law(problem):
         return BROKEN_PLUGIN, law
     text = "".join(traceback.format_exception(problem))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @click.command("bench")
-@click.argument("bench_list", metavar="LIST", type=click.Path(path_type=Path))
+@click.argument("bench_list", metavar="LIST", type=options.PATH)
 @options.folder("runs/bench-<list name>")
 @click.option(
     "--only", multiple=True, metavar="NAME", help="Measure this curve or section alone; may be repeated."

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @click.command("check")
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=options.PATH)
 @options.overrides
 @options.law_files
 @options.no_plugins

@@ -6,14 +6,15 @@ from pathlib import Path
 
 import click
 
+from frictionlab.cli import options
 from frictionlab.cli.output import print_message, print_result
 
 
 @click.command("explore")
-@click.argument("run", type=click.Path(path_type=Path), required=False)
+@click.argument("run", type=options.PATH, required=False)
 @click.option(
     *("-o", "--out", "file"),
-    type=click.Path(path_type=Path),
+    type=options.PATH,
     default=Path("explorer.html"),
     show_default=True,
     help="The page to write.",

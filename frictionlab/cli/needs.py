@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @click.command("needs")
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=options.PATH)
 @options.folder("nothing is written")
 @click.option(
     "--within",

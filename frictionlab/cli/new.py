@@ -8,6 +8,7 @@ from typing import Literal
 
 import click
 
+from frictionlab.cli import options
 from frictionlab.cli.output import print_message, print_result
 
 
@@ -17,7 +18,7 @@ def new_command() -> None:
 
 
 @new_command.command("study")
-@click.argument("path", type=click.Path(path_type=Path))
+@click.argument("path", type=options.PATH)
 def study(path: Path) -> None:
     """Write a commented study to the file PATH, which ``run`` takes as it is. Never replaces a file.
 
@@ -37,7 +38,7 @@ def study(path: Path) -> None:
 
 
 @new_command.command("law")
-@click.argument("path", metavar="NAME", type=click.Path(path_type=Path))
+@click.argument("path", metavar="NAME", type=options.PATH)
 @click.option(
     "--memory",
     type=click.Choice(["none", "bristle"]),

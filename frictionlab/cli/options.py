@@ -11,6 +11,19 @@ import click
 if TYPE_CHECKING:
     from frictionlab.registry import Laws
 
+
+class _Place(click.Path):
+    """A path that is given: an empty one, of a shell variable without a value, would be the folder one is in."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path. Raises BadParameter."""
+        if value == "":
+            self.fail("the path is empty", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+PATH = _Place(path_type=Path)
+"""The type of arguments that are paths."""
 overrides = click.option(
     "--set",
     "overrides",
@@ -22,7 +35,7 @@ law_files = click.option(
     "--law",
     "law_files",
     multiple=True,
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE",
     help="Take the laws of a Python file, too; may be repeated.",
 )
@@ -39,7 +52,7 @@ as_json = click.option("--json", "as_json", is_flag=True, help="Print a list of 
 def folder(default: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """The option ``-o``, the folder that a command writes to."""
     help_text = f"Where to; {default} if left out."
-    return click.option("-o", "out", type=click.Path(path_type=Path), metavar="DIR", help=help_text)
+    return click.option("-o", "out", type=PATH, metavar="DIR", help=help_text)
 
 
 def check_laws(names: Iterable[str], known: Laws) -> None:

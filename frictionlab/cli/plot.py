@@ -6,12 +6,13 @@ from pathlib import Path
 
 import click
 
+from frictionlab.cli import options
 from frictionlab.cli.figures import draw_saved
 from frictionlab.cli.output import print_message, print_result
 
 
 @click.command("plot")
-@click.argument("run", type=click.Path(path_type=Path))
+@click.argument("run", type=options.PATH)
 def plot_command(run: Path) -> None:
     """Draw the figures of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
     from frictionlab.runner.in_use import alone_in

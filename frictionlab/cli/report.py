@@ -6,12 +6,13 @@ from pathlib import Path
 
 import click
 
+from frictionlab.cli import options
 from frictionlab.cli.figures import draw_saved
 from frictionlab.cli.output import print_message, print_result
 
 
 @click.command("report")
-@click.argument("run", type=click.Path(path_type=Path))
+@click.argument("run", type=options.PATH)
 def report_command(run: Path) -> None:
     """Write the figures and the report.html of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
     from frictionlab.report import write_report

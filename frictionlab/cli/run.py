@@ -90,7 +90,7 @@ class RunOptions(NamedTuple):
 
 
 @click.command("run")
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=options.PATH)
 @options.folder("runs/<study name>")
 @options.overrides
 @options.law_files
@@ -117,7 +117,7 @@ class RunOptions(NamedTuple):
 )
 @click.option(
     "--cache",
-    type=click.Path(path_type=Path),
+    type=options.PATH,
     metavar="DIR",
     help="Where solved chunks are kept, and found by other runs; .cache beside the results if left out.",
 )
@@ -148,6 +148,8 @@ def run_command(**given: Any) -> int:
     asked = RunOptions(**given)
     asked.check()
     jobs = batch.jobs(asked.study, asked.out, asked.changes, asked.law_files, asked.plugins)
+    if asked.cache is not None and asked.cache.exists() and not asked.cache.is_dir():
+        raise click.UsageError(f"--cache: {asked.cache} is a file, not a folder")
     batch.check_folders(jobs, asked.existing, alone=asked.part is None)
     index = batch.index_folder(asked.study, asked.out)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -178,7 +180,9 @@ def _run(job: Job, asked: RunOptions, meter: Meter) -> Run:
     for line in [] if asked.force else api.run_folder(job.study, job.out).damaged():
         print_message(line)
     try:
+        meter.begins("starting")
         with _force(asked) as force:
+            meter.begins("solving", "points")
             result = api.run(
                 job.study,
                 job.out,

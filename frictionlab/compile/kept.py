@@ -23,7 +23,7 @@ import numba.core.serialize
 import numba.core.types
 
 from frictionlab.compile.account import SPENT, Account
-from frictionlab.compile.notice import compiled_here
+from frictionlab.compile.notice import compiled_here, is_not_kept
 
 _Cache: Any = numba.core.caching._Cache  # internals of numba, untyped
 _compiler: Any = numba.core.compiler
@@ -61,6 +61,12 @@ class KeptEntry(_Cache):  # type: ignore[misc]
     def load_overload(self, signature: Any, context: Any) -> Any:
         """What was kept for this signature; None where nothing sound is."""
         context.refresh()
+        found = self._found(signature, context)
+        if found is None:
+            is_not_kept()
+        return found
+
+    def _found(self, signature: Any, context: Any) -> Any:
         path = self._path(signature, context.codegen())
         if path is None:
             return None

@@ -5,12 +5,22 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 compiled_here: list[str] = []
 """The kernels that this process has compiled, by the names they are kept under."""
 
-_called: list[str] = []
-"""The kernels that machine code is asked for, by the names of their functions; most are compiled already."""
+_called: list[_Called] = []
+"""The kernels that machine code is asked for, in the order in which they were; for most of them it is kept."""
+
+
+@dataclass(eq=False)
+class _Called:
+    """A kernel that a thread asks machine code for; not_kept: known to be compiled, not read from a file."""
+
+    name: str
+    thread: int
+    not_kept: bool = False
 
 
 class _Compiling(threading.local):
@@ -32,14 +42,22 @@ def seconds_compiling() -> float:
 
 @contextlib.contextmanager
 def named_while_it_compiles(name: str) -> Iterator[None]:
-    """Whatever numba compiles meanwhile is told under this name."""
-    _called.append(name)
+    """Whatever numba compiles meanwhile on this thread is told under this name."""
+    called = _Called(name, threading.get_ident())
+    _called.append(called)
     try:
         yield
     finally:
-        _called.remove(name)
+        _called.remove(called)
+
+
+def is_not_kept() -> None:
+    """What this thread asks for is to be compiled."""
+    for called in _called:
+        if called.thread == threading.get_ident():
+            called.not_kept = True
 
 
 def kernel_at_work() -> str:
-    """Of the kernels called the one called first, others wait for it; empty where none is."""
-    return next(iter(_called), "")
+    """The kernel that is being compiled, others wait for it; empty where none is."""
+    return next((called.name for called in list(_called) if called.not_kept), "")

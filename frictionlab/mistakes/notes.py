@@ -236,6 +236,8 @@ class Notes:
             left = [name for name in names if name not in (*given,)]
             missing = [name for name in required if name in left]
             hint = did_you_mean(str(path[-1]), left, missing) or did_you_mean(str(path[-1]), names)
+            if not hint and str(path[-1]).isdecimal():  # 0,4 in braces is 0, and a key 4
+                hint = f"numbers are written with a point, such as 0.{path[-1]}"
             what = f"unknown key; allowed: {', '.join(names) or 'none'}"
             self.all.append(Note(path, what, hint, on_key=True))
 

@@ -104,7 +104,7 @@ def text_of(path: Path) -> str:
     except FileNotFoundError:
         raise UnreadableLawFile("no such file") from None
     except UnicodeDecodeError as problem:
-        raise UnreadableLawFile(f"is not UTF-8 text (byte {problem.start + 1})") from None
+        raise UnreadableLawFile(f"is not UTF-8 text (byte {problem.start + 1}); save it as UTF-8") from None
     except (OSError, ValueError) as problem:
         reason = problem.strerror if isinstance(problem, OSError) else str(problem)
         raise UnreadableLawFile(f"cannot be read: {reason}") from None

@@ -71,8 +71,9 @@ class Meter:
             if now < self._next or self._ended.is_set():
                 return
             self._next = now + (OFTEN if self._updating else NOW_AND_THEN)
-            kernel = kernel_words(len(compiled_here) - self._compiled_before + 1, kernel_at_work())
-            facts = stage_words(stage, now - self._start, kernel if waiting else "")
+            name = kernel_at_work() if waiting else ""
+            kernel = name and kernel_words(len(compiled_here) - self._compiled_before + 1, name)
+            facts = stage_words(stage, now - self._start, kernel)
             self._write([f"{self._whose}{facts[0]}", *facts[1:]], stage.share)
 
     def _write(self, facts: list[str], share: float | None) -> None:

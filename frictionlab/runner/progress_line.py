@@ -62,7 +62,7 @@ def _speed(stage: RunStage) -> list[str]:
 
 def kernel_words(number: int, name: str) -> str:
     """That a kernel is compiled, the so-manieth of this run."""
-    return f"compiling kernel {number}{name and f' ({name})'}"
+    return f"compiling kernel {number} ({name})"
 
 
 def spoken(seconds: float) -> str:

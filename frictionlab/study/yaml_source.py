@@ -118,7 +118,9 @@ def _text_of(path: FilePath, room: int) -> str:
     except FileNotFoundError:
         raise _unreadable(nothing, "no such file") from None
     except UnicodeDecodeError as problem:
-        raise _unreadable(nothing, f"is not UTF-8 text (byte {problem.start + 1})") from None
+        raise _unreadable(
+            nothing, f"is not UTF-8 text (byte {problem.start + 1}); save it as UTF-8"
+        ) from None
     except (OSError, ValueError) as problem:
         reason = problem.strerror if isinstance(problem, OSError) else str(problem)
         raise _unreadable(nothing, f"cannot be read: {reason}") from None

@@ -662,3 +662,30 @@ def test_a_command_imports_what_it_needs_and_no_more(
     loaded = set(done.stderr.split())
     assert "click" in loaded
     assert not loaded & set(stranger)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["run", ""], "Invalid value for 'STUDY': the path is empty"),
+        (["run", "study.yaml", "-o", ""], "Invalid value for '-o': the path is empty"),
+        (["run", f"{'x' * 300}.yaml"], ".yaml: File name too long"),
+        (["plot", "x" * 300], "xxx: File name too long"),
+        (["run", "study.yaml", "-o", "out", "--cache", "study.yaml"], "--cache: study.yaml is a file"),
+    ],
+)
+def test_a_path_that_can_be_none_is_one_message(frictionlab: Any, arguments: list[str], said: str) -> None:
+    study()
+    refused = frictionlab(*arguments)
+
+    assert (refused.code, refused.out) == (2, "")
+    assert said in refused.err
+    assert "Traceback" not in refused.err
+    assert sorted(path.name for path in Path().iterdir()) == ["study.yaml"]
+
+
+def test_a_decimal_comma_is_told_to_be_a_point(frictionlab: Any) -> None:
+    text = Path(study()).read_text().replace("mu: 0.4", "mu: 0,4")
+    Path("study.yaml").write_text(text)
+
+    assert "numbers are written with a point, such as 0.4" in frictionlab("check", "study.yaml").err

@@ -520,7 +520,7 @@ def test_a_likely_meaning_is_offered(written: Any, old: str, new: str, meant: st
         (b"a: [1\n", "study.yaml:2:1: not YAML: while parsing a flow sequence"),
         (b"schema: 1\nlaws: ]\n", "study.yaml:2:7: not YAML: while parsing a block node expected"),
         (b"a: 1\n---\nb: 2\n", "study.yaml:2:1: not YAML: expected a single document in the stream"),
-        (b"\x89PNG\r\n\x1a\n\x00\xff", "study.yaml: is not UTF-8 text (byte 1)"),
+        (b"\x89PNG\r\n\x1a\n\x00\xff", "study.yaml: is not UTF-8 text (byte 1); save it as UTF-8"),
         (b"schema: \x00 1", "study.yaml:1:9: is not text: character '\\x00'"),
         (b"[" * 1000, "study.yaml: not a study: nested too deeply"),
         (b"a: *nowhere", "study.yaml:1:4: not YAML: found undefined alias 'nowhere'"),

@@ -12,12 +12,14 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
+import matplotlib as mpl
 import pandas as pd
 from PIL import Image
 from ruamel.yaml import YAML
 
 import frictionlab as fl
-from frictionlab.charts.figures import draw_figures
+from frictionlab.charts.figures import figure_of
+from frictionlab.charts.style import STYLE, write_figure
 from frictionlab.cli.figures import kept_of
 from frictionlab.results.run import Run
 from frictionlab.runner.api import with_onsets
@@ -43,18 +45,16 @@ CURVES = {
 
 
 def _draw(run: Run, names: dict[str, str], pixels: Path, onsets: pd.DataFrame | None = None) -> None:
-    """Draw the figures of a written run; keep these."""
+    """Draw these figures of a written run."""
     saved = saved_as(run)
     options = replace(saved.study.figures, title=False)
-    with tempfile.TemporaryDirectory() as folder:
-        drawn = Path(folder)
-        draw_figures(saved.table, "", drawn, onsets, saved.curves, options, kept_of(saved))
-        for name, file in names.items():
-            text = _shortened((drawn / f"{name}.svg").read_text(encoding="utf-8"))
-            (PICTURES / f"{file}.svg").write_text(text, encoding="utf-8")
-            picture = Image.open(drawn / f"{name}.png")
-            picture.save(pixels / f"{file}.png")
-            picture.convert("L").save(pixels / f"{file}_grey.png")
+    for name, file in names.items():
+        figure = figure_of(saved.table, name, "", onsets, saved.curves, options, kept_of(saved))
+        with mpl.rc_context(STYLE):
+            drawn, picture = write_figure(figure, pixels / file)
+        text = _shortened(drawn.read_text(encoding="utf-8"))
+        (PICTURES / drawn.name).write_text(text, encoding="utf-8")
+        Image.open(picture).convert("L").save(pixels / f"{file}_grey.png")
 
 
 def _shortened(svg: str) -> str:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -79,7 +80,7 @@ class OrbitFigures:
         }
 
     def _draw(self, kinds: Sequence[Callable[[Axes, DrawnOrbit, Looks], None]]) -> Figure:
-        points = self.points if len(kinds) == 1 else _spread(self.points, MOST_IN_TIME)
+        points = self._side_by_side() if len(kinds) == 1 else _spread(self.points, MOST_IN_TIME)
         pictures = [(point, kind) for point in points for kind in kinds]
         width, wide = page_of(len(pictures), self.options.width)
         high = -(-len(pictures) // wide)
@@ -99,6 +100,13 @@ class OrbitFigures:
         _scale_friction(of_friction)
         label_once(figure.axes, wide)
         return figure
+
+    def _side_by_side(self) -> list[OrbitPicture]:
+        """The first point of each panel, then the second of each, that panels stand beside each other."""
+        panels: dict[tuple[SweptValue, ...], list[OrbitPicture]] = {}
+        for point in self.points:
+            panels.setdefault(point.settings[:-1], []).append(point)
+        return [point for row in zip_longest(*panels.values()) for point in row if point is not None]
 
     def _add_legend(self, figure: Figure, points: Sequence[OrbitPicture], poincare: bool) -> int:
         drawn = [loop.curve for point in points for loop in point.loops]

@@ -78,6 +78,17 @@ def test_orbits_are_of_points_at_which_slip_reverses_each_law_a_line() -> None:
     assert labels == ["coulomb", "dahl", "3 of 12 points"]
 
 
+def test_panels_stand_beside_each_other() -> None:
+    higher = TABLE.assign(**{"scene.drive.frequency": 3.0})
+    both = pd.concat([TABLE, higher], ignore_index=True)
+
+    with mpl.rc_context(STYLE):
+        figure = figures_of(both, kept=Kept(orbits_of, None))["hysteresis"]()
+
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert [title.split(",")[0][-1] for title in titles] == ["2", "3", "2", "3", "2", "3"]
+
+
 def test_poincare_points_lie_at_every_start_of_a_drive_period() -> None:
     figure = drawn("phase")
 

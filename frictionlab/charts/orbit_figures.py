@@ -146,11 +146,21 @@ def orbit_figures(
     return OrbitFigures(points, Looks(drawn), total, title, options)
 
 
-def _values(family: Family, panel: tuple[SweptValue, ...], turning: bool = False) -> list[float]:
-    """Those along the axis of a panel, or those of them at which slip of some curve reverses."""
+def _worth_drawing(family: Family, panel: tuple[SweptValue, ...], most: int) -> list[float]:
+    """Values along the axis of a panel: where slip reverses, the last of them where the body sticks."""
+    values = _values(family, panel, "reversals") or _values(family, panel)
+    chosen = _spread(values, most + 2)[1:-1] or values[:1]
+    sticking = _values(family, panel, "stick_fraction")
+    if sticking and not set(sticking) & set(chosen):
+        chosen[-1] = sticking[len(sticking) // 2]
+    return chosen
+
+
+def _values(family: Family, panel: tuple[SweptValue, ...], positive: str | None = None) -> list[float]:
+    """Those along the axis of a panel, or those of them at which a column of some curve is positive."""
     rows = [curve.rows for curve in family.curves if curve.panel == panel]
-    if turning:
-        rows = [each[each["reversals"] > 0] if "reversals" in each else each.iloc[:0] for each in rows]
+    if positive is not None:
+        rows = [each[each[positive] > 0] if positive in each else each.iloc[:0] for each in rows]
     return sorted({float(value) for each in rows for value in each[family.abscissa].dropna()})
 
 
@@ -161,8 +171,7 @@ def _chosen(family: Family) -> Iterator[tuple[tuple[SweptValue, ...], list[tuple
     each = max(1, min(MOST_OF_A_PANEL, MOST_ORBITS // len(panels)))
     for panel in panels:
         curves = [one for one in family.curves if one.panel == panel and one.place[1] in looks.shown]
-        values = _values(family, panel, turning=True) or _values(family, panel)
-        for value in _spread(values, each + 2)[1:-1] or values[:1]:
+        for value in _worth_drawing(family, panel, each):
             rows = [
                 (curve, curve.rows.iloc[at])
                 for curve in curves

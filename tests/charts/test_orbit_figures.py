@@ -78,6 +78,15 @@ def test_orbits_are_of_points_at_which_slip_reverses_each_law_a_line() -> None:
     assert labels == ["coulomb", "dahl", "3 of 12 points"]
 
 
+def test_a_point_at_which_the_body_sticks_is_among_them() -> None:
+    sticks = TABLE.assign(stick_fraction=np.where(TABLE["scene.belt_speed"] == 7.0, 0.1, 0.0))
+
+    with mpl.rc_context(STYLE):
+        figure = figures_of(sticks, kept=Kept(orbits_of, None))["phase"]()
+
+    assert [axes.get_title(loc="left")[-1] for axes in figure.axes] == ["3", "4", "7"]
+
+
 def test_panels_stand_beside_each_other() -> None:
     higher = TABLE.assign(**{"scene.drive.frequency": 3.0})
     both = pd.concat([TABLE, higher], ignore_index=True)

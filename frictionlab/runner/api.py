@@ -37,7 +37,7 @@ from frictionlab.runner.arguments import (
     given_study,
     given_tolerance,
 )
-from frictionlab.runner.chosen_speeds import Chosen, choose_speeds, rows_of_round
+from frictionlab.runner.chosen_speeds import ChosenSpeeds, choose_speeds, rows_of_round
 from frictionlab.runner.chunks import Task, task_of
 from frictionlab.runner.code_digest import code_digest
 from frictionlab.runner.errors import SaveError
@@ -179,7 +179,7 @@ class _RoundSolver:
         return gathering, _solve(gathering, left, self.kept, self.executor)
 
 
-def _take_over(chosen: Chosen, curves: Sequence[StudyCurve], gathering: Accumulator) -> bool:
+def _take_over(chosen: ChosenSpeeds, curves: Sequence[StudyCurve], gathering: Accumulator) -> bool:
     """Enter the rows of every round; True where the last was interrupted."""
     for one in chosen.rounds:
         gathering.take_over(one.gathering, *rows_of_round(one, curves))

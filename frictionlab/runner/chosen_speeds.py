@@ -32,7 +32,7 @@ class Round:
 
 
 @dataclass(frozen=True)
-class Chosen:
+class ChosenSpeeds:
     """A study with its belt speeds, the rounds in which they were solved, and whether the last was interrupted."""
 
     study: Study
@@ -42,7 +42,7 @@ class Chosen:
 
 def choose_speeds(
     study: Study, solve: Callable[[Study, list[StudyCurve]], tuple[Accumulator, bool]]
-) -> Chosen:
+) -> ChosenSpeeds:
     """Solve at more and more belt speeds until chords are within what the study says; those of a scene are shared.
 
     Every law and method of a scene is solved at all of its belt speeds: begin with evenly spaced ones and V_lin, then
@@ -68,7 +68,7 @@ def choose_speeds(
         new = [each if not stopped else np.empty(0) for each in asked]
         speeds = [np.union1d(*both) for both in zip(speeds, new, strict=True)]
         _check_size(study.with_speeds([each.tolist() for each in speeds]), along)
-    return Chosen(study.with_speeds([each.tolist() for each in speeds]), rounds, stopped)
+    return ChosenSpeeds(study.with_speeds([each.tolist() for each in speeds]), rounds, stopped)
 
 
 def _check_size(study: Study, along: SpeedRange) -> None:

@@ -69,7 +69,7 @@ def needs_of_study(study: Study, within: float | None = None) -> Iterator[Needs]
     laws = registry.Laws({choice.kind: choice.law_class for choice in study.laws})
     asked = _Asked(laws, kinds, study.seconds_per_point)
     first = study.methods[0].label
-    for curve in study.curves():
+    for curve in study.foreseen().curves():
         if curve.method.label != first:
             continue
         found, label = _of_curve(curve.scenes, curve.given_law, within, asked), _label(study, curve)

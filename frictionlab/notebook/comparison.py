@@ -218,8 +218,9 @@ def compare(
     """Several laws, by one or several methods, along belt speeds of one scene.
 
     laws: a law, a list of laws, of which two of one kind need a ``label=``, or a mapping label -> law.
-    belt_speed: a list, or a range as in a study, ``{"start": 1, "stop": 60, "num": 120}``; that of the scene where it
-    is left out. columns: result columns, all by default.
+    belt_speed: a list, or a range as in a study, ``{"start": 1, "stop": 60, "num": 120}``, or with ``"within": 1e-3``
+    in place of num, which chooses points where curves bend; that of the scene where it is left out.
+    columns: result columns, all by default.
 
     >>> import frictionlab as fl
     >>> drive = fl.Drive(unbalance=10, frequency=1)

@@ -18,6 +18,7 @@ from frictionlab.scene.signals import Signal
 from frictionlab.scene.waveforms import SINE, as_fraction
 from frictionlab.study import GridValue, LawChoice, Study
 from frictionlab.study.axes import FRICTION, Axis
+from frictionlab.study.ranges import SpeedRange
 
 MOST_LISTED = 8
 """Values of a sweep that are listed one by one; of more, the ends and how many."""
@@ -218,11 +219,19 @@ def _set(parameters: Mapping[str, Any]) -> Cell:
 def sweep_grid(study: Study) -> Grid:
     """What is swept, and over what."""
     rows = [
-        [_together(study, axis, path), path, values_listed(values)]
+        [_together(study, axis, path), path, _values_of(study, path, values)]
         for axis in study.axes
         for path, values in axis.values.items()
     ]
     return grid("The sweep: every combination of these is a point", ["quantity", "key", "values"], rows)
+
+
+def _values_of(study: Study, path: str, values: Sequence[GridValue]) -> str:
+    along = study.ranges.get(path)
+    if isinstance(along, SpeedRange):
+        ends = f"{number(along.start)} … {number(along.stop)}"
+        return f"{ends}, chosen until straight lines between points are within {number(along.within)} of the mean"
+    return values_listed(values)
 
 
 def _together(study: Study, axis: Axis, path: str) -> Cell:

@@ -56,7 +56,8 @@ def choose_speeds(
         _breaks([each.law for each in curves[at::count]], curves[at].scenes.scene, along)
         for at in range(count)
     ]
-    new = [_first(along, each) for each in breaks]
+    named = _named(study, along)
+    new = [_first(along, each, named) for each in breaks]
     speeds, known, rounds, stopped = new, [_nothing()] * len(curves), list[Round](), False
     while any(map(len, new)) and not stopped:
         one = study.with_speeds([each.tolist() for each in new])
@@ -91,11 +92,19 @@ def _breaks(laws: Sequence[FrictionLaw], scene: Scene, along: SpeedRange) -> Flo
     return np.unique([each for each in found if along.start + near < each < along.stop - near])
 
 
-def _first(along: SpeedRange, breaks: Floats) -> Floats:
-    """Evenly spaced belt speeds, and V_lin in place of one that is nearly there."""
+def _named(study: Study, along: SpeedRange) -> Floats:
+    """The belt speeds in the range that the study expects something of."""
+    path = next(path for path, each in study.ranges.items() if each is along)
+    found = [each.where[path] for each in study.expect if path in each.where]
+    return np.array([each for each in found if isinstance(each, float) and along.start <= each <= along.stop])
+
+
+def _first(along: SpeedRange, breaks: Floats, named: Floats) -> Floats:
+    """Evenly spaced belt speeds, and V_lin and those named in place of any that are nearly there."""
     even, near = np.array(along.first()), CLOSEST * (along.stop - along.start)
-    far = [bool((np.abs(breaks - each) > near).all()) for each in even]
-    return np.union1d(even[far], breaks)
+    wanted = np.unique(np.concatenate([breaks, named]))
+    far = [bool((np.abs(wanted - each) > near).all()) for each in even]
+    return np.union1d(even[far], wanted)
 
 
 def _asked(known: Sequence[Known], breaks: Floats, along: SpeedRange) -> Floats:

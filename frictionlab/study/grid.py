@@ -405,7 +405,7 @@ def _may_be_chosen(study: Study, along: SpeedRange, notes: Notes) -> bool:
     path: Path = ("sweep", next(path for path, each in study.ranges.items() if each is along), WITHIN)
     about = grid_size(study.foreseen())
     if along.within < FINEST * study.tolerance:
-        least = number_text(FINEST * study.tolerance)
+        least = number_text(float(f"{FINEST * study.tolerance:.6g}"))
         notes.add(path, f"must be >= {least}, {FINEST:g} times tolerance, got {number_text(along.within)}")
     elif about > MOST_CHOSEN:
         what = (
@@ -502,7 +502,8 @@ def _list_value(item: Any, target: _Target | None, path: Path, notes: Notes) -> 
 
 def _read_range(given: dict[str, Any], path: Path, notes: Notes) -> SweepRange | SpeedRange | None:
     chosen = WITHIN in given
-    notes.mapping(given, path, ("start", "stop", WITHIN) if chosen else (*_KEYS, WITHIN))
+    usual = (*_KEYS, WITHIN) if path[-1] in BELT_SPEEDS else _KEYS
+    notes.mapping(given, path, ("start", "stop", WITHIN) if chosen else usual)
     for key in ("start", "stop") if chosen else ("start", "stop", "num"):
         if key not in given:
             notes.add((*path, key), "required key is missing")

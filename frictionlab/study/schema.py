@@ -16,7 +16,7 @@ from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
 from frictionlab.study.axes import FRICTION, LINKED
 from frictionlab.study.figure_options import FIGURE_KEYS, FLAGS, FORMATS, WIDTHS
-from frictionlab.study.grid import LARGEST_GRID
+from frictionlab.study.grid import LARGEST_GRID, WITHIN
 from frictionlab.study.study import LIMIT_KEY, SCHEMA, SECONDS_PER_POINT
 
 _KEYS = {
@@ -72,6 +72,11 @@ _WORD_OR_NUMBER: dict[str, Any] = {
 }
 """What a sweep of a scene runs over, and what selects rows of its table."""
 _TEXT = {"type": "string"}
+_POSITIVE: dict[str, Any] = {"type": "number", "exclusiveMinimum": 0}
+_WITHIN = "belt speeds are chosen until straight lines between points are within this of mean_friction"
+_SPEEDS = (
+    "belt speeds: a list, a range, or start, stop and within, between which they are chosen as the run goes"
+)
 _TIME = {"type": "number", "exclusiveMinimum": 0, "default": SECONDS_PER_POINT}
 # Behind a validator defined here a bound keeps pydantic's name.
 _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
@@ -219,9 +224,15 @@ def _sweep() -> dict[str, Any]:
         "propertyNames": {"pattern": r"^(scene\..+|laws\..+\..+|friction)$"},
         "additionalProperties": {"oneOf": [together, ranged]},
     }
+    chosen = _closed_object(
+        {"start": _NUMBER, "stop": _NUMBER, WITHIN: {**_POSITIVE, "description": _WITHIN}},
+        ["start", "stop", WITHIN],
+    )
+    speeds = {"oneOf": [listed, ranged, chosen]}
     return {
         "type": "object",
         "properties": {
+            **{path: {"description": _SPEEDS, **speeds} for path in columns.BELT_SPEEDS},
             FRICTION: {"description": _KEYS[FRICTION], **values},
             LINKED: {"description": _KEYS[LINKED], "type": "array", "items": entry},
         },

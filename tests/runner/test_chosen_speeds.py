@@ -1,0 +1,241 @@
+"""Belt speeds chosen as a run goes: near enough, no more than needed, the same again, and continued where stopped."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from pandas.testing import assert_frame_equal
+
+import frictionlab as fl
+from frictionlab.quantities import Floats
+from frictionlab.results.bends import chord_deviation, halves_to_add
+from frictionlab.runner import api
+from frictionlab.runner.kept_chunks import KeptChunks
+from frictionlab.runner.plan import plan
+from frictionlab.runner.saved import read_saved
+from frictionlab.runner.share import run_share
+from frictionlab.study import StudyError, load_study, parse_study
+
+WITHIN = 1e-3
+LAWS = [{"kind": "coulomb", "mu": 0.4}, {"kind": "coulomb", "mu": 0.2, "label": "smooth"}]
+SCENE = {"damping_ratio": 0.1, "normal_load": 10, "drive": {"unbalance": 10, "frequency": 1}}
+STUDY: dict[str, Any] = {
+    "schema": 1,
+    "scene": SCENE,
+    "laws": LAWS,
+    "sweep": {
+        "scene.belt_speed": {"start": 0.5, "stop": 60, "within": WITHIN},
+        "scene.drive.frequency": [1.0, 1.5],
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def chosen() -> fl.Study:
+    return api.run(STUDY).study
+
+
+@pytest.mark.parametrize("within", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize(
+    ("curve", "kink", "most", "off"),
+    [
+        (lambda v: 0.4 * np.arcsin(np.minimum(v / 50.0, 1.0)), 50.0, 3.0, 1.0),
+        (lambda v: 0.4 * np.arcsin(np.minimum(v / 50.0, 1.0)), np.nan, 3.0, 3.0),
+        (lambda v: 0.01 * np.abs(v - 23.456), np.nan, 0.4, 1.0),
+        (lambda v: 0.4 * np.sin(v / 5.0), np.nan, 11.0, 1.0),
+        (lambda v: 0.05 * np.sqrt(v - 0.5), np.nan, 3.0, 1.0),
+        (lambda v: 0.4 * np.tanh(v), np.nan, 3.0, 1.0),
+        (lambda v: 0.4 - 0.3 * np.exp(-((v - 20.0) ** 2)), np.nan, 5.0, 1.0),
+    ],
+)
+def test_chords_come_within_what_is_asked_with_few_points(  # or three times that at a kink that nobody foresaw
+    curve: Callable[[Floats], Floats], kink: float, most: float, off: float, within: float
+) -> None:
+    speeds = np.union1d(np.linspace(0.5, 60.0, 17), [kink] if kink == kink else [])
+    while len(more := halves_to_add(speeds, curve(speeds), 0.0 * speeds, np.array([kink]), within, 1e-5)):
+        speeds = np.union1d(speeds, more)
+
+    dense = np.linspace(0.5, 60.0, 100_001)
+    assert np.abs(np.interp(dense, speeds, curve(speeds)) - curve(dense)).max() < off * within
+    assert len(speeds) < 20 + most * 0.4 / np.sqrt(within)
+
+
+def test_a_jump_is_halved_to_the_smallest_spacing_and_nothing_beside_a_gap() -> None:
+    speeds = np.linspace(0.0, 16.0, 17)
+    while len(
+        more := halves_to_add(speeds, 0.1 * (speeds > np.pi), 0.0 * speeds, np.empty(0), 1e-3, 2.0**-10)
+    ):
+        speeds = np.union1d(speeds, more)
+    assert np.diff(speeds).min() == 2.0**-10
+    assert len(speeds) < 17 + 2 * 10
+
+    means = np.linspace(0.0, 16.0, 17) ** 2
+    means[8] = np.nan
+    more = halves_to_add(np.linspace(0.0, 16.0, 17), means, 0.0 * means, np.empty(0), 1e-3, 1e-3)
+    assert not ((more > 7.0) & (more < 9.0)).any()
+    assert len(more) == 14
+
+
+def test_points_are_not_asked_for_by_their_own_errors() -> None:
+    speeds, means = np.arange(9.0), 1e-3 * np.array([0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0])
+    assert len(halves_to_add(speeds, means, 0.0 * means, np.empty(0), 5e-4, 1e-3))
+    assert not len(halves_to_add(speeds, means, 0.0 * means + 1e-3, np.empty(0), 5e-4, 1e-3))
+
+
+def test_a_convex_curve_lies_in_the_triangles_of_its_chords() -> None:
+    speeds = np.sort(np.random.default_rng(3).uniform(1.0, 3.0, 40))
+    dense = np.linspace(speeds[0], speeds[-1], 20_001)
+    off = np.abs(np.interp(dense, speeds, np.exp(speeds)) - np.exp(dense))
+    place = np.clip(np.searchsorted(speeds, dense) - 1, 0, 38)
+    assert (off <= chord_deviation(speeds, np.exp(speeds))[place] + 1e-12).all()
+
+
+def test_a_run_is_near_its_curves_everywhere(chosen: fl.Study) -> None:
+    table = api.run(STUDY).table
+    assert len(table) == sum(map(len, chosen.chosen)) * 2
+    assert len(table) < 2 * (25 + 50)
+    dense = np.linspace(0.5, 60.0, 700)
+    for (label, frequency), rows in table.groupby(["law", "scene.drive.frequency"]):
+        scene = fl.Scene(**SCENE, belt_speed=5).with_(**{"drive.frequency": frequency})
+        speeds = rows["scene.belt_speed"].to_numpy()
+        exact = fl.curve(scene, fl.Coulomb(mu=0.4 if label == "coulomb" else 0.2), dense)["mean_friction"]
+        assert (np.diff(speeds) > 0.0).all()
+        assert set(speeds[[0, -1]]) == {0.5, 60.0}
+        assert (rows["velocity_ratio"] - 1.0).abs().min() < 1e-12
+        assert np.abs(np.interp(dense, speeds, rows["mean_friction"]) - exact).max() < WITHIN
+    one, other = (
+        table[table["law"] == label]["scene.belt_speed"].tolist() for label in ("coulomb", "smooth")
+    )
+    assert one == other
+
+
+def test_the_same_run_again_computes_nothing(tmp_path: Path) -> None:
+    first = api.run(STUDY, out=tmp_path / "run")
+    assert first.computed == len(first.table)
+    again = api.run(load_study(tmp_path / "run" / "study.yaml"), out=tmp_path / "run")
+    assert again.computed == 0
+    assert_frame_equal(again.table, first.table)
+    assert api.run(STUDY, out=tmp_path / "other").computed == 0
+
+    shutil.rmtree(tmp_path / ".cache")
+    assert api.run(STUDY, out=tmp_path / "run").computed == 0
+    saved = read_saved(tmp_path / "run")
+    assert saved.study.chosen == first.study.chosen
+    assert len(saved.table) == sum(len(curve.rows) for curve in saved.study.curves())
+    assert "within: 0.001" in (tmp_path / "run" / "study.yaml").read_text()
+
+
+def test_an_interrupted_run_keeps_its_rounds_and_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole, calls, solve = api.run(STUDY).table, [0], api._solve
+
+    def interrupted(*given: Any) -> bool:
+        calls[0] += 1
+        if calls[0] == 3:
+            given[0].unfinished("interrupted")
+            return True
+        return solve(*given)
+
+    monkeypatch.setattr(api, "_solve", interrupted)
+    with pytest.raises(api.Interrupted) as problem:
+        api.run(STUDY, out=tmp_path / "run")
+    table = problem.value.run.table
+    assert set(table["status"]) == {"ok", "killed"}
+    assert read_saved(tmp_path / "run").size == len(table)
+
+    monkeypatch.undo()
+    shutil.rmtree(tmp_path / ".cache")
+    on = api.run(STUDY, out=tmp_path / "run")
+    assert on.computed == len(whole) - (table["status"] == "ok").sum()
+    assert_frame_equal(on.table.drop(columns="seconds"), whole.drop(columns="seconds"))
+
+
+def test_what_is_kept_of_orbits_belongs_to_its_row(tmp_path: Path) -> None:
+    kept = STUDY | {"keep": {"orbit": 4, "harmonics": 2}, "laws": LAWS[:1]}
+    done = api.run(kept, out=tmp_path / "run")
+    assert done.orbits is not None
+    assert done.harmonics is not None
+    assert sorted(set(done.orbits["row"])) == list(range(len(done.table)))
+    assert len(done.harmonics) == 3 * len(done.table)
+    for row in (0, len(done.table) - 1):
+        given = done.table.iloc[row]
+        scene = fl.Scene(**SCENE, belt_speed=given["scene.belt_speed"])
+        scene = scene.with_(**{"drive.frequency": given["scene.drive.frequency"]})
+        orbit = fl.steady_state(scene, fl.Coulomb(mu=0.4)).orbit(4)
+        np.testing.assert_allclose(done.orbits[done.orbits["row"] == row]["v1"], orbit["v1"], atol=1e-9)
+    assert api.run(kept, out=tmp_path / "run").computed == 0
+
+
+def test_belt_speeds_that_are_expected_of_are_points() -> None:
+    expect = [{"where": {"scene.belt_speed": 7, "law": "coulomb"}, "column": "mean_friction", "above": 0}]
+    done = api.run(STUDY | {"expect": expect})
+    assert all(verdict.passed for verdict in done.verdicts)
+    assert 7.0 in set(done.table["scene.belt_speed"])
+
+
+def test_metres_per_second_are_chosen_as_well() -> None:
+    si = {
+        "mass_kg": 2.0, "stiffness_N_per_m": 800.0, "damping_N_s_per_m": 8.0, "length_m": 1e-3,
+        "drive": {"amplitude_N": 4.0, "frequency_rad_per_s": 30.0},
+    }  # fmt: skip
+    over = {"scene.dimensional.belt_speed_m_per_s": {"start": 0.01, "stop": 0.5, "within": 1e-2}}
+    done = api.run({"schema": 1, "scene": {"dimensional": si}, "laws": LAWS[:1], "sweep": over})
+    assert done.counts == {"ok": len(done.table)}
+    assert (done.table["velocity_ratio"] - 1.0).abs().min() < 1e-12
+
+
+def test_the_plan_says_about_how_many(chosen: fl.Study) -> None:
+    entry = plan(parse_study(STUDY))[0]
+    assert entry.about
+    assert entry.points == pytest.approx(sum(map(len, chosen.chosen)), rel=0.5)
+
+
+def test_a_part_cannot_know_them(tmp_path: Path) -> None:
+    with pytest.raises(
+        StudyError, match=r"belt speeds within 0\.001 are chosen as a run goes, and a part of it"
+    ):
+        run_share(parse_study(STUDY), (1, 2), KeptChunks(tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("sweep", "said"),
+    [
+        ({"scene.belt_speed": {"start": 1, "stop": 2, "within": 0}}, "belt_speed.within: must be > 0, got 0"),
+        (
+            {"scene.belt_speed": {"start": 1, "stop": 2, "within": 1e-8}},
+            "belt_speed.within: must be >= 1e-07, 10 times tolerance, got 1e-08",
+        ),
+        (
+            {"scene.belt_speed": {"start": 1, "stop": 2, "num": 3, "within": 1e-2}},
+            "belt_speed.num: unknown key; allowed: start, stop, within",
+        ),
+        ({"scene.belt_speed": {"start": 2, "stop": 1, "within": 1e-2}}, "belt_speed.stop: must be > start = 2"),
+        ({"scene.belt_speed": {"stop": 1, "within": 1e-2}}, "belt_speed.start: required key is missing"),
+        (
+            {"scene.normal_load": {"start": 1, "stop": 2, "within": 1e-2}},
+            "normal_load.within: belt speeds alone are chosen so",
+        ),
+        (
+            {"linked": [{"scene.belt_speed": {"start": 1, "stop": 2, "within": 0.01}, "scene.normal_load": [1, 2]}]},
+            "scene.belt_speed.within: belt speeds alone are chosen so, where no others are linked to them",
+        ),
+        (
+            {
+                "scene.belt_speed": {"start": 1, "stop": 2, "within": 1e-3},
+                "scene.normal_load": {"start": 1, "stop": 2, "num": 2000},
+            },
+            "points; belt speeds are chosen for 100000 at most: give num",
+        ),
+    ],
+)  # fmt: skip
+def test_mistakes_are_told(sweep: dict[str, Any], said: str) -> None:
+    with pytest.raises(StudyError) as problem:
+        parse_study(STUDY | {"sweep": sweep, "scene": SCENE | {"belt_speed": 1}})
+    assert said in str(problem.value)
+    assert len(problem.value.mistakes) == 1

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Status
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
@@ -28,8 +29,8 @@ class NoMeanError(RuntimeError):
 class OrbitOf:
     """The orbit of one steady state, made when first asked for, or when it goes to another process."""
 
-    def __init__(self, make: Callable[[int], Orbit | None], scene: Scene) -> None:
-        self._make, self._scene = make, scene
+    def __init__(self, make: Callable[[int], Orbit | None], scene: Scene, law: FrictionLaw) -> None:
+        self._make, self._scene, self._law = make, scene, law
 
     @cached_property
     def _orbit(self) -> Orbit | None:
@@ -41,7 +42,7 @@ class OrbitOf:
             return None
         from frictionlab.orbit.sample import sample  # imports numba: only where it is needed
 
-        return sample(self._orbit, self._scene, n)
+        return sample(self._orbit, self._scene, self._law, n)
 
     def harmonics(self, highest: int, across: bool) -> HarmonicParts | None:
         """Its harmonics 0 ... highest along or across the belt; None where there is no orbit."""
@@ -52,7 +53,7 @@ class OrbitOf:
         return harmonic_parts(self._scene, self._orbit, highest, across)
 
     def __reduce__(self) -> Any:
-        return OrbitOf, (partial(_kept, self._orbit), self._scene)
+        return OrbitOf, (partial(_kept, self._orbit), self._scene, self._law)
 
 
 def _kept(orbit: Orbit | None, _place: int) -> Orbit | None:
@@ -159,7 +160,7 @@ class SteadyState:
             raise ValueError(self._no_orbit())
         import pandas as pd  # takes half a second, which a mean alone need not
 
-        return pd.DataFrame(samples._asdict())
+        return pd.DataFrame(samples.columns())
 
     def harmonics(self, highest: int, across: bool = False) -> HarmonicParts:
         """Harmonics 0 ... highest of velocity [omega_1 L] and friction [-] along the belt, or across it.

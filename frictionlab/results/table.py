@@ -198,6 +198,8 @@ class Results:
         columns = given.columns | found | in_si
         frame = pd.DataFrame({name: column[rows] for name, column in columns.items() if column is not None})
         for name in frame.columns[[kind.kind == "O" for kind in frame.dtypes]]:
+            if name in given.columns and frame[name].isna().all():
+                continue  # words of other rows
             frame[name] = _column_of_words_or_numbers(frame[name])
         return frame
 
@@ -263,9 +265,17 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
-def orbit_rows(orbits: KeptRows, earlier: pd.DataFrame | None, finished: Places) -> pd.DataFrame | None:
-    """The kept orbits, one row per sample; ``row`` is the point's place in the table. None without any."""
+def orbit_rows(
+    orbits: KeptRows, earlier: pd.DataFrame | None, finished: Places, memories: Sequence[str] = ()
+) -> pd.DataFrame | None:
+    """The kept orbits, one row per sample; ``row`` is the point's place in the table. None without any.
+
+    memories: columns of memory to be there whether or not one of these laws remembers so much; NaN where none does.
+    """
     frames = [pd.DataFrame({"row": row, **samples}) for row, samples in sorted(orbits.items())]
     if earlier is not None:
         frames.append(earlier[earlier["row"].isin(finished)])
-    return pd.concat(frames).sort_values("row", kind="stable", ignore_index=True) if frames else None
+    if not frames:
+        return None
+    rows = pd.concat(frames).sort_values("row", kind="stable", ignore_index=True)
+    return rows.reindex(columns=list(dict.fromkeys([*rows.columns, *memories]))) if memories else rows

@@ -64,7 +64,7 @@ class LongFiles:
         marked.attrs = {SOLVER: self._folder.identity.solver}
         writer = self._open.get(path)
         if writer is None:
-            content = pa.Table.from_pandas(marked, preserve_index=False)
+            content = pa.Table.from_pandas(marked, _with_text(marked), preserve_index=False)
             writer = self._open[path] = pq.ParquetWriter(self._opened(path), content.schema)
         else:
             content = pa.Table.from_pandas(marked, writer.schema, preserve_index=False)
@@ -96,6 +96,15 @@ class LongFiles:
             if problem is None:
                 self._folder.adopt(path, temporary)
             temporary.unlink(missing_ok=True)
+
+
+def _with_text(table: pd.DataFrame) -> pa.Schema:
+    """The schema of a table, a column of objects without any as one of text: later rows may have some."""
+    schema = pa.Schema.from_pandas(table, preserve_index=False)
+    for place, name in enumerate(schema.names):
+        if table[name].dtype == object and table[name].isna().all():
+            schema = schema.set(place, pa.field(name, pa.string()))
+    return schema
 
 
 def read_pieces(file: Path) -> Iterator[pd.DataFrame]:

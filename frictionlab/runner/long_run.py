@@ -171,7 +171,7 @@ class LongRun:
 
     def _pieces(self) -> Iterator[_Piece]:
         """The table piece by piece."""
-        columns, chosen = InputColumns(self._curves), self._study.selected()
+        columns, chosen, memories = InputColumns(self._curves), self._study.selected(), self._memories()
         found = self._answers()
         for block in blocks(self._curves):
             first = min(self._curves[place].rows.start for place in block)
@@ -182,7 +182,16 @@ class LongRun:
                 moved = part.moved(part.rows - first)
                 results.put(moved)
                 orbits |= part.kept.get("orbits", {})
-            yield _Piece(inputs, results, orbit_rows(orbits, None, np.empty(0, np.int64)))
+            yield _Piece(inputs, results, orbit_rows(orbits, None, np.empty(0, np.int64), memories))
+
+    def _memories(self) -> list[str]:
+        """The columns of memory of all laws, where orbits are kept: all rows of a file have the same."""
+        if not task_of(self._study).samples:
+            return []
+        from frictionlab.orbit.sample import memory_columns  # imports numba: only where it is needed
+
+        laws = {id(curve.given_law): curve.given_law for curve in self._curves}.values()
+        return list(dict.fromkeys(name for law in laws for name in memory_columns(law)))
 
     def _answers(self) -> Iterator[list[Part]]:
         """Of one curve after another, the answers that are there."""

@@ -195,7 +195,9 @@ def _kept(chunk: Chunk, piece: Piece) -> dict[str, KeptRows]:
     found = {place: piece.answers.orbit(at) for at, place in enumerate(piece.places)}
     there = [(int(chunk.rows[place]), chunk.scenes[place], one) for place, one in found.items() if one]
     if task.samples:
-        kept["orbits"] = {row: sample(one, scene, task.samples)._asdict() for row, scene, one in there}
+        kept["orbits"] = {
+            row: sample(one, scene, chunk.law, task.samples).columns() for row, scene, one in there
+        }
     if task.harmonics:
         kept["harmonics"] = {row: harmonic_columns(scene, one, task.harmonics) for row, scene, one in there}
     return kept

@@ -43,7 +43,7 @@ def steady_state(
     (part,) = within(inf, parts, chunk, [piece])
     numbers = {name: float(column[0]) for name, column in part.numbers.items()}
     words = {name: column[0] for name, column in part.text.items()}
-    motion = OrbitOf(piece.answers.orbit, scene)
+    motion = OrbitOf(piece.answers.orbit, scene, chunk.law)
     return SteadyState(**words, **numbers, si=_in_si(part, scene), motion=motion)  # type: ignore[arg-type]
 
 

@@ -56,15 +56,17 @@ def trajectory(
     found = within(inf, ready.motion, scene, law, periods, accuracy)
     if not found:
         raise ValueError(NO_MOTION.format(name=ready.name, why=NOT_DRIVEN))
-    return _sampled(scene, found, samples)
+    return _sampled(scene, law, found, samples)
 
 
-def _sampled(scene: Scene, found: list[Orbit], samples: int) -> pd.DataFrame:
-    from frictionlab.orbit.sample import sample_at  # imports numba: only where it is needed
+def _sampled(scene: Scene, law: FrictionLaw, found: list[Orbit], samples: int) -> pd.DataFrame:
+    from frictionlab.orbit.sample import sample_at, work_of  # imports numba: only where it is needed
 
-    rows = []
+    rows, done = [], 0.0
     for place, orbit in enumerate(found):
         last = place == len(found) - 1
         times = np.linspace(orbit.tau[0, 0], orbit.tau[-1, -1], samples + 1)
-        rows.append(pd.DataFrame(sample_at(orbit, scene, times if last else times[:-1])._asdict()))
+        part = pd.DataFrame(sample_at(orbit, scene, law, times if last else times[:-1]).columns())
+        rows.append(part.assign(work=part.work + done))
+        done += work_of(orbit, scene)
     return pd.concat(rows, ignore_index=True)

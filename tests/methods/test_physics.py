@@ -290,7 +290,7 @@ def test_a_belt_faster_than_the_friction_free_motion_feels_full_friction(scene):
 @given(scene=scenes_on_the_line(speed=(0.02, 0.7), friction=(0.05, 0.5)))
 def test_the_energy_of_friction_needs_the_sign_of_the_slip_not_of_the_position(scene):
     found = exact(scene)
-    at = sample(found.orbit, scene, 20_000)
+    at = sample(found.orbit, scene, LAW, 20_000)
     period = 2.0 * math.pi / scene.frequency
     printed = friction_of(scene) * period * np.mean(np.sign(at.x1 - scene.belt_speed) * at.v1)
     corrected = friction_of(scene) * period * np.mean(np.sign(at.v1 - scene.belt_speed) * at.v1)

@@ -196,7 +196,7 @@ def test_samples_are_the_motion_at_equally_spaced_times(n):
         drive=Drive(amplitude=3.0, frequency=1.5, phase=30.0),
         transverse=Transverse(natural_frequency=2.0, damping_ratio=0.2, load=Load(amplitude=0.5, phase=90.0)),
     )
-    at = sample(motion(1.5, 12, harmonic(1.5, 2.0 + 0j, 1j)), scene, n)
+    at = sample(motion(1.5, 12, harmonic(1.5, 2.0 + 0j, 1j)), scene, LAW, n)
     angle = 2.0 * math.pi * np.arange(n) / n
 
     np.testing.assert_allclose(at.tau, angle / 1.5, rtol=1e-13)
@@ -221,11 +221,11 @@ def test_the_samples_of_loads_are_their_waveforms_and_at_a_jump_the_value_after_
             load=Load(amplitude=0.5, waveform="triangle", frequency_ratio=2),
         ),
     )
-    at = sample(motion(1.0, 12, harmonic(1.0, 2.0 + 0j, 1j)), scene, 8)
+    at = sample(motion(1.0, 12, harmonic(1.0, 2.0 + 0j, 1j)), scene, LAW, 8)
     turned = scene.with_(
         **{"drive.direction": 60, "drive.waveform": None, "transverse.load": None, "drive.phase": 90}
     )
-    aslant = sample(motion(1.0, 12, harmonic(1.0, 2.0 + 0j, 1j)), turned, 8)
+    aslant = sample(motion(1.0, 12, harmonic(1.0, 2.0 + 0j, 1j)), turned, LAW, 8)
 
     np.testing.assert_allclose(at.load, [3, 3, 3, 3, -3, -3, -3, -3], atol=1e-12)
     np.testing.assert_allclose(at.load_transverse, [0, 0.5, 0, -0.5] * 2, atol=1e-12)
@@ -243,7 +243,7 @@ def test_an_orbit_under_a_changing_load_has_the_force_over_the_mean_load():
         drive=Drive(amplitude=1.0, frequency=2.0),
         normal_load_variation={"amplitude": 0.5, "frequency_ratio": "3/2"},
     )
-    at = sample(with_columns(Shooting(), [scene], LAW, 1e-9).orbit(0), scene, 16)
+    at = sample(with_columns(Shooting(), [scene], LAW, 1e-9).orbit(0), scene, LAW, 16)
 
     np.testing.assert_allclose(at.tau[1:], 2.0 * math.pi * np.arange(1, 16) / 16, rtol=1e-12)
     np.testing.assert_allclose(at.friction, -MU * (1.0 + 0.5 * np.sin(3.0 * at.tau)), atol=1e-9)
@@ -255,7 +255,7 @@ def test_the_samples_of_a_prescribed_slip_have_no_load():
         slip=Slip(velocity_amplitude=3.0, frequency=2.0, phase=20.0),
         transverse_slip=TransverseSlip(velocity_amplitude=1.0),
     )
-    at = sample(with_columns(Exact(), [scene], LAW, 1e-9).orbit(0), scene, 200)
+    at = sample(with_columns(Exact(), [scene], LAW, 1e-9).orbit(0), scene, LAW, 200)
     slip = at.v1 - 1.0 + 1j * at.v2
 
     assert not at.load.any()
@@ -267,7 +267,7 @@ def test_the_samples_of_a_prescribed_slip_have_no_load():
 def agree_with_samples(scene, answers):
     """Columns against sums over 8,192 samples: first order where friction jumps, so to a thousandth."""
     columns = {name: float(values[0]) for name, values in answers.columns.items()}
-    at = sample(answers.orbit(0), scene, 8192)
+    at = sample(answers.orbit(0), scene, LAW, 8192)
     period, mass = 2.0 * math.pi / scene.frequency, scene.mass()
     swing = np.abs(at.v1).max() + np.abs(at.v2).max()
 

@@ -198,3 +198,14 @@ def test_shown_rows_hold_the_ends_of_the_first_and_the_last_curve() -> None:
 
 def test_the_summary_of_a_run_that_is_short_says_nothing_of_points_left_out() -> None:
     assert "spread over them" not in summary(fl.run(study()))
+
+
+def test_a_long_run_keeps_the_memory_of_laws_that_come_later(tmp_path: Path, short_pieces: None) -> None:
+    laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "dahl", "mu": 0.4, "stiffness": 4}]
+    wanted = study(laws=laws, methods=["shooting"], expect=[])
+    long, short = fl.run(wanted, tmp_path / "long"), fl.run(wanted)
+    assert long.shown is not None
+    assert long.orbits is not None
+    assert short.orbits is not None
+    assert list(long.orbits) == list(short.orbits)
+    assert long.orbits.memory_0.notna().sum() == len(long.orbits) // 2

@@ -423,7 +423,7 @@ def test_the_orbit_has_the_mean_and_the_energies_of_the_columns(scene, law):
     assert taken == pytest.approx(answers.columns["energy_friction"][0], abs=1e-7)
     heat = (weights * (orbit.friction * (orbit.v - scene.belt_speed).conjugate()).real).sum()
     assert heat == pytest.approx(answers.columns["energy_contact"][0], abs=1e-7)
-    assert len(sample(orbit, scene, 50).tau) == 50
+    assert len(sample(orbit, scene, law, 50).tau) == 50
 
 
 @given(

@@ -78,7 +78,8 @@ def __getattr__(name: str) -> Any:
 
         return version("frictionlab")
     if name not in _HOMES:
-        raise AttributeError(f"module 'frictionlab' has no attribute {name!r}")
+        what = f"module 'frictionlab' has no attribute {name!r}"
+        raise AttributeError(what, name=name, obj=import_module(__name__))  # Python then says what was meant
     return getattr(import_module(_HOMES[name]), _OTHER_NAMES.get(name, name))
 
 

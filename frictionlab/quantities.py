@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import inspect
 from dataclasses import dataclass
-from numbers import Real
+from numbers import Integral, Real
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from frictionlab.as_typed import keywords, typed
+from frictionlab.mistakes.as_typed import keywords, typed
+from frictionlab.mistakes.notes import python_text
 from frictionlab.mistakes.validation import unnamed, wrong_values
 
 if TYPE_CHECKING:
@@ -81,6 +82,13 @@ document(
     frictionlab.mistakes.notes.WrongValues: Rough: mu: must be > 0, got 0
     """,
 )
+
+
+def at_least_one(name: str, value: object) -> int:
+    """The value of a parameter of this name as a whole number. Raises ValueError."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
+        raise ValueError(f"{name} must be a whole number of at least 1, got {python_text(value)}")
+    return int(value)
 
 
 @dataclass(frozen=True, repr=False)

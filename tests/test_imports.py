@@ -21,9 +21,8 @@ PROJECT = HOUSE.parent
 # one too. room -> the rooms it may import. Modules of one room may import each other, but no law another law.
 ARROWS = {
     "printable": [],
-    "as_typed": [],
     "mistakes": ["printable"],
-    "quantities": ["as_typed", "mistakes"],
+    "quantities": ["mistakes"],
     "columns": [],
     "laws": ["quantities"],
     "faults": ["laws"],
@@ -68,7 +67,7 @@ ARROWS = {
     ],
     "onsets": ["laws", "methods.base", "methods.periodic", "orbit", "quantities", "scene", "theory"],
     "registry": ["faults", "laws", "methods.base"],
-    "study": ["as_typed", "columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
+    "study": ["columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
     "results": [
         *("columns", "laws", "methods.base", "orbit", "quantities", "registry", "scene", "shape", "study"),
         *("printable", "theory"),
@@ -145,7 +144,6 @@ ROOMS = list(ARROWS)
 # what is not Python's own -> the rooms that may bring it in
 OUTSIDE = {
     "pydantic": [
-        "as_typed",
         "mistakes",
         "quantities",
         "laws",

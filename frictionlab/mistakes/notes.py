@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from numbers import Real
 from typing import Any, NamedTuple
 
 from frictionlab.printable import lone_surrogate, one_line, printable
@@ -178,6 +179,9 @@ def python_text(value: Any) -> str:
     """The text for a value given in Python."""
     if isinstance(value, type):
         return f"the class {value.__name__}"
+    shape = getattr(value, "shape", None)
+    if isinstance(shape, tuple) and not isinstance(value, Real):  # of numpy, pandas, xarray
+        return f"{type(value).__name__} of shape {shape}".replace("ndarray", "an array")
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if isinstance(value, (str, dict, list, tuple)) or (number and math.isfinite(value)):
         return value_text(value)

@@ -121,16 +121,28 @@ def wrong_values(record: type[BaseModel], values: Mapping[str, Any]) -> WrongVal
     """What is wrong with values that Python code gave for a record that refuses them, in the sentences of studies."""
     notes = Notes(notation=PYTHON)
     _Check(record, _copied(values), (), notes).built()
-    return WrongValues([_in_python(note, record.__name__) for note in notes.all])
+    return WrongValues([_in_python(note, record.__name__, values) for note in notes.all])
 
 
-def _in_python(note: Note, name: str) -> Mistake:
-    return Mistake(name, None, dotted(note.path), note.what, note.hint)
+_SEVERAL = "one number here: fl.curve, fl.compare and fl.sweep take several"
+
+
+def _in_python(note: Note, name: str, values: Mapping[str, Any]) -> Mistake:
+    given = values.get(str(note.path[-1])) if len(note.path) == 1 else None
+    several = note.what.startswith("must be a number") and hasattr(given, "__len__")
+    hint = _SEVERAL if several and not isinstance(given, str | Mapping) else note.hint
+    return Mistake(name, None, dotted(note.path), note.what, hint)
 
 
 def unnamed(record: type[BaseModel], values: Sequence[Any]) -> TypeError:
     """What is wrong with values given without their names."""
     names = list(record.model_fields)
+    if len(values) == 1 and isinstance(values[0], Mapping):
+        return TypeError(f"{record.__name__} takes its values by name: write {record.__name__}(**values)")
+    if len(values) == 1 and isinstance(values[0], record):
+        return TypeError(
+            f"{record.__name__} takes its values by name, and this is a {record.__name__} already"
+        )
     if len(values) > len(names):
         return TypeError(f"{record.__name__} takes {', '.join(names) or 'no values'}, each by its name")
     given = ", ".join(f"{name}={PYTHON.text_of(value)}" for name, value in zip(names, values, strict=False))
@@ -329,8 +341,12 @@ def _value_mistake(error: Any, text_of: Callable[[Any], str]) -> str:
     if error["type"] == "too_short":
         return f"must be a list of at least {error['ctx']['min_length']}, got {error['ctx']['actual_length']}"
     message = _message(error)
-    if error["type"].startswith(("float", "int")):
+    if error["type"].startswith("int"):
+        return f"must be a whole number, got {given}"
+    if error["type"].startswith("float"):
         return f"must be a number, got {given}"
+    if error["type"].startswith("bool"):
+        return f"must be true or false, got {given}"
     if message.startswith("must be "):
         return f"{message}, got {given}"
     return message[:1].lower() + message[1:]

@@ -21,7 +21,7 @@ from frictionlab.results.run import Run
 from frictionlab.results.summary import summary
 from frictionlab.results.table import swept_inputs, whole
 from frictionlab.runner.api import run as run_study
-from frictionlab.runner.arguments import given_scene
+from frictionlab.runner.arguments import given_scene, given_speeds
 from frictionlab.runner.save import save_run
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Study
@@ -231,7 +231,9 @@ def compare(
 
     Raises StudyError with every mistake, TypeError for what is no scene, law or method.
     """
-    over = {} if belt_speed is None else {_speed_path(given_scene(scene)): belt_speed}
+    ready = given_scene(scene)
+    listed = belt_speed if belt_speed is None or isinstance(belt_speed, Mapping) else given_speeds(belt_speed)
+    over = {} if listed is None else {_speed_path(ready): listed}
     return sweep(scene, laws, over, methods, tolerance, columns, executor)
 
 
@@ -255,7 +257,10 @@ def sweep(
 
     Raises as ``compare`` does.
     """
-    told = {"tolerance": tolerance, "columns": None if columns is None else list(columns)}
+    told = {
+        "tolerance": tolerance,
+        "columns": columns if columns is None or isinstance(columns, str) else list(columns),
+    }
     study = study_of_objects(scene, laws, methods, over, **told)
     start = time.perf_counter()
     done = run_study(study, executor=executor)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Status
 from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import at_least_one
 from frictionlab.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -153,9 +154,8 @@ class SteadyState:
 
         Raises ValueError where there is no orbit, saying why.
         """
-        if n < 1:
-            raise ValueError(f"an orbit has at least one sample, not {n}")
-        samples = None if self.motion is None else self.motion.sampled(n)
+        count = at_least_one("n", n)
+        samples = None if self.motion is None else self.motion.sampled(count)
         if samples is None:
             raise ValueError(self._no_orbit())
         import pandas as pd  # takes half a second, which a mean alone need not
@@ -174,9 +174,8 @@ class SteadyState:
 
         Raises ValueError where there is no orbit, saying why.
         """
-        if highest < 1:
-            raise ValueError(f"the highest harmonic is at least 1, not {highest}")
-        found = None if self.motion is None else self.motion.harmonics(highest, across)
+        count = at_least_one("highest", highest)
+        found = None if self.motion is None else self.motion.harmonics(count, across)
         if found is None:
             raise ValueError(self._no_orbit())
         return found

@@ -17,6 +17,7 @@ from frictionlab import __version__, registry
 from frictionlab.columns import selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
+from frictionlab.quantities import at_least_one
 from frictionlab.results.attractor_table import attractor_table
 from frictionlab.results.curve_table import curve_table
 from frictionlab.results.expectations import judge
@@ -427,8 +428,7 @@ def attractors(
     Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
-    if isinstance(starts, bool) or not isinstance(starts, int) or starts < 1:
-        raise ValueError(f"starts: a whole number of at least 1, not {starts!r}")
+    starts = at_least_one("starts", starts)
     different = np.unique(given_speeds(belt_speed))
     whole = _one_curve(kind_of(law), law, ready, Scenes(scene, different))
     return attractor_table([whole], given_tolerance(tolerance), starts)

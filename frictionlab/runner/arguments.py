@@ -71,9 +71,14 @@ def given_tolerance(tolerance: float, name: str = "tolerance") -> float:
 def given_speeds(belt_speed: ArrayLike) -> Floats:
     """Belt speeds as an array. Raises ValueError."""
     given = np.atleast_1d(np.asarray(belt_speed, dtype=object))
-    numbers = [isinstance(each, Real) and not isinstance(each, bool) for each in given.flat]
-    if given.ndim != 1 or not given.size or not all(numbers) or not np.isfinite(given.astype(float)).all():
+    if given.ndim != 1 or isinstance(belt_speed, str | Mapping):
         raise ValueError(_told("belt_speed must be a list of finite numbers", belt_speed))
+    if not given.size:
+        raise ValueError("belt_speed must be a list of finite numbers, got none")
+    for place, each in enumerate(given):
+        if isinstance(each, bool) or not isinstance(each, Real) or not isfinite(each):
+            where = f" at [{place}]" if np.ndim(belt_speed) else ""
+            raise ValueError(f"{_told('belt_speed must be a list of finite numbers', each)}{where}")
     return given.astype(np.float64)
 
 

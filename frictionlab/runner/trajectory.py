@@ -10,6 +10,7 @@ import pandas as pd
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import at_least_one
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
 from frictionlab.runner.workers import within
 from frictionlab.scene.scene import Initial, Scene
@@ -44,11 +45,9 @@ def trajectory(
     Raises ValueError where no method follows such a motion, ValueError or TypeError for what makes no sense.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
-    for name, count in (("periods", periods), ("samples", samples)):
-        if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-            raise ValueError(f"{name}: a whole number of at least 1, not {count!r}")
+    periods, samples = at_least_one("periods", periods), at_least_one("samples", samples)
     if initial is not None:
-        scene = scene.with_(initial=initial.model_dump(exclude_unset=True))
+        scene = scene.with_(initial=initial)
     accuracy = given_tolerance(tolerance)
     law = law_in_scene(law, scene)
     if why := ready.refusal(scene, law):

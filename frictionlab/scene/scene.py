@@ -471,21 +471,23 @@ class Scene(_Part):
         kept = "" if self.dimensional is None else "dimensional."
         return {path: value for path, value in self.values().items() if path.startswith(kept)}
 
-    def with_(self, **changes: Any) -> Scene:
-        """The same scene with other values: ``with_(normal_load=3, **{"drive.frequency": 2})``; None leaves one out.
+    def with_(self, changes: Mapping[str, Any] | None = None, /, **others: Any) -> Scene:
+        """The same scene with other values: ``with_({"drive.frequency": 2}, normal_load=3)``; None leaves one out.
 
-        A scene in SI units is changed in them: ``**{"dimensional.mass_kg": 2}``.
+        A scene in SI units is changed in them: ``with_({"dimensional.mass_kg": 2})``.
 
         >>> import frictionlab as fl
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5)
         >>> scene.with_(belt_speed=2, drive=fl.Drive(amplitude=3, frequency=1))
         Scene(damping_ratio=0.1, normal_load=10, belt_speed=2, drive=Drive(amplitude=3, frequency=1))
 
-        Raises WrongValues.
+        Raises WrongValues, TypeError.
         """
+        if changes is not None and not isinstance(changes, Mapping):
+            raise TypeError("with_ takes values by name, belt_speed=2, or by path, {'drive.frequency': 2}")
         given = given_values(self)
         tree = given if self.dimensional is None else {"dimensional": given["dimensional"]}
-        return type(self)(**with_values(tree, changes))
+        return type(self)(**with_values(tree, {**(changes or {}), **others}))
 
     def checked(self) -> Scene:
         """The same scene, made again from what it was given: raises WrongValues where its values make no scene."""

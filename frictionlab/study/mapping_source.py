@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from frictionlab.mistakes.notes import Note, StudyError
 from frictionlab.study.yaml_source import (
     DEEPEST,
@@ -41,9 +39,9 @@ class _ValueReader:
         self._count(value, depth)
         if isinstance(value, Mapping):
             return {str(key): self.value(item, depth + 1) for key, item in value.items()}
-        if isinstance(value, (np.ndarray, np.generic)):
+        if hasattr(value, "tolist"):  # of numpy and pandas
             return self.value(value.tolist(), depth)
-        if isinstance(value, (list, tuple)):
+        if isinstance(value, (list, tuple, range)):
             return [self.value(item, depth + 1) for item in value]
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             return plain_number(value)
@@ -51,7 +49,7 @@ class _ValueReader:
         return value if known else UnsupportedValue(f"a {type(value).__name__}")
 
     def _count(self, value: Any, depth: int) -> None:
-        size = value.size if isinstance(value, np.ndarray) else 0  # before its numbers become objects
+        size = value.size if hasattr(value, "tolist") else 0  # before its numbers become objects
         self._values += 1
         self._letters += len(value) if isinstance(value, str) else 0
         if depth > DEEPEST:

@@ -8,9 +8,9 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from frictionlab import registry
-from frictionlab.as_typed import typed
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
+from frictionlab.mistakes.as_typed import typed
 from frictionlab.mistakes.notes import Notes, python_text
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import Form

@@ -67,7 +67,7 @@ def test_a_state_without_an_orbit_has_no_harmonics() -> None:
     state = fl.steady_state(scene, fl.Dahl(mu=0.4, stiffness=4.0), method="exact")
     with pytest.raises(ValueError, match="no orbit: the steady state is 'refused'"):
         state.harmonics(3)
-    with pytest.raises(ValueError, match="the highest harmonic is at least 1, not 0"):
+    with pytest.raises(ValueError, match="highest must be a whole number of at least 1, got 0"):
         state.harmonics(0)
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import frictionlab as fl
@@ -63,7 +64,64 @@ EIGHT: list[tuple[Callable[[], object], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("mistake", "said"), EIGHT)
+MORE: list[tuple[Callable[[], object], str]] = [
+    (lambda: fl.Scene({"belt_speed": 5}), "Scene takes its values by name: write Scene(**values)"),  # type: ignore[call-arg]
+    (lambda: fl.Scene(SCENE), "Scene takes its values by name, and this is a Scene already"),  # type: ignore[call-arg]
+    (
+        lambda: SCENE.with_(belt_speed=np.ones(3)),
+        "Scene: belt_speed: must be a number, got an array of shape (3,)\n"
+        "    one number here: fl.curve, fl.compare and fl.sweep take several",
+    ),
+    (
+        lambda: fl.Coulomb(mu=[0.3, 0.4]),  # type: ignore[arg-type]
+        "Coulomb: mu: must be a number, got a list\n"
+        "    one number here: fl.curve, fl.compare and fl.sweep take several",
+    ),
+    (
+        lambda: SCENE.with_(5),  # type: ignore[arg-type]
+        "with_ takes values by name, belt_speed=2, or by path, {'drive.frequency': 2}",
+    ),
+    (
+        lambda: fl.HarmonicBalance(harmonics=2.5),  # type: ignore[arg-type]
+        "HarmonicBalance: harmonics: must be a whole number, got 2.5",
+    ),
+    (
+        lambda: fl.HarmonicBalance(tail="yes"),  # type: ignore[arg-type]
+        "HarmonicBalance: tail: must be true or false, got the text 'yes'",
+    ),
+    (
+        lambda: fl.Exact(certify="yes"),  # type: ignore[arg-type]
+        "Exact: certify: must be true or false, got the text 'yes'",
+    ),
+    (
+        lambda: fl.curve(SCENE, LAW, np.ones((2, 2))),
+        "belt_speed must be a list of finite numbers, got an array of shape (2, 2)",
+    ),
+    (
+        lambda: fl.compare(SCENE, LAW, pd.DataFrame({"speed": [1.0]})),
+        "belt_speed must be a list of finite numbers, got DataFrame of shape (1, 1)",
+    ),
+    (lambda: fl.curve(SCENE, LAW, []), "belt_speed must be a list of finite numbers, got none"),
+    (
+        lambda: fl.compare(SCENE, LAW, [1, math.nan]),
+        "belt_speed must be a list of finite numbers, got nan at [1]",
+    ),
+    (
+        lambda: fl.trajectory(SCENE, LAW, initial=3),  # type: ignore[arg-type]
+        "Scene: initial: must be Initial(...) or a mapping, got 3",
+    ),
+    (
+        lambda: fl.steady_state(SCENE, LAW).orbit(2.5),  # type: ignore[arg-type]
+        "n must be a whole number of at least 1, got 2.5",
+    ),
+    (
+        lambda: fl.attractors(SCENE, LAW, [1.0], starts="8"),  # type: ignore[arg-type]
+        "starts must be a whole number of at least 1, got the text '8' (remove the quotes)",
+    ),
+]
+
+
+@pytest.mark.parametrize(("mistake", "said"), EIGHT + MORE)
 def test_a_mistake_in_python_is_told_in_the_words_of_a_study(
     mistake: Callable[[], object], said: str
 ) -> None:
@@ -83,10 +141,29 @@ def test_a_law_says_in_python_what_a_study_says_of_it(path: str, value: Any) -> 
     with pytest.raises(StudyError) as in_study:
         parse_study({"schema": 1, "scene": GIVEN, "laws": [{"kind": "coulomb", **values}]})
 
-    told = {(f"laws[0].{each.path}", each.what, each.hint) for each in in_python.value.mistakes}
+    several = (
+        "one number here: fl.curve, fl.compare and fl.sweep take several"  # which a study says elsewhere
+    )
+    told = {
+        (f"laws[0].{each.path}", each.what, each.hint.replace(several, ""))
+        for each in in_python.value.mistakes
+    }
     assert told == {
         (each.path, each.what.replace(" .inf", " inf"), each.hint) for each in in_study.value.mistakes
     }
+
+
+def test_numbers_of_numpy_and_pandas_are_taken_for_what_they_are() -> None:
+    speeds = [5.0, 20.0]
+    usual = fl.compare(SCENE, LAW, speeds).table["mean_friction"].tolist()
+
+    for given in (np.array(speeds), pd.Series(speeds, index=[7, 8]), range(5, 21, 15), tuple(speeds)):
+        assert fl.compare(SCENE, LAW, given).table["mean_friction"].tolist() == usual
+        assert fl.sweep(SCENE, LAW, {"scene.belt_speed": given}).table["mean_friction"].tolist() == usual
+        assert fl.curve(SCENE, LAW, given)["mean_friction"].tolist() == usual
+    assert fl.compare(SCENE, LAW, 5).table["mean_friction"].tolist() == usual[:1]
+    assert len(fl.steady_state(SCENE, LAW).orbit(np.int64(3))) == 3
+    assert len(fl.trajectory(SCENE, LAW, np.int64(1), samples=4, initial={"x": 1})) == 5  # type: ignore[arg-type]
 
 
 def test_every_mistake_is_told_at_once() -> None:
@@ -105,6 +182,7 @@ def test_a_scene_with_other_values_is_a_scene_made_of_them() -> None:
     assert changed == fl.Scene(
         **{**GIVEN, "normal_load": 3, "initial": {"x": 1}, "drive": {"unbalance": 10, "frequency": 2}}
     )
+    assert SCENE.with_({"drive.frequency": 2}, normal_load=3, **{"initial.x": 1}) == changed
     assert changed.with_(initial=None, normal_load=10, **{"drive.frequency": 1}) == SCENE
     assert SCENE.with_() == SCENE
     assert SCENE.with_(drive=fl.Drive(amplitude=3, frequency=1), **{"drive.frequency": 2}).frequency == 2.0

@@ -55,8 +55,8 @@ def test_a_motion_that_never_settles_is_followed_all_the_same() -> None:
     [
         ({"method": "exact"}, "no motion in time is known of this scene and law by exact"),
         ({"scene": fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5)}, "it needs a driven mass"),
-        ({"periods": 0}, "periods: a whole number of at least 1, not 0"),
-        ({"samples": 2.5}, "samples: a whole number of at least 1, not 2.5"),
+        ({"periods": 0}, "periods must be a whole number of at least 1, got 0"),
+        ({"samples": 2.5}, "samples must be a whole number of at least 1, got 2.5"),
     ],
 )
 def test_what_cannot_be_followed_is_told(given: dict[str, object], told: str) -> None:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import field_validator
+from pydantic import Field, field_validator
 
 from frictionlab.compile.call import KernelCall
 from frictionlab.laws.base import FrictionLaw
@@ -99,7 +99,7 @@ class Exact(Method):
 
     name: ClassVar[str] = "exact"
     resolves_events: ClassVar[bool] = True
-    certify: bool = False
+    certify: bool = Field(default=False, strict=True)
 
     @field_validator("certify")
     @classmethod

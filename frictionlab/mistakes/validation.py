@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 import re
 import types
@@ -136,7 +137,7 @@ def _in_python(note: Note, name: str, values: Mapping[str, Any]) -> Mistake:
 
 def unnamed(record: type[BaseModel], values: Sequence[Any]) -> TypeError:
     """What is wrong with values given without their names."""
-    names = list(record.model_fields)
+    names = list(inspect.signature(record).parameters)
     if len(values) == 1 and isinstance(values[0], Mapping):
         return TypeError(f"{record.__name__} takes its values by name: write {record.__name__}(**values)")
     if len(values) == 1 and isinstance(values[0], record):

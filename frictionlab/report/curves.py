@@ -31,14 +31,20 @@ def curves_grid(table: pd.DataFrame, tolerance: float) -> Grid:
     head = [
         *("law", "method", "curve", "points"),
         Markup("mean friction {}, least … greatest").format(symbol_html("mean_friction")),
+        "mean friction force [N]",
         *("largest error", "at", "kind of error", "errors above the tolerance"),
     ]
     curves = curve_rows(table, swept_inputs(table))
     rows = [
-        [*who, _statuses(curve.rows), mean_span(curve.rows), *_errors(curve, tolerance)]
+        [*who, _statuses(curve.rows), mean_span(curve.rows), _force(curve.rows), *_errors(curve, tolerance)]
         for who, curve in zip(whose(curves), curves, strict=True)
     ]
     return grid("Curves: everything equal but belt speed", head, rows, "curves")
+
+
+def _force(rows: pd.DataFrame) -> str:
+    """Where the mean force lies in a scene given in SI units."""
+    return mean_span(rows, unit="_N") if "mean_friction_N" in rows else ""
 
 
 def _statuses(rows: pd.DataFrame) -> str:

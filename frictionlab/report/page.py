@@ -15,6 +15,7 @@ from frictionlab.report import findings, question
 from frictionlab.report.answer import sentences
 from frictionlab.report.compared import laws_compared, methods_compared
 from frictionlab.report.curves import curves_grid, onset_grid
+from frictionlab.report.equation import equations, letters_sentence
 from frictionlab.report.figures import pictures
 from frictionlab.report.shapes import shape_grid
 from frictionlab.report.sources import bibtex, published, sources
@@ -95,6 +96,9 @@ def _asked(saved: Saved) -> dict[str, Any]:
         "scene_sentence": question.scene_sentences(study),
         "units_sentence": question.units_sentence(study.scene),
         "source": study.source,
+        "sketched": study.scene.degrees_of_freedom > 0,
+        "equations": equations(study),
+        "letters_sentence": letters_sentence(study),
         "scene": question.scene_grid(study),
         "laws": question.laws_grid(study),
         "methods": question.methods_grid(study),

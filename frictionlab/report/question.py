@@ -126,7 +126,7 @@ def units_sentence(scene: Scene) -> str:
 
 
 def scene_grid(study: Study) -> Grid:
-    """Every value of the scene, swept ones as what they run over."""
+    """Every value of the scene, but for what swept ones run over."""
     values = {f"scene.{path}": value for path, value in study.scene.given_values().items()}
     rows = [
         [_words(name), symbol_html(name) if _has_symbol(name) else "", _value(study, name, value)]
@@ -148,7 +148,7 @@ def _has_symbol(name: str) -> bool:
 
 def _value(study: Study, name: str, value: Any) -> Cell:
     swept = study.sweep.get(name)
-    return number(value) if swept is None else Markup("swept: {}").format(values_listed(swept))
+    return number(value) if swept is None else "swept"
 
 
 def values_listed(values: Sequence[GridValue]) -> str:
@@ -203,7 +203,7 @@ def _first_line(text: str) -> str:
 
 
 def _law_parameters(law: LawChoice, study: Study) -> Cell:
-    told = {name: f"swept: {values_listed(values)}" for name, values in study.swept_parameters(law).items()}
+    told = dict.fromkeys(study.swept_parameters(law), "swept")
     return _set(law.parameters | told)
 
 

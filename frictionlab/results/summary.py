@@ -80,13 +80,19 @@ def _curve_line(inputs: dict[str, Any], rows: pd.DataFrame, models: dict[str, in
     return law, method, where, statuses(rows), mean_span(rows, " ... ", " +- "), error, used
 
 
-def mean_span(rows: pd.DataFrame, to: str = " \N{HORIZONTAL ELLIPSIS} ", between: str = PLUS_MINUS) -> str:
-    """The least and the greatest mean friction of rows, each with its error; '' where none has a number."""
-    found = rows[rows["mean_friction"].notna()]
+def mean_span(
+    rows: pd.DataFrame, to: str = " \N{HORIZONTAL ELLIPSIS} ", between: str = PLUS_MINUS, unit: str = ""
+) -> str:
+    """The least and the greatest mean friction of rows, each with its error; '' where none has a number.
+
+    unit: the end of the columns' names, ``_N`` for a force.
+    """
+    mean, error = f"mean_friction{unit}", f"error{unit}"
+    found = rows[rows[mean].notna()]
     if found.empty:
         return ""
-    ends = [found.loc[at] for at in (found["mean_friction"].idxmin(), found["mean_friction"].idxmax())]
-    told = [with_error(float(end["mean_friction"]), float(end["error"]), between=between) for end in ends]
+    ends = [found.loc[at] for at in (found[mean].idxmin(), found[mean].idxmax())]
+    told = [with_error(float(end[mean]), float(end[error]), between=between) for end in ends]
     return to.join(dict.fromkeys(told))
 
 

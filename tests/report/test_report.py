@@ -188,8 +188,8 @@ def test_what_was_asked_is_there_in_words_symbols_and_numbers(ran: Runner) -> No
     scene = {row[0]: row[1:] for row in page.table("The scene")}
     assert scene["normal load"] == ["γ2", "10"]
     assert scene["drive frequency"] == ["Ω", "1"]
-    assert scene["belt speed"] == ["vb", "swept: 0.5 … 10, 20 values in steps of 0.5"]
-    assert [row[-1] for row in page.table("The friction laws")[1:]] == ["μ = swept: 0.1, 0.3", "μ = 0.2"]
+    assert scene["belt speed"] == ["vb", "swept"]
+    assert [row[-1] for row in page.table("The friction laws")[1:]] == ["μ = swept", "μ = 0.2"]
     assert page.table("The sweep")[1:] == [
         ["belt speed vb", "scene.belt_speed", "0.5 … 10, 20 values in steps of 0.5"],
         ["friction coefficient μ of a.b", "laws.a.b.mu", "0.1, 0.3"],

@@ -1,0 +1,109 @@
+# ruff: noqa: RUF001
+"""The equations of a study, with its numbers in them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from frictionlab.report.equation import equations, letters_sentence
+from frictionlab.study import parse_study
+
+LINE = {
+    "damping_ratio": 0.1,
+    "normal_load": 10,
+    "belt_speed": 5,
+    "drive": {"unbalance": 10, "frequency": 1.5},
+}
+PLANE = LINE | {
+    "transverse": {"natural_frequency": 0.5, "damping_ratio": 0.1, "load": {"amplitude": 3, "phase": 90}}
+}
+IN_SI = {
+    "dimensional": {
+        **{"mass_kg": 3, "stiffness_N_per_m": 300, "damping_N_s_per_m": 2, "length_m": 0.01},
+        **{
+            "normal_load_N": 25,
+            "belt_speed_m_per_s": 0.1,
+            "drive": {"amplitude_N": 5, "frequency_rad_per_s": 10},
+        },
+    }
+}
+
+
+def told(scene: dict[str, Any], **sweep: Any) -> list[str]:
+    """The equations as text."""
+    return [" ".join(str(each.striptags()).split()) for each in equations(_study(scene, **sweep))]
+
+
+def _study(scene: dict[str, Any], **sweep: Any) -> Any:
+    paths = {f"scene.{name.replace('__', '.')}": values for name, values in sweep.items()}
+    study = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.4}], "methods": ["auto"]}
+    return parse_study(study | {"sweep": paths})
+
+
+def test_numbers_stand_in_the_equation_of_motion() -> None:
+    assert told(LINE) == ["ẍ1 + 0.2 ẋ1 + x1 + 10 T1 = 22.5 sin(1.5 τ)", "v1 = ẋ1 − 5"]
+
+
+def test_what_is_swept_stays_a_symbol() -> None:
+    swept = {
+        "drive__frequency": [1, 2],
+        "damping_ratio": [0.1, 0.2],
+        "normal_load": [1, 2],
+        "belt_speed": [1, 2],
+    }
+
+    assert told(LINE, **swept) == ["ẍ1 + 2 β1 ẋ1 + x1 + γ2 T1 = 10 Ω2 sin(Ω τ)", "v1 = ẋ1 − vb"]
+
+
+def test_the_plane_has_an_equation_for_each_direction() -> None:
+    assert told(PLANE) == [
+        "ẍ1 + 0.2 ẋ1 + x1 + 10 T1 = 22.5 sin(1.5 τ)",
+        "ẍ2 + 0.1 ẋ2 + 0.25 x2 + 10 T2 = 3 sin(1.5 τ + 90°)",
+        "v1 = ẋ1 − 5, v2 = ẋ2",
+    ]
+
+
+def test_a_turned_load_pushes_in_both_directions() -> None:
+    drive = {"amplitude": 2, "frequency": 1, "direction": 30, "waveform": "square"}
+    first, second, _ = told(
+        PLANE | {"drive": drive} | {"transverse": {"natural_frequency": 1, "damping_ratio": 0}}
+    )
+
+    assert first.endswith(" = 2 square(τ) cos 30°")
+    assert second.endswith(" = 2 square(τ) sin 30°")
+
+
+def test_si_units_have_mass_and_springs_in_them() -> None:
+    assert told(IN_SI) == ["3 Ẍ1 + 2 Ẋ1 + 300 X1 + 25 T1 = 5 sin(10 t)", "v1 = Ẋ1 − 0.1"]
+    assert letters_sentence(_study(IN_SI)).endswith("forces are in N, lengths in m, t in s.")
+
+
+def test_a_normal_load_and_a_belt_that_vary_are_told() -> None:
+    scene = LINE | {"normal_load_variation": {"amplitude": 0.5, "frequency_ratio": 2}}
+    scene |= {"belt_vibration": {"velocity_amplitude": 2, "phase": -90}}
+
+    assert told(scene) == [
+        "ẍ1 + 0.2 ẋ1 + x1 + N T1 = 22.5 sin(1.5 τ)",
+        "v1 = ẋ1 − 5 − 2 sin(1.5 τ − 90°)",
+        "N = 10 (1 + 0.5 sin(3 τ))",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("scene", "wanted"),
+    [
+        ({"belt_speed": 0.5, "slip": {"velocity_amplitude": 2, "frequency": 1}}, ["v1 = 2 sin(τ) − 0.5"]),
+        (
+            {"belt_speed": -0.5, "transverse_slip": {"velocity_amplitude": 2, "frequency": 1}},
+            ["v1 = 0.5", "v2 = 2 sin(τ)"],
+        ),
+    ],
+)
+def test_a_prescribed_slip_is_an_equation_of_its_own(scene: dict[str, Any], wanted: list[str]) -> None:
+    assert told(scene) == wanted
+
+
+def test_what_nothing_shakes_has_no_load() -> None:
+    assert told({"damping_ratio": 0, "normal_load": 1, "belt_speed": 0.2})[0] == "ẍ1 + x1 + T1 = 0"

@@ -148,7 +148,7 @@ class _Picture:
                 _shade_stick(axes, self.of.family.abscissa, self.looks, curve, self.column)
 
     def _name(self, axes: Axes) -> None:
-        axes.set_xlabel(word(self.of.family.abscissa))
+        axes.set_xlabel(self.of.family.word(self.of.family.abscissa))
         axes.set_ylabel(self.of.words.get(self.column) or word(self.column, 28))
         if self.panel:
             axes.set_title(", ".join(sentence(setting) for setting in self.panel), loc="left")

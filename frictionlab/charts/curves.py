@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from pandas.api.types import is_numeric_dtype
 
-from frictionlab.columns import BELT_SPEEDS, SCALED, belt_speed, given, leading
+from frictionlab.columns import BELT_SPEEDS, SCALED, belt_speed, given, leading, word
 
 MOST_PICTURES = 12  # in which several laws are compared; of more values each law has a picture of its own
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
@@ -45,11 +45,19 @@ class CurveData:
 
 @dataclass(frozen=True)
 class Family:
-    """Every curve of a table, the input along the axis, and the input that distinguishes curves of a picture."""
+    """Every curve of a table, the input along the axis, and the input that distinguishes curves of a picture.
+
+    linked: the names of these two in words, where another input changes together with them.
+    """
 
     abscissa: str
     member: str | None
     curves: list[CurveData]
+    linked: Mapping[str, str] = field(default_factory=dict)
+
+    def word(self, name: str) -> str:
+        """The name of an input in words, with what changes together with it."""
+        return self.linked.get(name) or word(name)
 
     @property
     def panels(self) -> list[tuple[SweptValue, ...]]:
@@ -86,7 +94,23 @@ def family_of(table: pd.DataFrame) -> Family | None:
 
 def family_by(table: pd.DataFrame, abscissa: str, panels: list[str], member: str | None) -> Family:
     """The curves of a table along this column. panels: what sets up pictures, ``law`` where each law has its own."""
-    return Family(abscissa, member, _curves(table, abscissa, panels, member))
+    panels = list(dict.fromkeys(each for name in panels for each in (name, *_linked_with(table, name))))
+    linked = {name: linked_words(table, name) for name in (abscissa, member) if name}
+    return Family(abscissa, member, _curves(table, abscissa, panels, member), linked)
+
+
+def linked_words(table: pd.DataFrame, name: str) -> str:
+    """An input in words, with those of the scene that change together with it."""
+    return ", with ".join(map(word, (name, *_linked_with(table, name))))
+
+
+def _linked_with(table: pd.DataFrame, name: str) -> list[str]:
+    """Inputs of the scene that count as no sweep of their own, for they follow from this one."""
+    swept = swept_columns(table)
+    names = [each for each in given(table.columns) if each.startswith("scene.") and each not in swept]
+    return [
+        each for each in names if table[each].nunique() > 1 and table.groupby(name)[each].nunique().max() == 1
+    ]
 
 
 def along_the_axis(table: pd.DataFrame, swept: list[str]) -> str:

@@ -34,7 +34,7 @@ def normalized(family: Family) -> Family | None:
     scaled = [
         replace(curve, rows=_in_shares(curve, family.abscissa), kinks=_signs(curve)) for curve in with_numbers
     ]
-    return Family(SPEED_RATIO, family.member, scaled)
+    return replace(family, abscissa=SPEED_RATIO, curves=scaled)
 
 
 def _signs(curve: CurveData) -> tuple[float, ...]:
@@ -80,7 +80,7 @@ def differences(family: Family, law: str) -> Family | None:
         columns = {name: curve.rows[name] - less for name in BAND if name in curve.rows}
         found.append(replace(curve, rows=curve.rows.assign(**columns, error=both)))
     known = any(curve.rows["mean_friction"].notna().any() for curve in found)
-    return Family(family.abscissa, family.member, found) if known else None
+    return replace(family, curves=found) if known else None
 
 
 def _counterpart(curve: CurveData, others: Sequence[CurveData], law: str) -> CurveData | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -30,7 +31,7 @@ def harmonic_figures(
     most = orders[: max(1, MOST_PICTURES * len(orders) // len(family.panels))]
     shown = [curve for curve in family.curves if dict(curve.panel)[HARMONIC] in most]
     told = f"{len(most)} of {len(orders)} harmonics" if len(most) < len(orders) else ""
-    first = Family(family.abscissa, family.member, shown)
+    first = replace(family, curves=shown)
     return {
         name: CurveFigure(first, [column], title, None, options, {column: label}, left_out=told).draw
         for name, (column, label) in AMPLITUDES.items()

@@ -16,7 +16,6 @@ from frictionlab.charts.curves import CurveData, Family
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.style import LEGEND_FONT
 from frictionlab.charts.words import BESIDE, LONGEST_LABEL, shortened, swept_text
-from frictionlab.columns import word
 
 WITHOUT_NUMBER = {"failed": "x", "killed": "x", "refused": "|"}
 LEGEND_MARKS = WITHOUT_NUMBER | {"not_unique": r"$\mathrm{I}$"}
@@ -34,7 +33,7 @@ def add_legend(
     ]
     if not entries:
         return 0
-    return add_entries(figure, entries, word(family.member) if family.member else None)
+    return add_entries(figure, entries, family.word(family.member) if family.member else None)
 
 
 def add_entries(figure: Figure, entries: Sequence[Line2D], title: str | None = None) -> int:

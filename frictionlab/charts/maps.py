@@ -32,6 +32,7 @@ from frictionlab.charts.curves import (
     SweptValue,
     along_the_axis,
     is_logarithmic,
+    linked_words,
     swept_columns,
     swept_value,
 )
@@ -129,8 +130,8 @@ class MapFigure:
             look: Any = {"marker": mark, "linestyle": "none", "color": "0.3", "markersize": 3}
             if len(rows):
                 axes.plot(rows[self.over[0]], rows[self.over[1]], **look)
-        axes.set_xlabel(word(self.over[0]))
-        axes.set_ylabel(word(self.over[1], 28))
+        axes.set_xlabel(linked_words(self.table, self.over[0]))
+        axes.set_ylabel(linked_words(self.table, self.over[1]))
         axes.spines[["top", "right"]].set_visible(True)
         axes.set_title(self._name(picture), loc="left")
         return mesh

@@ -95,7 +95,7 @@ class ShapeFigure:
             [0.0, chord.end], [chord.low, chord.high], color="0.2", linewidth=0.7, linestyle=(0, (5, 2))
         )
         axes.plot(x, y, **self.looks.sample(curve))
-        axes.set_xlabel(word(self.family.abscissa))
+        axes.set_xlabel(self.family.word(self.family.abscissa))
         axes.set_ylabel(word("mean_friction", 16))  # two lines of title leave less height
         axes.margins(x=0.02)
         axes.set_ylim(min(0.0, axes.get_ylim()[0]), None)

@@ -109,10 +109,25 @@ def test_what_changes_together_is_told_once() -> None:
     family = family_of(found.table)
     assert family is not None
     assert family.member == "law.mu"
-    assert [name for name, _ in family.panels[0]] == ["scene.damping_ratio"]
+    assert [name for name, _ in family.panels[0]] == ["scene.damping_ratio", "scene.drive.frequency"]
     assert len(found.curves) == 2 * 2 * 2
     sizes = {"law": 2, "friction": 2, "scene.damping_ratio": 2, "scene.belt_speed": 3}
     assert dict(found.to_xarray().sizes) == sizes
+
+
+def test_a_line_or_an_axis_names_what_changes_together() -> None:
+    together = {"scene.normal_load": [5.0, 10.0, 20.0], "scene.drive.frequency": [0.8, 1.0, 1.5]}
+    law = fl.Coulomb(mu=0.4)
+    lines, axis = (
+        family_of(fl.sweep(fl.Scene(**SCENE), law, over, columns=["mean_friction"]).table)
+        for over in ({"linked": [together], "scene.belt_speed": [10, 20, 30]}, {"linked": [together]})
+    )
+
+    words = r"normal load $\gamma^2$, with drive frequency $\Omega$"
+    assert lines is not None
+    assert axis is not None
+    assert lines.word("scene.normal_load") == axis.word(axis.abscissa) == words
+    assert lines.word(lines.abscissa) == "belt speed $v_b$"
 
 
 def test_an_input_that_follows_from_another_is_left_out() -> None:

@@ -121,24 +121,30 @@ def belt_speed(names: Iterable[str]) -> str:
     return BELT_SPEEDS[1] if BELT_SPEEDS[1] in names else BELT_SPEEDS[0]
 
 
+SHOWN_IN_PART = "shown in part"
+"""Mark (``DataFrame.attrs``) of a table of some curves of a long one: in it, inputs may change together by chance."""
+
+
 def leading(names: Sequence[str], cells: Mapping[str, Sequence[Any]]) -> list[str]:
     """Of these inputs those whose values do not follow from those of another, law by law, as linked ones do.
 
     Of two that follow from each other the first. cells: of each input and of ``law``, row by row.
     """
-    rows = dict.fromkeys(zip(*(map(_comparable, cells[name]) for name in ("law", *names)), strict=True))
-    columns = dict(zip(("law", *names), zip(*rows, strict=True), strict=True))
-
-    def different(*of: str) -> int:
-        return len(set(zip(columns["law"], *(columns[name] for name in of), strict=True)))
-
-    alone = {name: different(name) for name in names}
     found = list(names)
     for name in reversed(names):
-        others = [other for other in found if other != name]
-        if any(different(name, other) == alone[other] for other in others):
+        if any(_follows(name, other, cells) for other in found if other != name):
             found.remove(name)
     return found
+
+
+def _follows(name: str, other: str, cells: Mapping[str, Sequence[Any]]) -> bool:
+    """Whether rows of one law with the same value of the other have the same value of this."""
+    known: dict[tuple[Any, Any], Any] = {}
+    for law, given, value in zip(cells["law"], cells[other], cells[name], strict=True):
+        own = _comparable(value)
+        if known.setdefault((law, _comparable(given)), own) != own:
+            return False
+    return True
 
 
 def _comparable(cell: Any) -> Any:

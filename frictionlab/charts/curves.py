@@ -12,7 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from pandas.api.types import is_numeric_dtype
 
-from frictionlab.columns import BELT_SPEEDS, SCALED, belt_speed, given, leading, word
+from frictionlab.columns import BELT_SPEEDS, SCALED, SHOWN_IN_PART, belt_speed, given, leading, word
 
 MOST_PICTURES = 12  # in which several laws are compared; of more values each law has a picture of its own
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
@@ -137,7 +137,7 @@ def swept_columns(table: pd.DataFrame) -> list[str]:
     scene = [name for name in names if name.startswith("scene.") and table[name].nunique() > 1]
     parameters = [name for name in names if name.startswith("law.") and is_numeric_dtype(table[name])]
     laws = [name for name in parameters if table.groupby("law")[name].nunique().max() > 1]
-    return leading(scene + laws, table)
+    return scene + laws if SHOWN_IN_PART in table.attrs else leading(scene + laws, table)
 
 
 def _with_one_friction(table: pd.DataFrame) -> pd.DataFrame:

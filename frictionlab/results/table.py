@@ -9,7 +9,17 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from frictionlab.columns import BELT_SPEEDS, RESULTS, SCALED, SI, TEXT, belt_speed, given, leading
+from frictionlab.columns import (
+    BELT_SPEEDS,
+    RESULTS,
+    SCALED,
+    SHOWN_IN_PART,
+    SI,
+    TEXT,
+    belt_speed,
+    given,
+    leading,
+)
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import si_columns, si_scales
@@ -234,7 +244,8 @@ def swept_inputs(table: pd.DataFrame) -> list[str]:
     names = [name for name in names if name in table]
     within = table.groupby("law", sort=False)[names].nunique(dropna=False).max()
     swept = [name for name in names if within[name] > 1]
-    return [name for name in leading(swept, table) if name != speed]
+    apart = swept if SHOWN_IN_PART in table.attrs else leading(swept, table)
+    return [name for name in apart if name != speed]
 
 
 def finished_rows(given: Inputs, earlier: pd.DataFrame) -> tuple[list[int], pd.DataFrame]:

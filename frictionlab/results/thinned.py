@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import pandas as pd
 
+from frictionlab.columns import SHOWN_IN_PART
 from frictionlab.results.part import Places
 from frictionlab.study import StudyCurve
 
@@ -47,7 +48,9 @@ class Thinned:
     @property
     def table(self) -> pd.DataFrame:
         """The rows so far, numbered anew."""
-        return pd.concat(self._pieces, ignore_index=True)
+        table = pd.concat(self._pieces, ignore_index=True)
+        table.attrs = {**table.attrs, SHOWN_IN_PART: True}
+        return table
 
 
 def thinned(pieces: Iterable[pd.DataFrame], rows: Places) -> pd.DataFrame:

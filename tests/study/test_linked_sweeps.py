@@ -12,6 +12,8 @@ import frictionlab as fl
 from frictionlab.charts.curves import family_of
 from frictionlab.columns import leading
 from frictionlab.laws.base import SlidingLaw
+from frictionlab.results.table import swept_inputs, whole
+from frictionlab.results.thinned import thinned
 from frictionlab.study import Study, StudyError, load_study, parse_study
 from frictionlab.study.grid import grid_size
 
@@ -182,3 +184,20 @@ def test_a_static_coefficient_needs_the_one_its_ratio_is_to() -> None:
         study({"friction": [0.1]}, laws)
     with pytest.raises(StudyError, match="of the law 'stribeck' mu_kinetic is 0"):
         study({"friction": [0.1]}, laws[1:])
+
+
+def test_curves_spread_over_a_long_table_are_not_taken_for_linked() -> None:
+    over = {
+        "scene.belt_speed": [10, 20, 30],
+        "scene.drive.frequency": [1, 2, 3],
+        "scene.damping_ratio": [1, 2, 3],
+    }
+    table = fl.sweep(fl.Scene(**SCENE), fl.Coulomb(mu=0.4), over, columns=["mean_friction"]).table
+    diagonal = table["scene.drive.frequency"] == table["scene.damping_ratio"]
+    assert len(swept_inputs(table[diagonal])) == 1
+
+    shown = thinned([table], np.flatnonzero(diagonal))
+    assert swept_inputs(whole(shown)) == ["scene.damping_ratio", "scene.drive.frequency"]
+    family = family_of(whole(shown))
+    assert family is not None
+    assert len({*family.panels[0], family.member}) == 2

@@ -8,7 +8,10 @@ from numpy.typing import NDArray
 from frictionlab.quantities import Floats
 
 _MARGIN = 1.5
-"""Over the deviation of a parabola from its chord, where neighbouring curvatures agree."""
+"""Over the deviation of a parabola from its chord, where neighbouring curvatures agree, and over that of a triangle:
+between points slopes may rise to a kink and fall behind it."""
+_WIDEST = 3.0
+"""Times a finer neighbour that an interval may be wide, before it is judged as if slopes turned in it."""
 
 
 def halves_to_add(
@@ -46,8 +49,9 @@ def chord_deviation(speeds: Floats, means: Floats) -> Floats:
     """How far a curve may be from each of the chords between its points; infinite of two points alone.
 
     Where slopes rise from chord to chord, or fall, and go on so between points, the curve lies in the triangle of a
-    chord and its neighbours carried on: its height bounds the deviation. Where the curvature at points around an
-    interval differs by less than a factor of two, the deviation is that of a parabola of the larger one, and a half.
+    chord and its neighbours carried on: its height bounds the deviation; a half is added. Where the curvature at
+    points around an interval differs by less than a factor of two, the deviation is that of a parabola of the larger
+    one, and a half.
     """
     widths = np.diff(speeds)
     if len(widths) < 2:
@@ -58,7 +62,9 @@ def chord_deviation(speeds: Floats, means: Floats) -> Floats:
     both = np.abs(before) + np.abs(after)
     triangle = widths * np.abs(before) * np.abs(after) / np.where(both > 0.0, both, 1.0)
     turning = 0.5 * widths * np.maximum(np.abs(before), np.abs(after))
-    deviation = np.where(before * after >= 0.0, triangle, turning)
+    finer = np.minimum(np.append(widths[1:], np.inf), np.append(np.inf, widths[:-1]))
+    turns = (before * after < 0.0) | (widths > _WIDEST * finer)
+    deviation = np.where(turns, turning, _MARGIN * triangle)
     curvature = 2.0 * bends / (widths[:-1] + widths[1:])
     parabola = _MARGIN / 8.0 * widths**2 * _largest(curvature, 1)
     deviation = np.where(_alike(curvature), np.minimum(parabola, deviation), deviation)

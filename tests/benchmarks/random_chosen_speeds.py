@@ -2,9 +2,9 @@
 
 python tests/benchmarks/random_chosen_speeds.py [--count 150] [--seed 5]
 
-Curves of Coulomb friction along the belt, which may rise like a root to V_lin; each has belt speeds chosen within 1e-4
-to 1e-2 and is compared with 2000 points of it, crowded at V_lin. Printed: how many were chosen, how many ``check``
-foresees, and the largest deviation of straight lines from the curve as a multiple of what was asked.
+Curves of Coulomb friction along the belt, which may rise like a root to V_lin; each has belt speeds chosen within
+1e-4 to 1e-2 and is compared with 2000 points of it, crowded at V_lin. Printed: how many were chosen, how many
+``check`` foresees, and the largest deviation of straight lines from the curve as a multiple of what was asked.
 """
 
 from __future__ import annotations

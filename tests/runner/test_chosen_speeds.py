@@ -44,13 +44,13 @@ def chosen() -> fl.Study:
 @pytest.mark.parametrize(
     ("curve", "kink", "most", "off"),
     [
-        (lambda v: 0.4 * np.arcsin(np.minimum(v / 50.0, 1.0)), 50.0, 3.0, 1.0),
-        (lambda v: 0.4 * np.arcsin(np.minimum(v / 50.0, 1.0)), np.nan, 3.0, 3.0),
+        (lambda v: 0.4 * np.arcsin(np.minimum(v / 50.0, 1.0)), 50.0, 4.0, 1.0),
+        (lambda v: 0.4 * np.arcsin(np.minimum(v / 50.0, 1.0)), np.nan, 4.0, 3.0),
         (lambda v: 0.01 * np.abs(v - 23.456), np.nan, 0.4, 1.0),
         (lambda v: 0.4 * np.sin(v / 5.0), np.nan, 11.0, 1.0),
         (lambda v: 0.05 * np.sqrt(v - 0.5), np.nan, 3.0, 1.0),
         (lambda v: 0.4 * np.tanh(v), np.nan, 3.0, 1.0),
-        (lambda v: 0.4 - 0.3 * np.exp(-((v - 20.0) ** 2)), np.nan, 5.0, 1.0),
+        (lambda v: 0.4 - 0.3 * np.exp(-((v - 20.0) ** 2)), np.nan, 6.0, 1.0),
     ],
 )
 def test_chords_come_within_what_is_asked_with_few_points(  # or three times that at a kink that nobody foresaw

@@ -34,14 +34,14 @@ from frictionlab.sensitivity.parameters import Pair
 OFFSETS = 1e-2, 2e-3, 4e-4, 8e-5
 """Of the size of a number."""
 ONE_SIDED = 0.05
-"""Difference of the one-sided slopes over the least offset, of the slope, from which on an onset lies within it."""
+"""Difference of the one-sided slopes over an offset, of the slope, from which on an onset may lie within it."""
 TOLERANCE = 1e-11
 
 
 def reference(pair: Pair, path: str, number: float) -> tuple[float, float]:
     """The derivative by differences of steady states, and its doubt; NaN where there is no reference."""
     size = 90.0 if path.endswith("phase") else abs(number) or 1.0
-    slopes, noise, bends = [], [], 0.0
+    slopes, noise = [], []
     for offset in OFFSETS:
         try:
             states = [
@@ -58,13 +58,17 @@ def reference(pair: Pair, path: str, number: float) -> tuple[float, float]:
         noise.append((states[0].error + states[1].error + 1e-15) / (2.0 * offset * size))
         # the steady state itself is the same at every offset
         middle = fl.steady_state(*pair, tolerance=TOLERANCE).mean_friction
-        bends = abs(means[0] - 2.0 * middle + means[1]) / (offset * size)
-    if bends > ONE_SIDED * abs(slopes[-1]) + 2.0 * noise[-1]:
-        return np.nan, np.nan
+        if (
+            abs(means[0] - 2.0 * middle + means[1]) / (offset * size)
+            > ONE_SIDED * abs(slopes[-1]) + 2.0 * noise[-1]
+        ):
+            slopes[-1] = np.nan
     ratio = (OFFSETS[0] / OFFSETS[1]) ** 2
     better = [(ratio * b - a) / (ratio - 1.0) for a, b in pairwise(slopes)]
     doubts = [abs(b - a) + n for (a, b), n in zip(pairwise(slopes), noise[1:], strict=True)]
     if not np.isfinite(doubts).any():
+        return np.nan, np.nan
+    if np.isnan(slopes[-1]):
         return np.nan, np.nan
     best = int(np.nanargmin(doubts))
     return better[best], doubts[best]

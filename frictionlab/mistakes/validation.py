@@ -146,13 +146,17 @@ def unnamed(record: type[BaseModel], values: Sequence[Any]) -> TypeError:
         )
     if len(values) > len(names):
         return TypeError(f"{record.__name__} takes {', '.join(names) or 'no values'}, each by its name")
-    given = ", ".join(f"{name}={PYTHON.text_of(value)}" for name, value in zip(names, values, strict=False))
+    given = ", ".join(f"{name}={_shown(value)}" for name, value in zip(names, values, strict=False))
     return TypeError(f"{record.__name__} takes its values by name: write {record.__name__}({given})")
 
 
 def _copied(tree: Mapping[str, Any]) -> dict[str, Any]:
     """A copy whose mappings can be changed."""
     return {key: _copied(value) if isinstance(value, dict) else value for key, value in tree.items()}
+
+
+def _shown(value: Any) -> str:
+    return repr(value) if isinstance(value, str) else PYTHON.text_of(value)
 
 
 class _Check:

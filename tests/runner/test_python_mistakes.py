@@ -66,8 +66,11 @@ EIGHT: list[tuple[Callable[[], object], str]] = [
 
 MORE: list[tuple[Callable[[], object], str]] = [
     (lambda: fl.Scene({"belt_speed": 5}), "Scene takes its values by name: write Scene(**values)"),  # type: ignore[call-arg]
-    (lambda: fl.Mdsm("bound"), "Mdsm takes its values by name: write Mdsm(error=the text 'bound')"),  # type: ignore[call-arg]
-    (lambda: fl.HarmonicBalance(3), "HarmonicBalance takes its values by name: write HarmonicBalance(harmonics=3)"),  # type: ignore[call-arg]
+    (lambda: fl.Mdsm("bound"), "Mdsm takes its values by name: write Mdsm(error='bound')"),  # type: ignore[call-arg]
+    (
+        lambda: fl.HarmonicBalance(3),
+        "HarmonicBalance takes its values by name: write HarmonicBalance(harmonics=3)",
+    ),  # type: ignore[call-arg]
     (lambda: fl.Scene(SCENE), "Scene takes its values by name, and this is a Scene already"),  # type: ignore[call-arg]
     (
         lambda: SCENE.with_(belt_speed=np.ones(3)),

@@ -72,7 +72,8 @@ def given_speeds(belt_speed: ArrayLike) -> Floats:
     """Belt speeds as an array. Raises ValueError."""
     given = np.atleast_1d(np.asarray(belt_speed, dtype=object))
     if given.ndim != 1 or isinstance(belt_speed, str | Mapping):
-        raise ValueError(_told("belt_speed must be a list of finite numbers", belt_speed))
+        hint = "fl.compare and fl.sweep take ranges" if isinstance(belt_speed, Mapping) else ""
+        raise ValueError(_told("belt_speed must be a list of finite numbers", belt_speed, hint))
     if not given.size:
         raise ValueError("belt_speed must be a list of finite numbers, got none")
     for place, each in enumerate(given):

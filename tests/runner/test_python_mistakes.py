@@ -106,6 +106,10 @@ MORE: list[tuple[Callable[[], object], str]] = [
         lambda: fl.compare(SCENE, LAW, pd.DataFrame({"speed": [1.0]})),
         "belt_speed must be a list of finite numbers, got DataFrame of shape (1, 1)",
     ),
+    (
+        lambda: fl.curve(SCENE, LAW, {"start": 1, "stop": 2, "num": 3}),  # type: ignore[arg-type]
+        "belt_speed must be a list of finite numbers, got a mapping; fl.compare and fl.sweep take ranges",
+    ),
     (lambda: fl.curve(SCENE, LAW, []), "belt_speed must be a list of finite numbers, got none"),
     (
         lambda: fl.compare(SCENE, LAW, [1, math.nan]),

@@ -29,7 +29,7 @@ ARROWS = {
     "compile": ["faults", "laws"],
     "scene": ["quantities"],
     "dynamics": ["compile", "laws", "quantities", "scene"],
-    "orbit": ["columns", "compile", "dynamics", "quantities", "scene"],
+    "orbit": ["columns", "compile", "dynamics", "laws", "quantities", "scene"],
     "numerics": ["compile", "quantities"],
     "theory": ["laws", "quantities", "scene"],
     "shape": ["laws", "quantities"],

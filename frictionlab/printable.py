@@ -88,7 +88,7 @@ def _matched(number: Decimal, bound: Decimal, most: int, between: str) -> str:
 def _to_place(number: Decimal, bound: Decimal, place: int) -> tuple[Decimal, Decimal]:
     """Both to this power of ten; what the number loses is added to the error."""
     unit = Decimal(1).scaleb(place)
-    written = number.quantize(unit)
+    written = number.quantize(unit) + 0  # which has no sign where it is zero
     return written, ((bound + abs(number - written)) * _NEARLY_ONE).quantize(unit, ROUND_CEILING)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup, escape
 
-from frictionlab.charts.curves import family_of
+from frictionlab.charts.curves import along_the_axis, swept_columns
 from frictionlab.columns import belt_speed
 from frictionlab.printable import with_error
 from frictionlab.report.shapes import shape_sentence
@@ -32,9 +32,9 @@ def sentences(saved: Saved) -> list[Markup]:
 
 def axis_of(table: pd.DataFrame) -> str:
     """The input along the axis of the figures; the belt speed where nothing is swept."""
-    family = family_of(table)
-    found = belt_speed(table.columns) if family is None else family.abscissa
-    return found if found in table else found.replace("law.dimensional.", "law.")
+    swept = sorted(swept_columns(table), key=lambda name: table[name].nunique())
+    numbers = [name for name in swept if not isinstance(table[name].iloc[0], str)]
+    return along_the_axis(table, numbers) if numbers else belt_speed(table.columns)
 
 
 def height_sentence(table: pd.DataFrame, along: str) -> Markup:

@@ -38,4 +38,4 @@ def _row(pair: Difference) -> list[Cell]:
 
 def _the_same(pair: Difference) -> str:
     """Within the errors, which may be wide: what is found is told, too."""
-    return f"the same within errors ({with_error(pair.value, pair.error)})"
+    return f"the same within errors: {with_error(pair.value, pair.error)}"

@@ -97,6 +97,7 @@ def _asked(saved: Saved) -> dict[str, Any]:
         "units_sentence": question.units_sentence(study.scene),
         "source": study.source,
         "sketched": study.scene.degrees_of_freedom > 0,
+        "pushed": study.scene.drive is not None,
         "equations": equations(study),
         "letters_sentence": letters_sentence(study),
         "scene": question.scene_grid(study),

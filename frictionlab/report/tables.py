@@ -51,11 +51,15 @@ def grid(
     rows: Sequence[Sequence[Cell]],
     what: str = "rows",
     file: str = "results.csv",
+    left: int = 0,
 ) -> Grid:
-    """A table without columns that are empty in every row, of at most ``MOST_ROWS`` rows; file: has all of them."""
+    """A table without columns that are empty in every row, of at most ``MOST_ROWS`` rows.
+
+    file: has all of them. left: how many are left out already.
+    """
     kept = [place for place in range(len(head)) if any(row[place] for row in rows)]
     shown = [[row[place] for place in kept] for row in rows[:MOST_ROWS]]
-    left = len(rows) - len(shown)
+    left += len(rows) - len(shown)
     below = f"... and {left} more {what}, all of them in {file}" if left else ""
     return Grid(caption, [head[place] for place in kept], shown, below)
 

@@ -106,10 +106,15 @@ def _told(
     pairs: Sequence[tuple[str, tuple[pd.DataFrame, pd.DataFrame], list[str]]], what: str
 ) -> list[Difference]:
     """For each set of swept values where these are few, else once."""
-    apart = [each for law, pair, on in pairs for each in _differences(law, pair, on, what, _settings(on))]
-    if len(apart) <= MOST_BY_SETTING:
-        return apart
-    return [each for law, pair, on in pairs for each in _differences(law, pair, on, what, [])]
+    count = sum(
+        len(pair[0][_settings(on)].drop_duplicates()) if _settings(on) else 1 for _, pair, on in pairs
+    )
+    few = count <= MOST_BY_SETTING
+    return [
+        each
+        for law, pair, on in pairs
+        for each in _differences(law, pair, on, what, _settings(on) if few else [])
+    ]
 
 
 def _settings(on: Sequence[str]) -> list[str]:

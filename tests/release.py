@@ -142,6 +142,7 @@ def _tried(name: str, folder: Path, built: Built, tests: Sequence[str]) -> Tried
     except Failed as failed:
         print(f"{name}: {failed}", flush=True)
         return Tried(name, seconds, f"failed: {str(failed).splitlines()[0]}", passed=False)
+    print(f"{name}: {outcome}", flush=True)
     return Tried(name, seconds, outcome, passed=True)
 
 

@@ -84,15 +84,23 @@ class KernelCall:
             if found is not None:
                 return found
         start = time.perf_counter()
-        with named_while_it_compiles(self._name()):
+        with named_while_it_compiles(self.name):
             done = timed(self._machine, *arguments)
         add_to_compiling(time.perf_counter() - start - done[1])
         _compiled.add(key)
         return done
 
-    def _name(self) -> str:
+    @property
+    def name(self) -> str:
+        """In words, with the law that it is compiled for."""
         kernel = self.kernel.__name__.replace("_", " ")
-        return kernel if self.law is None else f"{kernel} for {type(self.law).__name__}"
+        return str(kernel) if self.law is None else f"{kernel} for {type(self.law).__name__}"
+
+    def kept_for(self) -> list[str]:
+        """The types of the arguments of each machine code that is kept of it."""
+        machine: Any = self._machine
+        entry = machine.args[0] if isinstance(machine, partial) else machine
+        return [] if _config.DISABLE_JIT else list(entry._cache.kept_for())
 
     def _key(self, arguments: tuple[Any, ...]) -> Any:
         machine: Any = self._machine

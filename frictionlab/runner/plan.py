@@ -11,6 +11,7 @@ from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.results.shape_points import speeds_to_add
+from frictionlab.runner.kernels import kernels_to_compile
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import Study, StudyCurve
 
@@ -20,6 +21,7 @@ class Planned:
     """The points of one law and one method. seconds: expected kernel time on one core, once compiled.
 
     about: belt speeds are chosen as the run goes, so that points and seconds are not known better.
+    kernels: at most those that are compiled for it, name -> seconds, about; None where that is not known beforehand.
     shapeless: curves that lack points for a measure of their shape, which ``add_belt_speeds`` would give them.
     """
 
@@ -32,6 +34,7 @@ class Planned:
     models: dict[str, int]
     seconds: float
     about: bool
+    kernels: dict[str, float] | None
     shapeless: int
     add_belt_speeds: list[float]
 
@@ -43,13 +46,13 @@ class Planned:
 def plan(study: Study) -> list[Planned]:
     """One entry per law and method, in the order of the study. Raises BrokenPlugin."""
     groups: dict[tuple[str, str], list[StudyCurve]] = {}
-    about = study.chosen_range is not None
     for curve in study.foreseen().curves():
         groups.setdefault((curve.law_label, curve.method.label), []).append(curve)
-    return [_planned(group, study.tolerance, about) for group in groups.values()]
+    return [_planned(group, study) for group in groups.values()]
 
 
-def _planned(curves: Sequence[StudyCurve], tolerance: float, about: bool) -> Planned:
+def _planned(curves: Sequence[StudyCurve], study: Study) -> Planned:
+    tolerance, about = study.tolerance, study.chosen_range is not None
     first, refusals, models, seconds = curves[0], Counter[str](), Counter[str](), 0.0
     for curve in curves:
         method, law = curve.method.method, curve.law
@@ -71,6 +74,7 @@ def _planned(curves: Sequence[StudyCurve], tolerance: float, about: bool) -> Pla
         models=dict(models),
         seconds=seconds,
         about=about,
+        kernels=kernels_to_compile(curves, study),
         shapeless=shapeless,
         add_belt_speeds=add_belt_speeds,
     )

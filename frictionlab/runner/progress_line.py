@@ -60,16 +60,19 @@ def _speed(stage: RunStage) -> list[str]:
     return [f"{1.0 / stage.each:.2g}/s" if stage.each < 1.0 else f"{spoken(stage.each)} each"]
 
 
-def kernel_words(number: int, name: str) -> str:
-    """That a kernel is compiled, the so-manieth of this run."""
-    return f"compiling kernel {number} ({name})"
+def kernel_words(number: int, name: str, most: int) -> str:
+    """That a kernel is compiled, the so-manieth of this run, of so many at most where that is known."""
+    of = f" of at most {most}" if number <= most else ""
+    return f"compiling kernel {number}{of} ({name})"
 
 
 def spoken(seconds: float) -> str:
     """A time in words, to about a hundredth."""
     if seconds < 99.5:
         return f"{seconds:.0f} s" if seconds > 9.5 else f"{seconds:.1g} s"
-    minutes = round(seconds / 60.0)
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 10:
+        return f"{minutes} min {rest:02} s"
     return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02} min"
 
 

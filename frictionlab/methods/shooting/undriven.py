@@ -46,6 +46,7 @@ from frictionlab.methods.shooting.undriven_motion import (
     NotFound,
     PeriodicMotion,
 )
+from frictionlab.methods.shooting.undriven_path import follow_undriven
 from frictionlab.orbit.record import Orbit
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.scene.body import Body, Mass, on_the_line
@@ -370,3 +371,10 @@ class _Undriven:
 
 
 _NEAR = np.array([1.0 - 1e-6, 1.0 + 1e-6])
+
+
+def undriven_kernels(law: FrictionLaw) -> list[tuple[Any, FrictionLaw | None]] | None:
+    """The kernels that solve undriven scenes; None where that is not known beforehand."""
+    known = {"none": (flow, record_flow), "bristle": (follow_undriven,)}
+    kernels = known.get(law.memory_kind)
+    return None if kernels is None else [(kernel, law) for kernel in kernels]

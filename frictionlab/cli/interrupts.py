@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-from frictionlab.cli.output import INTERRUPTED, print_message
+from frictionlab.cli.output import INTERRUPTED, print_message, tell_stopping
 
 PATIENCE = 3.0
 """Seconds in which the main thread may notice by itself."""
@@ -30,6 +30,7 @@ def prompt_interrupts() -> Iterator[None]:
 
     def notice(number: int, frame: FrameType | None) -> None:
         noticed.set()
+        tell_stopping()
         signal.default_int_handler(number, frame)
 
     # The signal writes its number to the pipe at once; Python calls the handler when the main thread is back.

@@ -105,6 +105,12 @@ def metered(whose: str = "") -> Iterator[Meter]:
             _meters.remove(meter)
 
 
+def tell_stopping() -> None:
+    """Progress says that an interrupt was heard: what is being solved gets a moment."""
+    for meter in _meters:
+        meter.begins("stopping")
+
+
 def _erase_progress() -> None:
     for meter in _meters:
         meter.clear()

@@ -202,6 +202,17 @@ def _run(job: Job, asked: RunOptions, meter: Meter) -> Run:
         print_records(_rows(job, problem.run, asked)) if asked.as_json else _show(problem.run)
         raise
     _show_failed(result) if asked.as_json or asked.cite else _show(result)
+    try:
+        return _shown(job, result, asked, meter)
+    except KeyboardInterrupt:
+        left = f"the table in {job.out} is whole; the same command makes figures and report"
+        raise CommandError(INTERRUPTED, f"interrupted: {left}") from None
+
+
+def _shown(job: Job, result: Run, asked: RunOptions, meter: Meter) -> Run:
+    """The run with its onsets, drawn, its report written."""
+    from frictionlab.runner import api
+
     meter.begins("finding onsets")
     result = api.with_onsets(result)
     meter.begins("drawing", "figures")

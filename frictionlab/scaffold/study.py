@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from frictionlab.runner.errors import FolderError, not_written
+from frictionlab.runner.files import write_whole
 
 TEMPLATE = Path(__file__).with_suffix(".yaml")
 ENDINGS = (".yaml", ".yml")
@@ -32,13 +33,10 @@ def new_study(path: Path) -> Path:
 def put_schema_beside(study: Path, schema: str) -> Path | None:
     """Write the JSON Schema for editors beside a study; where it is, None where another one is there already.
 
-    Raises FolderError, SaveError.
+    Raises SaveError.
     """
     file = study.with_name(SCHEMA_FILE)
-    try:
-        if file.exists():
-            return file if file.read_bytes() == schema.encode() else None
-        file.write_bytes(schema.encode())
-    except OSError as problem:
-        raise not_written(file, problem) from problem
+    if file.exists():
+        return file if file.read_bytes() == schema.encode() else None
+    write_whole(file, schema.encode())
     return file

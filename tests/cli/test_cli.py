@@ -561,6 +561,19 @@ def test_a_stopped_run_keeps_what_is_done_and_the_same_command_continues(
     assert [run["computed"] for run in runs] == [32 - unfinished, unfinished]
 
 
+@pytest.mark.parametrize("stage", ["_draw", "_report"])
+def test_an_interrupt_after_the_table_says_what_is_left_to_do(
+    stage: str, frictionlab: Any, monkeypatch: Any
+) -> None:
+    monkeypatch.setattr("frictionlab.cli.run._draw", lambda *_: None)
+    monkeypatch.setattr(f"frictionlab.cli.run.{stage}", lambda *_: signal.raise_signal(signal.SIGINT))
+    said = frictionlab("run", study(), "-o", "out")
+
+    assert said.code == 130
+    whole = "interrupted: the table in out is whole; the same command makes figures and report\n"
+    assert said.err.endswith(whole)
+
+
 def test_an_interrupted_run_does_not_wait_for_a_method_that_takes_for_ever(
     frictionlab: Any, monkeypatch: Any
 ) -> None:

@@ -227,7 +227,7 @@ def _kernels_left(job: Job) -> int:
     from frictionlab.runner.kernels import kernels_to_compile
 
     with suppress(Exception):  # solving comes across it too, and says so
-        return len(kernels_to_compile(job.study.curves(), job.study) or ())
+        return len(kernels_to_compile(job.study.foreseen().curves(), job.study) or ())
     return 0
 
 

@@ -63,7 +63,10 @@ def _planned(curves: Sequence[StudyCurve], study: Study) -> Planned:
             scene = curve.scenes[able[0]]
             models[_model(method, curve.scenes.taken(able), law, tolerance)] += len(able)
             seconds += len(able) * method.cost(scene, law, tolerance)
-    shapeless, add_belt_speeds = speeds_to_add((curve.scenes, curve.law) for curve in curves)
+    given = (
+        [] if about else [(curve.scenes, curve.law) for curve in curves]
+    )  # chosen ones are not to be added to
+    shapeless, add_belt_speeds = speeds_to_add(given)
     return Planned(
         law=first.law_label,
         kind=first.kind,

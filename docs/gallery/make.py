@@ -1,6 +1,6 @@
 """Run the studies of the gallery and write its pages and figures: ``python docs/gallery/make.py [STUDY ...]``.
 
-About two minutes, and as much again for kernels on a machine that has none. The site shows what is kept here.
+About fifteen minutes, and more for kernels on a machine that has none. The site shows what is kept here.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ COMMAND = Path(sys.executable).parent / "frictionlab"
 
 
 class Exhibit(NamedTuple):
-    """A study in the gallery: its name and title, and what is said of it."""
+    """A study in the gallery: its group, name and title, and what is said of it."""
 
+    group: str
     name: str
     title: str
     question: str
@@ -62,7 +63,7 @@ from [{self.name}.yaml]({study}):
 
     def card(self) -> str:
         """Its entry on the first page."""
-        return f"""## {self.question}
+        return f"""### {self.question}
 
 [![{self.title}](figures/{self.name}.svg)]({self.name}.md)
 
@@ -75,7 +76,9 @@ def exhibits() -> list[Exhibit]:
     yaml = YAML(typ="safe")
     words = yaml.load(GALLERY / "words.yaml")
     return [
-        Exhibit(name, yaml.load(STUDIES / f"{name}.yaml")["title"], **said) for name, said in words.items()
+        Exhibit(group, name, yaml.load(STUDIES / f"{name}.yaml")["title"], **said)
+        for group, studies in words.items()
+        for name, said in studies.items()
     ]
 
 
@@ -97,8 +100,10 @@ def make(exhibit: Exhibit) -> None:
 
 
 def index(shown: list[Exhibit]) -> str:
-    """The first page."""
+    """The first page: a section for each group."""
     names = "\n".join(exhibit.name for exhibit in shown)
+    groups = {exhibit.group: [each for each in shown if each.group == exhibit.group] for exhibit in shown}
+    sections = [f"## {group}\n\n" + "\n".join(map(Exhibit.card, inside)) for group, inside in groups.items()]
     return f"""# Gallery
 
 Each picture is a study of the repository, and each asks one question. `python docs/gallery/make.py` runs the studies
@@ -110,7 +115,7 @@ and draws all of it again.
 {names}
 ```
 
-{chr(10).join(exhibit.card() for exhibit in shown)}"""
+{chr(10).join(sections)}"""
 
 
 def main(wanted: list[str]) -> None:

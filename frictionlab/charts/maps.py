@@ -45,6 +45,7 @@ from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
 LEAST_VALUES = 5  # of both numbers: fewer are told apart by lines
 MOST_SEPARATE = 12  # values of a number beside belt speed that are lines; more are a map
+LABEL_ROOM = 0.16, 0.09  # of a label of such a line, in shares of a picture
 RASTERIZED = 100  # cells: more are pixels in a drawing
 OF_CURVES = "reduction", "shape_area"
 MOST_LEVELS, LEVEL_EDGE = 6, 0.02  # of lines of equal value, and what they keep from the ends of the range
@@ -120,11 +121,11 @@ class MapFigure:
         mesh = axes.pcolormesh(
             *edges, np.ma.masked_invalid(known), norm=norm, rasterized=known.size > RASTERIZED
         )
-        _draw_contours(axes, x, y, known, norm)
-        _draw_v_lin(axes, x, y, picture.over(self.over, SPEED_RATIO)[2] if self._along_speed else known[:0])
         for values, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
             if is_logarithmic(values):
                 scale("log")
+        _draw_contours(axes, x, y, known, norm)
+        _draw_v_lin(axes, x, y, picture.over(self.over, SPEED_RATIO)[2] if self._along_speed else known[:0])
         for status, mark in LEGEND_MARKS.items() if "status" in picture.rows else ():
             rows = picture.rows[picture.rows["status"] == status]
             look: Any = {"marker": mark, "linestyle": "none", "color": "0.3", "markersize": 3}
@@ -271,8 +272,14 @@ def _draw_contours(
     look: Any = {"colors": "0.1", "linewidths": broad, "linestyles": "solid"}
     lines = axes.contour(x, y, np.ma.masked_invalid(known), levels, **look)
     lines.set(path_effects=[OUTLINE])
-    for label in axes.clabel(lines, fontsize=6, fmt="%.3g"):
-        label.set(path_effects=[OUTLINE])
+    kept: list[NDArray[np.float64]] = []
+    for label in axes.clabel(lines, fontsize=6, fmt="%.4g", inline=False):
+        at = (axes.transScale + axes.transLimits).transform(label.get_position())
+        if any((np.abs(at - other) < LABEL_ROOM).all() for other in kept):
+            label.set_visible(False)
+        else:
+            kept.append(at)
+            label.set(path_effects=[OUTLINE])
 
 
 def _draw_v_lin(

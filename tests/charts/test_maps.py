@@ -149,3 +149,16 @@ def test_more_curves_than_lines_can_tell_apart_are_a_map_with_v_lin_in_it() -> N
 def test_a_grid_with_holes_is_lines() -> None:
     assert map_of(along_speed(13)) is not None
     assert map_of(along_speed(13, missing=1)) is None
+
+
+def test_labels_of_lines_of_equal_value_do_not_lie_on_each_other() -> None:
+    peak = np.exp(-((np.arange(35) % 5 - 2.0) ** 2) * 4.0) * 3000.0
+    figure = drawn(grid(mean_friction=peak))
+
+    axes = figure.axes[0]
+    shown = [text for text in axes.texts if text.get_visible()]
+    places = [axes.transLimits.transform(axes.transScale.transform(text.get_position())) for text in shown]
+    assert all(float(text.get_text()) % 100 == 0 and "e" not in text.get_text() for text in shown)
+    assert len(axes.texts) > len(shown) > 1
+    for one, other in itertools.combinations(places, 2):
+        assert not (np.abs(one - other) < (0.16, 0.09)).all()

@@ -73,7 +73,7 @@ class SpeedRange:
     def about(self) -> tuple[float, ...]:
         """About as many as will be chosen, evenly spaced: mostly where the curve bends at V_lin."""
         return SweepRange(
-            self.start, self.stop, FIRST_SPEEDS + math.ceil(0.5 / math.sqrt(self.within))
+            self.start, self.stop, FIRST_SPEEDS + math.ceil(0.6 / math.sqrt(self.within))
         ).values()
 
     def resolved(self) -> dict[str, Any]:

@@ -221,7 +221,10 @@ class Record(BaseModel, metaclass=_Listed):
         return [*self._shown().items()]
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Raises AttributeError: a record is made again to be changed."""
+        """Raises AttributeError where the record is frozen: it is made again to be changed."""
+        if not self.model_config.get("frozen"):
+            super().__setattr__(name, value)
+            return
         again = f"{name}={typed(value)}"
         hint = f"scene.with_({again})" if hasattr(self, "with_") else f"another with {again}"
         raise AttributeError(f"a {type(self).__name__} cannot be changed: make {hint}")

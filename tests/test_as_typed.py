@@ -63,6 +63,23 @@ def test_what_a_scene_and_its_law_show_makes_them_again(name: str) -> None:
     assert "None" not in repr(study)
 
 
+@pytest.mark.parametrize(
+    "swept",
+    [
+        {"scene.belt_speed": {"start": 1, "stop": 5, "within": 0.01}},
+        {"linked": [{"scene.drive.frequency": [1, 2], "scene.normal_load": [3, 4]}]},
+        {"friction": [0.1, 0.2]},
+        {"scene.drive.waveform": ["sine", {"harmonics": [{"order": 2, "amplitude": 1, "phase": 30}]}]},
+    ],
+    ids=lambda swept: next(iter(swept)),
+)
+def test_what_a_study_shows_makes_it_again(swept: dict[str, Any]) -> None:
+    laws = [fl.Coulomb(mu=0.4, label="worn"), fl.Dahl(mu=0.3, stiffness=4)]
+    study = fl.Study.of(SCENE, laws, ["auto", fl.March(steps=100)], swept, tolerance=1e-6, keep={"orbit": 20})
+
+    assert again(study).resolved() == study.resolved()
+
+
 @pytest.mark.parametrize("more", IN_SI, ids=range(len(IN_SI)))
 def test_what_a_scene_in_si_units_shows_makes_it_again(more: dict[str, Any]) -> None:
     scene = fl.Scene(dimensional=BODY | more)

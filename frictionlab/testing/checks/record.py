@@ -84,7 +84,7 @@ def frozen(one: Given) -> None:
         one.require(not mutable, f"the default of {name} can be changed: use a tuple", default=default)
         try:
             setattr(law, name, getattr(law, name))
-        except ValidationError:
+        except AttributeError:
             continue
         one.require(False, f"{name} can be set on a law that is made: keep model_config frozen")
     hash(law)

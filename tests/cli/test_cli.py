@@ -39,6 +39,7 @@ def _interrupts_are_heard() -> Iterator[None]:
 @pytest.fixture(autouse=True)
 def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("frictionlab.runner.progress.QUIET", 600.0)  # a busy machine is slow
     known = registry.method_class
     monkeypatch.setattr(registry, "method_class", lambda name: Fake if name == "fake" else known(name))
     names = registry.method_names()

@@ -13,7 +13,7 @@ from frictionlab.charts.curves import LEAST_VISIBLE
 Points = tuple[NDArray[np.float64], NDArray[np.float64]]
 LEVEL_SHARE = 0.4
 DIFFER_MOST = 0.3  # of the largest difference: from there on curves are shown closer
-GAP = 0.07  # to the level part around, in shares of the picture
+GAP, LABELS = 0.07, 0.04  # to the level part around, and for labels of the view, in shares of the picture
 
 
 def draw_closer_view(axes: Axes, curves: Sequence[Points], draw: Callable[[Axes], None]) -> Axes | None:
@@ -31,7 +31,8 @@ def draw_closer_view(axes: Axes, curves: Sequence[Points], draw: Callable[[Axes]
     room = (0.1, bottom - GAP) if bottom > 0.5 else (bottom + GAP, 0.95)
     if room[1] - room[0] < 0.25:
         return None
-    inside = axes.inset_axes((left + GAP, room[0] + GAP, right - left - 1.5 * GAP, room[1] - room[0] - GAP))
+    first = left + GAP + LABELS
+    inside = axes.inset_axes((first, room[0] + GAP, right - first - 0.5 * GAP, room[1] - room[0] - GAP))
     draw(inside)
     low, high = _of_interest(curves, start)
     heights = np.concatenate([y[(x >= low) & (x <= high)] for x, y in curves])

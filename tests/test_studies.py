@@ -33,7 +33,7 @@ def is_for_the_deep_profile(study: Path) -> bool:
         along.scene.degrees_of_freedom > 0 or along.scene.transverse_slip is not None
         for along, _ in plan.scenes_along
     )
-    bristles = any(isinstance(law, BristleLaw) for choice in plan.laws for law in plan.laws_of(choice))
+    bristles = any(isinstance(law, BristleLaw) for choice in plan.laws for law in plan.laws_in_scenes(choice))
     return long and bristles
 
 

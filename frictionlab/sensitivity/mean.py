@@ -37,6 +37,9 @@ _UNDRIVEN = "the scene is undriven: its period is no number that is given"
 _RESTS = "the mass rests on the belt"
 _OTHER_ORBIT = "the period map closes another orbit than the one of this steady state"
 _LOST = "the steady state is about to be lost: a multiplier of the period map is close to +1"
+_BENDS = "the period map bends too sharply here: no offset is small enough for a derivative"
+_BLUNT = 0.05
+"""Error of a derivative that is none, of the derivative or of the mean over the parameter."""
 _COLUMNS = "parameter", "value", "derivative", "error", "elasticity", "reason"
 
 
@@ -101,7 +104,7 @@ def sensitivities(
     try:
         _check(pair.scene, state)
         for turn in _TURNS:
-            left = [path for path in asked if found[path].reason in (CORNER, _NOTHING.reason)]
+            left = [path for path in asked if found[path].reason in (CORNER, _BENDS, _NOTHING.reason)]
             told, more = _at_turn(pair, turn, state, left, numbers, ready)
             found, maps = found | told, maps + more
     except _Refused as refused:
@@ -133,8 +136,15 @@ def _at_turn(
     for path in paths:
         by_number = _by_parameter(there, path, numbers[path], method)
         maps += MAPS_PER_TRY * by_number.tries
-        found[path] = _of_the_mean(there, by_number)
+        least = abs(state.mean_friction) / _size(path, numbers[path])
+        found[path] = _unless_blunt(_of_the_mean(there, by_number), least)
     return found, maps
+
+
+def _unless_blunt(found: _ByNumber, least: float) -> _ByNumber:
+    """The derivative where its error is small beside it, or beside the least derivative that matters."""
+    blunt = found.error > _BLUNT * max(abs(found.value), least)
+    return _NOTHING._replace(reason=_BENDS) if blunt and not found.reason else found
 
 
 def _table(rows: list[tuple[str, float, float, float, float, str]], maps: int) -> pd.DataFrame:
@@ -204,13 +214,17 @@ def _with_derivatives(pair: Pair, turn: float, one: OnePeriod, z: Floats) -> _At
     return _AtFixedPoint(pair, turn, one, z, here, by_state, error, maps)
 
 
+def _size(path: str, number: float) -> float:
+    return _RADIAN if path.endswith("phase") else abs(number) or 1.0
+
+
 def _by_parameter(found: _AtFixedPoint, path: str, number: float, method: Method) -> Derivative:
     """P_p and below it m_p."""
 
     def changed(offsets: Floats) -> list[Floats | None]:
         return [_a_period_with(found, path, number + offset, method) for offset in offsets.tolist()]
 
-    size = _RADIAN if path.endswith("phase") else abs(number) or 1.0
+    size = _size(path, number)
     by_number = derivative(changed, found.image, _FEW_PARTS * size, found.one.noise(found.z))
     return by_number._replace(error=by_number.error + found.one.drift(found.z) / size)
 

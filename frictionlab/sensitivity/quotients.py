@@ -27,7 +27,7 @@ NO_VALUES = "there are no values close to this one on either side"
 _PARTS = 0.5 ** np.arange(_LEVELS)
 _AMPLIFIED = 8.0
 """What errors of single values come to in an extrapolated difference, over those in one over the smallest offset."""
-_SAFETY = 3.0
+_SAFETY = 10.0
 """On what the last extrapolation changes: a jump of the second derivative leaves as much as that."""
 _DEGREE = 5
 """Of the polynomial through the values of both sides; what it leaves is taken for noise."""

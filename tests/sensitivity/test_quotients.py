@@ -38,7 +38,7 @@ def _of(function: Callable[[float], float], low: float = -1e9, noise: float = 1e
 def test_the_error_covers(function: Callable[[float], float], slope: float, noise: float) -> None:
     found = _of(function, noise=noise)
     assert found.reason == ""
-    assert abs(found.value[0] - slope) <= found.error[0] <= 1e-5 + 1e6 * noise
+    assert abs(found.value[0] - slope) <= found.error[0] <= 1e-4 + 1e7 * noise
 
 
 def test_smooth_functions_are_differentiated_almost_to_rounding() -> None:

@@ -29,6 +29,8 @@ _AMPLIFIED = 8.0
 """What errors of single values come to in an extrapolated difference, over those in one over the smallest offset."""
 _SAFETY = 10.0
 """On what the last extrapolation changes: a jump of the second derivative leaves as much as that."""
+_FAR_FROM_ROUNDING = 1e3
+"""Errors over those of rounding from which on narrower offsets are tried even though errors have risen."""
 _DEGREE = 5
 """Of the polynomial through the values of both sides; what it leaves is taken for noise."""
 
@@ -58,8 +60,11 @@ def derivative(values: _Values, here: Floats, widest: float, noise: Floats) -> D
         reason = why or reason
         if one is not None:
             if best is not None and _size(one.error) >= _size(best.error):
-                break
-            best = one
+                # errors rise by rounding at last; before that where a corner comes within other offsets
+                if _size(best.error) <= _FAR_FROM_ROUNDING * _size(_rounding(width, noise)):
+                    break
+            else:
+                best = one
             if _size(best.error) <= 2.0 * _size(_rounding(width, noise)):
                 break
         width /= _NARROWER

@@ -41,7 +41,8 @@ def height_sentence(table: pd.DataFrame, along: str) -> Markup:
     """Who has the highest mean friction where, and by how much; of one alone, between what it lies."""
     best = best_rows(table)
     if best.empty:
-        return Markup("No point has a number.")
+        one = "one mean friction" if (table["status"] == "not_unique").any() else "a number"
+        return Markup("No point has {}.").format(one)
     ranking = ranking_of(table, along)
     told = _span(best, along) if ranking is None else _ranking_in_words(ranking, along)
     silent = [law for law in table["law"].unique() if law not in set(best["law"])]

@@ -184,6 +184,15 @@ def test_a_run_without_a_number_says_so_three_times() -> None:
     ]
 
 
+def test_a_run_whose_every_point_is_not_unique_has_no_one_mean() -> None:
+    rows = curve("stribeck", [math.nan, math.nan]).assign(status="not_unique", mean_low=0.1, mean_high=0.25)
+
+    first, _, third = told(rows)
+
+    assert first == "No point has one mean friction."
+    assert third == "Needs attention: 2 of 2 points are not unique, with means from 0.1 to 0.25."
+
+
 # Shapes
 
 

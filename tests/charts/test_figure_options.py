@@ -211,7 +211,8 @@ def test_one_figure_is_had_without_files_or_pyplot(laws: pd.DataFrame) -> None:
 
     assert dict(mpl.rcParams) == before
     assert figure.axes[0].get_ylabel().endswith("other")
-    assert figure.axes[0].xaxis.get_ticklabels()[0].get_fontsize() == STYLE["xtick.labelsize"]
+    labels = [label for axes in figure.axes for label in axes.get_yticklabels()]
+    assert {label.get_fontsize() for label in labels} == {STYLE["ytick.labelsize"]}
     pixels = imread(BytesIO(figure._repr_png_()))
     assert pixels.shape[1] == pytest.approx(85.0 / 25.4 * 200, abs=1)
     shape = figure_of(laws[laws["law"] == "coulomb"], "shape", curves=SHAPES)

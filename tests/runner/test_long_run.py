@@ -177,7 +177,7 @@ def test_the_page_and_the_figures_show_some_and_tell_of_all(
     page = re.sub("<[^>]*>", "", (out / "report.html").read_text())
 
     assert "320 points: 160 ok, 160 refused\nof 57 points spread over them:" in printed
-    assert "Tables and figures below show 57 points spread over them" in page
+    assert "is read from 57 points spread over all 320 points" in page
     assert (out / "figures" / "mean_friction.svg").exists()
     again = read_saved(out)
     assert (again.size, len(again.table), again.counts) == (320, 57, {"ok": 160, "refused": 160})

@@ -204,7 +204,8 @@ def _pieces_of_code(value: Any, seen: set[int]) -> Iterator[str]:
     if isinstance(value, type):
         yield repr(getattr(value, "_fields", ()))
         yield from _pieces([base for base in value.__mro__[1:] if base is not object], seen)
-        yield from _pieces([m for m in vars(value).values() if isinstance(m, FunctionType)], seen)
+        methods = [getattr(member, "py_func", member) for member in vars(value).values()]
+        yield from _pieces([each for each in methods if isinstance(each, FunctionType)], seen)
         return
     yield from _pieces_of_bytecode(value.__code__)
     cells = [cell.cell_contents for cell in value.__closure__ or ()]

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, ClassVar, Literal, Self
 
+from frictionlab.laws.arrays import accept_arrays
 from frictionlab.laws.labelled import Labelled
 from frictionlab.quantities import Dimension, Finite, NonNegative, PerSpeed, Positive, Record, Speed
 
@@ -47,12 +48,21 @@ class FrictionLaw(Labelled, ABC):
     True
     >>> fl.Dahl(mu=0.4, stiffness=40).sliding_friction(3.0)
     0.4
+
+    ``sliding_friction`` and ``sliding_vector`` of a law take arrays, too, of any shape:
+
+    >>> fl.Stribeck(mu_kinetic=0.2, mu_static=0.4, curve="hyperbolic").sliding_friction([0, 1, 3])
+    array([0.4 , 0.3 , 0.25])
     """
 
     bibtex: ClassVar[str] = ""
     expected_failures: ClassVar[Mapping[str, str]] = MappingProxyType({})
     memory_kind: ClassVar[Literal["undeclared", "none", "bristle", "deflections", "scalars"]] = "undeclared"
     compliant: ClassVar[bool] = False
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        accept_arrays(cls)
 
     @classmethod
     def _in_order(cls) -> list[str]:
@@ -141,6 +151,9 @@ class FrictionLaw(Labelled, ABC):
         required = {name for name, field in type(self).model_fields.items() if field.default is not None}
         fields = {name: value for name, value in self if name in required and _is_number(value)}
         return fields | {name: _number(getattr(self, name)) for name in _properties(type(self))}
+
+
+accept_arrays(FrictionLaw)
 
 
 class SlidingLaw(FrictionLaw, ABC):

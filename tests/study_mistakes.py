@@ -82,7 +82,7 @@ EDITS = [
     ("drive: {unbalance: 10, frequency: 1}", "drive: {unbalance: 10, frequency: 1, waveform: sinus}",
      "8:50: scene.drive.waveform: must be 'sine', 'square', 'triangle', 'sawtooth' or {harmonics: [...]}, got the text 'sinus'"),
     ("  drive: {unbalance: 10, frequency: 1}\n", "",
-     "11:5: scene.transverse.load: leave it out where drive is left out (an undriven scene)"),
+     "11:5: scene.transverse.load: needs drive, whose frequency it takes (amplitude 0 for a load across alone)"),
     ("load: {unbalance: 10}", "load: {unbalance: 10, frequency: 2}", "12:27: scene.transverse.load.frequency: unknown key"),
     ("  transverse:\n", "  initial: {x2: x}\n  transverse:\n", "9:17: scene.initial.x2: must be a number, got the text 'x'"),
     # laws

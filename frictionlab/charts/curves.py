@@ -264,12 +264,16 @@ def kinks_of(curve: pd.DataFrame) -> tuple[float, ...]:
     return tuple(speed for speed in (-limit, limit) if low < speed < high)
 
 
+EVEN = 0.3
+"""Unevenness below which logarithms count as even: that of 1, 2, 5, 10 is 0.14, of chosen belt speeds 0.4 and more."""
+
+
 def is_logarithmic(values: NDArray[np.float64]) -> bool:
     """Whether the distinct values are spaced evenly in their logarithms rather than in themselves."""
     steps = np.unique(values[np.isfinite(values)])
     if len(steps) < 3 or steps[0] <= 0 or steps[-1] < 5 * steps[0]:
         return False
-    return _unevenness(np.log(steps)) < _unevenness(steps)
+    return _unevenness(np.log(steps)) < min(_unevenness(steps), EVEN)
 
 
 def _unevenness(steps: NDArray[np.float64]) -> float:

@@ -486,12 +486,20 @@ def test_an_energy_that_is_zero_but_for_rounding_is_drawn_as_zero(line: pd.DataF
     assert axes.get_ylim()[0] == 0.0
 
 
-@pytest.mark.parametrize("values", [np.logspace(-2, 1, 7), [0.1, 1, 10]])
+@pytest.mark.parametrize("values", [np.logspace(-2, 1, 7), [0.1, 1, 10], [1, 2, 5, 10, 20, 50]])
 def test_logarithmic_spacing_is_recognised(values: list[float]) -> None:
     assert is_logarithmic(np.asarray(values))
 
 
-@pytest.mark.parametrize("values", [np.linspace(0.5, 60, 120), [1.0, 1.5], [0, 1, 10, 100], [1, 2, 3]])
+CHOSEN = np.concatenate(
+    [np.arange(1, 4, 0.25), np.arange(4, 12, 0.5), np.arange(12, 28, 2), np.arange(28, 61, 4)]
+)
+"""As belt speeds are chosen where a curve bends most on slow belts: intervals of an even range, halved."""
+
+
+@pytest.mark.parametrize(
+    "values", [np.linspace(0.5, 60, 120), [1.0, 1.5], [0, 1, 10, 100], [1, 2, 3], CHOSEN]
+)
 def test_linear_spacing_is_recognised(values: list[float]) -> None:
     assert not is_logarithmic(np.asarray(values, dtype=float))
 

@@ -194,7 +194,7 @@ class Comparison:
         from frictionlab.runner.files import write_whole
 
         with tempfile.TemporaryDirectory() as folder:
-            page = self.save(Path(folder) / "run") / "report.html"
+            page = self.save(Path(folder) / Path(path).stem) / "report.html"
             write_whole(Path(path), page.read_bytes())
         return Path(path)
 

@@ -65,6 +65,7 @@ def test_a_saved_comparison_is_a_run_that_goes_on(compared: fl.Comparison, tmp_p
 def test_the_report_is_one_file(compared: fl.Comparison, tmp_path: Path) -> None:
     page = compared.report(tmp_path / "page.html")
     assert "<svg" in page.read_text() or "data:image" in page.read_text()
+    assert "<title>page</title>" in page.read_text()
     assert list(tmp_path.iterdir()) == [page]
 
 

@@ -82,7 +82,7 @@ EDITS = [
     ("drive: {unbalance: 10, frequency: 1}", "drive: {unbalance: 10, frequency: 1, waveform: sinus}",
      "8:50: scene.drive.waveform: must be 'sine', 'square', 'triangle', 'sawtooth' or {harmonics: [...]}, got the text 'sinus'"),
     ("  drive: {unbalance: 10, frequency: 1}\n", "",
-     "11:5: scene.transverse.load: needs drive, whose frequency it takes (amplitude 0 for a load across alone)"),
+     "11:5: scene.transverse.load: needs drive for its frequency (amplitude 0 for a load across alone)"),
     ("load: {unbalance: 10}", "load: {unbalance: 10, frequency: 2}", "12:27: scene.transverse.load.frequency: unknown key"),
     ("  transverse:\n", "  initial: {x2: x}\n  transverse:\n", "9:17: scene.initial.x2: must be a number, got the text 'x'"),
     # laws
@@ -273,6 +273,8 @@ HINTS = [
     ("kind: coulomb, mu: 0.4", "kind: stribeck, mu: 0.4, mu_static: 0.5, label: coulomb", "did you mean 'mu_kinetic'?"),
     ("kind: coulomb, mu: 0.4", "kind: coulomb, mu_kinetic: 0.4", "did you mean 'mu'?"),
     ("kind: coulomb, mu: 0.4", "kind: coulomb, mu: 0.4, mu_kinetic: 0.4", "did you mean 'mu_static'?"),
+    ("  scene.belt_speed: {", "  frequency: {", "did you mean 'scene.drive.frequency'?"),
+    ("  scene.belt_speed: {", "  mu: {", "did you mean 'laws.coulomb.mu'?"),
 ]
 """Mistakes with a remedy: the last line of the message."""
 # fmt: on

@@ -313,12 +313,12 @@ class Notes:
         self.add(path, f"must be text, got {value_text(value)}{kind}")
         return ""
 
-    def one_of(self, value: Any, path: Path, names: Iterable[str]) -> str | None:
-        """The value if it is one of these names; None, noted, if it is not."""
+    def one_of(self, value: Any, path: Path, names: Iterable[str], meaning: str = "") -> str | None:
+        """The value if it is one of these names; None, noted, if it is not. meaning: what the names stand for."""
         allowed = list(names)
         if isinstance(value, str) and value in allowed:
             return value
         hint = did_you_mean(value, allowed) if isinstance(value, str) else ""
         shown = [*allowed[:_MOST_SHOWN], *(["..."] if len(allowed) > _MOST_SHOWN else [])]
-        self.add(path, f"must be one of {', '.join(shown)}; got {value_text(value)}", hint)
+        self.add(path, f"must be one of {', '.join(shown)}; got {value_text(value)}", hint or meaning)
         return None

@@ -27,7 +27,7 @@ def problems_of_variation(scene: Any) -> list[str]:
 
 def _missing_parts(scene: Any) -> Iterator[str]:
     if scene.drive is None and scene.transverse is not None and scene.transverse.load is not None:
-        yield "transverse.load: needs drive, whose frequency it takes (amplitude 0 for a load across alone)"
+        yield "transverse.load: needs drive for its frequency (amplitude 0 for a load across alone)"
     if scene.initial is not None and scene.transverse is None:
         stray = [name for name in scene.initial.model_fields_set if name.startswith(("x2", "velocity2"))]
         yield from (f"initial.{name}: needs transverse" for name in sorted(stray))

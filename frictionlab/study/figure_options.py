@@ -64,7 +64,8 @@ def read_figure_options(given: Any, laws: tuple[str, ...] | None, notes: Notes) 
         named = notes.text if laws is None else lambda value, at: notes.one_of(value, at, laws)
         told["against"] = named(tree["against"], path)
     if "width" in tree:
-        told["width"] = notes.one_of(tree["width"], ("figures", "width"), WIDTHS)
+        widths = ", ".join(f"{name} is {width:g} mm" for name, width in WIDTHS.items())
+        told["width"] = notes.one_of(tree["width"], ("figures", "width"), WIDTHS, widths)
     if "formats" in tree:
         told["formats"] = _formats(tree["formats"], notes)
     return FigureOptions(**told)

@@ -238,9 +238,19 @@ class _Targets:
         else:
             what = "only scene.<value>, laws.<label>.<parameter>, friction and linked can be swept"
             what = "no such value in a scene" if head == "scene" else what
-            self._notes.on_key(path, what, did_you_mean(key, [*self._sweepable, FRICTION, LINKED]))
+            self._notes.on_key(path, what, self._hint(key))
             found = None
         return [] if found is None else [found]
+
+    def _hint(self, key: str) -> str:
+        """The value whose path ends so, of a part that the study has; else the name most similar to the one given."""
+        ending = (path for path in self._sweepable if path.endswith(f".{key}"))
+        found = next((path for path in ending if self._has_part(path)), None)
+        return did_you_mean(found or key, [*self._sweepable, FRICTION, LINKED])
+
+    def _has_part(self, path: str) -> bool:
+        """Whether the study has the law, or gives the part of the scene, that this value is of."""
+        return path.startswith("laws.") or isinstance(_at(self._tree, tuple(path.split(".")[:-1])), dict)
 
     @cached_property
     def _with_friction(self) -> bool:

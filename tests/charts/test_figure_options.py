@@ -183,6 +183,7 @@ def test_a_study_says_how_its_figures_are_drawn() -> None:
         ({"inset": 1}, "must be true or false, got 1"),
         ({"against": "columb"}, "must be one of coulomb"),
         ({"width": "wide"}, "must be one of single, double"),
+        ({"width": 85}, "single is 85 mm, double is 175 mm"),
         ({"formats": "svg"}, "must be a list such as [svg, pdf]"),
         ({"formats": ["gif"]}, "must be one of svg, png, pdf"),
         ([], "must be a mapping"),

@@ -500,7 +500,7 @@ def without(body: dict[str, Any], *keys: str) -> dict[str, Any]:
         (BODY | {"initial": {"x2_m": 1}}, "scene.dimensional.initial.x2_m: needs transverse"),
         (
             without(PLANAR, "drive"),
-            "scene.dimensional.transverse.load: needs drive, whose frequency it takes (amplitude 0 for a load across alone)",
+            "scene.dimensional.transverse.load: needs drive for its frequency (amplitude 0 for a load across alone)",
         ),
         (
             BODY | {"length_m": 1e-320, "stiffness_N_per_m": 1e-9},

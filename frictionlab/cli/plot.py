@@ -14,7 +14,10 @@ from frictionlab.cli.output import print_message, print_result
 @click.command("plot")
 @click.argument("run", type=options.PATH)
 def plot_command(run: Path) -> None:
-    """Draw the figures of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
+    """Draw the figures of RUN anew, a folder that ``run`` wrote. Nothing is computed.
+
+    Width, formats and all else are those of ``figures`` in RUN/study.yaml, which may be edited.
+    """
     from frictionlab.runner.in_use import alone_in
     from frictionlab.runner.saved import read_saved
 

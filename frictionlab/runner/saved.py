@@ -153,7 +153,7 @@ def _study(folder: Path, account: dict[str, Any]) -> Study:
     try:
         return read_back(folder / "study.yaml", account["code"])
     except StudyError as problem:
-        raise FolderError(f"{problem}\n{_remedy(folder, force=False)}") from problem
+        raise FolderError(f"{problem}\nput it right there, or {_remedy(folder, force=False)}") from problem
 
 
 def _damaged(folder: Path, account: dict[str, Any], study: Study) -> dict[str, str]:
@@ -246,9 +246,12 @@ def _check_belongs_together(saved: Saved) -> None:
     rows, wanted = saved.size, grid_size(saved.study)
     edited = saved.account.get("digest") != saved.study.digest()
     if rows != wanted or (edited and saved.account.get("frictionlab") == __version__):
+        differs = (
+            f"it has {wanted} points, the table {rows}" if rows != wanted else "it asks for other numbers"
+        )
         raise FolderError(
-            f"{saved.folder}: study.yaml is not the study of results.parquet (it has {wanted} points, the table "
-            f"{rows}; only title, source and expect may be edited); {_remedy(saved.folder)}"
+            f"{saved.folder}: study.yaml is not the study of results.parquet ({differs}; only title, source, "
+            f"figures and expect may be edited); {_remedy(saved.folder)}"
         )
 
 

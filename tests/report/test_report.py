@@ -664,7 +664,10 @@ def broken_curves(folder: Path) -> None:
         (no_json, "provenance.json is not the account of a run; run the study again"),
         (other_json, "provenance.json is not the account of a run; run the study again"),
         (a_list, "provenance.json is not the account of a run; run the study again"),
-        (other_numbers, "study.yaml is not the study of results.parquet (it has 6 points, the table 6"),
+        (
+            other_numbers,
+            "study.yaml is not the study of results.parquet (it asks for other numbers; only title",
+        ),
         (broken_curves, "curves.csv cannot be read ("),
     ],
 )

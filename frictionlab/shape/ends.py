@@ -96,7 +96,9 @@ def _bracket_end(rows: Rows) -> Estimate:
     counted = np.isfinite(rows.reversals)
     reverses = np.where(counted, (rows.reversals > 0.0) | (rows.stick_fraction > 0.0), excess > 0.0)
     if not reverses.any():
-        raise UnreadableCurve("slip reverses at none of the points")
+        raise UnreadableCurve(
+            "slip reverses at none of the points, so that no end of reversal limits the curve"
+        )
     last = int(np.flatnonzero(reverses)[-1])
     if last + 1 == reverses.size:
         raise UnreadableCurve(f"slip still reverses at the highest belt speed, {rows.belt_speed[-1]:.6g}")

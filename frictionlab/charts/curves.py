@@ -265,7 +265,7 @@ def kinks_of(curve: pd.DataFrame) -> tuple[float, ...]:
 
 
 EVEN = 0.3
-"""Unevenness below which logarithms count as even: that of 1, 2, 5, 10 is 0.14, of chosen belt speeds 0.4 and more."""
+"""Unevenness below which logarithms count as even: of 1, 2, 5, 10 it is 0.14, of chosen belt speeds 0.4 and more."""
 
 
 def is_logarithmic(values: NDArray[np.float64]) -> bool:

@@ -102,6 +102,14 @@ def test_the_study_of_one_file_knows_the_law_beside_it(walked: Path) -> None:
     assert (law.kind, law.law_class.__name__) == ("soft-rubber", "SoftRubber")
 
 
+def test_the_whole_file_is_a_law() -> None:
+    names: dict[str, Any] = {}
+    exec(compile(block("whole file"), "fading.py", "exec", dont_inherit=True), names)
+    law = names["Fading"](mu_rest=0.4, mu_fast=0.2, fading_speed=2)
+
+    assert [law.sliding_friction(speed) for speed in (0.0, 100.0)] == pytest.approx([0.4, 0.2])
+
+
 def test_the_interfaces_and_numbers_are_names_of_frictionlab() -> None:
     named = re.findall(r"`([A-Z]\w+)`", PAGE.partition("## What to derive from")[2])
 

@@ -26,6 +26,11 @@ class OfEach:
         return self.py_func if law is None else partial(_of_each, self.py_func, law)
 
 
+def as_written(member: Any) -> Any:
+    """A method as its class defines it; anything else as it is."""
+    return member.py_func if isinstance(member, OfEach) else member
+
+
 def _of_each(method: FunctionType, law: Any, given: Any) -> Any:
     if isinstance(given, int | float | complex) or np.ndim(given) == 0:
         return method(law, given)

@@ -16,6 +16,7 @@ from frictionlab.faults import (
     outside_files,
     shown,
 )
+from frictionlab.laws.arrays import as_written
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.registry import guard
@@ -158,7 +159,7 @@ def _names(method: Any) -> list[str]:
 def _signatures(law: type[FrictionLaw]) -> Iterator[str]:
     """Methods that do not accept the arguments of their interface."""
     for name, interface in overridden_methods(law):
-        given, wanted = inspect.getattr_static(law, name), _names(interface)
+        given, wanted = as_written(inspect.getattr_static(law, name)), _names(interface)
         if not inspect.isfunction(given):
             yield f"{name} must be an ordinary method, {name}({', '.join(wanted)}), not a {type(given).__name__}"
             continue

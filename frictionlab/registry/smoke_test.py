@@ -18,6 +18,7 @@ from frictionlab.faults import (
     outside_files,
     shown,
 )
+from frictionlab.laws.arrays import as_written
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.registry.guard import Meddling, guarded
 
@@ -124,11 +125,12 @@ def overridden_methods(law: type[FrictionLaw]) -> list[tuple[str, Any]]:
     interfaces = [kind for kind in law.__mro__ if issubclass(kind, FrictionLaw) and not from_outside(kind)]
     said: dict[str, Any] = {}
     for kind in reversed(interfaces):
-        said |= {name: method for name, method in vars(kind).items() if inspect.isfunction(method)}
+        methods = ((name, as_written(member)) for name, member in vars(kind).items())
+        said |= {name: method for name, method in methods if inspect.isfunction(method)}
     return [
         (name, method)
         for name, method in said.items()
-        if name[0] != "_" and inspect.getattr_static(law, name) is not method
+        if name[0] != "_" and as_written(inspect.getattr_static(law, name)) is not method
     ]
 
 

@@ -157,7 +157,7 @@ OUTSIDE = {
     "numpy": [
         *("quantities", "compile", "theory", "shape", "orbit", "numerics", "dynamics", "methods", "study"),
         *("onsets", "results", "runner", "scene", "charts", "notebook", "bench", "testing", "least_model"),
-        "sensitivity",
+        *("sensitivity", "laws.arrays"),
     ],
     "hypothesis": ["testing"],
     "numba": ["compile", "bench.peers"],  # the peers' integrators are called with numba's C functions
@@ -282,7 +282,7 @@ def test_imports_follow_the_drawn_arrows(module: str) -> None:
 
 
 LAW_INTERFACE = {
-    *("laws.base", "laws.labelled", "laws.memory"),
+    *("laws.base", "laws.labelled", "laws.memory", "laws.arrays"),
     *("laws.compliant", "laws.decay", "laws.stribeck_bristle"),
 }
 

@@ -17,6 +17,7 @@ from importlib import import_module
 from typing import Any, NoReturn, TypeVar
 
 from frictionlab import laws
+from frictionlab.laws.arrays import OfEach
 from frictionlab.laws.base import FrictionLaw
 
 Answer = TypeVar("Answer")
@@ -175,7 +176,7 @@ def _fixed(space: Any) -> Mapping[str, Any]:
 
 
 def _is_method(name: str, value: Any) -> bool:
-    return not name.startswith("__") and isinstance(value, property | type(_is_method))
+    return not name.startswith("__") and isinstance(value, property | OfEach | type(_is_method))
 
 
 @contextmanager

@@ -148,7 +148,7 @@ BAD = {
     ),
     "recursion in a method": (
         calling("return self.sliding_friction(speed)"),
-        f"{CALL} raises RecursionError: maximum recursion depth exceeded\n  bad.py:10",
+        f"{CALL} raises RecursionError: maximum recursion depth exceeded while calling a Python object\n  bad.py:10",
     ),
     "exits in a method": (calling("sys.exit(0)"), f"{CALL} raises SystemExit: 0\n  bad.py:10: sys.exit(0)"),
     "ends the process in a method": (calling("os._exit(0)"), f"{CALL} raises ProcessExit: os._exit {NO_END}"),

@@ -156,7 +156,7 @@ def test_the_command_writes_onsets_and_takes_them_over(tmp_path: Path, monkeypat
 
     page = (out / "report.html").read_text()
     assert "Onsets along rising belt speed" in page
-    assert page.count("stick begins") == page.count("stick ends") > 0
+    assert page.count(">stick begins</td>") == page.count(">stick ends</td>") == 1
 
     with monkeypatch.context() as patch:
         patch.setattr(api, "onset_table", lambda *_: pytest.fail("onsets were found again"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
@@ -14,6 +14,7 @@ from pandas.api.types import is_numeric_dtype
 
 from frictionlab.columns import BELT_SPEEDS, SCALED, SHOWN_IN_PART, belt_speed, given, leading, word
 
+T = TypeVar("T")
 MOST_PICTURES = 12  # in which several laws are compared; of more values each law has a picture of its own
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
 READ_FOR_KINKS = "velocity_ratio", "mean_friction", "normalized_friction", "transverse_velocity_amplitude"
@@ -74,8 +75,7 @@ def family_of(table: pd.DataFrame) -> Family | None:
     values tells curves apart. Each further one sets up pictures.
     """
     table = _with_one_friction(table.rename(columns=_names_in_si(table.columns)))
-    swept = sorted(swept_columns(table), key=lambda name: table[name].nunique())
-    numbers = [name for name in swept if is_numeric_dtype(table[name])]
+    swept, numbers = swept_by_size(table), swept_numbers(table)
     if not numbers:
         return None
     abscissa = along_the_axis(table, numbers)
@@ -126,6 +126,22 @@ def _names_in_si(columns: Iterable[str]) -> dict[str, str]:
     """Names that tell the parameters of a law given in SI units from nondimensional ones: they have a unit."""
     scaled = [name.removeprefix(SCALED) for name in columns if name.startswith(SCALED)]
     return {f"law.{name}": f"law.dimensional.{name}" for name in scaled}
+
+
+def swept_by_size(table: pd.DataFrame) -> list[str]:
+    """The swept columns, those of the fewest values first."""
+    return sorted(swept_columns(table), key=lambda name: table[name].nunique())
+
+
+def swept_numbers(table: pd.DataFrame) -> list[str]:
+    """The swept columns that are numbers, those of the fewest values first."""
+    return [name for name in swept_by_size(table) if is_numeric_dtype(table[name])]
+
+
+def some_of(values: Sequence[T], most: int) -> list[T]:
+    """So many of the values at most, spread over all of them, the first and the last among them."""
+    places = np.unique(np.linspace(0, len(values) - 1, min(len(values), most)).round().astype(int))
+    return [values[place] for place in places]
 
 
 def swept_columns(table: pd.DataFrame) -> list[str]:

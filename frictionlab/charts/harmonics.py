@@ -9,7 +9,14 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from frictionlab.charts.curve_figure import CurveFigure
-from frictionlab.charts.curves import MOST_PICTURES, Family, along_the_axis, family_by, swept_columns
+from frictionlab.charts.curves import (
+    MOST_PICTURES,
+    Family,
+    along_the_axis,
+    family_by,
+    swept_by_size,
+    swept_numbers,
+)
 from frictionlab.columns import BELT_SPEED
 from frictionlab.study.figure_options import FigureOptions
 
@@ -41,12 +48,11 @@ def harmonic_figures(
 def _family(harmonics: pd.DataFrame) -> Family | None:
     rows = harmonics[harmonics[HARMONIC] > 0].rename(columns={"belt_speed": BELT_SPEED})
     rows = rows.assign(status="ok", **{HARMONIC: rows[HARMONIC].astype(float)})
-    swept = sorted(swept_columns(rows), key=lambda name: rows[name].nunique())
-    numbers = [name for name in swept if pd.api.types.is_numeric_dtype(rows[name])]
+    numbers = swept_numbers(rows)
     if not numbers:
         return None
     abscissa = along_the_axis(rows, numbers)
-    others = [name for name in swept if name != abscissa]
+    others = [name for name in swept_by_size(rows) if name != abscissa]
     apart = others if rows["law"].nunique() == 1 else [name for name in others if name.startswith("law.")]
     member = apart[-1] if apart else None
     return family_by(rows, abscissa, [HARMONIC, *(name for name in others if name != member)], member)

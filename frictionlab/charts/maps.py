@@ -24,7 +24,6 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
-from pandas.api.types import is_numeric_dtype
 
 from frictionlab.charts.curves import (
     LEAST_VISIBLE,
@@ -33,7 +32,9 @@ from frictionlab.charts.curves import (
     along_the_axis,
     is_logarithmic,
     linked_words,
+    some_of,
     swept_columns,
+    swept_numbers,
     swept_value,
 )
 from frictionlab.charts.derived import SPEED_RATIO
@@ -168,11 +169,10 @@ def map_of(table: pd.DataFrame) -> MapFigure | None:
 
     Along a sweep of belt speed that is a number of the scene whose values are more than lines can tell apart.
     """
-    swept = swept_columns(table)
-    numbers = [name for name in swept if is_numeric_dtype(table[name])]
+    swept, numbers = swept_columns(table), swept_numbers(table)
     if not numbers:
         return None
-    along = along_the_axis(table, _by_values(table, numbers))
+    along = along_the_axis(table, numbers)
     if along not in BELT_SPEEDS:
         return _figure(table, swept, numbers)
     others = [name for name in numbers if name != along and table[name].nunique() > MOST_SEPARATE]
@@ -181,23 +181,16 @@ def map_of(table: pd.DataFrame) -> MapFigure | None:
 
 def map_of_curves(curves: pd.DataFrame) -> MapFigure | None:
     """The maps of the measures of curves; None where not two numbers beside belt speed take values enough."""
-    swept = swept_columns(curves)
-    found = _figure(curves, swept, [name for name in swept if is_numeric_dtype(curves[name])])
+    found = _figure(curves, swept_columns(curves), swept_numbers(curves))
     known = [name for name in OF_CURVES if name in curves and curves[name].notna().any()]
     return replace(found, columns=known) if found is not None and known else None
-
-
-def _by_values(table: pd.DataFrame, names: Sequence[str]) -> list[str]:
-    return sorted(names, key=lambda name: table[name].nunique())
 
 
 def _figure(
     table: pd.DataFrame, swept: Sequence[str], numbers: Sequence[str], along: str | None = None
 ) -> MapFigure | None:
-    """Those over the two numbers of most values, one of them the one given."""
-    most = [
-        name for name in _by_values(table, numbers) if name.startswith("scene.") or _of_every_law(table, name)
-    ]
+    """Those over the two numbers of most values, one of them the one given. numbers: of the fewest values first."""
+    most = [name for name in numbers if name.startswith("scene.") or _of_every_law(table, name)]
     most += [along] if along else []
     if len(most) < 2 or table[most[-2]].nunique() < LEAST_VALUES:
         return None
@@ -211,10 +204,7 @@ def _figure(
         _add(pictures, MapPicture(str(law), (str(method),), settings, rows))
     if not all(_is_grid(picture.rows, (x, y)) for picture in pictures) or not pictures:
         return None
-    chosen = np.unique(
-        np.linspace(0, len(pictures) - 1, min(len(pictures), MOST_PICTURES)).round().astype(int)
-    )
-    drawn = [pictures[place] for place in chosen]
+    drawn = some_of(pictures, MOST_PICTURES)
     return MapFigure((x, y), drawn, table, left_out=len(pictures) - len(drawn))
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from frictionlab.charts.curves import CurveData, Family, SweptValue
+from frictionlab.charts.curves import CurveData, Family, SweptValue, some_of
 from frictionlab.charts.legend import add_entries, curve_entries
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
@@ -25,7 +25,6 @@ from frictionlab.charts.words import label_once, sentence, write_title
 from frictionlab.columns import BELT_SPEED
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
-T = TypeVar("T")
 MOST_ORBITS, MOST_OF_A_PANEL = 6, 3  # pictures of a figure, and of them along one axis
 MOST_IN_TIME = 4  # points with a picture of velocity and one of friction
 POSITION, VELOCITY = "position $x_1$", "velocity $\\dot x_1$"
@@ -80,7 +79,7 @@ class OrbitFigures:
         }
 
     def _draw(self, kinds: Sequence[Callable[[Axes, DrawnOrbit, Looks], None]]) -> Figure:
-        points = self._side_by_side() if len(kinds) == 1 else _spread(self.points, MOST_IN_TIME)
+        points = self._side_by_side() if len(kinds) == 1 else some_of(self.points, MOST_IN_TIME)
         pictures = [(point, kind) for point in points for kind in kinds]
         width, wide = page_of(len(pictures), self.options.width)
         high = -(-len(pictures) // wide)
@@ -149,7 +148,7 @@ def orbit_figures(
 def _worth_drawing(family: Family, panel: tuple[SweptValue, ...], most: int) -> list[float]:
     """Values along the axis of a panel: where slip reverses, the last of them where the body sticks."""
     values = _values(family, panel, "reversals") or _values(family, panel)
-    chosen = _spread(values, most + 2)[1:-1] or values[:1]
+    chosen = some_of(values, most + 2)[1:-1] or values[:1]
     sticking = _values(family, panel, "stick_fraction")
     if sticking and not set(sticking) & set(chosen):
         chosen[-1] = sticking[len(sticking) // 2]
@@ -167,7 +166,7 @@ def _values(family: Family, panel: tuple[SweptValue, ...], positive: str | None 
 def _chosen(family: Family) -> Iterator[tuple[tuple[SweptValue, ...], list[tuple[CurveData, pd.Series]]]]:
     """Points spread over pictures and, where slip reverses, along their axis: settings and rows of curves."""
     looks = Looks(family.curves)
-    panels = _spread(family.panels, MOST_ORBITS)
+    panels = some_of(family.panels, MOST_ORBITS)
     each = max(1, min(MOST_OF_A_PANEL, MOST_ORBITS // len(panels)))
     for panel in panels:
         curves = [one for one in family.curves if one.panel == panel and one.place[1] in looks.shown]
@@ -178,11 +177,6 @@ def _chosen(family: Family) -> Iterator[tuple[tuple[SweptValue, ...], list[tuple
                 for at in np.flatnonzero(curve.rows[family.abscissa].to_numpy(dtype=float) == value)[:1]
             ]
             yield (*panel, (family.abscissa, value)), rows
-
-
-def _spread(values: Sequence[T], most: int) -> list[T]:
-    places = np.unique(np.linspace(0, len(values) - 1, min(len(values), most)).round().astype(int))
-    return [values[place] for place in places]
 
 
 def _closed(samples: pd.DataFrame) -> pd.DataFrame:

@@ -11,7 +11,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frictionlab.charts.curves import CurveData, Family, drawn_once
+from frictionlab.charts.curves import CurveData, Family, drawn_once, some_of
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.onsets import rows_of_curve, speed_scale
 from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
@@ -65,8 +65,7 @@ class ShapeFigure:
         ]
         if not found:
             return None
-        places = np.unique(np.linspace(0, len(found) - 1, min(len(found), MOST_SHAPES)).round().astype(int))
-        chosen = [found[place] for place in places]
+        chosen = some_of(found, MOST_SHAPES)
         return cls(family, chosen, looks, title, options, len(found) - len(chosen))
 
     def draw(self) -> Figure:

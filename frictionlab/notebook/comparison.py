@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from frictionlab.columns import BELT_SPEEDS
 from frictionlab.columns import belt_speed as column_of_speed
 from frictionlab.notebook.preview import preview_html
+from frictionlab.results.pairs import with_friction
 from frictionlab.results.run import Run
 from frictionlab.results.summary import summary
 from frictionlab.results.table import swept_inputs, whole
@@ -126,7 +127,7 @@ class Comparison:
             raise ImportError("to_xarray needs xarray: pip install 'frictionlab[xarray]'") from None
         table = self.table
         if FRICTION in self.study.sweep:  # one dimension for what each law calls mu or mu_kinetic
-            table = table.assign(**{FRICTION: _friction(table)})
+            table = table.assign(**{FRICTION: with_friction(table)["law.mu"]})
             table = table[[FRICTION, *(name for name in table.columns if name != FRICTION)]]
         methods = ["method"] * (table["method"].nunique() > 1)
         swept = [name for name in swept_inputs(table) if FRICTION not in table or name not in _COEFFICIENTS]
@@ -151,17 +152,12 @@ class Comparison:
 
         Raises ValueError for a figure that there is none of, and for options that mean nothing.
         """
-        from frictionlab.charts.figures import Kept, figure_of  # with matplotlib, which takes a second
+        from frictionlab.charts.figures import figure_of  # with matplotlib, which takes a second
 
-        study, orbits = self.study, self.run.orbits
+        study = self.study
         asked = figure_options(study.figures.resolved() | options, tuple(law.label for law in study.laws))
-        kept = None
-        if orbits is not None or self.run.harmonics is not None:
-            kept = Kept(
-                lambda rows: None if orbits is None else orbits[orbits["row"].isin(rows)], self.run.harmonics
-            )
         marked = self.onsets if onsets else None
-        return figure_of(whole(self.table), figure, study.title, marked, self.curves, asked, kept)
+        return figure_of(whole(self.table), figure, study.title, marked, self.curves, asked)
 
     def save(self, folder: str | PathLike[str]) -> Path:
         """Write what ``frictionlab run`` writes into a folder, its figures and report included; where it is.
@@ -268,12 +264,6 @@ def sweep(
 
 
 _COEFFICIENTS = "law.mu", "law.mu_kinetic", "law.mu_static"
-
-
-def _friction(table: pd.DataFrame) -> pd.Series:
-    """The friction coefficient of sliding of every row."""
-    sliding = [table[name] for name in _COEFFICIENTS[:2] if name in table]
-    return sliding[0] if len(sliding) == 1 else sliding[0].fillna(sliding[1])
 
 
 def _speed_path(scene: Scene) -> str:

@@ -36,8 +36,9 @@ class OnePeriod(NamedTuple):
         """That of a driven mass."""
         inside = law_in_scene(law, scene)
         problem = PeriodicProblem(scene, inside, _TOLERANCE_WITH_MEMORY)
-        fine = _TOLERANCE.get(problem.kind, _TOLERANCE_WITH_MEMORY)
-        return cls(PeriodicProblem(scene, inside, fine), scene, inside)
+        if problem.kind in _TOLERANCE:
+            problem = PeriodicProblem(scene, inside, _TOLERANCE[problem.kind])
+        return cls(problem, scene, inside)
 
     def like(self, other: OnePeriod) -> bool:
         """Whether states of the other are states of this one, followed by the same map."""

@@ -15,6 +15,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frictionlab.compile.law_lanes import takes_lanes
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.exact.method import REDUCED
@@ -108,6 +109,21 @@ def plane_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
     if not falls_slowly(scene, law):
         return f"{name} needs damping that outweighs the fall of friction: else the steady state may not be unique"
     return None
+
+
+def tailless_refusal(
+    name: str, scene: Scene, law: FrictionLaw, wants: str, no_tail: str | None
+) -> str | None:
+    """Why harmonics of friction that varies with the slip speed cannot do this at any belt speed; None if they can.
+
+    wants: of a law whose friction is no function of the slip speed. no_tail: where a tail is asked for, why there is
+    none.
+    """
+    if scene.undriven:
+        return f"{name} needs a drive: it starts from the driven motion"
+    if not takes_lanes(law):
+        return wants
+    return no_tail or plane_refusal(name, scene, law)
 
 
 def steadied(scene: Scene) -> Scene | None:

@@ -9,11 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from frictionlab.compile.law_lanes import takes_lanes
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers
 from frictionlab.methods.exact.method import REDUCED
-from frictionlab.methods.reduced.common import Modelled, far_from_full, judged, plane_refusal
+from frictionlab.methods.reduced.common import Modelled, far_from_full, judged, tailless_refusal
 from frictionlab.methods.reduced.sliding_harmonics import SlidingMotion, balanced_sliding, sliding_balance
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -41,13 +40,8 @@ def sliding_refusal(
     name: str, scene: Scene, law: FrictionLaw, harmonics: int, tail: bool | None
 ) -> str | None:
     """Why H harmonics cannot do this scene and law at any belt speed; None if they can."""
-    if scene.undriven:
-        return f"{name} needs a drive: it starts from the driven motion"
-    if not takes_lanes(law):
-        return OF_THE_SPEED.format(name=name)
-    if tail:
-        return NO_TAIL_OF_SPEED.format(name=name, harmonics=harmonics)
-    return plane_refusal(name, scene, law)
+    no_tail = NO_TAIL_OF_SPEED.format(name=name, harmonics=harmonics) if tail else None
+    return tailless_refusal(name, scene, law, OF_THE_SPEED.format(name=name), no_tail)
 
 
 def sliding_means(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int) -> Floats:

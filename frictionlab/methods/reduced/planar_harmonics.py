@@ -9,10 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.compile.law_lanes import takes_lanes
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers
-from frictionlab.methods.reduced.common import Modelled, far_from_full, judged, plane_refusal
+from frictionlab.methods.reduced.common import Modelled, far_from_full, judged, tailless_refusal
 from frictionlab.methods.reduced.sampled_harmonics import (
     PlanarMotion,
     balanced_in_the_plane,
@@ -42,13 +41,8 @@ _FEWEST_PANELS = 16
 
 def planar_refusal(name: str, scene: Scene, law: FrictionLaw, tail: bool | None) -> str | None:
     """Why H harmonics on samples cannot do this scene and law at any belt speed; None if they can."""
-    if scene.undriven:
-        return f"{name} needs a drive: it starts from the driven motion"
-    if not takes_lanes(law):
-        return ALONG_THE_SLIP.format(name=name)
-    if tail:
-        return NO_TAIL.format(name=name)
-    return plane_refusal(name, scene, law)
+    no_tail = NO_TAIL.format(name=name) if tail else None
+    return tailless_refusal(name, scene, law, ALONG_THE_SLIP.format(name=name), no_tail)
 
 
 def planar_means(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int) -> NDArray[np.complex128]:

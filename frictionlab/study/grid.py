@@ -406,7 +406,7 @@ def note_impossible_points(study: Study, notes: Notes) -> None:
     _build(lambda: study.scenes_along, (SCENE,), study, notes)
     for index, choice in enumerate(study.laws if not notes.all else ()):
         own = f"laws.{choice.label}.", ""
-        _build(lambda law=choice: study.laws_in_scenes(law), own, study, notes)  # type: ignore[misc]
+        _build(lambda law=choice: study.laws_in_scenes(law), own, study, notes)  # type: ignore[misc]  # of a lambda
         if not notes.all and not all(map(_has_a_stiffness, study.laws_in_scenes(choice))):
             notes.on_key(("laws", index), "these values give no finite stiffness > 0: check their units")
 

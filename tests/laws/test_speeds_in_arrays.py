@@ -24,7 +24,7 @@ LAWS = [
 def test_an_array_is_taken_number_by_number(law: fl.FrictionLaw) -> None:
     speeds = np.array([[0.0, 0.5, 1.0], [2.0, 3.0, 40.0]])
 
-    at_once = law.sliding_friction(speeds)  # type: ignore[arg-type]
+    at_once = law.sliding_friction(speeds)  # type: ignore[arg-type]  # the interface is that of one speed
 
     assert np.array_equal(at_once, [[law.sliding_friction(v) for v in row] for row in speeds.tolist()])
 
@@ -33,7 +33,7 @@ def test_an_array_is_taken_number_by_number(law: fl.FrictionLaw) -> None:
 def test_slip_in_the_plane_is_taken_number_by_number(law: fl.FrictionLaw) -> None:
     slips = [1.0 + 1.0j, -2.0 + 0.5j, 3.0j]
 
-    at_once = law.sliding_vector(slips)  # type: ignore[arg-type]
+    at_once = law.sliding_vector(slips)  # type: ignore[arg-type]  # the interface is that of one slip
 
     assert np.array_equal(at_once, [law.sliding_vector(v) for v in slips])
     assert np.allclose(np.abs(at_once), law.sliding_friction(np.abs(slips)), rtol=1e-14)

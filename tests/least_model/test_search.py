@@ -58,7 +58,7 @@ class MadeUp:
 
 
 def search(**worth: float) -> LeastSearch:
-    return LeastSearch(FULL, MadeUp(**worth), WITHIN, registry.INSTALLED_LAWS)  # type: ignore[arg-type]
+    return LeastSearch(FULL, MadeUp(**worth), WITHIN, registry.INSTALLED_LAWS)  # type: ignore[arg-type]  # a stand-in
 
 
 def names(found: Sequence[object]) -> list[str]:

@@ -1,4 +1,5 @@
 # ruff: noqa: RUF001
+# Pages have Greek letters, minus and multiplication signs, as here.
 """The equations of a study, with its numbers in them."""
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
 # ruff: noqa: RUF001
+# Pages have Greek letters, minus and multiplication signs, as here.
 """The report of a run: everything is on the page, nothing on it runs, and nothing is fetched for it."""
 
 from __future__ import annotations

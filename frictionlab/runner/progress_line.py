@@ -57,7 +57,8 @@ def stage_words(stage: RunStage, passed: float, kernel: str) -> list[str]:
 def _speed(stage: RunStage) -> list[str]:
     if not stage.each:
         return []
-    return [f"{1.0 / stage.each:.2g}/s" if stage.each < 1.0 else f"{spoken(stage.each)} each"]
+    rate = f"{1.0 / stage.each:.0f}/s" if stage.each < 0.1 else f"{1.0 / stage.each:.2g}/s"
+    return [rate if stage.each < 1.0 else f"{spoken(stage.each)} each"]
 
 
 def kernel_words(number: int, name: str, most: int) -> str:

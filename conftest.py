@@ -58,14 +58,14 @@ sys.path[:0] = [DOORS.name, *map(str, FOLDERS)]
 
 @pytest.fixture
 def without_kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The folder of kernels of a test: nothing compiled, nothing spent."""
-    from frictionlab.compile import account, cache, call
+    """The folder of kernels of a test: nothing compiled."""
+    from frictionlab.compile import cache, call, law_addresses
 
     monkeypatch.setenv("FRICTIONLAB_CACHE", str(tmp_path / "kernels"))
-    monkeypatch.setattr(account, "_spent", {})
-    monkeypatch.setattr(call, "_compiled", set())
-    monkeypatch.setattr(call, "_accounts", {})
+    monkeypatch.setattr(call, "_ready", set())
+    monkeypatch.setattr(call, "_spent", {})
     monkeypatch.setattr(call._choice, "always_compile", False)
     monkeypatch.delenv("FRICTIONLAB_COMPILE", raising=False)
     cache._entry.cache_clear()
+    law_addresses.by_address.cache_clear()
     return tmp_path / "kernels"

@@ -14,12 +14,11 @@ import platform
 import secrets
 import sys
 import threading
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import cache, partial
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import llvmlite
 import numba
@@ -30,9 +29,11 @@ from numba.core.bytecode import FunctionIdentity
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
 from frictionlab.compile import collection  # noqa: F401  # listens
-from frictionlab.compile.account import Account
-from frictionlab.compile.dispatch import FOREIGN, law_of_numbers, names_used
+from frictionlab.compile.code import FOREIGN, names_used
+from frictionlab.compile.decorators import njit
+from frictionlab.compile.dispatch import KnownLaw, law_of_numbers
 from frictionlab.compile.kept import KeptEntry
+from frictionlab.compile.kernel_law import KernelLaw, by_itself
 from frictionlab.faults import cannot_compile
 from frictionlab.laws.base import FrictionLaw
 
@@ -47,90 +48,104 @@ _one_at_a_time = threading.Lock()
 """Two threads that loaded one entry twice would hold two types of the same numbers, and compile for ever."""
 
 
-def compiled(kernel: Any, law: FrictionLaw | None = None) -> Callable[..., Any]:
-    """The disk-cached entry of a kernel; with a law, the kernel's first argument is already filled in.
+class Compiled(NamedTuple):
+    """The disk-cached entry of a kernel, called like a function; bound: the numbers of the law, filled in already.
 
-    Where numba is told to compile nothing, the kernel itself, and the law as it is. Raises CannotCompile, when
-    called, where numba cannot compile the law's methods.
+    Raises CannotCompile, when called, where numba cannot compile the law's methods.
     """
-    if _config.DISABLE_JIT:
-        return kernel if law is None else partial(kernel, law)
-    numbers, structure = (law.numbers(), law.structure()) if law is not None else ({}, ())
-    with _one_at_a_time:
-        entry, numbers_type = _entry(
-            kernel, type(law) if law is not None else None, tuple(numbers), structure
+
+    entry: Any
+    law: KernelLaw | None
+    bound: tuple[Any, ...]
+
+    def __call__(self, *arguments: Any) -> Any:
+        """What the kernel returns."""
+        try:
+            return self.entry(*self.bound, *arguments)
+        except (NumbaError, UnsupportedBytecodeError) as problem:
+            if self.law is None:
+                raise
+            raise cannot_compile(type(self.law.law), str(problem)) from problem
+
+    def prepare(self, *arguments: Any) -> None:
+        """Compile it for arguments like these, or load what is kept."""
+        # the call itself says what is wrong with a law
+        with contextlib.suppress(NumbaError, UnsupportedBytecodeError):
+            self.entry.compile(self._signature(arguments))
+
+    def is_kept(self, *arguments: Any) -> bool:
+        """Whether there is machine code for arguments like these, in this process or on disk."""
+        signature = self._signature(arguments)
+        return signature in self.entry.overloads or self.entry._cache.has(
+            signature, self.entry.targetctx.codegen()
         )
+
+    def is_kept_at_all(self) -> bool:
+        """Whether there is machine code for any arguments."""
+        return bool(self.entry.overloads) or bool(self.kept_for())
+
+    def kept_for(self) -> list[str]:
+        """The types of the arguments of each machine code that is kept of it."""
+        return list(self.entry._cache.kept_for())
+
+    def _signature(self, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+        return tuple(_typeof(argument) for argument in (*self.bound, *arguments))
+
+
+def compiled(kernel: Any, law: KernelLaw | FrictionLaw | None = None) -> Any:
+    """The entry of a kernel, its first argument the law where there is one: by itself where it is not told how.
+
+    Where numba is told to compile nothing, the kernel itself.
+    """
     if law is None:
-        return entry
-    seen = {name: np.array(value) if isinstance(value, tuple) else value for name, value in numbers.items()}
-    return partial(
-        _guarded, entry, type(law), numbers_type(**seen)
-    )  # arrays: one kernel for tuples of any length
+        return kernel if _config.DISABLE_JIT else Compiled(_entry_of(kernel, None)[0], None, ())
+    law = by_itself(law) if isinstance(law, FrictionLaw) else law
+    if _config.DISABLE_JIT:
+        return partial(kernel, law.law)
+    entry, numbers = _entry_of(kernel, law)
+    # arrays: one kernel for tuples of any length
+    seen = {
+        name: np.array(value) if isinstance(value, tuple) else value for name, value in law.numbers.items()
+    }
+    return Compiled(entry, law, (numbers(**seen),))
 
 
-def timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
-    """What a compiled entry returns, and the seconds it took, compilation left out."""
-    # The call itself says what is wrong with a law; interpreted kernels have nothing to compile.
-    with contextlib.suppress(NumbaError, UnsupportedBytecodeError, AttributeError):
-        entry, signature = _entry_and_signature(call, arguments)
-        entry.compile(signature)
-    start = time.perf_counter()
-    result = call(*arguments)
-    return result, time.perf_counter() - start
-
-
-def account_of(call: Callable[..., Any], arguments: tuple[Any, ...]) -> Account:
-    """What Python has spent on a compiled entry for arguments like these."""
-    entry, signature = _entry_and_signature(call, arguments)
-    return entry._cache.account(signature, entry.targetctx.codegen(), signature in entry.overloads)
-
-
-def _entry_and_signature(call: Any, arguments: tuple[Any, ...]) -> tuple[Any, tuple[Any, ...]]:
-    entry: Any = call.args[0] if isinstance(call, partial) else call
-    bound = call.args[2:] if isinstance(call, partial) else ()
-    return entry, tuple(_typeof(argument) for argument in (*bound, *arguments))
-
-
-def _guarded(entry: Callable[..., Any], law: type[FrictionLaw], *arguments: Any) -> Any:
-    try:
-        return entry(*arguments)
-    except (NumbaError, UnsupportedBytecodeError) as problem:
-        raise cannot_compile(law, str(problem)) from problem
+def _entry_of(kernel: Any, law: KernelLaw | None) -> Any:
+    with _one_at_a_time:
+        return _entry(kernel, None, ()) if law is None else _entry(kernel, law.kind, tuple(law.numbers))
 
 
 @cache
-def _entry(
-    kernel: Any, law: type[FrictionLaw] | None, fields: tuple[str, ...], structure: tuple[str, ...]
-) -> tuple[Any, Any]:
+def _entry(kernel: Any, law: KnownLaw | None, fields: tuple[str, ...]) -> tuple[Any, Any]:
     """The compiled entry and the type of the law's numbers (None without a law)."""
+    structure = () if law is None else law.structure
     parameters = ", ".join(inspect.signature(kernel.py_func).parameters)
     source = (
-        "from numba import njit\n\n\n"
         f"# {', '.join((*fields, *structure))}\n"
-        '@njit(nogil=True, error_model="numpy")\n'
+        "@njit\n"
         f"def entry({parameters}):\n    return kernel({parameters})\n"
     )
-    numbers = _numbers(law, fields, structure) if law is not None else None
-    name = f"frictionlab_{kernel.py_func.__name__}_{_fingerprint(source, kernel, law)}"
-    entry = _module(name, source, kernel=kernel).entry
+    numbers = None if law is None else _numbers(law, fields)
+    name = f"frictionlab_{kernel.py_func.__name__}_{_fingerprint(source, kernel, law and law.kind)}"
+    entry = _module(name, source, kernel=kernel, njit=njit).entry
     entry._cache = KeptEntry(name)
     return entry, numbers
 
 
 @cache
-def _numbers(law: type[FrictionLaw], fields: tuple[str, ...], structure: tuple[str, ...]) -> Any:
+def _numbers(law: KnownLaw, fields: tuple[str, ...]) -> Any:
     """The type of a law's numbers, one for all entries: what they share is compiled once in a process."""
     source = (
         "from typing import NamedTuple\n\n\n"
-        f"# {', '.join(structure)}\n"
+        f"# {', '.join(law.structure)}\n"
         "class Numbers(NamedTuple):\n    "
         + "\n    ".join(f"{name}: float" for name in fields or ("none",))
         + "\n"
     )
-    name = f"frictionlab_numbers_{_fingerprint(source, law)}"
+    name = f"frictionlab_numbers_{_fingerprint(source, law.kind)}"
     known = sys.modules.get(name)  # of another class of the same code: entries may be kept that name its type
     numbers = (known or _module(name, source)).Numbers
-    law_of_numbers[numbers] = law, structure
+    law_of_numbers[numbers] = law
     return numbers
 
 
@@ -143,7 +158,7 @@ def _module(name: str, source: str, **given: Any) -> ModuleType:
     return module
 
 
-HOST_ONLY = {"account.py", "call.py", "collection.py", "interpret.py", "kept.py", "notice.py"}
+HOST_ONLY = {"call.py", "collection.py", "interpret.py", "kept.py", "notice.py"}
 """Files of this folder that decide where machine code is kept and how soon it is there, and nothing in it."""
 # Read once: were these files edited while a process runs, an entry would be named by the new ones and refer to
 # numbers named by the old ones, and no other process could load it.

@@ -1,4 +1,4 @@
-"""Calls of kernels: by Python while that costs less than compiling them would, by machine code from then on."""
+"""Calls of kernels: by machine code, or by Python while that costs less than compiling them would."""
 
 from __future__ import annotations
 
@@ -6,30 +6,32 @@ import contextlib
 import os
 import time
 from collections.abc import Callable, Iterator
-from functools import partial
+from functools import cached_property
 from typing import Any
 
 import numba
 import numpy as np
 
-from frictionlab.compile.account import Account
-from frictionlab.compile.cache import account_of, compiled, timed
+from frictionlab.compile.cache import Compiled, compiled
 from frictionlab.compile.interpret import TooLong, interpreted, limited_to
+from frictionlab.compile.kernel_law import KernelLaw, by_itself
+from frictionlab.compile.law_addresses import are_kept, by_address, without_addresses
 from frictionlab.compile.notice import add_to_compiling, named_while_it_compiles
 from frictionlab.faults import from_outside
 from frictionlab.laws.base import FrictionLaw
 
 _config: Any = numba.config
 
-WORTH = 3.0
-"""Processor time [s] that Python may spend on a kernel, in all runs together, before it is compiled: compiling takes
-2 to 20 s, once."""
+WORTH = 2.0
+"""Processor time [s] that a process lets Python spend on a kernel before it compiles it, in 2 to 20 s, once."""
 
 
 class _Choice:
-    """Whether everything is compiled at once, as ``FRICTIONLAB_COMPILE=always`` asks for."""
+    """What the environment asks for: FRICTIONLAB_COMPILE=always, that Python runs no kernel; FRICTIONLAB_KERNELS=own,
+    that every law has kernels of its own."""
 
     always_compile = os.environ.get("FRICTIONLAB_COMPILE") == "always"
+    own_kernels = os.environ.get("FRICTIONLAB_KERNELS") == "own"
 
 
 _choice = _Choice()
@@ -45,98 +47,184 @@ def compiling_at_once() -> Iterator[None]:
         _choice.always_compile = before
 
 
-_compiled: set[Any] = set()
-"""Calls, by entry and kinds of arguments, that this process has machine code for: numba takes 2 ms to find it out."""
-_accounts: dict[Any, Account] = {}
-"""Of the others that it has asked about."""
+@contextlib.contextmanager
+def kernels_of_their_own() -> Iterator[None]:
+    """Meanwhile kernels are compiled for each law alone: up to a fifth quicker, and 10 to 20 s more to compile."""
+    before, _choice.own_kernels = _choice.own_kernels, True
+    try:
+        yield
+    finally:
+        _choice.own_kernels = before
+
+
+_ready: set[Any] = set()
+"""Calls, by kernel and kinds of arguments, that this process has machine code for: numba takes 2 ms to find out."""
+_spent: dict[Any, float] = {}
+"""Processor time [s] that Python has spent on each of the others in this process."""
+
+
+class Held:
+    """An argument that another kernel makes: by machine code for machine code, by Python for Python.
+
+    The kernel returns what has to live as long as the argument, and the argument.
+    """
+
+    def __init__(self, kernel: Any, law: FrictionLaw, *arguments: Any) -> None:
+        self._call, self._arguments = KernelCall(kernel, law), arguments
+
+    @cached_property
+    def _made_by_machine(self) -> Any:
+        entry = self._call.entry(self._arguments)
+        return entry, entry(*self._arguments)
+
+    @cached_property
+    def _made_by_python(self) -> Any:
+        return self._call.by_python(*self._arguments)
+
+    @property
+    def for_machine(self) -> Any:
+        """The argument of machine code."""
+        return self._made_by_machine[1][1]
+
+    @property
+    def for_python(self) -> Any:
+        """The argument of a kernel that Python runs."""
+        return self._made_by_python[1]
+
+    @property
+    def kind(self) -> Any:
+        """What tells it from arguments of other types."""
+        return self._call.key(self._arguments)
+
+    def is_kept(self) -> bool:
+        """Whether there is machine code for it."""
+        return self._call.is_kept(self._arguments)
 
 
 class KernelCall:
     """A kernel, and the law that is its first argument; called like a function.
 
-    Where no machine code is kept, Python runs the kernel's text, and what that takes is written down beside the
-    place of the machine code; a kernel that has taken WORTH, or would, is compiled. Both answer the same but for
-    rounding. Raises CannotCompile, when called, where numba cannot compile the law's methods.
+    Raises CannotCompile, when called, where numba cannot compile the law's methods.
     """
 
     def __init__(self, kernel: Any, law: FrictionLaw | None = None) -> None:
         self.kernel, self.law = kernel, law
-        self._machine = compiled(kernel, law)
-        # what numba cannot compile in a law of others is told whatever the number of points
-        self._always = bool(_config.DISABLE_JIT) or (law is not None and from_outside(type(law)))
 
     def __call__(self, *arguments: Any) -> Any:
         """What the kernel returns."""
         return self.timed(*arguments)[0]
 
-    def timed(self, *arguments: Any, points: int = 1, first: tuple[Any, ...] = ()) -> tuple[Any, float]:
-        """What the kernel returns, and the seconds it took, compiling left out.
-
-        points: how many these arguments are for. first: arguments for the first of them alone, by which Python
-        finds out what one costs; they are written to like the others, and left as they were.
-        """
-        key = self._key(arguments)
-        if key in _compiled:
-            start = time.perf_counter()
-            return self._machine(*arguments), time.perf_counter() - start
-        if not (self._always or _choice.always_compile):
-            found = self._by_python(key, arguments, points, first)
+    def timed(self, *arguments: Any) -> tuple[Any, float]:
+        """What the kernel returns, and the seconds it took, compiling left out."""
+        key = self.key(arguments)
+        if key not in _ready:
+            found = None if self._is_for_machine(key, arguments) else self._limited(key, arguments)
             if found is not None:
                 return found
+            self._prepare(arguments)
+            _ready.add(key)
+        entry, given = self.entry(arguments), [_for_machine(each) for each in arguments]
         start = time.perf_counter()
-        with named_while_it_compiles(self.name):
-            done = timed(self._machine, *arguments)
-        add_to_compiling(time.perf_counter() - start - done[1])
-        _compiled.add(key)
-        return done
+        return entry(*given), time.perf_counter() - start
 
     @property
     def name(self) -> str:
         """In words, with the law that it is compiled for."""
-        kernel = self.kernel.__name__.replace("_", " ")
-        return str(kernel) if self.law is None else f"{kernel} for {type(self.law).__name__}"
+        kernel = str(self.kernel.__name__.replace("_", " "))
+        return f"{kernel} for {type(self.law).__name__}" if self.law and _choice.own_kernels else kernel
+
+    def key(self, arguments: tuple[Any, ...]) -> Any:
+        """The kernel and the kinds of its arguments."""
+        law = self.law and (type(self.law), self.law.structure(), _choice.own_kernels)
+        return self.kernel, law, _kind(arguments)
+
+    def entry(self, arguments: tuple[Any, ...]) -> Compiled:
+        """The machine code, for arguments like these."""
+        return compiled(self.kernel, None if self.law is None else self._seen(arguments))
+
+    def is_kept(self, arguments: tuple[Any, ...]) -> bool:
+        """Whether there is machine code, in this process or on disk, for arguments like these."""
+        entry = compiled(self.kernel, self._unaddressed())
+        held = [each for each in arguments if isinstance(each, Held)]
+        # a kernel that others make arguments of is compiled once, whatever they make
+        kept = entry.is_kept_at_all() if held else entry.is_kept(*arguments)
+        return kept and all(each.is_kept() for each in held) and self._are_methods_kept(arguments)
 
     def kept_for(self) -> list[str]:
         """The types of the arguments of each machine code that is kept of it."""
-        machine: Any = self._machine
-        entry = machine.args[0] if isinstance(machine, partial) else machine
-        return [] if _config.DISABLE_JIT else list(entry._cache.kept_for())
+        law = (
+            None
+            if self.law is None
+            else by_itself(self.law)
+            if _choice.own_kernels
+            else without_addresses(self.law)
+        )
+        return [] if _config.DISABLE_JIT else compiled(self.kernel, law).kept_for()
 
-    def _key(self, arguments: tuple[Any, ...]) -> Any:
-        machine: Any = self._machine
-        bound = machine.args if isinstance(machine, partial) else (machine,)
-        return bound[0], _kind(bound[1:]), _kind(arguments)
+    def by_python(self, *arguments: Any) -> Any:
+        """What the kernel returns where Python runs it."""
+        given = [each.for_python if isinstance(each, Held) else each for each in arguments]
+        return interpreted(self.kernel)(*((self.law, *given) if self.law else given))
 
-    def _by_python(
-        self, key: Any, arguments: tuple[Any, ...], points: int, first: tuple[Any, ...]
-    ) -> tuple[Any, float] | None:
-        """The same where Python is to run the kernel and comes to an end; else None, and nothing is written."""
-        account = _accounts.get(key)
-        if account is None:
-            account = _accounts[key] = account_of(self._machine, arguments)
-        if points > 1 and first:
-            start = account.spent
-            with _unwritten(first):
-                found = self._run(first, account)
-            if found is None or account.spent + points * (account.spent - start) > WORTH:
-                return None
-        return self._run(arguments, account)
-
-    def _run(self, arguments: tuple[Any, ...], account: Account) -> tuple[Any, float] | None:
-        if account.compiled or account.spent >= WORTH:
+    def _unaddressed(self) -> KernelLaw | None:
+        """The law in numbers of the same types as this kernel sees."""
+        if self.law is None:
             return None
-        given = arguments if self.law is None else (self.law, *arguments)
+        return by_itself(self.law) if _choice.own_kernels else without_addresses(self.law)
+
+    def _seen(self, arguments: tuple[Any, ...]) -> KernelLaw:
+        """The law as this kernel sees it."""
+        assert self.law is not None
+        return by_itself(self.law) if _choice.own_kernels else by_address(self.law, _is_planar(arguments))
+
+    def _are_methods_kept(self, arguments: tuple[Any, ...]) -> bool:
+        """Those of a law that is called by address."""
+        if self.law is None or _choice.own_kernels:
+            return True
+        return are_kept(self.law, _is_planar(arguments))
+
+    def _is_for_machine(self, key: Any, arguments: tuple[Any, ...]) -> bool:
+        if _config.DISABLE_JIT or _choice.always_compile or _spent.get(key, 0.0) >= WORTH:
+            return True
+        return self.is_kept(arguments)
+
+    def _prepare(self, arguments: tuple[Any, ...]) -> None:
+        """Compile the kernel, or load it."""
+        start = time.perf_counter()
+        with named_while_it_compiles(self.name):
+            given = [_for_machine(each) for each in arguments]
+            if not _config.DISABLE_JIT:
+                self.entry(arguments).prepare(*given)
+        add_to_compiling(time.perf_counter() - start)
+
+    def _limited(self, key: Any, arguments: tuple[Any, ...]) -> tuple[Any, float] | None:
+        """The same where Python comes to an end in time; else None, and nothing is written."""
+        if self.law is not None and from_outside(type(self.law)):
+            self._seen(
+                arguments
+            )  # what numba cannot compile in a law of others is told whatever Python can do
+        spent, found = _spent.get(key, 0.0), None
         begin, start = time.thread_time(), time.perf_counter()
         with _unwritten(arguments) as keep:
             try:
-                with limited_to(WORTH - account.spent), np.errstate(all="ignore"):
-                    found = interpreted(self.kernel)(*given)
+                with limited_to(WORTH - spent), np.errstate(all="ignore"):
+                    found = self.by_python(*arguments), time.perf_counter() - start
                 keep()
+                _spent[key] = spent + time.thread_time() - begin
             except (TooLong, ArithmeticError, ValueError):  # Python refuses numbers that machine code takes
-                account.spend(WORTH)
-                return None
-        account.spend(time.thread_time() - begin)
-        return found, time.perf_counter() - start
+                _spent[key] = WORTH
+        return found
+
+
+def _for_machine(value: Any) -> Any:
+    return value.for_machine if isinstance(value, Held) else value
+
+
+def _is_planar(value: Any) -> bool:
+    """Whether a number of the plane is among the arguments, records opened."""
+    if isinstance(value, tuple):
+        return any(map(_is_planar, value))
+    return isinstance(value, complex) or (isinstance(value, np.ndarray) and value.dtype.kind == "c")
 
 
 def _kind(value: Any) -> Any:
@@ -145,7 +233,7 @@ def _kind(value: Any) -> Any:
         return value.dtype.char, value.ndim, value.flags.c_contiguous, value.flags.writeable
     if isinstance(value, tuple):
         return type(value), *map(_kind, value)
-    return type(value)
+    return value.kind if isinstance(value, Held) else type(value)
 
 
 @contextlib.contextmanager

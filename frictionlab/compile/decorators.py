@@ -9,7 +9,7 @@ import numba
 import numba.core.typing.templates
 import numba.extending
 
-from frictionlab.compile.linking import PARTS
+from frictionlab.compile.linking import ENTRIES, PARTS
 
 _COMMON: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 INNER: dict[str, Any] = _COMMON | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True} | PARTS
@@ -17,7 +17,7 @@ INNER: dict[str, Any] = _COMMON | {"no_cpython_wrapper": True, "no_cfunc_wrapper
 
 def njit(function: Callable[..., Any]) -> Any:
     """Compile a kernel function; it runs without the interpreter lock and divides as IEEE 754 says."""
-    return numba.njit(**_COMMON)(function)
+    return numba.njit(**_COMMON, **ENTRIES)(function)
 
 
 def inner(function: Callable[..., Any]) -> Any:

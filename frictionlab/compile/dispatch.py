@@ -8,15 +8,25 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Iterator
 from functools import cache
-from types import CodeType, FunctionType
-from typing import Any
+from types import FunctionType
+from typing import Any, NamedTuple
 
 import numba
 import numba.core.typing.templates
 import numba.extending
 
+from frictionlab.compile.addresses import (
+    INDEX,
+    NUMBER,
+    NUMBERS,
+    TRUTH,
+    VECTOR,
+    VECTORS,
+    Interface,
+    call_on_line_or_plane,
+)
+from frictionlab.compile.code import names_used
 from frictionlab.compile.decorators import INNER, fast
 from frictionlab.compile.lanes import LaneType
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
@@ -25,21 +35,118 @@ from frictionlab.laws.memory import BristleLaw, MemoryLaw
 _extending: Any = numba.extending  # its published types lag behind what it accepts
 _templates: Any = numba.core.typing.templates
 
-law_of_numbers: dict[type, tuple[type[FrictionLaw], tuple[str, ...]]] = {}
+
+class KnownLaw(NamedTuple):
+    """What the type of a law's numbers says of it: the class whose methods kernels call, and its structure.
+
+    by_address: whether the numbers hold the addresses of the methods, and the class is only their interface.
+    """
+
+    kind: type[FrictionLaw]
+    structure: tuple[str, ...]
+    by_address: bool = False
 
 
-def _open_door(interface: Any, method: str) -> None:
+law_of_numbers: dict[type, KnownLaw] = {}
+
+
+class KernelMethod(NamedTuple):
+    """A method that kernels call on a law of an interface: what it takes and returns.
+
+    One letter for each: x, a number; v, a number along a line or a vector in the plane; s, several numbers; m,
+    several of what v is; k, which of them; t, a truth. By address, what takes nothing is a number of the law.
+    """
+
+    interface: Any
+    name: str
+    takes: str
+    returns: str
+    kind: str = ""  # of memory, where the interface serves two
+
+    @property
+    def planar(self) -> bool:
+        """Whether it is another function in the plane."""
+        return bool({"v", "m"} & {*self.takes, self.returns})
+
+    def types(self, planar: bool) -> Interface:
+        """numba's types of arguments and result."""
+        of_letters = {"x": NUMBER, "v": NUMBER, "s": NUMBERS, "m": NUMBERS, "k": INDEX, "t": TRUTH}
+        if planar:
+            of_letters |= {"v": VECTOR, "m": VECTORS}
+        return Interface(tuple(of_letters[letter] for letter in self.takes), of_letters[self.returns])
+
+    def by_address(self) -> Any:
+        """What kernels call where the law's numbers hold the address."""
+        parameters = ", ".join(inspect.signature(getattr(self.interface, self.name)).parameters)
+        law, _, given = parameters.partition(", ")
+        if not self.takes:
+            value = f"{law}.own_{self.name}"
+            text = (
+                f"{value} != 0.0"
+                if self.returns == "t"
+                else f"int({value})"
+                if self.returns == "k"
+                else value
+            )
+        else:
+            text = f"call({law}.line_{self.name}, {law}.plane_{self.name}, {law}.place, ({given},))"
+        scope = {"call": call_on_line_or_plane(self.types(False), self.types(True))}
+        exec(f"def by_address({parameters}):\n    return {text}\n", scope)
+        return scope["by_address"]
+
+
+KERNEL_METHODS = (
+    KernelMethod(FrictionLaw, "sliding_friction", "x", "x"),
+    KernelMethod(FrictionLaw, "sliding_vector", "v", "v"),
+    KernelMethod(SlidingLaw, "static_friction", "", "x"),
+    KernelMethod(BristleLaw, "rate", "vv", "v"),
+    KernelMethod(BristleLaw, "friction", "vvv", "v"),
+    KernelMethod(BristleLaw, "deflected", "vv", "v"),
+    KernelMethod(BristleLaw, "saturation_path", "xx", "x"),
+    KernelMethod(BristleLaw, "exact_path", "", "t"),
+    KernelMethod(BristleLaw, "largest_deflection", "", "x"),
+    KernelMethod(BristleLaw, "elastic_unloading", "", "t"),
+    KernelMethod(BristleLaw, "yield_deflection", "", "x"),
+    KernelMethod(MemoryLaw, "count", "", "k"),
+    KernelMethod(MemoryLaw, "elastic_unloading", "", "t"),
+    KernelMethod(MemoryLaw, "remembers_stick", "", "t"),
+    KernelMethod(MemoryLaw, "yield_deflection", "k", "x"),
+    KernelMethod(MemoryLaw, "breakaway", "vk", "x"),
+    KernelMethod(MemoryLaw, "rate", "vmk", "v", "deflections"),
+    KernelMethod(MemoryLaw, "friction", "vmm", "v", "deflections"),
+    KernelMethod(MemoryLaw, "steady", "vk", "v", "deflections"),
+    KernelMethod(MemoryLaw, "within", "m", "t", "deflections"),
+    KernelMethod(MemoryLaw, "rate", "vsk", "x", "scalars"),
+    KernelMethod(MemoryLaw, "friction", "vss", "v", "scalars"),
+    KernelMethod(MemoryLaw, "steady", "vk", "x", "scalars"),
+    KernelMethod(MemoryLaw, "within", "s", "t", "scalars"),
+)
+"""Every method of a law that kernels call."""
+
+
+def _open_door(interface: Any, name: str) -> None:
     """Let kernels call this method of an interface on a law's numbers."""
+    by_address = {
+        each.kind: each.by_address()
+        for each in KERNEL_METHODS
+        if (each.interface, each.name) == (interface, name)
+    }
 
     def resolve(self: Any, *_: Any) -> Any:
         known = law_of_numbers.get(self.instance_class)
-        return None if known is None else compilable(getattr(known[0], method))
+        if known is None:
+            return None
+        # by address, a method that a law of its structure does not have is that of the interface
+        absent = f"line_{name}" not in self.fields and f"own_{name}" not in self.fields
+        if not known.by_address or absent:
+            return compilable(getattr(known.kind, name))
+        return by_address[next((kind for kind in by_address if kind in known.structure), "")]
 
-    resolve.__signature__ = inspect.signature(getattr(interface, method))  # type: ignore[attr-defined]  # numba compares
+    resolve.__signature__ = inspect.signature(getattr(interface, name))  # type: ignore[attr-defined]  # numba compares
     for kind in (numba.types.NamedTuple, numba.types.NamedUniTuple):
-        door = _templates.make_overload_method_template(kind, method, resolve, inline="never", strict=False)
-        _templates.infer_getattr(type(method, (_OfLaws, door), {"interface": interface}))
-    _extending.overload(resolve, strict=False)(resolve)
+        door = _templates.make_overload_method_template(kind, name, resolve, inline="never", strict=False)
+        _templates.infer_getattr(type(name, (_OfLaws, door), {"interface": interface}))
+    _extending.overload(resolve, jit_options=INNER, strict=False)(resolve)
 
 
 class _OfLaws:
@@ -59,8 +166,9 @@ class _OfLaws:
         self._attr = own
 
     def _resolve(self, typ: Any, attribute: str) -> Any:
-        law, _structure = law_of_numbers.get(typ.instance_class, (object, ()))
-        bound = super()._resolve(typ, attribute) if issubclass(law, self.interface) else None  # type: ignore[misc]
+        known = law_of_numbers.get(typ.instance_class)
+        of_interface = known is not None and issubclass(known.kind, self.interface)
+        bound = super()._resolve(typ, attribute) if of_interface else None  # type: ignore[misc]
         if bound is None:
             return None
         bound.template.key = bound.template.key[0], self._full(attribute)
@@ -70,34 +178,8 @@ class _OfLaws:
         return f"{self.interface.__name__}.{method}"
 
 
-for _method in ("sliding_friction", "sliding_vector"):
-    _open_door(FrictionLaw, _method)
-_open_door(SlidingLaw, "static_friction")
-for _method in (
-    "rate",
-    "friction",
-    "exact_path",
-    "deflected",
-    "saturation_path",
-    "largest_deflection",
-    "elastic_unloading",
-    "yield_deflection",
-):
-    _open_door(BristleLaw, _method)
-for _method in (
-    "count",
-    "rate",
-    "friction",
-    "steady",
-    "stored",
-    "within",
-    "largest_rate",
-    "elastic_unloading",
-    "remembers_stick",
-    "breakaway",
-    "yield_deflection",
-):
-    _open_door(MemoryLaw, _method)
+for _interface, _name in dict.fromkeys((each.interface, each.name) for each in KERNEL_METHODS):
+    _open_door(_interface, _name)
 
 
 def by_dimension(on_the_line: Any, in_the_plane: Any, in_lanes: Any = None) -> Any:
@@ -235,7 +317,7 @@ def by_law(
         return bodies[_which(type(law), law.structure(), pathless)](*arguments)
 
     def resolve(*types: Any) -> Any:
-        law, structure = law_of_numbers[_numbers_in(types[0]).instance_class]
+        law, structure, _ = law_of_numbers[_numbers_in(types[0]).instance_class]
         planar = any(isinstance(kind, numba.types.Complex) for kind in (*types, *types[0].types))
         return bodies[
             _which(law, structure, planar or any(_is_filled(kind, "keeps_stiffness") for kind in types))
@@ -256,7 +338,7 @@ def _numbers_in(first: Any) -> Any:
 
 def _which(law: type[FrictionLaw], structure: tuple[str, ...], pathless: bool) -> int:
     if issubclass(law, MemoryLaw):
-        return 4 if law.memory_kind == "scalars" else 3
+        return 4 if "scalars" in structure else 3
     if not issubclass(law, BristleLaw):
         return 0
     return 2 if "exact path" in structure and not pathless else 1
@@ -289,14 +371,3 @@ def compilable(function: FunctionType) -> FunctionType:
     )
     twin.__annotations__ = {}
     return twin
-
-
-FOREIGN = {"builtins", "math", "cmath", "numpy", "numba", "llvmlite", "typing", "pydantic", "abc"}
-"""Packages whose functions kernels name and nobody looks into."""
-
-
-def names_used(code: CodeType) -> Iterator[str]:
-    yield from code.co_names
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            yield from names_used(constant)

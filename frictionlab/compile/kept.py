@@ -23,7 +23,6 @@ import numba.core.compiler
 import numba.core.serialize
 import numba.core.types
 
-from frictionlab.compile.account import SPENT, Account
 from frictionlab.compile.notice import compiled_here, is_not_kept
 
 _Cache: Any = numba.core.caching._Cache  # internals of numba, untyped
@@ -112,12 +111,10 @@ class KeptEntry(_Cache):  # type: ignore[misc]
         about = repr((_about(signature), codegen.magic_tuple()))
         return folder and folder / f"{self._name}_{hashlib.sha256(about.encode()).hexdigest()[:16]}{SUFFIX}"
 
-    def account(self, signature: Any, codegen: Any, compiled: bool) -> Account:
-        """What Python has spent on this signature; it counts as compiled where there is a file, sound or not."""
+    def has(self, signature: Any, codegen: Any) -> bool:
+        """Whether there is a file for this signature, sound or not."""
         path = self._path(signature, codegen)
-        if path is None:
-            return Account(f"{self._name} {_about(signature)}", None, compiled)
-        return Account(path.stem, path.with_suffix(SPENT), compiled or path.exists())
+        return path is not None and path.exists()
 
     def enable(self) -> None:
         """Nothing to do: it always is."""

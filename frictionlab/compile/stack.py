@@ -27,7 +27,7 @@ _arrays: Any = numba.np.arrayobj
 
 def count_known(numbers: Any) -> int:
     """The count of a law as the compiler knows it, from numba's type of the law's numbers."""
-    law, structure = law_of_numbers[numbers.instance_class]
+    law, structure, _ = law_of_numbers[numbers.instance_class]
     if not issubclass(law, MemoryLaw):
         return int(law.memory_kind != "none")
     return next(int(word.split()[0]) for word in structure if word.endswith("numbers"))

@@ -17,7 +17,7 @@ import pytest
 from frictionlab.compile import cache
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import inner, njit
-from frictionlab.compile.dispatch import by_dimension
+from frictionlab.compile.dispatch import KnownLaw, by_dimension
 from frictionlab.faults import CannotCompile
 from frictionlab.laws.base import Positive, SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
@@ -384,7 +384,7 @@ def test_entries_of_one_law_see_it_as_one_type_and_another_class_of_its_code_tak
     assert compiled(summed_friction, law)(np.ones(2)) == 1.2
     assert compiled(summed_friction, other)(np.ones(2)) == 1.6
     kinds = {
-        type(compiled(run, each).args[2]) for run in (friction_at, summed_friction) for each in (law, other)
+        type(compiled(run, each).bound[0]) for run in (friction_at, summed_friction) for each in (law, other)
     }
     assert len(kinds) == 1
 
@@ -459,7 +459,7 @@ def test_threads_that_ask_for_one_kernel_at_once_get_one_entry():
 
     def ask(_):
         start.wait()
-        return compiled(friction_at, Coulomb(mu=0.25)).args[0]
+        return compiled(friction_at, Coulomb(mu=0.25)).entry
 
     with ThreadPoolExecutor(threads) as pool:
         for _ in range(20):
@@ -470,6 +470,6 @@ def test_threads_that_ask_for_one_kernel_at_once_get_one_entry():
 def test_laws_that_a_process_has_met_change_no_name_of_a_kernel():
     """They did: what was compiled after another law had been used was compiled anew by every process that had not."""
     before = cache._fingerprint(answer_curve, LuGre)
-    cache._numbers(Coulomb, ("a_name_that_no_law_has",), ())
+    cache._numbers(KnownLaw(Coulomb, ()), ("a_name_that_no_law_has",))
 
     assert cache._fingerprint(answer_curve, LuGre) == before

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -89,8 +89,7 @@ class _System:
         c: Any = numba  # whose published types leave these two out
 
         entry: Any = compiled(_in_the_plane if planar else _on_the_line, law)
-        assert isinstance(entry, partial)
-        rates, numbers, size = entry.args[0], entry.args[2], 7 if planar else 4
+        rates, (numbers,), size = entry.entry, entry.bound, 7 if planar else 4
 
         def called(t: Any, state: Any, rate: Any, data: Any) -> None:
             rates(

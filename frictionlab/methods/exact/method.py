@@ -272,10 +272,7 @@ class _Curve:
         """Each belt speed once: both directions share one solution where the mean is exactly odd."""
         speeds, back = np.unique(self.sides[places] * self.belt_speeds[places] + 0.0, return_inverse=True)
         rows = np.full((len(speeds), 9), np.nan)
-        first = self.mass, self.coefficient, speeds[:1], rows[:1]
-        _, self.seconds = KernelCall(curve.continue_in_speed).timed(
-            self.mass, self.coefficient, speeds, rows, points=len(speeds), first=first
-        )
+        _, self.seconds = KernelCall(curve.continue_in_speed).timed(self.mass, self.coefficient, speeds, rows)
         self.rows[places] = rows[back]
 
     def _use_symmetry(self, places: NDArray[np.int64]) -> None:

@@ -22,8 +22,6 @@ from frictionlab.scene.body import Body
 LANE_KERNELS = (answer_lanes, record_in_lanes, differentiate_in_lanes)
 FEWEST_IN_LANES = 4
 """Points of a curve; fewer are answered one by one."""
-MANY_IN_LANES = 1000
-"""Points from which Python asks first what one costs: on arrays many hundred cost little more than one."""
 
 
 class LaneCalls(NamedTuple):
@@ -51,7 +49,5 @@ class LaneCalls(NamedTuple):
         return found
 
     def _timed(self, kernel: Any, belt_speeds: Floats, states: Floats | None, *how: Any) -> tuple[Any, float]:
-        points = len(belt_speeds)
         given = (belt_speeds,) if states is None else (belt_speeds, states)
-        first = (self.body, *(each[:1] for each in given), *how) if points > MANY_IN_LANES else ()
-        return KernelCall(kernel, self.law).timed(self.body, *given, *how, points=points, first=first)
+        return KernelCall(kernel, self.law).timed(self.body, *given, *how)

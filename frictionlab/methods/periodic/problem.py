@@ -180,8 +180,7 @@ class PeriodicProblem:
         belt_speeds = belt_speeds_of(scenes)
         body = self.body._replace(periods=periods * self.common)
         call = KernelCall(self.kernel, self.law)
-        first = body, belt_speeds[:1], states[:1], goal, wanted
-        return call.timed(body, belt_speeds, states, goal, wanted, points=len(belt_speeds), first=first)
+        return call.timed(body, belt_speeds, states, goal, wanted)
 
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
         """The closed orbits from these states, one for each scene; without panels where there is no state."""
@@ -266,11 +265,7 @@ class PeriodicProblem:
         """
         body = self.body._replace(periods=self.common)
         call = KernelCall(self.kernel, self.law)
-        first = body, belt_speeds[:1], states[:1], self.goal, MAPPED
-        found = call.timed(
-            body, belt_speeds, states.copy(), self.goal, MAPPED, points=len(states), first=first
-        )
-        return np.asarray(found[0].states)
+        return np.asarray(call(body, belt_speeds, states.copy(), self.goal, MAPPED).states)
 
     def repeated_once(self, scene: Scene, states: Floats) -> tuple[Floats, Floats]:
         """These states [n, size] after all that changes in time has repeated once, and the mean friction along x1

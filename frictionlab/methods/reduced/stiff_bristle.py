@@ -66,9 +66,7 @@ class StiffBristle(Rung):
         assert found.orbits is not None
         orbits, left = found.orbits(), np.full(len(scenes), np.nan)
         seen = CoulombOrbit(orbits.tau, orbits.v, orbits.friction, orbits.stick)
-        _, seconds = KernelCall(bound_each).timed(
-            contact, seen, orbits.ends, speeds, left, points=len(scenes)
-        )
+        _, seconds = KernelCall(bound_each).timed(contact, seen, orbits.ends, speeds, left)
         known = np.isfinite(left) & (np.array(found.status) == "ok")
         own = np.zeros(len(scenes)) if found.seconds is None else found.seconds
         texts = [f"{self.model}: {text.partition('; ')[0]}{NO_ERRORS}" for text in found.model]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from frictionlab.compile.cache import compiled
+from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
 from frictionlab.dynamics.contact import resistance
 from frictionlab.faults import CannotCompile
@@ -25,6 +25,13 @@ def without_memory(law: Any, v: Any, memory: Any, out: Any) -> None:
 
 @njit
 def with_a_bristle(law: Any, v: Any, memory: Any, out: Any) -> None:
+    """out: friction, rate, the deflection."""
+    out[1], out[0] = resistance(law, v[0], memory[0])
+    out[2] = memory[0]
+
+
+@njit
+def with_an_exact_path(law: Any, v: Any, memory: Any, out: Any) -> None:
     """out: friction, rate, deflection after slip for a unit of time."""
     out[1], out[0] = resistance(law, v[0], memory[0])
     out[2] = law.deflected(memory[0], v[0])
@@ -44,12 +51,12 @@ def machine_response(one: Given, law: FrictionLaw, v: Any, memory: ContactMemory
     """What the compiled law answers, and its deflection after the path ``v``."""
     kernel = without_memory
     if isinstance(law, BristleLaw):
-        kernel = with_a_bristle
+        kernel = with_an_exact_path if law.exact_path() else with_a_bristle
     elif isinstance(law, MemoryLaw):
         kernel = with_memory
     out = np.zeros(len(memory) + 2, type(v))
     try:
-        compiled(kernel, law)(np.array([v]), np.array(memory or (0.0 * v,)), out)
+        KernelCall(kernel, law)(np.array([v]), np.array(memory or (0.0 * v,)), out)
     except CannotCompile as problem:
         one.require(False, str(problem))
     answer = out.tolist()

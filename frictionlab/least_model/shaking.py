@@ -9,13 +9,11 @@ from typing import Any
 from frictionlab.least_model.lesser import CannotGo, LesserModel
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import FULL_TURN, signal_of
-from frictionlab.scene.waveforms import SINE, form_of
+from frictionlab.scene.waveforms import SINE
 
 SHAKING = "drive", "transverse.load", "slip", "transverse_slip", "belt_vibration", "normal_load_variation"
 SIZES = "unbalance", "velocity_amplitude", "amplitude"
 NOTHING_ELSE = "nothing else shakes the body: without the change of its normal load nothing moves it"
-ANTISYMMETRIC = None, SINE, form_of("square"), form_of("triangle")
-"""Waveforms that are their own opposite half a period later."""
 TURNED = "{}: its part along the belt points backward, and no waveform says so"
 
 
@@ -105,7 +103,7 @@ def _along(scene: Scene, path: str) -> dict[str, Any]:
     part = _part(scene, path)
     name, size = _size(part)
     share = 0.0 if part.direction % 180.0 == 90.0 else math.cos(math.radians(part.direction))
-    if share < 0.0 and part.waveform not in ANTISYMMETRIC:
+    if share < 0.0 and not (part.waveform or SINE).antisymmetric:
         raise CannotGo(TURNED.format(path))
     return {
         f"{path}.direction": 0.0 if path == "belt_vibration" else None,

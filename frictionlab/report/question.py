@@ -76,12 +76,6 @@ _CONTACTS = {
     "constant": "the stiffness of bristles stays that of its mean",
     "": "the stiffness of bristles follows it or stays that of its mean",
 }
-_WAVES = {
-    "sine": "a sine",
-    "square": "a square wave",
-    "triangle": "a triangle wave",
-    "sawtooth": "a sawtooth",
-}
 
 
 def _is_swept(study: Study, path: str) -> bool:
@@ -107,7 +101,7 @@ def _direction(study: Study, name: str, part: Any) -> str:
 def _wave(study: Study, name: str, part: Any) -> str:
     """As what it varies, and how often where that is not the drive's frequency."""
     form, ratio = part.waveform or SINE, getattr(part, "frequency_ratio", None)
-    wave = f"as {_WAVES.get(form.shape, str(form))}"
+    wave = f"as {form.words}"
     if _is_swept(study, f"{name}.waveform"):
         wave = "in several waveforms"
     if _is_swept(study, f"{name}.frequency_ratio"):

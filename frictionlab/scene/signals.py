@@ -147,39 +147,28 @@ def _line_in_harmonic(signal: Signal, frequency: float, start: float, stop: floa
 
 def signal_of(form: Form, frequency: float, phase: float) -> Signal:
     """The waveform of unit size at this circular frequency; phase in degrees."""
-    start = math.radians(phase)
-    if form.shape == "sine":
-        return Signal((Wave(frequency, cmath.rect(1.0, start)),))
-    if form.terms:
-        return Signal(
-            tuple(
-                Wave(
-                    each.order * frequency,
-                    cmath.rect(each.amplitude, math.radians(each.phase) + each.order * start),
-                )
-                for each in form.terms
-            )
+    start, period = math.radians(phase), FULL_TURN / frequency
+    waves = tuple(
+        Wave(
+            each.order * frequency, cmath.rect(each.amplitude, math.radians(each.phase) + each.order * start)
         )
-    corners = _CORNERS[form.shape]
-    lines = sorted(
-        Segment(_wrapped((angle - start) / frequency, FULL_TURN / frequency), value, slope * frequency)
-        for angle, value, slope in corners
+        for each in form.waves
     )
-    return Signal((), (Segments(FULL_TURN / frequency, tuple(lines)),))
+    lines = sorted(
+        Segment(
+            _wrapped((float(at) * FULL_TURN - start) / frequency, period),
+            float(value),
+            slope / FULL_TURN * frequency,
+        )
+        for at, value, slope in form.lines
+    )
+    return Signal(waves, (Segments(period, tuple(lines)),) if lines else ())
 
 
 def _wrapped(tau: float, period: float) -> float:
     """Within [0, period); a rounding error below its end is its beginning."""
     rest = math.fmod(math.fmod(tau, period) + period, period)
     return 0.0 if period - rest <= 1e-14 * period else rest
-
-
-_CORNERS: dict[str, tuple[tuple[float, float, float], ...]] = {
-    "square": ((0.0, 1.0, 0.0), (math.pi, -1.0, 0.0)),
-    "triangle": ((0.5 * math.pi, 1.0, -2.0 / math.pi), (1.5 * math.pi, -1.0, 2.0 / math.pi)),
-    "sawtooth": ((math.pi, -1.0, 1.0 / math.pi),),
-}
-"""Of each shape: theta at its corners, the value after them, and the slope by theta."""
 
 
 def edges_of(corners: list[float], period: float) -> Floats:

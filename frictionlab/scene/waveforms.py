@@ -1,4 +1,7 @@
-"""The shape in time of a load, a slip, a belt's vibration or a normal load, and frequencies in whole numbers."""
+"""The shape in time of a load, a slip, a belt's vibration or a normal load, and frequencies in whole numbers.
+
+A waveform with a name is one record in ``SHAPES``; signals, proofs, closed forms and the report read all of it there.
+"""
 
 from __future__ import annotations
 
@@ -7,18 +10,55 @@ import re
 from collections.abc import Mapping
 from fractions import Fraction
 from numbers import Real
-from typing import Annotated, Any, Literal, NamedTuple, get_args
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import BeforeValidator, Field, PlainSerializer, PlainValidator, WithJsonSchema
 
-Name = Literal["sine", "square", "triangle", "sawtooth"]
-WAVEFORMS: tuple[str, ...] = get_args(Name)
 MOST_TERMS = 64
 """Of a sum of harmonics, and the largest order among them."""
 LONGEST_COMMON = 64
 """Periods of the drive after which everything must have repeated."""
 LARGEST_RATIO = 1000
 """Of a frequency to the drive's."""
+
+
+class Line(NamedTuple):
+    """A straight part of a waveform: where it begins [turns, from 0 to below 1], its value there, slope per turn."""
+
+    start: Fraction
+    value: int
+    slope: int
+
+
+class Shape(NamedTuple):
+    """A waveform with a name, for theta = 2 pi turns.
+
+    formula: in theta. words: of it in a sentence. lines: between its corners, in order; none for the sine.
+    """
+
+    formula: str
+    words: str
+    lines: tuple[Line, ...] = ()
+
+
+SHAPES = {
+    "sine": Shape("sin(theta)", "a sine"),
+    "square": Shape(
+        "1 in the first half of the period, -1 in the second",
+        "a square wave",
+        (Line(Fraction(0), 1, 0), Line(Fraction(1, 2), -1, 0)),
+    ),
+    "triangle": Shape(
+        "(2/pi) arcsin(sin(theta))",
+        "a triangle wave",
+        (Line(Fraction(1, 4), 1, -4), Line(Fraction(3, 4), -1, 4)),
+    ),
+    "sawtooth": Shape(
+        "rises evenly from -1 to 1, through 0 at theta = 0; jumps at theta = pi",
+        "a sawtooth",
+        (Line(Fraction(1, 2), -1, 2),),
+    ),
+}
 
 
 class Term(NamedTuple):
@@ -64,6 +104,41 @@ class Form(NamedTuple):
         """In one cell of a table: the name, or the sum as a formula."""
         return " + ".join(map(str, self.terms)) if self.terms else self.shape
 
+    @property
+    def words(self) -> str:
+        """In a sentence."""
+        return str(self) if self.terms else SHAPES[self.shape].words
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """The straight lines between its corners; none where it is a sum of sines."""
+        return () if self.terms else SHAPES[self.shape].lines
+
+    @property
+    def waves(self) -> tuple[Term, ...]:
+        """The sines it is a sum of; none where it is straight between corners."""
+        return self.terms or (() if self.lines else (Term(1, 1.0, 0.0),))
+
+    @property
+    def ends(self) -> tuple[tuple[Fraction, Fraction], ...]:
+        """Of each line how long it is [turns], and the value at its end."""
+        following = [*self.lines[1:], *(line._replace(start=line.start + 1) for line in self.lines[:1])]
+        lengths = [after.start - line.start for line, after in zip(self.lines, following, strict=True)]
+        values = (line.value + line.slope * length for line, length in zip(self.lines, lengths, strict=True))
+        return tuple(zip(lengths, values, strict=True))
+
+    @property
+    def jumps(self) -> bool:
+        """Whether its value does, at a corner."""
+        following = self.lines[1:] + self.lines[:1]
+        return any(end != after.value for (_, end), after in zip(self.ends, following, strict=True))
+
+    @property
+    def antisymmetric(self) -> bool:
+        """Whether it is its own opposite half a period later."""
+        opposite = {((each.start + Fraction(1, 2)) % 1, -each.value, -each.slope) for each in self.lines}
+        return opposite == {*self.lines} and all(term.order % 2 == 1 for term in self.waves)
+
 
 _TERM = re.compile(r"(?:(\S+) )?sin\((?:(\d+) )?theta(?: \+ (\S+) deg)?\)")
 
@@ -84,11 +159,11 @@ def form_of(value: Any) -> Form:
     """
     if isinstance(value, Form):
         return value
-    if isinstance(value, str) and value in WAVEFORMS:
+    if isinstance(value, str) and value in SHAPES:
         return Form(value)
     if isinstance(value, Mapping):
         return _sum_of_harmonics(value)
-    raise ValueError(f"must be {', '.join(map(repr, WAVEFORMS))} or {{harmonics: [...]}}")
+    raise ValueError(f"must be {', '.join(map(repr, SHAPES))} or {{harmonics: [...]}}")
 
 
 _SUM = "a sum of harmonics is {harmonics: [{order: 1, amplitude: 1, phase: 0}, ...]}"
@@ -147,7 +222,7 @@ _TERM_SCHEMA = {
 }
 _FORM_SCHEMA = {
     "oneOf": [
-        {"enum": list(WAVEFORMS)},
+        {"enum": list(SHAPES)},
         {
             "type": "object",
             "properties": {
@@ -165,8 +240,6 @@ _FORM_SCHEMA = {
     ]
 }
 Waveform = Annotated[Form, PlainValidator(form_of), PlainSerializer(Form.plain), WithJsonSchema(_FORM_SCHEMA)]
-"""sine: sin(theta). square: sign(sin(theta)). triangle: (2/pi) arcsin(sin(theta)). sawtooth: rises through 0 at theta
-= 0 from -1 to 1, and jumps at theta = pi. {harmonics: [{order, amplitude, phase}, ...]}: their sum."""
 
 
 def as_fraction(ratio: float) -> Fraction:

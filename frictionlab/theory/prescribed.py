@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from frictionlab.quantities import EPSILON, Floats
+from frictionlab.scene.waveforms import form_of
 from frictionlab.theory.piecewise import Piecewise
 
 
@@ -23,16 +24,24 @@ def mean_prescribed_longitudinal(ratio: ArrayLike, waveform: str = "sine") -> Fl
     ratio [-]: belt speed over the amplitude of the slip velocity, any sign.
     Source: Sulollari, van Dalen & Cabboi, Eq. 5; of waveforms Michaux, Ferri & Cunefare (2008).
     """
-    size = np.abs(np.asarray(ratio, dtype=np.float64))
-    if waveform == "square":
-        return np.copysign(np.where(size < 1.0, 0.0, np.where(size > 1.0, 1.0, np.nan)), ratio)
-    return np.copysign(_OF_WAVEFORM[waveform](np.minimum(size, 1.0)), ratio)
+    speed = np.asarray(ratio, dtype=np.float64)
+    if waveform in _SMOOTH:
+        return np.copysign(_SMOOTH[waveform](np.minimum(np.abs(speed), 1.0)), speed)
+    form, mean = form_of(waveform), np.full(speed.shape, -1.0)
+    for line, (length, end) in zip(form.lines, form.ends, strict=True):
+        mean = mean + 2.0 * float(length) * _share_below(speed, float(line.value), float(end))
+    return mean
 
 
-_OF_WAVEFORM: dict[str, Callable[[Floats], Floats]] = {
+def _share_below(speed: Floats, start: float, end: float) -> Floats:
+    """The share of time that a straight line is below a speed; NaN where it is level there: slip then rests."""
+    if start == end:
+        return np.where(speed == start, np.nan, speed > start)
+    return np.clip((speed - min(start, end)) / abs(end - start), 0.0, 1.0)
+
+
+_SMOOTH: dict[str, Callable[[Floats], Floats]] = {
     "sine": lambda size: 2.0 / np.pi * np.arcsin(size),
-    "triangle": lambda size: size,
-    "sawtooth": lambda size: size,
     "parabola": lambda size: size / (1.0 + np.sqrt(1.0 - size)),
 }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from strategies import scenes_in_the_plane, sizes
 from frictionlab.mistakes.notes import WrongValues
 from frictionlab.scene.body import in_the_plane, on_the_line, restoring_force
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
+from frictionlab.scene.waveforms import SHAPES
 
 FREE = {
     "damping_ratio": 0.1,
@@ -324,3 +326,10 @@ def test_parts_may_be_records_as_well_as_mappings():
     assert Scene(belt_speed=5.0, slip=slip) == Scene(**SLIDING)
     assert Scene(**PLANAR, initial=Initial(x=1.0)).initial == Initial(x=1.0)
     assert TransverseSlip(velocity_amplitude=1.0).frequency is None
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_the_page_on_scenes_has_the_formula_of_every_waveform(name: str) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text(encoding="utf-8")
+
+    assert f"| `{name}` | {SHAPES[name].formula}" in page

@@ -14,7 +14,7 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import FULL_TURN, edges_of, signal_of
-from frictionlab.scene.waveforms import Form, Term
+from frictionlab.scene.waveforms import SHAPES, Form, Term
 from frictionlab.theory import (
     friction_free_velocity,
     mean_prescribed_longitudinal,
@@ -26,10 +26,9 @@ from frictionlab.theory.prescribed import mean_direction
 
 angles = st.floats(0.0, 360.0)
 terms = st.builds(Term, st.integers(1, 6), st.floats(-1.0, 1.0), angles)
-forms = st.sampled_from([Form(name) for name in ("sine", "square", "triangle", "sawtooth")]) | st.lists(
-    terms, min_size=1, max_size=4
-).map(lambda found: Form("harmonics", tuple(found)))
-NAMED = ["sine", "square", "triangle", "sawtooth"]
+forms = st.sampled_from([Form(name) for name in SHAPES]) | st.lists(terms, min_size=1, max_size=4).map(
+    lambda found: Form("harmonics", tuple(found))
+)
 LAW = Coulomb(mu=0.4)
 
 
@@ -44,7 +43,7 @@ def direction(
     return mean_direction(piecewise(slip, edges).minus(ratio), piecewise(normal, edges, 1.0))
 
 
-@pytest.mark.parametrize("waveform", NAMED)
+@pytest.mark.parametrize("waveform", SHAPES)
 @given(phase=angles, ratio=st.floats(-0.99, 0.99) | st.sampled_from([0.0, 1.5, -2.0]))
 def test_the_mean_is_that_of_the_instants_at_which_slip_turns(
     waveform: str, phase: float, ratio: float
@@ -52,6 +51,18 @@ def test_the_mean_is_that_of_the_instants_at_which_slip_turns(
     closed = float(mean_prescribed_longitudinal(ratio, waveform))
 
     assert direction(waveform, phase, ratio).mean == pytest.approx(closed, abs=1e-13)
+
+
+@given(form=forms)
+def test_jumps_and_opposites_are_those_of_its_values(form: Form) -> None:
+    signal, tau = signal_of(form, FULL_TURN, 0.0), (np.arange(240) + 1e-9) / 240
+    sides = [np.abs(signal(tau) - signal(tau - 2e-9)).max(), np.abs(signal(tau) + signal(tau + 0.5)).max()]
+
+    assert form.jumps == (sides[0] > 1e-3)
+    if form.antisymmetric:
+        assert sides[1] <= 1e-6
+    elif not form.terms:
+        assert sides[1] > 0.1
 
 
 @given(ratio=st.floats(-0.99, 0.99), amplitude=st.floats(0.0, 0.99), lead=angles, phase=angles)

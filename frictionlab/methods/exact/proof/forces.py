@@ -15,13 +15,6 @@ from flint import acb, arb
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Form, as_fraction
 
-QUARTERS: dict[str, tuple[tuple[Fraction, int, int], ...]] = {
-    "square": ((Fraction(0), 1, 0), (Fraction(1, 2), -1, 0)),
-    "triangle": ((Fraction(1, 4), 1, -4), (Fraction(3, 4), -1, 4)),
-    "sawtooth": ((Fraction(1, 2), -1, 2),),
-}
-"""Of each shape: where its corners are in shares of a turn, the value after each, and the slope per turn."""
-
 
 class Sine(NamedTuple):
     """sine*sin(frequency tau) + cosine*cos(frequency tau)."""
@@ -92,7 +85,7 @@ def forces_of(scene: Scene) -> Forces:
         size = arb(normal.amplitude) * arb(scene.normal_load)
         presses.append(_part(normal.waveform, size, turns, normal.phase))
     corners = sorted({each for part in (*loads, *moves, *presses) for each in _corners(part)})
-    jumps = {each for part in moves if part.form.shape != "triangle" for each in _corners(part)}
+    jumps = {each for part in moves if part.form.jumps for each in _corners(part)}
     steady = arb(scene.belt_speed), arb(scene.normal_load)
     return Forces(
         period,
@@ -138,11 +131,7 @@ def _exact(number: Fraction) -> Any:
 def _corners(part: _Part) -> list[Fraction]:
     """In shares of the common period, from 0 to below 1."""
     every = range(int(part.rate) + 2)
-    found = (
-        (at - part.start % 1 + lap) / part.rate
-        for at, _, _ in QUARTERS.get(part.form.shape, ())
-        for lap in every
-    )
+    found = ((at - part.start % 1 + lap) / part.rate for at, _, _ in part.form.lines for lap in every)
     return [each for each in found if 0 <= each < 1]
 
 
@@ -163,11 +152,8 @@ def _course(parts: list[_Part], constant: Any, start: Fraction, stop: Fraction, 
 
 def _phasors(part: _Part) -> list[tuple[Fraction, Any]]:
     """The sines of a part: turns in a common period, and P of Im(P exp(i ...))."""
-    if part.form.shape == "sine":
-        sine, cosine = _turn(part.start)
-        return [(part.rate, acb(cosine, sine) * part.size)]
     found = []
-    for term in part.form.terms:
+    for term in part.form.waves:
         sine, cosine = _turn(Fraction(term.phase) / 360 + term.order * part.start)
         found.append((term.order * part.rate, acb(cosine, sine) * part.size * arb(term.amplitude)))
     return found
@@ -175,9 +161,9 @@ def _phasors(part: _Part) -> list[tuple[Fraction, Any]]:
 
 def _line(part: _Part, start: Fraction, stop: Fraction) -> tuple[Any, Any]:
     """Of a shape with corners: the value where a piece starts, and the slope per common period."""
-    if part.form.shape not in QUARTERS:
+    corners = part.form.lines
+    if not corners:
         return arb(0), arb(0)
-    corners = QUARTERS[part.form.shape]
     middle = (part.rate * (start + stop) / 2 + part.start) % 1
     before = [each for each in corners if each[0] <= middle]
     at, value, slope = before[-1] if before else corners[-1]

@@ -24,7 +24,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import si_columns, si_scales
 from frictionlab.results.part import KeptRows, Part, Places
-from frictionlab.scene.dimensional import scaled_parameters
+from frictionlab.scene.units import scaled_parameters
 from frictionlab.study import StudyCurve
 
 FINISHED = ("ok", "refused", "failed", "not_unique")

@@ -1,175 +1,108 @@
 # ruff: noqa: N815 - a key ends in its unit, and N stands for newton
-"""A scene in SI units and its conversion to nondimensional numbers.
+"""A scene in SI units and its conversion to nondimensional numbers (Sulollari, van Dalen & Cabboi, Eq. 2).
 
-Scales of Sulollari, van Dalen & Cabboi, Eq. 2, with omega_1 = sqrt(K_1/M): time 1/omega_1, a length L, force
-K_1 L, and from these velocity omega_1 L and energy K_1 L^2. L is any length: no result in SI units depends on it.
+Each part of a scene is stated once, nondimensional (``parts.py``): its SI form has the same keys, with the unit
+behind those of numbers that have a dimension, the same limits and the same rules. Only springs, dashpots, mass,
+weight and length, of which the nondimensional numbers are made, have keys of their own here.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
-from functools import cache, lru_cache
-from typing import Any, Literal, NamedTuple, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, get_type_hints
 
-from pydantic import model_validator
+from pydantic import create_model, model_validator
 
-from frictionlab.quantities import Dimension, Finite, NonNegative, Positive, Record
-from frictionlab.scene.rules import SHAKEN, problems_of_parts
-from frictionlab.scene.waveforms import SINE, Ratio, Waveform
+from frictionlab.quantities import Finite, NonNegative, Positive, Record
+from frictionlab.scene.parts import BeltVibration, Drive, Initial, Load, NormalLoadVariation, Part, Transverse
+from frictionlab.scene.rules import problems_of_parts
+from frictionlab.scene.units import SUFFIXES, Units, dimensions
 
 STANDARD_GRAVITY = 9.81
 
-_RecordT = TypeVar("_RecordT", bound=Record)
+
+class InSI(Part):
+    """A part of a scene in SI units; nondimensional: what it becomes."""
+
+    nondimensional: ClassVar[type[Part]]
+
+    if TYPE_CHECKING:  # its fields are those of the nondimensional part
+
+        def __init__(self, **values: Any) -> None: ...
+
+    @classmethod
+    def key(cls, name: str) -> str:
+        """Under which the part has the value of this nondimensional name."""
+        return key_in_si(cls.nondimensional, name)
+
+    def scaled(self, units: Units) -> dict[str, Any]:
+        """The values given, as those of the nondimensional part."""
+        found: dict[str, Any] = {}
+        kinds = dimensions(self.nondimensional)
+        for name in self.nondimensional.model_fields:
+            key = self.key(name)
+            value = getattr(self, key) if key in self.model_fields_set else None
+            if isinstance(value, InSI):
+                found[name] = value.scaled(units)
+            elif value is not None:
+                found[name] = units.scaled(value, kinds[name]) if name in kinds else value
+        return found
 
 
-class Units(NamedTuple):
-    """The units of a scene's nondimensional numbers: length L [m], time 1/omega_1 [s], force K_1 L [N]."""
-
-    length: float
-    time: float
-    force: float
-
-    @property
-    def velocity(self) -> float:
-        """omega_1 L [m/s]."""
-        return self.length / self.time
-
-    @property
-    def energy(self) -> float:
-        """K_1 L^2 [J]."""
-        return self.force * self.length
-
-    def of(self, dimension: Dimension) -> float:
-        """The unit of a number of this dimension."""
-        return self.force**dimension.force * self.length**dimension.length * self.time**dimension.time
+def key_in_si(part: type[Part], name: str) -> str:
+    """The key of a value in SI units by its nondimensional name: a number with a dimension ends in its unit."""
+    dimension = dimensions(part).get(name)
+    return name if dimension is None else f"{name}_{SUFFIXES[dimension]}"
 
 
-class _Force(Record):
-    """A periodic force by its unbalance or its amplitude; what has no unit as in the nondimensional scene.
-
-    unbalance_kg_m [kg m], >= 0: the force has the amplitude unbalance_kg_m*omega^2; or instead
-    amplitude_N [N], >= 0: its amplitude.
-    """
-
-    unbalance_kg_m: NonNegative | None = None
-    amplitude_N: NonNegative | None = None
-    phase: Finite = 0.0
-    waveform: Waveform | None = None
-
-    @model_validator(mode="after")
-    def _one_of_two(self) -> _Force:
-        if (self.unbalance_kg_m is None) == (self.amplitude_N is None):
-            raise ValueError("give exactly one of unbalance_kg_m and amplitude_N")
-        return self
-
-    def scaled(self, mass: float, scales: Units) -> dict[str, Any]:
-        """unbalance/(M L) or amplitude/(K_1 L), and what has no unit."""
-        if self.unbalance_kg_m is not None:
-            return {"unbalance": self.unbalance_kg_m / (mass * scales.length), **_without_unit(self)}
-        assert self.amplitude_N is not None
-        return {"amplitude": self.amplitude_N / scales.force, **_without_unit(self)}
+def _in_si(part: type[Part], example: str) -> Any:
+    """The SI form of a part that has no keys of its own in SI units."""
+    kinds = get_type_hints(part, include_extras=True)
+    fields: dict[str, Any] = {
+        key_in_si(part, name): (kinds[name], ... if field.is_required() else field.default)
+        for name, field in part.model_fields.items()
+    }
+    name = f"Dimensional{part.__name__}"
+    said = _documented(part, name, example)
+    made = create_model(name, __base__=InSI, __module__=__name__, __doc__=said, **fields)
+    made.nondimensional, made.alternatives = part, part.alternatives
+    return made
 
 
-class DimensionalDrive(_Force):
-    """The force along x1: unbalance_kg_m*omega^2 (or amplitude_N) times waveform(omega t + phase).
-
-    unbalance_kg_m [kg m], >= 0: the force has the amplitude unbalance_kg_m*omega^2; or instead
-    amplitude_N [N], >= 0: its amplitude.
-    phase [degrees]: the force is the waveform at its frequency*time + phase.
-    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [{order, amplitude, phase}, ...]}.
-    frequency_rad_per_s [rad/s], > 0: omega, of the drive; everything else that vibrates has it in some ratio.
-    direction [degrees]: from x1 towards x2, in scenes with ``transverse``; along x1 where left out.
-
-    >>> import frictionlab as fl
-    >>> fl.DimensionalDrive(amplitude_N=20, frequency_rad_per_s=300, waveform="square")
-    DimensionalDrive(amplitude_N=20, waveform='square', frequency_rad_per_s=300)
-    """
-
-    frequency_rad_per_s: Positive
-    direction: Finite | None = None
+def _documented(part: type[Part], name: str, example: str) -> str:
+    """The docstring of a part with the keys and units of its SI form."""
+    paragraphs = [each for each in (part.__doc__ or "").split("\n\n") if not each.lstrip().startswith(">>> ")]
+    text = "\n\n".join(paragraphs).rstrip().replace(".", ", in SI units.", 1)
+    for field, dimension in dimensions(part).items():
+        key, unit = key_in_si(part, field), _unit_text(SUFFIXES[dimension])
+        text = re.sub(rf"(?m)^( *){field} \[[^]]*\]", rf"\1{key} [{unit}]", text)
+    return f"{text}\n\n    >>> import frictionlab as fl\n    >>> fl.{name}({example})\n    {name}({example})\n    "
 
 
-class DimensionalLoad(_Force):
-    """The force along x2, across the belt, beside a drive along x1.
-
-    unbalance_kg_m [kg m], >= 0: the force has the amplitude unbalance_kg_m*(frequency of the drive)^2; or instead
-    amplitude_N [N], >= 0: its amplitude.
-    phase [degrees]: the force is the waveform at its frequency*time + phase.
-    waveform: sine where left out, square, triangle, sawtooth or {harmonics: [{order, amplitude, phase}, ...]}.
-    frequency_ratio [-]: its frequency in shares of the drive's, p/q; 1 where left out.
-
-    >>> import frictionlab as fl
-    >>> fl.DimensionalLoad(unbalance_kg_m=0.01, frequency_ratio=2)
-    DimensionalLoad(unbalance_kg_m=0.01, frequency_ratio=2)
-    """
-
-    frequency_ratio: Ratio | None = None
+def _unit_text(suffix: str) -> str:
+    """Such as m/s for m_per_s."""
+    return suffix.replace("_per_", "/").replace("_", " ")
 
 
-class DimensionalBeltVibration(Record):
-    """The belt's velocity beside belt_speed_m_per_s: velocity_amplitude_m_per_s times the waveform.
-
-    velocity_amplitude_m_per_s [m/s], >= 0: of the belt's vibration.
-    frequency_rad_per_s [rad/s], > 0: only where nothing else has a frequency.
-
-    What has no unit is as for ``BeltVibration``.
-
-    >>> import frictionlab as fl
-    >>> fl.DimensionalBeltVibration(velocity_amplitude_m_per_s=0.02, frequency_rad_per_s=300)
-    DimensionalBeltVibration(velocity_amplitude_m_per_s=0.02, frequency_rad_per_s=300)
-    """
-
-    velocity_amplitude_m_per_s: NonNegative
-    phase: Finite = 0.0
-    waveform: Waveform = SINE
-    direction: Finite = 0.0
-    frequency_ratio: Ratio | None = None
-    frequency_rad_per_s: Positive | None = None
-
-    def scaled(self, scales: Units) -> dict[str, Any]:
-        """The nondimensional one."""
-        size = {"velocity_amplitude": self.velocity_amplitude_m_per_s / scales.velocity}
-        return size | _without_unit(self) | _scaled_frequency(self, scales)
+if TYPE_CHECKING:
+    DimensionalDrive = InSI
+    DimensionalLoad = InSI
+    DimensionalBeltVibration = InSI
+    DimensionalNormalLoadVariation = InSI
+    DimensionalInitial = InSI
+else:
+    DimensionalDrive = _in_si(Drive, "amplitude_N=20, waveform='square', frequency_rad_per_s=300")
+    DimensionalLoad = _in_si(Load, "unbalance_kg_m=0.01, frequency_ratio=2")
+    DimensionalBeltVibration = _in_si(
+        BeltVibration, "velocity_amplitude_m_per_s=0.02, frequency_rad_per_s=300"
+    )
+    DimensionalNormalLoadVariation = _in_si(NormalLoadVariation, "amplitude=0.3, frequency_rad_per_s=300")
+    DimensionalInitial = _in_si(Initial, "x_m=0.001")
 
 
-class DimensionalNormalLoadVariation(Record):
-    """The normal load as its mean times 1 + amplitude*waveform; all as for ``NormalLoadVariation``.
-
-    amplitude [-], >= 0: the varying share of the normal load.
-    frequency_rad_per_s [rad/s], > 0: only where nothing else has a frequency.
-
-    >>> import frictionlab as fl
-    >>> fl.DimensionalNormalLoadVariation(amplitude=0.3, frequency_rad_per_s=300)
-    DimensionalNormalLoadVariation(amplitude=0.3, frequency_rad_per_s=300)
-    """
-
-    amplitude: NonNegative
-    phase: Finite = 0.0
-    waveform: Waveform = SINE
-    frequency_ratio: Ratio | None = None
-    contact: Literal["per_load", "constant"] = "per_load"
-    frequency_rad_per_s: Positive | None = None
-
-    def scaled(self, scales: Units) -> dict[str, Any]:
-        """The nondimensional one."""
-        return {"amplitude": self.amplitude} | _without_unit(self) | _scaled_frequency(self, scales)
-
-
-_WITHOUT_UNIT = "phase", "waveform", "direction", "frequency_ratio", "contact"
-
-
-def _without_unit(part: Record) -> dict[str, Any]:
-    """The values of a part that are the same in all units."""
-    return {name: value for name, value in part if name in _WITHOUT_UNIT and value is not None}
-
-
-def _scaled_frequency(part: Any, scales: Units) -> dict[str, float]:
-    omega: float | None = part.frequency_rad_per_s
-    return {} if omega is None else {"frequency": omega * scales.time}
-
-
-class DimensionalTransverse(Record):
+class DimensionalTransverse(InSI):
     """The motion of the same mass along x2, across the belt.
 
     stiffness_N_per_m [N/m], > 0: K_2, of the spring across the belt.
@@ -181,28 +114,11 @@ class DimensionalTransverse(Record):
     DimensionalTransverse(stiffness_N_per_m=500, damping_N_s_per_m=2)
     """
 
+    nondimensional: ClassVar[type[Part]] = Transverse
+
     stiffness_N_per_m: Positive
     damping_N_s_per_m: NonNegative
     load: DimensionalLoad | None = None
-
-
-class DimensionalInitial(Record):
-    """Where the mass starts, for scenes whose steady state depends on it.
-
-    x_m [m]: position along the belt, from where the spring is undeflected.
-    velocity_m_per_s [m/s]: along the belt.
-    x2_m [m]: position across the belt.
-    velocity2_m_per_s [m/s]: across the belt.
-
-    >>> import frictionlab as fl
-    >>> fl.DimensionalInitial(x_m=0.001)
-    DimensionalInitial(x_m=0.001)
-    """
-
-    x_m: Finite = 0.0
-    velocity_m_per_s: Finite = 0.0
-    x2_m: Finite = 0.0
-    velocity2_m_per_s: Finite = 0.0
 
 
 class Dimensional(Record):
@@ -261,7 +177,7 @@ class Dimensional(Record):
     def _parts_that_do_not_go_together(self) -> Iterator[str]:
         if self.gravity_m_per_s2 is not None and self.normal_load_N is not None:
             yield "gravity_m_per_s2: leave it out where normal_load_N is given"
-        yield from problems_of_parts(self, "frequency_rad_per_s")
+        yield from problems_of_parts(self)
 
     def _out_of_range(self) -> Iterator[str]:
         """Values in wrong units whose nondimensional numbers overflow or vanish."""
@@ -274,9 +190,9 @@ class Dimensional(Record):
 
     @property
     def scales(self) -> Units:
-        """L, 1/omega_1 and K_1 L."""
+        """L, 1/omega_1, K_1 L and M."""
         time = math.sqrt(self.mass_kg / self.stiffness_N_per_m)
-        return Units(self.length_m, time, self.stiffness_N_per_m * self.length_m)
+        return Units(self.length_m, time, self.stiffness_N_per_m * self.length_m, self.mass_kg)
 
     @property
     def load(self) -> float:
@@ -287,42 +203,22 @@ class Dimensional(Record):
         return self.mass_kg * self.gravity_m_per_s2
 
     def scaled(self) -> dict[str, Any]:
-        """The nondimensional scene as plain nested values (Eq. 2)."""
-        found: dict[str, Any] = {
-            "damping_ratio": self._damping_ratio(self.damping_N_s_per_m, self.stiffness_N_per_m),
-            "normal_load": self.load / self.scales.force,
-            "belt_speed": self.belt_speed_m_per_s / self.scales.velocity,
+        """The nondimensional scene as plain nested values."""
+        scales, stiffness, across = self.scales, self.stiffness_N_per_m, self.transverse
+        found: dict[str, Any] = {name: part.scaled(scales) for name, part in self if isinstance(part, InSI)}
+        if across is not None:
+            found["transverse"] |= {
+                "natural_frequency": math.sqrt(across.stiffness_N_per_m / stiffness),
+                "damping_ratio": self._damping_ratio(across.damping_N_s_per_m, across.stiffness_N_per_m),
+            }
+        return found | {
+            "damping_ratio": self._damping_ratio(self.damping_N_s_per_m, stiffness),
+            "normal_load": self.load / scales.force,
+            "belt_speed": self.belt_speed_m_per_s / scales.velocity,
         }
-        if self.drive is not None:
-            frequency = _scaled_frequency(self.drive, self.scales)
-            found["drive"] = self.drive.scaled(self.mass_kg, self.scales) | frequency
-        if self.transverse is not None:
-            found["transverse"] = self._scaled_transverse(self.transverse)
-        for name in SHAKEN:
-            if (part := getattr(self, name)) is not None:
-                found[name] = part.scaled(self.scales)
-        if self.initial is not None:
-            found["initial"] = self._scaled_initial(self.initial)
-        return found
 
     def _damping_ratio(self, damping: float, stiffness: float) -> float:
         return damping / (2.0 * math.sqrt(stiffness * self.mass_kg))
-
-    def _scaled_transverse(self, across: DimensionalTransverse) -> dict[str, Any]:
-        found: dict[str, Any] = {
-            "natural_frequency": math.sqrt(across.stiffness_N_per_m / self.stiffness_N_per_m),
-            "damping_ratio": self._damping_ratio(across.damping_N_s_per_m, across.stiffness_N_per_m),
-        }
-        if across.load is not None:
-            found["load"] = across.load.scaled(self.mass_kg, self.scales)
-        return found
-
-    def _scaled_initial(self, initial: DimensionalInitial) -> dict[str, float]:
-        """Only the values that are given: a scene with one degree of freedom refuses x2 and velocity2."""
-        given = initial.model_dump(exclude_unset=True)
-        units = {"m": self.scales.length, "m_per_s": self.scales.velocity}
-        parts = {key: key.partition("_") for key in given}
-        return {name: given[key] / units[unit] for key, (name, _, unit) in parts.items()}
 
 
 def _numbers(tree: dict[str, Any]) -> Iterator[float]:
@@ -331,55 +227,3 @@ def _numbers(tree: dict[str, Any]) -> Iterator[float]:
             yield from _numbers(value)
         elif isinstance(value, float):
             yield value
-
-
-@cache
-def dimensions(record: type[Record]) -> dict[str, Dimension]:
-    """The dimension of every field of a record that has one."""
-    found = {
-        name: _dimension(field.annotation, field.metadata) for name, field in record.model_fields.items()
-    }
-    return {name: dimension for name, dimension in found.items() if dimension is not None}
-
-
-def _dimension(annotation: Any, metadata: Any) -> Dimension | None:
-    """The ``Dimension`` in the annotation of a type, or of one of the alternatives of an optional type."""
-    for mark in metadata:
-        if isinstance(mark, Dimension):
-            return mark
-    inner = (
-        _dimension(None, kind.__metadata__) for kind in get_args(annotation) if hasattr(kind, "__metadata__")
-    )
-    return next((dimension for dimension in inner if dimension is not None), None)
-
-
-def scaled_parameters(record: Record, scales: Units) -> dict[str, float | tuple[float, ...]]:
-    """The parameters of a law that have a dimension, made nondimensional."""
-    values = {
-        name: (getattr(record, name), scales.of(unit)) for name, unit in dimensions(type(record)).items()
-    }
-    return {name: _divide(value, unit) for name, (value, unit) in values.items() if value is not None}
-
-
-def _divide(value: float | tuple[float, ...], unit: float) -> float | tuple[float, ...]:
-    return tuple(each / unit for each in value) if isinstance(value, tuple) else value / unit
-
-
-@lru_cache(maxsize=4096)  # the rows of a curve share their law
-def scaled_law(law: _RecordT, scales: Units) -> _RecordT:
-    """A law given in SI units, converted to the lengths and times of a scene.
-
-    The bounds of its parameters are those of the numbers given. Raises OverflowError for a number without size.
-    """
-    parameters = scaled_parameters(law, scales)
-    for name, value in parameters.items():
-        if not _has_size(value, getattr(law, name)):
-            raise OverflowError(f"{name}: {getattr(law, name)} in SI units is {value} in those of the scene")
-    return law.model_copy(update=parameters) if parameters else law
-
-
-def _has_size(value: float | tuple[float, ...], given: Any) -> bool:
-    """Whether each converted number is finite, and zero only where the one given is."""
-    if isinstance(value, tuple):
-        return all(_has_size(*pair) for pair in zip(value, given, strict=True))
-    return math.isfinite(value) and (value != 0.0 or given == 0.0)

@@ -13,10 +13,10 @@ SHAKEN = "belt_vibration", "normal_load_variation"
 """The parts that take the drive's frequency, or give one where there is no drive."""
 
 
-def problems_of_parts(scene: Any, frequency: str) -> list[str]:
-    """Of a body's loads and of what shakes it otherwise. frequency: the name of that key in the scene's units."""
+def problems_of_parts(scene: Any) -> list[str]:
+    """Of a body's loads and of what shakes it otherwise."""
     found = [*_missing_parts(scene), *_directions(scene)]
-    found = found or [*problems_of_frequencies(scene, frequency)]
+    found = found or [*problems_of_frequencies(scene)]
     return found or problems_of_variation(scene)
 
 
@@ -43,12 +43,13 @@ def _directions(scene: Any) -> Iterator[str]:
         yield "drive.direction: leave it out with transverse.load, which gives the force across the belt"
 
 
-def problems_of_frequencies(scene: Any, frequency: str, given: str = "") -> Iterator[str]:
+def problems_of_frequencies(scene: Any, given: str = "") -> Iterator[str]:
     """Of what takes a frequency or gives one. given: the part that gives it, the drive where there is one."""
     given = "drive" if scene.drive is not None else given
     parts = {name: part for name in SHAKEN if (part := getattr(scene, name)) is not None}
     if not parts:
         return
+    frequency = next(iter(parts.values())).key("frequency")
     own = {name for name, part in parts.items() if getattr(part, frequency) is not None}
     for name, part in parts.items():
         if name in own and given:

@@ -11,8 +11,8 @@ from typing import Any
 from frictionlab import columns, registry
 from frictionlab.mistakes.notes import Notes, Path, StudyError
 from frictionlab.mistakes.validation import build_record, number_paths, value_paths
-from frictionlab.scene.dimensional import dimensions
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.units import dimensions
 from frictionlab.study.axes import FRICTION, LINKED, STATIC, GridValue
 from frictionlab.study.choices import (
     certain_labels,

@@ -10,7 +10,6 @@ from pydantic import BaseModel, TypeAdapter
 from frictionlab import columns, registry
 from frictionlab.mistakes.validation import nested
 from frictionlab.registry.records import description, meaning
-from frictionlab.scene import dimensional, scene
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
@@ -59,13 +58,6 @@ _KEYS = {
     "measure": "the measure that the verdict is read from; area where left out",
 }
 """What the keys of a study mean, apart from those of scenes, laws and methods, whose docstrings tell them."""
-_SAME_AS: dict[type[BaseModel], type[BaseModel]] = {
-    dimensional.DimensionalDrive: scene.Drive,
-    dimensional.DimensionalLoad: scene.Load,
-    dimensional.DimensionalBeltVibration: scene.BeltVibration,
-    dimensional.DimensionalNormalLoadVariation: scene.NormalLoadVariation,
-}
-"""The parts of a scene in SI units, and those that tell what their values without a unit mean."""
 _NUMBER = {"type": "number"}
 _WORD_OR_NUMBER: dict[str, Any] = {
     "anyOf": [_NUMBER, {"type": "string"}, TypeAdapter(Waveform).json_schema()]
@@ -143,15 +135,10 @@ def _describe(record: type[BaseModel], made: dict[str, Any], inside: dict[str, A
     made["description"] = description(record)
     for key, field in made.get("properties", {}).items():
         part = nested(record, key)
-        if told := meaning(record, key) or (part and _first_paragraph(part)) or _same(record, key):
+        if told := meaning(record, key) or (part and _first_paragraph(part)):
             field.setdefault("description", told)
         if part is not None:
             _describe(part, inside[part.__name__], inside)
-
-
-def _same(record: type[BaseModel], key: str) -> str:
-    alike = _SAME_AS.get(record)
-    return meaning(alike, key) if alike is not None else ""
 
 
 def _first_paragraph(record: type[BaseModel]) -> str:

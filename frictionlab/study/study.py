@@ -20,9 +20,9 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.mistakes.notes import Mistake, StudyError, number_text
 from frictionlab.registry.law_file import LawFile
-from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.scene.scene import Scene, with_values
 from frictionlab.scene.scenes import Scenes
+from frictionlab.scene.units import Units, scaled_law
 from frictionlab.scene.waveforms import Form
 from frictionlab.study.axes import (
     FRICTION,

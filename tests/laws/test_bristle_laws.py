@@ -30,7 +30,7 @@ from frictionlab.laws.elasto_plastic import ElastoPlastic, breakaway_share
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import bristle_in_the_plane, bristle_on_the_line
-from frictionlab.scene.dimensional import Units, scaled_law
+from frictionlab.scene.units import Units, scaled_law
 from frictionlab.theory import (
     SteadySliding,
     dahl_describing_function,

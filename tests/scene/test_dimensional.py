@@ -20,8 +20,8 @@ from frictionlab.charts.curves import family_of
 from frictionlab.columns import RESULTS, SI
 from frictionlab.laws.base import Dimension, Positive, Record
 from frictionlab.mistakes.notes import WrongValues
-from frictionlab.scene.dimensional import Units, dimensions, scaled_law
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.units import Units, dimensions, scaled_law
 from frictionlab.study import StudyError, parse_study
 from frictionlab.theory import friction_free_velocity
 

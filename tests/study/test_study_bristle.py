@@ -27,7 +27,7 @@ from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.registry.records import law_record
 from frictionlab.results.curve_table import curve_table
-from frictionlab.scene.dimensional import Units, dimensions
+from frictionlab.scene.units import Units, dimensions
 from frictionlab.shape.shakedown import Shakedown, shakedown_of_body, shakedown_of_slip
 from frictionlab.shape.verdict import UnreadableCurve
 from frictionlab.study import StudyError, load_study, parse_study

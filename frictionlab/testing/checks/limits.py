@@ -12,8 +12,8 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.methods.march.method import March
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.scene.dimensional import Units, scaled_law
 from frictionlab.scene.scene import Drive, Scene, Slip
+from frictionlab.scene.units import Units, scaled_law
 from frictionlab.testing.check import make_check
 from frictionlab.testing.checks.declared import WITH_MEMORY
 from frictionlab.testing.contact import deflection_scale

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from frictionlab.laws.memory import MemoryLaw
-from frictionlab.scene.dimensional import Units, scaled_law
+from frictionlab.scene.units import Units, scaled_law
 from frictionlab.testing.check import make_check
 from frictionlab.testing.contact import Response, has_direction, memory_after_slip, reflect, response, rotate
 from frictionlab.testing.example import Given

@@ -16,11 +16,27 @@ SHAKEN = "belt_vibration", "normal_load_variation"
 def problems_of_parts(scene: Any) -> list[str]:
     """Of a body's loads and of what shakes it otherwise."""
     found = [*_missing_parts(scene), *_directions(scene)]
-    found = found or [*problems_of_frequencies(scene)]
-    return found or problems_of_variation(scene)
+    found = found or [*_problems_of_frequencies(scene)]
+    return found or _problems_of_variation(scene)
 
 
-def problems_of_variation(scene: Any) -> list[str]:
+def problems_of_slip(scene: Any) -> list[str]:
+    """Of a prescribed slip, and of what shakes its normal load."""
+    for name in ("damping_ratio", "drive", "transverse", "initial", "belt_vibration"):
+        if getattr(scene, name) is not None:
+            return [f"{name}: leave it out with a prescribed slip"]
+    if scene.transverse_slip is not None and scene.slip is not None and scene.slip.direction is not None:
+        return ["slip.direction: leave it out with transverse_slip"]
+    own = scene.transverse_slip.frequency if scene.transverse_slip is not None else None
+    if scene.slip is not None and own is not None:
+        return ["transverse_slip.frequency: leave it out, slip.frequency holds for both"]
+    if scene.slip is None and own is None:
+        return ["transverse_slip.frequency: required where slip is left out"]
+    given = "slip" if scene.slip is not None else "transverse_slip"
+    return [*_problems_of_frequencies(scene, given)] or _problems_of_variation(scene)
+
+
+def _problems_of_variation(scene: Any) -> list[str]:
     """Of the least common period, and of a normal load that does not stay positive."""
     return [*_period(scene), *_normal_load(scene)]
 
@@ -43,7 +59,7 @@ def _directions(scene: Any) -> Iterator[str]:
         yield "drive.direction: leave it out with transverse.load, which gives the force across the belt"
 
 
-def problems_of_frequencies(scene: Any, given: str = "") -> Iterator[str]:
+def _problems_of_frequencies(scene: Any, given: str = "") -> Iterator[str]:
     """Of what takes a frequency or gives one. given: the part that gives it, the drive where there is one."""
     given = "drive" if scene.drive is not None else given
     parts = {name: part for name in SHAKEN if (part := getattr(scene, name)) is not None}

@@ -31,12 +31,7 @@ from frictionlab.scene.parts import (
     Transverse,
     TransverseSlip,
 )
-from frictionlab.scene.rules import (
-    periods_of,
-    problems_of_frequencies,
-    problems_of_parts,
-    problems_of_variation,
-)
+from frictionlab.scene.rules import periods_of, problems_of_parts, problems_of_slip
 from frictionlab.scene.shaking import Shaking, keeps_stiffness, shaking_by
 from frictionlab.scene.signals import Signal, Signals
 from frictionlab.scene.waveforms import SINE, form_of
@@ -114,24 +109,10 @@ class Scene(Part):
     @model_validator(mode="after")
     def _one_kind_of_scene(self) -> Scene:
         prescribed = self.slip is not None or self.transverse_slip is not None
-        problems = self._prescribed_problems() if prescribed else self._free_problems()
+        problems = problems_of_slip(self) if prescribed else self._free_problems()
         if problems:
             raise ValueError("; ".join(problems))
         return self
-
-    def _prescribed_problems(self) -> list[str]:
-        for name in ("damping_ratio", "drive", "transverse", "initial", "belt_vibration"):
-            if getattr(self, name) is not None:
-                return [f"{name}: leave it out with a prescribed slip"]
-        if self.transverse_slip is not None and self.slip is not None and self.slip.direction is not None:
-            return ["slip.direction: leave it out with transverse_slip"]
-        own = self.transverse_slip.frequency if self.transverse_slip is not None else None
-        if self.slip is not None and own is not None:
-            return ["transverse_slip.frequency: leave it out, slip.frequency holds for both"]
-        if self.slip is None and own is None:
-            return ["transverse_slip.frequency: required where slip is left out"]
-        given = "slip" if self.slip is not None else "transverse_slip"
-        return [*problems_of_frequencies(self, given)] or problems_of_variation(self)
 
     def _free_problems(self) -> list[str]:
         missing = [name for name in ("damping_ratio", "normal_load") if getattr(self, name) is None]

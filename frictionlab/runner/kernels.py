@@ -17,8 +17,6 @@ COMPILE_SECONDS = {
     "continue_in_speed": 4.0,
     "make_orbits": 4.0,
     "read_each": 4.0,
-    "flow": 7.0,
-    "record_flow": 8.0,
     "follow_undriven": 9.0,
     "follow_period": 8.0,
     "closed_legs": 3.0,

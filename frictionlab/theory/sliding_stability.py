@@ -6,6 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
+from frictionlab.scene.body import Mass
+from frictionlab.theory.rest import friction_at_rest
+
 
 @dataclass(frozen=True)
 class SteadySliding:
@@ -58,3 +63,22 @@ def steady_deflection(law: Any, v: float) -> float:
         else:
             high = middle
     return direction * high
+
+
+def loses_energy(mass: Mass, law: Any, belt_speed: float, reach: float) -> bool:
+    """Whether every motion no farther than this from steady sliding loses energy, on friction without memory.
+
+    It does where no slip velocity within its reach makes friction differ from that of steady sliding in the
+    direction of the motion by more than damping takes. Slip that has turned round, and rest where it holds by
+    no more than that, lose energy by themselves. reach [scene velocity]: in the norm of energy.
+    """
+    speed = abs(belt_speed)
+    # where the range is small against the speed the slopes are those of a millionth of it
+    speeds = np.concatenate((np.linspace(max(speed - reach, 0.0), speed + reach, 129), speed * _NEAR))
+    speeds = speeds[np.abs(speeds - speed) >= 0.9e-6 * speed]
+    friction = np.where(speeds > 0.0, law.sliding_friction(speeds), friction_at_rest(law))
+    chords = (friction - law.sliding_friction(speed)) / (speeds - speed)
+    return bool((mass.normal_load * chords).min() > -mass.damping + 1e-9)
+
+
+_NEAR = np.array([1.0 - 1e-6, 1.0 + 1e-6])

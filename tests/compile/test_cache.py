@@ -26,7 +26,7 @@ from frictionlab.methods.march.prescribed import sample_friction
 from frictionlab.methods.march.prescribed_bristle import step_periods
 from frictionlab.methods.periodic.continuation import answer_curve
 from frictionlab.methods.reduced.contact import harmonic_friction
-from frictionlab.methods.shooting.undriven import flow
+from frictionlab.methods.shooting.undriven_path import follow_undriven
 
 FILES = {
     "law_constants.py": "LEVEL = 3.0\n",
@@ -201,7 +201,7 @@ def test_words_and_the_place_in_the_file_change_nothing(compiled_once, name, bef
 
 
 @pytest.mark.parametrize(
-    "root", [answer_curve, flow, sample_friction, step_periods, harmonic_friction, LuGre]
+    "root", [answer_curve, follow_undriven, sample_friction, step_periods, harmonic_friction, LuGre]
 )
 def test_the_name_of_a_kept_kernel_holds_no_address(root):
     assert not [piece for piece in cache._pieces([root], set()) if " at 0x" in piece]

@@ -26,7 +26,7 @@ CASES = [
     (LINE, DAHL, ["answer curve", "read each"]),
     (LINE | {"transverse": ACROSS}, COULOMB, ["answer curve", *LANES, "read each"]),
     (LINE | {"transverse": ACROSS}, DAHL, ["answer curve", "read each"]),
-    (UNDRIVEN, COULOMB, ["flow", "record flow", "read each"]),
+    (UNDRIVEN, COULOMB, ["follow undriven", "read each"]),
     (UNDRIVEN, DAHL, ["follow undriven", "read each"]),
     (SLIP, COULOMB, ["read each"]),
     (SLIP, DAHL, ["closed legs", "friction of each", "read each"]),

@@ -17,7 +17,7 @@ from frictionlab.methods.shooting.followed_states import follow_states
 from frictionlab.methods.shooting.motion import follow_motion
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
 from frictionlab.methods.shooting.undriven import solve_undriven, undriven_kernels
-from frictionlab.methods.shooting.undriven_memory import ACROSS
+from frictionlab.methods.shooting.undriven_follower import ACROSS
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 

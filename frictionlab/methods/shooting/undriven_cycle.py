@@ -12,9 +12,9 @@ import numpy as np
 
 from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import mean_friction
+from frictionlab.methods.periodic.attraction import KnownOrbit, obeys
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
-from frictionlab.methods.shooting.undriven_motion import TURN
-from frictionlab.methods.shooting.undriven_path import LEAST, Return, UndrivenPath
+from frictionlab.methods.shooting.undriven_path import LEAST, TURN, Return, UndrivenPath
 from frictionlab.quantities import Floats
 
 COARSEST_CLOSED = 1e-6
@@ -24,6 +24,26 @@ INSTANT = 1e-7
 MOST_NEWTON = 16
 CHANCE = 0.15
 """Of the difference between the two coarser means, stands in where the two finer agree by chance."""
+
+
+RETURN_DISTANCE = 0.05
+"""How near to each other two largest deflections must come to close a cycle from them [distances to sliding]."""
+CONVERGED_DISTANCE = 1e-6
+"""How near a motion must come to what attracts it to be there without further proof."""
+MOST_RETURNS = 4
+"""Largest deflections in one period."""
+
+
+def nears(orbit: KnownOrbit, before: Floats, after: Floats) -> bool:
+    """Whether a motion comes nearer to an orbit from one state to another as the derivative there says."""
+    predicted = np.empty(before.size)
+    return bool(interpreted(obeys)(orbit, before - orbit.state, after - orbit.state, predicted))
+
+
+def is_there(orbit: KnownOrbit, state: Floats) -> bool:
+    """Whether a state is so near to an orbit that attracts that the motion ends on it."""
+    near = CONVERGED_DISTANCE * (1.0 + float(np.linalg.norm(orbit.state)))
+    return bool(orbit.gap > CONVERGED_DISTANCE and float(np.linalg.norm(state - orbit.state)) < near)
 
 
 class Cycle(NamedTuple):
@@ -40,6 +60,25 @@ class Cycle(NamedTuple):
     def multiplier(self) -> float:
         """The largest modulus of the multipliers, without the trivial one."""
         return radius(self.matrix)
+
+    @property
+    def orbit(self) -> KnownOrbit:
+        """As kernels see it."""
+        return KnownOrbit(self.state, self.matrix, 1.0 - self.multiplier)
+
+    def neared(self, returns: list[Return]) -> bool:
+        """Whether it attracts and the last period of a motion led to it, or nearer to it as its derivative says."""
+        orbit, last = self.orbit, returns[-1]
+        if not orbit.gap > CONVERGED_DISTANCE:
+            return False
+        if is_there(orbit, last.state):
+            return True
+        a_period_ago = [
+            one
+            for one in returns[-1 - MOST_RETURNS : -1]
+            if abs(last.turns - one.turns - self.turns) < RETURN_DISTANCE * self.turns
+        ]
+        return bool(a_period_ago) and nears(orbit, a_period_ago[-1].state, last.state)
 
 
 class Linear(NamedTuple):

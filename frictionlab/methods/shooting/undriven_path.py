@@ -1,4 +1,4 @@
-"""The motion of an undriven mass on a contact with memory, span by span, and its largest deflections."""
+"""The motion of an undriven mass, span by span, and its largest deflections."""
 
 from __future__ import annotations
 
@@ -17,13 +17,15 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.case import case_of
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
 from frictionlab.methods.periodic.period_map import period_map, size_of, start_of
-from frictionlab.methods.shooting.undriven_motion import TURN, Effort, NotFound
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, Mass, on_the_line
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.rest import friction_at_rest
 from frictionlab.theory.sliding_stability import steady_deflection
 
+TURN = 2.0 * math.pi
+"""The period of the free mass."""
 FOLLOWED, QUOTIENTS, LEAST = 1e-8, 1e-11, 1e-14
 """Accuracies of maps, per normal load: of those that follow the motion, of those for difference quotients, and the
 one beyond which rounding decides."""
@@ -39,12 +41,26 @@ MOST_PEAKS = 8
 """Largest deflections that are looked for in one span."""
 
 
+@dataclass
+class Effort:
+    """What following a motion has taken so far [steps], how far it has led [turns], and kernel time [s]."""
+
+    work: int = 0
+    turns: float = 0.0
+    seconds: float = 0.0
+
+
+class NotFound(Exception):
+    """No periodic motion; the message says why."""
+
+
 class Span(NamedTuple):
-    """One span of the motion: its end, the integral of friction, the slowest slip, the steps (-1: it gave up), and
-    where there is room the track."""
+    """One span of the motion: its end, the integral of friction, the time at rest, the slowest slip, the steps (-1:
+    it gave up), and where there is room the track."""
 
     end: Any
     impulse: float
+    stuck: float
     slowest: float
     steps: int
     track: Track
@@ -61,7 +77,7 @@ def follow_undriven(law: Any, body: Body, belt_speed: float, state: Any, accurac
         image = period_map(case, state, end, accuracy, track)
     for row in range(state.size):
         end[row] = state[row] + end[row]
-    return Span(end, image.rubbed, image.closest, image.steps, track)
+    return Span(end, image.rubbed, image.stuck, image.closest, image.steps, track)
 
 
 class Return(NamedTuple):
@@ -73,7 +89,7 @@ class Return(NamedTuple):
 
 @dataclass(frozen=True)
 class UndrivenPath:
-    """An undriven scene and a law with memory; states are those of ``period_map``, times turns of the free mass."""
+    """An undriven scene and a law; states are those of ``period_map``, times turns of the free mass."""
 
     scene: Scene
     law: FrictionLaw
@@ -121,7 +137,8 @@ class UndrivenPath:
         start = self.scene.start
         slides = -self.speed if self.law.memory_kind == "scalars" else 0.0
         # what neither slips nor accelerates is looked at a moment later, when the belt has stretched its spring
-        moment = SPEEDING_UP if start.x == 0.0 and start.velocity == self.speed else 0.0
+        still = self.law.count() > 0 and start.x == 0.0 and start.velocity == self.speed
+        moment = SPEEDING_UP if still else 0.0
         return self._state(start.x + moment * self.speed, start.velocity, slides)
 
     @cached_property
@@ -135,6 +152,12 @@ class UndrivenPath:
         x = self.mass.normal_load * self.sliding_friction / self.mass.stiffness
         bristle = self.law.memory_kind == "bristle"
         return self._state(x, 0.0, steady_deflection(self.law, -self.speed) if bristle else -self.speed)
+
+    @cached_property
+    def release(self) -> Floats:
+        """Where rest ends, and slip begins."""
+        limit = math.copysign(self.mass.normal_load * friction_at_rest(self.law), self.speed)
+        return self._state((limit - self.mass.damping * self.speed) / self.mass.stiffness, self.speed, 0.0)
 
     def from_sliding(self, state: Floats) -> float:
         """Distance to steady sliding."""
@@ -180,6 +203,8 @@ class UndrivenPath:
         """Small against what a state is, and against what it is away from steady sliding."""
         far = np.abs(self.sliding) + np.abs(state - self.sliding) + SHIFTED * abs(self.speed)
         far[1] = abs(self.speed)
+        if self.law.count() == 0:  # friction jumps where slip turns round, and only there
+            far[0] = far[1]
         shifts: Floats = SHIFTED * far
         return shifts
 

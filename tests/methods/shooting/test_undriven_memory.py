@@ -21,7 +21,7 @@ import frictionlab as fl
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.shooting import undriven_path
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.methods.shooting.undriven_memory import UndrivenMemory
+from frictionlab.methods.shooting.undriven_follower import Undriven
 from frictionlab.theory.sliding_stability import SteadySliding, steady_deflection
 
 compiling = deep("more kernels to compile")
@@ -134,7 +134,7 @@ def test_a_mass_set_off_beside_steady_sliding_stays_there_where_that_is_stable(
     contact = SteadySliding(slope=2.0 * slope, lag=g / (stiffness * speed), lead=bristle / stiffness)
     scene = block(speed, damping_ratio=damping, initial={"x": 2.0 * g, "velocity": 1e-6})
 
-    gap = UndrivenMemory(scene, law, 1e-6)._still.gap
+    gap = Undriven(scene, law, 1e-6)._still.gap
 
     if abs(gap) > 1e-3:  # else neither is sure
         assert contact.stable(damping=2.0 * damping, stiffness=1.0) == (gap > 0.0)

@@ -1,8 +1,9 @@
-"""What an undriven mass does in the long run on a contact with memory: steady sliding, a cycle, or rest.
+"""An undriven mass followed through time to what it does in the long run: steady sliding, a cycle, or rest.
 
 The motion is followed from scene.initial until it nears steady sliding as the derivative there says, or until its
 largest deflections come back: from them a cycle is closed, whose period is an unknown. Either counts where small
-disturbances do not leave it and the motion from the start nears it.
+disturbances do not leave it and the motion from the start nears it. Without memory rest leaves one motion to go on
+with, from the one deflection at which the spring overcomes friction, and energy may tell steady sliding beforehand.
 """
 
 from __future__ import annotations
@@ -15,42 +16,63 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionlab.compile.interpret import interpreted
+from frictionlab.dynamics.motion import mean_friction
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.periodic.attraction import ENOUGH, KnownOrbit, obeys
+from frictionlab.methods.periodic.attraction import ENOUGH, KnownOrbit
 from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
-from frictionlab.methods.shooting.undriven_cycle import Cycle, close_cycle, radius
-from frictionlab.methods.shooting.undriven_motion import (
-    COMES_TO_REST,
-    SLIDES,
-    SLIDES_FREELY,
+from frictionlab.methods.shooting.undriven_cycle import (
+    MOST_RETURNS,
+    RETURN_DISTANCE,
+    Cycle,
+    close_cycle,
+    is_there,
+    nears,
+    radius,
+)
+from frictionlab.methods.shooting.undriven_path import (
+    FOLLOWED,
+    LEAST,
+    PANELS_AT_FIRST,
     TURN,
     Effort,
     NotFound,
-    PeriodicMotion,
+    Return,
+    Span,
+    UndrivenPath,
 )
-from frictionlab.methods.shooting.undriven_path import FOLLOWED, LEAST, PANELS_AT_FIRST, Return, UndrivenPath
 from frictionlab.orbit.record import Orbit
 from frictionlab.orbit.recorder import Track
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.sliding_stability import loses_energy
 
-BETWEEN_LOOKS = 2.0
-"""Turns between looks at where the motion leads."""
-BACK = 0.05
-"""How near to each other two largest deflections must come to close a cycle from them [distances to sliding]."""
-THERE = 1e-6
-"""How near a motion must come to what attracts it to be there without further proof."""
+COMES_TO_REST = "at rest, where the motion from scene.initial ends"
+SLIDES = "steady sliding, which attracts"
+SLIDES_FREELY = "a free oscillation in slip, which does not decay without damping"
+STICKS = "a cycle of stick and slip"
+SLIPS = "a cycle of slip without rest"
+BETWEEN_LOOKS, PIECE = 2.0, 1.0 / 32.0
+"""Turns between looks at where the motion leads, and between looks for rest."""
 TRIALS = 10, 30, 100, 300, 1000
 """Counts of largest deflections after which a cycle is looked for however far apart they are."""
-MOST_RETURNS = 4
-"""Largest deflections in one period."""
-LITTLE = 1e-4
+FRICTION_SPREAD = 1e-4
 """Of sliding friction: how near to it friction must stay where nothing else takes energy from the motion."""
 STICKING = 1e-2
 """Of the belt speed: slower slip is called stick."""
 ACROSS = "friction of so quick a slip may feed a motion across the belt, which is not followed: leave transverse out"
 MOST_TURNS, RESTING = 5000, 4
 """Turns after which a mass that still swings on a belt at rest is given up; those by which its decay is judged."""
+
+
+class PeriodicMotion(NamedTuple):
+    """A periodic motion from a state: its period, mean friction, error and largest multiplier, and what it is."""
+
+    state: Floats
+    period: float
+    mean: float
+    error: float
+    multiplier: float
+    kind: str
 
 
 class Reach(NamedTuple):
@@ -61,9 +83,31 @@ class Reach(NamedTuple):
     high: float
 
 
+@dataclass
+class Way:
+    """A motion so far: its largest deflections, where it went of late, and the cycles found beside it."""
+
+    returns: list[Return] = field(default_factory=list)
+    reaches: list[Reach] = field(default_factory=list)
+    cycles: list[Cycle] = field(default_factory=list)
+
+    def note(self, track: Track, turns: float) -> None:
+        """One span more; those before the last two returns, or half of the way, are left out one at a time."""
+        since = self.returns[-3].turns if len(self.returns) > 2 else 0.5 * turns
+        if self.reaches and self.reaches[0].turns <= since - BETWEEN_LOOKS:
+            del self.reaches[0]
+        x = track.x.real[: track.filled[0]]
+        self.reaches.append(Reach(turns, float(x.min()), float(x.max())))
+
+    @property
+    def middle(self) -> float:
+        """Of the deflections it went through of late."""
+        return 0.5 * (min(one.low for one in self.reaches) + max(one.high for one in self.reaches))
+
+
 @dataclass(frozen=True)
-class UndrivenMemory:
-    """An undriven scene and a law with memory, followed through time."""
+class Undriven:
+    """An undriven scene and a law, followed through time."""
 
     scene: Scene
     law: FrictionLaw
@@ -89,29 +133,38 @@ class UndrivenMemory:
 
     @property
     def _conserves(self) -> bool:
-        """Whether only friction other than that of sliding takes energy: then no cycle is left but free ones."""
+        """Whether only friction other than that of sliding takes energy."""
         return self._path.mass.damping == 0.0 and self.law.constant_sliding_friction()
+
+    @property
+    def _forgets(self) -> bool:
+        """Whether at rest nothing is left of the motion before."""
+        return self.law.count() == 0
 
     def motion(self) -> PeriodicMotion:
         """The motion reached from the start. Raises NotFound."""
         path = self._path
         if path.speed == 0.0:
             return self._at_rest()
-        state, turns, steady = path.start, 0.0, 0
-        returns, cycles, reaches = list[Return](), list[Cycle](), list[Reach]()
+        state, turns, steady, forgets, way = path.start, 0.0, 0, self._forgets, Way()
         while True:
+            if self._loses_energy(state):
+                return self._sliding()
             span = path.follow(state, BETWEEN_LOOKS, room=PANELS_AT_FIRST)
-            steady = steady + 1 if _nears(self._still, state, span.end) else 0
-            if steady >= ENOUGH or _is_there(self._still, span.end):
+            if span.stuck > 0.0 and forgets:
+                motion = self._from_release()
+                if motion is not None:
+                    return motion
+                state, forgets = path.release, False  # it does not rest again
+                continue
+            steady = steady + 1 if nears(self._still, state, span.end) else 0
+            if steady >= ENOUGH or is_there(self._still, span.end):
                 return self._sliding()
             if self._conserves and self._slides_freely(span.track):
                 return self._free(span.end)
-            reaches = [*_recent(reaches, returns, turns), _reach(span.track, turns)]
-            for peak in path.peaks(state, span.track, _middle(reaches)) if not self._conserves else ():
-                returns = [*returns, Return(peak.state, turns + peak.turns)]
-                cycle = self._reached_cycle(returns, cycles)
-                if cycle is not None:
-                    return self._cycle(cycle)
+            cycle = self._cycle_neared(way, state, span, turns)
+            if cycle is not None:
+                return self._cycle(cycle)
             state, turns = span.end, turns + BETWEEN_LOOKS
             self.effort.turns = turns
 
@@ -121,11 +174,16 @@ class UndrivenMemory:
         path = self._path
         return PeriodicMotion(path.sliding, math.nan, path.sliding_friction, ROUNDING, math.nan, SLIDES)
 
+    def _loses_energy(self, state: Floats) -> bool:
+        """Whether every motion with no more energy than this one loses it, down to steady sliding."""
+        path = self._path
+        return self._forgets and loses_energy(path.mass, self.law, path.speed, path.from_sliding(state))
+
     def _slides_freely(self, track: Track) -> bool:
         """Whether friction is that of sliding, to little."""
         sliding = self._path.sliding_friction
         friction = -track.friction.real[: track.filled[0]]
-        return bool(np.abs(friction - sliding).max() <= LITTLE * abs(sliding))
+        return bool(np.abs(friction - sliding).max() <= FRICTION_SPREAD * abs(sliding))
 
     def _free(self, state: Floats) -> PeriodicMotion:
         """The oscillation that the motion ends on, no faster than the belt: friction stays that of sliding."""
@@ -136,12 +194,60 @@ class UndrivenMemory:
         state[:2] += swing
         return PeriodicMotion(state, TURN, path.sliding_friction, ROUNDING, 1.0, SLIDES_FREELY)
 
+    # --- from the end of rest, without memory ---
+
+    def _from_release(self) -> PeriodicMotion | None:
+        """The motion from the end of rest; None where the mass does not come to rest again."""
+        release = self._path.release
+        if self._conserves and self.law.monotone():
+            return self._free(release)
+        if self._loses_energy(release):
+            return self._sliding()
+        accuracy = max(0.1 * self.tolerance, LEAST)
+        # twice, the second time much finer: the difference is the error
+        rough, fine = (self._back_to_rest(part * accuracy) for part in (1.0, 1.0 / FINER))
+        if rough is None or fine is None:
+            return None
+        (_, before), (turns, mean) = rough, fine
+        error = 2.0 * abs(mean - before) + accuracy / FINER + 1e-12  # two step sizes may agree by chance
+        return PeriodicMotion(release, turns * TURN, mean, error, 0.0, STICKS)
+
+    def _back_to_rest(self, accuracy: float) -> tuple[float, float] | None:
+        """Turns and mean friction from the end of rest to the next; None where the mass does not rest again.
+
+        An orbit that closes one loop without sticking never sticks later.
+        """
+        path, state, turns, peaks = self._path, self._path.release, 0.0, 0
+        patience = 10.0 * (1.0 + path.mass.damping)  # for one damped too heavily to have peaks
+        while peaks < 3 and turns < patience:
+            span = path.follow(state, PIECE, accuracy)
+            turns += PIECE
+            if turns > PIECE and span.stuck > 0.0:
+                # the belt carries the mass on to where slip began
+                way = (path.release[0] - span.end[0]) / math.sqrt(path.mass.stiffness)
+                turns += way / path.speed / TURN
+                whole = path.follow(path.release, turns, accuracy)
+                return turns, float(interpreted(mean_friction)(whole.impulse, turns * TURN))
+            peaks += 1 if path.side * state[1] > 0.0 >= path.side * span.end[1] else 0
+            state = span.end
+        return None
+
     # --- cycles ---
+
+    def _cycle_neared(self, way: Way, state: Floats, span: Span, turns: float) -> Cycle | None:
+        """The cycle that the motion nears at one of the largest deflections of a span."""
+        way.note(span.track, turns)
+        for peak in self._path.peaks(state, span.track, way.middle) if not self._conserves else ():
+            way.returns.append(Return(peak.state, turns + peak.turns))
+            cycle = self._reached_cycle(way.returns, way.cycles)
+            if cycle is not None:
+                return cycle
+        return None
 
     def _reached_cycle(self, returns: list[Return], cycles: list[Cycle]) -> Cycle | None:
         """The cycle that the motion surely nears; cycles: those found so far, one more where it is new."""
         for cycle in cycles:
-            if _nears_cycle(cycle, returns):
+            if cycle.neared(returns):
                 return cycle
         last = returns[-1]
         size = self._path.from_sliding(last.state)
@@ -149,14 +255,14 @@ class UndrivenMemory:
             before = returns[-1 - back]
             apart = float(np.linalg.norm(last.state - before.state))
             # closing is costly: again only where they have come much nearer to each other
-            near = min(BACK * size, 0.25 * self._tried.get(back, math.inf))
+            near = min(RETURN_DISTANCE * size, 0.25 * self._tried.get(back, math.inf))
             if apart < near or (back == 1 and len(returns) in TRIALS):
                 self._tried[back] = apart
                 guess = Return(last.state, last.turns - before.turns)
                 found = close_cycle(self._path, guess, self.tolerance)
-                if found is not None and not any(_is_there(_orbit(other), found.state) for other in cycles):
+                if found is not None and not any(is_there(other.orbit, found.state) for other in cycles):
                     cycles.append(found)
-                    return found if _nears_cycle(found, returns) else None
+                    return found if found.neared(returns) else None
         return None
 
     def _cycle(self, cycle: Cycle) -> PeriodicMotion:
@@ -165,8 +271,7 @@ class UndrivenMemory:
         fastest = float(np.abs(span.track.v.real[: span.track.filled[0]] - speed).max())
         if self.scene.degrees_of_freedom == 2 and not self.law.damps_across(fastest):
             raise NotFound(ACROSS)
-        rests = span.slowest < STICKING * abs(speed)
-        kind = "a cycle of stick and slip" if rests else "a cycle of slip without rest"
+        kind = STICKS if span.slowest < STICKING * abs(speed) else SLIPS
         return PeriodicMotion(
             cycle.state, cycle.turns * TURN, cycle.mean, cycle.error, cycle.multiplier, kind
         )
@@ -203,62 +308,17 @@ class UndrivenMemory:
             self.effort.turns += 1.0
             # what is left of the way shrinks, turn by turn, as it did over the last ones
             rate = (way / ways[-1 - RESTING]) ** (1.0 / RESTING) if len(ways) > RESTING and way > 0.0 else 1.0
-            left = way * rate / (1.0 - rate) if rate < 1.0 else math.inf
-            if way <= 1e-15 or left <= enough:
-                return state, min(left, enough)
+            left = way * rate / (1.0 - rate) if rate < 1.0 else math.inf if way > 1e-15 else 0.0
+            if left <= enough:
+                return state, left
         raise NotFound(f"the mass still swings: {path.whereabouts(state)}")
 
     def orbit(self, motion: PeriodicMotion) -> Orbit:
         """The orbit of the motion; of one that stands still, over 2 pi."""
         turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
-        track = self._path.follow(
-            motion.state, turns, max(0.1 * self.tolerance, LEAST), PANELS_AT_FIRST
-        ).track
+        accuracy = max(0.1 * self.tolerance, LEAST)
+        # steps of order eight, the most accurate, are as long as a swing: sixteen times finer they are shown well
+        accuracy = accuracy / FINER if self._forgets else accuracy
+        track = self._path.follow(motion.state, turns, accuracy, PANELS_AT_FIRST).track
         parts = track.tau, track.x, track.v, track.friction, track.stick
         return Orbit(*(part[: track.filled[0]] for part in parts))
-
-
-def _nears(orbit: KnownOrbit, before: Floats, after: Floats) -> bool:
-    """Whether a motion comes nearer to an orbit from one state to another as the derivative there says."""
-    predicted = np.empty(before.size)
-    return bool(interpreted(obeys)(orbit, before - orbit.state, after - orbit.state, predicted))
-
-
-def _is_there(orbit: KnownOrbit, state: Floats) -> bool:
-    """Whether a state is so near to an orbit that attracts that the motion ends on it."""
-    near = THERE * (1.0 + float(np.linalg.norm(orbit.state)))
-    return bool(orbit.gap > THERE and float(np.linalg.norm(state - orbit.state)) < near)
-
-
-def _orbit(cycle: Cycle) -> KnownOrbit:
-    return KnownOrbit(cycle.state, cycle.matrix, 1.0 - cycle.multiplier)
-
-
-def _nears_cycle(cycle: Cycle, returns: list[Return]) -> bool:
-    """Whether the last period of the motion led to a cycle that attracts, or nearer to it as its derivative says."""
-    orbit, last = _orbit(cycle), returns[-1]
-    if not orbit.gap > THERE:
-        return False
-    if _is_there(orbit, last.state):
-        return True
-    a_period_ago = [
-        one
-        for one in returns[-1 - MOST_RETURNS : -1]
-        if abs(last.turns - one.turns - cycle.turns) < BACK * cycle.turns
-    ]
-    return bool(a_period_ago) and _nears(orbit, a_period_ago[-1].state, last.state)
-
-
-def _reach(track: Track, turns: float) -> Reach:
-    x = track.x.real[: track.filled[0]]
-    return Reach(turns, float(x.min()), float(x.max()))
-
-
-def _recent(reaches: list[Reach], returns: list[Return], turns: float) -> list[Reach]:
-    """Those of the last two returns, or of half of the way; one at a time is left out."""
-    since = returns[-3].turns if len(returns) > 2 else 0.5 * turns
-    return reaches[1:] if reaches and reaches[0].turns <= since - BETWEEN_LOOKS else reaches
-
-
-def _middle(reaches: list[Reach]) -> float:
-    return 0.5 * (min(one.low for one in reaches) + max(one.high for one in reaches))

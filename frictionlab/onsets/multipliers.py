@@ -93,7 +93,7 @@ class _Followed:
         near = min(self.motions, key=lambda speed: abs(speed - belt_speed), default=None)
         state = None if near is None else self.motions[near].state
         curve, _ = self.problem.close([self.scene.at(self._given(belt_speed))], state, wanted=DIFFERENTIATED)
-        if curve.results[0, 3] < 0.0 or np.isnan(curve.matrices[0]).any():
+        if not curve.closed.found[0] or np.isnan(curve.matrices[0]).any():
             return None
         values = np.linalg.eigvals(curve.matrices[0])
         largest = complex(values[np.abs(values).argmax()])

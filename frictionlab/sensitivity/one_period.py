@@ -64,7 +64,7 @@ class OnePeriod(NamedTuple):
         for way in ways:
             if way is not None:
                 curve, _ = way.close([self.scene])
-                if curve.results[0, 3] >= 0.0:
+                if curve.closed.found[0]:
                     return np.array(curve.states[0])
         return None
 

@@ -87,9 +87,9 @@ def main(curves: int, seed: int) -> int:
 
 def shares_of(lanes: Any, known: Any) -> list[float]:
     """True errors over stated ones, the error of the truth taken off."""
-    closed = (lanes.fate == CLOSED_ORBIT) & (known.results[:, 3] > 0.0)
-    gaps = np.abs(lanes.results[closed, 0] - known.results[closed, 0]) - known.results[closed, 2]
-    return list(gaps / lanes.results[closed, 2])
+    closed = (lanes.fate == CLOSED_ORBIT) & (known.closed.maps > 0.0)
+    gaps = np.abs(lanes.closed.mean - known.closed.mean) - known.closed.error
+    return list((gaps / lanes.closed.error)[closed])
 
 
 def multiplier_gaps(problem: PeriodicProblem, speeds: np.ndarray, lanes: Any) -> list[float]:

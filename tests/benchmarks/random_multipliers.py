@@ -51,7 +51,7 @@ def by_differences(scene: Any, law: Any, periods: int = 1) -> Reference | None:
     """Of the orbit at the belt speed of the scene; None where the fine search finds none."""
     problem = PeriodicProblem(scene, law, 1e-11)
     curve, _ = problem.close([scene], periods=float(periods), wanted=CLOSED)
-    if curve.results[0, 3] < 0.0:
+    if not curve.closed.found[0]:
         return None
     # slip that never reverses is otherwise followed by its closed form
     problem.goal = problem.goal._replace(constant=False)

@@ -117,7 +117,7 @@ def followed(number: int, seed: int, count: int) -> dict[str, Any]:
     scene, law, begun = fl.Scene(**values), law_of(parameters), time.process_time()
     problem = PeriodicProblem(scene, law, TOLERANCE)
     curve, _ = problem.close([scene])
-    candidate = closed_orbit(curve, curve.results[0, :1])
+    candidate = closed_orbit(curve, curve.closed.mean)
     states = [] if candidate is None else [_told(candidate)]
     known = None if candidate is None else candidate.known
     for tried, start in enumerate(starts(scene, problem.mass.normal_load * 0.4, count, rng), 1):  # noqa: B007  # told after the loop
@@ -142,7 +142,7 @@ def followed(number: int, seed: int, count: int) -> dict[str, Any]:
 
 
 def _told(orbit: Attractor) -> list[float]:
-    return [orbit.period, orbit.mean, math.nan if orbit.curve is None else float(orbit.curve.results[0, 2])]
+    return [orbit.period, orbit.mean, math.nan if orbit.curve is None else float(orbit.curve.closed.error[0])]
 
 
 def _same(one: list[float], other: list[float]) -> bool:

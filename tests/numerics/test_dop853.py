@@ -56,12 +56,12 @@ _belt_step, _belt_dense = stepper(_belt_rates), interpolant(_belt_rates)
 @njit
 def belt_run(problem, x, v, end, steps):
     """Position, velocity and friction impulse after so many equal steps."""
-    h, rubbed = end / steps, 0j
+    h, friction_impulse = end / steps, 0j
     for i in range(steps):
         a, f = _belt_rates(problem, i * h, x, v)
         taken = _belt_step(problem, i * h, State(x, v, a, f), h)
-        x, v, rubbed = taken.x, taken.v, rubbed + taken.rubbed
-    return x, v, rubbed
+        x, v, friction_impulse = taken.x, taken.v, friction_impulse + taken.friction_impulse
+    return x, v, friction_impulse
 
 
 @njit
@@ -88,7 +88,7 @@ def test_powers_of_time_below_the_eighth_are_integrated_exactly(power):
     second = ((tau + h) ** (power + 2) - tau ** (power + 2)) / ((power + 1) * (power + 2))
     second -= h * tau ** (power + 1) / (power + 1)
     assert taken.v == pytest.approx(-0.2 + first, rel=1e-14, abs=1e-15)
-    assert taken.rubbed == pytest.approx(first, rel=1e-14, abs=1e-15)
+    assert taken.friction_impulse == pytest.approx(first, rel=1e-14, abs=1e-15)
     if power < 7:  # a position is a double integral: one order more
         assert taken.x == pytest.approx(0.3 - 0.2 * h + second, rel=1e-14, abs=1e-15)
 

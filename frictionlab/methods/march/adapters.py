@@ -297,7 +297,7 @@ def _by_dop853(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:
     # Slip may have come and gone within the step: the error estimate can be blind to that.
     if growth >= 1.0 and length(end.v - start.v) > 2.0 * length(before) + 8.0 * problem.stepper.width:
         growth = 0.5
-    return StepEnd(end.x, end.v, end.rubbed, False, growth)
+    return StepEnd(end.x, end.v, end.friction_impulse, False, growth)
 
 
 def _by_exponential(problem: MarchProblem, start: StepStart, h: float) -> StepEnd:

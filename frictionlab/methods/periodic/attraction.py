@@ -31,6 +31,13 @@ class Follow(NamedTuple):
     constant: bool
 
 
+class Trail(NamedTuple):
+    """Of a motion the mean friction of each period [n], the states before the first and after each [n + 1, size]."""
+
+    means: Any
+    states: Any
+
+
 class KnownOrbit(NamedTuple):
     """A closed orbit that motions are to end on: its state, its monodromy, and one less the largest multiplier.
 
@@ -110,7 +117,7 @@ def _reached_with_memory(case: Case, state: Any, matrix: Any, constant: bool) ->
 
 
 reached = by_law(_reached_without_memory, _reached_with_memory, None, _reached_with_memory)
-"""reached(case, state, matrix, constant): periods for which the two starts that are quick to ask were followed."""
+"""reached(case, state, matrix, constant): periods for which the two cheap starts were followed."""
 
 
 @inner
@@ -188,16 +195,17 @@ def _periods_alike(case: Case, state: Any, image: Any) -> float:
 
 @inner
 def iterate_until_periodic(
-    law: Any, body: Body, belt_speed: float, how: Follow, orbit: KnownOrbit, means: Any, states: Any
+    law: Any, body: Body, belt_speed: float, how: Follow, orbit: KnownOrbit, trail: Trail
 ) -> Any:
-    """Follow the motion from ``states[0]``, period by period, until it repeats or is sure to end on the known orbit.
+    """Follow the motion from the first state of a trail, period by period, until it repeats or is sure to end on the
+    known orbit.
 
     Of the periods in which the belt carries it at rest one stands for many.
 
-    Fills the one-period means [n] and the states [n + 1, size]; returns after how many periods it repeats (0 where
+    Fills the trail; returns after how many periods it repeats (0 where
     it has not after n, ARRIVED on the known orbit), and how many it was followed.
     """
-    body = bare(body)
+    body, (means, states) = bare(body), trail
     case, steps = case_of(law, body, belt_speed), 0
     # Coarse maps wander on by their own error: what they repeat is less exact.
     alike = 1e-7 if how.accuracy <= 1e-8 * body.normal_load else 1e-5
@@ -209,7 +217,7 @@ def iterate_until_periodic(
     near, obeyed, far = VERY_NEAR * norm(orbit.state), 0, 0.0
     for n in range(means.size):
         image = image_of(case, states[n], residual, how.accuracy)
-        means[n] = mean_friction(image.rubbed.real, span(body))
+        means[n] = mean_friction(image.friction_impulse.real, span(body))
         steps += image.steps
         many = _periods_alike(case, states[n], image)
         for row in range(residual.size):

@@ -11,6 +11,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.dynamics.motion import bare, belt_swing, mean_friction, span, swing_of
 from frictionlab.methods.periodic.attraction import reached
 from frictionlab.methods.periodic.case import Case, case_of
+from frictionlab.methods.periodic.closed_orbits import COLUMNS, MAPS, ClosedOrbits, write_orbit
 from frictionlab.methods.periodic.fixed_point import ROUNDING, FixedPoint, Goal, fixed_point
 from frictionlab.methods.periodic.monodromy import free_inverse, monodromy
 from frictionlab.methods.periodic.period_map import image_of, period_map, size_of
@@ -73,13 +74,10 @@ def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) ->
 
 @inner
 def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal) -> Any:
-    """States [n, size], results [n, 6] and monodromies [n, size, size], NaN where the search did without.
-
-    Results: mean friction, across, error, maps (0: closed form), share of stick, slowest slip.
-    """
+    """States [n, size], results [n, COLUMNS] and monodromies [n, size, size], NaN where the search did without."""
     like = case_of(law, body, 0.0).like
     size, n = size_of(law, like), belt_speeds.size
-    states, results = np.zeros((n, size)), np.empty((n, 6))
+    states, results = np.zeros((n, size)), np.empty((n, COLUMNS))
     matrices = np.full((n, size, size), np.nan)
     z, work, inverse = np.empty(size), np.empty(size), np.empty((size, size))
     known, order, expected = 0, 1, 1e300
@@ -132,18 +130,16 @@ def _slides_on(case: Case, guess: Any, state: Any) -> bool:
 def _sliding(case: Case) -> FixedPoint:
     """The constant friction of slip that never reverses; it takes no map."""
     friction = case.law.sliding_friction(abs(case.belt_speed))
-    rubbed = -math.copysign(friction, case.belt_speed) * span(case.body) + 0.0 * case.like
+    friction_impulse = -math.copysign(friction, case.belt_speed) * span(case.body) + 0.0 * case.like
     slowest = max(0.0, abs(case.belt_speed) - swing_of(case.body))
-    return FixedPoint(rubbed, ROUNDING * max(1.0, friction), 0, 0.0, slowest, 0.0)
+    return FixedPoint(friction_impulse, ROUNDING * max(1.0, friction), 0, 0.0, slowest, 0.0)
 
 
 @inner
 def _write_results(body: Body, closed: FixedPoint, row: Any) -> None:
     period = span(body)
-    mean = mean_friction(closed.rubbed, period)
-    row[0], row[1] = mean.real, mean.imag
-    row[2], row[3] = closed.error, closed.maps
-    row[4], row[5] = closed.stuck / period, closed.closest
+    rests = closed.stuck / period, closed.closest
+    write_orbit(row, mean_friction(closed.friction_impulse, period), closed.error, closed.maps, rests)
 
 
 @inner
@@ -187,9 +183,9 @@ FINE = 1e-10
 
 
 class Curve(NamedTuple):
-    """States [n, size], results [n, 6] of ``solve_curve``, monodromies [n or 0, size, size], after how many periods
-    both starts that are quick to ask end there [n] (0: not both do), the orbits one after another and the panels
-    before which each ends [n]."""
+    """States [n, size], results [n, COLUMNS] of ``ClosedOrbits``, monodromies [n or 0, size, size], after how many
+    periods both cheap starts end there [n] (0: not both do), the orbits one after another and the panels before which
+    each ends [n]."""
 
     states: Any
     results: Any
@@ -197,6 +193,11 @@ class Curve(NamedTuple):
     reached: Any
     orbits: Track
     ends: Any
+
+    @property
+    def closed(self) -> ClosedOrbits:
+        """What is known of each orbit."""
+        return ClosedOrbits.of(self.results)
 
 
 @inner
@@ -209,7 +210,7 @@ def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal,
     if wanted.closed:
         states, results, matrices = solve_curve(law, body, belt_speeds, guess, goal)
     else:
-        states, results = guess, np.ones((belt_speeds.size, 6))
+        states, results = guess, np.ones((belt_speeds.size, COLUMNS))
         matrices = np.full((states.shape[0], states.shape[1], states.shape[1]), np.nan)
     n, size = states.shape
     accuracy = recorded_accuracy(body, goal)
@@ -222,12 +223,12 @@ def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal,
             for row in range(size):
                 states[i, row] = states[i, row] + work[row]
         # An orbit that was not found has a negative count of maps.
-        elif results[i, 3] >= 0.0:
+        elif results[i, MAPS] >= 0.0:
             if wanted.orbits:
                 track = record_orbit(case, states[i], accuracy, track)
             if wanted.matrices and math.isnan(matrices[i, 0, 0]):
                 monodromy(case, states[i], 1.0, matrices[i], gradient)
-            if wanted.closed and goal.asks:
+            if wanted.closed and goal.check_attraction:
                 ends_there[i] = reached(case, states[i], matrices[i], goal.constant)
         else:
             matrices[i] = 0.0

@@ -16,7 +16,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.dynamics.motion import belt_advance, span
 from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.maps.pace import MOST_KEPT, pace_of
+from frictionlab.methods.periodic.maps.pace import MOST_KEPT, keeping, pace_of
 from frictionlab.methods.periodic.maps.sliding import Mapped
 from frictionlab.methods.periodic.monodromy import (
     PacedMap,
@@ -81,20 +81,20 @@ below 27 times the true. Of order five see tests/benchmarks/random_bristle.py.
 class Goal(NamedTuple):
     """What an orbit is closed for: the tolerance on the mean, and whether no two motions ever move apart.
 
-    asks: whether the two cheap starts are followed to see that they converge to the orbit. constant: whether friction
-    is the same at every speed of slip that never reverses, so that this is an orbit in closed form.
+    check_attraction: whether the two cheap starts are followed to see that they converge to the orbit. constant:
+    whether friction is the same at every speed of slip that never reverses, so that this is an orbit in closed form.
     """
 
     tolerance: float
     contracts: bool
-    asks: bool
+    check_attraction: bool
     constant: bool
 
 
 class FixedPoint(NamedTuple):
     """A closed orbit's integral of friction [periods], error of the mean, and what it took; maps < 0: gave up."""
 
-    rubbed: Any
+    friction_impulse: Any
     error: float
     maps: int
     stuck: float
@@ -132,6 +132,26 @@ class Progress(NamedTuple):
 
 
 @inner
+def stated_error(changed: float, left_open: float, steps: float) -> float:
+    """The error stated of a mean friction, whoever has found the orbit.
+
+    changed: by how much a finer map moved the mean. left_open: what the orbit does not close by, carried to the mean
+    by the distance of states, by the mean's own change or by its adjoint. steps: what steps and rounding of the last
+    map may leave, however well two maps agree.
+
+    Two maps show what the coarser has wrong less what the finer has, and the derivative that carries what is left
+    open is as old as the search: both count twice.
+    """
+    return 2.0 * (changed + left_open) + steps + ROUNDING
+
+
+@inner
+def rounding_of(z: Any, belt_speed: float) -> float:
+    """What rounding makes of a state: no residual is asked to be below that."""
+    return 4e-15 * (1.0 + norm(z) + abs(belt_speed))
+
+
+@inner
 def mean_error(body: Body, residual: Any, distance: float) -> float:
     """Bound on the error of the mean friction of an orbit that closes up to the residual.
 
@@ -145,13 +165,19 @@ def mean_error(body: Body, residual: Any, distance: float) -> float:
 
 
 @inner
+def mean_change(body: Body, one: Mapped, other: Mapped) -> float:
+    """By how much the mean friction of two maps differs."""
+    return abs(other.friction_impulse - one.friction_impulse) / span(body)
+
+
+@inner
 def mean_sensitivity(case: Case, search: Iterate, shift: Any, image: Mapped, accuracy: float) -> float:
     """By how much the mean changes where the state, whose map is the image, is shifted."""
     # At the accuracy of the image, so that the errors of the steps are much the same in both and cancel.
     trial, residual = np.empty(search.z.size), np.empty(search.z.size)
     subtract(search.z, shift, trial)
     moved = image_of(case, trial, residual, accuracy)
-    return abs(moved.rubbed - image.rubbed) / span(case.body)
+    return mean_change(case.body, image, moved)
 
 
 # --- steps of the search --------------------------------------------------------------------------------------------
@@ -281,16 +307,14 @@ def _check_without_memory(case: Case, search: Iterate, goal: Goal, now: Progress
         maps += 2 * z.size + 1
         subtract(search.fresh, residual, search.fresh)
         multiply(search.inverse, search.fresh, work)
-        doubt = mean_error(case.body, search.fresh, norm(work)) + abs(coarser.rubbed - image.rubbed) / span(
-            case.body
-        )
+        doubt = mean_error(case.body, search.fresh, norm(work)) + mean_change(case.body, coarser, image)
         if not goal.contracts:  # no theorem: measure how the mean moves with the state
             doubt += mean_sensitivity(case, search, work, image, accuracy)
             multiply(search.inverse, residual, work)
             doubt += mean_sensitivity(case, search, work, image, accuracy)
     multiply(search.inverse, residual, work)
-    error = 2.0 * (mean_error(case.body, residual, norm(work)) + doubt)
-    error += (floor + 0.1 * accuracy) / case.body.normal_load + ROUNDING  # and the finer map's own error
+    steps = (floor + 0.1 * accuracy) / case.body.normal_load  # the finer map's own error, too
+    error = stated_error(doubt, mean_error(case.body, residual, norm(work)), steps)
     ended = error <= goal.tolerance or (now.finest <= floor and checks > 3)
     newtons = now.newtons + 1 if checks > 2 else now.newtons
     return Progress(
@@ -325,9 +349,10 @@ def _corrected(case: Case, search: Iterate, last: PacedMap, floor: float, before
         left += gradient[i] * search.step[i]
     # Two maps of one accuracy agree however wrong they are.
     share = small if finer < 0.5 * accuracy else 1.0
-    moved = abs(better.rubbed - image.rubbed) / span(body)
-    error = moved + share * before + 2.0 * abs(left) + floor / body.normal_load + ROUNDING
-    return better, error + grain_of(case.law, body, finer, case.like), took + 1
+    # once, not twice: this map comes after two that agreed
+    changed = 0.5 * (mean_change(body, image, better) + share * before)
+    steps = floor / body.normal_load + grain_of(case.law, body, finer, case.like)
+    return better, stated_error(changed, abs(left), steps), took + 1
 
 
 def _check_with_memory(case: Case, search: Iterate, goal: Goal, now: Progress, floor: float) -> Progress:
@@ -337,7 +362,7 @@ def _check_with_memory(case: Case, search: Iterate, goal: Goal, now: Progress, f
     carried to the mean by how far the mean moved between the two.
     """
     z, residual, fresh, step = search.z, search.residual, search.fresh, search.step
-    body, period, coarse, accuracy, maps = case.body, span(case.body), now.image, now.accuracy, now.maps
+    body, coarse, accuracy, maps = case.body, now.image, now.accuracy, now.maps
     ratio, _small = _finer(case, case.like)
     if accuracy <= floor:  # two maps of one accuracy agree however wrong they are
         coarse = image_of(case, z, residual, ratio * floor)
@@ -350,16 +375,15 @@ def _check_with_memory(case: Case, search: Iterate, goal: Goal, now: Progress, f
     subtract(z, step, z)
     # its steps are kept: the derivatives at the orbit are taken over them
     pace = pace_of(MOST_KEPT)
-    image = paced_image(case, z, residual, accuracy, pace, False)
+    image = paced_image(case, z, residual, keeping(accuracy, pace))
     maps, checks = maps + 2, now.checks + 1
-    slope = abs(image.rubbed - fine.rubbed) / period / (norm(step) + 1e-300)
-    doubt = max(
-        abs(image.rubbed - coarse.rubbed) / period, SURE * mean_error(body, search.work, norm(search.trial))
-    )
+    slope = mean_change(body, fine, image) / (norm(step) + 1e-300)
+    doubt = max(mean_change(body, coarse, image), SURE * mean_error(body, search.work, norm(search.trial)))
     multiply(search.inverse, residual, step)
     rest = slope * norm(step) + SURE * mean_error(body, residual, norm(step))
-    error = 2.0 * rest + doubt + floor / body.normal_load + ROUNDING
-    error += grain_of(case.law, body, accuracy, case.like)
+    steps = floor / body.normal_load + grain_of(case.law, body, accuracy, case.like)
+    # once, not twice: the maps compared are many times finer than the search's
+    error = stated_error(0.5 * doubt, rest, steps)
     # The second map, from where the first says the orbit is, must be much nearer to closing, or within its own error.
     settles = norm(residual) <= 0.5 * norm(fresh) + 10.0 * accuracy
     if settles and (error <= goal.tolerance or (now.finest <= floor and checks > 3)):
@@ -433,8 +457,7 @@ def fixed_point(case: Case, z: Any, inverse: Any, matrix: Any, goal: Goal, expec
     """
     n, body, period = z.size, case.body, span(case.body)
     search = Iterate(z, inverse, matrix, np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n))
-    # No residual is asked to be below the rounding of the state itself.
-    floor = 4e-15 * (1.0 + norm(z) + abs(case.belt_speed))
+    floor = rounding_of(z, case.belt_speed)
     finest, near = first_accuracy(case.law, body, goal.tolerance)
     finest = max(finest, floor)
     accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
@@ -452,7 +475,7 @@ def fixed_point(case: Case, z: Any, inverse: Any, matrix: Any, goal: Goal, expec
         if now.image.stuck >= period * (1.0 - 1e-9):
             if case.belt_speed == 0.0:  # at rest on a belt at rest
                 error = floor / body.normal_load + ROUNDING
-                return FixedPoint(now.image.rubbed, error, now.maps, now.image.stuck, 0.0, first)
+                return FixedPoint(now.image.friction_impulse, error, now.maps, now.image.stuck, 0.0, first)
             now = _carried_by_the_belt(case, search, now)
             continue
         # The error is asked for where maps are as fine as they get and the bound by the distance of states is near.
@@ -466,4 +489,4 @@ def fixed_point(case: Case, z: Any, inverse: Any, matrix: Any, goal: Goal, expec
             now = recover(case, search, now, length, floor)
     ended = 0.0 <= now.error < 1e300
     error, maps = (now.error, now.maps) if ended else (1e300, -now.maps)
-    return FixedPoint(now.image.rubbed, error, maps, now.image.stuck, now.image.closest, first)
+    return FixedPoint(now.image.friction_impulse, error, maps, now.image.stuck, now.image.closest, first)

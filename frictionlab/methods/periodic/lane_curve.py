@@ -14,13 +14,15 @@ import numpy as np
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.lane_arrays import room_for
 from frictionlab.dynamics.motion import mean_friction, span
+from frictionlab.methods.periodic.closed_orbits import COLUMNS, ClosedOrbits, write_orbit
 from frictionlab.methods.periodic.continuation import first_guess
 from frictionlab.methods.periodic.fixed_point import (
-    ROUNDING,
     Goal,
     broyden,
     first_accuracy,
     mean_error,
+    rounding_of,
+    stated_error,
 )
 from frictionlab.methods.periodic.lane_map import LaneRows, lane_map, rows_for
 from frictionlab.methods.periodic.monodromy import free_inverse
@@ -38,13 +40,20 @@ NOT_YET, LEFT, CLOSED_ORBIT = 0, 1, 2
 
 
 class LaneCurve(NamedTuple):
-    """States [n, 4], results [n, 6] as those of ``solve_curve``, NaN where left; what became of each point [n]."""
+    """Belt speeds [n], states [n, 4], results [n, COLUMNS] of ``ClosedOrbits``, NaN where left; what became of each
+    point [n]."""
 
+    belt_speeds: Any
     states: Any
     results: Any
     fate: Any
     inverses: Any
     first: Any  # residual of each guess
+
+    @property
+    def closed(self) -> ClosedOrbits:
+        """What is known of each orbit."""
+        return ClosedOrbits.of(self.results)
 
 
 class GroupProgress(NamedTuple):
@@ -106,8 +115,9 @@ def _beside(fate: Any, i: int, places: Any) -> int:
 
 
 @inner
-def _interpolate(curve: LaneCurve, belt_speeds: Any, places: Any, count: int, i: int, z: Any) -> None:
+def _interpolate(curve: LaneCurve, places: Any, count: int, i: int, z: Any) -> None:
     """The polynomial through the states at the first places, at i."""
+    belt_speeds = curve.belt_speeds
     for row in range(z.size):
         z[row] = 0.0
     for a in range(count):
@@ -121,24 +131,22 @@ def _interpolate(curve: LaneCurve, belt_speeds: Any, places: Any, count: int, i:
 
 
 @inner
-def _guess(law: Any, body: Body, belt_speeds: Any, curve: LaneCurve, i: int, z: Any) -> None:
+def _guess(law: Any, body: Body, curve: LaneCurve, i: int, z: Any) -> None:
     """Write a guess of the state at i and of its inverse."""
     places = np.empty(2 * BESIDE, np.int64)
     count = _beside(curve.fate, i, places)
     if count == 0:
         like = body.reference_sine - body.reference_sine
-        free_inverse(body, first_guess(law, body, belt_speeds[i], z), curve.inverses[i], like)
+        free_inverse(body, first_guess(law, body, curve.belt_speeds[i], z), curve.inverses[i], like)
         return
-    _interpolate(curve, belt_speeds, places, count, i, z)
+    _interpolate(curve, places, count, i, z)
     nearest = curve.inverses[places[0]]
     for row in range(z.size):
         copy(nearest[row], curve.inverses[i, row])
 
 
 @inner
-def _judged(
-    law: Any, body: Body, goal: Goal, curve: LaneCurve, group: Group, k: int, now: GroupProgress
-) -> bool:
+def _judged(body: Body, goal: Goal, curve: LaneCurve, group: Group, k: int, now: GroupProgress) -> bool:
     """Look at the map of lane k: keep its orbit, leave it, or move its state; whether it goes on."""
     i, rows, fresh, step, before = group.places[k], group.rows, group.fresh[k], group.step[k], group.before[k]
     inverse = curve.inverses[i]
@@ -158,14 +166,13 @@ def _judged(
             broyden(inverse, step, before, group.work)
     copy(fresh, before)
     multiply(inverse, fresh, step)
-    floor = 4e-15 * (1.0 + norm(curve.states[i]) + abs(rows.belt_speed[k]))
-    error = 2.0 * mean_error(body, fresh, norm(step)) + (floor + now.accuracy) / body.normal_load + ROUNDING
+    floor = rounding_of(curve.states[i], rows.belt_speed[k])
+    error = stated_error(0.0, mean_error(body, fresh, norm(step)), (floor + now.accuracy) / body.normal_load)
     closes = error <= goal.tolerance and now.accuracy <= now.enough
     if closes:
         mean = mean_friction(complex(rows.impulse[0, k], rows.impulse[1, k]), span(body))
-        result, curve.fate[i] = curve.results[i], CLOSED_ORBIT
-        result[0], result[1], result[2], result[3] = mean.real, mean.imag, error, now.maps
-        result[4], result[5] = 0.0, rows.closest[k]
+        curve.fate[i] = CLOSED_ORBIT
+        write_orbit(curve.results[i], mean, error, now.maps, (0.0, rows.closest[k]))
     if length > MAP_NOISE * now.accuracy:  # what a map has wrong is no reason to move
         for row in range(4):
             curve.states[i, row] = curve.states[i, row] - step[row]
@@ -173,7 +180,7 @@ def _judged(
 
 
 @inner
-def _write_rows(belt_speeds: Any, curve: LaneCurve, group: Group, count: int) -> bool:
+def _write_rows(curve: LaneCurve, group: Group, count: int) -> bool:
     """Write what the next map starts from; a lane with nothing to do repeats another. False where all have none."""
     other = -1
     for k in range(count):
@@ -184,7 +191,7 @@ def _write_rows(belt_speeds: Any, curve: LaneCurve, group: Group, count: int) ->
     rows = group.rows
     for k in range(rows.belt_speed.size):
         i = group.places[k if k < count and group.active[k] else other]
-        rows.belt_speed[k] = belt_speeds[i]
+        rows.belt_speed[k] = curve.belt_speeds[i]
         for row in range(4):
             rows.state[row, k] = curve.states[i, row]
     return True
@@ -204,28 +211,26 @@ def _expected(curve: LaneCurve, i: int) -> float:
 
 
 @inner
-def _close_group(
-    law: Any, body: Body, belt_speeds: Any, goal: Goal, curve: LaneCurve, group: Group, count: int
-) -> None:
+def _close_group(law: Any, body: Body, goal: Goal, curve: LaneCurve, group: Group, count: int) -> None:
     """Close the orbits of the first ``count`` places."""
     floor, expected = 0.0, 0.0
     for k in range(count):
         i = group.places[k]
-        _guess(law, body, belt_speeds, curve, i, curve.states[i])
+        _guess(law, body, curve, i, curve.states[i])
         group.active[k], expected = True, max(expected, _expected(curve, i))
-        floor = max(floor, 4e-15 * (1.0 + norm(curve.states[i]) + abs(belt_speeds[i])))
+        floor = max(floor, rounding_of(curve.states[i], curve.belt_speeds[i]))
     finest, _near = first_accuracy(law, body, goal.tolerance)
     last = max(finest, floor) / FINER_IN_LANES
     accuracy, before = max(last, 1e-4 * min(expected, body.normal_load)), 0.0
     for maps in range(1, MOST_LANE_MAPS + 1):
-        if not _write_rows(belt_speeds, curve, group, count):
+        if not _write_rows(curve, group, count):
             break
         lane_map(law, body, group.rows, accuracy, False)
         length = 0.0
         now = GroupProgress(maps, accuracy, before, finest)
         for k in range(count):
             if group.active[k]:
-                group.active[k] = _judged(law, body, goal, curve, group, k, now)
+                group.active[k] = _judged(body, goal, curve, group, k, now)
                 if group.active[k]:
                     length = max(length, norm(group.before[k]))
         before, accuracy = accuracy, max(last, min(accuracy, 1e-4 * length))
@@ -246,8 +251,9 @@ def answer_lanes(law: Any, body: Body, belt_speeds: Any, goal: Goal) -> LaneCurv
     n = belt_speeds.size
     lanes = room_for(n)
     curve = LaneCurve(
+        belt_speeds,
         np.zeros((n, 4)),
-        np.full((n, 6), np.nan),
+        np.full((n, COLUMNS), np.nan),
         np.zeros(n, np.int64),
         np.empty((n, 4, 4)),
         np.full(n, np.nan),
@@ -270,6 +276,6 @@ def answer_lanes(law: Any, body: Body, belt_speeds: Any, goal: Goal) -> LaneCurv
             for k in range(begin, min(begin + lanes, count)):
                 group.places[filled] = places[k]
                 filled += 1
-            _close_group(law, body, belt_speeds, goal, curve, group, filled)
+            _close_group(law, body, goal, curve, group, filled)
         count = _middles(curve.fate, places)
     return curve

@@ -147,7 +147,7 @@ def advance_lanes(way: LaneWay, going: Any, limits: LaneLimits) -> LaneWay:
     # the sine and cosine of a step are expanded about its start
     sine, cosine = turned(problem, node.tau)
     problem = Flow(problem.law, problem.body, problem.belt_speed, 1.0, node.tau, sine, cosine)
-    impulse = way.impulse + select(good, taken.rubbed, 0.0)
+    impulse = way.impulse + select(good, taken.friction_impulse, 0.0)
     return LaneWay(problem, node, h * growth, impulse, min(way.closest, node.speed))
 
 

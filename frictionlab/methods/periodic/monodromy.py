@@ -11,7 +11,7 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_law
 from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.maps.pace import MOST_KEPT, Pace, pace_of
+from frictionlab.methods.periodic.maps.pace import MOST_KEPT, Pace, keeping, pace_of, repeating
 from frictionlab.methods.periodic.maps.sliding import Mapped
 from frictionlab.methods.periodic.period_map import image_of, paced_image
 from frictionlab.numerics.linalg import invert, norm
@@ -112,7 +112,9 @@ def _by_central_quotients(case: Case, z: Any, accuracy: float, matrix: Any, grad
         above = image_of(case, trial, ahead, accuracy)
         trial[column] = z[column] - shift
         below = image_of(case, trial, behind, accuracy)
-        gradient[column] = mean_friction(above.rubbed - below.rubbed, span(case.body)) / (2.0 * shift)
+        gradient[column] = mean_friction(above.friction_impulse - below.friction_impulse, span(case.body)) / (
+            2.0 * shift
+        )
         for row in range(n):
             matrix[row, column] = (ahead[row] - behind[row]) / (2.0 * shift) + (1.0 if row == column else 0.0)
 
@@ -145,11 +147,13 @@ def _over_its_steps(case: Case, z: Any, base: PacedMap, matrix: Any, gradient: A
         return False
     for column in range(z.size):
         trial[column] = z[column] + shift
-        moved = paced_image(case, trial, ahead, base.accuracy, base.pace, True)
+        moved = paced_image(case, trial, ahead, repeating(base.accuracy, base.pace))
         trial[column] = z[column]
         if moved.steps < 0:
             return False
-        gradient[column] = mean_friction(moved.rubbed - base.image.rubbed, span(case.body)) / shift
+        gradient[column] = (
+            mean_friction(moved.friction_impulse - base.image.friction_impulse, span(case.body)) / shift
+        )
         for row in range(z.size):
             same = 1.0 if row == column else 0.0
             matrix[row, column] = (ahead[row] - base.residual[row]) / shift + same
@@ -163,7 +167,7 @@ def _over_the_same_steps(case: Case, z: Any, accuracy: float, matrix: Any, gradi
         pace_of(MOST_KEPT),
         min(accuracy, _accuracy_over_steps(case, z)),
     )
-    base = PacedMap(paced_image(case, z, residual, accuracy, pace, False), residual, pace, accuracy)
+    base = PacedMap(paced_image(case, z, residual, keeping(accuracy, pace)), residual, pace, accuracy)
     if not _over_its_steps(case, z, base, matrix, gradient):
         _by_central_quotients(case, z, accuracy, matrix, gradient)
 

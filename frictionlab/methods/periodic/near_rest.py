@@ -18,12 +18,13 @@ from frictionlab.compile.decorators import inner
 from frictionlab.dynamics.motion import belt_path, reference_velocity, span, swing_of
 from frictionlab.dynamics.radau_panel import eliminate
 from frictionlab.methods.periodic.case import Case, case_of
+from frictionlab.methods.periodic.closed_orbits import COLUMNS, MAPS, write_orbit
 from frictionlab.methods.periodic.continuation import Curve, Wanted, first_guess
-from frictionlab.methods.periodic.fixed_point import Goal
+from frictionlab.methods.periodic.fixed_point import Goal, stated_error
 from frictionlab.methods.periodic.maps.polar import (
     FIRST_ACCURACY,
     Image,
-    Room,
+    Workspace,
     polar_map,
     room_for_maps,
     root_across,
@@ -61,10 +62,10 @@ class Search(NamedTuple):
     inverse: Any
     matrix: Any
     sums: Any
-    room: Room
+    room: Workspace
 
 
-class Now(NamedTuple):
+class SearchState(NamedTuple):
     """Where a search is: the time at which its maps begin, their accuracy, the last image, and what it took."""
 
     origin: float
@@ -90,7 +91,7 @@ def _map(case: Case, search: Search, z: Any, residual: Any, origin: float, accur
 
 
 @inner
-def _monodromy(case: Case, image: Image, room: Room, matrix: Any) -> None:
+def _monodromy(case: Case, image: Image, room: Workspace, matrix: Any) -> None:
     """The derivative of the last map in the norm of energy."""
     r, body, tangent = abs(image.w), case.body, room.tangent
     turned = image.w / r if r > 0.0 else 0j
@@ -152,34 +153,34 @@ def _dot(a: Any, b: Any) -> float:
 
 
 @inner
-def _take(search: Search, z: Any, now: Now, image: Image, case: Case) -> Now:
+def _accept(search: Search, z: Any, now: SearchState, image: Image, case: Case) -> SearchState:
     """Go on from a state whose map is the last one made; its residual is the fresh one."""
     copy(z, search.z)
     copy(search.fresh, search.residual)
     _keep(case, search, image)
-    return Now(
+    return SearchState(
         now.origin, now.accuracy, image, now.maps + 1, now.work + image.work, now.moves, now.stalls, -1.0
     )
 
 
 @inner
-def _repeat(case: Case, search: Search, now: Now, periods: float) -> Now:
+def _repeat(case: Case, search: Search, now: SearchState, periods: float) -> SearchState:
     """From so many of the residual further on."""
     for k in range(DIRECTIONS):
         search.trial[k] = search.z[k] + periods * search.residual[k]
     image = _map(case, search, search.trial, search.fresh, now.origin, now.accuracy)
-    return _take(search, search.trial, now, image, case)
+    return _accept(search, search.trial, now, image, case)
 
 
 @inner
-def _again(case: Case, search: Search, now: Now) -> Now:
+def _remap(case: Case, search: Search, now: SearchState) -> SearchState:
     """The map of the same state anew: at another accuracy or origin."""
     image = _map(case, search, search.z, search.fresh, now.origin, now.accuracy)
-    return _take(search, search.z, now, image, case)
+    return _accept(search, search.z, now, image, case)
 
 
 @inner
-def _begin(case: Case, search: Search, from_plateau: bool) -> Now:
+def _begin(case: Case, search: Search, from_plateau: bool) -> SearchState:
     """At the plateau, else two periods after a harmonic motion with the mean that friction gives it."""
     body, z = case.body, search.z
     none = Image(0j, 0j, 0)
@@ -187,10 +188,10 @@ def _begin(case: Case, search: Search, from_plateau: bool) -> Now:
     slower = abs(case.belt_speed) < swing_of(body)
     if from_plateau and far.found and slower:
         z[0], z[1], z[2], z[3] = root_along(body) * far.x.real, 0.0, root_across(body) * far.x.imag, 0.0
-        return _again(case, search, Now(far.tau, FIRST_ACCURACY, none, 0, 0, 0, 0, -1.0))
+        return _remap(case, search, SearchState(far.tau, FIRST_ACCURACY, none, 0, 0, 0, 0, -1.0))
     first_guess(case.law, body, case.belt_speed, z)
     _as_slip(case, z)
-    now = _again(case, search, Now(0.0, FIRST_ACCURACY, none, 0, 0, 0, 0, -1.0))
+    now = _remap(case, search, SearchState(0.0, FIRST_ACCURACY, none, 0, 0, 0, 0, -1.0))
     for _ in range(2):
         if now.image.work > 0:
             now = _repeat(case, search, now, 1.0)
@@ -208,17 +209,17 @@ def _as_slip(case: Case, z: Any) -> None:
 
 
 @inner
-def _move_origin(case: Case, search: Search, now: Now) -> Now:
+def _move_origin(case: Case, search: Search, now: SearchState) -> SearchState:
     """Begin the maps in the middle of the longest rest: their unknowns are then positions alone."""
     times, x, z, period = search.room.times, search.room.totals[1], search.z, span(case.body)
     origin = times[2] - period if times[2] >= period else times[2]
     z[0], z[1], z[2], z[3] = root_along(case.body) * x.real, 0.0, root_across(case.body) * x.imag, 0.0
-    moved = Now(origin, now.accuracy, now.image, now.maps, now.work, now.moves + 1, now.stalls, -1.0)
-    return _again(case, search, moved)
+    moved = SearchState(origin, now.accuracy, now.image, now.maps, now.work, now.moves + 1, now.stalls, -1.0)
+    return _remap(case, search, moved)
 
 
 @inner
-def _carried(case: Case, search: Search, now: Now) -> Now:
+def _carried(case: Case, search: Search, now: SearchState) -> SearchState:
     """Rest for all of a period: go on by as many as it surely lasts."""
     body = case.body
     x = complex(search.z[0] / root_along(body), search.z[2] / root_across(body))
@@ -231,7 +232,7 @@ def _carried(case: Case, search: Search, now: Now) -> Now:
 
 
 @inner
-def _newton(case: Case, search: Search, now: Now) -> Now:
+def _newton(case: Case, search: Search, now: SearchState) -> SearchState:
     """Newton's step, halved until the correction that is left, by the same derivative, has become small enough."""
     size, length, part = norm(search.step), norm(search.residual), 1.0
     left = np.empty(DIRECTIONS)
@@ -245,19 +246,21 @@ def _newton(case: Case, search: Search, now: Now) -> Now:
         falls = norm(left) <= (1.0 - 0.25 * part) * size or norm(search.fresh) <= 0.5 * length
         resting = search.room.times[0] >= span(case.body) * (1.0 - 1e-9)
         if image.work > 0 and falls and not resting:
-            tried = Now(now.origin, now.accuracy, now.image, maps - 1, work - image.work, now.moves, 0, -1.0)
-            return _take(search, search.trial, tried, image, case)
+            tried = SearchState(
+                now.origin, now.accuracy, now.image, maps - 1, work - image.work, now.moves, 0, -1.0
+            )
+            return _accept(search, search.trial, tried, image, case)
         part *= 0.5
-    stalled = Now(now.origin, now.accuracy, now.image, maps, work, now.moves, now.stalls + 1, -1.0)
+    stalled = SearchState(now.origin, now.accuracy, now.image, maps, work, now.moves, now.stalls + 1, -1.0)
     return _unstall(case, search, stalled)
 
 
 @inner
-def _unstall(case: Case, search: Search, now: Now) -> Now:
+def _unstall(case: Case, search: Search, now: SearchState) -> SearchState:
     """Three periods on; the map of coarse steps jumps with them, so that after some stalls they become finer."""
     finer = now.stalls % 3 == 0
     accuracy = max(0.1 * now.accuracy, FINEST_ACCURACY) if finer else now.accuracy
-    now = Now(now.origin, accuracy, now.image, now.maps, now.work, now.moves, now.stalls, -1.0)
+    now = SearchState(now.origin, accuracy, now.image, now.maps, now.work, now.moves, now.stalls, -1.0)
     for _ in range(3):
         if now.image.work > 0:
             now = _repeat(case, search, now, 1.0)
@@ -265,13 +268,13 @@ def _unstall(case: Case, search: Search, now: Now) -> Now:
 
 
 @inner
-def _judge(case: Case, search: Search, now: Now, goal: Goal) -> Now:
+def _judge(case: Case, search: Search, now: SearchState, goal: Goal) -> SearchState:
     """The error of the mean by the same state mapped with much finer steps; the end where it is small enough."""
     coarse = search.sums[0] + _dot(search.adjoint, search.residual)
     before, accuracy = search.residual.copy(), now.accuracy / MUCH_FINER
-    finer = Now(now.origin, accuracy, now.image, now.maps, now.work, now.moves, now.stalls, -1.0)
+    finer = SearchState(now.origin, accuracy, now.image, now.maps, now.work, now.moves, now.stalls, -1.0)
     adjoint = search.adjoint.copy()
-    finer = _again(case, search, finer)
+    finer = _remap(case, search, finer)
     if finer.image.work < 0:
         return finer
     open_ = _dot(adjoint, search.residual)
@@ -279,13 +282,13 @@ def _judge(case: Case, search: Search, now: Now, goal: Goal) -> Now:
     for k in range(DIRECTIONS):
         before[k] -= search.residual[k]
     steep = norm(adjoint)
-    error = (
-        2.0 * abs(mean - coarse) + steep * norm(before) + 2.0 * abs(open_) + 4e-15 * norm(search.z) * steep
-    )
+    # the adjoint carries what the coarser map has wrong at the end of the period, and rounding, to the mean
+    steps = steep * (norm(before) + 4e-15 * norm(search.z))
+    error = stated_error(abs(mean - coarse), abs(open_), steps)
     ended = now.accuracy < FIRST_ACCURACY and (error <= goal.tolerance or accuracy <= FINEST_ACCURACY)
     if ended:
         search.sums[0] = mean
-    return Now(
+    return SearchState(
         now.origin,
         accuracy,
         finer.image,
@@ -298,7 +301,7 @@ def _judge(case: Case, search: Search, now: Now, goal: Goal) -> Now:
 
 
 @inner
-def _search(case: Case, search: Search, goal: Goal, now: Now) -> Now:
+def _search(case: Case, search: Search, goal: Goal, now: SearchState) -> SearchState:
     period, body = span(case.body), case.body
     while now.maps < MOST_POLAR_MAPS and now.work < PLENTY and now.error < 0.0:
         if now.image.work < 0:
@@ -354,8 +357,8 @@ def _solve(case: Case, search: Search, goal: Goal, state: Any, row: Any) -> None
         image = polar_map(case, start, period, now.accuracy, search.room, track_of(0))
         x, w = image.x, image.w
     pack(body, state, x - body.reference_cosine, w + case.belt_speed - reference_velocity(body, 0.0, 1.0))
-    row[0], row[1], row[4], row[5] = search.sums[0], search.sums[1], stuck, 0.0
-    row[2], row[3] = (now.error, now.maps) if now.error >= 0.0 else (math.inf, -now.maps)
+    error, maps = (now.error, now.maps) if now.error >= 0.0 else (math.inf, -now.maps)
+    write_orbit(row, complex(search.sums[0], search.sums[1]), error, maps, (stuck, 0.0))
 
 
 @inner
@@ -379,7 +382,7 @@ def _recorded(case: Case, search: Search, state: Any, track: Track) -> Track:
 def answer_near_rest(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, wanted: Wanted) -> Curve:
     """As ``answer_curve``, each scene by itself; guess: the states of all orbits where nothing is to be closed."""
     n, search = belt_speeds.size, _search_room()
-    states, results = np.zeros((n, DIRECTIONS)), np.ones((n, 6))
+    states, results = np.zeros((n, DIRECTIONS)), np.ones((n, COLUMNS))
     matrices = np.zeros((n if wanted.matrices else 0, DIRECTIONS, DIRECTIONS))
     track, ends = track_of(128 if wanted.orbits else 0), np.zeros(n, np.int64)
     for i in range(n):
@@ -388,7 +391,7 @@ def answer_near_rest(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: G
             _solve(case, search, goal, states[i], results[i])
         else:
             copy(guess[i], states[i])
-        if results[i, 3] > 0.0 and (wanted.orbits or wanted.matrices):
+        if results[i, MAPS] > 0.0 and (wanted.orbits or wanted.matrices):
             track = _recorded(case, search, states[i], track)
             for row in range(DIRECTIONS if wanted.matrices else 0):
                 copy(search.matrix[row], matrices[i, row])

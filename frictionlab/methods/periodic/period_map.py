@@ -24,7 +24,7 @@ from frictionlab.methods.periodic.maps.memory_state import (
     remember_sliding,
     unpack_memory,
 )
-from frictionlab.methods.periodic.maps.pace import Pace, pace_of
+from frictionlab.methods.periodic.maps.pace import Stepping, noting
 from frictionlab.methods.periodic.maps.path import path_map, repeated_path
 from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, workspace
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
@@ -110,17 +110,14 @@ def _without_memory(case: Case, state: Any, residual: Any, accuracy: float, trac
     return image
 
 
-@inner
-def _image_with_memory(
-    case: Case, state: Any, residual: Any, accuracy: float, track: Track, pace: Pace, repeats: bool
-) -> Mapped:
+def _image_with_memory(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
     law, body, like = case.law, case.body, case.like
     y, u = unpack(body, state, like)
     work = workspace(law, like, contact_kind(body))
     measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     cut_back(law, work)
-    image = memory_map(case, y, u, accuracy, work, track, pace, repeats)
+    image = memory_map(case, y, u, work, how)
     pack(body, residual, image.y - y, image.u - u)
     pack_memory(law, body, work, residual, like)
     for row in range(2 * dimension(like), residual.size):
@@ -128,32 +125,35 @@ def _image_with_memory(
     return image
 
 
-def _with_memory(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
-    return _image_with_memory(case, state, residual, accuracy, track, pace_of(0), False)
-
-
-@inner
-def _image_by_path(
-    case: Case, state: Any, residual: Any, accuracy: float, track: Track, pace: Pace, repeats: bool
-) -> Mapped:
+def _image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
     law, body, like = case.law, case.body, case.like
     y, u = unpack(body, state, like)
     work = workspace(law, like, contact_kind(body))
     measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     z = work.start[MEMORY]
-    image = repeated_path(case, y, u, z, pace) if repeats else path_map(case, y, u, z, accuracy, track, pace)
+    image = repeated_path(case, y, u, z, how.pace) if how.repeats else path_map(case, y, u, z, how)
     pack(body, residual, image.y - y, image.u - u)
     residual[2] = work.unit[0] * (image.z - z)
-    return Mapped(image.y, image.u, image.rubbed, 0.0, image.closest, -1.0, image.steps)
+    return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps)
 
 
-def _by_path(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
-    """Where the way slid says all of a bristle."""
-    return _image_by_path(case, state, residual, accuracy, track, pace_of(0), False)
+def _paced_without_memory(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
+    """Steps of sliding laws are not kept."""
+    return _without_memory(case, state, residual, how.accuracy, how.track)
 
 
-period_map = by_law(_without_memory, _with_memory, _by_path, _with_memory)
+paced_image = by_law(_paced_without_memory, _image_with_memory, _image_by_path, _image_with_memory)
+"""paced_image(case, state, residual, how): ``image_of`` for laws with memory, its steps kept or repeated.
+
+steps is -1 where the events of this state are not those of the other one."""
+
+
+def _with_memory(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
+    return paced_image(case, state, residual, noting(accuracy, track))
+
+
+period_map = by_law(_without_memory, _with_memory, None, _with_memory)
 """period_map(case, state, residual, accuracy, track): one span from a state, noted on a track with room; leaves
 image - state in residual."""
 
@@ -162,31 +162,6 @@ image - state in residual."""
 def image_of(case: Case, state: Any, residual: Any, accuracy: float) -> Mapped:
     """The image of a state after one span of the body; leaves image - state in residual."""
     return period_map(case, state, residual, accuracy, track_of(0))
-
-
-def _paced_without_memory(
-    case: Case, state: Any, residual: Any, accuracy: float, pace: Pace, repeats: bool
-) -> Mapped:
-    """Steps of sliding laws are not kept."""
-    return image_of(case, state, residual, accuracy)
-
-
-def _paced_with_memory(
-    case: Case, state: Any, residual: Any, accuracy: float, pace: Pace, repeats: bool
-) -> Mapped:
-    return _image_with_memory(case, state, residual, accuracy, track_of(0), pace, repeats)
-
-
-def _paced_by_path(
-    case: Case, state: Any, residual: Any, accuracy: float, pace: Pace, repeats: bool
-) -> Mapped:
-    return _image_by_path(case, state, residual, accuracy, track_of(0), pace, repeats)
-
-
-paced_image = by_law(_paced_without_memory, _paced_with_memory, _paced_by_path, _paced_with_memory)
-"""``image_of`` for laws with memory, its steps kept in a pace with room, or those of another state repeated.
-
-steps is -1 where the events of this state are not those of the other one."""
 
 
 def _rest_without_memory(law: Any, body: Body, belt_speed: float, y: Any) -> float:

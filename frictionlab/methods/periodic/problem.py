@@ -17,6 +17,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import (
     Follow,
     KnownOrbit,
+    Trail,
     iterate_until_periodic,
     settle,
     unknown_orbit,
@@ -104,7 +105,7 @@ class PeriodicProblem:
         self.mass, self.law = scene.mass(), law
         self.kernel: Any = answer_curve
         self.falls_slowly = falls_slowly(scene, law)
-        asks = law.count() > 0 and self.falls_slowly
+        check_attraction = law.count() > 0 and self.falls_slowly
         self.body: Body
         self.like: complex  # a number of the kind of its positions
         if along_the_belt(scene, law):
@@ -115,7 +116,7 @@ class PeriodicProblem:
         self.common = float(scene.periods)
         self.body = self.body._replace(periods=self.common)
         constant = scene.is_harmonic and not isinstance(self.like, complex) and slides_saturated(law)
-        self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), asks, constant)
+        self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)
         self.size = interpreted(size_of)(law, self.like)  # of a state
         self.kind = map_kind(law, isinstance(self.like, complex))
 
@@ -147,7 +148,7 @@ class PeriodicProblem:
         if state is None and wanted == CLOSED and self.lanes is not None and len(scenes) >= FEWEST_IN_LANES:
             return self._close_in_lanes(self.lanes, scenes, periods)
         guess = np.empty((0, 0)) if state is None else state[None, :]
-        goal = self.goal if state is None else self.goal._replace(asks=False)
+        goal = self.goal if state is None else self.goal._replace(check_attraction=False)
         return self._called(scenes, guess, goal, wanted, periods)
 
     @property
@@ -291,7 +292,7 @@ class PeriodicProblem:
         means, states = np.empty(most), np.empty((most + 1, self.size))
         states[0] = state
         how = Follow(relative * self.mass.normal_load, self.goal.constant)
-        arguments = self.body, belt_speed, how, known or unknown_orbit(self.size), means, states
+        arguments = self.body, belt_speed, how, known or unknown_orbit(self.size), Trail(means, states)
         (period, count), seconds = KernelCall(iterate_until_periodic, self.law).timed(*arguments)
         return Transient(period, means[:count], states[1 : count + 1], states[count], seconds)
 

@@ -11,7 +11,13 @@ from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.periodic.attraction import Follow, iterate_until_periodic, unknown_orbit, write_start
+from frictionlab.methods.periodic.attraction import (
+    Follow,
+    Trail,
+    iterate_until_periodic,
+    unknown_orbit,
+    write_start,
+)
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.period_map import size_of
@@ -59,15 +65,15 @@ class MemoryPoint:
         self.goal = Goal(tolerance, False, True, False)
         curve = self._called(guess, DIFFERENTIATED)
         multiplier = float(np.abs(np.linalg.eigvals(curve.matrices[0])).max())
-        if curve.results[0, 3] < 0.0 or not curve.reached[0] or multiplier > FORGETS:
+        if not curve.closed.found[0] or not curve.reached[0] or multiplier > FORGETS:
             return self._followed(guess[0])
         self.curve = curve
         constants = curve.reached[0] * -math.log(max(multiplier, 1e-300))
         self.tested = (
             f"tested: {TWO_STARTS}, each followed for {constants:.2g} or more of the slowest time constant"
         )
-        mean, across, error = curve.results[0, :3]
-        return PrescribedMean(complex(mean, across), error)
+        closed = curve.closed
+        return PrescribedMean(complex(closed.mean[0], closed.across[0]), closed.error[0])
 
     def _called(self, states: Floats, wanted: Wanted) -> Curve:
         arguments: tuple[Any, ...] = self.body, np.array([self.belt_speed]), states, self.goal, wanted
@@ -90,8 +96,7 @@ class MemoryPoint:
                 self.belt_speed,
                 how,
                 unknown_orbit(len(state)),
-                each,
-                states,
+                Trail(each, states),
             )
             (_repeats, count), seconds = KernelCall(iterate_until_periodic, self.law).timed(*arguments)
             self.seconds += seconds

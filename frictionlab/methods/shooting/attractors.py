@@ -53,7 +53,7 @@ class Attractor:
         """Whether both have the same mean friction, for the same reason."""
         if self.curve is None or other.curve is None or self.period != other.period:
             return False
-        doubt = float(self.curve.results[0, 2] + other.curve.results[0, 2])
+        doubt = float(self.curve.closed.error[0] + other.curve.closed.error[0])
         return abs(self.mean - other.mean) <= doubt + 1e-12
 
     @property
@@ -65,7 +65,7 @@ class Attractor:
     @property
     def mean(self) -> float:
         """The mean friction over all periods of a closed orbit; NaN for a motion that never repeats."""
-        return math.nan if self.curve is None else float(self.curve.results[0, 0])
+        return math.nan if self.curve is None else float(self.curve.closed.mean[0])
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,8 @@ def multiplier(curve: Curve, row: int = 0) -> float:
 def closed_orbit(curve: Curve, means: Floats, points: Floats | None = None) -> Attractor | None:
     """A closed orbit, with means over each drive period and states there; None where it did not close, or repels."""
     # of slip that never reverses bristles may near their limit as a power of the way: multipliers are then one
-    if curve.results[0, 3] < 0.0 or (curve.results[0, 3] > 0.0 and not multiplier(curve) < STABLE):
+    maps = curve.closed.maps[0]
+    if maps < 0.0 or (maps > 0.0 and not multiplier(curve) < STABLE):
         return None
     points = curve.states if points is None else points
     return Attractor(0, len(means), float(means.min()), float(means.max()), curve, points)
@@ -289,9 +290,9 @@ def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> 
     seconds = 0.0
     if way.period > 0:
         curve, period, seconds = _shortest(problem, scene, way)
-        means: Floats = curve.results[0, :1]  # of finer maps than those on the way
+        means = curve.closed.mean  # of finer maps than those on the way
         points: Floats = curve.states
-        if period > 1 and curve.results[0, 3] >= 0.0:
+        if period > 1 and curve.closed.found[0]:
             whole = problem.repeated(scene.belt_speed, curve.states[0], period)
             means, points = whole.means, whole.states
         orbit = closed_orbit(curve, means, points)
@@ -308,7 +309,7 @@ def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[C
     for period in [each for each in range(1, way.period) if way.period % each == 0]:
         shorter, more = problem.close([scene], curve.states[0], period)
         seconds += more
-        if curve.results[0, 3] >= 0.0 and shorter.results[0, 3] >= 0.0 and _same(shorter, curve):
+        if curve.closed.found[0] and shorter.closed.found[0] and _same(shorter, curve):
             return shorter, period, seconds
     return curve, way.period, seconds
 

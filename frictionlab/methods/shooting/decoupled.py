@@ -159,7 +159,7 @@ def _held(turned: OneAxis, law: FrictionLaw, tolerance: float) -> Across | None:
         return None
     problem = PeriodicProblem(turned, law, tolerance)
     curve, seconds = problem.close([turned])
-    if curve.results[0, 3] < 0.0 or not multiplier(curve) > 1.0 - 1e-6:
+    if not curve.closed.found[0] or not multiplier(curve) > 1.0 - 1e-6:
         return None
     return Across(
         math.nan,

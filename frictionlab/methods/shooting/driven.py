@@ -83,8 +83,8 @@ def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) ->
 class SteadyStates:
     """The steady states of a curve, as far as they are known.
 
-    multipliers: NaN where nothing has asked for them. reached: for how many periods the two starts that are quick to
-    ask were followed until they ended here, 0 where they do not. tried: starts that all ended here. followed:
+    multipliers: NaN where nothing has asked for them. reached: for how many periods the two cheap starts were
+    followed until they ended here, 0 where they do not. tried: starts that all ended here. followed:
     starts where the answer hangs on all of them. repelling: where an orbit of one period is known that motions leave.
     whole: states have every degree of freedom; along the line multipliers across the belt are left out.
     """
@@ -127,23 +127,24 @@ class SteadyStates:
         curve, seconds = problem.close(self.scenes.taken(where), state, wanted=self.wanted)
         self.seconds[where] = np.nan_to_num(self.seconds[where]) + seconds / len(where)
         multipliers, undamped = _multipliers(curve), _undamped(self.scenes.scene)
-        maps = curve.results[:, 3].tolist()
+        closed = curve.closed
+        found = closed.found.tolist()
         for row, i in enumerate(where):
             self.reached[i] = int(curve.reached[row])
             self.solved_by[i] = problem
-            if maps[row] < 0.0:
+            if not found[row]:
                 steps = "" if problem is self.problem else " of implicit steps"
-                said = f"no closed orbit found in {-maps[row]:.0f} period maps{steps}"
+                said = f"no closed orbit found in {-closed.maps[row]:.0f} period maps{steps}"
                 self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
             elif undamped and self._repeats(curve, row, multipliers[row], problem):
-                self._leave_open(i, UNDAMPED, curve.results[row, 0], curve.results[row, 0])
+                self._leave_open(i, UNDAMPED, closed.mean[row], closed.mean[row])
             else:
                 self.reason[i], self.status[i], self.states[i] = "", "ok", curve.states[row]
-        found = [row for row, i in enumerate(where) if self.status[i] == "ok"]
-        places = np.array(where)[found]
-        self._put(places, curve, found)
-        self.multipliers[places] = multipliers[found]
-        for row in found if len(curve.matrices) else ():
+        good = [row for row, i in enumerate(where) if self.status[i] == "ok"]
+        places = np.array(where)[good]
+        self._put(places, curve, good)
+        self.multipliers[places] = multipliers[good]
+        for row in good if len(curve.matrices) else ():
             self.matrices[where[row]] = curve.matrices[row]
 
     def _held(self, where: list[int]) -> set[int]:
@@ -166,7 +167,7 @@ class SteadyStates:
             most = abs(law.friction(0.0, law.elastic_deflection(), 0.0))
             self._clear(i)
             self._leave_open(i, HELD_ELASTICALLY, -most, most)
-        elif self.problem.goal.asks and self._attracts(i):
+        elif self.problem.goal.check_attraction and self._attracts(i):
             at = quick_starts(self.problem, float(self.belt_speeds[i]))
             self.tried[i] = Trial.of(at, self.problem.mass.stiffness, self.reached[i])
         else:
@@ -294,8 +295,8 @@ class SteadyStates:
         problem, scene, known = self.problem, self.scenes[i], None
         if self.states[i] is not None:
             curve, _ = problem.close([scene], self.states[i])
-            known = closed_orbit(curve, curve.results[0, :1])
-            if curve.results[0, 3] >= 0.0 and multiplier(curve) > 1.0 + SURELY:
+            known = closed_orbit(curve, curve.closed.mean)
+            if curve.closed.found[0] and multiplier(curve) > 1.0 + SURELY:
                 self.repelling.add(i)
         self.followed[i] = followed = follow_all(problem, scene, known)
         self.seconds[i] += followed.seconds
@@ -366,9 +367,9 @@ class SteadyStates:
 
     def _put(self, places: Any, curve: Curve, rows: Any) -> None:
         """Enter the numbers of these rows at these places."""
-        results = curve.results[rows]
-        self.mean.real[places], self.mean.imag[places] = results[..., 0], results[..., 1]
-        self.error[places], self.period[places] = results[..., 2], self.problem.common
+        closed = curve.closed
+        self.mean.real[places], self.mean.imag[places] = closed.mean[rows], closed.across[rows]
+        self.error[places], self.period[places] = closed.error[rows], self.problem.common
 
 
 def _undamped(scene: Scene) -> bool:
@@ -377,7 +378,7 @@ def _undamped(scene: Scene) -> bool:
 
 
 def _at_rest(curve: Curve, row: int) -> bool:
-    return bool(curve.results[row, 4] > 1.0 - 1e-9)
+    return bool(curve.closed.stuck[row] > 1.0 - 1e-9)
 
 
 def _model(scene: Scene, problem: PeriodicProblem, solved_by: PeriodicProblem) -> str:

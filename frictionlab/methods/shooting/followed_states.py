@@ -59,7 +59,7 @@ def follow_states(
 
 def _from_starts(problem: PeriodicProblem, place: int, scene: Scene, count: int) -> _Point:
     curve, _ = problem.close([scene])
-    candidate = closed_orbit(curve, curve.results[0, :1])
+    candidate = closed_orbit(curve, curve.closed.mean)
     followed = FollowedStarts(problem, scene, candidate)
     point = _Point(place, followed, [] if candidate is None else [(candidate, BY_CLOSING)])
     first, more = all_starts(problem, scene, count)
@@ -79,6 +79,6 @@ def _carry(neighbours: Iterable[tuple[_Point, _Point]], found_from: str) -> None
 
 def _told(problem: PeriodicProblem, place: int, state: Attractor, found_from: str) -> FoundState:
     x, velocity = problem.positions(state.points)
-    error = math.nan if state.curve is None else float(state.curve.results[0, 2])
+    error = math.nan if state.curve is None else float(state.curve.closed.error[0])
     numbers = state.mean, error, state.low, state.high
     return FoundState(place, round(state.period * problem.common), *numbers, x, velocity, found_from)

@@ -13,7 +13,7 @@ import numpy as np
 from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import mean_friction
 from frictionlab.methods.periodic.attraction import KnownOrbit, obeys
-from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
+from frictionlab.methods.periodic.fixed_point import FINER, stated_error
 from frictionlab.methods.shooting.undriven_path import LEAST, TURN, Return, UndrivenPath
 from frictionlab.quantities import Floats
 
@@ -111,8 +111,9 @@ def close_cycle(path: UndrivenPath, guess: Return, tolerance: float) -> Cycle | 
             return None
         means.append(found.mean)
         if len(means) > 2:
-            error = 2.0 * max(abs(means[-1] - means[-2]), CHANCE * abs(means[-2] - means[-3])) + found.error
-            error += 10.0 * accuracy / (found.turns * TURN) + ROUNDING
+            changed = max(abs(means[-1] - means[-2]), CHANCE * abs(means[-2] - means[-3]))
+            steps = 10.0 * accuracy / (found.turns * TURN)
+            error = interpreted(stated_error)(changed, 0.5 * found.error, steps)
         if error <= tolerance or accuracy <= LEAST:
             return found._replace(error=error)
         at, accuracy = found, max(accuracy / FINER, LEAST)

@@ -19,7 +19,7 @@ from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import mean_friction
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import ENOUGH, KnownOrbit
-from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING
+from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING, stated_error
 from frictionlab.methods.shooting.undriven_cycle import (
     MOST_RETURNS,
     RETURN_DISTANCE,
@@ -51,7 +51,7 @@ SLIDES = "steady sliding, which attracts"
 SLIDES_FREELY = "a free oscillation in slip, which does not decay without damping"
 STICKS = "a cycle of stick and slip"
 SLIPS = "a cycle of slip without rest"
-BETWEEN_LOOKS, PIECE = 2.0, 1.0 / 32.0
+BETWEEN_LOOKS, PIECE = 2.0, 0.125
 """Turns between looks at where the motion leads, and between looks for rest."""
 TRIALS = 10, 30, 100, 300, 1000
 """Counts of largest deflections after which a cycle is looked for however far apart they are."""
@@ -209,7 +209,8 @@ class Undriven:
         if rough is None or fine is None:
             return None
         (_, before), (turns, mean) = rough, fine
-        error = 2.0 * abs(mean - before) + accuracy / FINER + 1e-12  # two step sizes may agree by chance
+        # two step sizes may agree by chance: what one step of the finer motion may cost
+        error = interpreted(stated_error)(abs(mean - before), 0.0, accuracy / FINER + 1e-12)
         return PeriodicMotion(release, turns * TURN, mean, error, 0.0, STICKS)
 
     def _back_to_rest(self, accuracy: float) -> tuple[float, float] | None:
@@ -221,15 +222,15 @@ class Undriven:
         patience = 10.0 * (1.0 + path.mass.damping)  # for one damped too heavily to have peaks
         while peaks < 3 and turns < patience:
             span = path.follow(state, PIECE, accuracy)
-            turns += PIECE
-            if turns > PIECE and span.stuck > 0.0:
-                # the belt carries the mass on to where slip began
+            if turns > 0.0 and span.stuck > 0.0:
+                # else the belt carries the mass on to where slip began
                 way = (path.release[0] - span.end[0]) / math.sqrt(path.mass.stiffness)
-                turns += way / path.speed / TURN
+                left = span.released if span.released >= 0.0 else PIECE * TURN + way / path.speed
+                turns += left / TURN
                 whole = path.follow(path.release, turns, accuracy)
                 return turns, float(interpreted(mean_friction)(whole.impulse, turns * TURN))
             peaks += 1 if path.side * state[1] > 0.0 >= path.side * span.end[1] else 0
-            state = span.end
+            state, turns = span.end, turns + PIECE
         return None
 
     # --- cycles ---
@@ -290,7 +291,7 @@ class Undriven:
             before, accuracy = state, max(accuracy / FINER, LEAST)
             state, left = self._rested(accuracy)
             mean = float(unit * state[0])
-            error = unit * (2.0 * float(abs(state[0] - before[0])) + left) + ROUNDING
+            error = interpreted(stated_error)(unit * float(abs(state[0] - before[0])), 0.5 * unit * left, 0.0)
             if error <= self.tolerance or accuracy <= LEAST:
                 return PeriodicMotion(state, math.nan, mean, error, math.nan, COMES_TO_REST)
 

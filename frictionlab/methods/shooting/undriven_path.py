@@ -55,12 +55,13 @@ class NotFound(Exception):
 
 
 class Span(NamedTuple):
-    """One span of the motion: its end, the integral of friction, the time at rest, the slowest slip, the steps (-1:
-    it gave up), and where there is room the track."""
+    """One span of the motion: its end, the integral of friction, the time at rest, when rest ended last (-1: it did
+    not), the slowest slip, the steps (-1: it gave up), and where there is room the track."""
 
     end: Any
     impulse: float
     stuck: float
+    released: float
     slowest: float
     steps: int
     track: Track
@@ -77,7 +78,8 @@ def follow_undriven(law: Any, body: Body, belt_speed: float, state: Any, accurac
         image = period_map(case, state, end, accuracy, track)
     for row in range(state.size):
         end[row] = state[row] + end[row]
-    return Span(end, image.rubbed, image.stuck, image.closest, image.steps, track)
+    rests = image.stuck, image.released
+    return Span(end, image.friction_impulse, *rests, image.closest, image.steps, track)
 
 
 class Return(NamedTuple):

@@ -314,7 +314,7 @@ class Step(NamedTuple):
     x_error3: Any
     v_error5: Any
     v_error3: Any
-    rubbed: Any
+    friction_impulse: Any
 
 
 class Stages(NamedTuple):

@@ -64,7 +64,7 @@ def mapped_one_by_one(law, body, rows, accuracy):
         z[:] = rows.state[:, k]
         image = image_of(case_of(law, body, rows.belt_speed[k]), z, residual, accuracy)
         rows.residual[:, k] = residual
-        rows.impulse[0, k], rows.impulse[1, k] = image.rubbed.real, image.rubbed.imag
+        rows.impulse[0, k], rows.impulse[1, k] = image.friction_impulse.real, image.friction_impulse.imag
         rows.closest[k], rows.arrived[k] = image.closest, 0.0 if image.stuck > 0.0 else 1.0
     return rows
 
@@ -117,15 +117,16 @@ def test_lanes_depend_on_each_other_where_they_step_alike_alone(alike):
 @pytest.mark.parametrize("omega", [0.5, 4.0, 10.0])
 def test_errors_of_what_lanes_close_cover_at_every_tolerance(omega):
     problem = problem_of(scene_of(omega))
-    true = closed_one_by_one(problem, 1e-12).results
+    true = closed_one_by_one(problem, 1e-12).closed
     for tolerance in (1e-2, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10):
         goal = problem.goal._replace(tolerance=tolerance)
         lanes = compiled(answer_lanes, LAW)(problem.body, SPEEDS, goal)
 
         assert (lanes.fate == CLOSED_ORBIT).all()
-        assert (lanes.results[:, 2] <= tolerance).all()
-        assert (np.abs(lanes.results[:, 0] - true[:, 0]) <= lanes.results[:, 2] + true[:, 2]).all()
-        assert np.mean(lanes.results[:, 3]) < 7.0
+        found = lanes.closed
+        assert (found.error <= tolerance).all()
+        assert (np.abs(found.mean - true.mean) <= found.error + true.error).all()
+        assert np.mean(found.maps) < 7.0
 
 
 def test_states_are_as_good_as_the_mean():
@@ -149,10 +150,10 @@ def test_what_meets_rest_is_closed_by_the_search_for_one():
     curve, _seconds = problem.close(
         [scene_of(normal_load=400.0, belt_speed=speed) for speed in speeds], wanted=CLOSED
     )
-    true = closed_one_by_one(problem, 1e-11, speeds).results
-    assert (curve.results[:, 3] > 0.0).all()
-    assert (np.abs(curve.results[:, 0] - true[:, 0]) <= curve.results[:, 2] + true[:, 2]).all()
-    assert (curve.results[left, 4] > 0.0).any()
+    true, closed = closed_one_by_one(problem, 1e-11, speeds).closed, curve.closed
+    assert (closed.maps > 0.0).all()
+    assert (np.abs(closed.mean - true.mean) <= closed.error + true.error).all()
+    assert (closed.stuck[left] > 0.0).any()
 
 
 @pytest.mark.parametrize("points", [1, 4, 7, 8, 9, 24])
@@ -235,8 +236,8 @@ def test_without_kernels_a_curve_is_closed_on_arrays(request):
 
     assert not list(kernels.glob("*.kernel"))
     assert (arrays.fate == CLOSED_ORBIT).all()
-    gaps = np.abs(arrays.results[:, 0] - lanes.results[:, 0])
-    assert (gaps <= lanes.results[:, 2] + arrays.results[:, 2]).all()
+    gaps = np.abs(arrays.closed.mean - lanes.closed.mean)
+    assert (gaps <= lanes.closed.error + arrays.closed.error).all()
     assert np.abs(matrices - quotients).max() < 1e-6
 
 

@@ -215,8 +215,8 @@ def test_energies_balance_and_columns_are_those_of_the_orbit() -> None:
         period = 2.0 * math.pi / one.frequency
         assert weights.sum() == pytest.approx(period, rel=1e-12)
         assert -(weights * friction).sum() / period == pytest.approx(columns["mean_friction"][i], abs=1e-7)
-        rubbed = one.normal_load * float((weights * friction * slip).sum())
-        assert rubbed == pytest.approx(columns["energy_contact"][i], rel=1e-6)
+        friction_impulse = one.normal_load * float((weights * friction * slip).sum())
+        assert friction_impulse == pytest.approx(columns["energy_contact"][i], rel=1e-6)
         mean = float((weights * orbit.x.real).sum()) / period
         assert mean == pytest.approx(one.normal_load * columns["mean_friction"][i], abs=1e-5)
 

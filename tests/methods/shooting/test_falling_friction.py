@@ -93,12 +93,12 @@ class Line:
 
         stopped.terminal, stopped.direction = True, -1.0
         way = self._solved(rates, state, t, end, stopped)
-        x, v, rubbed = way.y[:, -1]
+        x, v, friction_impulse = way.y[:, -1]
         if way.status != 1:
-            return [x, v, rubbed], way.t[-1], side
+            return [x, v, friction_impulse], way.t[-1], side
         force = self.held(way.t[-1], x)
         holds = abs(force) <= self.mass.normal_load * self.law.static_friction()
-        return [x, self.belt, rubbed], way.t[-1], 0.0 if holds else math.copysign(1.0, force)
+        return [x, self.belt, friction_impulse], way.t[-1], 0.0 if holds else math.copysign(1.0, force)
 
     def _solved(self, rates, state, t, end, event):
         options = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-12, "max_step": self.period / 40.0}

@@ -98,7 +98,7 @@ def test_a_motion_that_nears_a_known_orbit_is_left_early():
     )
     problem = PeriodicProblem(scene, drawn, 1e-8)
     curve, _ = problem.close([scene])
-    orbit = attractors.closed_orbit(curve, curve.results[0, :1])
+    orbit = attractors.closed_orbit(curve, curve.closed.mean)
     assert orbit is not None
     start = Initial(x=-30.0, velocity=20.0)
     whole, short = problem.transient(5.0, start, 500), problem.transient(5.0, start, 500, orbit.known)

@@ -54,7 +54,7 @@ def by_legs(scene: fl.Scene, law: MaxwellSlip | Elements, periods: int) -> float
     """The same for elements: between reversals of slip each deflection is the way slid, cut off at its reach."""
     mass = scene.mass()
     span, reach = 2.0 * math.pi / mass.frequency, np.array(law.reach)
-    z, state, tau, rubbed = -reach, np.array([0.0, -scene.belt_speed, 0.0]), 0.0, 0.0
+    z, state, tau, friction_impulse = -reach, np.array([0.0, -scene.belt_speed, 0.0]), 0.0, 0.0
 
     def slip(tau: float, state: Any, start: Any) -> float:
         return float(state[1])
@@ -78,8 +78,8 @@ def by_legs(scene: fl.Scene, law: MaxwellSlip | Elements, periods: int) -> float
             z, tau, state = np.clip(z + way, -reach, reach), leg.t[-1], leg.y[:, -1].copy()
             if leg.status == 1:
                 state[1] = math.copysign(1e-14, slip.direction)  # type: ignore[attr-defined]
-        rubbed = state[2]
-    return float(-rubbed / span)
+        friction_impulse = state[2]
+    return float(-friction_impulse / span)
 
 
 def by_planar_legs(scene: fl.Scene, law: MaxwellSlip | Elements, periods: int) -> float:

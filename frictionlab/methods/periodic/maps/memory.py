@@ -41,7 +41,7 @@ from frictionlab.methods.periodic.maps.modes import (
     rates_at_end,
     restore,
 )
-from frictionlab.methods.periodic.maps.pace import Pace, keep_step
+from frictionlab.methods.periodic.maps.pace import Stepping, keep_step
 from frictionlab.methods.periodic.maps.rates import (
     IMPULSE,
     MEMORY,
@@ -56,7 +56,7 @@ from frictionlab.methods.periodic.maps.rates import (
 )
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS, Mapped
 from frictionlab.methods.periodic.maps.step import bend, step, within_step
-from frictionlab.orbit.recorder import Track, panel_writer
+from frictionlab.orbit.recorder import panel_writer
 from frictionlab.scene.body import Body
 
 COARSEST = 1e-4
@@ -265,14 +265,14 @@ def _arrive(flow: Flow, tau: float, ends: bool, work: Work, like: Any) -> float:
 
 
 @inner
-def follow(flow: Flow, end: float, accuracy: float, track: Track, pace: Pace, work: Work, like: Any) -> Any:
+def follow(flow: Flow, end: float, how: Stepping, work: Work, like: Any) -> Any:
     """The motion from ``work.start``, and back into it, until ``end``, all between two corners of what changes in
     time; returns the smallest slip speed and the steps.
 
-    accuracy: each step's, in the norm of energy. Steps are -1 where it gave up. On a track with room every piece of
-    the way is noted, and in a pace with room every step.
+    Steps are -1 where it gave up.
     """
     law, body, belt_speed = flow.law, flow.body, flow.belt_speed
+    accuracy, track, pace = how.accuracy, how.track, how.pace
     friction = usual_friction(law, body)
     longest = longest_step(body, friction, accuracy)
     began, share = OPEN, min(1.0, 2.0 * (accuracy / (body.normal_load * friction)) ** 0.0625)
@@ -315,7 +315,7 @@ def follow(flow: Flow, end: float, accuracy: float, track: Track, pace: Pace, wo
 
 
 @inner
-def repeat(flow: Flow, end: float, first: int, pace: Pace, accuracy: float, work: Work, like: Any) -> int:
+def repeat(flow: Flow, end: float, first: int, how: Stepping, work: Work, like: Any) -> int:
     """The motion from ``work.start``, and back into it, until ``end`` by the steps of another motion close by.
 
     first: the number of the first of them. Steps end at the events of their own motion: the numbers at the end are
@@ -323,6 +323,7 @@ def repeat(flow: Flow, end: float, first: int, pace: Pace, accuracy: float, work
     are not those of the other motion.
     """
     law, body, belt_speed = flow.law, flow.body, flow.belt_speed
+    pace, within = how.pace, min(how.accuracy, OF_EVENTS)
     last, tau = pace.taken[0] - 1, flow.anchor
     _depart(flow, True, work, like)
     for k in range(first, last + 1):
@@ -333,7 +334,7 @@ def repeat(flow: Flow, end: float, first: int, pace: Pace, accuracy: float, work
         if (lowest(flow, w, a, work).value <= 0.0) != (pace.endings[k] == 1):
             return -1
         if pace.endings[k] == 1:
-            h = locate(flow, tau, h, min(accuracy, OF_EVENTS), work, like)
+            h = locate(flow, tau, h, within, work, like)
         tau = tau + h if end - tau > h else end
         flow = anchored(law, body, belt_speed, _arrive(flow, tau, pace.endings[k] == 1, work, like), tau)
         if end - tau <= 4e-15 * end:
@@ -369,19 +370,16 @@ def _share_at(case: Case, k: int, tau: float) -> float:
 
 
 @inner
-def memory_map(
-    case: Case, y: Any, u: Any, accuracy: float, work: Work, track: Track, pace: Pace, repeats: bool
-) -> Mapped:
+def memory_map(case: Case, y: Any, u: Any, work: Work, how: Stepping) -> Mapped:
     """One span from the deviation (y, u) and the memory at ``work.start``, which becomes that at its end.
 
-    accuracy is each step's, in the norm of energy. On a track with room every piece of the way is noted. In a pace
-    with room every step is kept, or where it repeats those kept are taken; it gives up where they do not fit.
+    Where it repeats kept steps it gives up where they do not fit.
     """
     law, body, like = case.law, case.body, case.like
     free = 0.0 if body.prescribed else 1.0  # the reference is the motion
     work.start[Y] = free * y
     work.start[IMPULSE] = 0.0 * like
-    accuracy = min(accuracy, coarsest(law, body))
+    how = Stepping(min(how.accuracy, coarsest(law, body)), how.track, how.pace, how.repeats)
     u, closest, steps = free * u, OPEN, 0
     for k in range(pieces_of(body)):
         here, (tau, end) = case_in_piece(case, k), piece_ends(body, k)
@@ -389,10 +387,10 @@ def memory_map(
         start = anchored(law, here.body, case.belt_speed, 1.0, tau)
         work.start[U] = held_velocity(start, instant_at(body, tau), u)
         flow = _flow_of(here, tau, work)
-        if repeats:
-            closest, steps = 0.0, repeat(flow, end, steps, pace, accuracy, work, like)
+        if how.repeats:
+            closest, steps = 0.0, repeat(flow, end, steps, how, work, like)
         else:
-            near, taken = follow(flow, end, accuracy, track, pace, work, like)
+            near, taken = follow(flow, end, how, work, like)
             closest, steps = min(closest, near), steps + taken if taken >= 0 else -1
         u = deviation_held(start, instant_at(body, end), work.start[U])
         if steps < 0:

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
+from frictionlab.orbit.recorder import Track, track_of
 
 MOST_KEPT = 4096
 
@@ -27,6 +28,19 @@ class Pace(NamedTuple):
     taken: Any
 
 
+class Stepping(NamedTuple):
+    """How a map steps.
+
+    accuracy: of each step, in the norm of energy. track: notes every piece of the way where it has room. pace: keeps
+    every step where it has room. repeats: whether instead the steps kept in the pace are taken again.
+    """
+
+    accuracy: float
+    track: Track
+    pace: Pace
+    repeats: bool
+
+
 @inner
 def pace_of(room: int) -> Pace:
     """No steps yet; with room for none, none are kept."""
@@ -40,3 +54,21 @@ def keep_step(pace: Pace, tried: float, ending: int) -> None:
     if count < pace.lengths.size:
         pace.lengths[count], pace.endings[count] = tried, ending
     pace.taken[0] = count + 1
+
+
+@inner
+def noting(accuracy: float, track: Track) -> Stepping:
+    """Steps of this accuracy, their way noted on a track with room."""
+    return Stepping(accuracy, track, pace_of(0), False)
+
+
+@inner
+def keeping(accuracy: float, pace: Pace) -> Stepping:
+    """Steps of this accuracy, kept in a pace with room."""
+    return Stepping(accuracy, track_of(0), pace, False)
+
+
+@inner
+def repeating(accuracy: float, pace: Pace) -> Stepping:
+    """The steps that a pace has kept; accuracy: of the events located anew."""
+    return Stepping(accuracy, track_of(0), pace, True)

@@ -29,10 +29,10 @@ from frictionlab.dynamics.motion import (
 )
 from frictionlab.dynamics.step_size import growth_of, longest_step, wary_growth_of
 from frictionlab.methods.periodic.case import Case, case_in_piece
-from frictionlab.methods.periodic.maps.pace import Pace, keep_step
+from frictionlab.methods.periodic.maps.pace import Pace, Stepping, keep_step
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
 from frictionlab.numerics.steppers.dop853 import Dense, State, interpolant, motion_within, stepper
-from frictionlab.orbit.recorder import Track, panel_writer
+from frictionlab.orbit.recorder import panel_writer
 from frictionlab.scene.body import Body
 
 
@@ -58,7 +58,7 @@ class Carried(NamedTuple):
     y: Any
     u: Any
     z: Any
-    rubbed: Any  # integral of friction, in shares of the mean normal load
+    friction_impulse: Any  # integral of friction, in shares of the mean normal load
     closest: float  # smallest slip speed at a node
     steps: int  # -1: gave up
 
@@ -315,7 +315,7 @@ def repeated_path(case: Case, y: float, u: float, z: float, pace: Pace) -> Carri
 @inner
 def _repeated_piece(case: Case, tau: float, end: float, image: Carried, pace: Pace) -> Carried:
     """Between two corners of what changes in time; image: the state at the first, and the steps so far."""
-    y, u, z, rubbed, last = image.y, image.u, image.z, image.rubbed, pace.taken[0] - 1
+    y, u, z, friction_impulse, last = image.y, image.u, image.z, image.friction_impulse, pace.taken[0] - 1
     node = _first_node(case, tau, y, u, z)
     for k in range(image.steps, last + 1):
         # where events come earlier or later, the last step makes up for it
@@ -323,40 +323,33 @@ def _repeated_piece(case: Case, tau: float, end: float, image: Carried, pace: Pa
         h = left if k == last else min(pace.lengths[k], left)
         ending = _until_event(node, step(node.leg, node.tau, node.state, h), h)
         if ending.verdict != pace.endings[k]:
-            return Carried(y, u, z, rubbed, 0.0, -1)
-        rubbed = rubbed + ending.taken.rubbed
+            return Carried(y, u, z, friction_impulse, 0.0, -1)
+        friction_impulse = friction_impulse + ending.taken.friction_impulse
         node = _next_node(case, node, ending, node.tau + ending.h if left > ending.h else end)
         if end - node.tau <= 4e-15 * end:
-            return Carried(node.state.x, node.state.v, _deflection_at(node), rubbed, 0.0, k + 1)
-    return Carried(y, u, z, rubbed, 0.0, -1)
+            return Carried(node.state.x, node.state.v, _deflection_at(node), friction_impulse, 0.0, k + 1)
+    return Carried(y, u, z, friction_impulse, 0.0, -1)
 
 
 @inner
-def path_map(case: Case, y: float, u: float, z: float, accuracy: float, track: Track, pace: Pace) -> Carried:
-    """One span from the deviation (y, u) and deflection z at tau = 0; accuracy is each step's, in the energy norm.
-
-    On a track with room every piece of the way is noted, and in a pace with room every step.
-    """
+def path_map(case: Case, y: float, u: float, z: float, how: Stepping) -> Carried:
+    """One span from the deviation (y, u) and deflection z at tau = 0."""
     image = Carried(y, u, z, 0.0, 1e300, 0)
     for k in range(pieces_of(case.body)):
         tau, end = piece_ends(case.body, k)
-        image = _path_piece(case_in_piece(case, k), tau, end, image, accuracy, track, pace)
+        image = _path_piece(case_in_piece(case, k), tau, end, image, how)
         if image.steps < 0:
             break
     return image
 
 
 @inner
-def _path_piece(
-    case: Case, tau: float, end: float, image: Carried, accuracy: float, track: Track, pace: Pace
-) -> Carried:
+def _path_piece(case: Case, tau: float, end: float, image: Carried, how: Stepping) -> Carried:
     """Between two corners of what changes in time; image: the state at the first, and what was met so far."""
-    law, body = case.law, case.body
-    longest, share = (
-        longest_step(body, law.sliding_friction(0.0), accuracy),
-        share_of_the_way(law, body, accuracy),
-    )
-    y, u, z, rubbed, closest, steps = image
+    law, body, accuracy = case.law, case.body, how.accuracy
+    longest = longest_step(body, law.sliding_friction(0.0), accuracy)
+    share = share_of_the_way(law, body, accuracy)
+    y, u, z, friction_impulse, closest, steps = image
     node = _first_node(case, tau, y, u, z)
     h = 0.1 * longest
     while end - node.tau > 4e-15 * end:
@@ -370,15 +363,15 @@ def _path_piece(
         ending, growth = _attempt(node, h, ahead < 1e300, accuracy)
         tried, h, steps = h, ending.h, steps + 1
         if steps > MOST_STEPS:
-            return Carried(state.x, state.v, z, rubbed, closest, -1)
+            return Carried(state.x, state.v, z, friction_impulse, closest, -1)
         if ending.verdict == REPEAT:
             continue
         # a step to the end goes there whenever it is repeated
         last = ending.verdict == ACCEPT and end - tau <= h
-        keep_step(pace, 1e300 if last else tried, ending.verdict)
-        if track.stick.size > 0:
-            _note_slip(track, tau, h, False, leg, tau, dense(leg, tau, state, h))
-        rubbed = rubbed + ending.taken.rubbed
+        keep_step(how.pace, 1e300 if last else tried, ending.verdict)
+        if how.track.stick.size > 0:
+            _note_slip(how.track, tau, h, False, leg, tau, dense(leg, tau, state, h))
+        friction_impulse = friction_impulse + ending.taken.friction_impulse
         node = _next_node(case, node, ending, tau + h if end - tau > h else end)
         h = h * growth if ending.verdict != TURN else longest
-    return Carried(node.state.x, node.state.v, _deflection_at(node), rubbed, closest, steps)
+    return Carried(node.state.x, node.state.v, _deflection_at(node), friction_impulse, closest, steps)

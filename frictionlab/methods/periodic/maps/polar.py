@@ -56,8 +56,8 @@ REST_TAKES = 20.0
 """A rest may take as long as so many corrections."""
 
 
-class Room(NamedTuple):
-    """Room for a map: that of its steps, the tangent, and what is summed on the way.
+class Workspace(NamedTuple):
+    """Workspace for a map: that of its steps, the tangent, and what is summed on the way.
 
     totals: the integral of position, and the position half way through the longest rest [2]; times: at rest in all,
     the longest rest and when its middle is; how often slip was left out [4].
@@ -91,11 +91,11 @@ class Image(NamedTuple):
 
 
 @inner
-def room_for_maps() -> Room:
-    """Room for maps, one after another."""
+def room_for_maps() -> Workspace:
+    """Workspace for maps, one after another."""
     kind = np.zeros(DIRECTIONS, np.complex128)
     tangent = Tangent(np.zeros(DIRECTIONS), np.zeros(DIRECTIONS), kind, kind.copy())
-    return Room(step_room(), tangent, np.zeros(2, np.complex128), np.zeros(4))
+    return Workspace(step_room(), tangent, np.zeros(2, np.complex128), np.zeros(4))
 
 
 @inner
@@ -117,7 +117,7 @@ def quickest(body: Body) -> float:
 
 
 @inner
-def _set_out(case: Case, tau: float, x: complex, w: complex, room: Room) -> Way:
+def _set_out(case: Case, tau: float, x: complex, w: complex, room: Workspace) -> Way:
     """The beginning of a map, where the tangent is the identity in the norm of energy."""
     tangent, r, body = room.tangent, abs(w), case.body
     resting = r <= 1e-14 * (swing_of(body) + abs(case.belt_speed))
@@ -139,7 +139,7 @@ def _set_out(case: Case, tau: float, x: complex, w: complex, room: Room) -> Way:
 
 
 @inner
-def _rest(case: Case, way: Way, end: float, room: Room, track: Track) -> Way:
+def _rest(case: Case, way: Way, end: float, room: Workspace, track: Track) -> Way:
     """Rest until slip begins or the map ends."""
     body, belt_speed, place, tangent = case.body, case.belt_speed, way.place, room.tangent
     tau, until = place.tau, end_of_rest(case, place.tau, place.x, end)
@@ -162,7 +162,7 @@ def _rest(case: Case, way: Way, end: float, room: Room, track: Track) -> Way:
 
 
 @inner
-def _land(case: Case, place: SlipPlace, wait: float, room: Room, track: Track) -> Way:
+def _land(case: Case, place: SlipPlace, wait: float, room: Workspace, track: Track) -> Way:
     """Go the short way to rest: slip falls evenly there."""
     body, belt_speed, tangent = case.body, case.belt_speed, room.tangent
     tau, turned = place.tau + wait, cmath.exp(1j * place.theta)
@@ -220,7 +220,7 @@ def _lands(case: Case, place: SlipPlace, near: Approach, accuracy: float) -> boo
 
 
 @inner
-def _give_way(case: Case, place: SlipPlace, near: Approach, room: Room, track: Track) -> Way:
+def _give_way(case: Case, place: SlipPlace, near: Approach, room: Workspace, track: Track) -> Way:
     """Slip that no step resolves is as good as rest: it is left out, and time goes on a moment."""
     if abs(near.held) < near.limit:
         return _land(case, place, 0.0, room, track)
@@ -230,7 +230,7 @@ def _give_way(case: Case, place: SlipPlace, near: Approach, room: Room, track: T
 
 
 @inner
-def _slip(case: Case, way: Way, end: float, accuracy: float, room: Room, track: Track) -> Way:
+def _slip(case: Case, way: Way, end: float, accuracy: float, room: Workspace, track: Track) -> Way:
     """One step of slip, or the end of it; the way as it was, with a shorter step, where that is not accurate."""
     place, step = way.place, room.step
     near = _approach(case, place)
@@ -296,7 +296,9 @@ def _unit(case: Case) -> float:
 
 
 @inner
-def polar_map(case: Case, start: SlipPlace, end: float, accuracy: float, room: Room, track: Track) -> Image:
+def polar_map(
+    case: Case, start: SlipPlace, end: float, accuracy: float, room: Workspace, track: Track
+) -> Image:
     """From a place (theta is not read where r = 0) until the end; the room holds tangent and sums.
 
     accuracy: of slip in each step, relative to ``_unit``. On a track with room every piece of the way is noted.

@@ -65,7 +65,7 @@ class Tangent(NamedTuple):
 
 
 class StepRoom(NamedTuple):
-    """Room for one step: slip at its start and stages [6], x, e, f and forces at the stages [5], linear systems.
+    """Workspace for one step: slip at its start and stages [6], x, e, f and forces at the stages [5], linear systems.
 
     corrections: of Newton's method, in all steps [1].
     """
@@ -89,7 +89,7 @@ class StepRoom(NamedTuple):
 
 @inner
 def step_room() -> StepRoom:
-    """Room for steps."""
+    """Workspace for steps."""
     n, kind = STAGES, np.zeros(STAGES, np.complex128)
     real = np.zeros(n)
     return StepRoom(

@@ -45,7 +45,7 @@ class Mapped(NamedTuple):
 
     y: Any
     u: Any
-    rubbed: Any  # integral of friction, in shares of the mean normal load
+    friction_impulse: Any  # integral of friction, in shares of the mean normal load
     stuck: float  # time at rest
     closest: float  # smallest slip speed at a node
     released: float  # when rest ended last; -1: never
@@ -80,7 +80,7 @@ class Landing(NamedTuple):
     verdict: int
     h: float
     end: State
-    rubbed: Any
+    friction_impulse: Any
 
 
 REPEAT, ACCEPT, REST, STILL = 0, 1, 2, 3
@@ -135,9 +135,9 @@ def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y
             wait = speed / (limit - (held * w.conjugate()).real / speed) if sure else 0.0
             end = node.tau + wait
             path = 0.5 * wait * w
-            rubbed = w / body.normal_load + resting_friction(body, belt_speed, node.tau, end, x)
+            friction_impulse = w / body.normal_load + resting_friction(body, belt_speed, node.tau, end, x)
             y = x + belt_path(body, belt_speed, node.tau, end) + path - reference_position(body, end)
-            return Landing(REST, wait, State(y, w, w, w), rubbed)
+            return Landing(REST, wait, State(y, w, w, w), friction_impulse)
     return Landing(ACCEPT, step_towards_rest(node, limit, h), node.state, y)
 
 
@@ -149,7 +149,7 @@ def _after_on_the_line(problem: Flow, node: Node, leaving: bool, taken: Any, h: 
     side, state, limit = problem.side, node.state, h
     after = side * slip_at(problem, node.tau + h, taken.v)
     if after <= 0.0 and leaving and after >= -1e-15 * (abs(taken.v) + abs(problem.belt_speed)):
-        return Landing(STILL, h, _state(problem, node.tau + h, taken.x, taken.v), taken.rubbed)
+        return Landing(STILL, h, _state(problem, node.tau + h, taken.x, taken.v), taken.friction_impulse)
     if after <= 0.0 and leaving:
         return Landing(REPEAT if h * problem.body.frequency > 1e-12 else REST, 0.25 * h, state, 0.0)
     a, f = rates(problem, node.tau + h, taken.x, taken.v)
@@ -158,8 +158,8 @@ def _after_on_the_line(problem: Flow, node: Node, leaving: bool, taken: Any, h: 
         after = side * slip_at(problem, node.tau + limit, step(problem, node.tau, state, limit).v)
     if after <= 0.0:
         h, taken = stop(problem, node.tau, state, 0.0, limit)
-        return Landing(REST, h, State(taken.x, taken.v, taken.v, taken.v), taken.rubbed)
-    return Landing(ACCEPT, h, State(taken.x, taken.v, a, f), taken.rubbed)
+        return Landing(REST, h, State(taken.x, taken.v, taken.v, taken.v), taken.friction_impulse)
+    return Landing(ACCEPT, h, State(taken.x, taken.v, a, f), taken.friction_impulse)
 
 
 def _after_in_the_plane(
@@ -170,7 +170,7 @@ def _after_in_the_plane(
     a, f = rates(problem, node.tau + h, taken.x, taken.v)
     if dips(node.w, node.rate, after, slip_rate(problem, node.tau + h, a), h):
         return Landing(REPEAT, 0.5 * h, node.state, y)
-    return Landing(ACCEPT, h, State(taken.x, taken.v, a, f), taken.rubbed)
+    return Landing(ACCEPT, h, State(taken.x, taken.v, a, f), taken.friction_impulse)
 
 
 _after = by_dimension(_after_on_the_line, _after_in_the_plane)
@@ -265,7 +265,7 @@ def _slide(problem: Flow, node: Node, leaving: bool, accuracy: float, h: float, 
     done = _before(problem, node, accuracy, h, state.x)
     if done.verdict == REST:
         if room > 0 and done.h > 0.0:
-            x, rub = state.x + reference_position(problem.body, node.tau), done.rubbed / done.h
+            x, rub = state.x + reference_position(problem.body, node.tau), done.friction_impulse / done.h
             hop = Hop(node.tau, done.h, x, node.w, -node.w, rub)
             note_hop(track, node.tau, done.h, False, problem, hop)
         return Attempt(done, h, 0)
@@ -273,7 +273,7 @@ def _slide(problem: Flow, node: Node, leaving: bool, accuracy: float, h: float, 
     taken = step(problem, node.tau, state, done.h)
     growth = growth_of(problem.body, taken, accuracy)
     if growth < 1.0:
-        return Attempt(Landing(REPEAT, done.h, state, taken.rubbed), done.h * growth, 1)
+        return Attempt(Landing(REPEAT, done.h, state, taken.friction_impulse), done.h * growth, 1)
     landing = _after(problem, node, leaving, taken, done.h, state.x)
     if landing.verdict == REPEAT:
         return Attempt(landing, landing.h, 1)
@@ -304,7 +304,7 @@ def _sliding_piece(
 ) -> Mapped:
     """From one corner of what changes in time to the next; image: the state at the first, and what was met so far."""
     law, body, belt_speed = case.law, case.body, case.belt_speed
-    y, u, rubbed, stuck, closest, released, steps = image
+    y, u, friction_impulse, stuck, closest, released, steps = image
     # the side of the first slip; a slip within the accuracy of zero is rest
     longest = longest_step(body, law.sliding_friction(0.0), accuracy)
     h = 0.1 * longest
@@ -319,7 +319,7 @@ def _sliding_piece(
             rest = stick_phase(case, tau, x, accuracy, end)
             if track.stick.size > 0:
                 _note_rest(track, problem, tau, x, rest)
-            rubbed, stuck = rubbed + rest.rubbed, stuck + rest.stuck
+            friction_impulse, stuck = friction_impulse + rest.friction_impulse, stuck + rest.stuck
             if rest.stuck > 0.0 and rest.tau < end:
                 released = tau + rest.stuck
             tau, resting, leaving, closest, h = rest.tau, False, True, 0.0, 0.1 * longest
@@ -334,9 +334,9 @@ def _sliding_piece(
         done, h, tried = _slide(problem, node, leaving, accuracy, min(h, longest, end - tau), track)
         steps += tried
         if steps > MOST_STEPS:
-            return Mapped(state.x, state.v, rubbed, stuck, closest, released, -1)
+            return Mapped(state.x, state.v, friction_impulse, stuck, closest, released, -1)
         if done.verdict != REPEAT:
             resting, leaving = done.verdict == REST, done.verdict == STILL
-            rubbed, state = rubbed + done.rubbed, done.end
+            friction_impulse, state = friction_impulse + done.friction_impulse, done.end
             tau = tau + done.h if end - tau > done.h else end
-    return Mapped(state.x, state.v, rubbed, stuck, closest, released, steps)
+    return Mapped(state.x, state.v, friction_impulse, stuck, closest, released, steps)

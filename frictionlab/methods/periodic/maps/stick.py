@@ -162,9 +162,9 @@ class StickPhase(NamedTuple):
     x: Any
     w: Any
     side: float
-    rubbed: Any
+    friction_impulse: Any
     stuck: float
-    pulled: Any  # of rubbed: after release
+    pulled: Any  # of friction_impulse: after release
 
 
 @inner
@@ -188,12 +188,12 @@ def stick_phase(case: Case, tau: float, x: Any, accuracy: float, end: float) -> 
     """From rest at tau, x until slip begins, or until the end of the period."""
     body, belt_speed = case.body, case.belt_speed
     start, until = tau, end_of_rest(case, tau, x, end)
-    stuck, rubbed = until - start, 0.0 * x
+    stuck, friction_impulse = until - start, 0.0 * x
     if stuck > 0.0:
-        rubbed, tau = resting_friction(body, belt_speed, start, until, x), until
+        friction_impulse, tau = resting_friction(body, belt_speed, start, until, x), until
         x = x + belt_path(body, belt_speed, start, tau)
         if tau >= end:
-            return StickPhase(tau, x, 0.0 * x, 0.0, rubbed, stuck, 0.0 * x)
+            return StickPhase(tau, x, 0.0 * x, 0.0, friction_impulse, stuck, 0.0 * x)
     now = instant_at(body, tau)
     held, rate, bend = holding_force(body, belt_speed, now, x)
     side = 1.0 if held.real > 0.0 else -1.0
@@ -202,4 +202,4 @@ def stick_phase(case: Case, tau: float, x: Any, accuracy: float, end: float) -> 
     pulled = resting_friction(body, belt_speed, tau, tau + t, x)
     pulled = pulled - (restoring_force(body, 0.0 * x, path) + w) / body.normal_load
     x = x + belt_path(body, belt_speed, tau, tau + t) + path
-    return StickPhase(tau + t, x, w, side, rubbed + pulled, stuck, pulled)
+    return StickPhase(tau + t, x, w, side, friction_impulse + pulled, stuck, pulled)

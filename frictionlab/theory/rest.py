@@ -100,33 +100,38 @@ def _held_with_the_belt(scene: Scene) -> _Held | None:
         )
     signals = scene.signals()
     edges = signals.edges()
-    tau, k = _times(edges, mass.varying.quickest)
+    times = _times(edges, mass.varying.quickest)
+    springs = (mass.damping, mass.stiffness), (mass.transverse_damping, mass.transverse_stiffness)
     along, across = (
-        _against_the_belt(*parts, edges, tau, k)
-        for parts in (
-            (signals.load[0], signals.belt[0], mass.damping, mass.stiffness),
-            (signals.load[1], signals.belt[1], mass.transverse_damping, mass.transverse_stiffness),
-        )
+        _against_the_belt(load, belt, own, times)
+        for load, belt, own in zip(signals.load, signals.belt, springs, strict=True)
     )
     if along is None or across is None:
         return None
-    pressed = piecewise(signals.normal_load, edges, mass.normal_load).at(tau, k)[0]
+    pressed = piecewise(signals.normal_load, edges, mass.normal_load).at(times.tau, times.k)[0]
     return _Held(along + 1j * across, pressed, mass.normal_load)
 
 
-def _times(edges: Floats, quickest: float) -> tuple[Floats, PieceNumbers]:
-    """Times on every piece, both ends included, and the pieces they are on."""
+class _Times(NamedTuple):
+    """Many times on pieces between edges, and the pieces they are on."""
+
+    edges: Floats
+    tau: Floats
+    k: PieceNumbers
+
+
+def _times(edges: Floats, quickest: float) -> _Times:
+    """Both ends of every piece included."""
     dense = min(quickest * 1440.0 / (2.0 * math.pi), 20000.0 / edges[-1])
     counts = 3 + np.ceil(np.diff(edges) * dense).astype(int)
     pairs = zip(edges[:-1], edges[1:], counts.tolist(), strict=True)
     tau = np.concatenate([np.linspace(start, stop, n) for start, stop, n in pairs])
-    return tau, np.repeat(np.arange(len(counts)), counts)
+    return _Times(edges, tau, np.repeat(np.arange(len(counts)), counts))
 
 
-def _against_the_belt(
-    load: Signal, belt: Signal, damping: float, stiffness: float, edges: Floats, tau: Floats, k: PieceNumbers
-) -> Floats | None:
-    """Load less inertia, dashpot and spring of a mass that goes with the belt along one direction."""
+def _against_the_belt(load: Signal, belt: Signal, own: tuple[float, float], times: _Times) -> Floats | None:
+    """Load less inertia, dashpot and spring (own) of a mass that goes with the belt along one direction."""
+    (damping, stiffness), (edges, tau, k) = own, times
     path = piecewise(belt, edges)
     places = np.arange(len(edges) - 1)
     first, last = path.at(edges[:-1], places)[0], path.at(edges[1:], places)[0]

@@ -32,21 +32,23 @@ def _with_a_reversal(starts: list[LegStart], problem: NoStick) -> list[LegStart]
     """Slip where stick was to begin: all the while, or a little where friction comes to hold the mass after all."""
     wrong = starts[problem.leg]
     reversed_, rest = wrong._replace(sign=problem.side), starts[problem.leg + 1 :]
-    if problem.bend > 0.0:
-        length = 2.0 * problem.excess / problem.bend
+    excess, bend, _x = problem.beyond
+    if bend > 0.0:
+        length = 2.0 * excess / bend
         rest = [wrong._replace(tau=wrong.tau + length), *rest]
     return _joined([*starts[: problem.leg], reversed_, *rest])
 
 
 def _with_a_leg(starts: list[LegStart], problem: Wrong) -> list[LegStart]:
     """A short stick where slip comes to rest, a short slip where stick exceeds the limit."""
-    if not (problem.excess > 0.0 and problem.bend > 0.0):
+    excess, bend, x = problem.beyond
+    if not (excess > 0.0 and bend > 0.0):
         raise problem
     leg = starts[problem.leg]
-    tau, half = leg.tau + problem.after, math.sqrt(2.0 * problem.excess / problem.bend)
+    tau, half = leg.tau + problem.after, math.sqrt(2.0 * excess / bend)
     first, last = (tau - half, tau) if leg.sign else (tau - half, tau + 2.0 * half)
     inside = 0 if leg.sign else problem.side
-    new = [LegStart(inside, first, problem.x, leg.v), LegStart(leg.sign, last, problem.x, leg.v)]
+    new = [LegStart(inside, first, x, leg.v), LegStart(leg.sign, last, x, leg.v)]
     return _inserted(starts, problem.leg + 1, new)
 
 

@@ -35,26 +35,30 @@ REACH = 0.97
 """Share of a step's bound that is gone."""
 
 
+class Beyond(NamedTuple):
+    """How far beyond zero a function is that was to be positive.
+
+    bend: its second derivative there, at the start of stick its first. x: position.
+    """
+
+    excess: float
+    bend: float
+    x: float = 0.0
+
+
+_UNKNOWN = Beyond(0.0, 0.0)
+
+
 class Wrong(NotProved):
     """A leg is not what it is taken for.
 
-    leg: its number. after: how long after its start [1/omega_1]. excess: how far beyond zero the function is there
-    that was to be positive; bend: its second derivative, at the start of stick its first. x: position. side: of
-    friction's limit, in stick.
+    leg: its number. after: how long after its start [1/omega_1]. beyond: the function that shows it, where that is
+    known. side: of friction's limit, in stick.
     """
 
-    def __init__(
-        self,
-        what: str,
-        leg: int,
-        after: float,
-        excess: float = 0.0,
-        bend: float = 0.0,
-        x: float = 0.0,
-        side: int = 0,
-    ) -> None:
+    def __init__(self, what: str, leg: int, after: float, beyond: Beyond = _UNKNOWN, side: int = 0) -> None:
         super().__init__(what)
-        self.leg, self.after, self.excess, self.bend, self.x, self.side = leg, after, excess, bend, x, side
+        self.leg, self.after, self.beyond, self.side = leg, after, beyond, side
 
 
 class NoReversal(Wrong):
@@ -238,7 +242,7 @@ def _check_stick(mechanics: Mechanics, leg: OrbitLeg, place: int) -> None:
             first = margin(arb(0))
             if not first.value > 0:
                 excess, rate = -float(first.value.mid()), float(first.rate.mid())
-                raise NoStick(NOT_HELD, place, passed, excess, rate, side=side)
+                raise NoStick(NOT_HELD, place, passed, Beyond(excess, rate), side)
             released = k == len(every) - 1 and not leg.after.fixed and leg.after.sign == side
             try:
                 _march(margin, arb(0), length, released, place, passed)
@@ -303,7 +307,7 @@ def _below_zero(function: Any, at: Any, length: Any, place: int, passed: float) 
     else:
         low = function(at)
         excess, turn, x = (float(each.mid()) for each in (-low.value, bend, low.x))
-        return Wrong(PASSED, place, passed + float(at), excess, turn, x)
+        return Wrong(PASSED, place, passed + float(at), Beyond(excess, turn, x))
     return Wrong(PASSED, place, passed + float(at))
 
 

@@ -21,7 +21,7 @@ from frictionlab.methods.exact.return_map import (
 from frictionlab.quantities import EPSILON
 from frictionlab.scene.body import Mass
 
-MEAN, ERROR, FLOQUET, STATE_X, STATE_W, LEGS, RESIDUAL, ROUNDING, FOUND = range(9)
+MEAN, ERROR, FLOQUET, STATE_X, STATE_W, LEGS, RESIDUAL, ROUNDING, FOUND, COLUMNS = range(10)
 MOST_MAPS = 2000
 MOST_PERIODS = 100_000
 

@@ -163,7 +163,7 @@ class _Curve:
         n = len(scenes)
         self.status: list[Status] = ["ok"] * n
         self.reason, self.model, self.error_kind = [""] * n, [EVENTS] * n, ["estimated"] * n
-        self.rows = np.full((n, 9), np.nan)
+        self.rows = np.full((n, curve.COLUMNS), np.nan)
         self.unique = [PROVED] * n
         self.window = np.full(n, np.nan)
         self.bounds = np.full((n, 2), np.nan)
@@ -241,7 +241,7 @@ class _Curve:
 
     def _settles(self, i: int) -> bool:
         """Simulate from scene.initial until nothing changes."""
-        row = np.full(9, np.nan)
+        row = np.full(curve.COLUMNS, np.nan)
         speed = self.sides[i] * self.belt_speeds[i] + 0.0
         periods = KernelCall(curve.iterate_until_fixed)(
             self.mass, self.coefficient, speed, self._start(i), row
@@ -271,7 +271,7 @@ class _Curve:
     def _solve(self, places: np.ndarray) -> None:
         """Each belt speed once: both directions share one solution where the mean is exactly odd."""
         speeds, back = np.unique(self.sides[places] * self.belt_speeds[places] + 0.0, return_inverse=True)
-        rows = np.full((len(speeds), 9), np.nan)
+        rows = np.full((len(speeds), curve.COLUMNS), np.nan)
         _, self.seconds = KernelCall(curve.continue_in_speed).timed(self.mass, self.coefficient, speeds, rows)
         self.rows[places] = rows[back]
 

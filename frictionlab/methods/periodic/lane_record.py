@@ -31,7 +31,7 @@ MOST_RECORDED = 600
 """Steps of an orbit; one that needs more is recorded by itself."""
 MOST_AT_ONCE = 128
 """Lanes of a record, where Python runs it: a step of each takes 6 kB."""
-NUMBERS = 7
+TAU, X, X2, V, V2, FRICTION, FRICTION2, NUMBERS = range(8)
 """Of a node: time, and position, velocity and friction, each along x1 and across."""
 
 
@@ -43,13 +43,13 @@ def _note(before: LaneWay, after: LaneWay, nodes: Any) -> None:
     for k in range(NODES.size):
         part = 0.5 * h * (1.0 + NODES[k])
         x, v, f = motion_in_slip(part, before.problem, node, whole)
-        write_lanes(nodes[k, 0], node.tau + part)
-        write_lanes(nodes[k, 1], x.real)
-        write_lanes(nodes[k, 2], x.imag)
-        write_lanes(nodes[k, 3], v.real)
-        write_lanes(nodes[k, 4], v.imag)
-        write_lanes(nodes[k, 5], f.real)
-        write_lanes(nodes[k, 6], f.imag)
+        write_lanes(nodes[k, TAU], node.tau + part)
+        write_lanes(nodes[k, X], x.real)
+        write_lanes(nodes[k, X2], x.imag)
+        write_lanes(nodes[k, V], v.real)
+        write_lanes(nodes[k, V2], v.imag)
+        write_lanes(nodes[k, FRICTION], f.real)
+        write_lanes(nodes[k, FRICTION2], f.imag)
 
 
 @over_lanes
@@ -74,10 +74,10 @@ def _recorded(law: Any, body: Body, rows: LaneRows, accuracy: float, nodes: Any,
 @inner
 def _write_panel(nodes: Any, lane: int, track: Track, row: int) -> None:
     for k in range(NODES.size):
-        track.tau[row, k] = nodes[k, 0, lane]
-        track.x[row, k] = complex(nodes[k, 1, lane], nodes[k, 2, lane])
-        track.v[row, k] = complex(nodes[k, 3, lane], nodes[k, 4, lane])
-        track.friction[row, k] = complex(nodes[k, 5, lane], nodes[k, 6, lane])
+        track.tau[row, k] = nodes[k, TAU, lane]
+        track.x[row, k] = complex(nodes[k, X, lane], nodes[k, X2, lane])
+        track.v[row, k] = complex(nodes[k, V, lane], nodes[k, V2, lane])
+        track.friction[row, k] = complex(nodes[k, FRICTION, lane], nodes[k, FRICTION2, lane])
 
 
 def _write_panel_in_python(nodes: Any, lane: int, track: Track, row: int) -> None:

@@ -23,6 +23,11 @@ from frictionlab.methods.periodic.continuation import Curve, Wanted, first_guess
 from frictionlab.methods.periodic.fixed_point import Goal, stated_error
 from frictionlab.methods.periodic.maps.polar import (
     FIRST_ACCURACY,
+    LONGEST,
+    MIDDLE,
+    MIDWAY,
+    POSITION,
+    RESTED,
     Image,
     Workspace,
     polar_map,
@@ -107,8 +112,8 @@ def _keep(case: Case, search: Search, image: Image) -> None:
     body, room = case.body, search.room
     _monodromy(case, image, room, search.matrix)
     weight = 1.0 / (body.normal_load * span(body))
-    search.sums[0] = root_along(body) ** 2 * weight * room.totals[0].real
-    search.sums[1] = root_across(body) ** 2 * weight * room.totals[0].imag
+    search.sums[0] = root_along(body) ** 2 * weight * room.totals[POSITION].real
+    search.sums[1] = root_across(body) ** 2 * weight * room.totals[POSITION].imag
     for k in range(DIRECTIONS):
         search.gradient[k] = root_along(body) ** 2 * weight * room.tangent.total[k].real
 
@@ -211,8 +216,8 @@ def _as_slip(case: Case, z: Any) -> None:
 @inner
 def _move_origin(case: Case, search: Search, now: SearchState) -> SearchState:
     """Begin the maps in the middle of the longest rest: their unknowns are then positions alone."""
-    times, x, z, period = search.room.times, search.room.totals[1], search.z, span(case.body)
-    origin = times[2] - period if times[2] >= period else times[2]
+    times, x, z, period = search.room.times, search.room.totals[MIDWAY], search.z, span(case.body)
+    origin = times[MIDDLE] - period if times[MIDDLE] >= period else times[MIDDLE]
     z[0], z[1], z[2], z[3] = root_along(case.body) * x.real, 0.0, root_across(case.body) * x.imag, 0.0
     moved = SearchState(origin, now.accuracy, now.image, now.maps, now.work, now.moves + 1, now.stalls, -1.0)
     return _remap(case, search, moved)
@@ -244,7 +249,7 @@ def _newton(case: Case, search: Search, now: SearchState) -> SearchState:
         maps, work = maps + 1, work + max(image.work, 0)
         multiply(search.inverse, search.fresh, left)
         falls = norm(left) <= (1.0 - 0.25 * part) * size or norm(search.fresh) <= 0.5 * length
-        resting = search.room.times[0] >= span(case.body) * (1.0 - 1e-9)
+        resting = search.room.times[RESTED] >= span(case.body) * (1.0 - 1e-9)
         if image.work > 0 and falls and not resting:
             tried = SearchState(
                 now.origin, now.accuracy, now.image, maps - 1, work - image.work, now.moves, 0, -1.0
@@ -306,13 +311,13 @@ def _search(case: Case, search: Search, goal: Goal, now: SearchState) -> SearchS
     while now.maps < MOST_POLAR_MAPS and now.work < PLENTY and now.error < 0.0:
         if now.image.work < 0:
             break
-        if search.room.times[0] >= period * (1.0 - 1e-9):
+        if search.room.times[RESTED] >= period * (1.0 - 1e-9):
             if case.belt_speed == 0.0:
                 break
             now = _carried(case, search, now)
             continue
         slips = search.z[1] != 0.0 or search.z[3] != 0.0
-        if slips and search.room.times[1] > 0.0 and now.moves < MOST_MOVES:
+        if slips and search.room.times[LONGEST] > 0.0 and now.moves < MOST_MOVES:
             now = _move_origin(case, search, now)
             continue
         if not _invert(search, 0.0) and not _invert(search, 1e-9):
@@ -349,7 +354,7 @@ def _solve(case: Case, search: Search, goal: Goal, state: Any, row: Any) -> None
     now = _search(case, search, goal, _begin(case, search, True))
     if now.error < 0.0:
         now = _search(case, search, goal, _begin(case, search, False))
-    stuck = search.room.times[0] / period
+    stuck = search.room.times[RESTED] / period
     w = complex(search.z[1], search.z[3])
     x = complex(search.z[0] / root_along(body), search.z[2] / root_across(body))
     start = SlipPlace(now.origin, x, abs(w), math.atan2(w.imag, w.real))

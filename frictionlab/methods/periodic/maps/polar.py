@@ -56,11 +56,15 @@ REST_TAKES = 20.0
 """A rest may take as long as so many corrections."""
 
 
+POSITION, MIDWAY = 0, 1
+RESTED, LONGEST, MIDDLE, LEFT_OUT = 0, 1, 2, 3
+
+
 class Workspace(NamedTuple):
     """Workspace for a map: that of its steps, the tangent, and what is summed on the way.
 
-    totals: the integral of position, and the position half way through the longest rest [2]; times: at rest in all,
-    the longest rest and when its middle is; how often slip was left out [4].
+    totals [2]: POSITION, its integral, and MIDWAY, that half way through the longest rest. times [4]: at rest in all
+    (RESTED), the LONGEST rest and its MIDDLE; how often slip was LEFT_OUT.
     """
 
     step: StepRoom
@@ -128,7 +132,7 @@ def _set_out(case: Case, tau: float, x: complex, w: complex, room: Workspace) ->
     if not resting:
         tangent.r[1], tangent.theta[1] = unit.real, unit.imag / r
         tangent.r[3], tangent.theta[3] = -unit.imag, unit.real / r
-    room.totals[0], room.totals[1] = 0j, 0j
+    room.totals[POSITION], room.totals[MIDWAY] = 0j, 0j
     for k in range(4):
         room.times[k] = 0.0
     place = SlipPlace(tau, x, 0.0, 0.0) if resting else SlipPlace(tau, x, r, cmath.phase(w))
@@ -146,11 +150,11 @@ def _rest(case: Case, way: Way, end: float, room: Workspace, track: Track) -> Wa
     lasts = until - tau
     if track.stick.size > 0 and lasts > 0.0:
         note_stick(track, tau, lasts, True, anchored(case.law, body, belt_speed, 1.0, tau), tau, place.x)
-    room.times[0] += lasts
-    if lasts > room.times[1]:
-        room.times[1], room.times[2] = lasts, tau + 0.5 * lasts
-        room.totals[1] = place.x + belt_path(body, belt_speed, tau, tau + 0.5 * lasts)
-    room.totals[0] += lasts * place.x + belt_path_integral(body, belt_speed, tau, until)
+    room.times[RESTED] += lasts
+    if lasts > room.times[LONGEST]:
+        room.times[LONGEST], room.times[MIDDLE] = lasts, tau + 0.5 * lasts
+        room.totals[MIDWAY] = place.x + belt_path(body, belt_speed, tau, tau + 0.5 * lasts)
+    room.totals[POSITION] += lasts * place.x + belt_path_integral(body, belt_speed, tau, until)
     x = place.x + belt_path(body, belt_speed, tau, until)
     held, _rate, _bend = holding_force(body, belt_speed, instant_at(body, until), x)
     for k in range(DIRECTIONS):
@@ -173,7 +177,9 @@ def _land(case: Case, place: SlipPlace, wait: float, room: Workspace, track: Tra
         hop = Hop(place.tau, wait, place.x, w, -w, (held + w / wait) / pressed)
         flow = anchored(case.law, body, belt_speed, 1.0, place.tau)
         note_hop(track, place.tau, wait, False, flow, hop)
-    room.totals[0] += wait * (place.x + wait * w / 3.0) + belt_path_integral(body, belt_speed, place.tau, tau)
+    room.totals[POSITION] += wait * (place.x + wait * w / 3.0) + belt_path_integral(
+        body, belt_speed, place.tau, tau
+    )
     x = place.x + belt_path(body, belt_speed, place.tau, tau) + 0.5 * wait * w
     for k in range(DIRECTIONS):
         tangent.total[k] += wait * tangent.x[k]
@@ -224,7 +230,7 @@ def _give_way(case: Case, place: SlipPlace, near: Approach, room: Workspace, tra
     """Slip that no step resolves is as good as rest: it is left out, and time goes on a moment."""
     if abs(near.held) < near.limit:
         return _land(case, place, 0.0, room, track)
-    room.times[3] += 1.0
+    room.times[LEFT_OUT] += 1.0
     way = _land(case, place, 1e-10 / case.body.frequency, room, track)
     return Way(way.place, True, False, 0.0, 0.0)
 
@@ -259,7 +265,7 @@ def _slip(case: Case, way: Way, end: float, accuracy: float, room: Workspace, tr
         return Way(place, False, way.leaving, max(0.2, growth) * h, -h)
     if track.stick.size > 0:
         _note_slip(track, place.tau, h, False, case, place, h, step)
-    room.totals[0] += end_step(case, place, h, step, room.tangent)
+    room.totals[POSITION] += end_step(case, place, h, step, room.tangent)
     tau = place.tau + h if end - place.tau > h else end
     place = SlipPlace(tau, step.x[step.x.size - 1], step.r[step.x.size], step.theta[step.x.size])
     return Way(place, False, False, growth * h, h)
@@ -309,7 +315,7 @@ def polar_map(
     corrections[0] = 0.0
     while end - way.place.tau > gap:
         corrections[0] += REST_TAKES if way.resting else 1.0
-        if corrections[0] > MOST_CORRECTIONS_A_MAP or room.times[3] > MOST_LEFT_OUT:
+        if corrections[0] > MOST_CORRECTIONS_A_MAP or room.times[LEFT_OUT] > MOST_LEFT_OUT:
             return Image(way.place.x, 0j, -1)
         at_rest = way.resting
         way = _rest(case, way, end, room, track) if at_rest else _slip(case, way, end, finest, room, track)

@@ -23,26 +23,35 @@ class Waves(NamedTuple):
     cosine: Any
 
 
+class Function(NamedTuple):
+    """A function of time, smooth in every piece: waves, and lines [pieces], their values where it begins and slopes.
+
+    Along x1 and x2 as x1 + i x2, a normal load real.
+    """
+
+    waves: Waves
+    lines: Any
+    slopes: Any
+
+    def reversed(self) -> Function:
+        """The same with the other sign."""
+        frequency, sine, cosine = self.waves
+        return Function(Waves(frequency, -sine, -cosine), -self.lines, -self.slopes)
+
+
 class Varying(NamedTuple):
     """What changes in time otherwise than as one sine, in pieces between corners of any of its functions.
 
-    Within a piece every function is smooth, and beyond its ends it goes on as within.
-    edges [pieces + 1]: from 0 to the common period; lines [pieces]: value at the beginning of each piece, and slope.
-    periods: of the drive in a common period. quickest: the highest frequency of any wave, at least that of the drive.
-    belt_swing: the largest velocity of the belt's vibration.
+    Beyond the ends of a piece every function goes on as within.
+    edges [pieces + 1]: from 0 to the common period. periods: of the drive in a common period. quickest: the highest
+    frequency of any wave, at least that of the drive. belt_swing: the largest velocity of the belt's vibration.
     constant_contact: whether bristles keep the stiffness of the mean normal load.
     """
 
-    load: Waves
-    belt: Waves
-    normal_load: Waves
+    load: Function
+    belt: Function
+    normal_load: Function
     edges: Floats
-    load_lines: Any
-    load_slopes: Any
-    belt_lines: Any
-    belt_slopes: Any
-    normal_lines: Floats
-    normal_slopes: Floats
     periods: float
     quickest: float
     belt_swing: float
@@ -50,26 +59,15 @@ class Varying(NamedTuple):
 
 
 def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Varying:
-    """The numbers of signals, those along x1 and x2 as x1 + i x2; frequency: of the drive."""
+    """The numbers of signals; frequency: of the drive."""
     edges = signals.edges()
-    middles = 0.5 * (edges[:-1] + edges[1:])
-    half = 0.5 * np.diff(edges)
     every = (*signals.load, *signals.belt, signals.normal_load)
     quickest = max((wave.frequency for each in every for wave in each.waves), default=frequency)
-    load, load_lines, load_slopes = _planar_waves(*signals.load, middles, half)
-    belt, belt_lines, belt_slopes = _planar_waves(*signals.belt, middles, half)
-    normal, normal_lines, normal_slopes = _planar_waves(signals.normal_load, Signal(), middles, half)
     return Varying(
-        load=load,
-        belt=belt,
-        normal_load=normal,
+        load=_function(signals.load, edges),
+        belt=_function(signals.belt, edges),
+        normal_load=_function((signals.normal_load, Signal()), edges),
         edges=edges,
-        load_lines=load_lines,
-        load_slopes=load_slopes,
-        belt_lines=belt_lines,
-        belt_slopes=belt_slopes,
-        normal_lines=normal_lines.real.copy(),
-        normal_slopes=normal_slopes.real.copy(),
         periods=float(round(signals.period * frequency / (2.0 * math.pi))),
         quickest=max(quickest, frequency),
         belt_swing=math.hypot(*(max(map(abs, each.extremes(signals.period))) for each in signals.belt)),
@@ -77,17 +75,20 @@ def varying_of(signals: Signals, frequency: float, constant_contact: bool) -> Va
     )
 
 
-def _planar_waves(along: Signal, across: Signal, middles: Floats, half: Floats) -> tuple[Waves, Any, Any]:
-    """The waves; the values of the lines at the beginnings of all pieces, and their slopes."""
+def _function(pair: tuple[Signal, Signal], edges: Floats) -> Function:
+    """Of its parts along x1 and x2."""
+    along, across = pair
     waves = [(each.frequency, each.phasor, 0j) for each in along.waves]
     waves += [(each.frequency, 0j, each.phasor) for each in across.waves]
     frequency = np.array([each for each, _, _ in waves])
     sine = np.array([complex(first.real, second.real) for _, first, second in waves], dtype=np.complex128)
     cosine = np.array([complex(first.imag, second.imag) for _, first, second in waves], dtype=np.complex128)
+    middles = 0.5 * (edges[:-1] + edges[1:])
     (first, rise), (second, rise_2) = along.lines_at(middles), across.lines_at(middles)
     slopes = rise + 1j * rise_2
-    lines = first + 1j * second - half * slopes
-    return Waves(frequency, sine, cosine), lines, slopes
+    return Function(
+        Waves(frequency, sine, cosine), first + 1j * second - 0.5 * np.diff(edges) * slopes, slopes
+    )
 
 
 PER_WAVE = 5
@@ -139,56 +140,30 @@ def packed(varying: Any, planar: bool) -> Any:
     """The table of what varies; nothing where nothing does."""
     if not isinstance(varying, Varying):
         return varying
-    waves = varying.load, varying.belt, varying.normal_load
-    counts = [each.frequency.size for each in waves]
-    ends = np.cumsum([PER_WAVE * count for count in counts])
-    lines = np.column_stack(
-        [
-            varying.load_lines.real,
-            varying.load_lines.imag,
-            varying.load_slopes.real,
-            varying.load_slopes.imag,
-            varying.belt_lines.real,
-            varying.belt_lines.imag,
-            varying.belt_slopes.real,
-            varying.belt_slopes.imag,
-            varying.normal_lines,
-            varying.normal_slopes,
-        ]
+    functions = varying.load, varying.belt, varying.normal_load
+    counts = [each.waves.frequency.size for each in functions]
+    ends = np.cumsum([PER_WAVE * count for count in counts]).tolist()
+    every = [part for each in functions[:2] for line in each[1:] for part in (line.real, line.imag)]
+    lines = np.column_stack([*every, *(line.real for line in varying.normal_load[1:])])
+    table = np.concatenate([*(_rows(each.waves) for each in functions), lines.ravel(), varying.edges])
+    load, belt, normal = (
+        Course(end - PER_WAVE * count, count, *(_number(line[0], plane) for line in each[1:]))
+        for end, count, each, plane in zip(ends, counts, functions, (planar, planar, False), strict=True)
     )
-    table = np.concatenate([*(_rows(each) for each in waves), lines.ravel(), varying.edges])
-    kind = complex if planar else float
-    load, belt = (
-        Course(int(end) - PER_WAVE * count, count, kind(_part(value, planar)), kind(_part(slope, planar)))
-        for end, count, value, slope in zip(
-            ends[:2],
-            counts[:2],
-            (varying.load_lines[0], varying.belt_lines[0]),
-            (varying.load_slopes[0], varying.belt_slopes[0]),
-            strict=True,
-        )
+    whole = Whole(
+        lines=ends[2],
+        edges=ends[2] + lines.size,
+        pieces=len(lines),
+        periods=varying.periods,
+        quickest=varying.quickest,
+        belt_swing=varying.belt_swing,
     )
-    normal = Course(int(ends[1]), counts[2], float(varying.normal_lines[0]), float(varying.normal_slopes[0]))
-    return Packed(
-        table=table,
-        whole=Whole(
-            lines=int(ends[2]),
-            edges=int(ends[2]) + lines.size,
-            pieces=len(lines),
-            periods=varying.periods,
-            quickest=varying.quickest,
-            belt_swing=varying.belt_swing,
-        ),
-        begins=0.0,
-        load=load,
-        belt=belt,
-        normal_load=normal,
-        keeps_stiffness=(1.0,) if varying.constant_contact else (),
-    )
+    stiff = (1.0,) if varying.constant_contact else ()
+    return Packed(table, whole, 0.0, load, belt, normal, stiff)
 
 
-def _part(value: Any, planar: bool) -> Any:
-    return value if planar else value.real
+def _number(value: Any, planar: bool) -> Any:
+    return complex(value) if planar else float(value.real)
 
 
 def _rows(waves: Waves) -> Any:

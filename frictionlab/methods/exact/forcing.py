@@ -93,7 +93,7 @@ def resonates(mass: Mass, within: float) -> bool:
     frequency = np.concatenate(
         [
             each.frequency[each.sine.real**2 + each.cosine.real**2 > 0.0]
-            for each in (varying.load, varying.normal_load)
+            for each in (varying.load.waves, varying.normal_load.waves)
         ]
     )
     return bool(np.any(np.abs(_stiffness(frequency, 0.5 * mass.damping)) < within))
@@ -105,7 +105,7 @@ def _stiffness(frequency: Floats, b: float) -> Any:
 
 
 def _waves(varying: Varying, b: float, coefficient: float) -> Floats:
-    every = varying.load, varying.belt, varying.normal_load
+    every = varying.load.waves, varying.belt.waves, varying.normal_load.waves
     frequency = np.unique(np.concatenate([each.frequency for each in every]))
     if len(frequency) == 0:
         return np.zeros((0, WAVE_COLUMNS))
@@ -136,8 +136,7 @@ def _pieces(varying: Varying, b: float, coefficient: float) -> Floats:
     edges, damping = varying.edges, 2.0 * b
     length = np.diff(edges)
     load, rise, belt, gain = (
-        each.real
-        for each in (varying.load_lines, varying.load_slopes, varying.belt_lines, varying.belt_slopes)
+        each.real for part in (varying.load, varying.belt) for each in (part.lines, part.slopes)
     )
     travel = length * (belt + 0.5 * length * gain)
     path = np.cumsum(travel) - travel
@@ -156,8 +155,8 @@ def _pieces(varying: Varying, b: float, coefficient: float) -> Floats:
         ARC: load - damping * rise - path,
         ARC + 1: rise - belt,
         ARC + 2: -gain,
-        RAMP: coefficient * varying.normal_lines,
-        RAMP + 1: coefficient * varying.normal_slopes,
+        RAMP: coefficient * varying.normal_load.lines.real,
+        RAMP + 1: coefficient * varying.normal_load.slopes.real,
         LINE: belt,
         LINE + 1: gain,
         PATH: path,

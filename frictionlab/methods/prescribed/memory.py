@@ -155,6 +155,5 @@ def _moved_belt(varying: Any, like: complex) -> Any:
     """What varies, where the belt moves instead of the body."""
     if not varying:
         return varying
-    belt = varying.belt._replace(sine=-varying.belt.sine, cosine=-varying.belt.cosine)
-    moved = varying._replace(belt=belt, belt_lines=-varying.belt_lines, belt_slopes=-varying.belt_slopes)
+    moved = varying._replace(belt=varying.belt.reversed())
     return packed(moved, isinstance(like, complex))

@@ -120,6 +120,7 @@ def _interpolate(curve: LaneCurve, places: Any, count: int, i: int, z: Any) -> N
     belt_speeds = curve.belt_speeds
     for row in range(z.size):
         z[row] = 0.0
+    # Lagrange's weights; two points of one belt speed are told apart by neither
     for a in range(count):
         weight = 1.0
         for b in range(count):
@@ -166,6 +167,7 @@ def _judged(body: Body, goal: Goal, curve: LaneCurve, group: Group, k: int, now:
             broyden(inverse, step, before, group.work)
     copy(fresh, before)
     multiply(inverse, fresh, step)
+    # no finer map follows: what this one has wrong counts whole
     floor = rounding_of(curve.states[i], rows.belt_speed[k])
     error = stated_error(0.0, mean_error(body, fresh, norm(step)), (floor + now.accuracy) / body.normal_load)
     closes = error <= goal.tolerance and now.accuracy <= now.enough
@@ -220,6 +222,7 @@ def _close_group(law: Any, body: Body, goal: Goal, curve: LaneCurve, group: Grou
         group.active[k], expected = True, max(expected, _expected(curve, i))
         floor = max(floor, rounding_of(curve.states[i], curve.belt_speeds[i]))
     finest, _near = first_accuracy(law, body, goal.tolerance)
+    # points beside known ones begin with maps as fine as the residual that is expected of their guess
     last = max(finest, floor) / FINER_IN_LANES
     accuracy, before = max(last, 1e-4 * min(expected, body.normal_load)), 0.0
     for maps in range(1, MOST_LANE_MAPS + 1):
@@ -233,6 +236,7 @@ def _close_group(law: Any, body: Body, goal: Goal, curve: LaneCurve, group: Grou
                 group.active[k] = _judged(body, goal, curve, group, k, now)
                 if group.active[k]:
                     length = max(length, norm(group.before[k]))
+        # a map need not be much more exact than what is left open
         before, accuracy = accuracy, max(last, min(accuracy, 1e-4 * length))
 
 

@@ -98,6 +98,7 @@ def _map(case: Case, search: Search, z: Any, residual: Any, origin: float, accur
 @inner
 def _monodromy(case: Case, image: Image, room: Workspace, matrix: Any) -> None:
     """The derivative of the last map in the norm of energy."""
+    # slip is known by size and angle: d(r exp(i theta)) = exp(i theta) (dr + i r dtheta)
     r, body, tangent = abs(image.w), case.body, room.tangent
     turned = image.w / r if r > 0.0 else 0j
     for k in range(DIRECTIONS):
@@ -111,6 +112,7 @@ def _keep(case: Case, search: Search, image: Image) -> None:
     """Take over what the last map has left in its room: derivative, means and their gradient."""
     body, room = case.body, search.room
     _monodromy(case, image, room, search.matrix)
+    # the balance of momentum over a period: springs carry what friction does, stiffness*mean(x) = load*mean(T)
     weight = 1.0 / (body.normal_load * span(body))
     search.sums[0] = root_along(body) ** 2 * weight * room.totals[POSITION].real
     search.sums[1] = root_across(body) ** 2 * weight * room.totals[POSITION].imag
@@ -247,6 +249,7 @@ def _newton(case: Case, search: Search, now: SearchState) -> SearchState:
             search.trial[k] = search.z[k] + part * search.step[k]
         image = _map(case, search, search.trial, search.fresh, now.origin, now.accuracy)
         maps, work = maps + 1, work + max(image.work, 0)
+        # the natural test: what is left of the correction by the derivative before, whatever the residual does
         multiply(search.inverse, search.fresh, left)
         falls = norm(left) <= (1.0 - 0.25 * part) * size or norm(search.fresh) <= 0.5 * length
         resting = search.room.times[RESTED] >= span(case.body) * (1.0 - 1e-9)
@@ -275,6 +278,7 @@ def _unstall(case: Case, search: Search, now: SearchState) -> SearchState:
 @inner
 def _judge(case: Case, search: Search, now: SearchState, goal: Goal) -> SearchState:
     """The error of the mean by the same state mapped with much finer steps; the end where it is small enough."""
+    # to first order the mean of the closed orbit: that of this one and what its residual changes in it
     coarse = search.sums[0] + _dot(search.adjoint, search.residual)
     before, accuracy = search.residual.copy(), now.accuracy / MUCH_FINER
     finer = SearchState(now.origin, accuracy, now.image, now.maps, now.work, now.moves, now.stalls, -1.0)
@@ -320,6 +324,7 @@ def _search(case: Case, search: Search, goal: Goal, now: SearchState) -> SearchS
         if slips and search.room.times[LONGEST] > 0.0 and now.moves < MOST_MOVES:
             now = _move_origin(case, search, now)
             continue
+        # multipliers may be one to rounding where rest lasts: then those of a map that damps a little more
         if not _invert(search, 0.0) and not _invert(search, 1e-9):
             now = _unstall(case, search, now)
             continue

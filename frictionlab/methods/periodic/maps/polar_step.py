@@ -133,11 +133,13 @@ def friction_slope(case: Case, r: float) -> float:
 @inner
 def _forces(case: Case, place: SlipPlace, h: float, room: StepRoom) -> None:
     """Positions, friction, and forces turned so that the slip is real, at the stages."""
+    # slip w = r exp(i theta): friction acts against r alone, what turns slip is the force across it
     for j in range(STAGES):
         room.along[j] = complex(math.cos(room.theta[j + 1]), math.sin(room.theta[j + 1]))
         room.v[j] = room.carried[j] + room.r[j + 1] * room.along[j]
         room.rub[j] = room.pressed[j] * case.law.sliding_friction(room.r[j + 1])
         room.slope[j] = room.pressed[j] * friction_slope(case, room.r[j + 1])
+    # x at a stage is the integral of v by the collocation polynomial through the stages
     for j in range(STAGES):
         way = 0.0 * place.x
         for k in range(STAGES):
@@ -159,11 +161,14 @@ def _turning(j: int, room: StepRoom) -> float:
 @inner
 def _assemble(case: Case, h: float, room: StepRoom) -> None:
     """The Jacobian of the stages' equations: rows and columns first of r, then of theta."""
+    # r' = Re(force) - friction(r) and r theta' = Im(force), each times h; the inverse of the collocation matrix gives
+    # the derivatives at the stages from the values there
     n = STAGES
     for j in range(n):
         back = room.along[j].conjugate()
         for k in range(n):
             same = 1.0 if j == k else 0.0
+            # w = r exp(i theta) moves along itself with r, and across itself with theta
             by_r = room.along[k]
             by_theta = room.r[k + 1] * complex(-by_r.imag, by_r.real)
             pull = back * restoring_force(case.body, h * MATRIX[j, k] * by_r, same * by_r)
@@ -172,6 +177,7 @@ def _assemble(case: Case, h: float, room: StepRoom) -> None:
             pull = back * restoring_force(case.body, h * MATRIX[j, k] * by_theta, same * by_theta)
             room.matrix[j, n + k] = h * pull.real
             room.matrix[n + j, n + k] = room.r[j + 1] * INVERSE[j, k] + h * pull.imag
+        # the force is turned by -theta of its own stage
         room.matrix[j, j] += h * room.slope[j]
         room.matrix[j, n + j] -= h * room.force[j].imag
         room.matrix[n + j, j] += _turning(j, room)

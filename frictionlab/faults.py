@@ -54,25 +54,14 @@ def describe_error(problem: BaseException, files: Collection[str]) -> str:
 
 
 def text_of_error(problem: BaseException) -> str:
-    """Type and message of an error, whatever its class does when asked for the message."""
-    try:
-        text = str(problem)
-    except KeyboardInterrupt:
-        raise
-    except BaseException as another:
-        text = f"its message raises {type(another).__name__}"
-    text = re.sub(r"\s*For further information visit \S+$", "", text)  # pydantic's
+    """Type and message of an error."""
+    text = re.sub(r"\s*For further information visit \S+$", "", str(problem))  # pydantic's
     return _cut(f"{type(problem).__name__}: {text}" if text else type(problem).__name__)
 
 
 def shown(value: object) -> str:
-    """A value as Python writes it, whatever its class does when asked to."""
-    try:
-        return _cut(repr(value))
-    except KeyboardInterrupt:
-        raise
-    except BaseException as problem:
-        return f"a {type(value).__name__} that cannot be shown ({type(problem).__name__})"
+    """A value as Python writes it."""
+    return _cut(repr(value))
 
 
 def _cut(text: str) -> str:

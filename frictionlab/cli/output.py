@@ -50,12 +50,10 @@ _apart: list[TextIO] = []
 @contextmanager
 def results_apart() -> Iterator[None]:
     """Within, only results reach stdout: what else is printed, by a plugin or by a kernel, goes to stderr."""
-    from frictionlab.registry.guard import ForwardedText
-
     stdout = sys.stdout
     results, number = _copy_of(stdout)
     _apart.append(results)
-    sys.stdout = ForwardedText(sys.stderr)
+    sys.stdout = sys.stderr
     try:
         yield
     finally:

@@ -21,7 +21,7 @@ from frictionlab.registry.entry_points import (
     open_entry_point,
 )
 from frictionlab.registry.law_file import code_around
-from frictionlab.registry.smoke_test import fault_with_values
+from frictionlab.registry.smoke_test import faults_of_methods
 
 __all__ = [
     "INSTALLED_LAWS",
@@ -51,12 +51,14 @@ def method_names() -> list[str]:
 
 def law_class(name: str) -> type[FrictionLaw]:
     """The law of this name. Raises KeyError for an unknown name, BrokenPlugin for one that cannot be used."""
-    return _usable(_load(LAWS, name))
+    found: type[FrictionLaw] = _load(LAWS, name)
+    return found
 
 
 def method_class(name: str) -> type[Method]:
     """The method of this name. Raises KeyError for an unknown name, BrokenPlugin for one that is broken."""
-    return _usable(_load(METHODS, name))
+    found: type[Method] = _load(METHODS, name)
+    return found
 
 
 @cache
@@ -105,13 +107,12 @@ class Laws:
         """The law of this name. Raises KeyError for an unknown name, BrokenPlugin for one that cannot be used."""
         if name not in self._own:
             return law_class(name)
-        return (
-            _usable(_checked(self._own[name], self._homes[name])) if name in self._homes else self._own[name]
-        )
+        law = self._own[name]
+        return _checked(law, self._homes[name]) if name in self._homes else law
 
     def check(self, name: str, law: FrictionLaw) -> None:
         """Raises BrokenPlugin where a law fails with its given parameters."""
-        if from_outside(type(law)) and (wrong := fault_with_values(law)):
+        if from_outside(type(law)) and (wrong := next(faults_of_methods(law), "")):
             home = self._homes.get(name) or home_of(_entry_points(LAWS)[name][0])
             raise home.broken(wrong)
 
@@ -140,23 +141,8 @@ def _clash_message(doors: Sequence[EntryPoint]) -> str:
 
 @cache
 def _load(group: str, name: str) -> Any:
-    """The class of this name, or its BrokenPlugin: cached, so that a law that hangs is tried once."""
-    try:
-        return open_entry_point(_entry_points(group)[name], FrictionLaw if group == LAWS else Method)
-    except BrokenPlugin as problem:
-        return problem
+    """The class of this name. Raises KeyError, BrokenPlugin."""
+    return open_entry_point(_entry_points(group)[name], FrictionLaw if group == LAWS else Method)
 
 
-@cache
-def _checked(law: type[FrictionLaw], home: Home) -> Any:
-    try:
-        return check_class(law, home)
-    except BrokenPlugin as problem:
-        return problem
-
-
-def _usable(found: Any) -> Any:
-    """The class, if it can be used. Raises a new BrokenPlugin otherwise."""
-    if isinstance(found, BrokenPlugin):
-        raise BrokenPlugin(*found.args) from found.__cause__
-    return found
+_checked = cache(check_class)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterator, Sequence
+from importlib import import_module
 from importlib.metadata import EntryPoint
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 from frictionlab.faults import (
@@ -19,10 +21,8 @@ from frictionlab.faults import (
 from frictionlab.laws.arrays import as_written
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.registry import guard
 from frictionlab.registry.bibliography import read_bibtex
-from frictionlab.registry.guard import Meddling, TimeLimitExceeded, guarded, load_guarded
-from frictionlab.registry.smoke_test import fault_with_samples, overridden_methods
+from frictionlab.registry.smoke_test import faults_of_samples, overridden_methods
 
 OWN_PACKAGE = "frictionlab"
 
@@ -81,51 +81,32 @@ def describe_clash(doors: Sequence[EntryPoint]) -> str:
 
 def _load(door: EntryPoint, home: Home) -> Any:
     try:
-        own = door.dist is not None and door.dist.name == OWN_PACKAGE
-        return door.load() if own else load_guarded(door.load)
-    except ModuleNotFoundError as problem:
-        if problem.name and f"{door.module}.".startswith(f"{problem.name}."):
-            raise home.broken(f"does not exist: there is no module '{problem.name}'", problem) from problem
-        raise unloadable(home, problem) from problem
-    except KeyboardInterrupt:
-        raise
-    except BaseException as problem:
-        if isinstance(problem, AttributeError) and _is_of_load(problem):
+        module = import_module(door.module)
+    except (Exception, SystemExit) as problem:
+        if isinstance(problem, ModuleNotFoundError) and f"{door.module}.".startswith(f"{problem.name}."):
             raise home.broken(f"does not exist: {problem}", problem) from problem
         raise unloadable(home, problem) from problem
-
-
-def _is_of_load(problem: AttributeError) -> bool:
-    """Whether the module was imported and only lacks the name of the entry point."""
-    frames = inspect.getinnerframes(problem.__traceback__) if problem.__traceback__ else []
-    return bool(frames) and frames[-1].filename.endswith(
-        ("importlib/metadata/__init__.py", "importlib_metadata/__init__.py", "metadata\\__init__.py")
-    )
+    try:
+        return attrgetter(door.attr)(module)
+    except AttributeError as problem:
+        raise home.broken(f"does not exist: {problem}", problem) from problem
 
 
 def unloadable(home: Home, problem: BaseException) -> BrokenPlugin:
     """The error for a module that cannot be imported."""
     files = outside_files(problem)
-    if isinstance(problem, Meddling):
-        return home.broken(str(problem), problem)
-    if isinstance(problem, TimeLimitExceeded):
-        line = innermost_line(problem, files) or ""
-        return home.broken(
-            f"cannot be loaded: does not end: stopped after {guard.LOADING:g} s{line}", problem
-        )
     if isinstance(problem, ModuleNotFoundError) and problem.name:
         what = f"needs '{problem.name}', which is not installed{innermost_line(problem, files) or ''}"
-        remedy = f"install it, or remove the import: pip install {str(problem.name).partition('.')[0]}"
+        remedy = f"install it, or remove the import: pip install {problem.name.partition('.')[0]}"
         return home._replace(remedy=remedy).broken(what, problem)
-    said = guarded(lambda: describe_error(problem, files))  # the text of an error may be code, too
-    return home.broken(f"cannot be loaded: {said}", problem)
+    return home.broken(f"cannot be loaded: {describe_error(problem, files)}", problem)
 
 
 def check_class(loaded: Any, home: Home) -> Any:
     """The class, after a few trial calls. Raises BrokenPlugin."""
     try:
         wrong = next(_faults(loaded), "")
-    except (Exception, SystemExit) as problem:
+    except Exception as problem:
         said = describe_error(problem, outside_files(problem))
         raise home.broken(f"cannot be checked: {said}", problem) from problem
     if wrong:
@@ -142,8 +123,7 @@ def _faults(loaded: Any) -> Iterator[str]:
     if issubclass(loaded, FrictionLaw) and from_outside(loaded):
         yield from _mutable(loaded)
         yield from _signatures(loaded)
-        if wrong := fault_with_samples(loaded):
-            yield wrong
+        yield from faults_of_samples(loaded)
 
 
 def _missing(loaded: Any) -> Iterator[str]:

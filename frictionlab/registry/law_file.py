@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import copyreg
 import hashlib
 import linecache
@@ -18,9 +17,7 @@ from typing import Any
 from frictionlab.faults import LAW_FILE
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.registry.entry_points import Home, unloadable
-from frictionlab.registry.guard import load_guarded
 
-LARGEST_LAW_FILE = 1_000_000
 _TEXTS: dict[str, str] = {}
 """The text of every law file read, by the name of its module."""
 
@@ -59,8 +56,6 @@ def read_law_file(path: Path) -> LawFile:
     text = text_of(path)
     name = re.sub(r"\W", "_", path.stem)
     module = _module(f"{LAW_FILE}{name}_{_sha256(text)[:12]}", path, text)
-    if wrong := _doubled(text):
-        raise home_of_file(path).broken(f"{wrong}; give one another name")
     return LawFile(path, text, _laws(module, path))
 
 
@@ -98,8 +93,6 @@ def text_of(path: Path) -> str:
     if path.exists() and not path.is_file():
         raise UnreadableLawFile("is not a file")
     try:
-        if path.stat().st_size > LARGEST_LAW_FILE:
-            raise UnreadableLawFile(f"is larger than {LARGEST_LAW_FILE // 10**6} MB; a law is a page of text")
         return path.read_bytes().decode("utf-8")
     except FileNotFoundError:
         raise UnreadableLawFile("no such file") from None
@@ -120,11 +113,9 @@ def _module(name: str, path: Path, text: str) -> ModuleType:
     module.__file__, _TEXTS[name] = str(path), text
     sys.modules[name] = module
     try:
-        load_guarded(lambda: exec(compile(text, str(path), "exec"), module.__dict__))
-    except BaseException as problem:
-        sys.modules.pop(name, None)
-        if isinstance(problem, KeyboardInterrupt):
-            raise
+        exec(compile(text, str(path), "exec"), module.__dict__)
+    except (Exception, SystemExit) as problem:
+        del sys.modules[name]
         raise unloadable(home_of_file(path), problem) from problem
     return module
 
@@ -149,17 +140,6 @@ def _laws(module: ModuleType, path: Path) -> dict[str, type[FrictionLaw]]:
             "defines no law: give it a class derived from frictionlab.SlidingLaw, BristleLaw or MemoryLaw"
         )
     return laws
-
-
-def _doubled(text: str) -> str:
-    """The class that a file defines twice, with both lines; '' for none: the second would replace the first."""
-    lines: dict[str, int] = {}
-    for node in ast.parse(text).body:
-        if isinstance(node, ast.ClassDef):
-            if node.name in lines:
-                return f"class {node.name} is defined twice, in lines {lines[node.name]} and {node.lineno}"
-            lines[node.name] = node.lineno
-    return ""
 
 
 def _pickled(law: FrictionLaw) -> tuple[Any, ...]:

@@ -1,12 +1,11 @@
-"""Trial calls of a law of another package before it is used: interpreted, under a time limit."""
+"""Trial calls of a law of another package before it is used, interpreted."""
 
 from __future__ import annotations
 
 import inspect
-import threading
 from collections.abc import Callable, Iterator
 from numbers import Complex, Real
-from typing import Any, NamedTuple
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -15,15 +14,11 @@ from frictionlab.faults import (
     describe_error,
     files_of,
     from_outside,
-    outside_files,
     shown,
 )
 from frictionlab.laws.arrays import as_written
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.registry.guard import Meddling, guarded
 
-LIMIT = 2.0
-"""Time limit [s] for all calls of a trial; they normally need a millisecond."""
 SAMPLES = (1.0, 0.5, 2.0, 10.0)
 """Trial values for the parameters of a law."""
 
@@ -31,51 +26,8 @@ Fault = str
 """A sentence that says what is wrong with a law."""
 
 
-class _Progress(NamedTuple):
-    """The call in progress when the time limit was reached."""
-
-    what: list[str]
-
-
-def fault_with_values(law: FrictionLaw) -> Fault | None:
-    """The first fault in the methods of a law with these parameters; None if there is none."""
-    return _with_time_limit(lambda now: _first(_faults_of_methods(law, now)))
-
-
-def fault_with_samples(law: type[FrictionLaw]) -> Fault | None:
-    """The first fault of a law when it is built and called with sample parameters; None if there is none."""
-    return _with_time_limit(lambda now: _first(_faults_of_samples(law, now)))
-
-
-def _with_time_limit(work: Callable[[_Progress], Fault | None]) -> Fault | None:
-    """The fault that ``work`` finds, or that it exceeds the time limit; its thread is then abandoned."""
-    now, found = _Progress([""]), []
-
-    def tried() -> None:
-        try:
-            found.append(work(now))
-        except BaseException as problem:
-            found.append(f"{now.what[0]} raises {describe_error(problem, outside_files(problem))}")
-
-    thread = threading.Thread(target=tried, daemon=True)
-    try:
-        guarded(lambda: _run(thread))
-    except Meddling as problem:
-        return f"{now.what[0]} {problem}"
-    return found[0] if found else f"{now.what[0]} does not return: stopped after {LIMIT:g} s"
-
-
-def _run(thread: threading.Thread) -> None:
-    thread.start()
-    thread.join(LIMIT)
-
-
-def _first(wrongs: Iterator[Fault]) -> Fault | None:
-    return next(wrongs, None)
-
-
-def _faults_of_samples(law: type[FrictionLaw], now: _Progress) -> Iterator[Fault]:
-    now.what[0] = "building it"
+def faults_of_samples(law: type[FrictionLaw]) -> Iterator[Fault]:
+    """The faults of a law when it is built and called with sample parameters, one after the other."""
     for parameters in _samples(law):
         try:
             made = law.model_validate(parameters)
@@ -83,11 +35,11 @@ def _faults_of_samples(law: type[FrictionLaw], now: _Progress) -> Iterator[Fault
             if not law.model_fields or (not parameters and not _optional(law)):
                 yield f"its own defaults are refused: {problem.errors(include_url=False)[0]['msg']}"
             continue
-        except BaseException as problem:
+        except Exception as problem:
             given = ", ".join(f"{name}={value:g}" for name, value in parameters.items())
             yield f"{law.__name__}({given}) raises {describe_error(problem, files_of(law))}"
             return
-        yield from _faults_of_methods(made, now)
+        yield from faults_of_methods(made)
         return
 
 
@@ -104,18 +56,15 @@ def _optional(law: type[FrictionLaw]) -> list[str]:
     return [name for name, field in law.model_fields.items() if field.default is None]
 
 
-def _faults_of_methods(given: FrictionLaw, now: _Progress) -> Iterator[Fault]:
-    """Every method of the interfaces that the law's author wrote, called on the line and in the plane."""
-    now.what[0] = "under_load(1)"
+def faults_of_methods(given: FrictionLaw) -> Iterator[Fault]:
+    """The faults of the interfaces' methods that the law's author wrote, on the line and in the plane."""
     law = given.under_load(1.0)
-    now.what[0] = "a property of it"
     if wrong := _fault_of_error(law, "its properties", law.numbers):
         yield wrong
         return
     for v in (1.0, complex(0.6, 0.8)) if _is_planar(law) else (1.0,):
         arguments = _arguments(law, v)
         for name, interface in overridden_methods(type(law)):
-            now.what[0] = f"{name}({_argument_text(interface, arguments)})"
             if wrong := _fault_of_call(law, name, interface, arguments):
                 yield wrong
 
@@ -157,18 +106,13 @@ def _arguments(law: Any, v: Any) -> dict[str, Any]:
     return told
 
 
-def _argument_text(method: Any, arguments: dict[str, Any]) -> str:
-    names = list(inspect.signature(method).parameters)[1:]
-    return ", ".join(f"{name}={arguments.get(name)}" for name in names)
-
-
 def _fault_of_call(law: FrictionLaw, name: str, interface: Any, arguments: dict[str, Any]) -> Fault | None:
     names = list(inspect.signature(interface).parameters)[1:]
     if not set(names) <= set(arguments):
         return None
     answer: list[Any] = []
-    call = f"{name}({_argument_text(interface, arguments)})"
     values = [arguments[each] for each in names]
+    call = f"{name}({', '.join(f'{each}={arguments[each]}' for each in names)})"
     if wrong := _fault_of_error(law, call, lambda: answer.append(getattr(law, name)(*values))):
         return wrong
     kind = str(inspect.signature(interface).return_annotation)
@@ -185,7 +129,7 @@ def _fault_of_error(law: FrictionLaw, what: str, call: Callable[[], object]) -> 
         call()
     except (ArithmeticError, ValueError):
         return None
-    except BaseException as problem:
+    except Exception as problem:
         return f"{what} raises {describe_error(problem, files_of(type(law)))}"
     return None
 

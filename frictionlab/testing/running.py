@@ -14,11 +14,11 @@ from hypothesis.errors import Unsatisfiable
 
 from frictionlab.faults import describe_error
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.registry.guard import TimeLimitExceeded, time_limit
 from frictionlab.testing.check import Check
 from frictionlab.testing.example import Given, Violation
 from frictionlab.testing.outcome import Outcome
 from frictionlab.testing.strategies import NoParameters, quietly
+from frictionlab.testing.time_limit import TimeLimitExceeded, time_limit
 
 
 class ExampleCount:

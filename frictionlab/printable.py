@@ -10,7 +10,6 @@ import math
 import re
 from decimal import ROUND_CEILING, Decimal
 
-_SURROGATE = re.compile("[\ud800-\udfff]")
 _UNSEEN = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f"  # control characters, but for tab and line feed
     "\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufff9-\ufffb"  # line ends and directions of writing
@@ -33,19 +32,6 @@ def printable(text: str) -> str:
 def one_line(text: str) -> str:
     """The same on one line: tabs and line feeds as ``\\t`` and ``\\n``, too."""
     return _BREAK.sub(_escaped, printable(text))
-
-
-def with_joined_pairs(text: str) -> str:
-    """The text with each pair of surrogates as the character that the two stand for."""
-    if not _SURROGATE.search(text):
-        return text
-    return text.encode("utf-16", "surrogatepass").decode("utf-16", "surrogatepass")
-
-
-def lone_surrogate(text: str) -> str | None:
-    """The first half of a character in a text, as ``\\ud83d``; None in sound text."""
-    found = _SURROGATE.search(text)
-    return _escaped(found) if found else None
 
 
 def _escaped(found: re.Match[str]) -> str:

@@ -66,7 +66,7 @@ ARROWS = {
         "scene",
     ],
     "onsets": ["laws", "methods.base", "methods.periodic", "orbit", "quantities", "scene", "theory"],
-    "registry": ["faults", "laws", "methods.base"],
+    "registry": ["faults", "laws", "methods.base", "mistakes"],
     "study": ["columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
     "results": [
         *("columns", "laws", "methods.base", "orbit", "quantities", "registry", "scene", "shape", "study"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Self
 
 from pydantic import model_validator
@@ -70,16 +71,18 @@ class CompliantLaw(BristleLaw, ABC):
     contact_stiffness: ContactStiffness | None = None
 
     @model_validator(mode="after")
-    def _one_stiffness(self) -> Self:
+    def _values_go_together(self) -> Self:
+        if problems := list(self._problems()):
+            raise ValueError("; ".join(problems))
+        return self
+
+    def _problems(self) -> Iterator[str]:
+        """What the values are not together, each as ``name: what``."""
         names = "stiffness", "presliding_length", "contact_stiffness"
         given = [name for name in names if getattr(self, name) is not None]
         if not given:
-            raise ValueError("stiffness: required, or presliding_length or contact_stiffness instead")
-        if len(given) > 1:
-            raise ValueError(
-                "; ".join(f"{name}: leave it out where {given[0]} is given" for name in given[1:])
-            )
-        return self
+            yield "stiffness: required, or presliding_length or contact_stiffness instead"
+        yield from (f"{name}: leave it out where {given[0]} is given" for name in given[1:])
 
     def saturated_friction(self) -> float:
         """The friction coefficient [-] that defines the presliding length: at vanishing slip speed."""
@@ -122,11 +125,10 @@ class DampedLaw(CompliantLaw, ABC):
     damping: Damping | None = None
     contact_damping: ContactDamping | None = None
 
-    @model_validator(mode="after")
-    def _one_damping(self) -> Self:
+    def _problems(self) -> Iterator[str]:
+        yield from super()._problems()
         if self.damping is not None and self.contact_damping is not None:
-            raise ValueError("contact_damping: leave it out where damping is given")
-        return self
+            yield "contact_damping: leave it out where damping is given"
 
     @property
     def bristle_damping(self) -> float:

@@ -51,12 +51,13 @@ class Stribeck(SlidingLaw):
 
     @model_validator(mode="after")
     def _falls(self) -> Stribeck:
+        problems = []
         if self.mu_static < self.mu_kinetic:
-            raise ValueError(
-                f"mu_static: must be >= mu_kinetic = {self.mu_kinetic:g}, got {self.mu_static:g}"
-            )
+            problems = [f"mu_static: must be >= mu_kinetic = {self.mu_kinetic:g}, got {self.mu_static:g}"]
         if self.curve != "exponential" and self.stribeck_exponent is not None:
-            raise ValueError(f"stribeck_exponent: leave it out, the {self.curve} curve has none")
+            problems += [f"stribeck_exponent: leave it out, the {self.curve} curve has none"]
+        if problems:
+            raise ValueError("; ".join(problems))
         return self
 
     @property

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC
-from typing import Any, Self
-
-from pydantic import model_validator
+from collections.abc import Iterator
+from typing import Any
 
 from frictionlab.laws.base import PerSpeed, Positive, Speed
 from frictionlab.laws.compliant import DampedLaw
@@ -31,13 +30,10 @@ class StribeckBristle(DampedLaw, ABC):
     stribeck_exponent: Positive = 2.0
     viscosity: PerSpeed = 0.0
 
-    @model_validator(mode="after")
-    def _falls(self) -> Self:
+    def _problems(self) -> Iterator[str]:
+        yield from super()._problems()
         if self.mu_static is not None and self.mu_static < self.mu_kinetic:
-            raise ValueError(
-                f"mu_static: must be >= mu_kinetic = {self.mu_kinetic:g}, got {self.mu_static:g}"
-            )
-        return self
+            yield f"mu_static: must be >= mu_kinetic = {self.mu_kinetic:g}, got {self.mu_static:g}"
 
     def saturated_friction(self) -> float:
         """mu_kinetic."""

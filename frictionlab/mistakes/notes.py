@@ -10,18 +10,15 @@ from itertools import islice
 from numbers import Real
 from typing import Any, NamedTuple
 
-from frictionlab.printable import lone_surrogate, one_line, printable
+from frictionlab.printable import one_line, printable
 
 Path = tuple[str | int, ...]
 
 MOST_MISTAKES_SHOWN = 50
 _WIDTH = 100
-_LONGEST_SENTENCE = 2000
-_LONGEST_PATH = 200
 _MOST_SHOWN = 50
-_LONGEST_NAME = 60
 _MOST_NAMES = 100
-"""A longer name, and names beyond these, are not searched for what was meant."""
+"""Names beyond these are not searched for what was meant."""
 
 
 class TextPosition(NamedTuple):
@@ -58,13 +55,9 @@ class Mistake:
 
     def __str__(self) -> str:
         """Position, mistake, source line with a caret, and a suggestion."""
-        origin = one_line(_short(self.origin, _LONGEST_PATH))
+        origin = one_line(self.origin)
         where = f"{origin}:{self.place.line}:{self.place.column}" if self.place else origin
-        said = (
-            where,
-            one_line(_short(self.path, _LONGEST_PATH)),
-            one_line(_short(self.what, _LONGEST_SENTENCE)),
-        )
+        said = (where, one_line(self.path), one_line(self.what))
         shown = [": ".join(part for part in said if part)]
         if self.place:
             shown += _with_caret(self.line, self.place.column)
@@ -117,8 +110,6 @@ def closest(name: str, among: Iterable[str], missing: Iterable[str] = ()) -> str
 
     missing: required names that were not given. One that differs by words at its end is taken first: mu, mu_kinetic.
     """
-    if len(name) > _LONGEST_NAME:
-        return None
     for wanted in missing:
         if wanted.startswith(f"{name}_") or name.startswith(f"{wanted}_"):
             return wanted
@@ -306,8 +297,6 @@ class Notes:
     def text(self, value: Any, path: Path) -> str:
         """The value as text; empty, noted, if it is not text."""
         if isinstance(value, str):
-            if half := lone_surrogate(value):
-                self.add(path, f"holds {half}, half a character")
             return value
         kind = "" if isinstance(value, (dict, list)) or value is None else " (put it in quotes)"
         self.add(path, f"must be text, got {value_text(value)}{kind}")

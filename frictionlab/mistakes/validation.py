@@ -7,6 +7,7 @@ import math
 import re
 import types
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
@@ -27,9 +28,6 @@ from frictionlab.mistakes.notes import (
 )
 
 _RecordT = TypeVar("_RecordT", bound=BaseModel)
-
-# Each round corrects the mistakes it finds, so that the next finds those they hid; a deep study needs four rounds.
-_ROUNDS = 10
 
 
 def nested(record: type[BaseModel], key: str) -> type[BaseModel] | None:
@@ -113,15 +111,16 @@ def build_record(record: type[_RecordT], tree: Any, path: Path, notes: Notes) ->
     """The record of this mapping; None, with every mistake noted, if it cannot be built."""
     if notes.mapping(tree, path) is None:
         return None
-    made = _Check(record, _copied(tree), path, notes).built()
-    assert made is None or isinstance(made, record)
-    return made
+    check = _Check(record, path, notes)
+    made = check.made(tree)
+    assert isinstance(made, record)
+    return made if check.right else None
 
 
 def wrong_values(record: type[BaseModel], values: Mapping[str, Any]) -> WrongValues:
     """What is wrong with values that Python code gave for a record that refuses them, in the sentences of studies."""
     notes = Notes(notation=PYTHON)
-    _Check(record, _copied(values), (), notes).built()
+    _Check(record, (), notes).made(values)
     return WrongValues([_in_python(note, record.__name__, values) for note in notes.all])
 
 
@@ -150,169 +149,139 @@ def unnamed(record: type[BaseModel], values: Sequence[Any]) -> TypeError:
     return TypeError(f"{record.__name__} takes its values by name: write {record.__name__}({given})")
 
 
-def _copied(tree: Mapping[str, Any]) -> dict[str, Any]:
-    """A copy whose mappings can be changed."""
-    return {key: _copied(value) if isinstance(value, dict) else value for key, value in tree.items()}
-
-
 def _shown(value: Any) -> str:
     return repr(value) if isinstance(value, str) else PYTHON.text_of(value)
 
 
 class _Check:
-    """The check of one mapping: mistakes are noted, then corrected to find the mistakes they hide."""
+    """One look at the values of a record, those of its parts first.
 
-    def __init__(self, record: type[BaseModel], tree: dict[str, Any], path: Path, notes: Notes) -> None:
-        self._record, self._tree, self._path, self._notes = record, tree, path, notes
-        self._spelt: dict[Path, Path] = {}
+    Others stand in for mistaken ones, so that the rules of the whole are asked all the same.
+    """
+
+    def __init__(self, record: type[BaseModel], path: Path, notes: Notes) -> None:
+        self._record, self._path, self._notes = record, path, notes
+        self._spelt: dict[str, str] = {}
         self._filled_in: set[str] = set()
-        self._clean = True
+        self.right = True
 
-    def built(self) -> BaseModel | None:
-        if self._notes.notation is not PYTHON:
-            self._drop_nulls(self._tree, self._record, ())
-        for _ in range(_ROUNDS):
-            try:
-                record = self._record.model_validate(self._tree)
-                return record if self._clean else None
-            except ValidationError as problem:
-                self._clean = False
-                errors = problem.errors(include_url=False)
-                misspelt_first = sorted(errors, key=lambda error: error["type"] != "extra_forbidden")
-                if not any([self._mended(error) for error in misspelt_first]):
-                    return None
-        return None
+    def made(self, given: Mapping[str, Any]) -> BaseModel:
+        """The record; where it is not right, one that stands in for it."""
+        values = {name: self._part(name, value) for name, value in self._spelled(given).items()}
+        values = {name: value for name, value in values.items() if value is not _NOTHING}
+        try:
+            return self._record.model_validate(values)
+        except ValidationError as problem:
+            self.right = False
+            errors = problem.errors(include_url=False)
+        if not errors[0]["loc"]:
+            return self._ruled_out(errors)
+        for error in errors:
+            self._mistaken(error, values)
+        try:
+            return self._record.model_validate(values)
+        except ValidationError as problem:
+            return self._ruled_out(problem.errors(include_url=False))
 
-    def _note(self, inside: Path, what: str, hint: str = "") -> None:
-        self._clean = False
-        add = self._notes.on_key if what == "not available yet" else self._notes.add
-        add(self._path + self._spelt.get(inside, inside), what, hint)
+    def _ruled_out(self, errors: Sequence[Any]) -> BaseModel:
+        """Note what the values are not together, right as each may be."""
+        for error in errors:
+            self._rule(error)
+        return _stand_in(self._record)
 
-    def _drop_nulls(self, tree: dict[str, Any], record: type[BaseModel], inside: Path) -> None:
-        """A key without a value is a mistake, even where the record itself can do without the key."""
-        for key in [key for key in tree if key in record.model_fields]:
-            part = nested(record, key)
-            if tree[key] is None:
-                wanted = "a mapping" if part else "a number" if key in number_paths(record) else "a value"
-                self._note((*inside, key), f"must be {wanted}, got null")
-                if part is None:
-                    del tree[key]
-                else:
-                    tree[key] = _ones(part)
-            elif part and isinstance(tree[key], dict):
-                self._drop_nulls(tree[key], part, (*inside, key))
+    def _note(self, name: str | int, *deeper: str | int, what: str, hint: str = "") -> None:
+        self.right = False
+        self._notes.add((*self._path, self._spelt.get(str(name), name), *deeper), what, hint)
 
-    def _mended(self, error: Any) -> bool:
-        """Note one error; whether the tree was corrected, so that another round may find more."""
-        inside: Path = error["loc"]
-        if error["type"] == "extra_forbidden":
-            return self._unknown(inside)
-        if error["type"] == "missing" and self._at(inside) is not None:
-            return True  # a misspelt key that was meant to be this one
+    def _spelled(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """The values by the names of fields; an unknown key is noted, and taken for the one most like it."""
+        fields = self._record.model_fields
+        required = [name for name, field in fields.items() if field.is_required()]
+        values = {name: value for name, value in given.items() if name in fields}
+        for key in (key for key in given if key not in fields):
+            self.right = False
+            self._notes.unknown_key((*self._path, key), fields, given, required)
+            missing = [name for name in required if name not in values]
+            meant = closest(str(key), [name for name in fields if name not in values], missing)
+            if meant is not None and closest(str(key), fields, missing) in (None, meant):
+                values[meant], self._spelt[meant] = given[key], key
+        return values
+
+    def _part(self, name: str, value: Any) -> Any:
+        """A value, of a part the record; a key without a value is a mistake in a study."""
+        part = nested(self._record, name)
+        if part is not None and isinstance(value, Mapping):
+            check = _Check(part, (*self._path, self._spelt.get(name, name)), self._notes)
+            made = check.made(value)
+            self.right = self.right and check.right
+            return made
+        if value is None and self._notes.notation is not PYTHON:
+            wanted = "a mapping" if part else "a number" if self._is_number(name) else "a value"
+            self._note(name, what=f"must be {wanted}, got null")
+            return _stand_in(part) if part else _NOTHING
+        return value
+
+    def _is_number(self, name: str) -> bool:
+        return name in number_paths(self._record)
+
+    def _mistaken(self, error: Any, values: dict[str, Any]) -> None:
+        """Note the mistake in one value, for which another then stands in."""
+        name, *deeper = error["loc"]
+        part = nested(self._record, name)
         if error["type"] == "missing":
-            self._note(inside, "required key is missing")
-            return self._filled(inside)
-        if error["type"] in ("model_type", "model_attributes_type", "dict_type"):
-            self._note(inside, self._no_part(error))
-            return self._replaced(inside)
-        if error["type"] == "value_error" and record_at(self._record, inside) is not None:
-            return any([self._rule(inside, part, what) for part, what in self._said(inside, _message(error))])
-        what = _value_mistake(error, self._notes.notation.text_of)
-        self._note(*placed(inside, what, error["input"]), _meant(error))
-        return self._filled(inside) if self._is_number(inside) else self._dropped(inside)
+            self._note(name, what="required key is missing")
+        elif part is not None:
+            wanted = self._notes.notation.part.format(part.__name__)
+            given = self._notes.notation.text_of(error["input"])
+            self._note(name, what=f"must be {wanted}, got {given}")
+            values[name] = _stand_in(part)
+            return
+        else:
+            what = _value_mistake(error, self._notes.notation.text_of)
+            path, what = placed((name, *deeper), what, error["input"])
+            self._note(*path, what=what, hint=_meant(error))
+        values.pop(name, None)
+        if self._is_number(name):
+            values[name] = valid_number(self._record, name)
+            self._filled_in.add(name)
 
-    def _no_part(self, error: Any) -> str:
-        given = self._notes.notation.text_of(error["input"])
-        return f"must be {self._notes.notation.part.format(error['ctx']['class_name'])}, got {given}"
+    def _rule(self, error: Any) -> None:
+        """Note what the values are not together: of one of them, or of the whole."""
+        for path, what in self._said(_message(error)):
+            required = what.startswith("required")
+            if any(f"{name} = " in what for name in self._filled_in):  # a number that nobody gave
+                continue
+            told = what.replace("required", "required key is missing", 1) if required else what
+            if path:
+                self._note(*path, what=told)
+            else:
+                self._notes.add(self._path, told)
 
-    def _rule(self, whole: Path, inside: Path, what: str) -> bool:
-        """A rule of a record on itself or on one of its keys, such as a key that is not available yet."""
-        required = what.startswith("required")
-        if not any(f"{name} = " in what for name in self._filled_in):  # a number that nobody gave
-            self._note(inside, what.replace("required", "required key is missing", 1) if required else what)
-        if required:
-            return self._filled(inside)
-        return self._replaced(inside) if inside == whole else self._dropped(inside)
-
-    def _said(self, inside: Path, message: str) -> list[tuple[Path, str]]:
+    def _said(self, message: str) -> list[tuple[Path, str]]:
         """The paths and messages in the message of a record, written ``path: what; path: what``."""
-        said = []
+        said: list[tuple[Path, str]] = []
         for piece in message.split("; "):
             found = re.fullmatch(r"([\w.]+): (.*)", piece, re.DOTALL)
-            if not found or not self._known((*inside, *found[1].split("."))):
-                return [(inside, message)]
-            said.append(((*inside, *found[1].split(".")), found[2]))
+            path = tuple(found[1].split(".")) if found else ()
+            record = record_at(self._record, path[:-1])
+            if not found or record is None or path[-1] not in record.model_fields:
+                return [((), message)]
+            said.append((path, found[2]))
         return said
 
-    def _known(self, inside: Path) -> bool:
-        """Whether the last step of a path is a field of the record there, or a key of the mapping there."""
-        record = record_at(self._record, inside[:-1])
-        tree = self._at(inside[:-1])
-        fields = record.model_fields if record else ()
-        return inside[-1] in fields or (isinstance(tree, dict) and inside[-1] in tree)
 
-    def _unknown(self, inside: Path) -> bool:
-        """An unknown key; the check continues as if the most similar key were given."""
-        record, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
-        fields = record.model_fields if record else {}
-        allowed, required = list(fields), [name for name, field in fields.items() if field.is_required()]
-        self._notes.unknown_key(self._path + inside, allowed, tree, required)
-        value = tree.pop(inside[-1])
-        missing = [name for name in required if name not in tree]
-        meant = closest(str(inside[-1]), [name for name in allowed if name not in tree], missing)
-        if meant is not None and closest(str(inside[-1]), allowed, missing) in (None, meant):
-            tree[meant] = value
-            self._spelt[(*inside[:-1], meant)] = inside
-        return True
-
-    def _at(self, inside: Path) -> Any:
-        tree: Any = self._tree
-        for step in inside:
-            tree = tree.get(step) if isinstance(tree, dict) else None
-        return tree
-
-    def _is_number(self, inside: Path) -> bool:
-        """Whether the field at this path holds a number."""
-        record = record_at(self._record, inside[:-1])
-        return bool(inside) and record is not None and str(inside[-1]) in number_paths(record)
-
-    def _filled(self, inside: Path) -> bool:
-        """Insert a valid number, if the field holds a number."""
-        record, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
-        if record is None or not self._is_number(inside) or not isinstance(tree, dict):
-            return False
-        filler = valid_number(record, str(inside[-1]))
-        held = tree.get(inside[-1])
-        if isinstance(held, int | float) and held == filler:
-            return False
-        tree[inside[-1]] = filler
-        self._filled_in.add(str(inside[-1]))
-        return True
-
-    def _replaced(self, inside: Path) -> bool:
-        """Replace an invalid record by one of ones, since other rules depend on its presence."""
-        parent, tree = record_at(self._record, inside[:-1]), self._at(inside[:-1])
-        part = nested(parent, str(inside[-1])) if inside and parent else None
-        if part is None or not isinstance(tree, dict):
-            return False
-        held = tree.get(inside[-1])
-        if isinstance(held, dict) and held == _ones(part):
-            return False
-        tree[inside[-1]] = _ones(part)
-        return True
-
-    def _dropped(self, inside: Path) -> bool:
-        tree = self._at(inside[:-1])
-        if not inside or not isinstance(tree, dict) or inside[-1] not in tree:
-            return False
-        del tree[inside[-1]]
-        return True
+_NOTHING = object()
+"""In place of a value that was left out."""
 
 
-def _ones(record: type[BaseModel]) -> dict[str, float]:
-    """A one for every number that a record requires."""
-    numbers = [key for key in number_paths(record) if key in record.model_fields]
-    return {key: valid_number(record, key) for key in numbers if record.model_fields[key].is_required()}
+def _stand_in(part: type[BaseModel]) -> BaseModel:
+    """A record with a one for every number that it requires, and where rules ask for one more, for that."""
+    numbers = [name for name in number_paths(part) if name in part.model_fields]
+    required = {name: valid_number(part, name) for name in numbers if part.model_fields[name].is_required()}
+    for more in ({}, *({name: 1.0} for name in numbers)):
+        with suppress(ValidationError):
+            return part.model_validate(required | more)
+    return part.model_construct(None, **required)
 
 
 def _message(error: Any) -> str:

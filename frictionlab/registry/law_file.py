@@ -16,14 +16,11 @@ from typing import Any
 
 from frictionlab.faults import LAW_FILE
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.mistakes.text_file import Unreadable, text_of
 from frictionlab.registry.entry_points import Home, unloadable
 
 _TEXTS: dict[str, str] = {}
 """The text of every law file read, by the name of its module."""
-
-
-class UnreadableLawFile(Exception):
-    """A law file that cannot be read; the message says why."""
 
 
 def home_of_file(path: Path) -> Home:
@@ -52,7 +49,9 @@ class LawFile:
 
 
 def read_law_file(path: Path) -> LawFile:
-    """The laws of this file. Raises UnreadableLawFile, BrokenPlugin."""
+    """The laws of this file. Raises Unreadable, BrokenPlugin."""
+    if path.suffix != ".py":
+        raise Unreadable("must be a Python file, *.py")
     text = text_of(path)
     name = re.sub(r"\W", "_", path.stem)
     module = _module(f"{LAW_FILE}{name}_{_sha256(text)[:12]}", path, text)
@@ -84,23 +83,6 @@ def code_around(module: str) -> str:
 
 def _sha256(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
-
-
-def text_of(path: Path) -> str:
-    """The text of a law file. Raises UnreadableLawFile."""
-    if path.suffix != ".py":
-        raise UnreadableLawFile("must be a Python file, *.py")
-    if path.exists() and not path.is_file():
-        raise UnreadableLawFile("is not a file")
-    try:
-        return path.read_bytes().decode("utf-8")
-    except FileNotFoundError:
-        raise UnreadableLawFile("no such file") from None
-    except UnicodeDecodeError as problem:
-        raise UnreadableLawFile(f"is not UTF-8 text (byte {problem.start + 1}); save it as UTF-8") from None
-    except (OSError, ValueError) as problem:
-        reason = problem.strerror if isinstance(problem, OSError) else str(problem)
-        raise UnreadableLawFile(f"cannot be read: {reason}") from None
 
 
 @cache

@@ -15,13 +15,12 @@ from pydantic import create_model
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.mistakes.notes import Mistake, Notes, Path, StudyError, did_you_mean, value_text
+from frictionlab.mistakes.text_file import Unreadable, text_of
 from frictionlab.registry.law_file import (
     LawFile,
-    UnreadableLawFile,
     code_of,
     law_name,
     read_law_file,
-    text_of,
 )
 from frictionlab.study.yaml_source import Source
 
@@ -88,7 +87,7 @@ def listed_files(tree: dict[str, Any], notes: Notes) -> list[tuple[str, Path]]:
 def _read(name: str, path: Path, folder: FilePath, notes: Notes) -> LawFile | None:
     try:
         return read_law_file(folder / name)
-    except UnreadableLawFile as problem:
+    except Unreadable as problem:
         missing = not (folder / name).exists()
         there = [str(file.relative_to(folder)) for file in sorted((folder / name).parent.glob("*.py"))]
         notes.add(path, f"{folder / name}: {problem}", did_you_mean(name, there) if missing else "")
@@ -116,7 +115,7 @@ def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:
     for path in paths:
         try:
             files.append(read_law_file(path))
-        except UnreadableLawFile as problem:
+        except Unreadable as problem:
             raise StudyError([Mistake(f"--law {path}", None, "", str(problem))]) from None
     return laws_of(list(dict.fromkeys(files)))
 
@@ -152,7 +151,7 @@ def saved_law_reader(codes: Mapping[str, str]) -> LawReader:
 def _saved_file(path: FilePath) -> LawFile:
     try:
         return LawFile(path, text_of(path), {})
-    except UnreadableLawFile:  # a report needs no law
+    except Unreadable:  # a report needs no law
         return LawFile(path, "", {})
 
 

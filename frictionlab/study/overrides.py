@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from frictionlab.mistakes.notes import Note, Path, StudyError, did_you_mean
-from frictionlab.study.yaml_source import DEEPEST, Source, read_text
+from frictionlab.study.yaml_source import Source, read_text
 
 _RANGE = ("start", "stop", "num", "spacing", "within")
 
@@ -58,9 +58,6 @@ class _Override:
                 self._refuse((), f"'{target}' is no path such as scene.belt_speed or laws[0].mu")
                 return None
             steps += [found[1], *map(int, re.findall(r"\d+", found[2]))]
-        if len(steps) > DEEPEST:
-            self._refuse((), f"the path has {len(steps)} steps, more than {DEEPEST}")
-            return None
         return tuple(steps)
 
     def _sweep(self, rest: str) -> Path:

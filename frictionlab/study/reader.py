@@ -38,7 +38,7 @@ from frictionlab.study.law_files import (
 from frictionlab.study.mapping_source import read_mapping
 from frictionlab.study.overrides import apply_overrides
 from frictionlab.study.study import LIMIT_KEY, SCHEMA, LawChoice, MethodChoice, Study, coefficient_of
-from frictionlab.study.yaml_source import SAVED, Source, read_file
+from frictionlab.study.yaml_source import Source, read_file
 
 STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
@@ -77,7 +77,7 @@ def read_back(path: FilePath, codes: Mapping[str, str]) -> Study:
 
     Raises StudyError with every mistake.
     """
-    return replace(_study(read_file(path, SAVED), (), path.parent, saved_law_reader(codes)), path=path)
+    return replace(_study(read_file(path), (), path.parent, saved_law_reader(codes)), path=path)
 
 
 def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name: str = "study") -> Study:

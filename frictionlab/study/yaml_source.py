@@ -14,16 +14,10 @@ from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from frictionlab.mistakes.notes import Mistake, Note, Path, StudyError, TextPosition, dotted
-from frictionlab.printable import lone_surrogate, one_line, with_joined_pairs
+from frictionlab.mistakes.text_file import Unreadable, text_of
+from frictionlab.printable import one_line
 
-LARGEST_YAML_FILE = 5_000_000
-"""Bytes; and letters of the values, where aliases repeat them."""
-MOST_NODES = 50_000
-DEEPEST = 20
-"""Mappings and lists inside each other."""
 TOO_DEEP = "not a study: nested too deeply"
-SAVED = 10
-"""A study that a run saved may be so many times larger: it has its defaults, and no aliases."""
 
 _TAG = "tag:yaml.org,2002:"
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")
@@ -46,8 +40,7 @@ class Source:
     """The values of a study with their positions; notes: the mistakes of the YAML itself.
 
     keys, values: path -> position. origins: path -> the ``--set`` that set the value. refused: substitute path of a
-    ``--set`` that could not be carried out -> the path it refers to. room: how many times as large as a file that a
-    person writes it may be.
+    ``--set`` that could not be carried out -> the path it refers to.
     """
 
     name: str
@@ -58,7 +51,6 @@ class Source:
     origins: dict[Path, str] = field(default_factory=dict)
     refused: dict[Path, Path] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
-    room: int = 1
 
     @cached_property
     def lines(self) -> list[str]:
@@ -88,45 +80,29 @@ class Source:
         return self.name, None
 
 
-def read_file(path: FilePath, room: int = 1) -> Source:
+def read_file(path: FilePath) -> Source:
     """The values of a YAML file. Raises StudyError for a file that is not readable YAML text."""
-    return read_text(_text_of(path, room), str(path), room)
+    try:
+        return read_text(text_of(path), str(path))
+    except Unreadable as problem:
+        raise unreadable(Source(str(path)), str(problem)) from None
 
 
-def read_text(text: str, name: str, room: int = 1) -> Source:
+def read_text(text: str, name: str) -> Source:
     """The values of YAML text. Raises StudyError where it is empty or not YAML."""
-    source = Source(name, text, room=room)
-    node = _compose(source)
-    if node is None:
-        raise _unreadable(source, "the study is empty", TextPosition(1, 1))
-    source.tree = _NodeReader(source).value(node, ())
+    source = Source(name, text)
+    try:
+        node = _compose(source)
+        if node is None:
+            raise unreadable(source, "the study is empty", TextPosition(1, 1))
+        source.tree = _value(source, node, ())
+    except RecursionError:  # an alias of what it stands in, too
+        raise unreadable(source, TOO_DEEP) from None
     return source
 
 
-def _text_of(path: FilePath, room: int) -> str:
-    nothing = Source(str(path))
-    try:
-        if path.is_dir():
-            raise _unreadable(nothing, "is a folder; a study is a file")
-        if path.exists() and not path.is_file():
-            raise _unreadable(nothing, "is not an ordinary file")
-        if path.exists() and path.stat().st_size > LARGEST_YAML_FILE * room:
-            raise _unreadable(
-                nothing, f"is larger than {LARGEST_YAML_FILE // 10**6} MB; a study is a short text"
-            )
-        return path.read_bytes().decode("utf-8-sig")
-    except FileNotFoundError:
-        raise _unreadable(nothing, "no such file") from None
-    except UnicodeDecodeError as problem:
-        raise _unreadable(
-            nothing, f"is not UTF-8 text (byte {problem.start + 1}); save it as UTF-8"
-        ) from None
-    except (OSError, ValueError) as problem:
-        reason = problem.strerror if isinstance(problem, OSError) else str(problem)
-        raise _unreadable(nothing, f"cannot be read: {reason}") from None
-
-
-def _unreadable(source: Source, what: str, place: TextPosition | None = None) -> StudyError:
+def unreadable(source: Source, what: str, place: TextPosition | None = None) -> StudyError:
+    """The error for a source that gives no values."""
     return StudyError(source.located([Note((), what, place=place)]))
 
 
@@ -135,117 +111,79 @@ def _compose(source: Source) -> Node | None:
     if odd := _CONTROL.search(source.text):
         before = _LINE_END.split(source.text[: odd.start()])
         place = TextPosition(len(before), len(before[-1]) + 1)
-        raise _unreadable(source, f"is not text: character '{one_line(odd.group())}'", place)
-    if source.text.count(",") + source.text.count("\n") > MOST_NODES * source.room:
-        raise _too_many(source)
+        raise unreadable(source, f"is not text: character '{one_line(odd.group())}'", place)
     try:
         node: Node | None = YAML(typ="rt").compose(source.text)
         return node
     except MarkedYAMLError as problem:
         mark = problem.problem_mark or problem.context_mark
         what = " ".join(str(part).strip() for part in (problem.context, problem.problem) if part)
-        at = TextPosition(mark.line + 1, mark.column + 1) if mark else None
-        raise _unreadable(source, f"not YAML: {what}", at) from None
-    except RecursionError:
-        raise _unreadable(source, TOO_DEEP) from None
+        at = _place(mark) if mark else None
+        raise unreadable(source, f"not YAML: {what}", at) from None
     except (YAMLError, ValueError, AttributeError, TypeError, LookupError, AssertionError) as problem:
         # For some broken texts the parser raises errors of its own code.
-        raise _unreadable(source, f"not YAML: {[*str(problem).splitlines(), 'unreadable'][0]}") from None
+        raise unreadable(source, f"not YAML: {[*str(problem).splitlines(), 'unreadable'][0]}") from None
 
 
-def _too_many(source: Source, place: TextPosition | None = None) -> StudyError:
-    what = f"has more than {MOST_NODES * source.room} values; write those of a sweep as {{start, stop, num}}"
-    return _unreadable(source, what, place)
+def _place(mark: Any) -> TextPosition:
+    return TextPosition(mark.line + 1, mark.column + 1)
 
 
-class _NodeReader:
-    """One pass over the nodes of a source."""
-
-    def __init__(self, source: Source) -> None:
-        self._source = source
-        self._open: set[int] = set()
-        self._count = 0
-        self._letters = 0
-
-    def value(self, node: Node, path: Path) -> Any:
-        """The node as a plain value; its position and those below it are recorded."""
-        place = TextPosition(node.start_mark.line + 1, node.start_mark.column + 1)
-        self._source.values.setdefault(path, place)
-        self._count += 1
-        if self._count > MOST_NODES * self._source.room:
-            raise _too_many(self._source, place)
-        if isinstance(node, ScalarNode):
-            return self._scalar(node, path)
-        if id(node) in self._open:
-            return self._odd(path, "contains itself")
-        if len(path) > DEEPEST:
-            raise _unreadable(self._source, TOO_DEEP, place)
-        if not str(node.tag).startswith((_TAG + "map", _TAG + "seq")):
-            return self._odd(path, f"the YAML tag {node.tag} has no meaning here")
-        self._open.add(id(node))
-        read = self._mapping(node, path) if isinstance(node, MappingNode) else self._list(node, path)
-        self._open.discard(id(node))
-        return read
-
-    def _list(self, node: Node, path: Path) -> list[Any]:
-        return [self.value(item, (*path, index)) for index, item in enumerate(node.value)]
-
-    def _mapping(self, node: MappingNode, path: Path) -> dict[str, Any]:
-        read: dict[str, Any] = {}
-        for key, item in node.value:
-            place = TextPosition(key.start_mark.line + 1, key.start_mark.column + 1)
-            if (name := self._key(key, path, place)) is None:
-                continue
-            below = (*path, name)
-            if name in read:
-                what = f"given twice, first in line {self._source.keys[below].line}"
-                self._source.notes.append(Note(below, what, place=place))
-                continue
-            self._source.keys[below] = place
-            read[name] = self.value(item, below)
-            if isinstance(item, (MappingNode, SequenceNode)) or read[name] is None:
-                # A mistake in a whole mapping or list, or in an empty value, is shown at its key.
-                self._source.values[below] = place
-        return read
-
-    def _key(self, key: Node, path: Path, place: TextPosition) -> str | None:
-        if not isinstance(key, ScalarNode):
-            self._source.notes.append(Note(path, "a key must be a name", place=place))
-        elif key.tag == _TAG + "merge":
-            self._source.notes.append(Note(path, "merge keys (<<) are not used here", place=place))
-        elif half := lone_surrogate(name := with_joined_pairs(str(key.value))):
-            self._source.notes.append(Note(path, f"a key holds {half}, half a character", place=place))
-        else:
-            return name
-        return None
-
-    def _scalar(self, node: ScalarNode, path: Path) -> Any:
-        kind = str(node.tag).removeprefix(_TAG)
-        if kind == "timestamp":
-            return UnsupportedValue(f"the date {node.value}")
-        if kind not in _SCALARS:
-            return self._odd(path, f"the YAML tag {node.tag} has no meaning here")
-        text = with_joined_pairs(_scalar_text(node))
-        self._letters += len(text)
-        if self._letters > LARGEST_YAML_FILE * self._source.room:
-            raise _unreadable(
-                self._source, f"holds more than {LARGEST_YAML_FILE * self._source.room} letters"
-            )
-        if half := lone_surrogate(text):
-            return self._odd(path, f"holds {half}, half a character")
-        try:
-            return _SCALARS[kind](text)
-        except ValueError:
-            return text
-
-    def _odd(self, path: Path, what: str) -> UnsupportedValue:
-        self._source.notes.append(Note(path, what))
+def _value(source: Source, node: Any, path: Path) -> Any:
+    """The node as a plain value; its position and those below it are recorded."""
+    source.values.setdefault(path, _place(node.start_mark))
+    kind = str(node.tag).removeprefix(_TAG)
+    if isinstance(node, ScalarNode) and kind == "timestamp":
+        return UnsupportedValue(f"the date {node.value}")
+    if kind not in (_SCALARS if isinstance(node, ScalarNode) else ("map", "seq")):
+        what = f"the YAML tag {node.tag} has no meaning here"
+        source.notes.append(Note(path, what))
         return UnsupportedValue(what)
+    if isinstance(node, MappingNode):
+        return _mapping(source, node, path)
+    if isinstance(node, SequenceNode):
+        return [_value(source, item, (*path, index)) for index, item in enumerate(node.value)]
+    text = _scalar_text(node)
+    try:
+        return _SCALARS[kind](text)
+    except ValueError:
+        return text
+
+
+def _mapping(source: Source, node: MappingNode, path: Path) -> dict[str, Any]:
+    read: dict[str, Any] = {}
+    for key, item in node.value:
+        place = _place(key.start_mark)
+        if wrong := _fault_of_key(key):
+            source.notes.append(Note(path, wrong, place=place))
+            continue
+        name = str(key.value)
+        below = (*path, name)
+        if name in read:
+            what = f"given twice, first in line {source.keys[below].line}"
+            source.notes.append(Note(below, what, place=place))
+            continue
+        source.keys[below] = place
+        read[name] = _value(source, item, below)
+        if isinstance(item, (MappingNode, SequenceNode)) or read[name] is None:
+            # A mistake in a whole mapping or list, or in an empty value, is shown at its key.
+            source.values[below] = place
+    return read
+
+
+def _fault_of_key(key: Node) -> str:
+    if not isinstance(key, ScalarNode):
+        return "a key must be a name"
+    return "merge keys (<<) are not used here" if key.tag == f"{_TAG}merge" else ""
 
 
 def _scalar_text(node: ScalarNode) -> str:
-    """The text; ruamel's round-trip reader marks with a BEL where a folded one wraps."""
-    return str(node.value).replace("\a", "") if node.style == ">" else str(node.value)
+    """The text; ruamel's round-trip reader marks with a BEL where a folded one wraps.
+
+    Two halves of a character, as JSON writes them, become one; half a character the sign of what cannot be shown.
+    """
+    text = str(node.value).replace("\a", "") if node.style == ">" else str(node.value)
+    return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
 
 
 def _integer(text: str) -> int | float:

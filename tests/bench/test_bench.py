@@ -508,7 +508,7 @@ def test_what_is_no_list_is_told_as_a_list(tmp_path: Path) -> None:
 
     with pytest.raises(StudyError, match="the bench list is empty"):
         bench.load_bench(tmp_path / "empty.yaml")
-    with pytest.raises(StudyError, match="is a folder; a bench list is a file"):
+    with pytest.raises(StudyError, match="is a folder"):
         bench.load_bench(tmp_path)
 
 

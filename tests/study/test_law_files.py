@@ -225,7 +225,7 @@ def test_a_report_needs_no_law_and_runs_no_code_of_the_folder() -> None:
         ("laws/my_lwa.py", "plugins[0]: laws/my_lwa.py: no such file"),
         ("laws", "plugins[0]: laws: must be a Python file, *.py"),
         ("odd.py", "plugins[0]: odd.py: is not UTF-8 text (byte 1); save it as UTF-8"),
-        ("folder.py", "plugins[0]: folder.py: is not a file"),
+        ("folder.py", "plugins[0]: folder.py: is a folder"),
     ],
 )
 def test_a_file_that_cannot_be_read_is_one_mistake_at_its_place(listed: str, words: str) -> None:

@@ -146,7 +146,7 @@ EDITS = [
     ("num: 120", "num: 2.5", "19:49: sweep.scene.belt_speed.num: must be a whole number >= 2, got 2.5"),
     ("num: 120", "num: true", "19:49: sweep.scene.belt_speed.num: must be a whole number >= 2, got true"),
     ("num: 120", "num: 100000000", "19:49: sweep.scene.belt_speed.num: must be <= 1000000, got 100000000"),
-    ("num: 120}", "num: 1000000}\n  scene.damping_ratio: {start: 1, stop: 2, num: 200}", "18:1: sweep: the grid has at least 400000000 points, more"),
+    ("num: 120}", "num: 100000}\n  scene.damping_ratio: {start: 1, stop: 2, num: 2000}", "18:1: sweep: the grid has 1200000000 points, more"),
     (", num: 120", ", within: 0", "19:52: sweep.scene.belt_speed.within: must be > 0, got 0"),
     (", num: 120", ", within: 1e-6", "19:52: sweep.scene.belt_speed.within: must be >= 1e-05, 10 times tolerance, got 1e-06"),
     ("num: 120", "num: 120, within: 1e-3", "19:44: sweep.scene.belt_speed.num: unknown key; allowed: start, stop, within"),

@@ -21,7 +21,7 @@ from frictionlab.bench.stability import read_stability
 from frictionlab.mistakes.notes import Notes, Path, dotted
 from frictionlab.study import Mistake, Study, StudyError
 from frictionlab.study.choices import items
-from frictionlab.study.reader import read_study
+from frictionlab.study.load import read_study
 from frictionlab.study.yaml_source import Source, read_file
 
 SECTIONS: dict[str, SectionReader] = {

@@ -14,8 +14,8 @@ from frictionlab.results.derived import derived_columns
 from frictionlab.runner.api import table_of
 from frictionlab.runner.chunks import Task
 from frictionlab.scene.scenes import Scenes
+from frictionlab.study import MethodChoice, StudyCurve
 from frictionlab.study.objects import kind_of
-from frictionlab.study.study import MethodChoice, StudyCurve
 
 OF_A_MODEL = 1e-8
 """Error of the numbers of a reduced model, relative to the friction coefficient: its formulas, loops and balances."""

@@ -22,7 +22,8 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import Study, StudyCurve
 from frictionlab.study.axes import FRICTION
-from frictionlab.study.study import coefficient_of, law_in_scene
+from frictionlab.study.grid import law_in_scene
+from frictionlab.study.parts import coefficient_of
 
 USUAL_SHARE = 0.01
 """The tolerance on the mean, of the friction of steady sliding at the quickest belt speed, where none is given."""

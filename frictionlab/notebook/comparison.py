@@ -28,7 +28,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.study import Study
 from frictionlab.study.axes import FRICTION
 from frictionlab.study.figure_options import figure_options
-from frictionlab.study.objects import LawsGiven, MethodsGiven, study_of_objects
+from frictionlab.study.objects import LawsGiven, MethodsGiven
 
 if TYPE_CHECKING:
     import xarray
@@ -257,7 +257,7 @@ def sweep(
         "tolerance": tolerance,
         "columns": columns if columns is None or isinstance(columns, str) else list(columns),
     }
-    study = study_of_objects(scene, laws, methods, over, **told)
+    study = Study.of(scene, laws, methods, over, **told)
     start = time.perf_counter()
     done = run_study(study, executor=executor)
     return Comparison(done, time.perf_counter() - start)

@@ -15,8 +15,8 @@ from frictionlab.results.part import Places
 from frictionlab.runner.accumulate import Accumulator
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Mistake, Study, StudyCurve, StudyError
-from frictionlab.study.grid import MOST_CHOSEN, WITHIN, grid_size
-from frictionlab.study.ranges import CLOSEST, SpeedRange
+from frictionlab.study.grid import grid_size
+from frictionlab.study.ranges import CLOSEST, MOST_CHOSEN, WITHIN, SpeedRange
 from frictionlab.theory import friction_free_velocity
 
 Known = tuple[Floats, Floats, Floats]

@@ -18,7 +18,7 @@ from frictionlab.runner.solve import answer, parts
 from frictionlab.runner.workers import within
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
-from frictionlab.study.study import law_in_scene
+from frictionlab.study.grid import law_in_scene
 
 
 def steady_state(

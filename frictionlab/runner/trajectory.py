@@ -14,7 +14,7 @@ from frictionlab.quantities import at_least_one
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
 from frictionlab.runner.workers import within
 from frictionlab.scene.scene import Initial, Scene
-from frictionlab.study.study import law_in_scene
+from frictionlab.study.grid import law_in_scene
 
 NO_MOTION = "no motion in time is known of this scene and law by {name}: {why}"
 NOT_DRIVEN = "it needs a driven mass, and a law that is not solved axis by axis"

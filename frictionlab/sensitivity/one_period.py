@@ -12,7 +12,7 @@ from frictionlab.methods.periodic.continuation import FINE
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
-from frictionlab.study.study import law_in_scene
+from frictionlab.study.grid import law_in_scene
 
 _WITH_ONE_DEFLECTION = 3
 """Numbers of a state on the line: position, velocity, deflection."""

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from frictionlab.mistakes.notes import Mistake, StudyError
 from frictionlab.study.axes import GridValue
+from frictionlab.study.grid import StudyCase, StudyCurve
 from frictionlab.study.law_files import Plugins, laws_of_files
-from frictionlab.study.reader import load_study, parse_study, read_back
-from frictionlab.study.study import (
-    Expectation,
-    LawChoice,
-    MethodChoice,
-    Study,
-    StudyCase,
-    StudyCurve,
-)
+from frictionlab.study.load import load_study, parse_study, read_back
+from frictionlab.study.parts import Expectation, LawChoice, MethodChoice
+from frictionlab.study.study import Study
 
 __all__ = [
     "Expectation",

@@ -8,7 +8,7 @@ from typing import Any
 from frictionlab import registry
 from frictionlab.mistakes.notes import Notes, Path, unknown_name, value_text
 from frictionlab.mistakes.validation import build_record
-from frictionlab.study.study import LawChoice, MethodChoice
+from frictionlab.study.parts import LawChoice, MethodChoice
 
 REMEDIES = {"law": "; install the package that provides it, or list its file under plugins"}
 

@@ -10,7 +10,7 @@ from frictionlab import columns
 from frictionlab.mistakes.notes import Notes, Path, did_you_mean, value_text
 from frictionlab.mistakes.validation import checked_value, placed, record_at
 from frictionlab.scene.scene import Scene
-from frictionlab.study.study import Expectation
+from frictionlab.study.parts import Expectation
 
 EXPECTATION_KEYS = (
     *("where", "column", "equals", "below", "above", "within"),

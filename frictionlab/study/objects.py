@@ -10,28 +10,27 @@ from typing import Any
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
-from frictionlab.mistakes.as_typed import typed
 from frictionlab.mistakes.notes import Notes, python_text
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import Form
 from frictionlab.study.law_files import StudyLaws
 from frictionlab.study.mapping_source import read_mapping
-from frictionlab.study.reader import DEFAULT_TOLERANCE, read_study
-from frictionlab.study.study import SCHEMA, Study
+from frictionlab.study.parts import SCHEMA
+from frictionlab.study.reader import read_values
 
 LawsGiven = FrictionLaw | Sequence[FrictionLaw] | Mapping[str, FrictionLaw]
 """One law, several, or several by label."""
 MethodsGiven = str | Method | Sequence[str | Method] | Mapping[str, str | Method]
 
 
-def study_of_objects(
+def values_of_objects(
     scene: Scene,
     laws: LawsGiven,
     methods: MethodsGiven = "auto",
     sweep: Mapping[str, Any] | None = None,
     **told: Any,
-) -> Study:
-    """The study of these objects; see ``Study.of``."""
+) -> dict[str, Any]:
+    """The values of a study of these objects; see ``Study.of``."""
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be an fl.Scene, got {python_text(scene)}")
     labelled = list(_labelled(laws, "laws", FrictionLaw, "a friction law such as fl.Coulomb(mu=0.4)"))
@@ -57,42 +56,7 @@ def study_of_objects(
     def bring(_tree: dict[str, Any], _folder: FilePath, _notes: Notes) -> StudyLaws:
         return StudyLaws((), registry.Laws(own))
 
-    return read_study(source, bring)
-
-
-def study_as_typed(study: Study) -> str:
-    """What one would type to make a study again, but for long lists, of which the ends are shown."""
-    told = study.resolved()
-    laws = _as_given({choice.label: (choice.kind, choice.law()) for choice in study.laws})
-    methods = _as_given(
-        {one.label: (one.name, one.method if one.parameters else one.name) for one in study.methods}
-    )
-    parts = [repr(study.scene), laws, *([] if methods == "'auto'" else [f"methods={methods}"])]
-    usual = {*_OBJECTS, *(["tolerance"] if study.tolerance == DEFAULT_TOLERANCE else [])}
-    parts += [f"{key}={_typed(value)}" for key, value in told.items() if key not in usual]
-    return f"Study.of({', '.join(parts)})"
-
-
-_OBJECTS = {"schema", "scene", "plugins", "laws", "methods"}
-_MOST_TYPED = 8
-"""Values of a list that are shown."""
-
-
-def _as_given(named: Mapping[str, tuple[str, Any]]) -> str:
-    """One as it is, several as a list, those with a label of their own by it."""
-    if any(label != kind for label, (kind, _) in named.items()):
-        return repr({label: each for label, (_, each) in named.items()})
-    each = [one for _, one in named.values()]
-    return repr(each[0] if len(each) == 1 else each)
-
-
-def _typed(value: Any) -> str:
-    if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{key!r}: {_typed(item)}' for key, item in value.items())}}}"
-    if isinstance(value, list):
-        shown = [_typed(item) for item in value]
-        return f"[{', '.join([*shown[:2], '...', shown[-1]] if len(shown) > _MOST_TYPED else shown)}]"
-    return typed(value)
+    return read_values(source, bring=bring)
 
 
 def kind_of(law: FrictionLaw) -> str:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from os import PathLike
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -25,20 +23,17 @@ from frictionlab.study.choices import (
 )
 from frictionlab.study.expectations import Table, expectations, result_column
 from frictionlab.study.figure_options import read_figure_options
-from frictionlab.study.grid import Sweeps, note_impossible_points, read_sweeps
+from frictionlab.study.grid import StudyGrid
 from frictionlab.study.law_files import (
     LawReader,
-    Plugins,
     StudyLaws,
-    add_law_files,
     read_laws,
-    refuse_law_files,
-    saved_law_reader,
 )
-from frictionlab.study.mapping_source import read_mapping
 from frictionlab.study.overrides import apply_overrides
-from frictionlab.study.study import LIMIT_KEY, SCHEMA, LawChoice, MethodChoice, Study, coefficient_of
-from frictionlab.study.yaml_source import Source, read_file
+from frictionlab.study.parts import LIMIT_KEY, SCHEMA, LawChoice, MethodChoice, coefficient_of
+from frictionlab.study.possible import note_impossible_points
+from frictionlab.study.sweeps import Sweeps, read_sweeps
+from frictionlab.study.yaml_source import Source
 
 STUDY_KEYS = (
     *("schema", "title", "source", "scene", "plugins", "laws", "methods", "tolerance"),
@@ -52,57 +47,20 @@ DEFAULT_METHODS = ("auto",)
 HERE = FilePath()
 
 
-def load_study(
-    path: str | PathLike[str],
-    overrides: Sequence[str] = (),
-    law_files: Sequence[FilePath] = (),
-    plugins: Plugins = "run",
-) -> Study:
-    """The study of this file, with ``path=value`` overrides and more files of laws.
+def read_values(
+    source: Source, overrides: Sequence[str] = (), folder: FilePath = HERE, bring: LawReader = read_laws
+) -> dict[str, Any]:
+    """The values of a ``Study``. Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
 
-    plugins: ``refuse`` makes the law files that the study itself lists a mistake; ``run`` runs their code.
-    Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
+    overrides: ``path=value``. folder: that of the law files it names.
     """
-    file = FilePath(path)
-    source = read_file(file)
-    if isinstance(source.tree, dict):
-        if plugins == "refuse":
-            refuse_law_files(source)
-        add_law_files(source, law_files)
-    return replace(_study(source, overrides, file.parent), path=file)
-
-
-def read_back(path: FilePath, codes: Mapping[str, str]) -> Study:
-    """The study that a run saved; laws of other packages become records without physics. codes: their SHA-256.
-
-    Raises StudyError with every mistake.
-    """
-    return replace(_study(read_file(path), (), path.parent, saved_law_reader(codes)), path=path)
-
-
-def parse_study(mapping: Mapping[str, Any], overrides: Sequence[str] = (), name: str = "study") -> Study:
-    """The study of a mapping shaped like a study file; its plugins are relative to the working folder.
-
-    Raises StudyError with every mistake, BrokenPlugin for a law that cannot be used.
-    """
-    return _study(read_mapping(mapping, name), overrides)
-
-
-def read_study(source: Source, bring: LawReader = read_laws) -> Study:
-    """The study of values already read, such as a part of a larger file. Raises StudyError with every mistake."""
-    return _study(source, (), bring=bring)
-
-
-def _study(
-    source: Source, overrides: Sequence[str], folder: FilePath = HERE, bring: LawReader = read_laws
-) -> Study:
     if isinstance(source.tree, dict):
         apply_overrides(source, overrides)
     notes = Notes(source.notes)
-    study = _StudyReader(source, notes, lambda tree: bring(tree, folder, notes)).study()
-    if study is None or notes.all:
+    told = _StudyReader(source, notes, lambda tree: bring(tree, folder, notes)).values()
+    if told is None or notes.all:
         raise StudyError(source.located(notes.all))
-    return study
+    return told
 
 
 class _StudyReader:
@@ -113,7 +71,7 @@ class _StudyReader:
         self._tree: dict[str, Any] = source.tree
         self._known = registry.Laws()
 
-    def study(self) -> Study | None:
+    def values(self) -> dict[str, Any] | None:
         if self._notes.mapping(self._tree, ()) is None:
             return None
         self._keys()
@@ -133,10 +91,10 @@ class _StudyReader:
             return None
         told["code"] = brought.code(choice.kind for choice in laws)
         told["plugins"] = brought.files
-        told["ranges"], told["links"] = sweep.ranges, sweep.links
-        study = Study(scene=scene, laws=laws, methods=methods, sweep=sweep.sweep, **told)
-        note_impossible_points(study, self._notes)
-        return study
+        swept = {"sweep": sweep.sweep, "ranges": sweep.ranges, "links": sweep.links}
+        along: dict[str, Any] = {"scene": scene, "laws": laws, "methods": methods, **swept}
+        note_impossible_points(StudyGrid(**along), told, self._notes)
+        return along | told
 
     def _keys(self) -> None:
         for key in self._tree:

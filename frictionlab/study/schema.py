@@ -15,8 +15,10 @@ from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
 from frictionlab.study.axes import FRICTION, LINKED
 from frictionlab.study.figure_options import FIGURE_KEYS, FLAGS, FORMATS, WIDTHS
-from frictionlab.study.grid import LARGEST_GRID, WITHIN
-from frictionlab.study.study import LIMIT_KEY, SCHEMA, SECONDS_PER_POINT
+from frictionlab.study.parts import LIMIT_KEY, SCHEMA
+from frictionlab.study.ranges import WITHIN
+from frictionlab.study.study import SECONDS_PER_POINT
+from frictionlab.study.sweeps import LARGEST_RANGE
 
 _KEYS = {
     "schema": "version of the rules that the study is written by",
@@ -198,7 +200,7 @@ def _sweep() -> dict[str, Any]:
         {
             "start": _NUMBER,
             "stop": _NUMBER,
-            "num": {"type": "integer", "minimum": 2, "maximum": LARGEST_GRID},
+            "num": {"type": "integer", "minimum": 2, "maximum": LARGEST_RANGE},
             "spacing": {"enum": ["linear", "log"], "default": "linear"},
         },
         ["start", "stop", "num"],

@@ -32,7 +32,7 @@ from frictionlab.methods.periodic.continuation import CLOSED
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.decoupled import axes_apart
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane
-from frictionlab.study.study import law_in_scene
+from frictionlab.study.grid import law_in_scene
 
 RELATIVE, LEAST = 1e-6, 1e-3
 SHIFTS = (1e-4, 1e-5, 1e-6)

@@ -17,9 +17,8 @@ from oracle import table_of_one_degree_of_freedom
 
 from frictionlab.charts.figures import draw_figures, figure_of, figures_of
 from frictionlab.charts.style import STYLE
-from frictionlab.study import StudyError
+from frictionlab.study import StudyError, parse_study
 from frictionlab.study.figure_options import FigureOptions, figure_options
-from frictionlab.study.reader import parse_study
 from frictionlab.study.schema import schema
 
 

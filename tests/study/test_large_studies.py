@@ -15,7 +15,6 @@ from ruamel.yaml import YAML
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.study import StudyError, load_study, parse_study, read_back
-from frictionlab.study.ranges import SweepRange
 from frictionlab.study.yaml_text import yaml_text
 
 SCENE = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 1, "drive": {"unbalance": 10, "frequency": 1}}
@@ -62,20 +61,17 @@ def test_as_many_values_as_python_may_give_are_saved_in_a_file_that_is_read_agai
     assert read_back(tmp_path / "study.yaml", {}) == ready
 
 
-def test_a_grid_is_checked_for_its_size_before_its_values_are_built(monkeypatch: pytest.MonkeyPatch) -> None:
-    def never(_: SweepRange) -> tuple[float, ...]:
-        raise AssertionError("built")
-
-    monkeypatch.setattr(SweepRange, "values", never)
-    large = {f"scene.{name}": up_to(1_000_000) for name in ("belt_speed", "normal_load", "drive.frequency")}
-    message = told(study(sweep=large))
-
-    assert "sweep: the grid has at least 1000000000000000000 points, more than 100000000" in message
-
-
 @pytest.mark.parametrize(
     ("tree", "message"),
     [
+        (
+            lambda: study(
+                sweep={
+                    f"scene.{name}": up_to(1000) for name in ("belt_speed", "normal_load", "drive.frequency")
+                }
+            ),
+            "sweep: the grid has 1000000000 points, more than 100000000",
+        ),
         (
             lambda: study(
                 keep={"harmonics": 3}, sweep={"scene.belt_speed": {"start": 1, "stop": 2, "num": 100_001}}

@@ -1,0 +1,228 @@
+"""Sweeps: the values that can be swept, and their values."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from frictionlab import registry
+from frictionlab.columns import BELT_SPEEDS
+from frictionlab.mistakes.notes import Notes, Path, number_text, value_text
+from frictionlab.mistakes.validation import (
+    checked_value,
+    placed,
+    valid_number,
+    wrong_value,
+)
+from frictionlab.study.axes import LINKED, GridValue
+from frictionlab.study.ranges import SPACINGS, WITHIN, SpeedRange, SweepRange
+from frictionlab.study.sweep_targets import Target, Targets, value_at
+
+LARGEST_RANGE = 1_000_000
+_KEYS = ("start", "stop", "num", "spacing")
+
+
+@dataclass
+class Sweeps:
+    """The sweeps of a study, the ranges and the links among them.
+
+    stand_ins: where first values stand in for what the study left out.
+    """
+
+    sweep: dict[str, tuple[GridValue, ...]] = field(default_factory=dict)
+    ranges: dict[str, SweepRange | SpeedRange] = field(default_factory=dict)
+    links: tuple[tuple[str, ...], ...] = ()
+    stand_ins: dict[Path, Path] = field(default_factory=dict)
+
+
+def read_sweeps(tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> Sweeps:
+    """Read the sweeps; a swept value that the study leaves out is put into the tree."""
+    given = notes.mapping(tree.get("sweep", {}), ("sweep",)) or {}
+    reader = _SweepReader(tree, laws, notes)
+    for key, values in given.items():
+        if key == LINKED:
+            reader.read_linked(values)
+        else:
+            reader.read(key, values, ("sweep", key))
+    return reader.found
+
+
+class _SweepReader:
+    """The sweeps of a study, read one after another."""
+
+    def __init__(self, tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> None:
+        self._tree, self._notes = tree, notes
+        self._targets = Targets(tree, laws, notes)
+        self.found = Sweeps()
+
+    def read(self, key: str, values: Any, path: Path, linked: bool = False) -> None:
+        """One list or range, of a path by itself or of one among those of a linked entry."""
+        targets = self._targets.at(key, path)
+        if key in self.found.sweep:
+            self._notes.on_key(path, f"{key} is swept already")
+            return
+        first = targets[0] if targets else None
+        read = _read_values(values, first, path, self._notes, unique=not linked)
+        if isinstance(read, SpeedRange) and (linked or key not in BELT_SPEEDS):
+            what = "belt speeds alone are chosen so, where no others are linked to them; give num"
+            self._notes.on_key((*path, WITHIN), what)
+            return
+        is_range = isinstance(read, SweepRange | SpeedRange)
+        if isinstance(read, SweepRange | SpeedRange):
+            self.found.ranges[key] = read
+        for target in targets if is_range else targets[1:]:
+            _check_values(read if isinstance(read, tuple) else _ends(read), target, path, self._notes)
+        built = _built(read, path, self._notes)
+        for target in targets:
+            _stand_in(self._tree, target, built, self.found.stand_ins, path)
+        self.found.sweep[key] = built
+
+    def read_linked(self, given: Any) -> None:
+        """The entries of lists that advance together."""
+        if not isinstance(given, list):
+            what = (
+                "must be a list of entries such as {scene.drive.frequency: [1, 2], scene.normal_load: [5, 9]}"
+            )
+            self._notes.add(("sweep", LINKED), f"{what}, got {value_text(given)}")
+            return
+        if not given:
+            self._notes.add(("sweep", LINKED), "the list is empty; give at least one entry")
+        for index, entry in enumerate(given):
+            path: Path = ("sweep", LINKED, index)
+            if (lists := self._notes.mapping(entry, path)) is None:
+                continue
+            if len(lists) < 2:
+                self._notes.add(
+                    path, "one list alone links nothing: give two or more, or write it under sweep"
+                )
+            for key, values in lists.items():
+                self.read(key, values, (*path, key), linked=True)
+            if not self._notes.below(path):
+                self._check_entry({key: self.found.sweep[key] for key in lists}, path)
+
+    def _check_entry(self, lists: dict[str, tuple[GridValue, ...]], path: Path) -> None:
+        sizes = {key: len(values) for key, values in lists.items()}
+        first = next(iter(sizes))
+        for key, size in sizes.items():
+            if size != sizes[first]:
+                what = f"has {size} values, {first} {sizes[first]}: lists of one entry advance together"
+                self._notes.add((*path, key), what)
+                return
+        points = list(zip(*lists.values(), strict=True))
+        twice = next((at for at, point in enumerate(points) if points.index(point) < at), None)
+        if twice is not None:
+            self._notes.add(path, f"its places {points.index(points[twice])} and {twice} are the same point")
+        self.found.links += (tuple(lists),)
+
+
+Read = tuple[GridValue, ...] | SweepRange | SpeedRange
+"""A list of values, or a range of them not yet built."""
+
+
+def _ends(read: Read) -> tuple[GridValue, ...]:
+    """The ends of a range, which decide whether its values are allowed; of a list the first value."""
+    return read[:1] if isinstance(read, tuple) else (read.start, read.stop)
+
+
+def _check_values(values: Sequence[GridValue], target: Target, path: Path, notes: Notes) -> None:
+    """Check values, such as the ends of a range, which decide whether all of them are allowed."""
+    for index, value in enumerate(values):
+        if what := wrong_value(target.record, target.key, value):
+            notes.add((*path, index), what)
+
+
+def _stand_in(
+    tree: dict[str, Any],
+    target: Target,
+    values: tuple[GridValue, ...],
+    stand_ins: dict[Path, Path],
+    path: Path,
+) -> None:
+    """Complete a scene or law with the first of the swept values, which need not be given a second time."""
+    within = value_at(tree, target.parent)
+    if not isinstance(within, dict) or target.key in within:
+        return
+    good = [value for value in values if wrong_value(target.record, target.key, value) is None]
+    if good or target.is_number:
+        within[target.key] = good[0] if good else valid_number(target.record, target.key)
+        stand_ins[(*target.parent, target.key)] = path
+
+
+def _read_values(given: Any, target: Target | None, path: Path, notes: Notes, unique: bool) -> Read:
+    """The values of one sweep, from a list or a range not yet built; empty, noted, where there is a mistake."""
+    words = target is not None and not target.is_number
+    if isinstance(given, list):
+        values = _list_values(given, target, path, notes)
+        if unique:
+            _note_doubles(values, path, notes)
+        return tuple(value for value in values if value is not None)
+    if isinstance(given, dict) and not words:
+        return _read_range(given, path, notes) or ()
+    wanted = "must be a list" if words else "must be a list or {start, stop, num, spacing}"
+    notes.add(path, f"{wanted}, got {value_text(given)}")
+    return ()
+
+
+def _list_values(given: list[Any], target: Target | None, path: Path, notes: Notes) -> list[GridValue | None]:
+    if not given:
+        notes.add(path, "the list is empty; give at least one value")
+    return [_list_value(item, target, (*path, index), notes) for index, item in enumerate(given)]
+
+
+def _note_doubles(values: Sequence[GridValue | None], path: Path, notes: Notes) -> None:
+    seen: dict[GridValue, int] = {}
+    for index, value in enumerate(values):
+        if value is not None and seen.setdefault(value, index) != index:
+            told = number_text(value) if isinstance(value, float) else str(value)
+            notes.add((*path, index), f"{told} is in the list twice")
+
+
+def _list_value(item: Any, target: Target | None, path: Path, notes: Notes) -> GridValue | None:
+    """One value as the scene or law holds it; None, noted, where it cannot."""
+    if target is None:  # the mistake is in the key
+        return item if isinstance(item, float | int | str) else None
+    if item is None:
+        notes.add(path, f"must be a {'number' if target.is_number else 'value'}, got null")
+        return None
+    value: GridValue | None
+    value, what, hint = checked_value(target.record, target.key, item)
+    if what is not None:
+        notes.add(*placed(path, what, item), hint)
+    return value
+
+
+def _read_range(given: dict[str, Any], path: Path, notes: Notes) -> SweepRange | SpeedRange | None:
+    chosen = WITHIN in given
+    usual = (*_KEYS, WITHIN) if path[-1] in BELT_SPEEDS else _KEYS
+    notes.mapping(given, path, ("start", "stop", WITHIN) if chosen else usual)
+    for key in ("start", "stop") if chosen else ("start", "stop", "num"):
+        if key not in given:
+            notes.add((*path, key), "required key is missing")
+    ends = [notes.number(given[key], (*path, key)) if key in given else None for key in ("start", "stop")]
+    start, stop = ends
+    num = notes.whole_number(given["num"], (*path, "num"), 2) if "num" in given else None
+    spacing = notes.one_of(given.get("spacing", "linear"), (*path, "spacing"), SPACINGS)
+    if start is not None and spacing == "log" and start <= 0:
+        notes.add((*path, "start"), f"must be > 0 for log spacing, got {number_text(start)}")
+    if start is not None and stop is not None and stop <= start:
+        notes.add((*path, "stop"), f"must be > start = {number_text(start)}, got {number_text(stop)}")
+    if num is not None and num > LARGEST_RANGE:
+        notes.add((*path, "num"), f"must be <= {LARGEST_RANGE}, got {num}")
+    within = notes.positive(given[WITHIN], (*path, WITHIN)) if chosen else None
+    if chosen and start is not None and stop is not None and within is not None:
+        return None if notes.below(path) else SpeedRange(start, stop, within)
+    if notes.below(path) or start is None or stop is None or num is None or spacing is None:
+        return None
+    return SweepRange(start, stop, num, spacing)
+
+
+def _built(read: Read, path: Path, notes: Notes) -> tuple[GridValue, ...]:
+    """The values; of belt speeds that are chosen as a run goes the ends."""
+    if not isinstance(read, SweepRange):
+        return _ends(read) if isinstance(read, SpeedRange) else read
+    values = read.values()
+    if not all(map(operator.lt, values, values[1:])):
+        notes.add(path, f"there are no {read.num} different numbers between start and stop")
+    return values

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from tally import log_uniform
+from campaign import log_uniform
 
 from frictionlab.bench.reader import load_bench
 from frictionlab.laws.base import FrictionLaw

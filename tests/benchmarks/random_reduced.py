@@ -15,7 +15,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy as np
-from tally import log_uniform
+from campaign import log_uniform
 
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.base import Method

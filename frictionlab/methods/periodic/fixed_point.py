@@ -74,7 +74,7 @@ _finer = by_law(_finer_of_order_eight, _finer_of_order_five, _finer_of_order_eig
 Newton step to a map finer by ``FINER`` stands in where two means agree by chance.
 
 Of order eight it is fitted to 2,500 random rows: of 399 others none was uncovered, and half of the errors stated were
-below 27 times the true. Of order five see tests/benchmarks/random_bristle.py.
+below 27 times the true. Of order five see tests/benchmarks/campaign.py bristles.
 """
 
 

@@ -69,7 +69,7 @@ def test_the_multiplier_of_the_table_is_within_its_error(law: Any, belt_speed: f
 
 
 def test_where_the_map_has_no_derivative_there_is_no_multiplier_but_a_reason() -> None:
-    # number 86 of tests/benchmarks/random_multipliers.py: slip that hardly reverses, on a slow belt
+    # of tests/benchmarks/campaign.py multipliers: slip that hardly reverses, on a slow belt
     drive = fl.Drive(amplitude=0.18977730933120288, frequency=3.7205439413744097, phase=344.0896473998927)
     scene = fl.Scene(
         damping_ratio=0.06874662892719423,

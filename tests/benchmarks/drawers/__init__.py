@@ -1,0 +1,1 @@
+"""What the campaigns draw, and what they compare it with."""

@@ -12,9 +12,6 @@ from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
 
-_BEGIN = re.compile(r"@(\w+)\s*\{\s*([^\s,{}\"#%]+)\s*(?=[,}])")
-_NAME = re.compile(r"\s*,\s*(?:(\w+)\s*=\s*)?")
-_BARE = re.compile(r"\w+")
 _HOMES = ("journal", "booktitle", "publisher", "institution", "howpublished", "note")
 
 
@@ -102,47 +99,29 @@ def _place(reference: Publication, words: str) -> int:
     return min((match.start() for match in found if match), default=-1)
 
 
+_BRACED = r"\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}"
+_VALUE = rf'{_BRACED}|"(?:[^"{{}}]|{_BRACED})*"|\w+'
+_FIELD = re.compile(rf"(\w+)\s*=\s*({_VALUE})")
+_ENTRY = re.compile(rf"@(\w+)\s*\{{\s*([^\s,{{}}]+)\s*(?:,\s*(?:\w+\s*=\s*(?:{_VALUE})\s*)?)*\}}")
+"""Values in braces, three deep, in quotes or bare; an entry of them."""
+
+
 def read_bibtex(bibtex: str) -> tuple[Publication, ...]:
     """The entries of BibTeX text; text between them is comment. Raises ValueError for a broken entry."""
     if not isinstance(bibtex, str):
         raise ValueError(f"must be one text of BibTeX entries, not a {type(bibtex).__name__}")
-    found, at = [], 0
-    while (at := bibtex.find("@", at)) >= 0:
-        begin = _BEGIN.match(bibtex, at)
-        if begin is None:
-            raise ValueError(f"no BibTeX entry such as @article{{key, ...}}: {_start(bibtex, at)}")
-        fields, end = _fields(bibtex, begin)
-        found.append(Publication(begin[1].lower(), begin[2], fields, bibtex[at:end]))
-        at = end
-    return tuple(found)
+    if "@" in (left := _ENTRY.sub("", bibtex)):
+        start = " ".join(left[left.index("@") :].split())[:40]
+        raise ValueError(f"no BibTeX entry such as @article{{key, title = {{...}}}}: {start}")
+    return tuple(
+        Publication(entry[1].lower(), entry[2], _fields(entry[0]), entry[0])
+        for entry in _ENTRY.finditer(bibtex)
+    )
 
 
-def _fields(bibtex: str, begin: re.Match[str]) -> tuple[dict[str, str], int]:
-    """The fields of an entry, and where it ends."""
-    fields, at = {}, begin.end()
-    while name := _NAME.match(bibtex, at):
-        at = name.end()
-        if name[1] is None:
-            break
-        fields[name[1].lower()], at = _value(bibtex, at)
-    end = re.compile(r"\s*\}").match(bibtex, at)
-    if end is None:
-        raise ValueError(f"BibTeX entry '{begin[2]}' cannot be read at: {_start(bibtex, at)}")
-    return fields, end.end()
-
-
-def _value(bibtex: str, at: int) -> tuple[str, int]:
-    """The value of a field, in braces, in quotes or bare, and where it ends."""
-    bare = _BARE.match(bibtex, at)
-    if bare:
-        return bare[0], bare.end()
-    close, depth = {"{": "}", '"': '"'}.get(bibtex[at : at + 1], ""), 0
-    for end in range(at + 1, len(bibtex)):
-        if bibtex[end] == close and depth == 0:
-            return " ".join(bibtex[at + 1 : end].split()), end + 1
-        depth += {"{": 1, "}": -1}.get(bibtex[end], 0)
-    raise ValueError(f"a BibTeX field has no end: {_start(bibtex, at)}")
-
-
-def _start(text: str, at: int) -> str:
-    return " ".join(text[at : at + 40].split()) or "its end"
+def _fields(entry: str) -> dict[str, str]:
+    found = _FIELD.findall(entry)
+    return {
+        name.lower(): " ".join((value if value[0].isalnum() else value[1:-1]).split())
+        for name, value in found
+    }

@@ -17,9 +17,9 @@ from frictionlab import columns
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.mistakes.notes import Mistake, StudyError
-from frictionlab.scene.units import Units, scaled_law
 from frictionlab.scene.scene import Scene, with_values
 from frictionlab.scene.scenes import Scenes
+from frictionlab.scene.units import Units, scaled_law
 from frictionlab.study.axes import (
     FRICTION,
     SCENE,

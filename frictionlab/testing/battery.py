@@ -13,51 +13,10 @@ from frictionlab.testing.checks import compiled, declared, limits, path, record,
 from frictionlab.testing.outcome import LawFailed, Outcome, Report
 from frictionlab.testing.running import run_check
 
-CHECKS: tuple[Check, ...] = (
-    record.loads_by_name,
-    record.documented,
-    record.frozen,
-    record.unknown_parameters_refused,
-    record.limits_kept,
-    record.defaults_valid,
-    record.answers,
-    record.extremes,
-    record.repeatable,
-    record.instances_apart,
-    record.parameters_matter,
-    symmetry.oddness,
-    symmetry.rotation,
-    symmetry.reflection,
-    symmetry.straight_planar_slide,
-    symmetry.unit_scaling,
-    declared.constant_sliding_friction,
-    declared.steepest_fall,
-    declared.monotone,
-    declared.static_friction,
-    declared.not_smoothed,
-    path.steady_sliding,
-    declared.held_at_rest,
-    declared.invariant_set,
-    declared.passivity,
-    declared.not_passive,
-    declared.damps_across,
-    declared.rate_independence,
-    declared.largest_rate,
-    path.exact_path,
-    path.path_splitting,
-    path.saturation_path,
-    path.elastic_deflection,
-    path.elastic_unloading,
-    path.yield_deflection,
-    path.breakaway,
-    path.uncoupled,
-    compiled.compiled_on_the_line,
-    compiled.compiled_in_the_plane,
-    limits.coulomb_limit_of_prescribed_slip,
-    limits.coulomb_limit_of_a_body,
-    limits.two_methods,
-)
-"""In the order they run: what a law must have before anything else can be asked of it comes first."""
+MODULES = record, symmetry, declared, path, compiled, limits
+"""What a law must have before anything else can be asked of it comes first."""
+CHECKS = tuple(each for module in MODULES for each in vars(module).values() if isinstance(each, Check))
+"""In the order they run."""
 
 EXAMPLES = 100
 SECONDS = 60.0

@@ -60,10 +60,10 @@ def for_laws_of(*kinds: Any, without: str) -> Skips:
     return lambda law: "" if issubclass(law, kinds) else without
 
 
-def make_check(name: str, *, skips: Skips = for_every_law, **told: Any) -> Callable[[CheckFunction], Check]:
-    """Make a check of a body; its docstring is what the check is about, ``told`` the fields of Check."""
+def law_check(*, skips: Skips = for_every_law, **told: Any) -> Callable[[CheckFunction], Check]:
+    """Make a check of a function: its name is the check's, its docstring what it is about; told: fields of Check."""
 
     def made(body: CheckFunction) -> Check:
-        return Check(name, " ".join((body.__doc__ or "").split()), body, skips, **told)
+        return Check(body.__name__, " ".join((body.__doc__ or "").split()), body, skips, **told)
 
     return made

@@ -22,7 +22,7 @@ from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.testing import CHECKS, Check, LawFailed, check_law
-from frictionlab.testing.check import make_check
+from frictionlab.testing.check import law_check
 from frictionlab.testing.example import Given
 from frictionlab.testing.running import run_check
 from frictionlab.testing.strategies import fullest_laws, loaded_laws, numbers
@@ -93,7 +93,7 @@ def test_a_law_names_its_own_expected_failures() -> None:
 
 
 def test_a_check_that_ran_nothing_has_failed() -> None:
-    @make_check("never")
+    @law_check()
     def never(one: Given) -> None:
         """What never comes up."""
         one.law(lambda law: False)
@@ -124,7 +124,7 @@ def test_a_law_that_never_answers_is_told_within_the_time_limit_and_asked_no_mor
 def test_laws_are_drawn_with_every_parameter_they_may_be_given(law: type[FrictionLaw]) -> None:
     seen: set[str] = set()
 
-    @make_check("drawn")
+    @law_check()
     def drawn(one: Given) -> None:
         """What is given."""
         made = one.draw("law", fullest_laws(law))
@@ -137,7 +137,7 @@ def test_laws_are_drawn_with_every_parameter_they_may_be_given(law: type[Frictio
 def test_numbers_keep_within_their_limits() -> None:
     for low, high in ((0.0, math.inf), (1.0, math.inf), (0.0, 1.0), (-math.inf, math.inf), (-math.inf, 2.0)):
 
-        @make_check("numbers")
+        @law_check()
         def drawn(one: Given, low: float = low, high: float = high) -> None:
             """Numbers."""
             assert low <= one.draw("number", numbers(low, high)) <= high
@@ -164,7 +164,7 @@ def test_the_command_prints_a_table_records_or_markdown(
 
 
 def test_the_command_ends_with_3_where_a_check_fails(monkeypatch: Any) -> None:
-    @make_check("never")
+    @law_check()
     def never(one: Given) -> None:
         """What never comes up."""
         one.law(lambda law: False)
@@ -343,7 +343,7 @@ class Bounded(Plain):
 def test_laws_are_drawn_and_scaled_within_the_bounds_of_their_parameters() -> None:
     seen: list[Bounded] = []
 
-    @make_check("drawn")
+    @law_check()
     def drawn(one: Given) -> None:
         """Any."""
         seen.append(one.law())

@@ -12,7 +12,7 @@ from frictionlab.dynamics.contact import resistance
 from frictionlab.faults import CannotCompile
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.testing.check import make_check
+from frictionlab.testing.check import law_check
 from frictionlab.testing.contact import ContactMemory, Response, response
 from frictionlab.testing.example import Given
 
@@ -63,8 +63,7 @@ def machine_response(one: Given, law: FrictionLaw, v: Any, memory: ContactMemory
     return Response(tuple(answer[1 : 1 + len(memory)]), answer[0]), answer[-1]
 
 
-@make_check(
-    "compiled_on_the_line",
+@law_check(
     change="use plain arithmetic, abs, if, for and the math module in methods; parameters and properties for numbers",
     patience=10.0,
     share=0.5,
@@ -76,8 +75,7 @@ def compiled_on_the_line(one: Given) -> None:
     _agree(one, law, v, one.memory(law))
 
 
-@make_check(
-    "compiled_in_the_plane",
+@law_check(
     change="use plain arithmetic, abs, if, for and the math module in methods; no float of a complex number",
     patience=10.0,
     share=0.5,

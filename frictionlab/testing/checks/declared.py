@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.testing.check import for_laws_of, make_check
+from frictionlab.testing.check import for_laws_of, law_check
 from frictionlab.testing.contact import (
     ContactMemory,
     deflection_scale,
@@ -34,8 +34,7 @@ SLOW_TO_QUICK = tuple(10.0**exponent for exponent in range(-6, 16))
 """Speeds at which work may be drawn out of a law that is not passive, far above those drawn."""
 
 
-@make_check(
-    "constant_sliding_friction",
+@law_check(
     change="let constant_sliding_friction() be false for these parameters, or correct sliding_friction",
     declares="constant_sliding_friction",
     seldom="constant_sliding_friction() is false for all parameters drawn",
@@ -48,8 +47,7 @@ def constant_sliding_friction(one: Given) -> None:
     one.require(abs(quick - slow) <= 1e-12 * abs(slow), "sliding friction differs", got=quick, expected=slow)
 
 
-@make_check(
-    "steepest_fall",
+@law_check(
     seldom="steepest_fall() is not declared, or infinite for all parameters drawn",
     change="let steepest_fall() return at least this slope, or leave it out",
 )
@@ -66,8 +64,7 @@ def steepest_fall(one: Given) -> None:
         )
 
 
-@make_check(
-    "monotone",
+@law_check(
     change="let monotone() be false for these parameters, or leave it out",
     declares="monotone",
     skips=SLIDING,
@@ -91,8 +88,7 @@ def monotone(one: Given) -> None:
     one.require(fall == 0.0, "monotone friction falls nowhere, yet its steepest fall is declared", got=fall)
 
 
-@make_check(
-    "static_friction",
+@law_check(
     change="let static_friction() return at least sliding_friction(0), or leave it out",
     skips=SLIDING,
 )
@@ -103,8 +99,7 @@ def static_friction(one: Given) -> None:
     one.require(held >= first * (1.0 - 1e-12), "rest holds less than slip", rest=held, slip=first)
 
 
-@make_check(
-    "invariant_set",
+@law_check(
     change="correct rate, or largest_deflection() (within(memory) of several numbers), or leave that out",
     skips=WITH_MEMORY,
     seldom="no parameters drawn have a bounded set",
@@ -150,9 +145,7 @@ def _moved(memory: ContactMemory, rates: ContactMemory, step: float) -> ContactM
     return tuple(each + step * slope for each, slope in zip(memory, rates, strict=True))
 
 
-@make_check(
-    "held_at_rest", change="let rate(0, z) be zero: take the smoothing width out of the law", skips=BRISTLES
-)
+@law_check(change="let rate(0, z) be zero: take the smoothing width out of the law", skips=BRISTLES)
 def held_at_rest(one: Given) -> None:
     """A contact at rest keeps its deflection: one that creeps there has a smoothing width in it."""
     law = one.law()
@@ -162,8 +155,7 @@ def held_at_rest(one: Given) -> None:
     one.require(rate == 0.0, "the deflection moves at rest", rate=rate)
 
 
-@make_check(
-    "not_smoothed",
+@law_check(
     change="leave the smoothing width to a method; or, of a film of fluid, let vanishes_at_rest() be true",
     skips=SLIDING,
 )
@@ -179,8 +171,7 @@ def not_smoothed(one: Given) -> None:
     one.require(kept, "friction vanishes with slip", at_rest=rest, at_1e_300=slow, at_1e_100=quicker)
 
 
-@make_check(
-    "passivity",
+@law_check(
     change="let passive() be false for these parameters, or leave it out; or correct stored",
     declares="passive",
     skips=WITH_MEMORY,
@@ -231,8 +222,7 @@ def _rates_tell_all(law: type[FrictionLaw]) -> str:
     return "of laws whose deflections do not remember whether they stick" if sticks else WITH_MEMORY(law)
 
 
-@make_check(
-    "not_passive",
+@law_check(
     declares="passive",
     change="let passive() be true for these parameters, or leave it out",
     skips=_rates_tell_all,
@@ -262,8 +252,7 @@ def _charged(law: BristleLaw | MemoryLaw) -> list[tuple[float, ...]]:
     return [tuple(memory) for memory in slow]
 
 
-@make_check(
-    "rate_independence",
+@law_check(
     change="let rate_independent() be false for these parameters, or leave it out",
     declares="rate_independent",
     skips=WITH_MEMORY,
@@ -281,8 +270,7 @@ def rate_independence(one: Given) -> None:
     one.require_same(law, (v, memory), got, response(law, v, memory), "slip so many times faster")
 
 
-@make_check(
-    "largest_rate",
+@law_check(
     change="let largest_rate(speed) return at least this, or leave it out",
     declares="largest_rate",
     skips=WITH_MEMORY,
@@ -322,8 +310,7 @@ def _change_of_rate(
     return abs(ahead - behind) / (2.0 * step), abs(ahead), corner
 
 
-@make_check(
-    "damps_across",
+@law_check(
     change="let damps_across(speed) be false at this speed",
     skips=BRISTLES,
     seldom="damps_across() is false for all parameters drawn",

@@ -14,7 +14,7 @@ from frictionlab.methods.march.method import March
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Scene, Slip
 from frictionlab.scene.units import Units, scaled_law
-from frictionlab.testing.check import make_check
+from frictionlab.testing.check import law_check
 from frictionlab.testing.checks.declared import WITH_MEMORY
 from frictionlab.testing.contact import deflection_scale
 from frictionlab.testing.example import Given
@@ -63,8 +63,7 @@ def _settles_gently(law: FrictionLaw) -> bool:
     return abs(bending) <= law.sliding_friction(SWING)
 
 
-@make_check(
-    "coulomb_limit_of_prescribed_slip",
+@law_check(
     change="correct rate and friction: a stiff contact slides; or let constant_sliding_friction() be false",
     declares="constant_sliding_friction",
     patience=10.0,
@@ -86,8 +85,7 @@ def coulomb_limit_of_prescribed_slip(one: Given) -> None:
     one.require(near, "ten times the stiffness must leave a tenth of the gap", gaps=tuple(gaps))
 
 
-@make_check(
-    "coulomb_limit_of_a_body",
+@law_check(
     change="correct rate and friction: a stiff contact slides; or let constant_sliding_friction() be false",
     declares="constant_sliding_friction",
     patience=10.0,
@@ -109,8 +107,7 @@ def coulomb_limit_of_a_body(one: Given) -> None:
     )
 
 
-@make_check(
-    "two_methods",
+@law_check(
     change="check what the law declares (largest_rate, exact_path, yield_deflection): the methods use it",
     patience=10.0,
     share=0.02,

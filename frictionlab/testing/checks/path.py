@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
-from frictionlab.testing.check import for_laws_of, make_check
+from frictionlab.testing.check import for_laws_of, law_check
 from frictionlab.testing.checks.declared import BRISTLES, SLOW_TO_QUICK, WITH_MEMORY
 from frictionlab.testing.contact import deflection_scale, dot, response
 from frictionlab.testing.example import Given
@@ -23,8 +23,7 @@ STEPS = 400
 """Of the Runge-Kutta method, along a path of a few largest deflections."""
 
 
-@make_check(
-    "steady_sliding",
+@law_check(
     change="let sliding_friction(speed) be what rate and friction lead to (and steady, of several numbers)",
     skips=WITH_MEMORY,
 )
@@ -75,8 +74,7 @@ def _slowed_to(one: Given, law: BristleLaw, speed: float, share: float) -> float
     return high
 
 
-@make_check(
-    "exact_path",
+@law_check(
     change="correct deflected, or leave out exact_path()",
     declares="exact_path",
     skips=BRISTLES,
@@ -126,8 +124,7 @@ def _room(law: BristleLaw, path: Any) -> float:
     return (1e-9 + 10.0 * step**4) * deflection_scale(law)
 
 
-@make_check(
-    "path_splitting",
+@law_check(
     change="correct deflected, or leave out exact_path()",
     declares="exact_path",
     skips=BRISTLES,
@@ -152,8 +149,7 @@ def path_splitting(one: Given) -> None:
     )
 
 
-@make_check(
-    "saturation_path",
+@law_check(
     change="let saturation_path return a longer path, or leave it out",
     declares="saturation_path",
     skips=BRISTLES,
@@ -183,8 +179,7 @@ def _follows(one: Given, law: BristleLaw, v: Any, z: Any, back: str = "") -> Non
     )
 
 
-@make_check(
-    "elastic_deflection",
+@law_check(
     change="let elastic_deflection() return less, or leave it out",
     declares="elastic_deflection",
     skips=BRISTLES,
@@ -198,8 +193,7 @@ def elastic_deflection(one: Given) -> None:
         _follows(one, law, v, share * min(law.elastic_deflection(), 1e300))
 
 
-@make_check(
-    "elastic_unloading",
+@law_check(
     change="let elastic_unloading() be false for these parameters, or leave it out",
     declares="elastic_unloading",
     skips=BRISTLES,
@@ -222,9 +216,7 @@ def _never_sticks(law: type[FrictionLaw]) -> str:
     return "" if told else "no deflection remembers whether it sticks"
 
 
-@make_check(
-    "breakaway", change="correct breakaway or rate, or leave out remembers_stick()", skips=_never_sticks
-)
+@law_check(change="correct breakaway or rate, or leave out remembers_stick()", skips=_never_sticks)
 def breakaway(one: Given) -> None:
     """A deflection that remembers whether it sticks breaks away where it slips steadily, in every direction alike."""
     law = one.law()
@@ -250,8 +242,7 @@ def breakaway(one: Given) -> None:
         one.require(still == 0.0, f"deflection {k} moves at rest", rate=still)
 
 
-@make_check(
-    "uncoupled",
+@law_check(
     change="let rate(v, memory, k) use memory[k] alone",
     skips=for_laws_of(MemoryLaw, without="of laws that remember one number at most"),
     seldom="count() is 1 for all parameters drawn",
@@ -280,8 +271,7 @@ def _own_rate(law: Any, v: complex, memory: list[complex], k: int) -> Any:
     return law.rate(v, memory, k) if isinstance(law, MemoryLaw) else law.rate(v, memory[k])
 
 
-@make_check(
-    "yield_deflection",
+@law_check(
     change="correct yield_deflection or rate, or leave yield_deflection out",
     declares="yield_deflection",
     skips=for_laws_of(BristleLaw, MemoryLaw, without="of laws with deflections"),

@@ -17,7 +17,7 @@ from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.memory import BristleLaw, MemoryLaw
 from frictionlab.registry.records import law_record
-from frictionlab.testing.check import make_check
+from frictionlab.testing.check import law_check
 from frictionlab.testing.contact import ContactMemory, Response, no_plane, response
 from frictionlab.testing.example import Given
 from frictionlab.testing.strategies import fullest_laws, loaded_laws, words
@@ -39,8 +39,7 @@ def _leads_to(name: str, law: type[FrictionLaw]) -> bool:
         return False
 
 
-@make_check(
-    "loads_by_name",
+@law_check(
     change="enter the class under [project.entry-points.'frictionlab.laws'] of pyproject.toml",
     skips=not_registered,
     share=0.0,
@@ -52,8 +51,7 @@ def loads_by_name(one: Given) -> None:
     )
 
 
-@make_check(
-    "documented",
+@law_check(
     change="write into the docstring of the class what each parameter is, as in `mu [-], > 0: ...`, and its source",
     share=0.0,
 )
@@ -74,7 +72,7 @@ def documented(one: Given) -> None:
         )
 
 
-@make_check("frozen", change="leave model_config as it is, and make defaults numbers or tuples", share=0.1)
+@law_check(change="leave model_config as it is, and make defaults numbers or tuples", share=0.1)
 def frozen(one: Given) -> None:
     """A law cannot be changed once made, and no default of it can."""
     law = one.law()
@@ -90,7 +88,7 @@ def frozen(one: Given) -> None:
     hash(law)
 
 
-@make_check("unknown_parameters_refused", change="leave model_config as it is", share=0.1)
+@law_check(change="leave model_config as it is", share=0.1)
 def unknown_parameters_refused(one: Given) -> None:
     """A parameter the law does not have is refused."""
     law = one.law()
@@ -100,9 +98,7 @@ def unknown_parameters_refused(one: Given) -> None:
     )
 
 
-@make_check(
-    "limits_kept", change="annotate the parameter as fl.Positive, fl.NonNegative or fl.Finite", share=0.1
-)
+@law_check(change="annotate the parameter as fl.Positive, fl.NonNegative or fl.Finite", share=0.1)
 def limits_kept(one: Given) -> None:
     """Words, truth values, NaN and infinity are no numbers of a law."""
     law = one.law()
@@ -114,7 +110,7 @@ def limits_kept(one: Given) -> None:
                 one.require(_refused(one.kind, changed), f"{name} takes {wrong!r}")
 
 
-@make_check("defaults_valid", change="change the default, or the bound of the parameter", share=0.1)
+@law_check(change="change the default, or the bound of the parameter", share=0.1)
 def defaults_valid(one: Given) -> None:
     """What a parameter is where it is left out lies within the law's own limits."""
     given = one.law().model_dump(exclude_none=True)
@@ -138,8 +134,7 @@ def _refused(law: type[FrictionLaw], given: dict[str, Any]) -> bool:
     return False
 
 
-@make_check(
-    "answers",
+@law_check(
     change="return a finite number from that method, or bound the parameters: Annotated[fl.Positive, Field(le=10)]",
 )
 def answers(one: Given) -> None:
@@ -166,8 +161,7 @@ def _number(one: Given, kind: type, value: Any, whose: str) -> None:
     one.require(math.isfinite(abs(value)), f"{whose} must be finite", got=value)
 
 
-@make_check(
-    "extremes",
+@law_check(
     change="write the formula so that it holds at rest and at any speed, or bound the parameters",
     share=0.3,
 )
@@ -194,7 +188,7 @@ def _numbers_in_the_plane(one: Given, law: FrictionLaw, v: complex, memory: Cont
     _numbers(one, complex, got, float if _scalars(law) else complex)
 
 
-@make_check("repeatable", change="let the method depend on its arguments and the parameters alone", share=0.2)
+@law_check(change="let the method depend on its arguments and the parameters alone", share=0.2)
 def repeatable(one: Given) -> None:
     """Asked the same again, later, a law answers the same: no chance, no clock, nothing kept between calls."""
     law = one.law()
@@ -216,8 +210,7 @@ def _friction_alone(law: Any, v: float, memory: ContactMemory, rates: ContactMem
     return law.friction(v, np.array(memory), np.array(rates))
 
 
-@make_check(
-    "instances_apart",
+@law_check(
     change="let the method depend on its arguments and the parameters alone, without a cache of its own",
     share=0.2,
 )
@@ -239,8 +232,7 @@ def _all_mattered(one: Given) -> None:
         one.require(not idle, f"{name} changes no answer of the law")
 
 
-@make_check(
-    "parameters_matter",
+@law_check(
     change="use the parameter in a method, or take it out",
     share=0.5,
     after=_all_mattered,

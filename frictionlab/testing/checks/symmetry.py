@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.scene.units import Units, scaled_law
-from frictionlab.testing.check import make_check
+from frictionlab.testing.check import law_check
 from frictionlab.testing.contact import Response, has_direction, memory_after_slip, reflect, response, rotate
 from frictionlab.testing.example import Given
 from frictionlab.testing.strategies import directions, sizes
@@ -13,8 +13,7 @@ BEYOND_LIMIT = 1.5
 """Times what a memory can hold: it yields wholly, not only just."""
 
 
-@make_check(
-    "oddness",
+@law_check(
     change="let `rate` and `friction` change sign with v and the deflections; `abs(v)` alone has no direction",
 )
 def oddness(one: Given) -> None:
@@ -29,8 +28,7 @@ def oddness(one: Given) -> None:
         one.require_same(law, (v, memory), got, should, "slip turned round")
 
 
-@make_check(
-    "rotation",
+@law_check(
     change="write v / abs(v) and (v * z.conjugate()).real in place of v.real, v.imag or a fixed direction",
     seldom="no parameters drawn have a form in the plane that turns with the slip",
 )
@@ -52,8 +50,7 @@ def rotation(one: Given) -> None:
         one.require_same(law, (v, memory), got, should, "everything turned")
 
 
-@make_check(
-    "reflection",
+@law_check(
     change="write v / abs(v) and (v * z.conjugate()).real in place of v.imag or a fixed sense of turning",
     seldom="no parameters drawn have a form in the plane",
 )
@@ -68,8 +65,7 @@ def reflection(one: Given) -> None:
     one.require_same(law, (v, memory), got, should, "everything mirrored")
 
 
-@make_check(
-    "straight_planar_slide",
+@law_check(
     change="write abs(v) and v / abs(v), which mean the same on the line and in the plane",
     seldom="no parameters drawn have a form in the plane",
 )
@@ -86,8 +82,7 @@ def straight_planar_slide(one: Given) -> None:
     one.require_same(law, (v, memory), got, response(law, v, memory), "slip along the line in the plane")
 
 
-@make_check(
-    "unit_scaling",
+@law_check(
     change="annotate parameters with a dimension as fl.Speed, fl.PerSpeed, fl.Length or fl.Stiffness",
 )
 def unit_scaling(one: Given) -> None:

@@ -62,39 +62,39 @@ class Body(NamedTuple):
 
 
 def on_the_line(mass: Mass, periods: float = 1.0) -> Body:
-    """The body with motion along the belt alone."""
-    across = mass.damping, mass.stiffness, 0j
-    return _body(mass, periods, across, lambda along, _across: along)
+    """The body with motion along the belt alone: of one in the plane, alike across, what is along the belt."""
+    alike = mass._replace(
+        transverse_damping=mass.damping, transverse_stiffness=mass.stiffness, transverse_force=0j
+    )
+    plane = in_the_plane(alike, periods)._replace(varying=packed(mass.varying, False))
+    numbers: list[Any] = [number.real if isinstance(number, complex) else number for number in plane]
+    return Body(*numbers)
 
 
 def in_the_plane(mass: Mass, periods: float = 1.0) -> Body:
-    """The body with both motions."""
-    across = mass.transverse_damping, mass.transverse_stiffness, mass.transverse_force
-    return _body(mass, periods, across, complex)
-
-
-def _body(mass: Mass, periods: float, across: tuple[float, float, complex], joined: Any) -> Body:
-    """across: dashpot, spring and force along x2; joined: of a number along x1 and one along x2 that of kernels."""
-    damping, stiffness, force_2 = across
-    reference = _friction_free(mass.damping, mass.stiffness, mass.frequency, mass.force)
-    reference_2 = _friction_free(damping, stiffness, mass.frequency, force_2)
-    force = mass.force
-    taken, taken_2 = force if reference != 0 else 0j, force_2 if reference_2 != 0 else 0j
+    """The body with both motions, of a mass as kernels have it."""
+    along = mass.damping, mass.stiffness, mass.frequency, mass.force
+    across = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
+    reference, reference_2 = _friction_free(*along), _friction_free(*across)
+    force, force_2 = mass.force, mass.transverse_force
+    taken = force if reference != 0 else 0j
+    taken_2 = force_2 if reference_2 != 0 else 0j
     return Body(
-        damping_mean=0.5 * (mass.damping + damping),
-        damping_split=0.5 * (mass.damping - damping),
-        stiffness_mean=0.5 * (mass.stiffness + stiffness),
-        stiffness_split=0.5 * (mass.stiffness - stiffness),
+        damping_mean=0.5 * (mass.damping + mass.transverse_damping),
+        damping_split=0.5 * (mass.damping - mass.transverse_damping),
+        stiffness_mean=0.5 * (mass.stiffness + mass.transverse_stiffness),
+        stiffness_split=0.5 * (mass.stiffness - mass.transverse_stiffness),
         normal_load=mass.normal_load,
         frequency=mass.frequency,
-        load_sine=joined(force.real, force_2.real),
-        load_cosine=joined(force.imag, force_2.imag),
-        balanced_sine=joined(taken.real, taken_2.real),
-        balanced_cosine=joined(taken.imag, taken_2.imag),
-        reference_sine=joined(reference.real, reference_2.real),
-        reference_cosine=joined(reference.imag, reference_2.imag),
+        load_sine=complex(force.real, force_2.real),
+        load_cosine=complex(force.imag, force_2.imag),
+        balanced_sine=complex(taken.real, taken_2.real),
+        balanced_cosine=complex(taken.imag, taken_2.imag),
+        reference_sine=complex(reference.real, reference_2.real),
+        reference_cosine=complex(reference.imag, reference_2.imag),
         periods=periods,
-        varying=packed(mass.varying, joined is complex),
+        prescribed=False,
+        varying=mass.varying,
     )
 
 

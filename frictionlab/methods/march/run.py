@@ -36,7 +36,7 @@ from frictionlab.methods.march.stability import (
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Mass, in_the_plane, on_the_line
+from frictionlab.scene.body import Mass, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.rest import friction_at_rest
 
@@ -122,7 +122,7 @@ class MarchRun:
         self.straight = straight
         # a lap is a period of everything that changes in time: so many of the drive
         self.periods = 1.0 if scene.is_harmonic else float(scene.periods)
-        planar = in_the_plane(self.mass, self.periods)
+        planar = in_the_plane(for_kernels(self.mass), self.periods)
         self.body = on_the_line(self.mass, self.periods) if straight else planar
         self.lightest, self.heaviest = shares_of_load(scene)
         sine, cosine = self.body.reference_sine, self.body.reference_cosine

@@ -43,7 +43,7 @@ from frictionlab.orbit.panels import WEIGHTS
 from frictionlab.orbit.record import Orbits
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Body, in_the_plane, on_the_line
+from frictionlab.scene.body import Body, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
 from frictionlab.scene.signals import Signal
@@ -111,7 +111,7 @@ class PeriodicProblem:
         if along_the_belt(scene, law):
             self.body, self.like = on_the_line(self.mass), 0.0
         else:
-            self.body, self.like = in_the_plane(self.mass), 0j
+            self.body, self.like = in_the_plane(for_kernels(self.mass)), 0j
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
         self.body = self.body._replace(periods=self.common)

@@ -7,6 +7,7 @@ import importlib
 import subprocess
 import sys
 from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -184,6 +185,7 @@ OUTSIDE = {
             "charts",
             "notebook.comparison",  # the type of a figure alone
             "bench.chart",
+            "bench.drawing",
             "bench.orders.chart",
             "bench.stability.chart",
             "bench.failures.chart",
@@ -260,6 +262,14 @@ def test_few_files_lie_beside_the_folders() -> None:
 def test_every_arrow_leads_down() -> None:
     for above, below in ARROWS.items():
         assert [room for room in below if ROOMS.index(room) >= ROOMS.index(above)] == [], above
+
+
+def test_no_files_import_each_other_in_a_circle() -> None:
+    graph = {module: {*_inside(path)} - {module} for module, path in MODULES.items()}
+
+    assert len(list(TopologicalSorter(graph).static_order())) >= len(
+        graph
+    )  # else CycleError, with the circle
 
 
 def test_every_arrow_is_used() -> None:

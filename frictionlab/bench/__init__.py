@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from frictionlab.bench.measure import WorkloadResult, measure
+from frictionlab.bench.listed import Bench, UnknownCurve, bench_summary, measure
 from frictionlab.bench.reader import load_bench
-from frictionlab.bench.record import Bench, UnknownCurve
-from frictionlab.bench.report import bench_summary, write
-from frictionlab.bench.sections import BenchPicture, Section, SectionResult, SectionSource
+from frictionlab.bench.sections import BenchPicture, Section, SectionResult
 
 __all__ = [
     "Bench",
     "BenchPicture",
     "Section",
     "SectionResult",
-    "SectionSource",
     "UnknownCurve",
-    "WorkloadResult",
     "bench_summary",
     "load_bench",
     "measure",
-    "write",
 ]

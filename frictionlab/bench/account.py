@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
-from functools import cache
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from frictionlab import __version__
-from frictionlab.bench.measure import WorkloadResult
-from frictionlab.bench.names import file_stem
-from frictionlab.bench.peers.listing import PEERS
-from frictionlab.bench.report import part_summary, reference_lines
-from frictionlab.bench.sections import BenchPicture, SectionResult
+from frictionlab.bench.circumstances import circumstances
+from frictionlab.bench.sections import BenchPicture, SectionResult, file_stem
 from frictionlab.runner.files import write_whole
-from frictionlab.runner.machine import cores, machine_and_versions
 
 ACCOUNT = "bench.json"
-PRINTED = ("numpy", "numba", "scipy")
-"""Packages in the small print of a chart, besides the peers."""
-
 ENTRY_KEYS = {
     *("kind", "name", "title", "notes", "missing", "summary", "tables", "pictures"),
     *("frictionlab", "date", "cores", "python", "platform", "processor", "packages"),
@@ -29,49 +19,21 @@ ENTRY_KEYS = {
 """What the page asks of an entry; one without them is another version's."""
 
 
-@cache
-def circumstances() -> dict[str, Any]:
-    """Machine, date and versions, of the peers, too."""
-    packages = [*PRINTED, *(peer.package for peer in PEERS.values())]
-    found = machine_and_versions(dict.fromkeys(packages))
-    day = datetime.now(UTC).strftime("%Y-%m-%d")
-    return {"frictionlab": __version__, "date": day, "cores": cores(), **found}
-
-
-def small_print() -> str:
-    """Machine, date and versions in a line."""
-    return print_of(circumstances())
-
-
-def print_of(told: Mapping[str, Any]) -> str:
-    """Machine, date and versions of an entry in a line."""
-    versions = {"frictionlab": told["frictionlab"], "Python": told["python"], **told["packages"]}
-    packages = ", ".join(f"{name} {number}" for name, number in versions.items())
-    return f"{told['processor']}, {told['cores']} cores; {told['date']}; {packages}"
-
-
 def entry_of(
-    measured: WorkloadResult | SectionResult, tables: Sequence[Path], pictures: Sequence[BenchPicture]
+    measured: SectionResult, tables: Sequence[Path], pictures: Sequence[BenchPicture]
 ) -> dict[str, Any]:
     """The entry of a curve or section: its files, and what is said of it."""
-    told: dict[str, Any] = {
-        "summary": part_summary(measured),
+    return {
+        "kind": measured.kind,
+        "name": measured.name,
+        "title": measured.title,
+        "notes": measured.notes,
+        "missing": dict(measured.left_out),
+        "summary": measured.summary(),
         "tables": [path.name for path in tables if path.suffix == ".csv"],
         "pictures": [picture._asdict() for picture in pictures],
         **circumstances(),
     }
-    if not isinstance(measured, WorkloadResult):
-        missing = getattr(measured, "missing", "")
-        return {
-            "kind": "section", "name": measured.name, "title": measured.title, "notes": [],
-            "missing": {measured.name: missing} if missing else {}, **told,
-        }  # fmt: skip
-    work, speeds = measured.work, measured.work.speeds()
-    notes = [f"{len(speeds)} belt speeds from {speeds[0]:g} to {speeds[-1]:g}."]
-    notes += [line.removeprefix("- ") for line in reference_lines(measured)]
-    return {
-        "kind": "curve", "name": work.name, "title": work.title, "notes": notes, "missing": measured.missing, **told,
-    }  # fmt: skip
 
 
 def read_account(folder: Path) -> dict[str, dict[str, Any]]:

@@ -1,170 +1,39 @@
-"""Time and error of every method and peer on every workload."""
+"""Time and error of one method or peer on one curve."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frictionlab.bench.first_run import first_run
-from frictionlab.bench.forecast import Expected, Forecast
 from frictionlab.bench.peers.base import Peer
-from frictionlab.bench.record import Bench, BenchSetting, Contender, ReferenceMeans, Workload
-from frictionlab.bench.references import independent, reference_means
-from frictionlab.bench.sections import SectionResult
-from frictionlab.bench.solvers import (
-    SolverAnswers,
-    mean_task,
-    model_task,
-    seconds_per_point,
-    solve_points,
-    whole_task,
-)
-from frictionlab.bench.timing import Times, time_task
-from frictionlab.compile.call import compiling_at_once
+from frictionlab.bench.record import BENCH_STATUSES, Contender, ReferenceMeans, Row, Workload
+from frictionlab.bench.references import independent
+from frictionlab.bench.solvers import SolverAnswers, solve_points, whole_task
+from frictionlab.bench.timing import NO_TIME, Times, time_task
 from frictionlab.methods.base import Method, ReducedModel
 from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
 
-BENCH_STATUSES = ("ok", "refused", "failed", "not_unique")
-NO_TIME = Times(math.nan, (math.nan,) * 3, 0)
-
-
-@dataclass(frozen=True)
-class Row:
-    """One contender at one setting on one workload; points: those it was given, times: per point that has an answer.
-
-    model: of a reduced model for its mean friction alone; mean: for the mean friction and its error, of a reduced
-    model the price of its error included; whole: with every other column; first: processor time [s] of the
-    whole curve where no kernel is compiled yet, NaN where that was not measured. ``covered``: points whose
-    stated error, with the reference's own, covers their error; None without a reference, and for a peer, which states
-    none.
-    """
-
-    contender: Contender
-    setting: BenchSetting
-    points: int
-    counts: dict[str, int]
-    reason: str
-    largest: float
-    median: float
-    stated: float
-    covered: int | None
-    mean: Times
-    whole: Times
-    reference: ReferenceMeans | None
-    model: Times = NO_TIME
-    first: float = math.nan
-
-    @property
-    def error_alone(self) -> float:
-        """Seconds per point that a reduced model's stated error costs; NaN of others."""
-        return self.mean.least - self.model.least
+ANSWERED = ("ok", "not_unique")
+"""The points that are worth timing."""
 
 
-@dataclass(frozen=True)
-class WorkloadResult:
-    """A workload with its references and rows; missing: peers that are not installed, with the remedy."""
-
-    work: Workload
-    references: list[ReferenceMeans]
-    rows: list[Row]
-    missing: dict[str, str] = field(default_factory=dict)
-
-
-def measure(
-    bench: Bench, tell: Callable[[str], None], first_runs: bool = False
-) -> Iterator[WorkloadResult | SectionResult]:
-    """Measure the curves, then the sections of a bench list, and hand each out as soon as it is finished.
-
-    first_runs: the first setting of each method without kernels, too.
-    """
-    forecast = Forecast(_steps(bench))
-    with compiling_at_once():  # what is timed is machine code
-        for work in bench.workloads:
-            tell(f"{work.name}: references ({forecast})")
-            found = reference_means(work)
-            forecast.done()
-            rows = list(_rows(bench, work, found, tell, forecast))
-            rows = [_with_first_run(row, work, tell) for row in rows] if first_runs else rows
-            yield WorkloadResult(work, found, rows, missing_peers(work))
-        for section in bench.sections:
-            tell(section.name)
-            yield section.measure(tell)
-
-
-def _rows(
-    bench: Bench,
-    work: Workload,
-    found: Sequence[ReferenceMeans],
-    tell: Callable[[str], None],
-    forecast: Forecast,
-) -> Iterator[Row]:
-    for contender in _there(work):
-        for setting, solver in contender.solvers:
-            tell(f"{work.name}: {contender.label}, {setting} ({forecast})")
-            yield measured_row(bench, work, found, contender, setting, solver)
-            forecast.done()
-
-
-def missing_peers(work: Workload) -> dict[str, str]:
-    """The peers of a curve that are not installed, by label, with how to install them."""
-    return {
-        contender.label: told
-        for contender in work.contenders
-        if isinstance(peer := contender.solvers[0][1], Peer) and (told := peer.missing())
-    }
-
-
-def _there(work: Workload) -> list[Contender]:
-    """The methods, and the peers that are installed."""
-    missing = missing_peers(work)
-    return [contender for contender in work.contenders if contender.label not in missing]
-
-
-def _steps(bench: Bench) -> Iterator[Expected]:
-    """Of each curve the references, then every setting, with a first guess of its seconds.
-
-    A setting is solved, timed for its mean, solved once more for every column and timed for that.
-    """
-    for work in bench.workloads:
-        yield Expected("references", bench.seconds)
-        for contender in _there(work):
-            for setting, solver in contender.solvers:
-                points = len(chosen(len(work.scenes), contender.points))
-                once = points * seconds_per_point(solver, work.scenes[-1], work.law, setting.tolerance)
-                timed = max(once, min(bench.repeats * once, bench.seconds))
-                yield Expected(contender.label, 2.0 * (once + timed))
-
-
-def _with_first_run(row: Row, work: Workload, tell: Callable[[str], None]) -> Row:
-    """The first setting of a method that answers, as it costs without kernels."""
-    setting, solver = row.contender.solvers[0]
-    if isinstance(solver, Peer) or row.setting != setting or not row.counts["ok"]:
-        return row
-    tell(f"{work.name}: {row.contender.label}, first run")
-    scenes = [work.scenes[place] for place in chosen(len(work.scenes), row.contender.points)]
-    return replace(row, first=first_run(solver, scenes, work.law, setting.tolerance))
-
-
-def measured_row(
-    bench: Bench,
-    work: Workload,
-    found: Sequence[ReferenceMeans],
-    contender: Contender,
-    setting: BenchSetting,
-    solver: Method | Peer,
-) -> Row:
-    """One contender at one setting on a curve, errors against these references, timed as the list says."""
+def measured_row(work: Workload, found: Sequence[ReferenceMeans], contender: Contender, at: int) -> Row:
+    """One contender at one of its settings on a curve, errors against these references."""
+    setting, solver = contender.solvers[at]
     places = chosen(len(work.scenes), contender.points)
     scenes = [work.scenes[place] for place in places]
     outcome = solve_points(solver, scenes, work.law, setting.tolerance)
     reference = independent(found, contender.kind, places)
     off, covered = _off(outcome, reference, places)
-    answered = [places[i] for i in _solved(outcome)]
-    mean, whole = _times(bench, work, setting, solver, answered)
+    answered = [place for place, status in zip(places, outcome.status, strict=True) if status in ANSWERED]
+    timed = _Timed(work, [work.scenes[place] for place in answered], solver, setting.tolerance)
+    mean = timed.mean()
     return Row(
         contender,
         setting,
@@ -176,9 +45,9 @@ def measured_row(
         _largest(outcome.errors),
         None if contender.side == "peer" or not off.size else covered,
         mean,
-        whole,
+        mean if isinstance(solver, Peer) else timed.whole(),
         reference,
-        _model_times(bench, work, solver, answered),
+        timed.model(),
     )
 
 
@@ -215,30 +84,43 @@ def _largest(errors: Floats) -> float:
     return float(np.nanmax(errors)) if np.isfinite(errors).any() else math.nan
 
 
-def _solved(outcome: SolverAnswers) -> list[int]:
-    """The points worth timing: those with an answer."""
-    return [i for i, status in enumerate(outcome.status) if status in ("ok", "not_unique")]
+@dataclass(frozen=True)
+class _Timed:
+    """The tasks of a solver on the scenes that it answers; no time where there are none."""
+
+    work: Workload
+    scenes: list[Scene]
+    solver: Method | Peer
+    tolerance: float
+
+    def mean(self) -> Times:
+        """The mean friction and its error: all that is found before another column is asked for."""
+        return self._of(lambda: self.solver.solve(self.scenes, self.work.law, self.tolerance), warm=True)
+
+    def whole(self) -> Times:
+        """Every column of a method's answers, with kernels of their own."""
+        assert isinstance(self.solver, Method)
+        return self._of(whole_task(self.solver, self.scenes, self.work.law, self.tolerance))
+
+    def model(self) -> Times:
+        """A reduced model's mean without its error; of a prescribed slip nothing is left out."""
+        model = self.solver
+        if not isinstance(model, ReducedModel) or self.work.scenes[0].degrees_of_freedom == 0:
+            return NO_TIME
+        return self._of(lambda: model.model_means(self.scenes, self.work.law))
+
+    def _of(self, task: Callable[[], object], warm: bool = False) -> Times:
+        if not self.scenes:
+            return NO_TIME
+        if not warm:
+            task()
+        return time_task(task, self.work.repeats, self.work.seconds).each_of(len(self.scenes))
 
 
-def _times(
-    bench: Bench, work: Workload, setting: BenchSetting, solver: Method | Peer, places: list[int]
-) -> tuple[Times, Times]:
-    """Time of the mean alone and of everything; the same twice for a peer, which gives no more than the mean."""
-    if not places:
-        return NO_TIME, NO_TIME
-    given = [work.scenes[place] for place in places], work.law, setting.tolerance
-    mean = time_task(mean_task(solver, *given), bench.repeats, bench.seconds).each_of(len(places))
-    if isinstance(solver, Peer):
-        return mean, mean
-    task = whole_task(solver, *given)
-    task()  # with kernels of its own, to be compiled first
-    return mean, time_task(task, bench.repeats, bench.seconds).each_of(len(places))
-
-
-def _model_times(bench: Bench, work: Workload, solver: Method | Peer, places: list[int]) -> Times:
-    """Time of a reduced model's mean alone; none of other solvers, nor of a prescribed slip: nothing is left out."""
-    if not places or not isinstance(solver, ReducedModel) or work.scenes[0].degrees_of_freedom == 0:
-        return NO_TIME
-    task = model_task(solver, [work.scenes[place] for place in places], work.law)
-    task()
-    return time_task(task, bench.repeats, bench.seconds).each_of(len(places))
+def with_first_run(row: Row, work: Workload) -> Row:
+    """The first setting of a method that answers, as it costs without kernels; else the row as it is."""
+    setting, solver = row.contender.solvers[0]
+    if isinstance(solver, Peer) or row.setting != setting or not row.counts["ok"]:
+        return row
+    scenes = [work.scenes[place] for place in chosen(len(work.scenes), row.contender.points)]
+    return replace(row, first=first_run(solver, scenes, work.law, setting.tolerance))

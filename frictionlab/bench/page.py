@@ -7,14 +7,15 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from frictionlab.bench.account import add_to_account, entry_of, print_of
-from frictionlab.bench.measure import BENCH_STATUSES, WorkloadResult
-from frictionlab.bench.report import left_out, write
+from frictionlab.bench.account import add_to_account, entry_of
+from frictionlab.bench.circumstances import print_of
+from frictionlab.bench.report import cell_text, left_out, readable_rows
 from frictionlab.bench.sections import SectionResult
 from frictionlab.report.figures import address
 from frictionlab.report.page import rendered
 from frictionlab.report.tables import Grid
 from frictionlab.results.words import counted
+from frictionlab.runner.errors import SaveError
 from frictionlab.runner.folder import check_page, write_page
 
 PAGE_NAME = "index.html"
@@ -54,18 +55,19 @@ class PagePart(NamedTuple):
     print: str
 
 
-def save(done: Sequence[WorkloadResult | SectionResult], folder: Path) -> Path:
-    """Write tables, then charts, the account of the folder and its page; where that is. Raises SaveError.
+def save(measured: SectionResult, folder: Path) -> Path:
+    """Write the tables of a curve or section, then its charts, the account of the folder and its page; where that is.
 
-    The tables are on disk before matplotlib is imported.
+    The tables are on disk before matplotlib is imported. Raises SaveError.
     """
-    tables = [write([each], folder) for each in done]
-    from frictionlab.bench.chart import draw_charts
-
-    pictures = [draw_charts([each], folder) for each in done]
-    entries = [entry_of(*each) for each in zip(done, tables, pictures, strict=True)]
-    page = folder / PAGE_NAME
-    write_page(page, bench_page(folder, add_to_account(folder, entries)))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tables = measured.write(folder)
+        pictures = measured.draw(folder)
+    except OSError as problem:
+        raise SaveError(f"cannot write into {folder}: {problem.strerror or problem}") from problem
+    page, entry = folder / PAGE_NAME, entry_of(measured, tables, pictures)
+    write_page(page, bench_page(folder, add_to_account(folder, [entry])))
     return page
 
 
@@ -101,7 +103,7 @@ def _left_out(entry: Mapping[str, Any]) -> bool:
 
 
 def _part(folder: Path, stem: str, entry: Mapping[str, Any]) -> PagePart:
-    table = _curve_table if entry["kind"] == "curve" else _any_table
+    made = _curve_table if entry["kind"] == "curve" else _any_table
     return PagePart(
         entry["name"],
         entry["title"],
@@ -113,7 +115,7 @@ def _part(folder: Path, stem: str, entry: Mapping[str, Any]) -> PagePart:
             PagePicture(address(folder / picture["file_stem"]), picture["caption"])
             for picture in entry["pictures"]
         ],
-        [page_table for name in entry["tables"] for page_table in _table(folder / name, table)],
+        [page_table for name in entry["tables"] for page_table in _table(folder / name, made)],
         print_of(entry),
     )
 
@@ -145,59 +147,10 @@ def _any_table(name: str, records: list[dict[str, str]]) -> Grid:
     return Grid(
         f"{name}: {counted(len(records), 'row')}",
         [key.replace("_", " ") for key in kept],
-        [[_number(record[key]) for key in kept] for record in records],
+        [[cell_text(record[key]) for key in kept] for record in records],
     )
-
-
-def _number(text: str) -> str:
-    try:
-        value = float(text)
-    except ValueError:
-        return text
-    return text if value == int(value) and abs(value) < 1e6 and "." not in text else f"{value:.4g}"
-
-
-CURVE_CELLS: dict[str, Callable[[dict[str, str]], str]] = {
-    "solver": lambda row: row["solver"] + (" (peer)" if row["side"] == "peer" else ""),
-    "setting": lambda row: f"{row['quantity']} {_number(row['value'])}" if row["quantity"] else "as is",
-    "points": lambda row: row["points"],
-    "largest error": lambda row: _size(row["largest_error"]),
-    "median error": lambda row: _size(row["median_error"]),
-    "stated error": lambda row: _size(row["stated_error"]),
-    "covered": lambda row: f"{row['covered']}/{row['ok']}" if row["covered"] and row["ok"] != "0" else "",
-    "mean and error, μs": lambda row: _micro(row["mean_us"]),
-    "model alone, μs": lambda row: _micro(row["model_us"]),
-    "its error alone, μs": lambda row: _micro(row["error_us"]),
-    "every column, μs": lambda row: _micro(row["all_us"]) if row["side"] == "method" else "",
-    "quartiles of mean and error, μs": lambda row: ", ".join(
-        filter(None, (_micro(row[f"mean_us_q{i}"]) for i in (1, 2, 3)))
-    ),
-    "first run, s": lambda row: _number(row["first_run_s"]),
-    "remark": lambda row: _remark(row),
-}
-"""The columns of a curve's table, from a row of its file."""
 
 
 def _curve_table(name: str, records: list[dict[str, str]]) -> Grid:
-    rows = [[cell(record) for cell in CURVE_CELLS.values()] for record in records]
-    kept = [place for place in range(len(CURVE_CELLS)) if any(row[place] for row in rows)]
-    heads = list(CURVE_CELLS)
-    return Grid(
-        f"{name.removesuffix('.csv')}: errors of the mean friction, and times per point",
-        [heads[place] for place in kept],
-        [[row[place] for place in kept] for row in rows],
-    )
-
-
-def _size(text: str) -> str:
-    return f"{float(text):.1e}" if text else ""
-
-
-def _micro(text: str) -> str:
-    return "" if not text else f"{float(text):,.0f}" if float(text) >= 1000.0 else f"{float(text):.3g}"
-
-
-def _remark(row: dict[str, str]) -> str:
-    """What has no number, how often and why."""
-    counts = [f"{row[s]} {s.replace('_', ' ')}" for s in BENCH_STATUSES if s != "ok" and row[s] != "0"]
-    return ": ".join(part for part in (", ".join(counts), row["reason"]) if part)
+    caption = f"{name.removesuffix('.csv')}: errors of the mean friction, and times per point"
+    return Grid(caption, *readable_rows(records))

@@ -1,21 +1,19 @@
-"""The record of a bench list: frozen, with every default filled in."""
+"""Who is measured against what, and one row of what comes of it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 from typing import Literal
 
 from frictionlab.bench.peers.base import Peer
-from frictionlab.bench.sections import Section
+from frictionlab.bench.timing import NO_TIME, Times
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
-
-class UnknownCurve(Exception):
-    """A curve asked for by a name that is not in the list."""
+BENCH_STATUSES = ("ok", "refused", "failed", "not_unique")
 
 
 @dataclass(frozen=True)
@@ -63,48 +61,29 @@ class ReferenceSource:
 
 @dataclass(frozen=True)
 class Workload:
-    """One curve: scenes that differ in belt speed alone, in ascending order, and who is measured on it."""
+    """Scenes that differ in belt speed alone, in ascending order, and who is measured on them.
 
-    name: str
-    title: str
+    repeats, seconds: how long each setting may be timed: so many times, or so long if that is less.
+    """
+
     scenes: tuple[Scene, ...]
     law: FrictionLaw
     contenders: tuple[Contender, ...]
     references: tuple[ReferenceSource, ...]
+    repeats: int
+    seconds: float
 
     def speeds(self) -> list[float]:
         """The belt speeds."""
         return [scene.belt_speed for scene in self.scenes]
 
-
-@dataclass(frozen=True)
-class Bench:
-    """Workloads and sections, and how long each setting of a workload may be timed: so many repeats, or so many
-    seconds if that is less.
-    """
-
-    name: str
-    title: str
-    workloads: tuple[Workload, ...]
-    repeats: int
-    seconds: float
-    sections: tuple[Section, ...] = ()
-
-    @property
-    def names(self) -> list[str]:
-        """Of all that is measured, curves first."""
-        return [work.name for work in self.workloads] + [section.name for section in self.sections]
-
-    def only(self, names: Sequence[str]) -> Bench:
-        """The curves and sections of these names alone; all where none is named. Raises UnknownCurve."""
-        if unknown := [name for name in names if name not in self.names]:
-            part = "curve or section" if self.sections else "curve"
-            raise UnknownCurve(f"no {part} '{unknown[0]}' in the list; there are {', '.join(self.names)}")
-        return replace(
-            self,
-            workloads=tuple(work for work in self.workloads if not names or work.name in names),
-            sections=tuple(section for section in self.sections if not names or section.name in names),
-        )
+    def missing(self) -> dict[str, str]:
+        """The peers that are not installed, by label, with how to install them."""
+        return {
+            contender.label: told
+            for contender in self.contenders
+            if isinstance(peer := contender.solvers[0][1], Peer) and (told := peer.missing())
+        }
 
 
 @dataclass(frozen=True)
@@ -115,3 +94,35 @@ class ReferenceMeans:
     kind: str
     means: Floats
     errors: Floats
+
+
+@dataclass(frozen=True)
+class Row:
+    """One contender at one setting on one workload; points: those it was given, times: per point that has an answer.
+
+    model: of a reduced model for its mean friction alone; mean: for the mean friction and its error, of a reduced
+    model the price of its error included; whole: with every other column; first: processor time [s] of the
+    whole curve where no kernel is compiled yet, NaN where that was not measured. ``covered``: points whose
+    stated error, with the reference's own, covers their error; None without a reference, and for a peer, which states
+    none.
+    """
+
+    contender: Contender
+    setting: BenchSetting
+    points: int
+    counts: dict[str, int]
+    reason: str
+    largest: float
+    median: float
+    stated: float
+    covered: int | None
+    mean: Times
+    whole: Times
+    reference: ReferenceMeans | None
+    model: Times = NO_TIME
+    first: float = math.nan
+
+    @property
+    def error_alone(self) -> float:
+        """Seconds per point that a reduced model's stated error costs; NaN of others."""
+        return self.mean.least - self.model.least

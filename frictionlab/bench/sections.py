@@ -1,13 +1,14 @@
-"""What a bench list measures beside curves: sections, each with tables, pictures and a summary of its own."""
+"""What a bench list measures: curves and other sections, each with a table, a picture and a summary."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path as FilePath
-from typing import Any, NamedTuple, Protocol
-
-from frictionlab.mistakes.notes import Notes, Path
-from frictionlab.study import Study
+import csv
+import math
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 
 class BenchPicture(NamedTuple):
@@ -17,25 +18,59 @@ class BenchPicture(NamedTuple):
     caption: str
 
 
-class SectionResult(Protocol):
+class SectionResult(ABC):
     """What a section came to."""
 
-    @property
-    def name(self) -> str:
-        """That of its section."""
+    kind: ClassVar[str] = "section"
+    style: ClassVar[Mapping[str, Any]] = {}
+    """Of its figure, beside that of all."""
+    name: str
+    title: str
 
     @property
-    def title(self) -> str:
-        """What was measured."""
+    def caption(self) -> str:
+        """How to read its figure."""
+        return ""
 
-    def write(self, folder: FilePath) -> list[FilePath]:
-        """The CSV tables, written; the folder is there. Raises OSError."""
+    @property
+    def notes(self) -> list[str]:
+        """Sentences below its title."""
+        return []
 
-    def draw(self, folder: FilePath) -> list[BenchPicture]:
-        """The charts, written as SVG and PNG. Raises OSError."""
+    @property
+    def left_out(self) -> Mapping[str, str]:
+        """What is not installed, with how to install it."""
+        return {}
 
+    @abstractmethod
+    def records(self) -> Sequence[Mapping[str, Any]]:
+        """The rows of its CSV file."""
+
+    @abstractmethod
+    def figure(self) -> Any:
+        """Its chart, a figure of matplotlib; None where there is nothing to draw."""
+
+    @abstractmethod
     def summary(self) -> str:
         """What stdout prints."""
+
+    def write(self, folder: Path) -> list[Path]:
+        """The CSV table, written where there are rows; the folder is there. Raises OSError."""
+        path, records = folder / f"{file_stem(self.name)}.csv", self.records()
+        if not records:
+            return []
+        with path.open("w", encoding="utf-8", newline="") as file:
+            writer = csv.DictWriter(file, list(records[0]), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(records)
+        return [path]
+
+    def draw(self, folder: Path) -> list[BenchPicture]:
+        """The chart, written as SVG and PNG. Raises OSError."""
+        from frictionlab.bench.drawing import save_in_style
+
+        drawn = save_in_style(self.figure, self.style, folder, file_stem(self.name))
+        return [BenchPicture(file_stem(self.name), self.caption)] if drawn else []
 
 
 class Section(Protocol):
@@ -49,17 +84,15 @@ class Section(Protocol):
         """Measure it, telling what is under way."""
 
 
-class SectionSource(NamedTuple):
-    """The value of a section's key in a bench list, where it stands, and who is told of mistakes.
+def file_stem(name: str) -> str:
+    """A name as a file may have it: runs of all but letters, digits, points, - and _ become one _.
 
-    study: the scene, laws and sweep of a block as a study; None, noted, where there is a mistake.
+    >>> file_stem("W4 soft lugre")
+    'W4_soft_lugre'
     """
-
-    value: Any
-    path: Path
-    notes: Notes
-    study: Callable[[dict[str, Any], Path], Study | None]
+    return re.sub(r"[^\w.-]+", "_", name)
 
 
-SectionReader = Callable[[SectionSource], tuple[Section, ...]]
-"""The sections of a key; empty, noted, where there is a mistake."""
+def cell(value: float) -> float | str:
+    """A number as a CSV file holds it: empty where there is none."""
+    return value if math.isfinite(value) else ""

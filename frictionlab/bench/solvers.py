@@ -9,21 +9,12 @@ import numpy as np
 
 from frictionlab.bench.peers.base import Peer
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method, ReducedModel
+from frictionlab.methods.base import Answers, Method
 from frictionlab.quantities import Floats
 from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.solve import FROM_METHODS, answer, number_columns
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
-
-REFUSED_SECONDS = 1e-6
-
-
-def seconds_per_point(solver: Method | Peer, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
-    """A first guess of what a point costs [s]: next to nothing where it is refused."""
-    if solver.refusal(scene, law) is not None:
-        return REFUSED_SECONDS
-    return solver.seconds if isinstance(solver, Peer) else solver.cost(scene, law, tolerance)
 
 
 @dataclass(frozen=True)
@@ -87,18 +78,6 @@ def _joined(parts: Sequence[SolverAnswers]) -> SolverAnswers:
         np.concatenate([part.means for part in parts]),
         np.concatenate([part.errors for part in parts]),
     )
-
-
-def mean_task(
-    solver: Method | Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
-) -> Callable[[], object]:
-    """The mean friction and its error: all that is found before another column is asked for."""
-    return lambda: solver.solve(scenes, law, tolerance)
-
-
-def model_task(model: ReducedModel, scenes: Sequence[Scene], law: FrictionLaw) -> Callable[[], object]:
-    """The mean friction of a reduced model alone, without its error."""
-    return lambda: model.model_means(scenes, law)
 
 
 def whole_task(

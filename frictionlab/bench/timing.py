@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import math
 import time
 from collections.abc import Callable
 from typing import NamedTuple
@@ -21,6 +22,9 @@ class Times(NamedTuple):
         """The same per point of so many."""
         low, middle, high = (quartile / points for quartile in self.quartiles)
         return Times(self.least / points, (low, middle, high), self.repeats)
+
+
+NO_TIME = Times(math.nan, (math.nan,) * 3, 0)
 
 
 def time_task(task: Callable[[], object], repeats: int, seconds: float) -> Times:

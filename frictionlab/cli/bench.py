@@ -11,7 +11,7 @@ from frictionlab.cli import options
 from frictionlab.cli.output import INTERRUPTED, CommandError, print_message, print_result
 
 if TYPE_CHECKING:
-    from frictionlab.bench import SectionResult, WorkloadResult
+    from frictionlab.bench import SectionResult
 
 
 @click.command("bench")
@@ -38,15 +38,14 @@ def bench_command(bench_list: Path, out: Path | None, only: tuple[str, ...], fir
         raise click.UsageError(str(problem)) from None
     folder = out or Path("runs") / f"bench-{asked.name}"
     check_folder(folder)
-    done: list[WorkloadResult | SectionResult] = []
+    done: list[SectionResult] = []
     try:
         for finished in bench.measure(asked, print_message, first_runs):
-            page = save([finished], folder)
+            page = save(finished, folder)
             done.append(finished)
     except KeyboardInterrupt:
-        parts = "curves and sections" if asked.sections else "curves"
         raise CommandError(
-            INTERRUPTED, f"interrupted: {len(done)} of {len(asked.names)} {parts} done"
+            INTERRUPTED, f"interrupted: {len(done)} of {len(asked.names)} {asked.parts} done"
         ) from None
     print_result(bench.bench_summary(done))
     print_message(f"tables and charts in {folder}, all of them on {page}")

@@ -13,15 +13,17 @@ import numpy as np
 import pytest
 from answered import with_columns
 from fake_methods import Another, Fake, breaks_down
+from matplotlib.figure import Figure
 
 from frictionlab import bench, cli, registry
-from frictionlab.bench import chart, reader, timing
-from frictionlab.bench.measure import Row, WorkloadResult, chosen
+from frictionlab.bench import reader, timing
+from frictionlab.bench.curve import CurveResult
+from frictionlab.bench.measure import chosen
 from frictionlab.bench.peers import base
 from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.peers.scipy_bristle import ScipyBristle
 from frictionlab.bench.peers.scipy_steps import ScipySteps
-from frictionlab.bench.report import markdown
+from frictionlab.bench.record import Row
 from frictionlab.bench.solvers import solve_points
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
@@ -75,7 +77,7 @@ def _fakes_and_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     Path("known.csv").write_text("\n".join(["belt_speed,mean_friction", *means]))
 
 
-def measured(text: str = LIST) -> WorkloadResult:
+def measured(text: str = LIST) -> CurveResult:
     """The first curve of a list."""
     Path("list.yaml").write_text(text)
     (first, *_) = bench.measure(bench.load_bench(Path("list.yaml")), lambda line: None)
@@ -94,10 +96,15 @@ def test_a_first_run_is_timed_of_methods_that_answer() -> None:
     assert first.first > 0.2  # imports alone take longer
     assert math.isnan(second.first)
     assert math.isnan(peer.first)
-    assert f"| {first.first:.2g} |" in markdown(found)
+    assert f"| {first.first:.4g} |" in found.markdown()
 
 
-def rows_of(found: WorkloadResult, label: str) -> list[Row]:
+def written(found: CurveResult) -> None:
+    Path("out").mkdir()
+    found.write(Path("out"))
+
+
+def rows_of(found: CurveResult, label: str) -> list[Row]:
     return [row for row in found.rows if row.contender.label == label]
 
 
@@ -139,7 +146,7 @@ def test_a_method_is_never_measured_against_its_own_kind() -> None:
 def test_the_reference_and_its_own_error_are_in_the_tables() -> None:
     found = measured()
 
-    bench.write([found], Path("out"))
+    written(found)
 
     (record, _) = csv.DictReader(Path("out/A.csv").read_text().splitlines())
     assert (record["reference"], record["reference_error"]) == ("known.csv", "1e-15")
@@ -189,7 +196,7 @@ def test_a_method_that_refuses_points_keeps_its_place_with_the_reason() -> None:
     found = measured(WITH_TROUBLE)
     row = found.rows[0]
 
-    bench.write([found], Path("out"))
+    written(found)
 
     assert (row.points, row.counts["ok"], row.counts["refused"]) == (5, 4, 1)
     assert row.largest == pytest.approx(1e-3)
@@ -201,8 +208,8 @@ def test_a_method_that_fails_keeps_its_place_in_tables_and_chart(monkeypatch: py
     monkeypatch.setattr(Off, "troubles", dict.fromkeys(SPEEDS, breaks_down))
     found = measured(LIST + "      - another\n")
 
-    bench.write([found], Path("out"))
-    drawn = chart.chart(found)
+    written(found)
+    drawn = found.figure()
 
     failed, good = rows_of(found, "off"), rows_of(found, "another")
     assert [row.counts["failed"] for row in failed] == [4, 4]
@@ -221,17 +228,17 @@ def test_peers_that_are_not_installed_are_one_line_and_no_rows(monkeypatch: pyte
 
     assert {row.contender.label for row in found.rows} == {"off"}
     assert found.missing == {name: f"not installed: {peer.remedy}" for name, peer in PEERS.items()}
-    for told in (bench.bench_summary([found]), markdown(found)):
+    for told in (bench.bench_summary([found]), found.markdown()):
         (line,) = (line for line in told.splitlines() if "not installed" in line)
         assert line.removeprefix("- ").startswith(f"Peers left out: {', '.join(PEERS)} (not installed: ")
-    assert {text.get_text() for text in chart.chart(found).legends[0].get_texts()} == {"off"}
+    assert {text.get_text() for text in found.figure().legends[0].get_texts()} == {"off"}
 
 
 def test_a_list_of_missing_peers_alone_is_written_without_rows(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(base, "find_spec", lambda name: None)
     alone = LIST.partition("    methods:")[0] + "    peers: [heyoka]\n"
 
-    bench.write([measured(alone)], Path("out"))
+    written(measured(alone))
 
     assert "Peers left out: heyoka" in Path("out/A.md").read_text()
 
@@ -318,19 +325,17 @@ def test_an_interrupted_bench_keeps_the_curves_that_are_done(
 # --- sections -----------------------------------------------------------------------------------------------------
 
 
-class Told:
+class Told(bench.SectionResult):
     """What the fake section came to."""
 
     def __init__(self, name: str) -> None:
         self.name, self.title = name, "a fake"
 
-    def write(self, folder: Path) -> list[Path]:
-        (folder / f"{self.name}.csv").write_text("a\n1\n")
-        return [folder / f"{self.name}.csv"]
+    def records(self) -> list[dict[str, Any]]:
+        return [{"a": 1}]
 
-    def draw(self, folder: Path) -> list[bench.BenchPicture]:
-        (folder / f"{self.name}.svg").write_text("<svg/>")
-        return [bench.BenchPicture(self.name, "Nothing is to be read.")]
+    def figure(self) -> Figure:
+        return Figure()
 
     def summary(self) -> str:
         return f"{self.name}: told"
@@ -349,7 +354,7 @@ class Part:
 
 def sections(monkeypatch: pytest.MonkeyPatch, *parts: Part) -> None:
     """A bench list whose key ``fakes`` means these sections."""
-    monkeypatch.setitem(reader.SECTIONS, "fakes", lambda source: parts)
+    monkeypatch.setitem(reader.SECTIONS, "fakes", lambda reader, given, path: parts)
     monkeypatch.setattr(reader, "BENCH_KEYS", (*reader.BENCH_KEYS, "fakes"))
 
 
@@ -366,8 +371,10 @@ def test_a_list_may_have_sections_alone(
         "bench.json",
         "index.html",
         "one.csv",
+        "one.png",
         "one.svg",
         "two.csv",
+        "two.png",
         "two.svg",
     ]
 
@@ -400,6 +407,7 @@ def test_an_interrupted_bench_keeps_the_sections_that_are_done(
         "bench.json",
         "index.html",
         "one.csv",
+        "one.png",
         "one.svg",
     ]
 
@@ -522,8 +530,8 @@ def test_a_curve_that_is_not_in_the_list_is_refused_by_name(capsys: pytest.Captu
 def test_the_standard_set_is_a_list_without_mistakes_and_its_values_are_at_its_belt_speeds() -> None:
     standard = bench.load_bench(STANDARD)
 
-    assert [work.name for work in standard.workloads] == ["W1", "W1g", "W2", "W5", "W3_0.5", "W3_4", "W3_10"]
-    for work in standard.workloads:
+    assert [curve.name for curve in standard.curves] == ["W1", "W1g", "W2", "W5", "W3_0.5", "W3_4", "W3_10"]
+    for work in (curve.work for curve in standard.curves):
         for trusted in work.references:
             assert not trusted.values or np.allclose(
                 list(trusted.values), work.speeds(), rtol=1e-13, atol=0.0
@@ -653,8 +661,8 @@ def test_a_peer_of_bristle_laws_that_gives_up_says_so(monkeypatch: pytest.Monkey
 def test_the_bristle_set_is_a_list_without_mistakes_and_its_values_are_at_its_belt_speeds() -> None:
     bristles = bench.load_bench(STANDARD.parent / "bristle.yaml")
 
-    assert [work.name for work in bristles.workloads][:4] == ["W4a", "W4b", "W4c", "W4d"]
-    for work in bristles.workloads:
+    assert [curve.name for curve in bristles.curves][:4] == ["W4a", "W4b", "W4c", "W4d"]
+    for work in (curve.work for curve in bristles.curves):
         speeds = np.array(work.speeds())
         for trusted in work.references:
             assert all(np.isclose(speeds, speed, rtol=1e-13, atol=0.0).any() for speed in trusted.values)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import re
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -13,12 +12,11 @@ from pages import Page
 
 from frictionlab import bench, cli
 from frictionlab.bench import account
-from frictionlab.bench.forecast import Expected, Forecast, duration
-from frictionlab.bench.measure import WorkloadResult
-from frictionlab.bench.names import file_stem
+from frictionlab.bench.circumstances import circumstances, small_print
+from frictionlab.bench.curve import CurveResult
 from frictionlab.bench.page import MOST_ROWS_ON_PAGE, bench_page
 from frictionlab.bench.peers import base
-from frictionlab.bench.report import markdown
+from frictionlab.bench.sections import file_stem
 from frictionlab.methods.reduced import common
 from frictionlab.study import StudyError
 
@@ -118,11 +116,10 @@ def test_finding_its_error_is_what_a_reduced_model_is_slow_for(monkeypatch: pyte
     for name in ("line_bounds", "closed_bound", "full_means"):
         monkeypatch.setattr(common, name, slow_bounds)
     from frictionlab import Coulomb, Drive, Scene
-    from frictionlab.bench.solvers import model_task
     from frictionlab.methods.reduced.mdsm import Mdsm
 
     scene = Scene(damping_ratio=0.1, normal_load=10, belt_speed=10, drive=Drive(unbalance=10, frequency=1))
-    model_task(Mdsm(), [scene], Coulomb(mu=0.4))()
+    Mdsm().model_means([scene], Coulomb(mu=0.4))
 
 
 def test_of_a_prescribed_slip_no_model_is_timed_alone(tmp_path: Path) -> None:
@@ -134,15 +131,15 @@ def test_of_a_prescribed_slip_no_model_is_timed_alone(tmp_path: Path) -> None:
 
     (found,) = bench.measure(bench.load_bench(tmp_path / "list.yaml").only(["W1 dry"]), lambda line: None)
 
-    assert isinstance(found, WorkloadResult)
+    assert isinstance(found, CurveResult)
     (row,) = (row for row in found.rows if row.contender.label == "mdsm")
     assert row.counts["ok"] == 3
     assert row.model.repeats == 0
 
 
 def test_machine_date_and_versions_are_on_the_page_and_in_every_chart(folder: Path, page: Page) -> None:
-    told = account.circumstances()
-    small = account.small_print()
+    told = circumstances()
+    small = small_print()
 
     assert told["date"] in small
     assert f"numba {told['packages']['numba']}" in small
@@ -237,38 +234,7 @@ def test_a_name_becomes_a_file_name() -> None:
     assert file_stem("W3_0.5") == "W3_0.5"
 
 
-# --- elapsed and expected time ------------------------------------------------------------------------------------
-
-
-def clock(times: Sequence[float]) -> Forecast:
-    """A forecast of five steps of two groups by a clock that shows these times."""
-    ticks = iter(times)
-    steps = [Expected("a", 1.0), Expected("a", 3.0), *[Expected("b", 1.0)] * 2, Expected("a", 1.0)]
-    return Forecast(steps, lambda: next(ticks))
-
-
-def test_what_is_left_follows_from_what_was_measured_so_far() -> None:
-    fresh = clock([0.0])
-    assert fresh.left() == 7.0
-
-    begun = clock([0.0, 2.0, 8.0])
-    begun.done()
-    assert begun.left() == pytest.approx(2.0 * 6.0)  # all take twice the guess
-    begun.done()
-    assert begun.left() == pytest.approx(2.0 * 3.0)
-
-    mixed = clock([0.0, 1.0, 4.0, 14.0])
-    for _ in range(3):
-        mixed.done()
-    assert mixed.left() == pytest.approx(10.0 + 1.0)  # one of b at ten times its guess, one of a at its own
-
-
-def test_elapsed_and_expected_time_are_told() -> None:
-    forecast = clock([0.0, 2.0, 70.0])
-    forecast.done()
-
-    assert str(forecast) == "2 of 5, 1 min 10 s gone, about 12 s to go"
-    assert [duration(s) for s in (0.2, 59.0, 200.0, 7500.0)] == ["0 s", "59 s", "3 min 20 s", "2 h 5 min"]
+# --- what is told ------------------------------------------------------------------------------------------------
 
 
 def test_every_setting_is_told_with_its_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -283,7 +249,7 @@ def test_every_setting_is_told_with_its_place(tmp_path: Path, capsys: pytest.Cap
         "W1 dry: references", "W1 dry: shooting, tolerance 0.001", "W1 dry: shooting, tolerance 1e-06",
         "W1 dry: harmonic_balance, as is", "W1 dry: scipy, as is",
     ]  # fmt: skip
-    assert all(re.search(rf"\({n} of 5, .* gone, about .* to go\)", line) for n, line in enumerate(lines, 1))
-    assert isinstance(found, WorkloadResult)
-    assert "| model alone | its error alone |" in markdown(found)
+    assert [line.rpartition("(")[2] for line in lines] == [f"{n} of 5)" for n in range(1, 6)]
+    assert isinstance(found, CurveResult)
+    assert "| model alone, μs | its error alone, μs |" in found.markdown()
     assert json.loads(json.dumps(account.entry_of(found, [], []))).keys() == account.ENTRY_KEYS

@@ -15,7 +15,6 @@ from fake_methods import Another, Fake
 
 from frictionlab import bench, cli, registry
 from frictionlab.bench.failures.boundaries import free_velocities, rest_edge, uniqueness_edge
-from frictionlab.bench.failures.chart import draw_maps
 from frictionlab.bench.failures.measure import MapTruth
 from frictionlab.bench.failures.section import FailureResult
 from frictionlab.bench.peers import base
@@ -136,10 +135,18 @@ def test_the_methods_here_are_never_silently_wrong_on_a_small_map() -> None:
     text = LIST.replace("[{kind: another, tolerance: 1.0e-9}]", references).replace("13]", "60]")
     found = measured("exact, shooting, mdsm, harmonic_balance", text)
 
-    assert [result.label for result in found] == ["exact", "shooting", "mdsm", "harmonic_balance"]
+    assert [result.name.removeprefix("failures_") for result in found] == [
+        "exact",
+        "shooting",
+        "mdsm",
+        "harmonic_balance",
+    ]
     for result in found:
         assert result.counts()["silent"] == 0
-        reduced = result.label in ("mdsm", "harmonic_balance")  # refused where no bound is useful
+        reduced = result.name in (
+            "failures_mdsm",
+            "failures_harmonic_balance",
+        )  # refused where no bound is useful
         assert result.counts()["ok"] >= (7 if reduced else 8)
     assert max(point.true for point in found[0].outcomes[0].points) < 1e-9
     assert max(point.true for point in found[2].outcomes[0].points) > 1e-3  # what friction does to the motion
@@ -206,7 +213,7 @@ def test_the_command_writes_a_table_and_a_figure_for_each_method(capsys: pytest.
 
     out, err = capsys.readouterr()
     assert out.startswith("Failure maps of a liar: points")
-    assert "failures_a_liar: load (1 of 4, 0 s gone" in err
+    assert "failures_a_liar: load\n" in err
     names = {path.name for path in Path("out").iterdir()}
     assert {
         f"failures_{name}.{kind}" for name in ("a_liar", "fake") for kind in ("csv", "svg", "png")
@@ -230,7 +237,7 @@ def test_a_method_that_refuses_all_is_not_drawn() -> None:
     )
 
     assert set(result.counts()) == {"refused"}
-    assert draw_maps(result, Path()) == []
+    assert result.figure() is None
 
 
 def test_a_peer_that_is_not_installed_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 
 from frictionlab import bench, cli
-from frictionlab.bench.measure import NO_TIME, Row
-from frictionlab.bench.models.section import BenchedModel, ModelRow, ModelsResult, front
-from frictionlab.bench.record import BenchSetting, Contender
-from frictionlab.bench.timing import Times
+from frictionlab.bench.models.record import BenchedModel, ModelRow, front
+from frictionlab.bench.models.section import ModelsResult
+from frictionlab.bench.record import BenchSetting, Contender, Row
+from frictionlab.bench.timing import NO_TIME, Times
 from frictionlab.study import StudyError
 
 LIST = """
@@ -115,7 +115,7 @@ def test_the_command_writes_table_chart_and_front(tmp_path: Path, capsys: pytest
         (
             "{scene.belt_speed: [5, 20]}",
             "{scene.belt_speed: [5], scene.normal_load: [5, 20]}",
-            "sweep the belt speed alone",
+            "sweeps the belt speed alone",
         ),
         (
             "references: [{kind: exact, tolerance: 1.0e-12}]",

@@ -122,8 +122,8 @@ def random_curves(count: int, seed: int) -> Iterator[tuple[str, Scenes, Friction
 def standard_curves() -> Iterator[tuple[str, Scenes, FrictionLaw]]:
     """Of the bench lists, by the names of their curves."""
     for name in ("standard.yaml", "bristle.yaml"):
-        for curve in load_bench(Path(__file__).with_name(name)).workloads:
-            yield curve.name, Scenes.of(curve.scenes), curve.law
+        for curve in load_bench(Path(__file__).with_name(name)).curves:
+            yield curve.name, Scenes.of(curve.work.scenes), curve.work.law
 
 
 class Row:

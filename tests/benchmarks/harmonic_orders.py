@@ -18,7 +18,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from frictionlab.bench.chart import save_figure
+from frictionlab.bench.drawing import save_figure
 from frictionlab.charts.figures import PAGE, STYLE
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact

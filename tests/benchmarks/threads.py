@@ -77,7 +77,7 @@ def main(repeats: int) -> None:
     """Everything."""
     spin = compiled(busy)
     ratio_of("(busy loop)", lambda pool: list(pool.map(spin, [200_000] * 16)), repeats)
-    works = {work.name: work for work in bench.load_bench(STANDARD).workloads}
+    works = {curve.name: curve.work for curve in bench.load_bench(STANDARD).curves}
     curves: list[tuple[str, Method, float, float]] = [
         ("W1", Exact(), 49.9, 1e-11),
         ("W3_4", Shooting(), 60.0, 1e-9),

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -22,17 +20,12 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
-from frictionlab.bench.chart import save_figure
+from frictionlab.bench.drawing import new_figure
 from frictionlab.bench.failures.boundaries import free_velocities, rest_edge, uniqueness_edge
 from frictionlab.bench.failures.measure import MapOutcome, MapTruth
 from frictionlab.bench.failures.record import OF_FRICTION_TO_LOAD
-from frictionlab.bench.sections import BenchPicture
-from frictionlab.charts.style import PAGE
 from frictionlab.columns import word
 from frictionlab.quantities import Floats
-
-if TYPE_CHECKING:
-    from frictionlab.bench.failures.section import FailureResult
 
 _LEVELS = (1e-16, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 1.0)
 """Of errors: a shade between two of them, darker for a smaller error."""
@@ -47,10 +40,6 @@ _UNDECIDED: dict[str, Any] = {"facecolor": "none", "edgecolor": "0.1", "hatch": 
 """Where the distance from the reference is above the stated error, but not with the reference's own added."""
 _PANEL, _LEGEND = 1.75, 1.1
 """Heights [inch] of a map and of what stands below all of them."""
-_CAPTION = (
-    "A panel at one value of its vertical axis is a curve over belt speed: shade is the error of the mean friction "
-    "(left stated, right true), hatching is no number, a cross is a number that is wrong without a word."
-)
 
 
 class Mesh(NamedTuple):
@@ -61,28 +50,12 @@ class Mesh(NamedTuple):
     logarithmic: tuple[bool, bool]
 
 
-def draw_maps(result: FailureResult, folder: Path) -> list[BenchPicture]:
-    """Write the figure as SVG and PNG. Raises OSError."""
-    shown = [
-        (outcome, truth)
-        for outcome, truth in zip(result.outcomes, result.truths, strict=True)
-        if outcome.counts()["refused"] < len(outcome.points)
-    ]
-    if not shown:
-        return []
-    with mpl.rc_context({"hatch.linewidth": 0.5, "svg.fonttype": "none"}):  # many panels: letters stay text
-        save_figure(figure_of_maps(result, shown), folder, result.name)
-    return [BenchPicture(result.name, _CAPTION)]
-
-
-def figure_of_maps(result: FailureResult, shown: Sequence[tuple[MapOutcome, MapTruth]]) -> Figure:
-    """A row for each map: stated error, where any is stated, and true error."""
-    kinds = ["true"] if result.side == "peer" else ["stated", "true"]
-    refused = _refused_everywhere(result)
-    figure = Figure(
-        figsize=(PAGE, _PANEL * len(shown) + _LEGEND + 0.12 * refused.count("\n")), layout="constrained"
-    )
-    FigureCanvasAgg(figure)
+def figure_of_maps(title: str, maps: Sequence[tuple[MapOutcome, MapTruth]], side: str) -> Figure:
+    """A row for each map that is not refused everywhere: stated error, where any is stated, and true error."""
+    shown = [each for each in maps if each[0].has_panel]
+    kinds = ["true"] if side == "peer" else ["stated", "true"]
+    refused = _refused_everywhere([outcome for outcome, _ in maps if not outcome.has_panel])
+    figure = new_figure(_PANEL * len(shown) + _LEGEND + 0.12 * refused.count("\n"))
     grid = figure.subplots(len(shown), len(kinds), squeeze=False)
     colors = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 0.97, len(_LEVELS) - 1)))
     mesh: Any = None
@@ -103,13 +76,8 @@ def figure_of_maps(result: FailureResult, shown: Sequence[tuple[MapOutcome, MapT
     figure.legend(
         handles=_legend(), loc="outside lower center", ncols=4, title=refused or None, columnspacing=1.2
     )
-    figure.suptitle(f"{result.title}: {_counted(result)}", x=0.01, ha="left", fontsize=8)
+    figure.suptitle(title, x=0.01, ha="left", fontsize=8)
     return figure
-
-
-def _counted(result: FailureResult) -> str:
-    counts = result.counts()
-    return f"{counts.total():,} points, {counts['silent']:,} wrong without a word"
 
 
 def _heading(outcome: MapOutcome) -> str:
@@ -117,15 +85,10 @@ def _heading(outcome: MapOutcome) -> str:
     return f"{outcome.drawn.name}{f': {silent} wrong without a word' if silent else ''}"
 
 
-def _refused_everywhere(result: FailureResult) -> str:
+def _refused_everywhere(outcomes: Sequence[MapOutcome]) -> str:
     """Maps without a panel, with the reason."""
-    lines = []
-    for outcome in result.outcomes:
-        if outcome.counts()["refused"] == len(outcome.points):
-            lines += textwrap.wrap(
-                f"{outcome.drawn.name}: refused at every point: {outcome.points[0].reason}", 110
-            )
-    return "\n".join(lines)
+    told = [f"{each.drawn.name}: refused at every point: {each.points[0].reason}" for each in outcomes]
+    return "\n".join(line for each in told for line in textwrap.wrap(each, 110))
 
 
 def _across(outcome: MapOutcome) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -86,6 +86,11 @@ class MapOutcome:
         """How many points came to what."""
         return Counter(point.outcome for point in self.points)
 
+    @property
+    def has_panel(self) -> bool:
+        """Whether any point is not refused."""
+        return self.counts()["refused"] < len(self.points)
+
 
 class MapTruth:
     """A map with what is known of it by its references, computed once for all solvers."""
@@ -141,15 +146,14 @@ def _with_motion(method: Method, row: GridRow, tolerance: float) -> tuple[Solver
     return found, columns
 
 
-def measure_map(truth: MapTruth, contender: Contender, row_done: Callable[[], None]) -> MapOutcome:
-    """The map as this solver sees it; row_done is called after each row."""
+def measure_map(truth: MapTruth, contender: Contender) -> MapOutcome:
+    """The map as this solver sees it."""
     ((setting, solver),) = contender.solvers
     drawn = truth.drawn
     rows = []
     for place, row in enumerate((*drawn.rows, *drawn.named_rows)):
         outcome = solve_points(solver, row.scenes, row.law, setting.tolerance)
         rows.append(_row(truth, contender, place, row, outcome))
-        row_done()
     size = len(drawn.rows)
     named = [
         PointOutcome(**(vars(points[0]) | {"point": point.name}))

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import statistics
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
-from pathlib import Path
+from typing import Any, ClassVar
 
 from frictionlab.bench.failures.measure import OUTCOMES, MapOutcome, MapTruth, PointOutcome, measure_map
-from frictionlab.bench.failures.record import GridRow
-from frictionlab.bench.forecast import Expected, Forecast
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Contender
-from frictionlab.bench.sections import BenchPicture
-from frictionlab.bench.solvers import seconds_per_point
+from frictionlab.bench.sections import SectionResult
+
+MAPS_CAPTION = (
+    "A panel at one value of its vertical axis is a curve over belt speed: shade is the error of the mean friction "
+    "(left stated, right true), hatching is no number, a cross is a number that is wrong without a word."
+)
 
 CELLS = {field.name: field.name for field in fields(PointOutcome)} | {
     "stated": "stated_error",
@@ -26,49 +27,53 @@ CELLS = {field.name: field.name for field in fields(PointOutcome)} | {
 
 
 @dataclass(frozen=True)
-class FailureResult:
+class FailureResult(SectionResult):
     """What one method or peer came to on every map it was given.
 
     missing: why nothing was measured, of a peer that is not installed.
     """
 
     name: str
-    label: str
+    title: str
     side: str
     outcomes: tuple[MapOutcome, ...]
     truths: tuple[MapTruth, ...]
     missing: str = ""
 
-    @property
-    def title(self) -> str:
-        """Whose maps these are."""
-        return f"Failure maps of {self.label}{' (peer)' if self.side == 'peer' else ''}"
+    style: ClassVar[Mapping[str, Any]] = {"hatch.linewidth": 0.5, "svg.fonttype": "none"}
+    """Many panels: letters stay text."""
 
     def counts(self) -> Counter[str]:
         """How many points of all maps came to what."""
         return sum((outcome.counts() for outcome in self.outcomes), Counter[str]())
 
-    def write(self, folder: Path) -> list[Path]:
-        """``failures_<label>.csv``: every point of every map."""
-        if self.missing:
-            return []
-        file = folder / f"{self.name}.csv"
-        with file.open("w", encoding="utf-8", newline="") as text:
-            writer = csv.writer(text, lineterminator="\n")
-            writer.writerow(["map", "quantity", *CELLS.values()])
-            for outcome in self.outcomes:
-                for point in outcome.points:
-                    row = ["" if cell != cell else cell for cell in astuple(point)]
-                    writer.writerow([outcome.drawn.name, outcome.drawn.quantity, *row])
-        return [file]
+    @property
+    def caption(self) -> str:
+        """How to read the figure."""
+        return MAPS_CAPTION
 
-    def draw(self, folder: Path) -> list[BenchPicture]:
-        """One figure, a row of panels for each map."""
-        if self.missing:
-            return []
-        from frictionlab.bench.failures.chart import draw_maps
+    @property
+    def left_out(self) -> Mapping[str, str]:
+        """Itself, where nothing was measured."""
+        return {self.name: self.missing} if self.missing else {}
 
-        return draw_maps(self, folder)
+    def records(self) -> list[dict[str, Any]]:
+        """Every point of every map."""
+        return [
+            {"map": outcome.drawn.name, "quantity": outcome.drawn.quantity, **_record(point)}
+            for outcome in self.outcomes
+            for point in outcome.points
+        ]
+
+    def figure(self) -> Any:
+        """A row of panels for each map; none where every point is refused."""
+        if not any(outcome.has_panel for outcome in self.outcomes):
+            return None
+        from frictionlab.bench.failures.chart import figure_of_maps
+
+        counts = self.counts()
+        title = f"{self.title}: {counts.total():,} points, {counts['silent']:,} wrong without a word"
+        return figure_of_maps(title, list(zip(self.outcomes, self.truths, strict=True)), self.side)
 
     def summary(self) -> str:
         """Counts by map, those that are wrong without a word last."""
@@ -84,6 +89,11 @@ class FailureResult:
         total = self.counts()
         lines.append(f"{'all':<{wide}}" + "".join(f"{total[each]:>14,}" for each in OUTCOMES))
         return "\n".join(lines)
+
+
+def _record(point: PointOutcome) -> dict[str, Any]:
+    values = zip(CELLS.values(), astuple(point), strict=True)
+    return {name: "" if value != value else value for name, value in values}
 
 
 def _known_to(outcome: MapOutcome) -> str:
@@ -109,29 +119,21 @@ class FailureSection:
         """Solve every point of every map. What the references say is found once for all sections."""
         first = self.maps[0][1]
         solver = first.solvers[0][1]
+        whose = (
+            self.name,
+            f"Failure maps of {self.label}{' (peer)' if first.side == 'peer' else ''}",
+            first.side,
+        )
         if isinstance(solver, Peer) and (missing := solver.missing()):
-            return FailureResult(self.name, self.label, first.side, (), (), missing)
+            return FailureResult(*whose, (), (), missing)
         for truth, _ in self.maps:
             tell(f"{self.name}: {truth.drawn.name}, references")
             truth.known  # noqa: B018  # found here, where it is told, and not within a time
-        forecast = Forecast(
-            Expected(truth.drawn.name, _seconds(row, contender))
-            for truth, contender in self.maps
-            for row in (*truth.drawn.rows, *truth.drawn.named_rows)
-        )
         found = []
         for truth, contender in self.maps:
-            tell(f"{self.name}: {truth.drawn.name} ({forecast})")
-            found.append(measure_map(truth, contender, forecast.done))
-        return FailureResult(
-            self.name, self.label, first.side, tuple(found), tuple(truth for truth, _ in self.maps)
-        )
-
-
-def _seconds(row: GridRow, contender: Contender) -> float:
-    """A guess of what a row of a map costs."""
-    setting, solver = contender.solvers[0]
-    return seconds_per_point(solver, row.scenes[-1], row.law, setting.tolerance) * len(row.scenes)
+            tell(f"{self.name}: {truth.drawn.name}")
+            found.append(measure_map(truth, contender))
+        return FailureResult(*whose, tuple(found), tuple(truth for truth, _ in self.maps))
 
 
 def by_label(

@@ -5,19 +5,16 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.bench.chart import OURS, save_figure
-from frictionlab.bench.models.section import ModelRow, ModelsResult, front
+from frictionlab.bench.drawing import OURS, dress, new_figure
+from frictionlab.bench.models.record import ModelRow, front
+from frictionlab.bench.record import ReferenceMeans
 from frictionlab.bench.report import largest
-from frictionlab.charts.style import PAGE, STYLE
 
 MARKS_OF_METHODS = "osD^v<>phPX*"
 CHART_HEIGHT = 3.4
@@ -32,35 +29,24 @@ FRONT: dict[str, Any] = {
 }
 
 
-def draw_models(measured: ModelsResult, folder: Path) -> None:
-    """Write the chart. Raises OSError."""
-    with mpl.rc_context(STYLE):
-        save_figure(models_figure(measured), folder, measured.name)
-
-
-def models_figure(measured: ModelsResult) -> Figure:
+def models_figure(title: str, rows: Sequence[ModelRow], references: Sequence[ReferenceMeans]) -> Figure:
     """One panel; models told apart by colour and by filling, methods by marks."""
-    figure = Figure(figsize=(PAGE, CHART_HEIGHT), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(CHART_HEIGHT)
     axes = figure.add_subplot()
     axes.set_xscale("log")
     axes.set_yscale("log")
-    labels = list(dict.fromkeys(each.model.label for each in measured.rows))
-    methods = list(dict.fromkeys(each.row.contender.label for each in measured.rows))
-    drawn = [each for each in measured.rows if math.isfinite(each.row.largest)]
-    known = largest([largest(reference.errors) for reference in measured.references])
+    labels = list(dict.fromkeys(each.model.label for each in rows))
+    methods = list(dict.fromkeys(each.row.contender.label for each in rows))
+    drawn = [each for each in rows if math.isfinite(each.row.largest)]
+    known = largest([largest(reference.errors) for reference in references])
     for label in labels:
         for method in methods:
             own = [each for each in drawn if (each.model.label, each.row.contender.label) == (label, method)]
             _draw(axes, own, known, _look(labels.index(label), methods.index(method)))
-    _draw_front(axes, front(measured.rows), known)
+    _draw_front(axes, front(rows), known)
     axes.set_xlabel(r"time per point [$\mathrm{\mu s}$]")
-    axes.set_ylabel(f"largest distance from {measured.rows[0].model.label}")
-    axes.set_title(
-        textwrap.fill(measured.title or measured.name, TITLE_LETTERS), loc="left", fontweight="bold"
-    )
-    axes.grid(which="major", color="0.9", linewidth=0.5)
-    axes.set_axisbelow(True)
+    axes.set_ylabel(f"largest distance from {rows[0].model.label}")
+    dress(axes, textwrap.fill(title, TITLE_LETTERS), fontweight="bold")
     axes.axhspan(1e-3 * known, known, color="0.93", zorder=0)
     axes.set_ylim(0.1 * known)
     axes.set_xlim(0.2 * axes.get_xlim()[0])  # room for the name of the cheapest

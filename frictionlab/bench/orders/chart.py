@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.bench.chart import LINE_STYLES, OURS, THEIRS, save_figure
-from frictionlab.bench.orders.section import OrderRow
-from frictionlab.charts.style import PAGE, STYLE
+from frictionlab.bench.drawing import LINE_STYLES, OURS, THEIRS, dress, new_figure
+from frictionlab.bench.orders.record import OrderRow
 
 COLUMNS, PANEL = 3, 1.95
 LOWEST = 1e-16
@@ -28,19 +24,12 @@ NEAREST_LABELS = 1.3
 """Powers of ten between two numbers at the right end."""
 
 
-def draw_orders(rows: Sequence[OrderRow], folder: Path, stem: str) -> None:
-    """Write the picture. Raises OSError."""
-    with mpl.rc_context(STYLE):
-        save_figure(orders_figure(rows), folder, stem)
-
-
 def orders_figure(rows: Sequence[OrderRow]) -> Figure:
     """Small multiples: one panel a motion, one line a solver."""
     motions = list({row.motion.name: row.motion for row in rows}.values())
     solvers = list(dict.fromkeys(row.solver for row in rows))
     lines = math.ceil(len(motions) / COLUMNS)
-    figure = Figure(figsize=(PAGE, PANEL * lines + 0.6), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(PANEL * lines + 0.6)
     panels = figure.subplots(lines, COLUMNS, squeeze=False, sharex=True, sharey=True)
     handles: dict[str, Any] = {}
     for axes, motion in zip(panels.flat, motions, strict=False):
@@ -48,7 +37,10 @@ def orders_figure(rows: Sequence[OrderRow]) -> Figure:
         for row in drawn:
             handles[row.solver] = _draw(axes, row, solvers.index(row.solver))
         _label(axes, drawn, handles)
-        _dress(axes, f"{motion.title} ({motion.law_text})")
+        dress(axes, f"{motion.title} ({motion.law_text})", fontsize=7)
+        axes.set_yscale("log")
+        axes.set_ylim(0.3 * LOWEST, 3.0)
+        axes.set_xlim(-0.3, RIGHT - 0.2)
     for axes in panels.flat[len(motions) :]:
         axes.set_axis_off()
     for column in range(COLUMNS):
@@ -99,12 +91,3 @@ def _label(axes: Axes, rows: Sequence[OrderRow], handles: dict[str, Any]) -> Non
             va="center",
             clip_on=False,
         )
-
-
-def _dress(axes: Axes, title: str) -> None:
-    axes.set_yscale("log")
-    axes.set_ylim(0.3 * LOWEST, 3.0)
-    axes.set_xlim(-0.3, RIGHT - 0.2)
-    axes.grid(which="major", color="0.9", linewidth=0.5)
-    axes.set_axisbelow(True)
-    axes.set_title(title, loc="left", fontsize=7)

@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from frictionlab.bench.csv_table import write_records
-from frictionlab.bench.orders.fit import NO_FIT, Fit, fit_order
+from frictionlab.bench.orders.fit import NO_FIT, fit_order
 from frictionlab.bench.orders.motions import KindOfMotion
-from frictionlab.bench.orders.solvers import OrderSolver, Refinement
-from frictionlab.bench.orders.theory import TheoryOfOrder, theory_of
-from frictionlab.bench.sections import BenchPicture
+from frictionlab.bench.orders.record import OrderRow
+from frictionlab.bench.orders.solvers import OrderSolver
+from frictionlab.bench.orders.theory import theory_of
+from frictionlab.bench.sections import SectionResult
 from frictionlab.bench.solvers import solve_points
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
@@ -30,48 +29,27 @@ ORDERS_CAPTION = (
 
 
 @dataclass(frozen=True)
-class OrderRow:
-    """One solver on one motion; reference: the method whose mean errors are measured against."""
-
-    solver: str
-    motion: KindOfMotion
-    refinement: Refinement
-    fit: Fit
-    theory: TheoryOfOrder
-    reference: str
-
-    @property
-    def asymptotic(self) -> bool:
-        """Whether the slope is steady and theory gives a plain power."""
-        return self.fit.asymptotic and self.theory.plain
-
-    @property
-    def agrees(self) -> bool:
-        """Whether an asymptotic order is within 0.1 of theory."""
-        return abs(self.fit.order - self.theory.order) <= 0.1
-
-
-@dataclass(frozen=True)
-class OrdersResult:
+class OrdersResult(SectionResult):
     """Every order that was measured."""
 
     rows: list[OrderRow]
     name: str = "orders"
     title: str = "Observed orders on every kind of motion"
 
-    def write(self, folder: Path) -> list[Path]:
-        """orders.csv. Raises OSError."""
-        path = folder / f"{self.name}.csv"
-        records = [_record(row) for row in self.rows]
-        write_records(path, records)
-        return [path]
+    @property
+    def caption(self) -> str:
+        """How to read the picture."""
+        return ORDERS_CAPTION
 
-    def draw(self, folder: Path) -> list[BenchPicture]:
-        """One picture, a panel a motion. Raises OSError."""
-        from frictionlab.bench.orders.chart import draw_orders
+    def records(self) -> list[dict[str, Any]]:
+        """A row an order."""
+        return [row.record() for row in self.rows]
 
-        draw_orders(self.rows, folder, self.name)
-        return [BenchPicture(self.name, ORDERS_CAPTION)]
+    def figure(self) -> Any:
+        """A panel a motion."""
+        from frictionlab.bench.orders.chart import orders_figure
+
+        return orders_figure(self.rows)
 
     def summary(self) -> str:
         """A line a motion and solver, asymptotic orders first compared with theory."""
@@ -86,28 +64,6 @@ class OrdersResult:
             range_text = "" if row.asymptotic else " (not asymptotic)"
             lines.append(f"{row.motion.name:<17}{row.solver:<13}{order + range_text:<34}{told}")
         return "\n".join(lines)
-
-
-def _record(row: OrderRow) -> dict[str, Any]:
-    """A row of the CSV; empty where nothing was fitted."""
-    fit, refinement = row.fit, row.refinement
-    fitted = not math.isnan(fit.order)
-    return {
-        "solver": row.solver,
-        "motion": row.motion.name,
-        "law": row.motion.law_text,
-        "setting": refinement.setting,
-        "settings_from": refinement.values[fit.first] if fitted else "",
-        "settings_to": refinement.values[fit.last] if fitted else "",
-        "order": fit.order if fitted else "",
-        "spread": fit.spread if fitted else "",
-        "theory": "" if math.isnan(row.theory.order) else row.theory.order,
-        "reason": row.theory.reason,
-        "asymptotic": "yes" if row.asymptotic else "no",
-        "error_from": float(refinement.errors[fit.first if fitted else 0]),
-        "error_to": float(refinement.errors[fit.last if fitted else -1]),
-        "reference": row.reference,
-    }
 
 
 @dataclass(frozen=True)

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from frictionlab.bench.chart import save_figure
+from frictionlab.bench.drawing import new_figure
 from frictionlab.bench.stability.record import StabilityMap, StepLimit
-from frictionlab.charts.style import PAGE, STYLE
+from frictionlab.charts.style import PAGE
 
 MAP_HEIGHT, WIDEST_MAP = 2.9, 2.6
 BEST, WORST = 1e-9, 1.0
@@ -29,17 +27,9 @@ NEAR_LIMIT = 0.85
 """Steps that adapt hover about the limit: drawn is where they first come so near."""
 
 
-def draw_stability(maps: Sequence[StabilityMap], title: str, folder: Path, stem: str) -> None:
-    """Write the picture. Raises OSError."""
-    with mpl.rc_context(STYLE | {"hatch.linewidth": 0.5, "savefig.dpi": 200}):
-        save_figure(stability_figure(maps, title), folder, stem)
-
-
 def stability_figure(maps: Sequence[StabilityMap], title: str) -> Figure:
     """A panel a problem."""
-    width = min(PAGE, WIDEST_MAP * len(maps) + 1.2)
-    figure = Figure(figsize=(width, MAP_HEIGHT), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(MAP_HEIGHT, min(PAGE, WIDEST_MAP * len(maps) + 1.2))
     panels = figure.subplots(1, len(maps), squeeze=False)[0]
     for axes, drawn in zip(panels, maps, strict=True):
         colors = _draw_map(axes, drawn)
@@ -79,12 +69,16 @@ def _draw_map(axes: Axes, drawn: StabilityMap) -> Any:
             linestyle="none",
             rasterized=True,
         )
+    _draw_limits(axes, drawn, x, rates)
+    _dress_axes(axes, drawn, x, rates)
+    return colors
+
+
+def _dress_axes(axes: Axes, drawn: StabilityMap, x: Any, rates: Any) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
-    ends = x.min(), x.max(), rates.min(), rates.max()
-    _draw_limits(axes, drawn, x, rates)
-    axes.set_xlim(ends[0], ends[1])
-    axes.set_ylim(ends[2], ends[3])
+    axes.set_xlim(x.min(), x.max())
+    axes.set_ylim(rates.min(), rates.max())
     if drawn.setting == "steps":
         axes.invert_xaxis()
     axes.set_xlabel(
@@ -92,7 +86,6 @@ def _draw_map(axes: Axes, drawn: StabilityMap) -> Any:
     )
     axes.set_ylabel(f"local rate: {drawn.problem.rate_text}")
     axes.set_title(drawn.problem.title, loc="left", fontsize=7)
-    return colors
 
 
 def _draw_limits(axes: Axes, drawn: StabilityMap, x: Any, rates: Any) -> None:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
-from frictionlab.bench.csv_table import write_records
-from frictionlab.bench.sections import BenchPicture
+from frictionlab.bench.sections import SectionResult, cell
 from frictionlab.bench.stability.problems import StabilityProblem
 from frictionlab.bench.stability.record import StabilityMap
 
@@ -42,7 +40,7 @@ class MappedSolver(Protocol):
 
 
 @dataclass(frozen=True)
-class StabilityResult:
+class StabilityResult(SectionResult):
     """The maps of one stepper or peer, one a problem; missing: why there are none."""
 
     name: str
@@ -51,23 +49,29 @@ class StabilityResult:
     maps: Sequence[StabilityMap]
     missing: str
 
-    def write(self, folder: Path) -> list[Path]:
-        """The points of every map, with the limits; no file where there are none. Raises OSError."""
-        if not self.maps:
-            return []
-        path = folder / f"{self.name}.csv"
-        records = [record for each in self.maps for record in _records(each)]
-        write_records(path, records)
-        return [path]
+    style: ClassVar[Mapping[str, Any]] = {"hatch.linewidth": 0.5, "savefig.dpi": 200}
 
-    def draw(self, folder: Path) -> list[BenchPicture]:
-        """One picture, a panel a problem. Raises OSError."""
-        if not self.maps:
-            return []
-        from frictionlab.bench.stability.chart import draw_stability
+    @property
+    def caption(self) -> str:
+        """How to read the picture."""
+        return STABILITY_CAPTION.format(what=self.integrated)
 
-        draw_stability(self.maps, self.title, folder, self.name)
-        return [BenchPicture(self.name, STABILITY_CAPTION.format(what=self.integrated))]
+    @property
+    def left_out(self) -> Mapping[str, str]:
+        """Itself, where there are no maps."""
+        return {self.name: self.missing} if not self.maps else {}
+
+    def records(self) -> list[dict[str, Any]]:
+        """The points of every map, with the limits."""
+        return [record for each in self.maps for record in _records(each)]
+
+    def figure(self) -> Any:
+        """A panel a problem."""
+        if not self.maps:
+            return None
+        from frictionlab.bench.stability.chart import stability_figure
+
+        return stability_figure(self.maps, self.title)
 
     def summary(self) -> str:
         """A line a problem: regions counted, limits predicted and measured."""
@@ -96,20 +100,16 @@ def _records(drawn: StabilityMap) -> Iterator[dict[str, Any]]:
             "setting": drawn.setting,
             "value": point.value,
             "rate": point.rate,
-            "step": _number(point.step),
-            "step_times_rate": _number(point.step * point.rate),
-            "predicted_limit": _number(limit.predicted),
-            "measured_limit": _number(limit.measured),
+            "step": cell(point.step),
+            "step_times_rate": cell(point.step * point.rate),
+            "predicted_limit": cell(limit.predicted),
+            "measured_limit": cell(limit.measured),
             "status": point.status,
-            "error": _number(point.error),
-            "stated": _number(point.stated),
+            "error": cell(point.error),
+            "stated": cell(point.stated),
             "region": point.region,
             "reason": point.reason,
         }
-
-
-def _number(value: float) -> float | str:
-    return value if math.isfinite(value) else ""
 
 
 @dataclass(frozen=True)

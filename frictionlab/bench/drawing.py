@@ -43,7 +43,7 @@ def dress(axes: Axes, title: str, **look: Any) -> None:
 def save_in_style(
     made: Callable[[], Figure | None], look: Mapping[str, Any], folder: Path, stem: str
 ) -> bool:
-    """Make a figure, in the style of all with this look beside, and write it; whether there is one. Raises OSError."""
+    """Make a figure in this look beside the style of all, and write it; whether there is one. Raises OSError."""
     style: Any = {**STYLE, **look}
     with mpl.rc_context(style):
         if (figure := made()) is not None:

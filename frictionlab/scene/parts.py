@@ -17,7 +17,7 @@ from frictionlab.scene.units import FORCE, FREQUENCY, LENGTH, UNBALANCE, VELOCIT
 from frictionlab.scene.waveforms import SINE, Ratio, Waveform
 
 
-class Part(Record):
+class ScenePart(Record):
     """A part of a scene; alternatives: names of which exactly one is given, where there are any."""
 
     alternatives: ClassVar[tuple[str, ...]] = ()
@@ -35,7 +35,7 @@ class Part(Record):
         return self
 
 
-class _Force(Part):
+class _Force(ScenePart):
     """A periodic force given by an unbalance or by its amplitude.
 
     unbalance [L], >= 0: the force has the amplitude unbalance*frequency^2; or instead
@@ -103,7 +103,7 @@ class Load(_Force):
     frequency_ratio: Ratio | None = None
 
 
-class Transverse(Part):
+class Transverse(ScenePart):
     """The motion along x2, across the belt: a second degree of freedom, which friction couples to the first.
 
     natural_frequency [omega_1], > 0: omega_r, of the motion along x2.
@@ -124,7 +124,7 @@ class Transverse(Part):
     load: Load | None = None
 
 
-class Slip(Part):
+class Slip(ScenePart):
     """Prescribed slip along the belt: -belt_speed + velocity_amplitude*waveform(frequency*tau + phase).
 
     velocity_amplitude [omega_1 L], >= 0: of the slip velocity beside the belt's.
@@ -150,7 +150,7 @@ class Slip(Part):
         return self.velocity_amplitude
 
 
-class TransverseSlip(Part):
+class TransverseSlip(ScenePart):
     """Prescribed oscillation along x2, across the belt.
 
     velocity_amplitude [omega_1 L], >= 0: of the slip velocity along x2.
@@ -174,7 +174,7 @@ class TransverseSlip(Part):
         return self.velocity_amplitude
 
 
-class BeltVibration(Part):
+class BeltVibration(ScenePart):
     """The belt's velocity beside belt_speed: velocity_amplitude*waveform(ratio*frequency*tau + phase).
 
     velocity_amplitude [omega_1 L], >= 0: of the belt's vibration.
@@ -206,7 +206,7 @@ class BeltVibration(Part):
         return self.velocity_amplitude
 
 
-class NormalLoadVariation(Part):
+class NormalLoadVariation(ScenePart):
     """The normal load as normal_load*(1 + amplitude*waveform(ratio*frequency*tau + phase)), always positive.
 
     amplitude [-], >= 0: the varying share of the normal load.
@@ -238,7 +238,7 @@ class NormalLoadVariation(Part):
         return self.amplitude
 
 
-class Initial(Part):
+class Initial(ScenePart):
     """Where the mass starts, for scenes whose steady state depends on it.
 
     x [L]: position along the belt, from where the spring is undeflected.

@@ -26,7 +26,7 @@ from frictionlab.scene.parts import (
     Initial,
     Load,
     NormalLoadVariation,
-    Part,
+    ScenePart,
     Slip,
     Transverse,
     TransverseSlip,
@@ -51,7 +51,7 @@ __all__ = [
 """A scene and what it is made of."""
 
 
-class Scene(Part):
+class Scene(ScenePart):
     """A body on a moving belt, shaken: damping_ratio and drive, or a prescribed slip instead of both.
 
     damping_ratio [-], >= 0: beta_1, along the belt; may exceed 1.

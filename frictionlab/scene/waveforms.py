@@ -1,6 +1,7 @@
 """The shape in time of a load, a slip, a belt's vibration or a normal load, and frequencies in whole numbers.
 
-A waveform with a name is one record in ``SHAPES``; signals, proofs, closed forms and the report read all of it there.
+A waveform with a name is one record in ``WAVE_SHAPES``; signals, proofs, closed forms and the
+report read all of it there.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ LARGEST_RATIO = 1000
 """Of a frequency to the drive's."""
 
 
-class Line(NamedTuple):
+class WaveLine(NamedTuple):
     """A straight part of a waveform: where it begins [turns, from 0 to below 1], its value there, slope per turn."""
 
     start: Fraction
@@ -30,7 +31,7 @@ class Line(NamedTuple):
     slope: int
 
 
-class Shape(NamedTuple):
+class WaveShape(NamedTuple):
     """A waveform with a name, for theta = 2 pi turns.
 
     formula: in theta. words: of it in a sentence. lines: between its corners, in order; none for the sine.
@@ -38,25 +39,25 @@ class Shape(NamedTuple):
 
     formula: str
     words: str
-    lines: tuple[Line, ...] = ()
+    lines: tuple[WaveLine, ...] = ()
 
 
-SHAPES = {
-    "sine": Shape("sin(theta)", "a sine"),
-    "square": Shape(
+WAVE_SHAPES = {
+    "sine": WaveShape("sin(theta)", "a sine"),
+    "square": WaveShape(
         "1 in the first half of the period, -1 in the second",
         "a square wave",
-        (Line(Fraction(0), 1, 0), Line(Fraction(1, 2), -1, 0)),
+        (WaveLine(Fraction(0), 1, 0), WaveLine(Fraction(1, 2), -1, 0)),
     ),
-    "triangle": Shape(
+    "triangle": WaveShape(
         "(2/pi) arcsin(sin(theta))",
         "a triangle wave",
-        (Line(Fraction(1, 4), 1, -4), Line(Fraction(3, 4), -1, 4)),
+        (WaveLine(Fraction(1, 4), 1, -4), WaveLine(Fraction(3, 4), -1, 4)),
     ),
-    "sawtooth": Shape(
+    "sawtooth": WaveShape(
         "rises evenly from -1 to 1, through 0 at theta = 0; jumps at theta = pi",
         "a sawtooth",
-        (Line(Fraction(1, 2), -1, 2),),
+        (WaveLine(Fraction(1, 2), -1, 2),),
     ),
 }
 
@@ -107,12 +108,12 @@ class Form(NamedTuple):
     @property
     def words(self) -> str:
         """In a sentence."""
-        return str(self) if self.terms else SHAPES[self.shape].words
+        return str(self) if self.terms else WAVE_SHAPES[self.shape].words
 
     @property
-    def lines(self) -> tuple[Line, ...]:
+    def lines(self) -> tuple[WaveLine, ...]:
         """The straight lines between its corners; none where it is a sum of sines."""
-        return () if self.terms else SHAPES[self.shape].lines
+        return () if self.terms else WAVE_SHAPES[self.shape].lines
 
     @property
     def waves(self) -> tuple[Term, ...]:
@@ -159,11 +160,11 @@ def form_of(value: Any) -> Form:
     """
     if isinstance(value, Form):
         return value
-    if isinstance(value, str) and value in SHAPES:
+    if isinstance(value, str) and value in WAVE_SHAPES:
         return Form(value)
     if isinstance(value, Mapping):
         return _sum_of_harmonics(value)
-    raise ValueError(f"must be {', '.join(map(repr, SHAPES))} or {{harmonics: [...]}}")
+    raise ValueError(f"must be {', '.join(map(repr, WAVE_SHAPES))} or {{harmonics: [...]}}")
 
 
 _SUM = "a sum of harmonics is {harmonics: [{order: 1, amplitude: 1, phase: 0}, ...]}"
@@ -222,7 +223,7 @@ _TERM_SCHEMA = {
 }
 _FORM_SCHEMA = {
     "oneOf": [
-        {"enum": list(SHAPES)},
+        {"enum": list(WAVE_SHAPES)},
         {
             "type": "object",
             "properties": {

@@ -16,7 +16,7 @@ from strategies import scenes_in_the_plane, sizes
 from frictionlab.mistakes.notes import WrongValues
 from frictionlab.scene.body import in_the_plane, on_the_line, restoring_force
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
-from frictionlab.scene.waveforms import SHAPES
+from frictionlab.scene.waveforms import WAVE_SHAPES
 
 FREE = {
     "damping_ratio": 0.1,
@@ -328,8 +328,8 @@ def test_parts_may_be_records_as_well_as_mappings():
     assert TransverseSlip(velocity_amplitude=1.0).frequency is None
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", WAVE_SHAPES)
 def test_the_page_on_scenes_has_the_formula_of_every_waveform(name: str) -> None:
     page = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text(encoding="utf-8")
 
-    assert f"| `{name}` | {SHAPES[name].formula}" in page
+    assert f"| `{name}` | {WAVE_SHAPES[name].formula}" in page

@@ -14,7 +14,7 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import FULL_TURN, edges_of, signal_of
-from frictionlab.scene.waveforms import SHAPES, Form, Term
+from frictionlab.scene.waveforms import WAVE_SHAPES, Form, Term
 from frictionlab.theory import (
     friction_free_velocity,
     mean_prescribed_longitudinal,
@@ -26,7 +26,7 @@ from frictionlab.theory.prescribed import mean_direction
 
 angles = st.floats(0.0, 360.0)
 terms = st.builds(Term, st.integers(1, 6), st.floats(-1.0, 1.0), angles)
-forms = st.sampled_from([Form(name) for name in SHAPES]) | st.lists(terms, min_size=1, max_size=4).map(
+forms = st.sampled_from([Form(name) for name in WAVE_SHAPES]) | st.lists(terms, min_size=1, max_size=4).map(
     lambda found: Form("harmonics", tuple(found))
 )
 LAW = Coulomb(mu=0.4)
@@ -43,7 +43,7 @@ def direction(
     return mean_direction(piecewise(slip, edges).minus(ratio), piecewise(normal, edges, 1.0))
 
 
-@pytest.mark.parametrize("waveform", SHAPES)
+@pytest.mark.parametrize("waveform", WAVE_SHAPES)
 @given(phase=angles, ratio=st.floats(-0.99, 0.99) | st.sampled_from([0.0, 1.5, -2.0]))
 def test_the_mean_is_that_of_the_instants_at_which_slip_turns(
     waveform: str, phase: float, ratio: float

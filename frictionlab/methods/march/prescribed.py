@@ -23,7 +23,7 @@ from frictionlab.methods.march.adapters import in_shares
 from frictionlab.methods.march.answers import PointAnswer
 from frictionlab.methods.march.error import COARSEST, ROUNDING, Plan
 from frictionlab.methods.march.prescribed_slip import load_at_angle, piece_angles, slip_at_angle, whole_angle
-from frictionlab.methods.march.run import SHAPES
+from frictionlab.methods.march.run import SMOOTHINGS
 from frictionlab.methods.prescribed.memory import driven
 from frictionlab.methods.prescribed.quadrature import orbit_of_slip
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint
@@ -106,7 +106,7 @@ class SampledPoint:
         self.scene, self.law, self.motion = scene, law, scene.motion()
         self.moved = self.motion if scene.is_harmonic else driven(self.motion, 0j)
         self.width = plan.width if plan.stepper == "smoothed" else 0.0
-        self.shape, self.seconds = SHAPES[plan.smoothing], 0.0
+        self.shape, self.seconds = SMOOTHINGS[plan.smoothing], 0.0
         n = plan.steps or COARSEST
         found = self._sampled(n, self.width)
         while plan.steps is None and found.error > 0.5 * tolerance and n < MOST_SAMPLES:

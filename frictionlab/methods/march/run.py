@@ -42,7 +42,7 @@ from frictionlab.theory.rest import friction_at_rest
 
 OF_NO_NUMBERS: dict[str, Stepper] = {"rk4": Rk4(), "exponential": Exponential(), "sdirk2": Sdirk2()}
 """Steppers of which a run sets nothing but the number of steps."""
-SHAPES = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
+SMOOTHINGS = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
 GRIDDED = "moreau", "rk4", "exponential"
 """Steppers that meet the load at half steps alone."""
 LONGEST_PERIOD = 8
@@ -230,7 +230,7 @@ class MarchRun:
         if self.stepper == "moreau":
             return Moreau(pace.theta)
         if self.stepper == "smoothed":
-            return Smoothed(pace.width, SHAPES[pace.smoothing], pace.accuracy)
+            return Smoothed(pace.width, SMOOTHINGS[pace.smoothing], pace.accuracy)
         return OF_NO_NUMBERS[self.stepper]
 
     def _way(self, pace: Resolution) -> MarchSettings:

@@ -70,6 +70,11 @@ bytes_of = _intrinsic(_bytes_of, lambda thing: 0)
 # --- functions and their addresses ----------------------------------------------------------------------------------
 
 
+def machine_type(value: Any) -> Any:
+    """numba's type of what is like this value."""
+    return numba.typeof(value)  # type: ignore[no-untyped-call]  # numba has no types
+
+
 class Interface(NamedTuple):
     """numba's types of what a function takes beside its thing, and of what it returns."""
 

@@ -25,6 +25,7 @@ from frictionlab.laws.lugre import LuGre
 from frictionlab.methods.march.prescribed import sample_friction
 from frictionlab.methods.march.prescribed_bristle import step_periods
 from frictionlab.methods.periodic.continuation import answer_curve
+from frictionlab.methods.periodic.setting import maps_of
 from frictionlab.methods.reduced.contact import harmonic_friction
 from frictionlab.methods.shooting.undriven_path import follow_undriven
 
@@ -201,7 +202,7 @@ def test_words_and_the_place_in_the_file_change_nothing(compiled_once, name, bef
 
 
 @pytest.mark.parametrize(
-    "root", [answer_curve, follow_undriven, sample_friction, step_periods, harmonic_friction, LuGre]
+    "root", [answer_curve, maps_of, follow_undriven, sample_friction, step_periods, harmonic_friction, LuGre]
 )
 def test_the_name_of_a_kept_kernel_holds_no_address(root):
     assert not [piece for piece in cache._pieces([root], set()) if " at 0x" in piece]
@@ -469,7 +470,7 @@ def test_threads_that_ask_for_one_kernel_at_once_get_one_entry():
 
 def test_laws_that_a_process_has_met_change_no_name_of_a_kernel():
     """They did: what was compiled after another law had been used was compiled anew by every process that had not."""
-    before = cache._fingerprint(answer_curve, LuGre)
+    before = cache._fingerprint(maps_of, LuGre)
     cache._numbers(KnownLaw(Coulomb, ()), ("a_name_that_no_law_has",))
 
-    assert cache._fingerprint(answer_curve, LuGre) == before
+    assert cache._fingerprint(maps_of, LuGre) == before

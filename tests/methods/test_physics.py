@@ -21,10 +21,9 @@ from frictionlab.methods.exact.continuation import oscillator_at
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.exact.return_map import passage
 from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.period_map import period_map
+from frictionlab.methods.periodic.period_map import image_of
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.panels import WEIGHTS
-from frictionlab.orbit.recorder import track_of
 from frictionlab.orbit.sample import sample
 from frictionlab.scene.body import in_the_plane
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
@@ -161,7 +160,7 @@ def test_two_motions_on_the_line_never_move_apart_in_energy(scene, one, other, e
 
 @njit
 def planar_map(law, body, belt_speed, z, residual, accuracy):
-    period_map(Case(law, body, belt_speed, 0j), z, residual, accuracy, track_of(0))
+    image_of(Case(law, body, belt_speed, 0j), z, residual, accuracy)
 
 
 def planar_image(scene, z, accuracy=1e-11):

@@ -8,14 +8,22 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_law
-from frictionlab.dynamics.motion import bare, belt_advance, mean_friction, span
-from frictionlab.methods.periodic.case import Case, case_of
+from frictionlab.dynamics.motion import mean_friction
 from frictionlab.methods.periodic.fixed_point import MUCH_WORK, UTMOST_WORK
-from frictionlab.methods.periodic.period_map import image_of, rest_of, size_of, start_of, unpack
-from frictionlab.methods.periodic.steady_sliding import NEAR, ends_sliding, never_reverses, write_sliding
+from frictionlab.methods.periodic.setting import (
+    Maps,
+    Setting,
+    SpanImage,
+    ends_in_sliding,
+    period_map,
+    scales_of,
+    slip_keeps_its_side,
+    spans_at_rest,
+    write_sliding_state,
+    write_state,
+)
+from frictionlab.methods.periodic.steady_sliding import NEAR
 from frictionlab.numerics.linalg import copy, multiply, norm, radius_bound, subtract
-from frictionlab.scene.body import Body
 
 MOST_PERIODS = 5000
 PATIENCE = 300
@@ -66,14 +74,14 @@ def obeys(orbit: KnownOrbit, before: Any, after: Any, predicted: Any) -> bool:
 
 
 @inner
-def _arrives(case: Case, start: Any, orbit: KnownOrbit, constant: bool) -> int:
+def _arrives(setting: Setting, start: Any, orbit: KnownOrbit, constant: bool) -> int:
     """After how many periods a motion comes near to an orbit, or nears it as its monodromy says; 0 for never."""
-    slides_on = constant and never_reverses(case.body, case.belt_speed)
+    slides_on = constant and slip_keeps_its_side(setting)
     residual, size, steps, obeyed = np.empty(start.size), 1.0 + norm(orbit.state), 0, 0
     before, after, predicted = np.empty(start.size), np.empty(start.size), np.empty(start.size)
     subtract(start, orbit.state, before)
     for n in range(1, PATIENCE + 1):
-        image = image_of(case, start, residual, 1e-5 * case.body.normal_load)
+        image = period_map(setting, start, residual, 1e-5 * setting.maps.per_drive.normal_load)
         steps += image.steps
         # A motion that takes this long is no cheap one: the starts are then followed to their ends instead.
         if image.steps < 0 or steps > MUCH_WORK // 4:
@@ -82,7 +90,7 @@ def _arrives(case: Case, start: Any, orbit: KnownOrbit, constant: bool) -> int:
         for row in range(start.size):
             start[row] = start[row] + residual[row]
         if slides_on:
-            ends_sliding(case, start)
+            ends_in_sliding(setting, start)
         subtract(start, orbit.state, after)
         obeyed = obeyed + 1 if obeys(orbit, before, after, predicted) else 0
         if obeyed == ENOUGH or norm(after) < NEAR * size:
@@ -91,46 +99,40 @@ def _arrives(case: Case, start: Any, orbit: KnownOrbit, constant: bool) -> int:
     return 0
 
 
-def _reached_without_memory(case: Case, state: Any, matrix: Any, constant: bool) -> int:
-    """0: where it is not sure that all motions end there, starts are followed to their ends instead."""
-    return 0
+@inner
+def reached(setting: Setting, state: Any, matrix: Any, constant: bool) -> int:
+    """For how many periods the two cheap starts were followed until they ended on this orbit; 0 where one did not.
 
-
-def _reached_with_memory(case: Case, state: Any, matrix: Any, constant: bool) -> int:
-    """How many periods at least a mass set off at rest on the belt, and one sliding as if slip never reversed, were
-    followed until they ended on this orbit; 0 where one of them did not.
-
-    The second is an orbit of its own where the belt is faster than any vibration and sliding friction constant.
-    matrix: the monodromy, NaN where it is not known.
+    One is a mass set off at rest on the belt, one slides as if slip never reversed: an orbit of its own where the
+    belt is faster than any vibration and sliding friction constant. matrix: the monodromy, NaN where it is not known.
+    0 of laws without memory: where it is not sure that all motions end there, starts are followed to their ends.
     """
-    law, body, belt_speed, like = case
+    if not setting.maps.remembers:
+        return 0
     orbit = KnownOrbit(state, matrix, 1.0 - radius_bound(matrix))
     # Set off at rest on the belt, where the contact remembers nothing.
     start = np.empty(state.size)
-    start_of(law, body, start, 0.0 * like, belt_speed + 0.0 * like, 0.0 * like)
-    first = _arrives(case, start, orbit, constant)
+    write_state(setting.maps, start, 0j, complex(setting.belt_speed, 0.0), 0j)
+    first = _arrives(setting, start, orbit, constant)
     if first == 0:
         return 0
     # Set off as in sliding that never reverses, with the memory of that.
-    write_sliding(case, start)
-    return min(first, _arrives(case, start, orbit, constant))
-
-
-reached = by_law(_reached_without_memory, _reached_with_memory, None, _reached_with_memory)
-"""reached(case, state, matrix, constant): periods for which the two cheap starts were followed."""
+    write_sliding_state(setting, start)
+    return min(first, _arrives(setting, start, orbit, constant))
 
 
 @inner
-def settle(law: Any, body: Body, x: Any, v: Any, accuracy: float) -> Any:
-    """From position x and velocity v on a belt at rest: the state once the mass stays put, and the periods it took.
+def settle(maps: Maps, periods: float, x: complex, v: complex, accuracy: float) -> Any:
+    """From position x and velocity v on a belt at rest: the state once the mass stays put, and the spans it took.
 
-    Periods: negative where the mass still creeps after so many.
+    Spans of so many periods of the drive: negative where the mass still creeps after so many.
     """
-    case, period, steps = case_of(law, bare(body), 0.0), span(body), 0
-    z, residual = np.empty(size_of(law, x)), np.empty(size_of(law, x))
-    start_of(law, body, z, x, v, case.like)
+    setting = Setting(maps, 0.0, periods)
+    size, period, steps = maps.size, scales_of(setting).period, 0
+    z, residual = np.empty(size), np.empty(size)
+    write_state(maps, z, x, v, 0j)
     for count in range(1, MOST_PERIODS):
-        image = image_of(case, z, residual, accuracy)
+        image = period_map(setting, z, residual, accuracy)
         for row in range(z.size):
             z[row] = z[row] + residual[row]
         # Stuck for the whole of a period: the next ones repeat it.
@@ -157,10 +159,10 @@ def _apart(states: Any, a: int, b: int) -> float:
 
 
 @inner
-def write_start(law: Any, body: Body, start: Any, state: Any) -> None:
-    """Fill the state of a start (x, v, deflection); see ``start_of``."""
+def write_start(maps: Maps, start: Any, state: Any) -> None:
+    """Fill the state of a start (x, v, deflection); see ``write_state``."""
     x, v, deflection = start
-    start_of(law, bare(body), state, x, v, deflection)
+    write_state(maps, state, x, v, deflection)
 
 
 ARRIVED, VERY_NEAR, FALLEN = -1, 1e-5, 0.1
@@ -179,50 +181,47 @@ MANY = 8.0
 
 
 @inner
-def _periods_alike(case: Case, state: Any, image: Any) -> float:
+def _periods_alike(setting: Setting, state: Any, image: SpanImage) -> float:
     """How many periods from this one on the belt is sure to carry a mass that rests on it all the time, or 1.
 
     From where it starts to the mean of its orbit a slow belt carries it for thousands of them.
     """
-    law, body, belt_speed, like = case
-    period = span(body)
-    if belt_speed == 0.0 or image.stuck < period * (1.0 - 1e-9):
+    if setting.belt_speed == 0.0 or image.stuck < scales_of(setting).period * (1.0 - 1e-9):
         return 1.0
-    y, _u = unpack(body, state, like)
-    many = 1.0 + rest_of(law, body, belt_speed, y + belt_advance(body, belt_speed))
+    many = 1.0 + spans_at_rest(setting, state)
     return many if many > MANY else 1.0
 
 
 @inner
 def iterate_until_periodic(
-    law: Any, body: Body, belt_speed: float, how: Follow, orbit: KnownOrbit, trail: Trail
+    maps: Maps, belt_speed: float, periods: float, how: Follow, orbit: KnownOrbit, trail: Trail
 ) -> Any:
     """Follow the motion from the first state of a trail, period by period, until it repeats or is sure to end on the
     known orbit.
 
     Of the periods in which the belt carries it at rest one stands for many.
 
-    Fills the trail; returns after how many periods it repeats (0 where
-    it has not after n, ARRIVED on the known orbit), and how many it was followed.
+    Fills the trail; returns after how many periods it repeats (0 where it has not after n, ARRIVED on the known
+    orbit), and how many it was followed.
     """
-    body, (means, states) = bare(body), trail
-    case, steps = case_of(law, body, belt_speed), 0
+    setting = Setting(maps, belt_speed, periods)
+    (means, states), scales, steps = trail, scales_of(setting), 0
     # Coarse maps wander on by their own error: what they repeat is less exact.
-    alike = 1e-7 if how.accuracy <= 1e-8 * body.normal_load else 1e-5
-    residual, slides_on = np.empty(states.shape[1]), how.constant and never_reverses(body, belt_speed)
+    alike = 1e-7 if how.accuracy <= 1e-8 * scales.normal_load else 1e-5
+    residual, slides_on = np.empty(states.shape[1]), how.constant and slip_keeps_its_side(setting)
     # A bristle that nears its limit as a power of the way slid comes to move less than that long before it is there.
     alike *= 0.1 if slides_on else 1.0
     before, after, predicted = np.empty(residual.size), np.empty(residual.size), np.empty(residual.size)
     subtract(states[0], orbit.state, before)
     near, obeyed, far = VERY_NEAR * norm(orbit.state), 0, 0.0
     for n in range(means.size):
-        image = image_of(case, states[n], residual, how.accuracy)
-        means[n] = mean_friction(image.friction_impulse.real, span(body))
+        image = period_map(setting, states[n], residual, how.accuracy)
+        means[n] = mean_friction(image.friction_impulse.real, scales.period)
         steps += image.steps
-        many = _periods_alike(case, states[n], image)
+        many = _periods_alike(setting, states[n], image)
         for row in range(residual.size):
             states[n + 1, row] = states[n, row] + many * residual[row]
-        if slides_on and ends_sliding(case, states[n + 1]):
+        if slides_on and ends_in_sliding(setting, states[n + 1]):
             return 1, n + 1
         subtract(states[n + 1], orbit.state, after)
         far = norm(before) if obeyed == 0 else far

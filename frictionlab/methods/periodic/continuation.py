@@ -8,37 +8,25 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.dynamics.motion import bare, belt_swing, mean_friction, span, swing_of
+from frictionlab.dynamics.motion import mean_friction
 from frictionlab.methods.periodic.attraction import reached
-from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.closed_orbits import COLUMNS, MAPS, ClosedOrbits, write_orbit
 from frictionlab.methods.periodic.fixed_point import ROUNDING, FixedPoint, Goal, fixed_point
-from frictionlab.methods.periodic.monodromy import free_inverse, monodromy
-from frictionlab.methods.periodic.period_map import image_of, period_map, size_of
-from frictionlab.methods.periodic.steady_sliding import NEAR, never_reverses, write_sliding
+from frictionlab.methods.periodic.monodromy import monodromy
+from frictionlab.methods.periodic.setting import (
+    Maps,
+    Setting,
+    guess_state,
+    period_map,
+    recorded_map,
+    scales_of,
+    sliding_friction,
+    slip_keeps_its_side,
+    write_sliding_state,
+)
+from frictionlab.methods.periodic.steady_sliding import NEAR
 from frictionlab.numerics.linalg import copy, norm
 from frictionlab.orbit.recorder import Track, grown, track_of
-from frictionlab.scene.body import Body
-
-
-@inner
-def first_guess(law: Any, body: Body, belt_speed: float, z: Any) -> float:
-    """The spring deflection by the mean friction of a harmonic slip; returns friction's coefficient as a dashpot."""
-    swing = body.frequency * math.hypot(abs(body.reference_sine), abs(body.reference_cosine)) + belt_swing(
-        body
-    )
-    # As if slip were the belt speed and one harmonic of the free motion: the closed form of prescribed slip.
-    ratio = abs(belt_speed) / (swing + 1e-300)
-    mean = law.sliding_friction(swing + abs(belt_speed)) * (
-        math.asin(ratio) * 2.0 / math.pi if ratio < 1.0 else 1.0
-    )
-    for i in range(z.size):
-        z[i] = 0.0
-    stiffness = body.stiffness_mean + body.stiffness_split
-    z[0] = math.copysign(body.normal_load * mean / math.sqrt(stiffness), belt_speed)
-    # Friction taken as a dashpot: the force over the slip speed, with a floor that keeps it from blowing up at rest.
-    return body.normal_load * law.sliding_friction(swing) / (swing + abs(belt_speed) + 1e-3)
-
 
 MOST_KNOWN = 6
 
@@ -73,34 +61,33 @@ def _best_order(states: Any, belt_speeds: Any, i: int, known: int, work: Any) ->
 
 
 @inner
-def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal) -> Any:
+def solve_curve(maps: Maps, periods: float, belt_speeds: Any, guess: Any, goal: Goal) -> Any:
     """States [n, size], results [n, COLUMNS] and monodromies [n, size, size], NaN where the search did without."""
-    like = case_of(law, body, 0.0).like
-    size, n = size_of(law, like), belt_speeds.size
+    size, n = maps.size, belt_speeds.size
     states, results = np.zeros((n, size)), np.empty((n, COLUMNS))
     matrices = np.full((n, size, size), np.nan)
     z, work, inverse = np.empty(size), np.empty(size), np.empty((size, size))
     known, order, expected = 0, 1, 1e300
     for i in range(n):
-        case = case_of(law, body, belt_speeds[i])
-        if goal.constant and _slides_on(case, guess if i == 0 else guess[:0], states[i]):
-            _write_results(body, _sliding(case), results[i])
+        setting = Setting(maps, belt_speeds[i], periods)
+        if goal.constant and _slides_on(setting, guess if i == 0 else guess[:0], states[i]):
+            _write_results(setting, _sliding(setting), results[i])
             known = 0
             continue
         # From the states before it by extrapolation, with the last inverse; the first one from a harmonic motion.
         if known == 0:
-            free_inverse(body, first_guess(law, body, belt_speeds[i], z), inverse, like)
+            guess_state(setting, z, inverse)
             if i == 0 and guess.shape[0] > 0:
                 copy(guess[0], z)
         else:
             _extrapolated(states, belt_speeds, i, min(order, known), z)
-        closed = fixed_point(case, z, inverse, matrices[i], goal, expected)
+        closed = fixed_point(setting, z, inverse, matrices[i], goal, expected)
         # Neighbours mislead where the curve has a jump: once more without them.
         if closed.maps < 0 and (known > 0 or guess.shape[0] > 0):
-            free_inverse(body, first_guess(law, body, belt_speeds[i], z), inverse, like)
-            closed = fixed_point(case, z, inverse, matrices[i], goal, 1e300)
+            guess_state(setting, z, inverse)
+            closed = fixed_point(setting, z, inverse, matrices[i], goal, 1e300)
         copy(z, states[i])
-        _write_results(body, closed, results[i])
+        _write_results(setting, closed, results[i])
         # The order that would have predicted this state best, and one more: orders are not known where none is tried.
         if closed.maps > 0 and known > 1:
             order = min(_best_order(states, belt_speeds, i, known, work) + 1, MOST_KNOWN)
@@ -112,14 +99,14 @@ def solve_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal) 
 
 
 @inner
-def _slides_on(case: Case, guess: Any, state: Any) -> bool:
+def _slides_on(setting: Setting, guess: Any, state: Any) -> bool:
     """Whether the orbit looked for is that of slip that never reverses, written then to the state: closed form.
 
     It is where no guess says otherwise.
     """
-    if not never_reverses(case.body, case.belt_speed):
+    if not slip_keeps_its_side(setting):
         return False
-    write_sliding(case, state)
+    write_sliding_state(setting, state)
     apart = 0.0
     for row in range(state.size if guess.shape[0] > 0 else 0):
         apart = math.hypot(apart, guess[0, row] - state[row])
@@ -127,38 +114,38 @@ def _slides_on(case: Case, guess: Any, state: Any) -> bool:
 
 
 @inner
-def _sliding(case: Case) -> FixedPoint:
+def _sliding(setting: Setting) -> FixedPoint:
     """The constant friction of slip that never reverses; it takes no map."""
-    friction = case.law.sliding_friction(abs(case.belt_speed))
-    friction_impulse = -math.copysign(friction, case.belt_speed) * span(case.body) + 0.0 * case.like
-    slowest = max(0.0, abs(case.belt_speed) - swing_of(case.body))
-    return FixedPoint(friction_impulse, ROUNDING * max(1.0, friction), 0, 0.0, slowest, 0.0)
+    friction = sliding_friction(setting.maps, abs(setting.belt_speed))
+    impulse = complex(-math.copysign(friction, setting.belt_speed) * scales_of(setting).period, 0.0)
+    slowest = max(0.0, abs(setting.belt_speed) - setting.maps.swing)
+    return FixedPoint(impulse, ROUNDING * max(1.0, friction), 0, 0.0, slowest, 0.0)
 
 
 @inner
-def _write_results(body: Body, closed: FixedPoint, row: Any) -> None:
-    period = span(body)
+def _write_results(setting: Setting, closed: FixedPoint, row: Any) -> None:
+    period = scales_of(setting).period
     rests = closed.stuck / period, closed.closest
     write_orbit(row, mean_friction(closed.friction_impulse, period), closed.error, closed.maps, rests)
 
 
 @inner
-def record_orbit(case: Case, z: Any, accuracy: float, track: Track) -> Track:
+def record_orbit(setting: Setting, z: Any, accuracy: float, track: Track) -> Track:
     """The track with the closed orbit from z, piece by piece, after what it holds; on a larger one where needed."""
     first, residual = track.filled[0], np.empty(z.size)
-    period_map(case, z, residual, accuracy, track)
+    recorded_map(setting, z, residual, accuracy, track)
     # How many pieces an orbit has is known once it is written: a full track may lack some.
     while track.filled[0] == track.stick.size:
         track = grown(track, 4 * track.stick.size)
         track.filled[0] = first
-        period_map(case, z, residual, accuracy, track)
+        recorded_map(setting, z, residual, accuracy, track)
     return track
 
 
 @inner
-def recorded_accuracy(body: Body, goal: Goal) -> float:
+def recorded_accuracy(normal_load: float, goal: Goal) -> float:
     """The recorded motion is a map of its own, as exact as the mean was asked to be."""
-    return max(0.1 * goal.tolerance * body.normal_load, 1e-13)
+    return max(0.1 * goal.tolerance * normal_load, 1e-13)
 
 
 class Wanted(NamedTuple):
@@ -201,35 +188,38 @@ class Curve(NamedTuple):
 
 
 @inner
-def answer_curve(law: Any, body: Body, belt_speeds: Any, guess: Any, goal: Goal, wanted: Wanted) -> Curve:
+def answer_curve(
+    maps: Maps, periods: float, belt_speeds: Any, guess: Any, goal: Goal, wanted: Wanted
+) -> Curve:
     """Close the orbits of a curve, record them, differentiate their maps: what is wanted of it.
 
-    guess: a state to start from [0 or 1, size]; where nothing is to be closed, the states of all orbits [n, size].
+    periods: of the drive in one map. guess: a state to start from [0 or 1, size]; where nothing is to be closed, the
+    states of all orbits [n, size].
     """
-    body = bare(body)
     if wanted.closed:
-        states, results, matrices = solve_curve(law, body, belt_speeds, guess, goal)
+        states, results, matrices = solve_curve(maps, periods, belt_speeds, guess, goal)
     else:
         states, results = guess, np.ones((belt_speeds.size, COLUMNS))
         matrices = np.full((states.shape[0], states.shape[1], states.shape[1]), np.nan)
     n, size = states.shape
-    accuracy = recorded_accuracy(body, goal)
+    normal_load = maps.per_drive.normal_load
+    accuracy = recorded_accuracy(normal_load, goal)
     ends_there, gradient, work = np.zeros(n, np.int64), np.empty(size, np.complex128), np.empty(size)
     track, ends = track_of(128 if wanted.orbits else 0), np.zeros(n, np.int64)
     for i in range(n):
-        case = case_of(law, body, belt_speeds[i])
+        setting = Setting(maps, belt_speeds[i], periods)
         if wanted.mapped:
-            image_of(case, states[i].copy(), work, FINE * body.normal_load)
+            period_map(setting, states[i].copy(), work, FINE * normal_load)
             for row in range(size):
                 states[i, row] = states[i, row] + work[row]
         # An orbit that was not found has a negative count of maps.
         elif results[i, MAPS] >= 0.0:
             if wanted.orbits:
-                track = record_orbit(case, states[i], accuracy, track)
+                track = record_orbit(setting, states[i], accuracy, track)
             if wanted.matrices and math.isnan(matrices[i, 0, 0]):
-                monodromy(case, states[i], 1.0, matrices[i], gradient)
+                monodromy(setting, states[i], 1.0, matrices[i], gradient)
             if wanted.closed and goal.check_attraction:
-                ends_there[i] = reached(case, states[i], matrices[i], goal.constant)
+                ends_there[i] = reached(setting, states[i], matrices[i], goal.constant)
         else:
             matrices[i] = 0.0
         ends[i] = track.filled[0]

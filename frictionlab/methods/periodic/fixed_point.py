@@ -13,28 +13,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, by_law
-from frictionlab.dynamics.motion import belt_advance, span
-from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.maps.pace import MOST_KEPT, keeping, pace_of
-from frictionlab.methods.periodic.maps.sliding import Mapped
-from frictionlab.methods.periodic.monodromy import (
-    PacedMap,
-    free_inverse,
-    inverse_of,
-    monodromy_of,
-    newton_inverse,
-)
-from frictionlab.methods.periodic.period_map import (
-    coarsest_of,
-    grain_of,
-    image_of,
-    paced_image,
-    rest_of,
-    unpack,
+from frictionlab.methods.periodic.maps.pace import MOST_KEPT, pace_of
+from frictionlab.methods.periodic.monodromy import PacedMap, inverse_of, monodromy_of, newton_inverse
+from frictionlab.methods.periodic.setting import (
+    Scales,
+    Setting,
+    SpanImage,
+    grain_of_mean,
+    guess_inverse,
+    kept_map,
+    period_map,
+    scales_of,
+    spans_at_rest,
 )
 from frictionlab.numerics.linalg import copy, multiply, norm, subtract
-from frictionlab.scene.body import Body
 
 MOST_MAPS = 600
 MUCH_WORK = 500_000
@@ -58,24 +50,6 @@ ALMOST_SINGULAR = 1e6
 """Size of an inverse of (monodromy - identity) that belongs to a line of orbits, not to one."""
 MOST_CHECKS = 12
 """How often the last maps of a law with memory may disagree before the search gives up."""
-
-
-def _finer_of_order_eight(law: Any, like: Any) -> Any:
-    return FINER, 0.035
-
-
-def _finer_of_order_five(law: Any, like: Any) -> Any:
-    """As many steps more: the square root of two times as many."""
-    return 5.7, 0.15
-
-
-_finer = by_law(_finer_of_order_eight, _finer_of_order_five, _finer_of_order_eight, _finer_of_order_five)
-"""_finer(law, like): how much finer the two maps are that agree in the end, and what share of the error before a
-Newton step to a map finer by ``FINER`` stands in where two means agree by chance.
-
-Of order eight it is fitted to 2,500 random rows: of 399 others none was uncovered, and half of the errors stated were
-below 27 times the true. Of order five see tests/benchmarks/campaign.py bristles.
-"""
 
 
 class Goal(NamedTuple):
@@ -121,7 +95,7 @@ class Iterate(NamedTuple):
 class Progress(NamedTuple):
     """How far a search is: its last map, the accuracy of that map and of the finest asked for, and what it took."""
 
-    image: Mapped
+    image: SpanImage
     accuracy: float
     finest: float
     maps: int
@@ -152,32 +126,33 @@ def rounding_of(z: Any, belt_speed: float) -> float:
 
 
 @inner
-def mean_error(body: Body, residual: Any, distance: float) -> float:
+def mean_error(scales: Scales, residual: Any, distance: float) -> float:
     """Bound on the error of the mean friction of an orbit that closes up to the residual.
 
     Integrate the equation of motion along x1 over the period for the orbit and for the true one: the friction
     impulses differ by the change of du + damping*dy, which the residual is, plus the integral of dx, which the
     distance of the states bounds because orbits of a monotone law never move apart.
     """
-    period = span(body)
-    ends = abs(residual[1]) + (body.damping_mean + body.damping_split) * abs(residual[0])
-    return (distance + ends / period) / body.normal_load
+    ends = abs(residual[1]) + scales.damping * abs(residual[0])
+    return (distance + ends / scales.period) / scales.normal_load
 
 
 @inner
-def mean_change(body: Body, one: Mapped, other: Mapped) -> float:
+def mean_change(scales: Scales, one: SpanImage, other: SpanImage) -> float:
     """By how much the mean friction of two maps differs."""
-    return abs(other.friction_impulse - one.friction_impulse) / span(body)
+    return abs(other.friction_impulse - one.friction_impulse) / scales.period
 
 
 @inner
-def mean_sensitivity(case: Case, search: Iterate, shift: Any, image: Mapped, accuracy: float) -> float:
+def mean_sensitivity(
+    setting: Setting, search: Iterate, shift: Any, image: SpanImage, accuracy: float
+) -> float:
     """By how much the mean changes where the state, whose map is the image, is shifted."""
     # At the accuracy of the image, so that the errors of the steps are much the same in both and cancel.
     trial, residual = np.empty(search.z.size), np.empty(search.z.size)
     subtract(search.z, shift, trial)
-    moved = image_of(case, trial, residual, accuracy)
-    return mean_change(case.body, image, moved)
+    moved = period_map(setting, trial, residual, accuracy)
+    return mean_change(scales_of(setting), image, moved)
 
 
 # --- steps of the search --------------------------------------------------------------------------------------------
@@ -206,7 +181,7 @@ def broyden(inverse: Any, step: Any, change: Any, work: Any) -> None:
 
 
 @inner
-def line_search(case: Case, search: Iterate, accuracy: float) -> int:
+def line_search(setting: Setting, search: Iterate, accuracy: float) -> int:
     """Move the state along the Newton step, halved until the residual falls; the maps it took, 8 for no fall."""
     n, z = search.z.size, search.z
     step, trial, fresh = np.empty(n), np.empty(n), np.empty(n)
@@ -216,7 +191,7 @@ def line_search(case: Case, search: Iterate, accuracy: float) -> int:
     for tried in range(1, 8):
         for i in range(n):
             trial[i] = z[i] - part * step[i]
-        image_of(case, trial, fresh, accuracy)
+        period_map(setting, trial, fresh, accuracy)
         if norm(fresh) < (1.0 - 0.1 * part) * length:
             copy(trial, z)
             return tried
@@ -225,33 +200,33 @@ def line_search(case: Case, search: Iterate, accuracy: float) -> int:
 
 
 @inner
-def newton_step(case: Case, search: Iterate, accuracy: float, of_quotients: float) -> Any:
+def newton_step(setting: Setting, search: Iterate, accuracy: float, of_quotients: float) -> Any:
     """A Newton step with a line search, or where it fails three repetitions of the map: the image, and maps taken."""
     z, residual = search.z, search.residual
     # The derivative as it is here: where the motion sticks, Broyden's inverse is that of another pattern of events.
-    regular = newton_inverse(case, z, of_quotients, search.inverse)
+    regular = newton_inverse(setting, z, of_quotients, search.inverse)
     if not regular:
-        free_inverse(case.body, case.body.normal_load, search.inverse, case.like)
-    tried = line_search(case, search, accuracy)
+        guess_inverse(setting, setting.maps.per_drive.normal_load, search.inverse)
+    tried = line_search(setting, search, accuracy)
     maps = 2 * z.size + tried + 1
     # The map never moves two orbits of monotone friction apart: it comes nearer, if slowly, where Newton fails.
     if not regular or tried == 8:
         for _ in range(3):
-            image_of(case, z, residual, accuracy)
+            period_map(setting, z, residual, accuracy)
             for i in range(z.size):
                 z[i] = z[i] + residual[i]
         maps += 3
-    return image_of(case, z, residual, accuracy), maps
+    return period_map(setting, z, residual, accuracy), maps
 
 
 @inner
-def quasi_newton_step(case: Case, search: Iterate, now: Progress) -> Progress:
+def quasi_newton_step(setting: Setting, search: Iterate, now: Progress) -> Progress:
     """One Broyden step, along ``search.step``; stalls counts those after which the residual has not fallen."""
     length = norm(search.residual)
     # A map need not be much more exact than what is left open.
     finer = max(now.finest, min(now.accuracy, 1e-4 * length))
     subtract(search.z, search.step, search.trial)
-    image = image_of(case, search.trial, search.fresh, finer)
+    image = period_map(setting, search.trial, search.fresh, finer)
     falls, usable = norm(search.fresh) < 0.7 * length, norm(search.fresh) <= 1.5 * length
     # A step that makes it somewhat worse is kept for what it says of the derivative; a worse one is not taken.
     if usable:
@@ -267,21 +242,25 @@ def quasi_newton_step(case: Case, search: Iterate, now: Progress) -> Progress:
     return Progress(image, finer, now.finest, now.maps + 1, stalls, now.checks, now.newtons, -1.0)
 
 
+@inner
 def _recover_without_memory(
-    case: Case, search: Iterate, now: Progress, length: float, floor: float
+    setting: Setting, search: Iterate, now: Progress, length: float, floor: float
 ) -> Progress:
     """Ask for finer maps where what is left is their own error, else take a Newton step."""
     finest, newtons = now.finest, now.newtons
     if now.accuracy <= finest and length <= 30.0 * now.accuracy and finest > floor:
         finest = max(floor, finest / FINER)
         return Progress(now.image, now.accuracy, finest, now.maps, 1, now.checks, newtons, -1.0)
-    image, took = newton_step(case, search, now.accuracy, finest)
+    image, took = newton_step(setting, search, now.accuracy, finest)
     return Progress(image, now.accuracy, finest, now.maps + took, 1, now.checks, newtons + 1, -1.0)
 
 
-def _recover_with_memory(case: Case, search: Iterate, now: Progress, length: float, floor: float) -> Progress:
+@inner
+def _recover_with_memory(
+    setting: Setting, search: Iterate, now: Progress, length: float, floor: float
+) -> Progress:
     """Take a Newton step; after some of them what is open is no more than what the steps of a map jump about by."""
-    image, took = newton_step(case, search, now.accuracy, now.accuracy)
+    image, took = newton_step(setting, search, now.accuracy, now.accuracy)
     newtons = now.newtons + 1
     finest = max(now.finest / FINER, floor) if newtons % PATIENCE == 0 else now.finest
     return Progress(image, now.accuracy, finest, now.maps + took, 1, now.checks, newtons, -1.0)
@@ -290,31 +269,36 @@ def _recover_with_memory(case: Case, search: Iterate, now: Progress, length: flo
 # --- the two estimators of the error --------------------------------------------------------------------------------
 
 
-def _check_without_memory(case: Case, search: Iterate, goal: Goal, now: Progress, floor: float) -> Progress:
+@inner
+def _check_without_memory(
+    setting: Setting, search: Iterate, goal: Goal, now: Progress, floor: float
+) -> Progress:
     """End where a map much finer than those of the search leaves a residual whose bound is below the tolerance."""
     z, residual, work = search.z, search.residual, search.work
     # The last quasi-Newton step is still taken: it costs no map of its own.
     subtract(z, search.step, search.trial)
     copy(search.trial, z)
     accuracy = now.finest / FINER
-    image = image_of(case, z, residual, accuracy)
+    image = period_map(setting, z, residual, accuracy)
     maps, checks, doubt = now.maps + 1, now.checks + 1, 0.0
     # where the motion sticks, the map and its inverse jump with the events: both are taken anew
     if image.stuck > 0.0 or now.newtons > 0 or not goal.contracts:
-        if not newton_inverse(case, z, accuracy, search.inverse):
+        if not newton_inverse(setting, z, accuracy, search.inverse):
             return Progress(image, accuracy, now.finest, maps, 0, checks, now.newtons, np.inf)
-        coarser = image_of(case, z, search.fresh, FINER * accuracy)
+        coarser = period_map(setting, z, search.fresh, FINER * accuracy)
         maps += 2 * z.size + 1
         subtract(search.fresh, residual, search.fresh)
         multiply(search.inverse, search.fresh, work)
-        doubt = mean_error(case.body, search.fresh, norm(work)) + mean_change(case.body, coarser, image)
+        doubt = mean_error(scales_of(setting), search.fresh, norm(work)) + mean_change(
+            scales_of(setting), coarser, image
+        )
         if not goal.contracts:  # no theorem: measure how the mean moves with the state
-            doubt += mean_sensitivity(case, search, work, image, accuracy)
+            doubt += mean_sensitivity(setting, search, work, image, accuracy)
             multiply(search.inverse, residual, work)
-            doubt += mean_sensitivity(case, search, work, image, accuracy)
+            doubt += mean_sensitivity(setting, search, work, image, accuracy)
     multiply(search.inverse, residual, work)
-    steps = (floor + 0.1 * accuracy) / case.body.normal_load  # the finer map's own error, too
-    error = stated_error(doubt, mean_error(case.body, residual, norm(work)), steps)
+    steps = (floor + 0.1 * accuracy) / setting.maps.per_drive.normal_load  # the finer map's own error, too
+    error = stated_error(doubt, mean_error(scales_of(setting), residual, norm(work)), steps)
     ended = error <= goal.tolerance or (now.finest <= floor and checks > 3)
     newtons = now.newtons + 1 if checks > 2 else now.newtons
     return Progress(
@@ -323,16 +307,16 @@ def _check_without_memory(case: Case, search: Iterate, goal: Goal, now: Progress
 
 
 @inner
-def _corrected(case: Case, search: Iterate, last: PacedMap, floor: float, before: float) -> Any:
+def _corrected(setting: Setting, search: Iterate, last: PacedMap, floor: float, before: float) -> Any:
     """A Newton step with the derivatives at the state, a finer map from there, its error and the maps taken.
 
     The inverse of the search is that of states passed long ago, and may say far too little of what is left open.
     last: the map from the state; before: the error before the step.
     """
-    n, body, residual = search.z.size, case.body, search.residual
+    n, scales, residual = search.z.size, scales_of(setting), search.residual
     image, accuracy = last.image, last.accuracy
     gradient, inverse = np.empty(n, np.complex128), np.empty((n, n))
-    took = monodromy_of(case, search.z, last, search.monodromy, gradient)
+    took = monodromy_of(setting, search.z, last, search.monodromy, gradient)
     # On a line of orbits, as under a contact that stays elastic, no step leads to one of them.
     if not inverse_of(search.monodromy, inverse) or np.abs(inverse).max() > ALMOST_SINGULAR:
         return image, before, took
@@ -340,128 +324,140 @@ def _corrected(case: Case, search: Iterate, last: PacedMap, floor: float, before
         copy(inverse[row], search.inverse[row])
     multiply(search.inverse, residual, search.step)
     subtract(search.z, search.step, search.z)
-    _ratio, small = _finer(case, case.like)
     finer = max(accuracy / FINER, floor)
-    better = image_of(case, search.z, residual, finer)
+    better = period_map(setting, search.z, residual, finer)
     multiply(search.inverse, residual, search.step)
     left = 0.0j
     for i in range(n):
         left += gradient[i] * search.step[i]
     # Two maps of one accuracy agree however wrong they are.
-    share = small if finer < 0.5 * accuracy else 1.0
+    share = setting.maps.orders.share if finer < 0.5 * accuracy else 1.0
     # once, not twice: this map comes after two that agreed
-    changed = 0.5 * (mean_change(body, image, better) + share * before)
-    steps = floor / body.normal_load + grain_of(case.law, body, finer, case.like)
+    changed = 0.5 * (mean_change(scales, image, better) + share * before)
+    steps = floor / scales.normal_load + grain_of_mean(setting, finer)
     return better, stated_error(changed, abs(left), steps), took + 1
 
 
-def _check_with_memory(case: Case, search: Iterate, goal: Goal, now: Progress, floor: float) -> Progress:
+@inner
+def _check_with_memory(
+    setting: Setting, search: Iterate, goal: Goal, now: Progress, floor: float
+) -> Progress:
     """End where two maps much finer than those of the search change the mean by less than the tolerance.
 
     One is taken from where the orbit was found, one from where the first says it is; what is left open in them is
     carried to the mean by how far the mean moved between the two.
     """
     z, residual, fresh, step = search.z, search.residual, search.fresh, search.step
-    body, coarse, accuracy, maps = case.body, now.image, now.accuracy, now.maps
-    ratio, _small = _finer(case, case.like)
+    scales, coarse, accuracy, maps = scales_of(setting), now.image, now.accuracy, now.maps
+    ratio = setting.maps.orders.finer
     if accuracy <= floor:  # two maps of one accuracy agree however wrong they are
-        coarse = image_of(case, z, residual, ratio * floor)
+        coarse = period_map(setting, z, residual, ratio * floor)
         maps += 1
     accuracy = max(accuracy / ratio, floor)
-    fine = image_of(case, z, fresh, accuracy)
+    fine = period_map(setting, z, fresh, accuracy)
     subtract(fresh, residual, search.work)  # what the coarser map has wrong
     multiply(search.inverse, search.work, search.trial)
     multiply(search.inverse, fresh, step)
     subtract(z, step, z)
     # its steps are kept: the derivatives at the orbit are taken over them
     pace = pace_of(MOST_KEPT)
-    image = paced_image(case, z, residual, keeping(accuracy, pace))
+    image = kept_map(setting, z, residual, accuracy, pace)
     maps, checks = maps + 2, now.checks + 1
-    slope = mean_change(body, fine, image) / (norm(step) + 1e-300)
-    doubt = max(mean_change(body, coarse, image), SURE * mean_error(body, search.work, norm(search.trial)))
+    slope = mean_change(scales, fine, image) / (norm(step) + 1e-300)
+    doubt = max(
+        mean_change(scales, coarse, image), SURE * mean_error(scales, search.work, norm(search.trial))
+    )
     multiply(search.inverse, residual, step)
-    rest = slope * norm(step) + SURE * mean_error(body, residual, norm(step))
-    steps = floor / body.normal_load + grain_of(case.law, body, accuracy, case.like)
+    rest = slope * norm(step) + SURE * mean_error(scales, residual, norm(step))
+    steps = floor / scales.normal_load + grain_of_mean(setting, accuracy)
     # once, not twice: the maps compared are many times finer than the search's
     error = stated_error(0.5 * doubt, rest, steps)
     # The second map, from where the first says the orbit is, must be much nearer to closing, or within its own error.
     settles = norm(residual) <= 0.5 * norm(fresh) + 10.0 * accuracy
     if settles and (error <= goal.tolerance or (now.finest <= floor and checks > 3)):
         last = PacedMap(image, residual, pace, accuracy)
-        image, error, took = _corrected(case, search, last, floor, error)
+        image, error, took = _corrected(setting, search, last, floor, error)
         maps += took
         if error <= goal.tolerance or (now.finest <= floor and checks > 3):
             return Progress(image, accuracy, accuracy, maps, now.stalls, checks, now.newtons, error)
     # The state runs away from where the two maps say it is: the inverse is at fault, and is taken anew.
     if not settles or checks > 3:
-        image, took = newton_step(case, search, accuracy, accuracy)
+        image, took = newton_step(setting, search, accuracy, accuracy)
         maps += took
     # Maps of stiff memory may jump about by more than the tolerance however fine they are.
     ended = np.inf if checks > MOST_CHECKS else -1.0
     return Progress(image, accuracy, accuracy, maps, now.stalls, checks, now.newtons, ended)
 
 
-check = by_law(_check_without_memory, _check_with_memory, None, _check_with_memory)
-recover = by_law(_recover_without_memory, _recover_with_memory, None, _recover_with_memory)
+@inner
+def _is_checked(setting: Setting, search: Iterate, goal: Goal, now: Progress, floor: float) -> Progress:
+    """Try to end the search."""
+    if setting.maps.remembers:
+        return _check_with_memory(setting, search, goal, now, floor)
+    return _check_without_memory(setting, search, goal, now, floor)
 
 
-def _first_accuracy_without_memory(law: Any, body: Body, tolerance: float) -> Any:
-    return 0.5 * tolerance * body.normal_load, 10.0
+@inner
+def _recovered(setting: Setting, search: Iterate, now: Progress, length: float, floor: float) -> Progress:
+    """Go on where quasi-Newton steps have stalled."""
+    if setting.maps.remembers:
+        return _recover_with_memory(setting, search, now, length, floor)
+    return _recover_without_memory(setting, search, now, length, floor)
 
 
-def _first_accuracy_with_memory(law: Any, body: Body, tolerance: float) -> Any:
-    return min(LOOSE * tolerance * body.normal_load, coarsest_of(law, body)), 3.0
+@inner
+def first_accuracy_without_memory(asked: float) -> float:
+    """Of maps, for an error of the force of friction that is asked for."""
+    return 0.5 * asked
 
 
-first_accuracy = by_law(
-    _first_accuracy_without_memory, _first_accuracy_with_memory, None, _first_accuracy_with_memory
-)
-"""The accuracy of the maps that find an orbit, and how near [tolerances] it must be for its error to be asked."""
+@inner
+def _first_accuracy(setting: Setting, tolerance: float) -> Any:
+    """The accuracy of the maps that find an orbit, and how near [tolerances] it must be for its error to be asked."""
+    asked = tolerance * setting.maps.per_drive.normal_load
+    if setting.maps.remembers:
+        return min(LOOSE * asked, setting.maps.coarsest), 3.0
+    return first_accuracy_without_memory(asked), 10.0
 
 
-def _work_on_the_line(goal: Goal, like: float) -> int:
-    return UTMOST_WORK if goal.contracts else MUCH_WORK
-
-
-def _work_in_the_plane(goal: Goal, like: complex) -> int:
-    return LITTLE_WORK if goal.contracts else MUCH_WORK
-
-
-_work_of = by_dimension(_work_on_the_line, _work_in_the_plane)
-"""_work_of(goal, like): how many steps a search may take."""
+@inner
+def _most_work(setting: Setting, goal: Goal) -> int:
+    """How many steps a search may take."""
+    if not goal.contracts:
+        return MUCH_WORK
+    return LITTLE_WORK if setting.maps.planar else UTMOST_WORK
 
 
 # --- the search -----------------------------------------------------------------------------------------------------
 
 
 @inner
-def _carried_by_the_belt(case: Case, search: Iterate, now: Progress) -> Progress:
+def _carried_by_the_belt(setting: Setting, search: Iterate, now: Progress) -> Progress:
     """The mass rests on the belt all the time: go on by as many periods at once as it surely does."""
-    y, _u = unpack(case.body, search.z, case.like)
-    way = belt_advance(case.body, case.belt_speed)
-    # The belt carries the mass until the spring overcomes friction: all whole periods before that are alike.
-    many = rest_of(case.law, case.body, case.belt_speed, y + way)
+    many = spans_at_rest(setting, search.z)
     for i in range(search.z.size):
         search.z[i] = search.z[i] + many * search.residual[i]
-    image = image_of(case, search.z, search.residual, now.accuracy)
+    image = period_map(setting, search.z, search.residual, now.accuracy)
     return Progress(image, now.accuracy, now.finest, now.maps + 1, now.stalls, now.checks, now.newtons, -1.0)
 
 
 @inner
-def fixed_point(case: Case, z: Any, inverse: Any, matrix: Any, goal: Goal, expected: float) -> FixedPoint:
+def fixed_point(
+    setting: Setting, z: Any, inverse: Any, matrix: Any, goal: Goal, expected: float
+) -> FixedPoint:
     """Find the fixed point from the guess z with the guess of the inverse of (monodromy - identity).
 
     matrix: becomes the monodromy of an orbit of a law with memory.
 
     expected: the norm of the first residual; the maps are a little more accurate than the next one.
     """
-    n, body, period = z.size, case.body, span(case.body)
+    n, scales = z.size, scales_of(setting)
     search = Iterate(z, inverse, matrix, np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n))
-    floor = rounding_of(z, case.belt_speed)
-    finest, near = first_accuracy(case.law, body, goal.tolerance)
+    floor = rounding_of(z, setting.belt_speed)
+    finest, near = _first_accuracy(setting, goal.tolerance)
     finest = max(finest, floor)
-    accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * body.normal_load))
-    now = Progress(image_of(case, z, search.residual, accuracy), accuracy, finest, 1, 0, 0, 0, -1.0)
+    accuracy = min(max(finest, 1e-3 * expected), max(finest, 1e-4 * scales.normal_load))
+    now = Progress(period_map(setting, z, search.residual, accuracy), accuracy, finest, 1, 0, 0, 0, -1.0)
     first = norm(search.residual)
     while now.maps < MOST_MAPS and now.error < 0.0:
         length = norm(search.residual)
@@ -469,24 +465,24 @@ def fixed_point(case: Case, z: Any, inverse: Any, matrix: Any, goal: Goal, expec
         if now.image.steps < 0 or not length < 1e300:
             break
         # what repels, or is not there, is not to be found: other starts, or other maps, will tell
-        if now.maps * now.image.steps > _work_of(goal, case.like):
+        if now.maps * now.image.steps > _most_work(setting, goal):
             break
         # A period that is all stick says nothing of the orbit: its map is a shift by the way of the belt.
-        if now.image.stuck >= period * (1.0 - 1e-9):
-            if case.belt_speed == 0.0:  # at rest on a belt at rest
-                error = floor / body.normal_load + ROUNDING
+        if now.image.stuck >= scales.period * (1.0 - 1e-9):
+            if setting.belt_speed == 0.0:  # at rest on a belt at rest
+                error = floor / scales.normal_load + ROUNDING
                 return FixedPoint(now.image.friction_impulse, error, now.maps, now.image.stuck, 0.0, first)
-            now = _carried_by_the_belt(case, search, now)
+            now = _carried_by_the_belt(setting, search, now)
             continue
         # The error is asked for where maps are as fine as they get and the bound by the distance of states is near.
         multiply(inverse, search.residual, search.step)
-        bound = mean_error(body, search.residual, norm(search.step))
+        bound = mean_error(scales, search.residual, norm(search.step))
         if now.accuracy <= now.finest and bound <= near * goal.tolerance:
-            now = check(case, search, goal, now, floor)
+            now = _is_checked(setting, search, goal, now, floor)
             continue
-        now = quasi_newton_step(case, search, now)
+        now = quasi_newton_step(setting, search, now)
         if now.stalls > 1:
-            now = recover(case, search, now, length, floor)
+            now = _recovered(setting, search, now, length, floor)
     ended = 0.0 <= now.error < 1e300
     error, maps = (now.error, now.maps) if ended else (1e300, -now.maps)
     return FixedPoint(now.image.friction_impulse, error, maps, now.image.stuck, now.image.closest, first)

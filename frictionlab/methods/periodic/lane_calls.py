@@ -43,7 +43,7 @@ class LaneCalls(NamedTuple):
 
     def record(self, belt_speeds: Floats, states: Floats) -> tuple[Track, NDArray[np.int64]]:
         """The track of orbits and the panels before which each ends [n]; without panels where lanes leave one."""
-        accuracy = interpreted(recorded_accuracy)(self.body, self.goal)
+        accuracy = interpreted(recorded_accuracy)(self.body.normal_load, self.goal)
         found: tuple[Track, NDArray[np.int64]]
         found = self._timed(record_in_lanes, belt_speeds, states, accuracy)[0]
         return found

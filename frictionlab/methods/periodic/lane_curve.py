@@ -15,17 +15,17 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.lane_arrays import room_for
 from frictionlab.dynamics.motion import mean_friction, span
 from frictionlab.methods.periodic.closed_orbits import COLUMNS, ClosedOrbits, write_orbit
-from frictionlab.methods.periodic.continuation import first_guess
+from frictionlab.methods.periodic.first_guess import first_guess, free_inverse
 from frictionlab.methods.periodic.fixed_point import (
     Goal,
     broyden,
-    first_accuracy,
+    first_accuracy_without_memory,
     mean_error,
     rounding_of,
     stated_error,
 )
 from frictionlab.methods.periodic.lane_map import LaneRows, lane_map, rows_for
-from frictionlab.methods.periodic.monodromy import free_inverse
+from frictionlab.methods.periodic.setting import scales_on
 from frictionlab.numerics.linalg import copy, multiply, norm
 from frictionlab.scene.body import Body
 
@@ -169,7 +169,9 @@ def _judged(body: Body, goal: Goal, curve: LaneCurve, group: Group, k: int, now:
     multiply(inverse, fresh, step)
     # no finer map follows: what this one has wrong counts whole
     floor = rounding_of(curve.states[i], rows.belt_speed[k])
-    error = stated_error(0.0, mean_error(body, fresh, norm(step)), (floor + now.accuracy) / body.normal_load)
+    error = stated_error(
+        0.0, mean_error(scales_on(body), fresh, norm(step)), (floor + now.accuracy) / body.normal_load
+    )
     closes = error <= goal.tolerance and now.accuracy <= now.enough
     if closes:
         mean = mean_friction(complex(rows.impulse[0, k], rows.impulse[1, k]), span(body))
@@ -221,7 +223,7 @@ def _close_group(law: Any, body: Body, goal: Goal, curve: LaneCurve, group: Grou
         _guess(law, body, curve, i, curve.states[i])
         group.active[k], expected = True, max(expected, _expected(curve, i))
         floor = max(floor, rounding_of(curve.states[i], curve.belt_speeds[i]))
-    finest, _near = first_accuracy(law, body, goal.tolerance)
+    finest = first_accuracy_without_memory(goal.tolerance * body.normal_load)
     # points beside known ones begin with maps as fine as the residual that is expected of their guess
     last = max(finest, floor) / FINER_IN_LANES
     accuracy, before = max(last, 1e-4 * min(expected, body.normal_load)), 0.0

@@ -19,7 +19,8 @@ from frictionlab.dynamics.motion import belt_path, reference_velocity, span, swi
 from frictionlab.dynamics.radau_panel import eliminate
 from frictionlab.methods.periodic.case import Case, case_of
 from frictionlab.methods.periodic.closed_orbits import COLUMNS, MAPS, write_orbit
-from frictionlab.methods.periodic.continuation import Curve, Wanted, first_guess
+from frictionlab.methods.periodic.continuation import Curve, Wanted
+from frictionlab.methods.periodic.first_guess import first_guess
 from frictionlab.methods.periodic.fixed_point import Goal, stated_error
 from frictionlab.methods.periodic.maps.polar import (
     FIRST_ACCURACY,

@@ -13,7 +13,6 @@ from typing import Any
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.stack import count_of
-from frictionlab.dynamics.motion import span
 from frictionlab.methods.periodic.case import Case
 from frictionlab.methods.periodic.maps.memory import coarsest, memory_map
 from frictionlab.methods.periodic.maps.memory_state import (
@@ -30,7 +29,7 @@ from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, worksp
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.maps.stick import periods_at_rest
 from frictionlab.numerics.vectors import dimension
-from frictionlab.orbit.recorder import Track, track_of
+from frictionlab.orbit.recorder import track_of
 from frictionlab.scene.body import Body
 
 
@@ -82,30 +81,32 @@ coarsest_of = coarsest
 """(law, body): the coarsest accuracy a map is made with, whatever is asked."""
 
 
-def _no_grain(law: Any, body: Body, accuracy: float, like: Any) -> float:
-    return 0.0
+def _no_grain(law: Any, body: Body, like: Any) -> Any:
+    return 0.0, 0.0
 
 
-def _grain_of_memory(law: Any, body: Body, accuracy: float, like: Any) -> float:
+def _grain_of_memory(law: Any, body: Body, like: Any) -> Any:
     """A yield within a step, or the sum of all steps' errors."""
     work, most = workspace(law, like, contact_kind(body)), 0.0
     measure_scales(law, body, work, like)
     if law.turning > 0.0:
         for k in range(count_of(law)):
             most = max(most, work.unit[k])
-    return accuracy / body.normal_load * (2.0 * most + 10.0 / span(body))
+    return 2.0 * most, 10.0
 
 
 grain_of = by_law(_no_grain, _no_grain, None, _grain_of_memory)
-"""What the steps of a map leave in the mean even if two maps agree."""
+"""grain_of(law, body, like): what the steps of a map leave in the mean even if two maps agree, per accuracy over the
+normal load: so much always, and so much over the span."""
 
 
 # --- the map --------------------------------------------------------------------------------------------------------
 
 
-def _without_memory(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
+def _image_without_memory(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
+    """Its steps are not kept."""
     y, u = unpack(case.body, state, case.like)
-    image = sliding_map(case, y, u, accuracy, track)
+    image = sliding_map(case, y, u, how.accuracy, how.track)
     pack(case.body, residual, image.y - y, image.u - u)
     return image
 
@@ -138,30 +139,17 @@ def _image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mapp
     return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps)
 
 
-def _paced_without_memory(case: Case, state: Any, residual: Any, how: Stepping) -> Mapped:
-    """Steps of sliding laws are not kept."""
-    return _without_memory(case, state, residual, how.accuracy, how.track)
+paced_image = by_law(_image_without_memory, _image_with_memory, _image_by_path, _image_with_memory)
+"""paced_image(case, state, residual, how): one span from a state, noted on a track with room, its steps kept or
+repeated; leaves image - state in residual.
 
-
-paced_image = by_law(_paced_without_memory, _image_with_memory, _image_by_path, _image_with_memory)
-"""paced_image(case, state, residual, how): ``image_of`` for laws with memory, its steps kept or repeated.
-
-steps is -1 where the events of this state are not those of the other one."""
-
-
-def _with_memory(case: Case, state: Any, residual: Any, accuracy: float, track: Track) -> Mapped:
-    return paced_image(case, state, residual, noting(accuracy, track))
-
-
-period_map = by_law(_without_memory, _with_memory, None, _with_memory)
-"""period_map(case, state, residual, accuracy, track): one span from a state, noted on a track with room; leaves
-image - state in residual."""
+steps is -1 where it gave up, or where the events of this state are not those of the steps repeated."""
 
 
 @inner
 def image_of(case: Case, state: Any, residual: Any, accuracy: float) -> Mapped:
     """The image of a state after one span of the body; leaves image - state in residual."""
-    return period_map(case, state, residual, accuracy, track_of(0))
+    return paced_image(case, state, residual, noting(accuracy, track_of(0)))
 
 
 def _rest_without_memory(law: Any, body: Body, belt_speed: float, y: Any) -> float:

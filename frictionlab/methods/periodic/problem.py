@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from frictionlab.compile.call import KernelCall
+from frictionlab.compile.call import Held, KernelCall
 from frictionlab.compile.interpret import interpreted
 from frictionlab.compile.law_lanes import takes_lanes
 from frictionlab.dynamics.motion import swing_of
@@ -38,6 +38,7 @@ from frictionlab.methods.periodic.lane_calls import FEWEST_IN_LANES, LaneCalls
 from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT
 from frictionlab.methods.periodic.near_rest import answer_near_rest
 from frictionlab.methods.periodic.period_map import size_of, unpack
+from frictionlab.methods.periodic.setting import maps_of
 from frictionlab.methods.periodic.steady_sliding import memory_of_sliding, state_of_sliding
 from frictionlab.orbit.panels import WEIGHTS
 from frictionlab.orbit.record import Orbits
@@ -115,6 +116,7 @@ class PeriodicProblem:
         # after how many periods of the drive everything repeats
         self.common = float(scene.periods)
         self.body = self.body._replace(periods=self.common)
+        self.maps = Held(maps_of, law, self.body)
         constant = scene.is_harmonic and not isinstance(self.like, complex) and slides_saturated(law)
         self.goal = Goal(max(tolerance, FINEST), is_convergent(scene, law), check_attraction, constant)
         self.size = interpreted(size_of)(law, self.like)  # of a state
@@ -178,10 +180,17 @@ class PeriodicProblem:
     def _called(
         self, scenes: Sequence[Scene], states: Floats, goal: Goal, wanted: Wanted, periods: float = 1.0
     ) -> tuple[Curve, float]:
-        belt_speeds = belt_speeds_of(scenes)
-        body = self.body._replace(periods=periods * self.common)
-        call = KernelCall(self.kernel, self.law)
-        return call.timed(body, belt_speeds, states, goal, wanted)
+        return self.called(belt_speeds_of(scenes), states, goal, wanted, periods)
+
+    def called(
+        self, belt_speeds: Floats, states: Floats, goal: Goal, wanted: Wanted, periods: float = 1.0
+    ) -> tuple[Curve, float]:
+        """What is wanted of the orbits at these belt speeds, and kernel time [s]."""
+        span = periods * self.common
+        if self.kernel is answer_curve:
+            return KernelCall(answer_curve).timed(self.maps, span, belt_speeds, states, goal, wanted)
+        body = self.body._replace(periods=span)
+        return KernelCall(self.kernel, self.law).timed(body, belt_speeds, states, goal, wanted)
 
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
         """The closed orbits from these states, one for each scene; without panels where there is no state."""
@@ -220,7 +229,7 @@ class PeriodicProblem:
     def settle(self, start: Initial) -> tuple[Floats, int]:
         """The state at which the mass stays put on a belt at rest, and in how many periods; negative for never."""
         accuracy = 1e-13 * self.mass.normal_load
-        return KernelCall(settle, self.law)(self.body, *self._at(start), accuracy)
+        return KernelCall(settle)(self.maps, self.common, *self._at(start), accuracy)
 
     def transient(
         self, belt_speed: float, start: Initial | None, most: int, known: KnownOrbit | None = None
@@ -233,9 +242,9 @@ class PeriodicProblem:
 
     def state_at(self, belt_speed: float, start: Initial | None) -> Floats:
         """The state of a start."""
-        at = self._free_start(belt_speed) if start is None else (*self._at(start), 0.0 * self.like)
+        at = self._free_start(belt_speed) if start is None else (*self._at(start), 0j)
         state = np.empty(self.size)
-        KernelCall(write_start, self.law)(self.body, at, state)
+        KernelCall(write_start)(self.maps, tuple(map(complex, at)), state)
         return state
 
     def carried(
@@ -264,9 +273,8 @@ class PeriodicProblem:
 
         By fine maps: as close as differences of them need.
         """
-        body = self.body._replace(periods=self.common)
-        call = KernelCall(self.kernel, self.law)
-        return np.asarray(call(body, belt_speeds, states.copy(), self.goal, MAPPED).states)
+        curve, _ = self.called(belt_speeds, states.copy(), self.goal, MAPPED)
+        return np.asarray(curve.states)
 
     def repeated_once(self, scene: Scene, states: Floats) -> tuple[Floats, Floats]:
         """These states [n, size] after all that changes in time has repeated once, and the mean friction along x1
@@ -292,8 +300,14 @@ class PeriodicProblem:
         means, states = np.empty(most), np.empty((most + 1, self.size))
         states[0] = state
         how = Follow(relative * self.mass.normal_load, self.goal.constant)
-        arguments = self.body, belt_speed, how, known or unknown_orbit(self.size), Trail(means, states)
-        (period, count), seconds = KernelCall(iterate_until_periodic, self.law).timed(*arguments)
+        arguments = (
+            float(belt_speed),
+            self.common,
+            how,
+            known or unknown_orbit(self.size),
+            Trail(means, states),
+        )
+        (period, count), seconds = KernelCall(iterate_until_periodic).timed(self.maps, *arguments)
         return Transient(period, means[:count], states[1 : count + 1], states[count], seconds)
 
     def _free_start(self, belt_speed: float) -> tuple[complex, complex, complex]:
@@ -310,8 +324,7 @@ class PeriodicProblem:
         return x, v, z
 
     def _at(self, start: Initial) -> tuple[complex, complex]:
-        x, v = complex(start.x, start.x2), complex(start.velocity, start.velocity2)
-        return (x, v) if isinstance(self.like, complex) else (x.real, v.real)
+        return complex(start.x, start.x2), complex(start.velocity, start.velocity2)
 
 
 def largest_modulus(matrices: Floats) -> Floats:

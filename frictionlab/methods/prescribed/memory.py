@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from frictionlab.compile.call import KernelCall
+from frictionlab.compile.call import Held, KernelCall
 from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.memory import MemoryLaw
 from frictionlab.methods.base import Status
@@ -21,6 +21,7 @@ from frictionlab.methods.periodic.attraction import (
 from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, Curve, Wanted, answer_curve
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.period_map import size_of
+from frictionlab.methods.periodic.setting import maps_of
 from frictionlab.methods.prescribed.motion import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.orbit.record import Orbit
@@ -46,6 +47,7 @@ class MemoryPoint:
         self.law = law.under_load(self.motion.normal_load)
         self.like: complex = 0.0 if scene.load_along_belt_only else 0j
         self.body = driven(self.motion, self.like)
+        self.maps = Held(maps_of, self.law, self.body)
         self.slip = None if scene.is_harmonic else VaryingSlip.of(scene.signals(), self.motion.normal_load)
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind, self.seconds = "", MODEL, "estimated", 0.0
@@ -76,8 +78,8 @@ class MemoryPoint:
         return PrescribedMean(complex(closed.mean[0], closed.across[0]), closed.error[0])
 
     def _called(self, states: Floats, wanted: Wanted) -> Curve:
-        arguments: tuple[Any, ...] = self.body, np.array([self.belt_speed]), states, self.goal, wanted
-        curve, seconds = KernelCall(answer_curve, self.law).timed(*arguments)
+        arguments = self.body.periods, np.array([self.belt_speed]), states, self.goal, wanted
+        curve, seconds = KernelCall(answer_curve).timed(self.maps, *arguments)
         self.seconds += seconds
         return curve
 
@@ -86,19 +88,13 @@ class MemoryPoint:
         means = []
         swing = self._swing() + abs(self.belt_speed)
         for side in (0.0, 1.0, -1.0):
-            start = 0.0 * self.like, 0.0 * self.like, side * swing + 0.0 * self.like
-            KernelCall(write_start, self.law)(self.body, start, state)
+            KernelCall(write_start)(self.maps, (0j, 0j, complex(side * swing)), state)
             each, states = np.empty(PERIODS), np.empty((PERIODS + 1, len(state)))
             states[0] = state
             how = Follow(1e-6 * self.motion.normal_load, False)
-            arguments: tuple[Any, ...] = (
-                self.body,
-                self.belt_speed,
-                how,
-                unknown_orbit(len(state)),
-                Trail(each, states),
-            )
-            (_repeats, count), seconds = KernelCall(iterate_until_periodic, self.law).timed(*arguments)
+            orbit, trail = unknown_orbit(len(state)), Trail(each, states)
+            arguments = self.maps, self.belt_speed, self.body.periods, how, orbit, trail
+            (_repeats, count), seconds = KernelCall(iterate_until_periodic).timed(*arguments)
             self.seconds += seconds
             means.append(each[count - 1])
         return self._left_open(means, "the memory does not converge from different starts")

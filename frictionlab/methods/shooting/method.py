@@ -10,6 +10,7 @@ from frictionlab.methods.base import Answers, FoundState, Method
 from frictionlab.methods.periodic.continuation import answer_curve
 from frictionlab.methods.periodic.lane_calls import LANE_KERNELS
 from frictionlab.methods.periodic.problem import along_the_belt, map_kind
+from frictionlab.methods.periodic.setting import maps_of
 from frictionlab.methods.prescribed.method import prescribed_kernels, solve_prescribed
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
@@ -135,7 +136,7 @@ class Shooting(Method):
         if solve is not solve_driven:
             return None
         in_lanes = [] if scene.load_along_belt_only or law.memory_kind != "none" else LANE_KERNELS
-        return [(kernel, law) for kernel in (answer_curve, *in_lanes)]
+        return [(answer_curve, None), *((kernel, law) for kernel in (maps_of, *in_lanes))]
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer a curve by continuation in belt speed."""

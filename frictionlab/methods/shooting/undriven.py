@@ -9,6 +9,7 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
+from frictionlab.methods.periodic.setting import maps_of
 from frictionlab.methods.shooting.undriven_follower import PeriodicMotion, Undriven
 from frictionlab.methods.shooting.undriven_path import TURN, NotFound, follow_undriven
 from frictionlab.scene.scene import Scene
@@ -52,4 +53,4 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
 
 def undriven_kernels(law: FrictionLaw) -> list[tuple[Any, FrictionLaw | None]] | None:
     """The kernels that solve undriven scenes; None where that is not known beforehand."""
-    return [(follow_undriven, law)] if law.memory_kind in ("none", "bristle") else None
+    return [(follow_undriven, None), (maps_of, law)] if law.memory_kind in ("none", "bristle") else None

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.call import KernelCall
+from frictionlab.compile.call import Held, KernelCall
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.periodic.case import case_of
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
-from frictionlab.methods.periodic.period_map import period_map, size_of, start_of
+from frictionlab.methods.periodic.period_map import size_of, start_of
+from frictionlab.methods.periodic.setting import Maps, Setting, maps_of, recorded_map
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, Mass, on_the_line
@@ -68,18 +68,20 @@ class Span(NamedTuple):
 
 
 @inner
-def follow_undriven(law: Any, body: Body, belt_speed: float, state: Any, accuracy: float, room: int) -> Span:
-    """The motion from a state over the span of the body, on a track with so much room at first."""
-    case, end, track = case_of(law, body, belt_speed), np.empty(state.size), track_of(room)
-    image = period_map(case, state, end, accuracy, track)
+def follow_undriven(
+    maps: Maps, belt_speed: float, turns: float, state: Any, accuracy: float, room: int
+) -> Span:
+    """The motion from a state over so many turns, on a track with so much room at first."""
+    setting, end, track = Setting(maps, belt_speed, turns), np.empty(state.size), track_of(room)
+    image = recorded_map(setting, state, end, accuracy, track)
     # how many panels there are is known once they are written: a full track may lack some
     while 0 < track.stick.size == track.filled[0]:
         track = track_of(4 * track.stick.size)
-        image = period_map(case, state, end, accuracy, track)
+        image = recorded_map(setting, state, end, accuracy, track)
     for row in range(state.size):
         end[row] = state[row] + end[row]
     rests = image.stuck, image.released
-    return Span(end, image.friction_impulse, *rests, image.closest, image.steps, track)
+    return Span(end, image.friction_impulse.real, *rests, image.closest, image.steps, track)
 
 
 class Return(NamedTuple):
@@ -117,8 +119,8 @@ class UndrivenPath:
         return on_the_line(self.mass)
 
     @cached_property
-    def _kernel(self) -> KernelCall:
-        return KernelCall(follow_undriven, self.law)
+    def _maps(self) -> Held:
+        return Held(maps_of, self.law, self._body)
 
     @cached_property
     def size(self) -> int:
@@ -169,10 +171,9 @@ class UndrivenPath:
 
     def follow(self, state: Floats, turns: float, accuracy: float = FOLLOWED, room: int = 0) -> Span:
         """So many turns, on a track with so much room. Raises NotFound."""
-        body = self._body._replace(periods=turns)
         span: Span
-        arguments = body, self.speed, state, accuracy * self.mass.normal_load, room
-        span, seconds = self._kernel.timed(*arguments)
+        arguments = self._maps, self.speed, float(turns), state, accuracy * self.mass.normal_load, room
+        span, seconds = KernelCall(follow_undriven).timed(*arguments)
         self.effort.seconds += seconds
         self.effort.work += span.steps
         if span.steps < 0 or not np.isfinite(span.end).all():

@@ -16,7 +16,7 @@ from frictionlab.compile.interpret import interpreted, interpreted_on_arrays
 from frictionlab.compile.law_lanes import friction_by_lane, takes_lanes
 from frictionlab.laws.base import SlidingLaw
 from frictionlab.methods.periodic.case import case_of
-from frictionlab.methods.periodic.continuation import CLOSED, answer_curve
+from frictionlab.methods.periodic.continuation import CLOSED
 from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT, answer_lanes
 from frictionlab.methods.periodic.lane_map import lane_map, rows_for
 from frictionlab.methods.periodic.lane_monodromy import differentiate_in_lanes
@@ -45,8 +45,7 @@ def problem_of(scene: fl.Scene, law: Any = LAW, tolerance: float = 1e-9) -> Peri
 
 def closed_one_by_one(problem: PeriodicProblem, tolerance: float, speeds: np.ndarray = SPEEDS) -> Any:
     goal = problem.goal._replace(tolerance=tolerance)
-    kernel = compiled(answer_curve, problem.law)
-    return kernel(problem.body, speeds, np.empty((0, 0)), goal, CLOSED)
+    return problem.called(speeds, np.empty((0, 0)), goal, CLOSED)[0]
 
 
 @njit

@@ -1,0 +1,385 @@
+"""A scene of a law as the search for closed orbits sees it: maps at addresses, and the numbers that judge them.
+
+The search knows states, which are vectors of numbers, and maps of them. It is compiled once, whatever the law, on the
+line and in the plane; the maps are compiled for each kind of memory and body, and called where they lie.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.addresses import (
+    NUMBER,
+    TRUTH,
+    VECTOR,
+    Addressed,
+    Interface,
+    addresses_of,
+    bytes_of,
+    call_at,
+    machine_type,
+    written_to,
+)
+from frictionlab.compile.decorators import inner
+from frictionlab.compile.dispatch import by_dimension, by_law
+from frictionlab.compile.interpret import interpreted
+from frictionlab.dynamics.motion import bare, belt_advance, span, swing_of
+from frictionlab.methods.periodic.case import case_of
+from frictionlab.methods.periodic.first_guess import first_guess, free_inverse
+from frictionlab.methods.periodic.maps.pace import Pace, Stepping, keeping, noting, pace_of, repeating
+from frictionlab.methods.periodic.period_map import (
+    coarsest_of,
+    grain_of,
+    paced_image,
+    rest_of,
+    size_of,
+    start_of,
+    unpack,
+)
+from frictionlab.methods.periodic.steady_sliding import ends_sliding, write_sliding
+from frictionlab.numerics.vectors import dimension
+from frictionlab.orbit.recorder import Track, track_of
+from frictionlab.scene.body import Body
+
+
+class SpanImage(NamedTuple):
+    """What a map met on its way: the integral of friction, in shares of the mean normal load, as x1 + i x2; the time
+    at rest, the slowest slip, when rest ended last (-1: it did not), and the steps (-1: it gave up)."""
+
+    friction_impulse: complex
+    stuck: float
+    closest: float
+    released: float
+    steps: int
+
+
+class Orders(NamedTuple):
+    """What maps of a law are good for.
+
+    finer: how much finer the two maps are that agree in the end. share: of the error before a Newton step to a map
+    finer by ``FINER``, what stands in where two means agree by chance. Of order eight both are fitted to 2,500 random
+    rows: of 399 others none was uncovered, and half of the errors stated were below 27 times the true; of order five
+    see tests/benchmarks/campaign.py bristles. shift: of a state for a central quotient, and accuracy of the maps
+    relative to it. kept_shift, kept_accuracy: the same over the steps of another motion, where both maps are in error
+    by nearly the same and one-sided quotients will do; relative to the size of the state.
+    """
+
+    finer: float
+    share: float
+    shift: float
+    kept_shift: float
+    kept_accuracy: float
+
+
+class Scales(NamedTuple):
+    """What bounds on a mean are made of: the span of a map, the damping along x1, the mean normal load."""
+
+    period: float
+    damping: float
+    normal_load: float
+
+
+class Maps(NamedTuple):
+    """A law on a body: where its functions and its numbers lie, and what a search asks about them."""
+
+    place: Any
+    follow: Any
+    rest: Any
+    start: Any
+    slide: Any
+    ends: Any
+    guess: Any
+    free: Any
+    friction: Any
+    size: int  # of a state
+    remembers: bool
+    planar: bool
+    per_drive: Scales  # over one period of the drive
+    swing: float  # speed of the friction-free motion
+    orders: Orders
+    coarsest: float  # accuracy that a map is made with, whatever is asked
+    grain: (
+        float  # what the steps of a map leave in the mean even if two maps agree, per accuracy: always this,
+    )
+    grain_per_time: float  # and this over the span
+
+
+class Setting(NamedTuple):
+    """The maps of a law on a body, the speed of the belt, and how many periods of the drive a map spans."""
+
+    maps: Maps
+    belt_speed: float
+    periods: float
+
+
+@inner
+def scales_on(body: Body) -> Scales:
+    """Over the span of the body."""
+    return Scales(span(body), body.damping_mean + body.damping_split, body.normal_load)
+
+
+# --- the functions at addresses -------------------------------------------------------------------------------------
+
+
+class LawOnBody(NamedTuple):
+    """What the maps of a scene are compiled for."""
+
+    law: Any
+    body: Body
+
+
+def _real_part(value: complex, like: float) -> float:
+    return value.real
+
+
+def _itself(value: complex, like: complex) -> complex:
+    return value
+
+
+_of_kind = by_dimension(_real_part, _itself)
+"""_of_kind(value, like): a vector as the kind of number that motions are told by."""
+
+
+@inner
+def _over(body: Body, periods: float) -> Body:
+    """The body, its map spanning so many periods."""
+    return Body(
+        body.damping_mean, body.damping_split, body.stiffness_mean, body.stiffness_split, body.normal_load,
+        body.frequency, body.load_sine, body.load_cosine, body.balanced_sine, body.balanced_cosine,
+        body.reference_sine, body.reference_cosine, periods, body.prescribed, body.varying,
+    )  # fmt: skip
+
+
+@inner
+def _follow(
+    on: LawOnBody, belt_speed: float, periods: float, state: Any, residual: Any, how: Stepping
+) -> SpanImage:
+    case = case_of(on.law, _over(on.body, periods), belt_speed)
+    image = paced_image(case, state, residual, how)
+    impulse = image.friction_impulse + 0j
+    return SpanImage(impulse, image.stuck, image.closest, image.released, image.steps)
+
+
+@inner
+def _rest(on: LawOnBody, belt_speed: float, periods: float, state: Any) -> float:
+    body = _over(on.body, periods)
+    case = case_of(on.law, body, belt_speed)
+    y, _u = unpack(body, state, case.like)
+    # the belt carries the mass until the spring overcomes friction: all whole spans before that are alike
+    return rest_of(on.law, body, belt_speed, y + belt_advance(body, belt_speed))
+
+
+@inner
+def _start(on: LawOnBody, state: Any, x: complex, v: complex, z: complex) -> float:
+    like = case_of(on.law, on.body, 0.0).like
+    start_of(on.law, on.body, state, _of_kind(x, like), _of_kind(v, like), _of_kind(z, like))
+    return 0.0
+
+
+@inner
+def _slide(on: LawOnBody, belt_speed: float, state: Any) -> float:
+    write_sliding(case_of(on.law, on.body, belt_speed), state)
+    return 0.0
+
+
+@inner
+def _ends(on: LawOnBody, belt_speed: float, periods: float, state: Any) -> bool:
+    return ends_sliding(case_of(on.law, _over(on.body, periods), belt_speed), state)
+
+
+@inner
+def _guess(on: LawOnBody, belt_speed: float, state: Any) -> float:
+    return first_guess(on.law, on.body, belt_speed, state)
+
+
+@inner
+def _free(on: LawOnBody, periods: float, rubbing: float, inverse: Any) -> float:
+    free_inverse(_over(on.body, periods), rubbing, inverse, case_of(on.law, on.body, 0.0).like)
+    return 0.0
+
+
+@inner
+def _friction(on: LawOnBody, speed: float) -> float:
+    return on.law.sliding_friction(speed)
+
+
+_ROW, _TABLE = machine_type(np.empty(0)), machine_type(np.empty((0, 0)))
+_IMAGE = machine_type(SpanImage(0j, 0.0, 0.0, 0.0, 0))
+_STEPPING = machine_type(Stepping(0.0, interpreted(track_of)(0), interpreted(pace_of)(0), False))
+_FOLLOW = Interface((NUMBER, NUMBER, _ROW, _ROW, _STEPPING), _IMAGE)
+_REST = Interface((NUMBER, NUMBER, _ROW), NUMBER)
+_START = Interface((_ROW, VECTOR, VECTOR, VECTOR), NUMBER)
+_SLIDE = Interface((NUMBER, _ROW), NUMBER)
+_ENDS = Interface((NUMBER, NUMBER, _ROW), TRUTH)
+_FREE = Interface((NUMBER, NUMBER, _TABLE), NUMBER)
+_FRICTION = Interface((NUMBER,), NUMBER)
+_addresses = addresses_of(
+    [
+        Addressed(_follow, _FOLLOW),
+        Addressed(_rest, _REST),
+        Addressed(_start, _START),
+        Addressed(_slide, _SLIDE),
+        Addressed(_ends, _ENDS),
+        Addressed(_guess, _SLIDE),
+        Addressed(_free, _FREE),
+        Addressed(_friction, _FRICTION),
+    ]
+)
+_follow_at, _rest_at, _start_at = call_at(_FOLLOW), call_at(_REST), call_at(_START)
+_slide_at, _ends_at, _free_at, _friction_at = (
+    call_at(_SLIDE),
+    call_at(_ENDS),
+    call_at(_FREE),
+    call_at(_FRICTION),
+)
+
+
+def _orders_without_memory(law: Any, like: Any) -> Orders:
+    return Orders(16.0, 0.035, 1e-5, 1e-6, 1e-8)
+
+
+def _orders_on_a_path(law: Any, like: Any) -> Orders:
+    """Bristles never stick: their maps bend less, and cost more."""
+    return Orders(16.0, 0.035, 1e-4, 1e-6, 1e-8)
+
+
+def _orders_with_memory(law: Any, like: Any) -> Orders:
+    """As many steps more as for ``FINER`` are the square root of two times as many; of order 5 there are many more
+    for finer maps, and where events are found is less exact."""
+    return Orders(5.7, 0.15, 1e-4, 3e-6, 3e-8)
+
+
+_orders = by_law(_orders_without_memory, _orders_with_memory, _orders_on_a_path, _orders_with_memory)
+
+
+def _forgets(law: Any) -> bool:
+    return False
+
+
+def _remembers(law: Any) -> bool:
+    return True
+
+
+_has_memory = by_law(_forgets, _remembers, None, _remembers)
+
+
+@inner
+def maps_of(law: Any, body: Body) -> Any:
+    """The law and the body where they lie, and their maps."""
+    on = LawOnBody(law, bare(body))
+    like = case_of(law, body, 0.0).like
+    room = np.empty(bytes_of(on), np.uint8)
+    at = _addresses(on)
+    grain, per_time = grain_of(law, on.body, like)
+    scales = scales_on(_over(body, 1.0))
+    return room, Maps(
+        written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6], at[7], size_of(law, like),
+        _has_memory(law), dimension(like) == 2, scales, swing_of(on.body), _orders(law, like),
+        coarsest_of(law, on.body), grain, per_time,
+    )  # fmt: skip
+
+
+# --- what a search asks ---------------------------------------------------------------------------------------------
+
+
+@inner
+def scales_of(setting: Setting) -> Scales:
+    """Over the span of its maps."""
+    period, damping, normal_load = setting.maps.per_drive
+    return Scales(setting.periods * period, damping, normal_load)
+
+
+@inner
+def paced_map(setting: Setting, state: Any, residual: Any, how: Stepping) -> SpanImage:
+    """One span from a state; leaves image - state in residual. Steps of laws without memory are not kept.
+
+    steps is -1 where it gave up, or where the events of this state are not those of the steps that it repeats.
+    """
+    maps = setting.maps
+    return _follow_at(maps.follow, maps.place, (setting.belt_speed, setting.periods, state, residual, how))
+
+
+@inner
+def period_map(setting: Setting, state: Any, residual: Any, accuracy: float) -> SpanImage:
+    """The image of a state after one span; leaves image - state in residual."""
+    return paced_map(setting, state, residual, noting(accuracy, track_of(0)))
+
+
+@inner
+def recorded_map(setting: Setting, state: Any, residual: Any, accuracy: float, track: Track) -> SpanImage:
+    """The same, noted on a track with room."""
+    return paced_map(setting, state, residual, noting(accuracy, track))
+
+
+@inner
+def kept_map(setting: Setting, state: Any, residual: Any, accuracy: float, pace: Pace) -> SpanImage:
+    """The same, its steps kept in a pace with room."""
+    return paced_map(setting, state, residual, keeping(accuracy, pace))
+
+
+@inner
+def repeated_map(setting: Setting, state: Any, residual: Any, accuracy: float, pace: Pace) -> SpanImage:
+    """The same by the steps of another state."""
+    return paced_map(setting, state, residual, repeating(accuracy, pace))
+
+
+@inner
+def spans_at_rest(setting: Setting, state: Any) -> float:
+    """How many whole spans, at least one, a mass that has rested for one is sure to be carried on without slip."""
+    maps = setting.maps
+    return _rest_at(maps.rest, maps.place, (setting.belt_speed, setting.periods, state))
+
+
+@inner
+def write_state(maps: Maps, state: Any, x: complex, v: complex, z: complex) -> None:
+    """The state of a mass at x moving at v at tau = 0; z: the deflection of its bristle, of another memory the
+    velocity of steady sliding that it remembers."""
+    _start_at(maps.start, maps.place, (state, x, v, z))
+
+
+@inner
+def write_sliding_state(setting: Setting, state: Any) -> None:
+    """The state at tau = 0 of a mass that slides as if slip never reversed, under friction at the belt's speed."""
+    _slide_at(setting.maps.slide, setting.maps.place, (setting.belt_speed, state))
+
+
+@inner
+def ends_in_sliding(setting: Setting, state: Any) -> bool:
+    """Whether a motion surely slides on in one direction, on a belt where slip need not reverse: it is written."""
+    maps = setting.maps
+    return _ends_at(maps.ends, maps.place, (setting.belt_speed, setting.periods, state))
+
+
+@inner
+def slip_keeps_its_side(setting: Setting) -> bool:
+    """Whether the belt is, to rounding, as fast as the vibration without friction or faster, and dashpots act."""
+    maps = setting.maps
+    return maps.per_drive.damping > 0.0 and abs(setting.belt_speed) >= (1.0 - 1e-14) * maps.swing
+
+
+@inner
+def guess_state(setting: Setting, state: Any, inverse: Any) -> None:
+    """Where a search begins: a state, and the inverse of (monodromy - identity) with friction as a dashpot."""
+    maps = setting.maps
+    guess_inverse(setting, _slide_at(maps.guess, maps.place, (setting.belt_speed, state)), inverse)
+
+
+@inner
+def guess_inverse(setting: Setting, rubbing: float, inverse: Any) -> None:
+    """The inverse of (monodromy - identity) with friction as a dashpot of this coefficient."""
+    _free_at(setting.maps.free, setting.maps.place, (setting.periods, rubbing, inverse))
+
+
+@inner
+def sliding_friction(maps: Maps, speed: float) -> float:
+    """The coefficient in steady sliding."""
+    return _friction_at(maps.friction, maps.place, (speed,))
+
+
+@inner
+def grain_of_mean(setting: Setting, accuracy: float) -> float:
+    """What the steps of a map leave in the mean even if two maps agree."""
+    maps, scales = setting.maps, scales_of(setting)
+    return accuracy / scales.normal_load * (maps.grain + maps.grain_per_time / scales.period)

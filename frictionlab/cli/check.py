@@ -62,23 +62,8 @@ def _cost_lines(planned: Sequence[Planned]) -> list[str]:
     kernel, cores = sum(entry.seconds for entry in planned), os.cpu_count() or 1
     return [
         f"about {_time(kernel)} of kernel time, {_time(kernel / cores)} on {cores} cores",
-        *_compile_lines(planned),
+        "not counted: kernels that this machine has not kept yet are compiled once, 5 to 15 s each",
     ]
-
-
-def _compile_lines(planned: Sequence[Planned]) -> list[str]:
-    """What compiling takes beside that, once per machine."""
-    missing = {name: seconds for entry in planned for name, seconds in (entry.kernels or {}).items()}
-    unknown = dict.fromkeys(f"{entry.law} by {entry.method}" for entry in planned if entry.kernels is None)
-    lines = []
-    if missing:
-        told = ", ".join(f"{name} {_time(seconds)}" for name, seconds in missing.items())
-        lines.append(f"compiling, once per machine: at most {_time(sum(missing.values()))} ({told})")
-    elif not unknown:
-        lines.append("compiling: none, all kernels are kept")
-    if unknown:
-        lines.append(f"not counted: compiling what is not kept for {', '.join(unknown)}, 2 to 20 s a kernel")
-    return lines
 
 
 def _time(seconds: float) -> str:

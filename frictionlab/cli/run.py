@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -182,7 +181,6 @@ def _run(job: Job, asked: RunOptions, meter: Meter) -> Run:
         print_message(line)
     try:
         meter.begins("starting")
-        meter.kernels_left = lambda: _kernels_left(job)
         with _force(asked) as force:
             meter.begins("solving", "points")
             result = api.run(
@@ -222,15 +220,6 @@ def _shown(job: Job, result: Run, asked: RunOptions, meter: Meter) -> Run:
     return result
 
 
-def _kernels_left(job: Job) -> int:
-    """How many kernels a study may still compile; 0 where that is not known."""
-    from frictionlab.runner.kernels import kernels_to_compile
-
-    with suppress(Exception):  # solving comes across it too, and says so
-        return len(kernels_to_compile(job.study.foreseen().curves(), job.study) or ())
-    return 0
-
-
 def _force(asked: RunOptions) -> AbstractContextManager[Workforce]:
     """Who solves the chunks."""
     from frictionlab.runner import workforce
@@ -249,7 +238,6 @@ def _run_part(job: Job, asked: RunOptions, part: tuple[int, int]) -> None:
 
     kept = kept_beside(job.out, asked.cache, asked.cache_size)
     with metered() as meter, _force(asked) as force:
-        meter.kernels_left = lambda: _kernels_left(job)
         done = run_share(job.study, part, kept, force, meter)
     print_result(
         f"{job.name}, part {part[0]} of {part[1]}: {done.computed} points solved and {done.found} found of "

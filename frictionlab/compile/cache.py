@@ -82,11 +82,7 @@ class Compiled(NamedTuple):
 
     def is_kept_at_all(self) -> bool:
         """Whether there is machine code for any arguments."""
-        return bool(self.entry.overloads) or bool(self.kept_for())
-
-    def kept_for(self) -> list[str]:
-        """The types of the arguments of each machine code that is kept of it."""
-        return list(self.entry._cache.kept_for())
+        return bool(self.entry.overloads) or self.entry._cache.has_any()
 
     def _signature(self, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
         return tuple(_typeof(argument) for argument in (*self.bound, *arguments))

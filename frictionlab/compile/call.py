@@ -150,17 +150,6 @@ class KernelCall:
         kept = entry.is_kept_at_all() if held else entry.is_kept(*arguments)
         return kept and all(each.is_kept() for each in held) and self._are_methods_kept(arguments)
 
-    def kept_for(self) -> list[str]:
-        """The types of the arguments of each machine code that is kept of it."""
-        law = (
-            None
-            if self.law is None
-            else by_itself(self.law)
-            if _choice.own_kernels
-            else without_addresses(self.law)
-        )
-        return [] if _config.DISABLE_JIT else compiled(self.kernel, law).kept_for()
-
     def by_python(self, *arguments: Any) -> Any:
         """What the kernel returns where Python runs it."""
         given = [each.for_python if isinstance(each, Held) else each for each in arguments]

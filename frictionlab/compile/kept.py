@@ -10,7 +10,6 @@ import contextlib
 import hashlib
 import os
 import pickle
-import pickletools
 import sys
 import tempfile
 import time
@@ -33,8 +32,6 @@ _types: Any = numba.core.types
 SUFFIX = ".kernel"
 CHECKSUM = 32
 """Length of the checksum [bytes]."""
-_HEAD = 1 << 16
-"""Bytes in which the types of the arguments are told, for which machine code was made."""
 ABANDONED = 3600.0
 """Age [s] from which a file that was never finished is taken for one of a process that was killed."""
 
@@ -97,14 +94,10 @@ class KeptEntry(_Cache):  # type: ignore[misc]
                 f"kernel cache: kernels cannot be kept in {path.parent} ({why}): every run compiles its own"
             )
 
-    def kept_for(self) -> Iterator[str]:
-        """The types of the arguments of each machine code that is kept of this entry, its file sound or not."""
+    def has_any(self) -> bool:
+        """Whether there is a file for some signature, sound or not."""
         folder = cache_folder()
-        for path in () if folder is None else folder.glob(f"{self._name}_*{SUFFIX}"):
-            with contextlib.suppress(OSError, ValueError), path.open("rb") as file:
-                file.seek(CHECKSUM)
-                texts = (text for _, text, _ in pickletools.genops(file.read(_HEAD)) if isinstance(text, str))
-                yield next(texts, "")
+        return folder is not None and any(folder.glob(f"{self._name}_*{SUFFIX}"))
 
     def _path(self, signature: Any, codegen: Any) -> Path | None:
         folder = cache_folder()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -74,15 +74,6 @@ class Auto(Method):
         """The cost of the chosen method."""
         method, _reason = self.choice(scene, law)
         return method.cost(scene, law, tolerance) if method is not None else 0.0
-
-    def kernels(
-        self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
-    ) -> list[tuple[Any, FrictionLaw | None]] | None:
-        """Those of the chosen method, where no smaller model may answer instead."""
-        method, _reason = self.choice(scenes[0], law)
-        if method is None or self.rungs(scenes, law, tolerance):
-            return None
-        return method.kernels(scenes, law, tolerance)
 
     def states(
         self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, starts: int

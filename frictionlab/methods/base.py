@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -137,15 +137,6 @@ class Method(Record, ABC):
     @abstractmethod
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Expected kernel time per point [s], once compiled; for planning only."""
-
-    def kernels(
-        self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
-    ) -> list[tuple[Any, FrictionLaw | None]] | None:
-        """The kernels that solve these scenes, each with the law it is compiled for; for planning only.
-
-        None where that is not known beforehand.
-        """
-        return None
 
 
 class ReducedModel(Method):

@@ -11,7 +11,6 @@ from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.results.shape_points import speeds_to_add
-from frictionlab.runner.kernels import kernels_to_compile
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import Study, StudyCurve
 
@@ -21,7 +20,6 @@ class Planned:
     """The points of one law and one method. seconds: expected kernel time on one core, once compiled.
 
     about: belt speeds are chosen as the run goes, so that points and seconds are not known better.
-    kernels: at most those that are compiled for it, name -> seconds, about; None where that is not known beforehand.
     shapeless: curves that lack points for a measure of their shape, which ``add_belt_speeds`` would give them.
     """
 
@@ -34,7 +32,6 @@ class Planned:
     models: dict[str, int]
     seconds: float
     about: bool
-    kernels: dict[str, float] | None
     shapeless: int
     add_belt_speeds: list[float]
 
@@ -77,7 +74,6 @@ def _planned(curves: Sequence[StudyCurve], study: Study) -> Planned:
         models=dict(models),
         seconds=seconds,
         about=about,
-        kernels=kernels_to_compile(curves, study),
         shapeless=shapeless,
         add_belt_speeds=add_belt_speeds,
     )

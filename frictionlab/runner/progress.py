@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Self, TextIO
 
 from frictionlab.compile.notice import compiled_here, kernel_at_work
-from frictionlab.runner.progress_line import RunStage, fitted, kernel_words, stage_words
+from frictionlab.runner.progress_line import RunStage, fitted, stage_words
 
 Progress = Callable[[int, int], None]
 """Called now and then with the number of points done and of all points."""
@@ -50,9 +50,7 @@ class Meter:
         self._start = time.monotonic()
         self._next = self._start + QUIET
         self._stage = RunStage("solving", "points", self._start)
-        self._compiled_before, self._kernels = len(compiled_here), 0
-        self.kernels_left: Callable[[], int] = lambda: 0
-        """How many kernels are still to be compiled, the one at work included; 0 where that is not known."""
+        self._compiled_before = len(compiled_here)
         self._shown = 0
         self._one_at_a_time, self._ended, self._thread = Lock(), Event(), Thread(target=self._go_on)
 
@@ -74,15 +72,10 @@ class Meter:
                 return
             self._next = now + (OFTEN if self._updating else NOW_AND_THEN)
             name = kernel_at_work() if waiting else ""
-            kernel = self._kernel_words(name) if name else ""
+            number = len(compiled_here) - self._compiled_before + 1
+            kernel = f"compiling kernel {number} ({name})" if name else ""
             facts = stage_words(stage, now - self._start, kernel)
             self._write([f"{self._whose}{facts[0]}", *facts[1:]], stage.share)
-
-    def _kernel_words(self, name: str) -> str:
-        done = len(compiled_here) - self._compiled_before
-        if not self._kernels:
-            self._kernels = done + self.kernels_left() or -1
-        return kernel_words(done + 1, name, self._kernels)
 
     def _write(self, facts: list[str], share: float | None) -> None:
         with suppress(OSError, ValueError):  # a stream that was closed is no error

@@ -61,12 +61,6 @@ def _speed(stage: RunStage) -> list[str]:
     return [rate if stage.each < 1.0 else f"{spoken(stage.each)} each"]
 
 
-def kernel_words(number: int, name: str, most: int) -> str:
-    """That a kernel is compiled, the so-manieth of this run, of so many at most where that is known."""
-    of = f" of at most {most}" if number <= most else ""
-    return f"compiling kernel {number}{of} ({name})"
-
-
 def spoken(seconds: float) -> str:
     """A time in words, to about a hundredth."""
     if seconds < 99.5:

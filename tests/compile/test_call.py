@@ -51,14 +51,6 @@ def test_what_is_called_once_is_run_by_python(without_kernels):
     assert suffixes(without_kernels) == set()
 
 
-def test_a_call_knows_for_which_arguments_its_machine_code_is_kept(without_kernels):
-    assert KernelCall(halve_slowly).kept_for() == []
-    with call.compiling_at_once():
-        KernelCall(halve_slowly)(np.array([1.0]), 1)
-
-    assert KernelCall(halve_slowly).kept_for() == ["array(float64, 1d, C); int64"]
-
-
 def test_what_has_taken_long_enough_in_all_calls_together_is_compiled(without_kernels, monkeypatch):
     monkeypatch.setattr(call, "WORTH", 0.15)
     for _ in range(50):

@@ -16,7 +16,7 @@ import pytest
 
 from frictionlab.compile.notice import is_not_kept, named_while_it_compiles
 from frictionlab.runner.progress import Meter
-from frictionlab.runner.progress_line import fitted, kernel_words, spoken
+from frictionlab.runner.progress_line import fitted, spoken
 
 fcntl, termios = pytest.importorskip("fcntl"), pytest.importorskip("termios")
 
@@ -66,7 +66,6 @@ def test_time_spent_compiling_is_named_and_not_held_against_the_points(
     told = io.StringIO()
     monkeypatch.setattr("frictionlab.runner.progress.compiled_here", [])
     meter = Meter(told)
-    meter.kernels_left = lambda: 3
     meter(0, 400)
     with (
         ThreadPoolExecutor(1) as elsewhere,
@@ -87,7 +86,7 @@ def test_time_spent_compiling_is_named_and_not_held_against_the_points(
 
     assert told.getvalue().splitlines() == [
         "solving: 100 of 400 points, 24 s so far",  # machine code that is kept is read
-        "compiling kernel 1 of at most 3 (a kernel), solving: 100 of 400 points, 30 s so far, once per machine",
+        "compiling kernel 1 (a kernel), solving: 100 of 400 points, 30 s so far, once per machine",
         "solving: 200 of 400 points, about 6 s left, 36 s so far, 33/s",
         "drawing: 0 of 3 figures, 42 s so far",
     ]
@@ -133,11 +132,6 @@ def test_the_line_goes_on_by_itself_never_wraps_and_is_gone_at_the_end(
     assert max(map(len, states)) < columns
     assert any(state.startswith("study 2 of 15: find") for state in states)
     assert states[-2:] == [" " * len(states[-2]), ""]
-
-
-def test_a_number_of_kernels_that_was_wrong_or_is_not_known_is_not_told() -> None:
-    assert kernel_words(2, "flow", 3) == "compiling kernel 2 of at most 3 (flow)"
-    assert kernel_words(4, "flow", 3) == kernel_words(4, "flow", -1) == "compiling kernel 4 (flow)"
 
 
 def test_what_matters_least_goes_first_where_there_is_no_room() -> None:

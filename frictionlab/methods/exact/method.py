@@ -19,7 +19,7 @@ from frictionlab.methods.exact.forcing import forcing_of, resonates
 from frictionlab.methods.exact.orbit import make_orbits
 from frictionlab.methods.exact.oscillator import RESONANT
 from frictionlab.methods.prescribed.bristle import along_one_line
-from frictionlab.methods.prescribed.method import prescribed_kernels, solve_prescribed
+from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.orbit.record import Orbits
 from frictionlab.quantities import Floats
@@ -107,14 +107,6 @@ class Exact(Method):
         if certify and importlib.util.find_spec("flint") is None:
             raise ValueError("needs python-flint: pip install 'frictionlab[certify]', or leave certify out")
         return certify
-
-    def kernels(
-        self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
-    ) -> list[tuple[Any, FrictionLaw | None]] | None:
-        """The curve of a driven mass and its orbits; of a prescribed slip the legs of a bristle."""
-        if scenes[0].degrees_of_freedom == 0:
-            return prescribed_kernels(scenes[0], law)
-        return [(curve.continue_in_speed, None), (make_orbits, None)]
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Anything but Coulomb friction, the same at rest, on a driven line or a prescribed slip."""

@@ -19,7 +19,6 @@ from frictionlab.orbit.recorder import Track
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body
 
-LANE_KERNELS = (answer_lanes, record_in_lanes, differentiate_in_lanes)
 FEWEST_IN_LANES = 4
 """Points of a curve; fewer are answered one by one."""
 

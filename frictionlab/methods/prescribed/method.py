@@ -15,9 +15,7 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import PROVED, TESTED, Answers, Status
-from frictionlab.methods.prescribed.bristle import BristlePoint, along_one_line, friction_of_each
-from frictionlab.methods.prescribed.deflection_path import follow_period
-from frictionlab.methods.prescribed.exact_legs import closed_legs
+from frictionlab.methods.prescribed.bristle import BristlePoint, along_one_line
 from frictionlab.methods.prescribed.memory import MemoryPoint
 from frictionlab.methods.prescribed.motion import PrescribedMean
 from frictionlab.methods.prescribed.quadrature import (
@@ -155,16 +153,6 @@ def _told_uniqueness(row: Point) -> str:
         return TESTED
     row.model = f"{row.model}; {AT_ONCE}"
     return PROVED
-
-
-def prescribed_kernels(scene: Scene, law: FrictionLaw) -> list[tuple[Any, FrictionLaw | None]] | None:
-    """The kernels that solve scenes like this one; None where that is not known beforehand."""
-    if law.memory_kind == "none":
-        return []
-    if law.memory_kind != "bristle":
-        return None
-    legs = along_one_line(scene, law) and "exact path" in law.structure()
-    return [(closed_legs if legs else follow_period, law), (friction_of_each, law)]
 
 
 def solve_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, FoundState, Method
-from frictionlab.methods.periodic.continuation import answer_curve
-from frictionlab.methods.periodic.lane_calls import LANE_KERNELS
 from frictionlab.methods.periodic.problem import along_the_belt, map_kind
-from frictionlab.methods.periodic.setting import maps_of
-from frictionlab.methods.prescribed.method import prescribed_kernels, solve_prescribed
+from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
 from frictionlab.methods.shooting.followed_states import follow_states
 from frictionlab.methods.shooting.motion import follow_motion
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
-from frictionlab.methods.shooting.undriven import solve_undriven, undriven_kernels
+from frictionlab.methods.shooting.undriven import solve_undriven
 from frictionlab.methods.shooting.undriven_follower import ACROSS
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
@@ -122,21 +119,6 @@ class Shooting(Method):
         planar = not scene.load_along_belt_only
         cost = MEMORY if scene.undriven and law.count() > 0 else COSTS[map_kind(law, planar)]
         return (cost.plane if planar else cost.line) * (cost.tolerance / tolerance) ** cost.power
-
-    def kernels(
-        self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
-    ) -> list[tuple[Any, FrictionLaw | None]] | None:
-        """Of a prescribed slip, of undriven masses with one deflection or none, and of driven ones."""
-        scene = scenes[0]
-        solve = next(solve for applies, solve in CASES if applies(scene, law))
-        if solve is solve_prescribed:
-            return prescribed_kernels(scene, law)
-        if solve is solve_undriven:
-            return undriven_kernels(law)
-        if solve is not solve_driven:
-            return None
-        in_lanes = [] if scene.load_along_belt_only or law.memory_kind != "none" else LANE_KERNELS
-        return [(answer_curve, None), *((kernel, law) for kernel in (maps_of, *in_lanes))]
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer a curve by continuation in belt speed."""

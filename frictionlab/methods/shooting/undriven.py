@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
-from frictionlab.methods.periodic.setting import maps_of
 from frictionlab.methods.shooting.undriven_follower import PeriodicMotion, Undriven
-from frictionlab.methods.shooting.undriven_path import TURN, NotFound, follow_undriven
+from frictionlab.methods.shooting.undriven_path import TURN, NotFound
 from frictionlab.scene.scene import Scene
 
 
@@ -49,8 +47,3 @@ def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) 
         seconds=seconds,
         orbit=lambda i: found[i][0].orbit(found[i][1]) if i in found else None,
     )
-
-
-def undriven_kernels(law: FrictionLaw) -> list[tuple[Any, FrictionLaw | None]] | None:
-    """The kernels that solve undriven scenes; None where that is not known beforehand."""
-    return [(follow_undriven, None), (maps_of, law)] if law.memory_kind in ("none", "bristle") else None

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from campaign import Campaign, Drawn, sound
+from campaign import Campaign, Drawn, covered, sound
 from random_scenes import draw_near_rest
+
+from drawers.outside import from_the_answer
 
 
 def draw(rng: np.random.Generator) -> Drawn:
@@ -13,4 +15,4 @@ def draw(rng: np.random.Generator) -> Drawn:
     return Drawn("plane", scene, {"kind": "coulomb", "mu": mu}, method="shooting")
 
 
-CAMPAIGN = Campaign(draw, sound, scenes=300)
+CAMPAIGN = Campaign(draw, sound, covered(from_the_answer), scenes=300)

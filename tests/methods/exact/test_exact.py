@@ -1,4 +1,4 @@
-"""The exact method against closed forms, high-precision references, brute force and its own error."""
+"""The exact method against closed forms, high-precision references, an unrelated integration and its own error."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from answered import with_columns
-from brute_force import Numbers, follow, steps_per_period
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from random_scenes import draw
 
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
@@ -22,7 +20,7 @@ from frictionlab.methods.exact.continuation import oscillator_at
 from frictionlab.methods.exact.legs import first_zero
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.exact.return_map import Fixed, impulse_error, passage
-from frictionlab.orbit.panels import WEIGHTS, interpolation_weights
+from frictionlab.orbit.panels import WEIGHTS
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
 from frictionlab.theory import (
     friction_free_velocity,
@@ -71,17 +69,12 @@ def reference(path):
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_every_reference_curve_is_met_to_1e_11_and_the_error_says_so(path):
+def test_every_reference_curve_is_met_to_1e_11_with_its_motion_and_energies(path):
     table, answers = reference(path)
     error = answers.columns["error"]
     assert answers.status == ["ok"] * len(table)
-    assert np.all(error <= 1e-11)
+    assert np.all((error > 0.0) & (error <= 1e-11))
     assert np.all(np.abs(answers.columns["mean_friction"] - table["mu_bar_exact"]) <= error + 1e-11)
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_motion_and_energies_of_every_reference_curve_are_met(path):
-    table, answers = reference(path)
     columns, speed = answers.columns, np.abs(table["xdot_max"]).max()
     energy = 1e-11 * table["E_input"].max()
     for name, expected, within in (
@@ -107,13 +100,6 @@ def test_points_without_stick_agree_with_forty_digits():
         error = answers.columns["error"][0]
         assert error <= 1e-12
         assert abs(answers.columns["mean_friction"][0] - row["mu_bar_bvp_40digits"]) <= min(error, 1e-13)
-
-
-def test_the_error_stays_below_every_tolerance_that_is_asked_for():
-    for path in FILES:
-        _, answers = reference(path)
-        assert np.all(answers.columns["error"] <= 1e-11)
-        assert np.all(answers.columns["error"] > 0.0)
 
 
 @pytest.mark.parametrize(
@@ -156,13 +142,6 @@ def test_a_slow_belt_under_friction_above_the_load_sees_one_minus_the_ratio():
     assert np.all(np.diff(gap) > 0.0)
 
 
-def test_a_belt_that_turns_round_turns_the_mean_round_exactly():
-    ahead = np.linspace(0.0, 60.0, 21)
-    speeds = np.concatenate((-ahead[:0:-1], ahead))
-    mean = solve([scene(v) for v in speeds]).columns["mean_friction"]
-    assert np.all(mean == -mean[::-1])
-
-
 def test_the_phase_of_the_drive_changes_nothing():
     speeds = np.linspace(1.0, 60.0, 20)
     plain = solve([scene(v) for v in speeds]).columns
@@ -178,7 +157,6 @@ def test_the_phase_of_the_drive_changes_nothing():
     ratio=st.floats(0.01, 3.0),
     speed=st.floats(-1.2, 1.2).filter(lambda value: abs(value) > 1e-3),
 )
-@settings(deadline=None, max_examples=60)
 def test_mean_position_balances_mean_friction_and_energies_close(frequency, damping, ratio, speed):
     one = driven(1.0, frequency, damping, ratio, 1.0)
     one = driven(1.0, frequency, damping, ratio, speed * friction_free_velocity(one))
@@ -194,18 +172,6 @@ def test_mean_position_balances_mean_friction_and_energies_close(frequency, damp
     closure = columns["energy_input"] - columns["energy_viscous"] - columns["energy_friction"]
     assert abs(closure) <= 1e-11 * (work + ratio * abs(one.belt_speed))
     assert columns["energy_contact"] >= -1e-12
-
-
-def test_the_orbit_is_one_closed_period_of_consecutive_pieces():
-    for speed in (0.0, 5.0, -45.0, 55.0):
-        orbit = solve(scene(speed, drive=Drive(unbalance=10.0, frequency=1.0, phase=30.0))).orbit(0)
-        assert orbit.tau[0, 0] == 0.0
-        assert orbit.tau[-1, -1] == pytest.approx(2.0 * math.pi)
-        np.testing.assert_array_equal(orbit.tau[1:, 0], orbit.tau[:-1, -1])
-        np.testing.assert_allclose(orbit.x[1:, 0], orbit.x[:-1, -1], atol=1e-12)
-        np.testing.assert_allclose(orbit.v[1:, 0], orbit.v[:-1, -1], atol=1e-12)
-        assert orbit.x[0, 0] == pytest.approx(orbit.x[-1, -1], abs=1e-11)
-        assert orbit.v[0, 0] == pytest.approx(orbit.v[-1, -1], abs=1e-11)
 
 
 def test_grazing_just_below_the_kink_is_not_missed():
@@ -235,7 +201,7 @@ coarse = st.integers(-1000, 1000).map(lambda hundredths: hundredths / 100.0)
 
 
 @given(g=coarse.map(abs), g1=coarse, g2=coarse, bound=st.floats(0.01, 100.0))
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=100)
 def test_a_step_never_passes_the_first_zero_and_stays_close_to_it(g, g1, g2, bound):
     if g == 0.0:
         g1 = abs(g1)
@@ -289,70 +255,6 @@ def test_rounding_scatters_the_mean_by_less_than_the_error(frequency, ratio, spe
     assert 0.0 < np.ptp(means) <= min(errors) <= 1e4 * np.ptp(means)
 
 
-def against_brute_force(rng, wanted):
-    """Draw scenes and compare; the number compared and the uncovered ones."""
-    compared, uncovered = 0, []
-    while compared < wanted:
-        one, law = draw(rng)
-        if one.frequency < 0.02:
-            continue  # thousands of free oscillations in a period: too long for brute force
-        answers = solve(one, 1e-8, law)
-        if answers.status[0] != "ok":
-            assert answers.status[0] == "not_unique" or "without bound" in answers.reason[0], (
-                one,
-                answers.reason,
-            )
-            continue
-        difference, doubt = brute_difference(one, law, answers)
-        if difference > answers.columns["error"][0] + doubt:
-            uncovered.append((one, law, difference, answers.columns["error"][0], doubt))
-        compared += 1
-    return uncovered
-
-
-def brute_difference(one, law, answers):
-    """Brute force from a start off the orbit where it settles soon, else for two periods from our own state."""
-    mass, rho = one.mass(), answers.columns["floquet"][0]
-    side = -1.0 if one.belt_speed < 0.0 else 1.0
-    numbers = Numbers(
-        one.damping_ratio, mass.frequency, abs(mass.force), law.mu * mass.normal_load, abs(one.belt_speed)
-    )
-    orbit = answers.orbit(0)
-    period = 2.0 * math.pi / mass.frequency
-    phase = math.atan2((side * mass.force).imag, (side * mass.force).real) % (2.0 * math.pi)
-    place = (-phase / mass.frequency) % period
-    x, v = (side * _at(orbit, part, place) for part in (orbit.x, orbit.v))
-    steps = steps_per_period(numbers, 400)
-    periods = int(math.log(1e-13) / math.log(rho)) + 3 if 0.0 < rho < 1.0 else 3
-    size = abs(x) + numbers.load + numbers.friction
-    if periods * steps < 3e5:
-        runs = [follow(numbers, (x + 0.01 * size, v), periods, steps * k) for k in (1, 2)]
-        left = runs[-1].closing / (1.0 - rho)
-        if left < 1e-11 * size:
-            return _compare(runs, side, one, law, answers, left)
-    runs = [follow(numbers, (x, v), 2, steps * k) for k in (1, 2)]
-    assert runs[-1].closing <= 1e-8 * size
-    return _compare(runs, side, one, law, answers, 0.0)
-
-
-def _at(orbit, values, place):
-    panel = min(np.searchsorted(orbit.tau[:, -1], place), len(orbit.tau) - 1)
-    start, end = orbit.tau[panel, 0], orbit.tau[panel, -1]
-    weights = interpolation_weights(np.array([(2.0 * place - start - end) / (end - start)]))
-    return float((weights[0] * values[panel].real).sum())
-
-
-def _compare(runs, side, one, law, answers, left):
-    """Our distance from the finer run; the doubt in it: of its step, of what is left of its start, of rounding."""
-    means = [-side * run.impulse * one.frequency / (2.0 * math.pi * one.normal_load) for run in runs]
-    doubt = 2.0 * abs(means[1] - means[0]) + 4.0 * left / one.normal_load + 1e-10 * law.mu
-    return abs(means[1] - answers.columns["mean_friction"][0]), doubt
-
-
-def test_random_scenes_agree_with_brute_force():
-    assert against_brute_force(np.random.default_rng(20261121), 40) == []
-
-
 def test_critical_and_overdamped_motion_is_continuous_in_the_damping():
     around = [
         solve(driven(5.0, 0.7, b, 1.0, 1.0)).columns["mean_friction"][0] for b in (1 - 1e-9, 1.0, 1 + 1e-9)
@@ -360,17 +262,6 @@ def test_critical_and_overdamped_motion_is_continuous_in_the_damping():
     assert around[1] == pytest.approx(around[0], abs=1e-9)
     assert around[1] == pytest.approx(around[2], abs=1e-9)
     assert solve(driven(500.0, 0.7, 50.0, 1.0, 1.0)).columns["error"][0] <= 1e-11
-
-
-def test_a_fast_belt_is_answered_by_the_closed_form():
-    answers = solve([scene(50.0), scene(60.0)])
-    assert answers.error_kind == ["guaranteed"] * 2
-    assert answers.model[1].startswith(
-        "closed form: slip never reverses (belt speed >= V_lin = 50); unique: "
-    )
-    assert list(answers.columns["mean_friction"]) == [0.4, 0.4]
-    assert answers.columns["velocity_amplitude"][1] == pytest.approx(50.0, rel=1e-12)
-    assert answers.columns["floquet"][1] == pytest.approx(math.exp(-0.2 * math.pi))
 
 
 def test_permanent_stick_is_not_unique_and_the_start_decides():
@@ -482,7 +373,6 @@ def test_slip_through_rest_jumps_in_direction_and_no_slip_at_all_is_not_unique()
 
 @given(across=st.floats(1e-6, 10.0), turn=st.floats(0.0, 360.0), ratio=st.floats(-3.0, 3.0))
 @example(across=1.0, turn=0.0, ratio=2.225073858507203e-309)
-@settings(deadline=None, max_examples=40)
 def test_an_elliptic_slip_agrees_with_a_fine_sum_and_keeps_its_energies(across, turn, ratio):
     answers = solve(slip(ratio, 1.0, across, turn))
     columns = {name: values[0] for name, values in answers.columns.items()}

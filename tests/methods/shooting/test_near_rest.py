@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import json
-import math
 
 import numpy as np
 import pytest
-from brute_force_plane import PlaneNumbers, mean_position
-from profiles import DEEP, deep
+from profiles import DEEP
 from random_scenes import draw_near_rest
 
 import frictionlab as fl
 from frictionlab.methods.periodic.problem import PeriodicProblem
-from frictionlab.orbit.record import Orbits
 from frictionlab.theory.rest import can_hold, resting_range
 
 HARD = fl.Scene(
@@ -35,7 +32,7 @@ def test_a_mass_that_friction_holds_for_most_of_a_period_is_answered():
 
     assert state.status == "ok"
     assert state.error <= 1e-8
-    # tests/brute_force_plane.py from the orbit's state at tau = 0, steps of half the time in which slip turns
+    # Runge-Kutta steps of half the time in which slip turns, from the orbit's state at tau = 0
     assert abs(state.mean_friction - 1.3414591586661) <= state.error + 2e-10
     assert "polar" in state.model
 
@@ -50,12 +47,6 @@ def test_on_an_ever_slower_belt_the_mean_tends_to_the_most_that_friction_holds()
     # the force beyond the limit that slip needs grows with the root of the belt's way in a period
     assert gaps[0] > gaps[1] > gaps[2] > 0.0
     assert gaps[1] / gaps[2] == pytest.approx(10.0, rel=0.1)
-
-
-def test_the_other_direction_of_the_belt_changes_signs_alone():
-    there, back = answered(HARD), answered(HARD.model_copy(update={"belt_speed": -HARD.belt_speed}))
-
-    assert abs(there.mean_friction + back.mean_friction) <= there.error + back.error
 
 
 def test_energies_of_an_orbit_next_to_rest_close():
@@ -83,18 +74,6 @@ def test_explicit_and_implicit_steps_find_the_same_orbit():
         assert abs(ends[0] - ends[1]) < 1e-6
 
 
-def test_orbits_found_in_two_ways_stand_in_the_order_of_their_scenes():
-    def orbits(panels):
-        number = np.repeat(np.arange(len(panels)), panels).astype(float)
-        nodes = np.tile(number[:, None], (1, 10))
-        return Orbits(nodes, nodes + 0j, nodes + 0j, nodes + 0j, number > 0.0, np.cumsum(panels))
-
-    joined = orbits([2, 0, 1, 0]).and_those_of(orbits([0, 3, 0, 1]))
-
-    assert joined.ends.tolist() == [2, 5, 6, 7]
-    assert joined.tau[:, 0].tolist() == [0, 0, 1, 1, 1, 2, 3]
-
-
 @pytest.mark.parametrize("seed", range(40 if DEEP else 1))
 def test_no_hard_scene_fails(seed):
     rng = np.random.default_rng(seed)
@@ -106,35 +85,3 @@ def test_no_hard_scene_fails(seed):
             failed.append((json.dumps(keys), mu, state.status, state.error, state.reason))
 
     assert failed == []
-
-
-@deep("minutes of short steps")
-def test_brute_force_finds_the_same_means():
-    rng, seen = np.random.default_rng(5), 0
-    while seen < 30:
-        keys, mu = draw_near_rest(rng)
-        scene = fl.Scene(**keys)
-        state = answered(scene, fl.Coulomb(mu=mu))
-        if state.stick_fraction < 0.05:
-            continue
-        at = state.orbit(1)
-        start = np.array([at.x1[0], at.x2[0], at.v1[0] - scene.belt_speed, at.v2[0]])
-        if math.hypot(start[2], start[3]) < 1e-12 * (1.0 + abs(at.v1[0])):
-            start[2:] = 0.0
-        found = mean_position(_numbers(scene, mu), start)
-        apart = abs(found.value / scene.normal_load - state.mean_friction)
-        assert apart <= state.error + 2.0 * found.error / scene.normal_load, keys
-        seen += 1
-
-
-def _numbers(scene, mu):
-    mass = scene.mass()
-    return PlaneNumbers(
-        (mass.damping, mass.transverse_damping),
-        (mass.stiffness, mass.transverse_stiffness),
-        (mass.force.real, mass.transverse_force.real),
-        (mass.force.imag, mass.transverse_force.imag),
-        mass.frequency,
-        mass.normal_load * mu,
-        scene.belt_speed,
-    )

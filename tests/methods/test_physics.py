@@ -20,12 +20,11 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.continuation import oscillator_at
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.exact.return_map import passage
-from frictionlab.methods.periodic.case import Case
-from frictionlab.methods.periodic.period_map import image_of
+from frictionlab.methods.periodic.continuation import DIFFERENTIATED
+from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.panels import WEIGHTS
 from frictionlab.orbit.sample import sample
-from frictionlab.scene.body import in_the_plane
 from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
 from frictionlab.theory import friction_free_velocity
 
@@ -158,47 +157,11 @@ def test_two_motions_on_the_line_never_move_apart_in_energy(scene, one, other, e
     assert apart <= np.hypot(*(before[1] - before[0])) + rounding
 
 
-@njit
-def planar_map(law, body, belt_speed, z, residual, accuracy):
-    image_of(Case(law, body, belt_speed, 0j), z, residual, accuracy)
+@given(scene=scenes_in_the_plane())
+def test_no_disturbance_of_a_steady_state_in_the_plane_grows_in_energy(scene):
+    curve, _ = PeriodicProblem(scene, LAW, 1e-8).close([scene], wanted=DIFFERENTIATED)
 
-
-def planar_image(scene, z, accuracy=1e-11):
-    """A planar state, in the norm of energy, one period later."""
-    residual = np.empty(4)
-    compiled(planar_map, LAW)(in_the_plane(scene.mass()), scene.belt_speed, z, residual, accuracy)
-    return z + residual
-
-
-planar_states = st.lists(st.floats(-10.0, 10.0), min_size=4, max_size=4).map(np.array)
-
-
-@given(scene=scenes_in_the_plane(), one=planar_states, other=planar_states)
-def test_two_motions_in_the_plane_never_move_apart_in_energy(scene, one, other):
-    after = planar_image(scene, one), planar_image(scene, other)
-
-    assert np.linalg.norm(after[1] - after[0]) <= np.linalg.norm(other - one) + 1e-8
-
-
-@given(scene=scenes_in_the_plane(), start=planar_states)
-def test_motion_across_the_belt_dies_out_without_a_load_across_it(scene, start):
-    scene, z = along_the_belt_only(scene), start
-    energies = [float(np.hypot(*z[2:]))]
-    for _ in range(8):
-        z = planar_image(scene, z)
-        energies.append(float(np.hypot(*z[2:])))
-
-    assert np.all(np.diff(energies) <= 1e-9)
-    assert energies[-1] < 0.9 * energies[0] + 1e-9
-
-
-@given(scene=scenes_in_the_plane(), start=planar_states)
-def test_what_starts_on_the_line_never_leaves_it(scene, start):
-    start[2:] = 0.0
-    image = planar_image(along_the_belt_only(scene), start)
-
-    assert image[2] == 0.0
-    assert image[3] == 0.0
+    assert np.linalg.norm(curve.matrices[0], 2) <= 1.0 + 1e-6
 
 
 # --- means --------------------------------------------------------------------------------------------------------

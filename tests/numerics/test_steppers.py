@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from strategies import sizes
 
 from frictionlab.compile.cache import compiled
+from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import inner
 from frictionlab.dynamics import smoothing
 from frictionlab.laws.coulomb import Coulomb
@@ -75,7 +76,7 @@ def marched(stepper: Any, push: Push, steps: int, **changes: Any) -> Any:
     """The march once to the end, from rest."""
     start = 0j if push.planar else 0.0
     settings = settings_of(push, steps, **changes)
-    return compiled(march_laps, LAW)(body_of(push), stepper, settings, MarchStart(start, start, NOTHING))
+    return KernelCall(march_laps, LAW)(body_of(push), stepper, settings, MarchStart(start, start, NOTHING))
 
 
 def end_of(stepper: Any, push: Push, steps: int, **changes: Any) -> np.ndarray:

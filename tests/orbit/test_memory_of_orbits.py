@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
@@ -52,7 +53,7 @@ def _obeys(orbit: pd.DataFrame, law: BristleLaw) -> tuple[float, float]:
     ("scene", "law"),
     [
         (LINE, DAHL),
-        (CHANGING, DAHL),
+        pytest.param(CHANGING, DAHL, marks=deep("a kernel slow to compile")),
         (LINE, fl.LuGre(mu_kinetic=0.4, mu_static=0.5, stiffness=4.0, damping=0.02, viscosity=0.001)),
         (LINE, fl.Dupont(mu_kinetic=0.4, mu_static=0.5, stiffness=4.0, damping=0.1)),
     ],
@@ -63,6 +64,7 @@ def test_the_deflection_is_that_of_the_law(scene: fl.Scene, law: BristleLaw) -> 
     assert rate < 1e-3
 
 
+@deep("a kernel slow to compile")
 def test_in_the_plane_the_deflection_of_jenkins_friction_never_leaves_its_circle() -> None:
     law = fl.Jenkins(mu=0.4, stiffness=4.0)
     orbit = fl.steady_state(PLANE, law).orbit(2000)

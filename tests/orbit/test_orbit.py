@@ -243,7 +243,7 @@ def test_an_orbit_under_a_changing_load_has_the_force_over_the_mean_load():
         drive=Drive(amplitude=1.0, frequency=2.0),
         normal_load_variation={"amplitude": 0.5, "frequency_ratio": "3/2"},
     )
-    at = sample(with_columns(Shooting(), [scene], LAW, 1e-9).orbit(0), scene, LAW, 16)
+    at = sample(with_columns(Exact(), [scene], LAW, 1e-9).orbit(0), scene, LAW, 16)
 
     np.testing.assert_allclose(at.tau[1:], 2.0 * math.pi * np.arange(1, 16) / 16, rtol=1e-12)
     np.testing.assert_allclose(at.friction, -MU * (1.0 + 0.5 * np.sin(3.0 * at.tau)), atol=1e-9)

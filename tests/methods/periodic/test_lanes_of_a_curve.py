@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from profiles import deep
 
 import frictionlab as fl
 from frictionlab.compile.cache import compiled
@@ -75,7 +76,9 @@ def rows_of(speeds: np.ndarray) -> Any:
     return rows
 
 
-@pytest.mark.parametrize("law", [LAW, FALLING], ids=["Coulomb", "Stribeck"])
+@pytest.mark.parametrize(
+    "law", [LAW, pytest.param(FALLING, marks=deep("more kernels to compile"))], ids=["Coulomb", "Stribeck"]
+)
 def test_a_lane_is_the_map_of_its_belt_speed(law):
     body, speeds = problem_of(scene_of()).body, np.linspace(5.0, 60.0, 8)
     one = compiled(mapped_one_by_one, law)(body, rows_of(speeds), 1e-12)

@@ -167,7 +167,7 @@ def elements(n: int) -> MaxwellSlip:
         pytest.param(LUGRE, False, id="lugre, line"),
         pytest.param(LUGRE, True, id="lugre, plane", marks=compiling),
         pytest.param(elements(3), False, id="three elements, line", marks=compiling),
-        pytest.param(elements(3), True, id="three elements, plane"),
+        pytest.param(elements(3), True, id="three elements, plane", marks=compiling),
         pytest.param(elements(1), False, id="one element, line", marks=compiling),
         pytest.param(elements(1), True, id="one element, plane", marks=compiling),
         pytest.param(elements(10), False, id="ten elements, line", marks=compiling),

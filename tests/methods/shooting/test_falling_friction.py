@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from answered import with_columns
 from hypothesis import given
-from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 from strategies import sizes
 
@@ -148,17 +147,6 @@ def test_in_the_plane_too():
     assert row["mean_friction"] == pytest.approx(means[1], abs=row["error"] + 1e-7)
 
 
-@pytest.mark.parametrize("transverse", [None, ACROSS])
-def test_a_curve_without_a_fall_is_that_of_coulomb_friction(transverse):
-    flat = Stribeck(mu_kinetic=0.4, mu_static=0.4)
-    for speed in (2.0, 30.0):
-        one = scene(speed, transverse)
-        _, stribeck = solve(one, flat)
-        _, coulomb = solve(one, Coulomb(mu=0.4))
-
-        assert stribeck["mean_friction"] == pytest.approx(coulomb["mean_friction"], abs=1e-12)
-
-
 def test_a_coefficient_at_rest_that_is_never_needed_changes_nothing():
     one = scene(20.0)
     _, row = solve(one, Coulomb(mu=0.4, mu_static=0.6))
@@ -166,24 +154,6 @@ def test_a_coefficient_at_rest_that_is_never_needed_changes_nothing():
 
     assert row["stick_fraction"] == 0.0
     assert row["mean_friction"] == pytest.approx(exact, abs=row["error"] + 1e-12)
-
-
-@given(speed=sizes(1.0, 60.0), drop=st.floats(0.02, 0.15), fast=sizes(2.0, 50.0))
-def test_the_mean_turns_round_with_the_belt_and_balances_the_spring(speed, drop, fast):
-    law = Stribeck(mu_kinetic=0.4, mu_static=0.4 + drop, stribeck_speed=fast)
-    there, row = solve(scene(speed), law)
-    back, other = solve(scene(-speed), law)
-
-    assert there.status == back.status == ["ok"]
-    assert other["mean_friction"] == pytest.approx(
-        -row["mean_friction"], abs=row["error"] + other["error"] + 1e-12
-    )
-    orbit = there.orbit(0)
-    from frictionlab.orbit.panels import WEIGHTS
-
-    half = 0.5 * (orbit.tau[:, -1] - orbit.tau[:, 0])
-    mean_position = (half[:, None] * WEIGHTS * orbit.x.real).sum() / (2.0 * half.sum())
-    assert mean_position == pytest.approx(10.0 * row["mean_friction"], abs=1e-6)
 
 
 @given(speed=sizes(0.5, 60.0), fall=sizes(0.01, 1.0))

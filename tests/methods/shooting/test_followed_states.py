@@ -9,12 +9,9 @@ import pytest
 from test_falling_friction import Line
 
 import frictionlab as fl
-from frictionlab.methods.periodic.attraction import ARRIVED
-from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting import attractors
 from frictionlab.methods.shooting.followed_states import FROM_ABOVE, follow_states
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.scene.scene import Initial
 
 STEEP = fl.Stribeck(mu_static=0.4, mu_kinetic=0.2, stribeck_exponent=1.0)
 SCENE = fl.Scene(
@@ -53,19 +50,6 @@ def test_states_that_the_first_starts_miss_are_found(scene, law, means, finds, m
     assert Shooting().solve([scene], law, 1e-8).status == ["ok"], f"{finds} are not what finds it"
 
 
-def test_mass_rests_along_the_way_of_the_belt():
-    limit = STICKS.normal_load * 0.4
-    places = [start.x for start in attractors.resting_starts(STICKS, limit, 8)]
-    held = 0.6194 * math.sin(math.radians(34.8)) - 2.0 * 0.0107 * 0.1105 - np.array(places)
-
-    way = min(0.1105 * 2.0 * math.pi / 0.3485, 2.0 * limit)
-    assert np.abs(held).max() <= limit
-    assert np.diff(sorted(places)) == pytest.approx(np.full(7, way / 8))
-    assert limit + held.min() == pytest.approx(
-        way / 16
-    )  # slip begins at the end of the way: friction pushes on
-
-
 def test_an_orbit_of_a_neighbour_is_carried_on(monkeypatch):
     """One start at each belt speed: the neighbour alone says that there is another state."""
     monkeypatch.setattr(attractors, "all_starts", lambda *_: ([None], []))
@@ -77,37 +61,6 @@ def test_an_orbit_of_a_neighbour_is_carried_on(monkeypatch):
     assert alone[1].mean[0] > 5.0 * alone[0].mean[0]
     assert curve.status[0] == "not_unique"
     assert curve.mean_high[0] > 5.0 * curve.mean_low[0]
-
-
-def test_neighbours_are_told_beside_the_starts():
-    falls = fl.Stribeck(mu_kinetic=0.2, mu_static=0.4)
-    scene = fl.Scene(
-        damping_ratio=0.1, normal_load=10.0, belt_speed=5.0, drive=fl.Drive(unbalance=10.0, frequency=1.0)
-    )
-    (alone,) = Shooting().solve([scene], falls, 1e-8).reason
-    one, other = Shooting().solve([scene, at(scene, 5.5)], falls, 1e-8).reason
-
-    assert one == alone.replace("apart", "apart and the states of neighbouring belt speeds")
-    assert "neighbouring" in other
-
-
-def test_a_motion_that_nears_a_known_orbit_is_left_early():
-    drawn = fl.Stribeck(mu_static=0.4, mu_kinetic=0.2, stribeck_speed=1.0)
-    scene = fl.Scene(
-        damping_ratio=0.1, normal_load=10.0, belt_speed=5.0, drive=fl.Drive(unbalance=10.0, frequency=1.0)
-    )
-    problem = PeriodicProblem(scene, drawn, 1e-8)
-    curve, _ = problem.close([scene])
-    orbit = attractors.closed_orbit(curve, curve.closed.mean)
-    assert orbit is not None
-    start = Initial(x=-30.0, velocity=20.0)
-    whole, short = problem.transient(5.0, start, 500), problem.transient(5.0, start, 500, orbit.known)
-
-    assert (whole.period, short.period) == (1, ARRIVED)
-    assert len(short.means) < 0.7 * len(whole.means)
-    gone = short.state - orbit.known.state, problem.state_at(5.0, start) - orbit.known.state
-    assert np.abs(gone[0]).max() < 0.1 * np.abs(gone[1]).max()
-    assert whole.means[-1] == pytest.approx(orbit.mean, abs=1e-6)
 
 
 @pytest.fixture(scope="module")

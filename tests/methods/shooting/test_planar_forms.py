@@ -14,7 +14,6 @@ from frictionlab.bench.peers.bristle_motion import BristleMotion
 from frictionlab.bench.peers.scipy_bristle import absolute_scales, one_period
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.orbit.panels import WEIGHTS
 
 BY_AXIS = fl.Dahl(mu=0.4, presliding_length=0.3, planar="per-axis")
 ALONG_SLIP = fl.Dahl(mu=0.4, presliding_length=400.0, planar="rotated")
@@ -64,25 +63,6 @@ def test_bristles_by_axis_repeat_in_the_coupled_equations_of_motion(belt_speed: 
     assert abs(mean - row["mean_friction"]) <= row["error"] + 1e-9
 
 
-def test_columns_of_both_axes_are_those_of_their_common_orbit() -> None:
-    here = scene(2.0)
-    row, orbit = solved(here, BY_AXIS)
-    weight = 0.5 * np.diff(orbit.tau[:, [0, -1]]) * WEIGHTS
-    mass, period = here.mass(), float(np.ptp(orbit.tau))
-    assert period == pytest.approx(2.0 * math.pi / mass.frequency)
-    rub, v = orbit.friction, orbit.v
-    assert -(weight * rub.real).sum() / period == pytest.approx(row["mean_friction"], abs=1e-7)
-    assert -(weight * rub.imag).sum() / period == pytest.approx(row["mean_friction_transverse"], abs=1e-7)
-    taken = mass.normal_load * (weight * (rub.real * v.real + rub.imag * v.imag)).sum()
-    assert taken == pytest.approx(row["energy_friction"], rel=1e-6)
-    assert row["energy_input"] == pytest.approx(row["energy_viscous"] + row["energy_friction"], rel=1e-6)
-    assert row["transverse_velocity_amplitude"] == pytest.approx(0.5 * np.ptp(v.imag), rel=1e-3)
-    harmonic = 2.0 / period * (weight * v.imag * np.exp(-1j * mass.frequency * orbit.tau)).sum()
-    assert abs(harmonic) == pytest.approx(row["transverse_velocity_harmonic"], rel=1e-6)
-    lead = math.degrees(np.angle(1j * harmonic / mass.force))
-    assert lead == pytest.approx(row["transverse_velocity_phase"], abs=1e-4)
-
-
 def test_a_mass_held_elastically_across_the_belt_has_a_mean_along_it() -> None:
     law = fl.Jenkins(mu=0.4, presliding_length=2.0, planar="per-axis")
     here = scene(2.0, across=0.5)
@@ -127,8 +107,7 @@ def test_corners_that_the_planar_map_does_not_locate_do_not_stop_an_answer() -> 
     law = fl.Jenkins(mu=0.66428, presliding_length=0.08527, planar="per-axis")
     row, _ = solved(here, law, 1e-6)
     assert row["error"] <= 1e-6
-    marched = fl.steady_state(here, law, method=fl.March(stepper="rk4"), tolerance=1e-3)
-    assert abs(marched.mean_friction - row["mean_friction"]) <= marched.error + row["error"]
+    assert abs(row["mean_friction"] - 0.056673515) <= 2.1e-6 + row["error"]  # march, 2.0e-6
 
 
 def test_a_slider_along_the_slip_holds_no_more_than_its_friction() -> None:

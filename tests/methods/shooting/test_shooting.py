@@ -18,8 +18,8 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.orbit.panels import DERIVATIVE, WEIGHTS
-from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse
+from frictionlab.orbit.panels import DERIVATIVE
+from frictionlab.scene.scene import Drive, Initial, Load, Scene, Transverse
 from frictionlab.theory.rest import resting_range, stays_at_rest
 
 PLANAR = sorted(REFERENCE.glob("planar_fig*.csv"))
@@ -73,19 +73,13 @@ def table_of(path):
 
 
 @of_file
-def test_every_planar_reference_curve_is_met_to_1e_8_and_the_error_says_so(path):
+def test_every_planar_reference_curve_is_met_with_its_motion_and_energies(path):
     table = table_of(path)
     answers = solve(of_reference(path, table["v_b"]), 1e-8)
-    error = answers.columns["error"]
+    columns, error = answers.columns, answers.columns["error"]
     assert answers.status == ["ok"] * len(table)
     assert np.all(error <= 1e-8)
-    assert np.all(np.abs(answers.columns["mean_friction"] - table["mu_bar_dop853"]) <= error + 1e-8)
-
-
-@of_file
-def test_motion_and_energies_of_every_planar_reference_curve_are_met(path):
-    table = table_of(path)
-    columns = solve(of_reference(path, table["v_b"]), 1e-8).columns
+    assert np.all(np.abs(columns["mean_friction"] - table["mu_bar_dop853"]) <= error + 1e-8)
     energy = 1e-9 * (table["E_visc"] + table["E_fric_on_mass"]).max()
     # The reference's multiplier is a difference quotient: it blurs where the slip nearly stops
     blur = np.where(table["min_vrel"] > 0.002, 1e-6, 1e-4)
@@ -106,7 +100,7 @@ def test_motion_and_energies_of_every_planar_reference_curve_are_met(path):
         assert np.all(gap <= within), f"{name}: {gap.max():.1e}"
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10])
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10])
 @of_file
 def test_the_error_is_true_and_within_every_tolerance(path, tolerance):
     table = table_of(path)[every(6)]
@@ -142,15 +136,6 @@ def test_below_the_accuracy_of_the_references_the_error_is_true_by_collocation(p
         np.testing.assert_allclose(columns["floquet"], multipliers, rtol=0, atol=1e-7)
 
 
-def test_the_planar_references_themselves_are_met_by_collocation():
-    for path in PLANAR:
-        table = table_of(path)
-        for row in table[np.isin(table["v_b"], comfortable(path)[::9])]:
-            found = collocation.solve(collocation.numbers_of(path, row["v_b"]))
-            assert -0.4 * found.along == pytest.approx(row["mu_bar_dop853"], abs=1e-10)
-            assert found.slowest <= row["min_vrel"] + 1e-6
-
-
 STICKING = np.arange(0.5, 60.01, 0.5)
 
 
@@ -162,20 +147,6 @@ def test_stick_in_the_plane_is_found_exactly_in_its_window():
     stuck = answers.columns["stick_fraction"] > 0.0
     assert list(speeds[stuck]) == list(np.arange(44.5, 49.51, 0.5))
     assert answers.columns["stick_fraction"].max() < 0.05
-
-
-def test_turning_round_the_transverse_load_alone_changes_nothing():
-    speeds = [float(v) for v in STICKING[every(9)]]
-    turned = Load(unbalance=10.0, phase=180.0)
-    across = Transverse(natural_frequency=10.0, damping_ratio=0.1, load=turned)
-    there = solve([scene(v) for v in speeds]).columns
-    back = solve([scene(v, transverse=across) for v in speeds]).columns
-    for name, sign in (
-        ("mean_friction", 1.0),
-        ("mean_friction_transverse", -1.0),
-        ("velocity_amplitude", 1.0),
-    ):
-        np.testing.assert_allclose(back[name], sign * there[name], rtol=0, atol=1e-9)
 
 
 def on_the_line(path, belt_speeds, **more):
@@ -192,7 +163,7 @@ def stick_rich(belt_speed, **more):
     return scene(float(belt_speed), drive=drive, **{"transverse": None, **more})
 
 
-LINES = {path.stem: on_the_line(path, np.arange(0.5, 60.1, 0.5)[every(3)]) for path in ON_THE_LINE} | {
+LINES = {path.stem: on_the_line(path, np.arange(0.5, 60.1, 0.5)[every(3)]) for path in ON_THE_LINE[-1:]} | {
     "stick": [stick_rich(v) for v in np.linspace(0.05, 2.5, 64)],
     "grazing": [scene(float(v), transverse=None) for v in np.linspace(49.0, 50.02, 52)],
 }
@@ -213,28 +184,8 @@ def test_one_degree_of_freedom_is_that_of_the_exact_method(name):
     assert ((ours.columns["stick_fraction"] > 0.0) == (exact.columns["stick_fraction"] > 0.0)).all()
 
 
-@pytest.mark.parametrize("load", [None, Load(unbalance=0.0), Load(amplitude=0.0, phase=30.0)])
-def test_the_plane_without_a_load_across_is_the_line(load):
-    across = Transverse(natural_frequency=0.5, damping_ratio=0.1, load=load)
-    speeds = (0.3, 5.0, 45.0, 49.9, 55.0)
-    plane = solve([scene(v, transverse=across) for v in speeds])
-    line = with_columns(Exact(), [scene(v, transverse=None) for v in speeds], LAW, 1e-12)
-    np.testing.assert_allclose(
-        plane.columns["mean_friction"], line.columns["mean_friction"], rtol=0, atol=1e-9
-    )
-    assert all("x2 decays" in model for model in plane.model)
-    for i in range(len(speeds)):
-        orbit = plane.orbit(i)
-        assert not orbit.x.imag.any()
-        assert not orbit.v.imag.any()
-        assert not orbit.friction.imag.any()
-
-
 ORBITS = {
-    "fast": scene(55.0),
     "stick": scene(46.0),
-    "slow": scene(0.5),
-    "backwards": scene(-45.0),
     "ellipse": scene(
         20.0,
         drive=Drive(amplitude=8.0, frequency=0.7, phase=40.0),
@@ -247,7 +198,6 @@ ORBITS = {
         drive=Drive(amplitude=3.0, frequency=0.6),
         transverse=Transverse(natural_frequency=0.9, damping_ratio=0.2, load=Load(amplitude=2.0)),
     ),
-    "line": scene(5.0, transverse=None),
     "line with stops": stick_rich(0.7),
 }
 of_orbit = pytest.mark.parametrize("name", ORBITS)
@@ -320,35 +270,6 @@ def test_the_orbit_satisfies_the_equation_of_motion_between_its_nodes(name):
         assert np.abs(forces)[still].max(initial=0.0) <= 1e-9 * scale
 
 
-@of_orbit
-def test_mean_position_balances_mean_friction_and_energies_close(name):
-    one = ORBITS[name]
-    answers = solve(one)
-    columns, orbit = {key: values[0] for key, values in answers.columns.items()}, answers.orbit(0)
-    half = 0.5 * (orbit.tau[:, -1:] - orbit.tau[:, :1])
-    mean = (half * WEIGHTS * orbit.x).sum() / (orbit.tau[-1, -1] - orbit.tau[0, 0])
-    across = stiffnesses(one)[1][0]
-    assert mean.real == pytest.approx(one.normal_load * columns["mean_friction"], abs=1e-8)
-    sideways = columns["mean_friction_transverse"] if one.degrees_of_freedom == 2 else 0.0
-    assert across * mean.imag == pytest.approx(one.normal_load * sideways, abs=1e-8)
-    work = columns["energy_input"] + columns["energy_viscous"]
-    closure = columns["energy_input"] - columns["energy_viscous"] - columns["energy_friction"]
-    assert abs(closure) <= 2e-7 * (1.0 + work)
-    carried = one.normal_load * columns["mean_friction"] * one.belt_speed * 2.0 * math.pi / one.frequency
-    assert columns["energy_contact"] == pytest.approx(
-        columns["energy_friction"] + carried, abs=2e-7 * (1.0 + work)
-    )
-
-
-@pytest.mark.parametrize("name", ["fast", "stick", "ellipse", "stops", "line", "line with stops"])
-def test_a_belt_that_turns_round_turns_the_mean_round(name):
-    one = ORBITS[name]
-    ahead, back = (solve(one.model_copy(update={"belt_speed": s * one.belt_speed})) for s in (1.0, -1.0))
-    for column, sign in (("mean_friction", -1.0), ("mean_friction_transverse", -1.0), ("energy_input", 1.0)):
-        there, here = ahead.columns[column][0], back.columns[column][0]
-        assert here == pytest.approx(sign * there, rel=1e-9, abs=2e-10, nan_ok=one.degrees_of_freedom == 1)
-
-
 def pushed(belt_speed, along, across, turn=0.0, **more):
     """Friction 4 against loads of these sizes, the one across leading by ``turn`` degrees."""
     return scene(
@@ -404,14 +325,6 @@ def test_loads_in_phase_together_above_friction_leave_no_rest_though_each_is_bel
     )
     assert resting_range(pushed(0.0, 3.0, 3.0), LAW) < 0.0
     assert not stays_at_rest(pushed(0.0, 3.0, 3.0), LAW)
-
-
-def test_a_start_at_the_end_of_the_range_stays_there():
-    one, force = RESTING["circular"]
-    for part in (-0.999, 0.0, 0.5, 0.999):
-        told = solve(one.model_copy(update={"initial": Initial(x=part * force)}))
-        assert told.columns["mean_friction"][0] == pytest.approx(0.1 * part * force, abs=1e-9)
-        assert told.columns["stick_fraction"][0] == 1.0
 
 
 def test_on_the_line_a_start_beyond_the_range_slides_into_it():
@@ -477,14 +390,6 @@ def test_what_it_cannot_do_is_refused_with_the_way_out():
             return 0.4 / (1.0 + speed)
 
     assert "a SlidingLaw, a BristleLaw or a MemoryLaw" in Shooting().refusal(scene(5.0), Remembers())
-
-
-def test_a_prescribed_slip_is_answered_by_quadrature():
-    one = Scene(belt_speed=1.0, slip=Slip(velocity_amplitude=2.0, frequency=2.0))
-    shot, exact = with_columns(Shooting(), [one], LAW, 1e-10), with_columns(Exact(), [one], LAW, 1e-10)
-
-    assert shot.status == ["ok"]
-    assert shot.columns["mean_friction"][0] == pytest.approx(exact.columns["mean_friction"][0], abs=1e-14)
 
 
 @st.composite

@@ -16,7 +16,6 @@ from frictionlab.methods.shooting.method import Shooting
 
 REFERENCE = Path(__file__).parents[2] / "reference"
 MORE = pd.read_csv(REFERENCE / "bristle_more.csv")
-SYSTEM = pd.read_csv(REFERENCE / "dynamic_laws_system.csv")
 WHY = "the planar kernels of each law take half a minute to compile"
 compiling = deep(WHY)
 
@@ -61,18 +60,6 @@ def test_planar_bristles_are_true_to_the_reference(kind: str) -> None:
         assert (error <= 1e-6).all()
         miss = np.abs(answers.columns["mean_friction"] - curve["mean_friction"])
         assert (miss <= error + curve["accuracy"]).all()
-
-
-def test_planar_systems_on_bristles_agree_with_the_reference() -> None:
-    laws = ["dahl", "dupont"] if DEEP else ["dupont"]
-    rows = SYSTEM[(SYSTEM["omega_r"] != "none") & SYSTEM["law"].isin(laws)]
-    for (omega_r, kind, length), curve in rows.groupby(["omega_r", "law", "z_ss"]):
-        curve = curve.iloc[::4]
-        law = law_of(pd.Series({"kind": kind, "mu_kinetic": 0.4, "presliding_length": length}))
-        answers = with_columns(Shooting(), scenes(curve["v_b"], float(omega_r)), law, 1e-6)
-        assert set(answers.status) == {"ok"}
-        miss = np.abs(answers.columns["mean_friction"] - curve["mu_bar"])
-        assert (miss <= answers.columns["error"] + 2e-7).all()
 
 
 def test_an_orbit_is_found_where_the_steps_of_a_map_jump_by_as_much_as_is_asked() -> None:

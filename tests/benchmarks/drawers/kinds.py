@@ -19,6 +19,7 @@ KINDS = {
     "multipliers": "floquet of every law against central differences of fine period maps over three shifts",
     "sensitivities": "derivatives of the mean friction against differences of steady states",
     "onsets": "onsets of curves of 40 points against scans five times as dense",
+    "reduced": "mdsm and harmonic_balance against exact and shooting",
     "chosen_speeds": "chosen belt speeds against the curve itself",
     "proofs": "proofs of exact's means against its estimates",
     "steep_falls": "friction that falls faster than damping makes up for: whether what is ok is alone",

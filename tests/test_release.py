@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
+import deep
 import pytest
 import release
 from distributions import listed, package_files, wrong_in_wheel
@@ -27,6 +30,18 @@ def test_a_wheel_is_held_against_the_source_file_by_file(tmp_path: Path) -> None
     ]
     del whole["frictionlab/page.js"]
     assert wrong_in_wheel(whole, files) == ["wheel: no frictionlab/page.js"]
+
+
+def test_ten_parts_of_the_same_seconds_hold_every_test_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(deep, "recorded", lambda: {"a.py": 1.0, "b.py": 9.0})
+    tests: list[Any] = [
+        SimpleNamespace(nodeid=f"{file}::{k}") for file in ("a.py", "b.py") for k in range(50)
+    ]
+
+    cut = deep.parts(tests)
+
+    assert [test for part in cut for test in part] == tests
+    assert [len(part) for part in cut] == [50, *[6, 5] * 4, 6]
 
 
 def test_every_dependency_has_a_lowest_version_to_try() -> None:

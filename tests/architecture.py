@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import defaultdict
 from pathlib import Path
 
-from structure import Tree, arrows, floors
+from structure import arrows, floors, tree_of
 
 PROJECT = Path(__file__).parents[1]
 PICTURE = PROJECT / "docs" / "figures" / "architecture.svg"
@@ -80,7 +80,7 @@ def panel(title: str, drawn: dict[str, set[str]], left: float, top: int) -> tupl
 
 def picture() -> str:
     """The drawing as SVG."""
-    tree = Tree(PROJECT)
+    tree = tree_of(PROJECT)
     whole, methods = arrows(tree), arrows(tree, "methods")
     methods.pop("methods", None)
     top = max(floors(whole).values())

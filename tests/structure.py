@@ -1,20 +1,12 @@
-"""What the structure of a checkout measures: python tests/structure.py [CHECKOUT] [--list].
-
-Files, lines, rooms (folders), floors and arrows between rooms, family questions, long functions, comments in kernels
-and public names with two homes. Reads source as text; a checkout of any commit will do.
-"""
+"""The rooms of the package (its folders), which of them import which, and the floors that they stand on."""
 
 from __future__ import annotations
 
 import ast
-import sys
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
-
-FAMILIES = {"SlidingLaw", "BristleLaw", "MemoryLaw", "CompliantLaw", "DampedLaw"}
-KERNEL_MARKS = {"inner", "fast", "njit", "by_dimension", "by_law"}
-LONG, MANY = 40, 6
 
 
 class Tree:
@@ -42,9 +34,11 @@ class Tree:
                     if (inner if inner in self.paths else package) in self.paths:
                         yield inner if inner in self.paths else package
 
-    def is_package(self, module: str) -> bool:
-        """Whether a module is a folder."""
-        return self.paths[module].name == "__init__.py"
+
+@cache
+def tree_of(checkout: Path) -> Tree:
+    """The modules of a checkout, parsed once."""
+    return Tree(checkout)
 
 
 def room(module: str) -> str:
@@ -84,101 +78,3 @@ def floors(drawn: dict[str, set[str]]) -> dict[str, int]:
     for name in drawn:
         visit(name, ())
     return height
-
-
-def functions(tree: Tree) -> Iterator[tuple[str, ast.FunctionDef]]:
-    """Every function of the package with its module."""
-    for module, parsed in tree.trees.items():
-        for node in ast.walk(parsed):
-            if isinstance(node, ast.FunctionDef):
-                yield module, node
-
-
-def arguments(function: ast.FunctionDef) -> int:
-    """How many arguments a function takes, ``self`` and ``cls`` left out."""
-    names = [a.arg for a in (*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs)]
-    return len([name for name in names if name not in ("self", "cls")])
-
-
-def family_questions(tree: Tree) -> list[str]:
-    """Lines outside compile/ and testing/ that ask ``isinstance`` of a law family."""
-    found = []
-    for module, parsed in tree.trees.items():
-        if room(module) in ("compile", "testing", "kernel"):
-            continue
-        for node in ast.walk(parsed):
-            if isinstance(node, ast.Call) and ast.unparse(node.func) in ("isinstance", "issubclass"):
-                names = {name.id for name in ast.walk(node) if isinstance(name, ast.Name)}
-                if names & FAMILIES:
-                    found.append(f"{module}:{node.lineno}")
-    return found
-
-
-def kernels(tree: Tree) -> list[str]:
-    """Modules that hold compiled functions."""
-    found = []
-    for module, parsed in tree.trees.items():
-        marks = {
-            name.id
-            for node in ast.walk(parsed)
-            if isinstance(node, ast.FunctionDef)
-            for mark in node.decorator_list
-            for name in ast.walk(mark)
-            if isinstance(name, ast.Name)
-        }
-        if marks & KERNEL_MARKS and room(module) not in ("compile", "kernel"):
-            found.append(module)
-    return found
-
-
-def comments(tree: Tree, modules: list[str]) -> float:
-    """Full-line comments per 100 lines of these modules."""
-    lines = [line.strip() for module in modules for line in tree.paths[module].read_text().splitlines()]
-    return 100.0 * sum(line.startswith("#") for line in lines) / max(len(lines), 1)
-
-
-def public_doubles(tree: Tree) -> dict[str, list[str]]:
-    """Public classes and functions of one name that are defined in two or more modules."""
-    homes: dict[str, list[str]] = defaultdict(list)
-    for module, parsed in tree.trees.items():
-        for node in parsed.body:
-            if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
-                homes[node.name].append(module)
-    return {name: modules for name, modules in sorted(homes.items()) if len(modules) > 1}
-
-
-def measured(tree: Tree) -> dict[str, object]:
-    """Every number of the structure by what it counts."""
-    top, methods = arrows(tree), arrows(tree, "methods")
-    lines = [path.read_text().count("\n") for path in tree.paths.values()]
-    every = list(functions(tree))
-    return {
-        "files": len(tree.paths),
-        "lines of source": sum(lines),
-        "rooms": len({room(module) for module in tree.paths}),
-        "floors": 1 + max(floors(top).values()),
-        "arrows": sum(map(len, top.values())),
-        "rooms in methods": len({room_of_method(m) for m in tree.paths if m.startswith("methods.")}),
-        "floors in methods": 1 + max(floors(methods).values()),
-        "arrows in methods": sum(map(len, methods.values())),
-        "isinstance on law families outside compile and testing": len(family_questions(tree)),
-        f"functions over {LONG} lines": sum((f.end_lineno or 0) - f.lineno + 1 > LONG for _, f in every),
-        f"functions over {MANY} arguments": sum(arguments(f) > MANY for _, f in every),
-        "full-line comments per 100 lines of kernels": round(comments(tree, kernels(tree)), 1),
-        "public names with two homes": len(public_doubles(tree)),
-    }
-
-
-if __name__ == "__main__":
-    given = [argument for argument in sys.argv[1:] if not argument.startswith("-")]
-    checkout = Path(given[0]) if given else Path(__file__).parents[1]
-    tree = Tree(checkout)
-    for what, number in measured(tree).items():
-        print(f"{what:58} {number}")
-    if "--list" in sys.argv:
-        print("\n".join(family_questions(tree)))
-        for module, function in functions(tree):
-            lines, many = (function.end_lineno or 0) - function.lineno + 1, arguments(function)
-            if lines > LONG or many > MANY:
-                print(f"{module}:{function.lineno} {function.name}: {lines} lines, {many} arguments")
-        print("\n".join(f"{name}: {', '.join(homes)}" for name, homes in public_doubles(tree).items()))

@@ -7,6 +7,7 @@ import importlib
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -226,9 +227,14 @@ def _lies_in(module: str, places: list[str]) -> bool:
     return any(f"{module}.".startswith(f"{place}.") for place in places)
 
 
-def _imports(path: Path) -> Iterator[str]:
+@cache
+def _imports(path: Path) -> list[str]:
     """Every module a file imports, inside functions too, by its full name."""
-    for node in ast.walk(ast.parse(path.read_text())):
+    return list(_imported(ast.parse(path.read_text()), path))
+
+
+def _imported(parsed: ast.Module, path: Path) -> Iterator[str]:
+    for node in ast.walk(parsed):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -283,12 +289,15 @@ def test_every_arrow_is_used() -> None:
     }
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_imports_follow_the_drawn_arrows(module: str) -> None:
-    room = _room(module)
-    stray = [name for name in _inside(MODULES[module]) if _room(name) not in (room, *ARROWS.get(room, []))]
+def test_imports_follow_the_drawn_arrows() -> None:
+    stray = [
+        f"{module} ({_room(module)}) imports {name}"
+        for module, path in MODULES.items()
+        for name in _inside(path)
+        if _room(name) not in (_room(module), *ARROWS.get(_room(module), []))
+    ]
 
-    assert not stray, f"{module} ({room}) imports {', '.join(stray)}"
+    assert stray == []
 
 
 LAW_INTERFACE = {
@@ -297,25 +306,28 @@ LAW_INTERFACE = {
 }
 
 
-@pytest.mark.parametrize(
-    "module", [name for name in MODULES if _room(name) == "laws" and name not in {"laws", *LAW_INTERFACE}]
-)
-def test_a_law_knows_the_law_interface_and_mathematics_alone(module: str) -> None:
-    assert {name for name in _inside(MODULES[module]) if name != "quantities"} <= LAW_INTERFACE
-    assert _outside(MODULES[module]) <= LAWS_MAY_USE
+def test_a_law_knows_the_law_interface_and_mathematics_alone() -> None:
+    laws = [name for name in MODULES if _room(name) == "laws" and name not in {"laws", *LAW_INTERFACE}]
+    for module in laws:
+        assert {name for name in _inside(MODULES[module]) if name != "quantities"} <= LAW_INTERFACE, module
+        assert _outside(MODULES[module]) <= LAWS_MAY_USE, module
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_what_comes_from_outside_comes_in_where_it_is_drawn(module: str) -> None:
-    foreign = _outside(MODULES[module]) - sys.stdlib_module_names
-    stray = [name for name in foreign if not _lies_in(module, OUTSIDE.get(name, []))]
+def test_what_comes_from_outside_comes_in_where_it_is_drawn() -> None:
+    stray = [
+        f"{module} ({_room(module)}) imports {name}"
+        for module, path in MODULES.items()
+        for name in _outside(path) - sys.stdlib_module_names
+        if not _lies_in(module, OUTSIDE.get(name, []))
+    ]
 
-    assert not stray, f"{module} ({_room(module)}) imports {', '.join(stray)}"
+    assert stray == []
 
 
-@pytest.mark.parametrize("module", [name for name in MODULES if _lies_in(name, BELOW_FILES)])
-def test_nothing_below_the_study_touches_files(module: str) -> None:
-    assert not _outside(MODULES[module]) & FILES
+def test_nothing_below_the_study_touches_files() -> None:
+    below = [name for name in MODULES if _lies_in(name, BELOW_FILES)]
+
+    assert [module for module in below if _outside(MODULES[module]) & FILES] == []
 
 
 def test_importing_the_package_brings_in_nothing_heavy() -> None:
@@ -345,10 +357,10 @@ def test_tables_figures_and_drawn_examples_are_imported_where_they_are_needed() 
     assert told.splitlines() == list(steps.values())
 
 
-@pytest.mark.parametrize("name", frictionlab.__all__)
-def test_every_public_name_can_be_imported_and_is_listed(name: str) -> None:
-    assert getattr(frictionlab, name) is not None
-    assert name in dir(frictionlab)
+def test_every_public_name_can_be_imported_and_is_listed() -> None:
+    for name in frictionlab.__all__:
+        assert getattr(frictionlab, name) is not None
+        assert name in dir(frictionlab)
 
 
 def test_a_name_that_is_not_public_is_refused_by_name() -> None:
@@ -356,28 +368,19 @@ def test_a_name_that_is_not_public_is_refused_by_name() -> None:
         frictionlab.no_such_name  # noqa: B018
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_every_module_can_be_imported(module: str) -> None:
-    importlib.import_module(f"frictionlab.{module}")
+def test_every_module_can_be_imported() -> None:
+    for module in MODULES:
+        importlib.import_module(f"frictionlab.{module}")
 
 
-@pytest.mark.parametrize("name", registry.law_names())
-def test_every_law_behind_an_entry_point_loads(name: str) -> None:
-    law = registry.law_class(name)
-
-    assert law.__name__.lower() == {"dupont": "elasto-plastic"}.get(name, name).replace("-", "")
-
-
-@pytest.mark.parametrize("name", registry.method_names())
-def test_every_method_behind_an_entry_point_loads_under_its_own_name(name: str) -> None:
-    method = registry.method_class(name)()
-
-    assert method.name == name
-
-
-def test_there_are_laws_and_methods_behind_the_entry_points() -> None:
+def test_every_law_and_method_behind_an_entry_point_loads_under_its_own_name() -> None:
     assert "coulomb" in registry.law_names()
     assert {"auto", "exact", "shooting"} <= set(registry.method_names())
+    for name in registry.law_names():
+        written = {"dupont": "elasto-plastic"}.get(name, name).replace("-", "")
+        assert registry.law_class(name).__name__.lower() == written
+    for name in registry.method_names():
+        assert registry.method_class(name)().name == name
 
 
 WRITTEN = [
@@ -397,8 +400,7 @@ WRITTEN = [
 ]
 
 
-@pytest.mark.parametrize("path", WRITTEN, ids=lambda path: str(path.relative_to(PROJECT)))
-def test_nothing_speaks_of_places_outside_the_project(path: Path) -> None:
-    text = path.read_text()
+def test_nothing_speaks_of_places_outside_the_project() -> None:
+    places = "../" + "shared", "/" + "work/", "/" + "tmp/venv"
 
-    assert [place for place in ("../" + "shared", "/" + "work/", "/" + "tmp/venv") if place in text] == []
+    assert [path for path in WRITTEN if any(place in path.read_text() for place in places)] == []

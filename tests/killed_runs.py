@@ -35,7 +35,7 @@ sweep:
   scene.belt_speed: {start: 0.5, stop: 40, num: 150}
   laws.coulomb.mu: [0.1, 0.2]
 keep: {orbit: 4}
-columns: [normalized_friction, velocity_ratio, reversals, stick_fraction, friction_to_drive]
+columns: [mean_friction]
 expect: [{column: mean_friction, below: 1}]
 """
 TABLES = {"results.parquet": pd.read_parquet, "results.csv": pd.read_csv, "orbits.parquet": pd.read_parquet}
@@ -103,7 +103,6 @@ def main(kills: int, seed: int) -> int:
     with tempfile.TemporaryDirectory() as folder:
         study, whole = Path(folder) / "study.yaml", Path(folder) / "whole"
         study.write_text(STUDY)
-        finished(study, Path(folder) / "first")  # kernels are compiled here
         before = time.perf_counter()
         assert finished(study, whole) == 0
         taken = time.perf_counter() - before

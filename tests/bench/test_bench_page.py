@@ -16,7 +16,6 @@ from frictionlab.bench.circumstances import circumstances, small_print
 from frictionlab.bench.curve import CurveResult
 from frictionlab.bench.page import MOST_ROWS_ON_PAGE, bench_page
 from frictionlab.bench.peers import base
-from frictionlab.bench.sections import file_stem
 from frictionlab.methods.reduced import common
 from frictionlab.study import StudyError
 
@@ -122,21 +121,6 @@ def test_finding_its_error_is_what_a_reduced_model_is_slow_for(monkeypatch: pyte
     Mdsm().model_means([scene], Coulomb(mu=0.4))
 
 
-def test_of_a_prescribed_slip_no_model_is_timed_alone(tmp_path: Path) -> None:
-    driven = "{damping_ratio: 0.1, normal_load: 10, drive: {unbalance: 10,"
-    given = LIST.partition("failures:")[0].replace(driven, "{slip: {velocity_amplitude: 10,")
-    (tmp_path / "list.yaml").write_text(
-        given.replace("mdsm, harmonic_balance", "mdsm").replace("heyoka", "scipy")
-    )
-
-    (found,) = bench.measure(bench.load_bench(tmp_path / "list.yaml").only(["W1 dry"]), lambda line: None)
-
-    assert isinstance(found, CurveResult)
-    (row,) = (row for row in found.rows if row.contender.label == "mdsm")
-    assert row.counts["ok"] == 3
-    assert row.model.repeats == 0
-
-
 def test_machine_date_and_versions_are_on_the_page_and_in_every_chart(folder: Path, page: Page) -> None:
     told = circumstances()
     small = small_print()
@@ -208,13 +192,6 @@ def test_a_page_that_a_person_wrote_is_not_overwritten(
     assert not list(tmp_path.glob("*.csv"))
 
 
-@pytest.mark.parametrize("text", ["", "[]", '{"parts": {"A": 3}}', '{"parts": {"A": {"name": "A"}}}'])
-def test_an_account_that_cannot_be_read_is_begun_anew(text: str, tmp_path: Path) -> None:
-    (tmp_path / account.ACCOUNT).write_text(text)
-
-    assert account.read_account(tmp_path) == {}
-
-
 def test_two_curves_whose_files_would_be_one_are_refused(tmp_path: Path) -> None:
     (tmp_path / "list.yaml").write_text(_colliding())
 
@@ -227,11 +204,6 @@ def _colliding() -> str:
     curves = LIST.partition("failures:")[0]
     block = curves.partition("scenes:\n")[2].replace("&line ", "").replace("name: W1", "name: W1_half_dry")
     return curves + block.replace(", {kind: coulomb, mu: 0.3, label: half dry}]", "]")
-
-
-def test_a_name_becomes_a_file_name() -> None:
-    assert file_stem("W4 soft/hard  lugre") == "W4_soft_hard_lugre"
-    assert file_stem("W3_0.5") == "W3_0.5"
 
 
 # --- what is told ------------------------------------------------------------------------------------------------

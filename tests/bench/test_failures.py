@@ -17,7 +17,6 @@ from frictionlab import bench, cli, registry
 from frictionlab.bench.failures.boundaries import free_velocities, rest_edge, uniqueness_edge
 from frictionlab.bench.failures.measure import MapTruth
 from frictionlab.bench.failures.section import FailureResult
-from frictionlab.bench.peers import base
 from frictionlab.bench.peers.scipy_steps import ScipySteps
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers
@@ -93,13 +92,6 @@ def test_a_method_that_lies_is_counted_as_wrong_without_a_word() -> None:
     assert result.outcomes[0].grid[0][1].stated == 5e-4
 
 
-def test_an_error_that_covers_is_no_lie_however_large() -> None:
-    (result,) = measured("{kind: liar, says: 1.1e-3}")
-
-    assert result.counts()["silent"] == 0
-    assert result.counts()["ok"] == 7
-
-
 def test_the_reference_s_own_error_is_granted() -> None:
     (result,) = measured(text=LIST.replace("tolerance: 1.0e-9", "tolerance: 6.0e-4"))
 
@@ -107,13 +99,6 @@ def test_the_reference_s_own_error_is_granted() -> None:
     assert [point.undecided for point in result.outcomes[0].grid[0]] == [False, True, False, False]
     assert "known to\nload" in result.summary()
     assert "6e-04" in result.summary()
-
-
-def test_no_method_is_judged_by_its_own_kind() -> None:
-    (result,) = measured(text=LIST.replace("kind: another", "kind: liar"))
-
-    assert result.counts()["silent"] == 0
-    assert all(math.isnan(point.true) for point in result.outcomes[0].points)
 
 
 def test_a_peer_is_silently_wrong_above_ten_times_the_tolerance_asked(
@@ -228,26 +213,6 @@ def test_the_command_writes_a_table_and_a_figure_for_each_method(capsys: pytest.
     drawn = Path("out/failures_a_liar.svg").read_text()
     assert len(drawn) < 250_000
     assert Path("out/failures_fake.svg").read_text() != drawn
-
-
-def test_a_method_that_refuses_all_is_not_drawn() -> None:
-    text = LIST.replace("[1, 2, 4, 13]", "[13, 14]").replace("belt_speed: 0.5", "belt_speed: 13")
-    (result,) = measured(
-        "exact", text.replace("kind: coulomb, mu: 0.4", "kind: dahl, mu: 0.4, stiffness: 40")
-    )
-
-    assert set(result.counts()) == {"refused"}
-    assert result.figure() is None
-
-
-def test_a_peer_that_is_not_installed_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(base, "find_spec", lambda name: None)
-    (result,) = measured(
-        text=LIST.replace("methods: [METHODS]", "peers: [{kind: heyoka, tolerance: 1.0e-6}]")
-    )
-
-    assert result.summary() == "failures_heyoka: not installed: pip install frictionlab[peers]"
-    assert result.write(Path()) == result.draw(Path()) == []
 
 
 SWEPT_TWICE = ", 13]\n      scene.damping_ratio: [0.1, 0.2]\n"

@@ -324,6 +324,10 @@ def test_what_comes_from_outside_comes_in_where_it_is_drawn() -> None:
     assert stray == []
 
 
+def test_drawing_does_not_load_pyplot() -> None:
+    assert [module for module, path in MODULES.items() if "matplotlib.pyplot" in _imports(path)] == []
+
+
 def test_nothing_below_the_study_touches_files() -> None:
     below = [name for name in MODULES if _lies_in(name, BELOW_FILES)]
 

@@ -19,7 +19,6 @@ from frictionlab.charts.figures import draw_figures, figure_of, figures_of
 from frictionlab.charts.style import STYLE
 from frictionlab.study import StudyError, parse_study
 from frictionlab.study.figure_options import FigureOptions, figure_options
-from frictionlab.study.schema import schema
 
 
 @pytest.fixture(scope="module")
@@ -72,12 +71,6 @@ def test_normalized_axes_are_shares_of_v_lin_and_of_steady_friction(laws: pd.Dat
         assert list(axes.child_axes[0].get_xticks()) == [1.0]
 
 
-def test_a_curve_without_v_lin_keeps_the_axes_as_they_are(laws: pd.DataFrame) -> None:
-    undriven = laws.assign(velocity_ratio=laws["velocity_ratio"].mask(laws["law"] == "other"))
-
-    assert _drawn(undriven, normalized=True).axes[0].get_xlabel() == "belt speed $v_b$"
-
-
 @pytest.mark.parametrize(("against", "law", "sign"), [(None, "coulomb", 1.0), ("other", "other", -1.0)])
 def test_differences_are_taken_from_coulomb_or_the_law_asked_for(
     laws: pd.DataFrame, against: str | None, law: str, sign: float
@@ -92,10 +85,6 @@ def test_differences_are_taken_from_coulomb_or_the_law_asked_for(
     (band,) = axes.collections
     heights = np.ptp(band.get_paths()[0].vertices[:, 1])
     assert heights == pytest.approx(np.ptp(0.02 * rows["mean_friction"]) + 2e-3, rel=1e-2)
-
-
-def test_one_law_has_no_differences(laws: pd.DataFrame) -> None:
-    assert "differences" not in figures_of(laws[laws["law"] == "coulomb"])
 
 
 def test_a_shape_is_drawn_with_its_chord_its_area_and_the_verdict(laws: pd.DataFrame) -> None:
@@ -143,11 +132,12 @@ def test_widths_are_those_of_a_journal(laws: pd.DataFrame, width: str, millimetr
 
 
 def test_formats_and_title_are_as_asked_for(laws: pd.DataFrame, tmp_path: Path) -> None:
-    draw_figures(laws, "Of before", tmp_path)
-    files = draw_figures(laws, "T", tmp_path, None, None, FigureOptions(formats=("pdf",), title=False))
+    few = laws[(laws["law"] == "coulomb") & (laws["scene.drive.frequency"] == 1.0)]
+    draw_figures(few, "Of before", tmp_path)
+    files = draw_figures(few, "T", tmp_path, None, None, FigureOptions(formats=("pdf",), title=False))
 
     assert {file.suffix for file in tmp_path.iterdir()} == {".pdf"}
-    assert len(files) == 4
+    assert len(files) == 3
     assert _drawn(laws, title=False).get_suptitle() == ""
 
 
@@ -195,13 +185,6 @@ def test_mistakes_in_it_are_told(figures: Any, message: str) -> None:
     (mistake,) = problem.value.mistakes
     assert message in str(mistake)
     assert mistake.path.startswith("figures")
-
-
-def test_the_schema_has_every_key_with_its_meaning() -> None:
-    keys = schema()["properties"]["figures"]["properties"]
-
-    assert set(keys) == set(FigureOptions.__dataclass_fields__)
-    assert all(each["description"] for each in keys.values())
 
 
 def test_one_figure_is_had_without_files_or_pyplot(laws: pd.DataFrame) -> None:

@@ -57,14 +57,6 @@ def test_the_mean_is_a_map_of_every_point_with_lines_of_equal_value() -> None:
     assert mean.get_yscale() == "log"
 
 
-def test_its_error_stands_beside_it_and_no_curve_is_drawn() -> None:
-    figure = drawn(grid())
-
-    names = [axes.get_ylabel() for axes in figure.axes]
-    assert any("error" in name for name in names)
-    assert not any(axes.lines for axes in figure.axes[:2])
-
-
 def test_shades_of_laws_mean_the_same() -> None:
     table = pd.concat([grid(), grid("dahl", mean_friction=0.6)], ignore_index=True)
 
@@ -96,10 +88,6 @@ def test_a_point_without_a_number_is_white_marked_and_counted() -> None:
     assert list(marks.get_ydata()) == pytest.approx(LOADS[[3, 4]])
     labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
     assert labels == ["2 points failed", "no number"]
-
-
-def test_few_values_are_lines() -> None:
-    assert map_of(grid()[lambda rows: rows["scene.normal_load"] < 50.0]) is None
 
 
 def test_beside_belt_speed_the_measures_of_curves_are_a_map() -> None:

@@ -19,7 +19,6 @@ from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import family_of
 from frictionlab.columns import RESULTS, SI
 from frictionlab.laws.base import Dimension, Positive, Record
-from frictionlab.mistakes.notes import WrongValues
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.units import Units, dimensions, scaled_law
 from frictionlab.study import StudyError, parse_study
@@ -114,17 +113,6 @@ def test_a_body_in_si_units_moves_as_its_nondimensional_scene(scene: Scene, body
     assert told.velocity_amplitude == pytest.approx(plain.velocity_amplitude, rel=1e-8)
 
 
-@given(scenes_in_the_plane(), bodies)
-@settings(max_examples=15)
-def test_a_body_in_the_plane_does_so_too(scene: Scene, body: Any) -> None:
-    plain = fl.steady_state(scene, LAW, method="shooting", tolerance=1e-9)
-    told = fl.steady_state(si_scene(**in_si(scene, *body)), LAW, method="shooting", tolerance=1e-9)
-
-    assert told.mean_friction == pytest.approx(
-        plain.mean_friction, rel=0.0, abs=1e-10 + plain.error + told.error
-    )
-
-
 @given(scenes_on_the_line() | scenes_in_the_plane(), bodies)
 def test_the_conversion_is_that_of_equation_2_to_rounding(scene: Scene, body: Any) -> None:
     found, wanted = si_scene(**in_si(scene, *body)).mass(), scene.mass()
@@ -157,21 +145,6 @@ def test_the_numbers_of_one_body_are_those_worked_out_by_hand() -> None:
     )
     assert scene.initial is not None
     assert scene.initial.model_fields_set == {"x", "velocity2"}
-
-
-@pytest.mark.parametrize(("body", "method"), [(BODY, "exact"), (PLANAR, "shooting")], ids=["line", "plane"])
-def test_the_length_that_scales_a_scene_is_in_no_result_in_si_units(
-    body: dict[str, Any], method: str
-) -> None:
-    one, other = (
-        fl.steady_state(si_scene(**body | {"length_m": length}), LAW, method=method, tolerance=1e-11)
-        for length in (1e-3, 0.37)
-    )
-
-    assert other.mean_friction == pytest.approx(one.mean_friction, abs=1e-11)
-    assert other.velocity_amplitude != pytest.approx(one.velocity_amplitude, rel=0.9)
-    for name in (name for name in SI if "error" not in name):
-        assert other.si[name] == pytest.approx(one.si[name], rel=1e-9, nan_ok=True), name
 
 
 def test_a_normal_load_in_newton_stands_for_the_weight() -> None:
@@ -281,21 +254,6 @@ def test_a_law_without_a_parameter_of_speed_or_length_stays_the_very_same() -> N
     assert dimensions(fl.Coulomb) == {}
 
 
-def test_dimensions_are_found_beside_optional_types_and_scale_by_their_powers() -> None:
-    class Contact(Record):
-        stiffness: Positive
-        reach: Positive | None = None
-
-    class Marked(Record):
-        reach: Annotated[Positive, Dimension(length=1)] | None = None
-
-    assert dimensions(Contact) == {}
-    assert dimensions(Marked) == {"reach": Dimension(length=1)}
-    assert scaled_law(Marked(reach=0.3), Units(0.1, 5.0, 7.0)).reach == pytest.approx(3.0)
-    assert scaled_law(Marked(), Units(0.1, 5.0, 7.0)) == Marked()
-    assert Units(2.0, 3.0, 5.0).of(Dimension(force=1, length=-1, time=2)) == 5.0 / 2.0 * 9.0
-
-
 def test_bounds_of_a_parameter_are_those_of_the_number_given_and_a_number_without_size_is_told() -> None:
     class Short(Record):
         reach: Annotated[Positive, Dimension(length=1), Field(le=0.01)]
@@ -368,15 +326,6 @@ def test_belt_speeds_in_python_are_in_the_units_of_the_scene() -> None:
     )
 
 
-def test_an_undriven_body_has_its_period_in_seconds() -> None:
-    body = {key: value for key, value in BODY.items() if key != "drive"}
-    law = fl.Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=1e-3, curve="hyperbolic")
-    state = fl.steady_state(si_scene(**body | {"belt_speed_m_per_s": 1e-3, "damping_N_s_per_m": 0.1}), law)
-
-    assert state.status == "ok", state.reason
-    assert state.si["period_s"] == pytest.approx(state.period * 2 * math.pi * 0.05)
-
-
 # Studies
 
 
@@ -407,25 +356,6 @@ def test_sweeps_over_si_values_move_the_nondimensional_ones_with_them() -> None:
     assert table.table["scene.damping_ratio"].tolist() == pytest.approx([0.1, 0.1, 0.05, 0.05])
 
 
-def test_sweeps_over_a_law_s_speed_are_in_metres_per_second() -> None:
-    done = fl.run(
-        study(
-            laws=[STRIBECK],
-            sweep={"laws.stribeck.stribeck_speed": [0.02, 0.04]},
-            expect=[
-                {
-                    "where": {"law.stribeck_speed": 0.04, "law.nondimensional.stribeck_speed": 2},
-                    "column": "error_N",
-                    "below": 1e-6,
-                }
-            ],
-        )
-    )
-
-    assert [verdict.passed for verdict in done.verdicts] == [True]
-    assert done.table["law.nondimensional.stribeck_speed"].tolist() == pytest.approx([1.0, 2.0])
-
-
 def test_a_resolved_study_in_si_units_is_the_same_study_and_stays_in_them() -> None:
     tree = study(sweep={"scene.dimensional.belt_speed_m_per_s": [0.1, 0.2]})
     tree["scene"] = {"dimensional": BODY | {"initial": {"x_m": 1e-3}}}
@@ -436,25 +366,6 @@ def test_a_resolved_study_in_si_units_is_the_same_study_and_stays_in_them() -> N
     assert set(once.resolved()["scene"]) == {"dimensional"}
     assert once.resolved()["scene"]["dimensional"]["gravity_m_per_s2"] == 9.81
     assert parse_study(tree, ["scene.dimensional.mass_kg=3"]).digest() != once.digest()
-
-
-def test_a_swept_si_value_is_not_in_the_digest() -> None:
-    def digest(speed: float) -> str:
-        tree = study(sweep={"scene.dimensional.belt_speed_m_per_s": [0.1, 0.2]})
-        tree["scene"] = {"dimensional": BODY | {"belt_speed_m_per_s": speed}}
-        return parse_study(tree).digest()
-
-    assert digest(1.0) == digest(2.0)
-
-
-def test_a_run_in_si_units_is_taken_over_and_another_body_is_refused(tmp_path: Any) -> None:
-    tree = study(sweep={"scene.dimensional.belt_speed_m_per_s": [0.1, 0.2]})
-
-    first, second = fl.run(tree, out=tmp_path), fl.run(tree, out=tmp_path)
-    assert (first.computed, second.computed) == (2, 0)
-    pd.testing.assert_frame_equal(first.table, second.table)
-    with pytest.raises(Exception, match="another study"):
-        fl.run(tree, out=tmp_path, overrides=["scene.dimensional.mass_kg=3"])
 
 
 def test_a_curve_in_si_units_is_solved_as_one_curve() -> None:
@@ -482,13 +393,7 @@ def without(body: dict[str, Any], *keys: str) -> dict[str, Any]:
     ("body", "said"),
     [
         (BODY | {"mass_kg": -1}, "scene.dimensional.mass_kg: must be > 0, got -1"),
-        (BODY | {"mass_kg": "2 kg"}, "scene.dimensional.mass_kg: must be a number, got the text '2 kg'"),
-        (BODY | {"gravity_m_per_s2": None}, "scene.dimensional.gravity_m_per_s2: must be a number, got null"),
         (without(BODY, "length_m"), "scene.dimensional.length_m: required key is missing"),
-        (
-            BODY | {"drive": {"amplitude_N": 1}},
-            "scene.dimensional.drive.frequency_rad_per_s: required key is missing",
-        ),
         (
             BODY | {"drive": {"amplitude_N": 1, "unbalance_kg_m": 1, "frequency_rad_per_s": 1}},
             "scene.dimensional.drive: give exactly one of unbalance_kg_m and amplitude_N",
@@ -517,9 +422,6 @@ def test_a_mistake_in_an_si_value_is_told_at_its_path(body: Any, said: str) -> N
     ("right", "wrong"),
     [
         ("mass_kg", "mass"),
-        ("stiffness_N_per_m", "stiffness_n_per_m"),
-        ("damping_N_s_per_m", "damping"),
-        ("belt_speed_m_per_s", "belt_speed"),
         ("length_m", "length_mm"),
     ],
 )
@@ -559,11 +461,6 @@ def test_a_column_in_si_units_needs_a_scene_in_si_units() -> None:
     }
     with pytest.raises(StudyError, match=r"this one needs a scene given in SI units: scene\.dimensional"):
         parse_study(study(scene=plain, expect=[{"column": "energy_input_J", "below": 1}]))
-
-
-def test_a_scene_made_in_python_with_both_sets_of_values_is_refused() -> None:
-    with pytest.raises(WrongValues, match="damping_ratio: leave it out, dimensional gives the scene"):
-        Scene(damping_ratio=0.1, dimensional=fl.Dimensional.model_validate(BODY))
 
 
 # Figures

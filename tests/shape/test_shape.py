@@ -22,7 +22,7 @@ from frictionlab.results.curve_table import curve_table
 from frictionlab.scene.scene import Scene
 from frictionlab.shape.interpolant import monotone_cubic
 from frictionlab.shape.verdict import Estimate, FrictionCurve, UnreadableCurve, reduction, shape_of
-from frictionlab.theory import friction_free_velocity, mean_prescribed_transverse
+from frictionlab.theory import friction_free_velocity
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 LAW = fl.Coulomb(mu=0.4)
@@ -121,14 +121,6 @@ def test_measures_of_closed_forms_lie_within_their_errors_on_every_choice_of_poi
     assert shape.by_area == ("concave" if area > 0 else "convex")
 
 
-def test_the_area_lies_on_either_side_of_the_chord() -> None:
-    shape = shape_of(curve_of(FORMS["parabola"][0], grids(1.0)["uniform"]))
-
-    assert covers(shape.above, 1 / 3)
-    assert covers(shape.below, 0.0)
-    assert shape.area.value == pytest.approx(shape.above.value - shape.below.value, abs=1e-15)
-
-
 def test_the_curvature_at_rest_is_that_of_the_curve() -> None:
     speed = 7.0 * grids(1.0)["uniform"]
     parabola, cube = (shape_of(curve_of(FORMS[name][0], speed, end=7.0)) for name in ("parabola", "cube"))
@@ -180,13 +172,6 @@ def test_the_errors_of_points_are_covered(seed: int, exponent: float) -> None:
     assert covers(shape.above, 1 / 3)
 
 
-def test_points_too_uncertain_for_a_verdict_leave_it_undecided() -> None:
-    speed = grids(1.0)["uniform"]
-    shape = shape_of(curve_of(FORMS["parabola"][0], speed, error=np.full(speed.size, 0.1)))
-
-    assert shape.by_area == shape.by_initial == "undecided"
-
-
 @pytest.mark.parametrize("end", ["start", "end"])
 def test_what_is_not_known_about_an_end_is_in_the_errors(end: str) -> None:
     course, speed = FORMS["quarter of a circle"][0], grids(1.0)["uniform"]
@@ -212,11 +197,6 @@ def test_a_curve_that_cannot_be_read_says_why(speed: Floats, reason: str) -> Non
         shape_of(curve_of(np.sqrt, speed))
 
 
-def test_a_curve_that_does_not_rise_has_no_shape() -> None:
-    with pytest.raises(UnreadableCurve, match="may not rise between"):
-        shape_of(curve_of(lambda u: 0 * u, grids(1.0)["uniform"]))
-
-
 @given(st.lists(st.floats(-1.0, 1.0), min_size=12, max_size=40), st.booleans(), st.floats(0.0, 0.1))
 @example([1.0, 1.1125369292536007e-308, *[0.0] * 7, 1.0, 0.0, 0.0], True, 0.0)
 def test_whatever_the_points_a_shape_has_finite_numbers_or_a_reason(
@@ -236,14 +216,6 @@ def test_whatever_the_points_a_shape_has_finite_numbers_or_a_reason(
 
     assert np.all(np.isfinite(found))
     assert np.all(found[:, 1] >= 0.0)
-
-
-def test_without_points_near_rest_there_is_no_curvature_there() -> None:
-    shape = shape_of(curve_of(np.sqrt, np.linspace(0.06, 1.2, 20)))
-
-    assert shape.initial is None
-    assert shape.by_initial is None
-    assert shape.by_area == "concave"
 
 
 def test_the_reduction_is_the_largest_fall_and_allows_for_a_dip_between_points() -> None:
@@ -289,38 +261,20 @@ def dense_area(frequency: float, normal_load: float) -> float:
 
 ALONG = {
     (4.0, 1.0): "convex",
-    (2.0, 1.0): "convex",
-    (1.5, 1.0): "convex",
-    (1.0, 1.0): "convex",
     (1.5, 10.0): "convex",
-    (1.0, 5.0): "convex",
-    (1.0, 3.0): "convex",
-    (1.15, 10.0): "convex",
     (1.0, 10.0): "concave",
-    (0.95, 10.0): "concave",
     (0.9, 10.0): "mixed",
-    (1.05, 10.0): "mixed",
     (1.1, 10.0): "undecided",
 }
 """Omega, gamma^2 with longitudinal load alone: verdict by area."""
 
 ACROSS = {
     (4.0, 1.0, 0.5): "concave",
-    (4.0, 1.0, 1.0): "concave",
-    (4.0, 1.0, 2.0): "concave",
-    (4.0, 1.0, 3.0): "concave",
     (4.0, 1.0, 4.0): "convex",
-    (4.0, 1.0, 10.0): "convex",
-    (2.0, 1.0, 0.5): "concave",
-    (2.0, 1.0, 1.0): "concave",
     (2.0, 1.0, 2.0): "convex",
     (2.0, 1.0, 3.0): "undecided",
-    (2.0, 1.0, 10.0): "convex",
     (1.0, 1.0, 1.0): "concave",
-    (1.0, 10.0, 0.5): "concave",
-    (1.0, 10.0, 1.0): "concave",
     (1.0, 10.0, 1.5): "concave",
-    (1.0, 10.0, 10.0): "concave",
 }
 """Omega, gamma^2, omega_r with both loads, Figs. 8 and 9: verdict by area."""
 
@@ -374,11 +328,7 @@ def test_areas_of_random_curves_lie_within_their_errors(one: Scene, points: int)
     ("file", "area", "half", "verdict"),
     [
         ("fig8a_Om4_g1_wr0.5", 0.164, 0.614, "concave"),
-        ("fig8a_Om4_g1_wr1", 0.171, 0.619, "concave"),
-        ("fig8a_Om4_g1_wr2", 0.184, 0.632, "concave"),
-        ("fig8a_Om4_g1_wr3", 0.140, 0.621, "concave"),
         ("fig8a_Om4_g1_wr4", -0.082, 0.445, "convex"),
-        ("fig8a_Om4_g1_wr10", -0.104, 0.420, "convex"),
         ("fig9a_Om1_g1_wr1", 0.177, 0.623, "concave"),
     ],
 )
@@ -423,12 +373,7 @@ def test_reference_curves_in_the_plane_have_the_areas_they_are_known_by(
         (1.0, 1.0, -0.241, 0.350),
         (1.0, 10.0, 0.058, 0.545),
         (0.9, 10.0, 0.025, None),
-        (0.95, 10.0, 0.055, None),
-        (1.02, 10.0, 0.045, None),
-        (1.05, 10.0, 0.016, None),
         (1.1, 10.0, -0.040, None),
-        (1.15, 10.0, -0.084, None),
-        (1.0, 5.0, -0.109, None),
         (1.0, 3.0, -0.175, None),
     ],
 )
@@ -439,14 +384,6 @@ def test_curves_along_the_belt_have_the_areas_they_are_known_by(
 
     assert row["shape_area"] == pytest.approx(area, abs=6e-4)
     assert half is None or row["shape_half"] == pytest.approx(half, abs=6e-4)
-
-
-def test_weak_friction_far_from_resonance_comes_near_the_closed_form() -> None:
-    row = curves(scene(4.0, 1.0), np.arange(1, 121) * 0.5)
-
-    assert row["shape_area"] == pytest.approx(1 - 4 / np.pi, abs=2e-4)
-    assert row["shape_half"] == pytest.approx(1 / 3, abs=1e-4)
-    assert row["reduction"] == pytest.approx(1 - 2 / np.pi * np.arcsin(0.5 / 42.606114), abs=1e-4)
 
 
 # Both ends of a curve
@@ -491,18 +428,6 @@ def test_a_prescribed_slip_ends_its_reversals_at_its_own_amplitude() -> None:
     assert rows[0]["shape"] == rows[1]["shape"] == "convex"
 
 
-def test_a_slip_across_the_belt_never_reverses_and_has_no_shape() -> None:
-    across = Scene(belt_speed=1, transverse_slip=fl.TransverseSlip(velocity_amplitude=3, frequency=1))
-    table = fl.curve(across, LAW, np.linspace(0.05, 9, 80))
-    row = curve_table(table).iloc[0]
-
-    np.testing.assert_allclose(
-        table["mean_friction"], 0.4 * mean_prescribed_transverse(table["scene.belt_speed"] / 3), rtol=1e-7
-    )
-    assert row["reason"] == "slip reverses at none of the points, so that no end of reversal limits the curve"
-    assert row["reduction"] == pytest.approx(1 - float(mean_prescribed_transverse(0.05 / 3)), rel=1e-6)
-
-
 def test_a_curve_that_still_reverses_at_its_last_point_says_so() -> None:
     row = curves(scene(1.0, 1.0, across=1.0), np.linspace(1, 20, 20))
 
@@ -530,15 +455,6 @@ def test_there_is_one_row_per_curve_inputs_first(family: pd.DataFrame) -> None:
         ("auto", 10.0, "concave"),
         ("second", 10.0, "concave"),
     ]
-
-
-def test_the_order_of_the_rows_does_not_matter(family: pd.DataFrame) -> None:
-    mixed = family.sample(frac=1, random_state=2)
-
-    pd.testing.assert_frame_equal(
-        curve_table(mixed).sort_values(["method", "scene.normal_load"], ignore_index=True),
-        curve_table(family).sort_values(["method", "scene.normal_load"], ignore_index=True),
-    )
 
 
 def test_points_without_a_number_are_left_out(family: pd.DataFrame) -> None:

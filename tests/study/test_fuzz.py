@@ -8,8 +8,8 @@ import pytest
 from profiles import DEEP
 from study_fuzzer import complaint
 
-PART = 250
-STUDIES = 10_000 if DEEP else 1_000
+PART = 200
+STUDIES = 10_000 if DEEP else 400
 
 
 @pytest.mark.parametrize("first", range(0, STUDIES, PART))

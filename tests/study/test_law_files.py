@@ -7,14 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import pytest
 
 import frictionlab as fl
 from frictionlab import cli, registry
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
-from frictionlab.registry.law_file import law_name, read_law_file
+from frictionlab.registry.law_file import read_law_file
 from frictionlab.report import write_report
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.saved import read_saved
@@ -132,17 +131,6 @@ def test_kernels_of_two_files_of_one_name_do_not_mix() -> None:
     assert [compiled_strength(path) for path in (one, two, one)] == pytest.approx([0.4, 0.2, 0.4])
 
 
-def test_two_files_of_one_name_in_two_folders_do_not_mix() -> None:
-    halved = study("one/half", LAW.replace("SHARE = 1.0", "SHARE = 0.5"))
-    whole = study("one/whole")
-    Path("one/half.yaml").write_text(halved.read_text().replace("laws/", "half/laws/"))
-    Path("one/whole.yaml").write_text(whole.read_text().replace("laws/", "whole/laws/"))
-
-    assert cli.main(["run", "one", "-o", "out"]) == 0
-    means = [pd.read_csv(f"out/{name}/results.csv")["mean_friction"].iloc[0] for name in ("half", "whole")]
-    assert means == pytest.approx([0.5 * CLOSED, CLOSED], abs=1e-8)
-
-
 def test_a_study_takes_laws_of_several_files_and_several_laws_of_one() -> None:
     second = LAW.replace("class MyLaw", "class OneLaw") + LAW.partition("\n\n\n")[2].replace(
         "MyLaw", "OtherLaw"
@@ -237,11 +225,6 @@ def test_a_file_that_cannot_be_read_is_one_mistake_at_its_place(listed: str, wor
     assert mistake.endswith(words)
 
 
-def test_a_misspelt_file_is_guessed() -> None:
-    with pytest.raises(StudyError, match=r"did you mean 'laws/my_law\.py'\?"):
-        load_study(study(plugins=["laws/my_lwa.py"]))
-
-
 def test_a_law_nobody_brings_is_told_with_what_there_is_and_what_to_do() -> None:
     (mistake,) = said(study(laws=[{"kind": "my-lwa", "mu": 0.4}]))
 
@@ -288,19 +271,6 @@ def test_the_command_line_takes_files_of_laws(capsys: pytest.CaptureFixture[str]
         "--law no.py: no such file",
         f"--law no.py: plugins[0]: {Path('no.py').absolute()}: no such file",
     ]
-
-
-def test_a_study_given_as_a_mapping_takes_files_of_laws() -> None:
-    study()
-
-    assert fl.run(GIVEN).table["status"].tolist() == ["ok"]
-
-
-@pytest.mark.parametrize(
-    ("name", "law"), [("MyLaw", "my-law"), ("HTTPLaw", "http-law"), ("Dahl2", "dahl2"), ("a_Law", "a-law")]
-)
-def test_the_class_is_named_in_capitals_and_the_law_with_hyphens(name: str, law: str) -> None:
-    assert law_name(name) == law
 
 
 def test_a_file_may_be_called_as_a_module_of_python_and_is_still_followed() -> None:

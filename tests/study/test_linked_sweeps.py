@@ -65,19 +65,6 @@ def test_friction_is_that_of_every_law() -> None:
     assert [law.numbers()["bristle_stiffness"] for law in found[2:]] == [40.0, 40.0, 20.0, 40.0]
 
 
-def test_a_ratio_of_one_stays_one() -> None:
-    laws = [{"kind": "stribeck", "mu_kinetic": 0.3, "mu_static": 0.3}]
-    values = np.linspace(0.01, 0.99, 99).tolist()
-    for each in study({"friction": values}, laws).cases():
-        numbers = each.given_law.numbers()
-        assert numbers["mu_static"] == numbers["mu_kinetic"]
-
-
-def test_friction_may_be_linked() -> None:
-    cases = study({"linked": [{"friction": [0.2, 0.4], "scene.normal_load": [20, 10]}]}).cases()
-    assert {each.given_law.sliding_friction(1e3) * (each.scene.normal_load or 0) for each in cases} == {4.0}
-
-
 def test_a_law_without_a_coefficient_is_named() -> None:
     class Slick(SlidingLaw):
         drag: float = 0.1

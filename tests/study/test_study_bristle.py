@@ -21,8 +21,7 @@ from strategies import BRISTLE_LAWS, sizes
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.charts.curves import family_of
-from frictionlab.charts.figures import draw_figures
-from frictionlab.columns import SCALED, symbol, word
+from frictionlab.columns import SCALED, word
 from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.registry.records import law_record
@@ -32,7 +31,7 @@ from frictionlab.shape.shakedown import Shakedown, shakedown_of_body, shakedown_
 from frictionlab.shape.verdict import UnreadableCurve
 from frictionlab.study import StudyError, load_study, parse_study
 from frictionlab.study.schema import schema
-from frictionlab.theory import friction_free_velocity, mean_soft_elasto_plastic, mean_soft_jenkins
+from frictionlab.theory import friction_free_velocity, mean_soft_elasto_plastic
 
 Floats = NDArray[np.float64]
 DOCS = Path(__file__).parents[2] / "docs"
@@ -88,16 +87,6 @@ def test_a_contact_stiffness_means_another_law_under_every_normal_load() -> None
     assert all(case.given_law.contact_stiffness == 40 for case in cases)  # type: ignore[attr-defined]
 
 
-def test_methods_called_from_python_see_the_law_under_its_load() -> None:
-    scene = fl.Scene.model_validate(BODY)
-    contact, plain = fl.Dahl(mu=0.4, contact_stiffness=40), fl.Dahl(mu=0.4, stiffness=4)
-    table = fl.curve(scene, contact, [1, 2], method=Fake())
-
-    assert solved(scene, contact).presliding_ratio == solved(scene, plain).presliding_ratio
-    assert table["presliding_ratio"].tolist() == [solved(scene, plain).presliding_ratio] * 2
-    assert table["law.contact_stiffness"].tolist() == [40, 40]
-
-
 @pytest.mark.parametrize("kind", LAWS)
 @pytest.mark.parametrize("told", ["stiffness", "presliding_length", "contact_stiffness"])
 def test_any_of_the_three_may_be_swept_where_the_file_gives_none(kind: str, told: str) -> None:
@@ -119,29 +108,12 @@ def test_a_sweep_of_one_that_the_file_gives_otherwise_is_a_mistake(kind: str) ->
     ]
 
 
-def test_two_sweeps_of_one_stiffness_are_a_mistake() -> None:
-    sweep = {"laws.dahl.stiffness": [1, 2], "laws.dahl.contact_stiffness": [1, 2]}
-
-    assert mistakes(study({"kind": "dahl", "mu": 0.4}, sweep=sweep)) == [
-        "study: sweep.laws.dahl.contact_stiffness: the law 'dahl' gives stiffness, so contact_stiffness "
-        "cannot be swept"
-    ]
-
-
 def test_an_override_of_one_that_the_file_gives_otherwise_is_a_mistake() -> None:
     found = mistakes(study({"kind": "dahl", "mu": 0.4, "stiffness": 40}), "laws.dahl.presliding_length=1")
 
     assert found == [
         "--set laws.dahl.presliding_length=1: laws[0].presliding_length: leave it out where stiffness is given"
     ]
-
-
-def test_an_override_changes_the_stiffness_that_is_given() -> None:
-    (case,) = parse_study(
-        study({"kind": "dahl", "mu": 0.4, "stiffness": 40}), ["laws.dahl.stiffness=8"]
-    ).cases()
-
-    assert case.law == fl.Dahl(mu=0.4, stiffness=8)
 
 
 def test_every_mistake_in_a_law_is_told_at_once() -> None:
@@ -161,11 +133,6 @@ def test_every_mistake_in_a_law_is_told_at_once() -> None:
         "contact_damping",
         "stiffness",
     }
-
-
-def test_a_misspelt_planar_form_is_asked_about() -> None:
-    with pytest.raises(StudyError, match=re.escape("did you mean 'vectorial'?")):
-        parse_study(study({"kind": "dahl", "mu": 0.4, "stiffness": 1, "planar": "vectoral"}))
 
 
 @pytest.mark.parametrize("kind", LAWS)
@@ -246,15 +213,6 @@ def test_a_swept_stiffness_has_its_unit_where_the_scene_is_in_si_units() -> None
     assert word(told[1].abscissa) == r"presliding length $\delta$"
 
 
-def test_figures_of_a_swept_stiffness_are_drawn(tmp_path: Path) -> None:
-    laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "dahl", "mu": 0.4}]
-    sweep = {"laws.dahl.contact_stiffness": [4, 40], "scene.belt_speed": [1, 2, 3]}
-    table = fl.run(study(laws[0], sweep=sweep, methods=["mdsm"]) | {"laws": laws}).table
-
-    assert draw_figures(table, "soft and stiff", tmp_path)
-    assert symbol("law.contact_stiffness") == "$K_t$"
-
-
 # The table
 
 
@@ -266,14 +224,6 @@ def test_a_row_has_the_name_its_law_was_chosen_by(kind: str) -> None:
     assert table[["law", "kind"]].to_numpy().tolist() == [[kind, kind]]
     assert table["law.breakaway_ratio"].tolist() == [0.7]
     assert table["law.planar"].tolist() == ["vectorial"]
-
-
-def test_a_law_from_python_has_the_name_of_its_own_file() -> None:
-    law = fl.ElastoPlastic(mu_kinetic=0.3, stiffness=4)
-
-    assert fl.curve(fl.Scene.model_validate(BODY), law, [1.0], method="mdsm")["kind"].tolist() == [
-        "elasto-plastic"
-    ]
 
 
 def test_friction_is_told_against_its_own_sliding_friction_and_the_drive() -> None:
@@ -450,17 +400,6 @@ def test_a_hold_that_is_not_known_says_so(along: complex, across: complex) -> No
         Shakedown(1.0, along, across, 1.0, "vectorial").friction()
 
 
-def test_bristles_per_axis_hold_along_the_belt_whatever_shakes_across_it() -> None:
-    assert Shakedown(1.0, 0.25, 5.0, 2.0, "per-axis").friction() == pytest.approx(1.5)
-
-
-def test_undamped_resonance_of_a_contact_leaves_nothing_to_hold() -> None:
-    scene = {"scene.normal_load": 1.0, "scene.drive.frequency": 2.0}
-    hold = shakedown_of_body(fl.Jenkins(mu=0.4, stiffness=3.0), lambda name: scene.get(name, 0.0), 1 + 0j, 0j)
-
-    assert hold.friction() == 0.0
-
-
 SHARES = np.arange(0.02, 1.1, 0.02)
 """Belt speeds over V_lin."""
 
@@ -526,17 +465,6 @@ def test_a_soft_elasto_plastic_curve_starts_where_its_bristles_hold() -> None:
 
     assert row["shape_area"] == pytest.approx(2 * np.mean(rise - share), abs=0.02)
     assert row["shape"] == "concave"
-
-
-def test_a_soft_jenkins_curve_starts_where_its_spring_holds() -> None:
-    row = curve_of(
-        {"kind": "jenkins", "mu": 0.4, "presliding_length": 2.0},
-        lambda ratio: 0.4 * float(mean_soft_jenkins(min(ratio, 1.0), 2.0)),
-    )
-    share = np.linspace(0.0, 1.0, 20001)[1:]
-    rise = (mean_soft_jenkins(share, 2.0) - 0.5) / 0.5
-
-    assert row["shape_area"] == pytest.approx(2 * np.mean(rise - share), abs=0.02)
 
 
 def rows_of_a_body(first: float, law: dict[str, Any]) -> pd.DataFrame:

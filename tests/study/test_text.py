@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any
 
 import pytest
 from study_mistakes import GOOD
@@ -41,10 +40,6 @@ def test_half_a_character_is_shown_as_such(file: Path) -> None:
     file.write_text(with_title(r'"a \ud83d"'))
 
     assert load_study(file).title == "a \N{REPLACEMENT CHARACTER}"
-
-
-def test_half_a_character_on_the_command_line_is_a_mistake(file: Path) -> None:
-    assert r"character '\udcff'" in told(file, GOOD, ("title=a\udcff",))
 
 
 @pytest.mark.parametrize(
@@ -97,12 +92,3 @@ def test_a_text_of_any_characters_survives_the_saved_study(file: Path, title: st
 
     assert printable(text) == text
     assert load_study(file) == study
-
-
-def test_names_with_several_spaces_survive_in_a_list_longer_than_a_line(file: Path) -> None:
-    tree: dict[str, Any] = {"plugins": [f"{'x' * number}  y.py" for number in range(8, 20)]}
-    file.write_text(yaml_text(tree))
-
-    from ruamel.yaml import YAML
-
-    assert YAML(typ="safe").load(file) == tree

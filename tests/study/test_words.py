@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,6 @@ from frictionlab.runner.chunks import cuts, task_of
 from frictionlab.runner.kept_chunks import Keys
 from frictionlab.scene.waveforms import Form, Term
 from frictionlab.study import Study, load_study, parse_study
-from frictionlab.study.schema import schema
 from frictionlab.study.yaml_text import yaml_text
 
 SUM = {"harmonics": [{"order": 1, "amplitude": 1}, {"order": 3, "amplitude": 0.5, "phase": 90}]}
@@ -123,18 +121,6 @@ def test_words_are_set_from_the_command_line() -> None:
     assert [str(each) for each in swept.sweep["scene.drive.waveform"]] == ["sine", "sin(2 theta)"]
 
 
-def test_the_schema_takes_words_waveforms_and_ratios_and_gives_defaults_as_a_study_does() -> None:
-    made = schema()
-    parts = made["$defs"]
-
-    assert parts["BeltVibration"]["properties"]["waveform"]["default"] == "sine"
-    term = parts["Drive"]["properties"]["waveform"]["oneOf"][1]["properties"]["harmonics"]["items"]
-    assert term["required"] == ["order", "amplitude"]
-    kinds = made["properties"]["sweep"]["additionalProperties"]["oneOf"][0]["items"]["anyOf"]
-    assert [kind.get("type") for kind in kinds] == ["number", "string", None]
-    json.dumps(made)
-
-
 def found(plan: Study) -> pd.DataFrame:
     """A table of it, filled with a number of its own for each row."""
     table = columns(plan)
@@ -182,18 +168,6 @@ def test_the_page_tells_in_words_what_is_no_sine(change: dict[str, Any], said: s
     assert said in scene_sentences(parse_study(study({}, scene=SCENE | change)))
 
 
-def test_the_page_says_what_is_swept_over_words() -> None:
-    sweep = SWEEP | {"scene.drive.direction": [0, 45]}
-    scene = SCENE | {"transverse": {"natural_frequency": 1, "damping_ratio": 0.1}}
-    said = scene_sentences(parse_study(study(sweep, scene=scene)))
-
-    assert "shaken in several directions. The load varies in several waveforms." in said
-    assert (
-        "as a sine at several frequencies; the stiffness of bristles follows it or stays that of its mean."
-        in said
-    )
-
-
 SI: dict[str, Any] = {
     "mass_kg": 2.0,
     "stiffness_N_per_m": 800.0,
@@ -225,16 +199,3 @@ def test_a_scene_in_si_units_has_every_key_in_its_own_scales() -> None:
     tau = np.linspace(0.0, 7.0, 50)
     for one, other in zip(scene.signals().belt, plain.signals().belt, strict=True):
         np.testing.assert_allclose(one(tau), other(tau), atol=1e-13)
-
-
-def test_words_are_swept_in_si_units_too_and_stand_in_both_columns() -> None:
-    sweep = {
-        "scene.dimensional.drive.waveform": ["square", "triangle"],
-        "scene.dimensional.belt_speed_m_per_s": [0.01, 0.02],
-    }
-    where = {"scene.drive.waveform": "triangle", "scene.dimensional.drive.waveform": "triangle"}
-    expect = [{"where": where, "column": "error", "below": 1}]
-    table = columns(parse_study(study(sweep, scene={"dimensional": SI}, expect=expect)))
-
-    assert table["scene.dimensional.drive.waveform"].tolist() == ["square"] * 2 + ["triangle"] * 2
-    assert table["scene.drive.waveform"].tolist() == table["scene.dimensional.drive.waveform"].tolist()

@@ -15,7 +15,7 @@ import numpy as np
 from frictionlab.compile.cache import Compiled, compiled
 from frictionlab.compile.interpret import TooLong, interpreted, limited_to
 from frictionlab.compile.kernel_law import KernelLaw, by_itself
-from frictionlab.compile.law_addresses import are_kept, by_address, without_addresses
+from frictionlab.compile.law_addresses import by_address, without_addresses
 from frictionlab.compile.notice import add_to_compiling, named_while_it_compiles
 from frictionlab.faults import from_outside
 from frictionlab.laws.base import FrictionLaw
@@ -148,7 +148,8 @@ class KernelCall:
         held = [each for each in arguments if isinstance(each, Held)]
         # a kernel that others make arguments of is compiled once, whatever they make
         kept = entry.is_kept_at_all() if held else entry.is_kept(*arguments)
-        return kept and all(each.is_kept() for each in held) and self._are_methods_kept(arguments)
+        # the methods of a law that it calls take less to compile than Python takes to be run
+        return kept and all(each.is_kept() for each in held)
 
     def by_python(self, *arguments: Any) -> Any:
         """What the kernel returns where Python runs it."""
@@ -165,12 +166,6 @@ class KernelCall:
         """The law as this kernel sees it."""
         assert self.law is not None
         return by_itself(self.law) if _choice.own_kernels else by_address(self.law, _is_planar(arguments))
-
-    def _are_methods_kept(self, arguments: tuple[Any, ...]) -> bool:
-        """Those of a law that is called by address."""
-        if self.law is None or _choice.own_kernels:
-            return True
-        return are_kept(self.law, _is_planar(arguments))
 
     def _is_for_machine(self, key: Any, arguments: tuple[Any, ...]) -> bool:
         if _config.DISABLE_JIT or _choice.always_compile or _spent.get(key, 0.0) >= WORTH:

@@ -54,13 +54,6 @@ def without_addresses(law: FrictionLaw) -> KernelLaw:
     return KernelLaw(law, KnownLaw(interface, law.structure(), by_address=True), numbers)
 
 
-def are_kept(law: FrictionLaw, planar: bool) -> bool:
-    """Whether machine code of the law's methods is kept."""
-    own, methods = by_itself(law), _called(law)
-    kernels = [_on_the_line(methods), *([_in_the_plane(_planar(methods))] if planar else [])]
-    return all(compiled(kernel, own).is_kept() for kernel in kernels)
-
-
 def _named(part: str, methods: tuple[KernelMethod, ...], addresses: Any) -> dict[str, int]:
     return {f"{part}_{each.name}": at for each, at in zip(methods, addresses, strict=True)}
 

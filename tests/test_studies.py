@@ -20,8 +20,9 @@ SLOW = (
     "bifurcation_stribeck",
     "prescribed_curve_shapes_lugre",
     "popov_contact_stiffness",
+    "stick_slip_smoothed_friction",
 )
-"""Studies with kernels that no other test needs."""
+"""Studies with kernels that no other test needs, or of many steps."""
 
 
 def is_for_the_deep_profile(study: Path) -> bool:
@@ -37,14 +38,14 @@ def is_for_the_deep_profile(study: Path) -> bool:
     return long and bristles
 
 
-def test_there_are_studies() -> None:
+def test_a_study_has_a_short_name_its_claim_in_the_title_its_source_and_why_it_expects_what() -> None:
     assert STUDIES
-
-
-@pytest.mark.parametrize("study", STUDIES, ids=lambda path: path.stem)
-def test_a_study_has_a_short_name_and_its_claim_in_the_title(study: Path) -> None:
-    assert re.fullmatch(r"[a-z][a-z0-9_]{1,39}", study.stem)
-    assert " " in load_study(study).title
+    for study in STUDIES:
+        plan = load_study(study)
+        assert re.fullmatch(r"[a-z][a-z0-9_]{1,39}", study.stem)
+        assert " " in plan.title
+        assert plan.source, study
+        assert all(expectation.because for expectation in plan.expect), study
 
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda path: path.stem)
@@ -58,12 +59,3 @@ def test_everything_a_study_expects_holds(study: Path) -> None:
     expected = {expectation.status for expectation in done.study.expect if expectation.status}
     assert set(done.table["status"]) <= {"ok"} | expected
     assert done.table.loc[done.table["status"] != "ok", "reason"].notna().all()
-
-
-@pytest.mark.parametrize("study", STUDIES, ids=lambda path: path.stem)
-def test_a_study_says_where_it_comes_from_and_why_it_expects_what_it_expects(study: Path) -> None:
-    plan = load_study(study)
-
-    assert plan.title
-    assert plan.source
-    assert all(expectation.because for expectation in plan.expect)

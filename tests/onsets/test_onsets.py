@@ -144,6 +144,7 @@ def test_the_command_writes_onsets_and_takes_them_over(tmp_path: Path, monkeypat
     from frictionlab.runner import api
     from frictionlab.study.yaml_text import yaml_text
 
+    monkeypatch.setattr("frictionlab.cli.run._draw", lambda *_: None)
     file, out = tmp_path / "study.yaml", tmp_path / "out"
     file.write_text(yaml_text(study(LINE, np.linspace(30.0, 55.0, 6))))
     assert cli.main(["run", str(file), "-o", str(out)]) == 0
@@ -197,12 +198,13 @@ DOUBLING = LINE | {"drive": {"unbalance": 10, "frequency": 1.5}}
 DAMPED = {"kind": "lugre", "mu_kinetic": 0.4, "presliding_length": 10, "contact_damping": 2}
 
 
+@deep("seconds of bristles at a tolerance")
 def test_a_multiplier_leaves_at_minus_one_where_the_period_doubles() -> None:
-    onsets = fl.run(study(DOUBLING, [11.0, 12.5, 15.0], DAMPED, tolerance=1e-6)).onsets
+    onsets = fl.run(study(DOUBLING, [11.0, 12.5], DAMPED, tolerance=1e-6)).onsets
 
-    assert onsets["onset"].tolist() == ["multiplier_leaves"] * 2
-    assert onsets["how"].tolist() == ["-1", "-1"]
-    assert onsets["belt_speed"].to_numpy() == pytest.approx([11.49954, 13.96066], abs=1e-4)
+    assert onsets["onset"].tolist() == ["multiplier_leaves"]
+    assert onsets["how"].tolist() == ["-1"]
+    assert onsets["belt_speed"].to_numpy() == pytest.approx([11.49954], abs=1e-4)
     assert (onsets["belt_speed_error"] < 1e-3).all()
     place, beside = onsets["belt_speed"][0], 10.0 * onsets["belt_speed_error"][0]
     rows = shown(DOUBLING, DAMPED, [place - beside, place - 2.0 * beside])

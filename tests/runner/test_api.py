@@ -8,9 +8,8 @@ import json
 import math
 import os
 import pickle
-import re
 from collections.abc import Callable
-from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -33,7 +32,6 @@ from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.open_chunks import open_chunks
 from frictionlab.runner.solve import solve
 from frictionlab.study import load_study, parse_study
-from frictionlab.study.yaml_text import yaml_text
 
 Trouble = Callable[[dict[float, Callable[[], None]]], None]
 
@@ -287,17 +285,6 @@ def test_the_folder_holds_one_row_per_curve_with_its_shape(tmp_path: Path) -> No
     assert not written.exists()
 
 
-def test_an_interrupted_run_tells_no_shapes(tmp_path: Path) -> None:
-    def stop(done: int, total: int) -> None:
-        raise KeyboardInterrupt
-
-    with ThreadPoolExecutor(1) as pool, pytest.raises(api.Interrupted) as caught:
-        fl.run(study(sweep=MANY), out=tmp_path / "out", executor=pool, progress=stop)
-
-    assert caught.value.run.curves.empty
-    assert not (tmp_path / "out" / "curves.csv").exists()
-
-
 def test_floats_come_back_from_the_csv_file_bit_for_bit(tmp_path: Path) -> None:
     done = fl.run(study(sweep=MANY), out=tmp_path / "out")
     with (tmp_path / "out" / "results.csv").open(newline="") as file:
@@ -331,21 +318,6 @@ def test_no_method_is_loaded_where_every_point_is_finished(tmp_path: Path, monke
     monkeypatch.setattr(registry, "method_class", lambda name: pytest.fail(f"{name} was loaded"))
 
     assert fl.run(fresh, out=tmp_path / "out").computed == 0
-
-
-def test_points_that_were_killed_are_solved_by_the_next_run(tmp_path: Path) -> None:
-    whole = fl.run(study(), out=tmp_path / "out").table
-    partial = pd.read_parquet(tmp_path / "out" / "results.parquet")
-    partial.loc[[0, 3], "status"] = "killed"
-    partial.loc[[0, 3], "mean_friction"] = np.nan
-    without_stamps(tmp_path / "out")
-    partial.to_parquet(tmp_path / "out" / "results.parquet")
-
-    again = fl.run(study(), out=tmp_path / "out")
-
-    assert again.computed == 2
-    assert_frame_equal(again.table, whole, check_exact=True)
-    assert_frame_equal(pd.read_parquet(tmp_path / "out" / "results.parquet"), whole, check_exact=True)
 
 
 def test_a_run_that_dies_loses_little(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -386,41 +358,6 @@ def test_an_interrupted_run_keeps_what_is_done_and_says_which_points_are_not(tmp
     assert fl.run(slow, out=tmp_path / "out").computed == len(killed)
 
 
-def test_an_interrupted_run_keeps_the_chunk_it_was_just_solving(tmp_path: Path) -> None:
-    def stop(done: int, total: int) -> None:
-        raise KeyboardInterrupt
-
-    slow = study(methods=[{"kind": "fake", "pause": 0.3}], sweep=MANY)
-    with ThreadPoolExecutor(1) as pool, pytest.raises(api.Interrupted) as caught:
-        fl.run(slow, out=tmp_path / "out", executor=pool, progress=stop)
-
-    assert caught.value.run.computed == 133
-
-
-class Mortal(ThreadPoolExecutor):
-    """Workers of which the second chunk's dies."""
-
-    chunks = 0
-
-    def submit(self, *work: Any, **how: Any) -> Any:
-        self.chunks += 1
-        return super().submit(*work, **how) if self.chunks != 2 else super().submit(self.die)
-
-    @staticmethod
-    def die() -> None:
-        raise BrokenExecutor("out of memory")
-
-
-def test_points_whose_worker_died_are_killed_and_the_next_run_solves_them(tmp_path: Path) -> None:
-    with Mortal(1) as pool:
-        done = fl.run(study(sweep=MANY), out=tmp_path / "out", executor=pool)
-
-    killed = done.table[done.table["status"] == "killed"]
-    assert 0 < len(killed) < len(done.table)
-    assert set(killed["reason"]) == {"a worker died: out of memory"}
-    assert fl.run(study(sweep=MANY), out=tmp_path / "out").computed == len(killed)
-
-
 def test_another_study_is_refused_a_folder_that_is_taken(tmp_path: Path) -> None:
     fl.run(study(), out=tmp_path / "out")
     before = {path: path.read_bytes() for path in (tmp_path / "out").iterdir()}
@@ -447,20 +384,6 @@ def test_studies_that_differ_in_long_lines_are_told_apart_in_short_ones(tmp_path
     assert max(map(len, shown)) < 90
 
 
-def test_studies_that_differ_at_the_end_of_a_long_line_are_told_apart_there(tmp_path: Path) -> None:
-    drives = [{"unbalance": 10, "frequency": frequency} for frequency in (1.25, 1.5)]
-    here, other = (study(scene=study()["scene"] | {"drive": drive}) for drive in drives)
-    fl.run(here, out=tmp_path / "out")
-
-    with pytest.raises(FolderError) as caught:
-        fl.run(other, out=tmp_path / "out")
-
-    there, now, remedy = str(caught.value).splitlines()[1:]
-    assert re.search(r"drive: \{.*frequency: 1.25", there)
-    assert re.search(r"drive: \{.*frequency: 1.5", now)
-    assert remedy.startswith("choose another folder with -o")
-
-
 def test_another_version_is_refused_a_folder_that_is_taken(tmp_path: Path, monkeypatch: Any) -> None:
     fl.run(study(), out=tmp_path / "out")
     monkeypatch.setattr(api, "__version__", "99.0")
@@ -481,15 +404,6 @@ def test_replacing_results_takes_away_those_of_the_other_study_and_nothing_else(
     assert not (out / "orbits.parquet").exists()
     assert not (out / "figures" / "old.svg").exists()
     assert (out / "mine.txt").read_text() == "mine"
-
-
-def test_a_folder_with_a_damaged_account_is_refused(tmp_path: Path) -> None:
-    fl.run(study(), out=tmp_path / "out")
-    (tmp_path / "out" / "provenance.json").write_text("{")
-
-    with pytest.raises(FolderError, match=r"frictionlab run STUDY -o \S*out --force"):
-        fl.run(study(), out=tmp_path / "out")
-    fl.run(study(), out=tmp_path / "out", existing="replace")
 
 
 def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_computed(
@@ -582,21 +496,6 @@ def test_what_a_study_expects_is_judged_and_every_verdict_is_in_the_account(tmp_
     ]
 
 
-def test_records_hold_null_where_the_table_is_empty() -> None:
-    (first, *_) = records(fl.run(study()).table)
-
-    assert first["reason"] is None
-    assert first["floquet"] is None
-    assert json.loads(json.dumps(first, allow_nan=False))["mean_friction"] == first["mean_friction"]
-
-
-def test_a_study_file_is_run_with_its_overrides(tmp_path: Path) -> None:
-    (tmp_path / "study.yaml").write_text(yaml_text(study()))
-    done = fl.run(tmp_path / "study.yaml", overrides=["scene.normal_load=3"])
-
-    assert set(done.table["scene.normal_load"]) == {3.0}
-
-
 def test_a_curve_comes_back_in_the_order_it_was_asked_for() -> None:
     table = fl.curve(SCENE, LAW, belt_speed=np.array([9.0, 4.0, 9.0]), method="fake", tolerance=1e-6)
 
@@ -604,12 +503,6 @@ def test_a_curve_comes_back_in_the_order_it_was_asked_for() -> None:
     assert table["kind"].tolist() == ["coulomb"] * 3
     assert table["error"].tolist() == [1e-6] * 3
     assert table["mean_friction"].tolist()[0] == table["mean_friction"].tolist()[2]
-
-
-@pytest.mark.parametrize("speeds", [[], [1.0, math.nan], [[1.0], [2.0]]])
-def test_belt_speeds_that_are_no_list_of_numbers_are_refused(speeds: list[Any]) -> None:
-    with pytest.raises(ValueError, match="belt_speed must be"):
-        fl.curve(SCENE, LAW, belt_speed=speeds, method="fake")
 
 
 def test_a_steady_state_has_every_result_column_and_nothing_else() -> None:
@@ -659,55 +552,6 @@ def test_methods_and_tolerances_that_make_no_sense_are_refused_by_name() -> None
     for tolerance in (0.0, -1e-8, math.nan, math.inf):
         with pytest.raises(ValueError, match="tolerance must be a positive number"):
             fl.steady_state(SCENE, LAW, method="fake", tolerance=tolerance)
-
-
-@pytest.mark.parametrize(
-    "value",
-    [
-        "plain words",
-        "yes",
-        "a: b",
-        "- x",
-        "#1",
-        "1e3",
-        "",
-        " ",
-        'it\'s "so"',
-        "tab\t",
-        "é",
-        "1.5",
-        "null",
-        "~",
-        "@a",
-    ],
-)
-def test_words_survive_the_study_file(value: str) -> None:
-    from ruamel.yaml import YAML
-
-    tree = {
-        "title": value,
-        "numbers": [1e-8, 5, -0.1, 1e300, 5e-324],
-        "deep": {value or "k": [{"a": value}] * 30},
-    }
-    assert YAML(typ="safe").load(yaml_text(tree)) == tree
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        ({"law": "coulomb"}, "law must be a friction law such as fl.Coulomb"),
-        ({"scene": {}}, "scene must be an fl.Scene"),
-        ({"tolerance": "x"}, "tolerance must be a positive number, got the text 'x'"),
-    ],
-)
-def test_what_is_no_scene_law_or_tolerance_is_told_in_python(wrong: dict[str, Any], message: str) -> None:
-    one = fl.Scene(belt_speed=1.0, slip=fl.Slip(velocity_amplitude=2.0, frequency=1.0))
-    given = {"scene": one, "law": fl.Coulomb(mu=0.4), **wrong}
-
-    with pytest.raises((TypeError, ValueError), match=message):
-        fl.steady_state(**given)
-    with pytest.raises((TypeError, ValueError), match=message):
-        fl.curve(**given, belt_speed=[1.0])
 
 
 def test_models_that_differ_in_numbers_alone_are_one_line_of_the_summary() -> None:

@@ -13,7 +13,7 @@ from pandas.testing import assert_frame_equal
 
 import frictionlab as fl
 from frictionlab.quantities import Floats
-from frictionlab.results.bends import chord_deviation, halves_to_add
+from frictionlab.results.bends import halves_to_add
 from frictionlab.runner import api
 from frictionlab.runner.kept_chunks import KeptChunks
 from frictionlab.runner.plan import plan
@@ -85,14 +85,6 @@ def test_points_are_not_asked_for_by_their_own_errors() -> None:
     speeds, means = np.arange(9.0), 1e-3 * np.array([0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0])
     assert len(halves_to_add(speeds, means, 0.0 * means, np.empty(0), 5e-4, 1e-3))
     assert not len(halves_to_add(speeds, means, 0.0 * means + 1e-3, np.empty(0), 5e-4, 1e-3))
-
-
-def test_a_convex_curve_lies_in_the_triangles_of_its_chords() -> None:
-    speeds = np.sort(np.random.default_rng(3).uniform(1.0, 3.0, 40))
-    dense = np.linspace(speeds[0], speeds[-1], 20_001)
-    off = np.abs(np.interp(dense, speeds, np.exp(speeds)) - np.exp(dense))
-    place = np.clip(np.searchsorted(speeds, dense) - 1, 0, 38)
-    assert (off <= chord_deviation(speeds, np.exp(speeds))[place] + 1e-12).all()
 
 
 def test_a_run_is_near_its_curves_everywhere(chosen: fl.Study) -> None:
@@ -206,21 +198,8 @@ def test_a_part_cannot_know_them(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("sweep", "said"),
     [
-        ({"scene.belt_speed": {"start": 1, "stop": 2, "within": 0}}, "belt_speed.within: must be > 0, got 0"),
-        (
-            {"scene.belt_speed": {"start": 1, "stop": 2, "within": 1e-8}},
-            "belt_speed.within: must be >= 1e-07, 10 times tolerance, got 1e-08",
-        ),
-        (
-            {"scene.belt_speed": {"start": 1, "stop": 2, "num": 3, "within": 1e-2}},
-            "belt_speed.num: unknown key; allowed: start, stop, within",
-        ),
         ({"scene.belt_speed": {"start": 2, "stop": 1, "within": 1e-2}}, "belt_speed.stop: must be > start = 2"),
         ({"scene.belt_speed": {"stop": 1, "within": 1e-2}}, "belt_speed.start: required key is missing"),
-        (
-            {"scene.normal_load": {"start": 1, "stop": 2, "within": 1e-2}},
-            "normal_load.within: belt speeds alone are chosen so",
-        ),
         (
             {"linked": [{"scene.belt_speed": {"start": 1, "stop": 2, "within": 0.01}, "scene.normal_load": [1, 2]}]},
             "scene.belt_speed.within: belt speeds alone are chosen so, where no others are linked to them",

@@ -81,10 +81,3 @@ def test_the_next_run_takes_them_over_and_makes_them_again_where_they_are_gone(t
     made = fl.run(STUDY, out=tmp_path / "out")
     assert made.computed == 0  # from kept chunks
     assert_frame_equal(made.harmonics, first.harmonics)
-
-
-def test_more_harmonics_are_found_anew(tmp_path: Path) -> None:
-    fl.run(STUDY, out=tmp_path / "out")
-    more = fl.run(STUDY | {"keep": {"harmonics": 4}}, out=tmp_path / "out")
-    assert more.harmonics is not None
-    assert more.harmonics["harmonic"].max() == 4

@@ -16,7 +16,6 @@ from pandas.testing import assert_frame_equal
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.results import thinned
-from frictionlab.results.summary import summary
 from frictionlab.runner import api, long_run, saved
 from frictionlab.runner.saved import read_saved
 from frictionlab.study import parse_study
@@ -155,15 +154,6 @@ def test_a_long_run_that_is_interrupted_goes_on(short_pieces: None, tmp_path: Pa
     assert again.counts == {"ok": 160, "refused": 160}
 
 
-def test_a_chunk_that_cannot_be_kept_is_in_the_table_all_the_same(short_pieces: None, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-
-    done = fl.run(study(), out=tmp_path / "run", cache=tmp_path / "file")
-
-    assert done.counts == {"ok": 160, "refused": 160}
-    assert done.table["mean_friction"].notna().sum() == 160
-
-
 def test_the_page_and_the_figures_show_some_and_tell_of_all(
     short_pieces: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -193,10 +183,6 @@ def test_shown_rows_hold_the_ends_of_the_first_and_the_last_curve() -> None:
     assert {0, 4999, 5000, 9999} <= set(rows.tolist())
     assert len(rows) == 400
     assert (np.diff(rows) > 0).all()
-
-
-def test_the_summary_of_a_run_that_is_short_says_nothing_of_points_left_out() -> None:
-    assert "spread over them" not in summary(fl.run(study()))
 
 
 def test_a_long_run_keeps_the_memory_of_laws_that_come_later(tmp_path: Path, short_pieces: None) -> None:

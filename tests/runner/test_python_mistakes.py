@@ -255,12 +255,6 @@ def test_nothing_unchecked_reaches_a_solver(wrong: dict[str, Any], said: str) ->
         assert said in str(caught.value)
 
 
-def test_whole_numbers_put_in_by_model_copy_are_solved_for_as_numbers() -> None:
-    plain, copied = fl.Scene(**GIVEN | {"normal_load": 3}), SCENE.model_copy(update={"normal_load": 3})
-
-    assert fl.steady_state(copied, LAW).mean_friction == fl.steady_state(plain, LAW).mean_friction
-
-
 STUDY = parse_study({"schema": 1, "scene": GIVEN, "laws": [{"kind": "coulomb", "mu": 0.4}]})
 
 

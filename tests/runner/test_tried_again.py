@@ -62,16 +62,6 @@ def test_a_point_that_failed_is_tried_again_by_other_code(
     assert fl.run(STUDY, out=tmp_path).computed == 0
 
 
-def test_a_point_that_failed_is_tried_again_where_results_are_replaced(
-    trouble: Trouble, tmp_path: Path
-) -> None:
-    trouble({4.0: breaks_down})
-    fl.run(STUDY, out=tmp_path)
-    trouble({})
-
-    assert fl.run(STUDY, out=tmp_path, existing="replace").table["status"].tolist() == ["ok", "ok"]
-
-
 def test_a_point_that_failed_by_an_internal_error_is_never_taken_over(
     trouble: Trouble, tmp_path: Path
 ) -> None:

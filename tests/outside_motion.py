@@ -81,7 +81,7 @@ class Count(NamedTuple):
     steps: int
 
 
-@numba.njit
+@numba.njit(cache=True)
 def signals_at(now, t):
     """Loads, belt velocity and normal load at t, in their order, and the belt's acceleration."""
     after, p = t - now.start, now.pieces
@@ -104,7 +104,7 @@ def signals_at(now, t):
     return (load1, load2, belt1, belt2, normal), pull1, pull2
 
 
-@numba.njit
+@numba.njit(cache=True)
 def sliding(law, speed):
     """Coefficient of a sliding law at this speed; of bristle laws the curve without viscosity."""
     drop = law.mu_static - law.mu
@@ -122,7 +122,7 @@ def sliding(law, speed):
     return law.mu + drop * fall + (law.viscosity * speed if law.kind == STRIBECK else 0.0)
 
 
-@numba.njit
+@numba.njit(cache=True)
 def bristle(law, phase, w1, w2, z1, z2, line):
     """Rate of the deflection and friction coefficient of a bristle law, in a phase."""
     speed = phase.side * w1 if line else math.hypot(w1, w2)
@@ -141,7 +141,7 @@ def bristle(law, phase, w1, w2, z1, z2, line):
     return dz1, dz2, c1, c2
 
 
-@numba.njit
+@numba.njit(cache=True)
 def needed(body, now, t, y):
     """What accelerates the mass beyond the belt if friction does not: its two components."""
     s, pull1, pull2 = signals_at(now, t)
@@ -150,7 +150,7 @@ def needed(body, now, t, y):
     return one, two, s[NORMAL]
 
 
-@numba.njit
+@numba.njit(cache=True)
 def rates(body, law, now, phase, t, y, out):
     """d/dt of the state and of the integrals, into ``out``; returns the friction coefficient along x1."""
     s, pull1, pull2 = signals_at(now, t)
@@ -187,7 +187,7 @@ def rates(body, law, now, phase, t, y, out):
     return c1
 
 
-@numba.njit
+@numba.njit(cache=True)
 def step(body, law, now, phase, t, h, y, size, stages):
     """One step of order 8: the new state and its error, in units of ``size``."""
     point = np.empty(SIZE)
@@ -214,7 +214,7 @@ def step(body, law, now, phase, t, h, y, size, stages):
     return point, fine / math.sqrt(8.0 * (fine + 0.01 * coarse))
 
 
-@numba.njit
+@numba.njit(cache=True)
 def margin(body, law, now, phase, t, y):
     """Positive as long as the phase lasts."""
     if law.kind < DAHL and phase.side == 0:
@@ -234,7 +234,7 @@ def margin(body, law, now, phase, t, y):
     return min(loading, begins - stretch) if line else max(-loading, begins - stretch)
 
 
-@numba.njit
+@numba.njit(cache=True)
 def phase_at(body, law, now, t, y, side):
     """The phase at t; ``side`` is that of slip on the line where w1 does not say."""
     s, pull1, _ = signals_at(now, t)
@@ -259,7 +259,7 @@ def phase_at(body, law, now, t, y, side):
     return Phase(side if line else 1, loaded and math.hypot(y[Z1], y[Z2]) >= begins * share)
 
 
-@numba.njit
+@numba.njit(cache=True)
 def decay(body, law, now, t, y):
     """The rate at which bristles near their limit approach it."""
     s, _, _ = signals_at(now, t)
@@ -267,7 +267,7 @@ def decay(body, law, now, t, y):
     return law.stiffness * speed / sliding(law, speed)
 
 
-@numba.njit
+@numba.njit(cache=True)
 def trend(body, law, now, phase, t, y, nudge):
     """The change of the margin over a moment."""
     out = np.empty(SIZE)
@@ -275,7 +275,7 @@ def trend(body, law, now, phase, t, y, nudge):
     return margin(body, law, now, phase, t + nudge, y + nudge * out) - margin(body, law, now, phase, t, y)
 
 
-@numba.njit
+@numba.njit(cache=True)
 def dips(body, law, now, phase, t, h, y, there, size, stages):
     """Where within a step a margin that is positive at both ends is negative: its lowest point; 0 for nowhere."""
     nudge = 1e-6 * h
@@ -296,7 +296,7 @@ def dips(body, law, now, phase, t, h, y, there, size, stages):
     return high if margin(body, law, now, phase, t + high, there) < 0.0 else 0.0
 
 
-@numba.njit
+@numba.njit(cache=True)
 def end_of_phase(body, law, now, phase, t, h, y, size, stages):
     """The length of step after which the margin is negative by rounding alone; after h it is negative."""
     low, high = 0.0, h
@@ -331,7 +331,7 @@ def end_of_phase(body, law, now, phase, t, h, y, size, stages):
     return high
 
 
-@numba.njit
+@numba.njit(cache=True)
 def beyond_rest(body, law, now, t, y, duration, gain, growth):
     """After a first moment of slip from y: what is left of the force over friction, and its direction."""
     there = y.copy()
@@ -343,7 +343,7 @@ def beyond_rest(body, law, now, t, y, duration, gain, growth):
     return force - n * sliding(law, math.hypot(gain[0], gain[1])), np.array([one, two]) / force
 
 
-@numba.njit
+@numba.njit(cache=True)
 def set_off(body, law, now, t, left, y, size, stages, tolerance):
     """A first moment of slip in the plane from rest: the state after it, and its duration.
 
@@ -373,7 +373,7 @@ def set_off(body, law, now, t, left, y, size, stages, tolerance):
     return end, h
 
 
-@numba.njit
+@numba.njit(cache=True)
 def span(body, law, now, end, y, side, tolerance, largest, longest, tally, signs):
     """From the start of a span to its end; returns the state and the side of slip. NaN where it takes too long.
 
@@ -433,7 +433,7 @@ def span(body, law, now, end, y, side, tolerance, largest, longest, tally, signs
     return y, phase.side
 
 
-@numba.njit
+@numba.njit(cache=True)
 def count(body, law, now, phase, t, y, tally, signs):
     """Changes of sign of the slip velocity and of the friction force along x1."""
     force = rates(body, law, now, phase, t, y, np.empty(SIZE))
@@ -446,7 +446,7 @@ def count(body, law, now, phase, t, y, tally, signs):
             signs[k] = sign
 
 
-@numba.njit
+@numba.njit(cache=True)
 def period(body, law, edges, pieces, which, sines, start, side, tolerance, largest, longest, signs):
     """From tau = 0-, just before a corner that may be there, to a period later; tally as in ``span``."""
     y, tally = np.zeros(SIZE), np.zeros(4)

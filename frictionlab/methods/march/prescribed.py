@@ -1,6 +1,6 @@
 """Time stepping where the slip is prescribed: there is nothing to step, only friction to sample and to sum up.
 
-Licence (tests/benchmarks/specialists.py, 10 scenes): 36 times faster in the median at 1e-3 than the laps of march
+Licence (10 scenes): 36 times faster in the median at 1e-3 than the laps of march
 with a mass that friction does not move (15 to 87 times), 120 times at 1e-4.
 """
 

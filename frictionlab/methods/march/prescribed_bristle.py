@@ -1,6 +1,6 @@
 """Time stepping of bristles under a prescribed slip: only their deflection is stepped, until it repeats.
 
-Licence (tests/benchmarks/specialists.py, 12 scenes): 4 times faster in the median at 1e-3 than the laps of march
+Licence (12 scenes): 4 times faster in the median at 1e-3 than the laps of march
 with a mass that friction does not move (0.8 to 33 times; kernels alone 138 times).
 """
 

@@ -3,7 +3,7 @@
 Both use the slip velocity amplitude*(kappa + cos(psi)), kappa = |belt speed|/amplitude, which is minus the slip on a
 belt that runs forward.
 
-Licence (tests/benchmarks/specialists.py): on 15 scenes without an exact path collocation of one number is 4 times
+Licence: on 15 scenes without an exact path collocation of one number is 4 times
 faster in the median than of two, as in the plane (0.6 to 15 times), and 11 times faster than the period map of a
 memory of any size (5 to 251). That map misses means of friction by axis by up to 1e-2 on 8 scenes of both axes.
 """

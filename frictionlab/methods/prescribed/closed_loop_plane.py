@@ -1,6 +1,6 @@
 """The closed loop of a bristle law under slip in the plane, in the vectorial and the rotated form.
 
-Licence (tests/benchmarks/specialists.py): 7 times faster in the median at 1e-6 than the period map of a memory of
+Licence: 7 times faster in the median at 1e-6 than the period map of a memory of
 any size on 14 scenes of vectorial laws, 14 times at 1e-9 (1.6 to 52 times); 15 and 24 times on 9 scenes of rotated
 ones (8 to 64). Means are right to 11 digits or more.
 """

@@ -4,7 +4,7 @@ Each step is computed whole and in two halves, and shortened until both agree on
 friction; steps therefore become short where the rate of the law jumps. Towards slow slip they are graded, since the
 layers there may be too short to be detected by the error of a long step.
 
-Licence (tests/benchmarks/specialists.py): those of the closed loops on the line and in the plane, which this serves.
+Licence: those of the closed loops on the line and in the plane, which this serves.
 """
 
 from __future__ import annotations

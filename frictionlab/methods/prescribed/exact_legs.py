@@ -4,7 +4,7 @@ Slip of velocity speed*(kappa + cos(psi)), 0 <= kappa < 1, goes forward while |p
 with cos(phi) = kappa. Along each leg the law gives the deflection exactly at any stiffness; there remain one equation
 for the deflection at the start of the forward leg, and quadrature.
 
-Licence (tests/benchmarks/specialists.py, 18 scenes): 3.7 times faster in the median than collocation of the same loop
+Licence (18 scenes): 3.7 times faster in the median than collocation of the same loop
 (2.4 to 67 times; kernels alone 5 to 430), and 57 times faster than the period map of a memory of any size (from 22).
 """
 

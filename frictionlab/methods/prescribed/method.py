@@ -1,6 +1,6 @@
 """Mean friction under a prescribed slip velocity.
 
-Licence of bristles that end saturated (tests/benchmarks/specialists.py, 8 scenes): 5 times faster than following a
+Licence of bristles that end saturated (8 scenes): 5 times faster than following a
 deflection that stays at its limit (4 to 5.7 times), with the same 13 digits.
 """
 

@@ -1,6 +1,6 @@
 """A deflection that repeats: Newton's method on what it gains in a period of prescribed slip, kept within bounds.
 
-Licence (tests/benchmarks/specialists.py): those of the closed loops on the line and in the plane, which this serves.
+Licence: those of the closed loops on the line and in the plane, which this serves.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Friction under a prescribed slip; without memory by quadrature to rounding, along the belt a closed form.
 
-Licence (tests/benchmarks/specialists.py, 10 scenes): a mean to 1e-6 in 1.05 ms, 9 times faster in the median than the
+Licence (10 scenes): a mean to 1e-6 in 1.05 ms, 9 times faster in the median than the
 samples of march, and right to 13 digits.
 """
 

@@ -3,7 +3,7 @@
 Springs, dashpots and loads keep to the axes, so that friction alone could couple the two, and ``per-axis`` friction
 does not. Across the belt the belt is at rest at every belt speed: one motion there serves a whole curve.
 
-Licence (tests/benchmarks/specialists.py, 20 scenes, curves of four belt speeds): 2.5 times faster in the median
+Licence (20 scenes, curves of four belt speeds): 2.5 times faster in the median
 than the period map in the plane at 1e-6 (1.8 to 13 times), 2.9 times at 1e-9 (1.6 to 20), and half a digit more
 accurate.
 """

@@ -3,7 +3,7 @@
 Where they do (theory/saturation.py), friction is that of sliding, set-valued at rest: where it is the same at every
 speed, that of Coulomb, and the steady state is the one of a law without memory.
 
-Licence (tests/benchmarks/specialists.py, 12 scenes, curves of four belt speeds): 28 times faster in the median than
+Licence (12 scenes, curves of four belt speeds): 28 times faster in the median than
 the period map of mass and bristle in the plane at 1e-6 (19 to 45 times), 33 times at 1e-9 (26 to 39).
 """
 

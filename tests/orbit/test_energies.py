@@ -47,14 +47,6 @@ def test_energies_differ_from_more_exact_ones_by_no_more_than_their_errors(
         assert getattr(fine, f"{name}_error") < 1e-5 * max(fine.energy_input, fine.energy_contact)
 
 
-def test_errors_of_energies_shrink_with_the_tolerance() -> None:
-    errors = [
-        fl.steady_state(HELD, SOFT, tolerance=each).energy_friction_error for each in (1e-4, 1e-6, 1e-8)
-    ]
-
-    assert errors[0] > 10.0 * errors[1] > 100.0 * errors[2]
-
-
 @pytest.mark.parametrize("method", ["mdsm", "harmonic_balance"])
 def test_a_model_that_bounds_the_mean_alone_states_no_errors_of_energies(method: str) -> None:
     state = fl.steady_state(SMOOTH.with_(belt_speed=0.5), fl.Coulomb(mu=0.04), method)

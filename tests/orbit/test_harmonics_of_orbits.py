@@ -11,7 +11,7 @@ import pytest
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
 from frictionlab.orbit.harmonics import harmonic_parts
-from frictionlab.orbit.panels import NODES, interpolation_weights
+from frictionlab.orbit.panels import NODES
 from frictionlab.orbit.read import read_columns
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Drive, Load, Scene, Transverse
@@ -68,21 +68,6 @@ def test_of_a_square_wave_hundreds_of_harmonics_on_two_panels() -> None:
     np.testing.assert_allclose(found.friction_phase[odd], 0.0, atol=1e-10)
     assert np.isnan(found.friction_in_phase).all()  # there is no harmonic of the velocity to be in phase with
     assert found.velocity_amplitude[0] == pytest.approx(1.0)
-
-
-def test_cut_panels_have_the_harmonics_of_whole_ones() -> None:
-    found = Exact().solve([SCENE], LAW, 1e-8).orbit(0)
-    assert found is not None
-    halves = [0.5 * (NODES - 1.0), 0.5 * (NODES + 1.0)]
-    tau, v, friction = (
-        np.concatenate([one @ interpolation_weights(half).T for half in halves])
-        for one in (found.tau, found.v, found.friction)
-    )
-    order = np.argsort(tau[:, 0])
-    cut = Orbit(tau[order], v[order], v[order], friction[order], None)
-
-    for one, other in zip(harmonic_parts(SCENE, found, 40), harmonic_parts(SCENE, cut, 40), strict=True):
-        np.testing.assert_allclose(one, other, atol=1e-9)
 
 
 def test_against_the_columns_of_the_table_and_parseval() -> None:

@@ -7,21 +7,20 @@ import math
 import numpy as np
 import pytest
 from answered import with_columns
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
-from strategies import MU, scenes_in_the_plane, scenes_on_the_line
+from strategies import MU, scenes_on_the_line
 
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.shooting.method import Shooting
-from frictionlab.orbit.panels import BARYCENTRIC, DERIVATIVE, NODES, PER_PANEL, WEIGHTS
+from frictionlab.orbit.panels import DERIVATIVE, NODES, PER_PANEL, WEIGHTS
 from frictionlab.orbit.read import READ, OrbitPanels, read
 from frictionlab.orbit.record import Orbit
 from frictionlab.orbit.sample import sample
 from frictionlab.scene.body import Mass
-from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse, TransverseSlip
+from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 
 LAW = Coulomb(mu=MU)
 
@@ -72,13 +71,6 @@ def test_the_weights_integrate_polynomials_up_to_twice_the_nodes_less_three(degr
     expected = 2.0 / (degree + 1) if degree % 2 == 0 else 0.0
 
     assert (WEIGHTS * NODES**degree).sum() == pytest.approx(expected, abs=1e-14)
-
-
-def test_nodes_are_symmetric_and_include_both_ends():
-    assert len(NODES) == len(WEIGHTS) == len(BARYCENTRIC) == PER_PANEL
-    assert (NODES[0], NODES[-1]) == (-1.0, 1.0)
-    np.testing.assert_allclose(NODES, -NODES[::-1], atol=1e-15)
-    assert np.all(np.diff(NODES) > 0.0)
 
 
 @pytest.mark.parametrize("degree", range(1, PER_PANEL))
@@ -177,13 +169,6 @@ def test_the_amplitude_is_half_of_peak_to_peak_between_nodes_too():
     assert found["velocity_harmonic"] == pytest.approx(3.0, rel=1e-9)
 
 
-def test_without_a_force_there_is_no_phase():
-    silent = MASS._replace(force=0j)
-    found = read_from(motion(1.5, 12, harmonic(1.5, 2.0 + 0j)), silent, 0.0)
-
-    assert math.isnan(found["velocity_phase"])
-
-
 # --- samples ------------------------------------------------------------------------------------------------------
 
 
@@ -249,21 +234,6 @@ def test_an_orbit_under_a_changing_load_has_the_force_over_the_mean_load():
     np.testing.assert_allclose(at.friction, -MU * (1.0 + 0.5 * np.sin(3.0 * at.tau)), atol=1e-9)
 
 
-def test_the_samples_of_a_prescribed_slip_have_no_load():
-    scene = Scene(
-        belt_speed=1.0,
-        slip=Slip(velocity_amplitude=3.0, frequency=2.0, phase=20.0),
-        transverse_slip=TransverseSlip(velocity_amplitude=1.0),
-    )
-    at = sample(with_columns(Exact(), [scene], LAW, 1e-9).orbit(0), scene, LAW, 200)
-    slip = at.v1 - 1.0 + 1j * at.v2
-
-    assert not at.load.any()
-    assert not at.load_transverse.any()
-    np.testing.assert_allclose(at.v1, 3.0 * np.sin(2.0 * at.tau + math.radians(20.0)), atol=1e-9)
-    np.testing.assert_allclose(at.friction + 1j * at.friction_transverse, MU * slip / np.abs(slip), atol=1e-6)
-
-
 def agree_with_samples(scene, answers):
     """Columns against sums over 8,192 samples: first order where friction jumps, so to a thousandth."""
     columns = {name: float(values[0]) for name, values in answers.columns.items()}
@@ -293,30 +263,3 @@ def test_columns_on_the_line_are_what_the_samples_of_the_orbit_say(scene):
 
     assert answers.status == ["ok"]
     agree_with_samples(scene, answers)
-
-
-@given(scene=scenes_in_the_plane())
-def test_columns_in_the_plane_are_what_the_samples_of_the_orbit_say(scene):
-    answers = with_columns(Shooting(), [scene], LAW, 1e-9)
-
-    assert answers.status == ["ok"]
-    agree_with_samples(scene, answers)
-
-
-@given(scene=scenes_in_the_plane(friction=(0.02, 0.3)))
-def test_the_orbit_in_the_plane_solves_the_equations_of_motion_in_every_piece(scene):
-    orbit, mass = with_columns(Shooting(), [scene], LAW, 1e-9).orbit(0), scene.mass()
-    assume(not orbit.stick.any())
-    length = orbit.tau[:, -1:] - orbit.tau[:, :1]
-    acceleration = (orbit.v @ DERIVATIVE.T) * 2.0 / length
-    turn = np.exp(1j * mass.frequency * orbit.tau)
-    along = mass.damping * orbit.v.real + orbit.x.real + mass.normal_load * orbit.friction.real
-    across = mass.transverse_damping * orbit.v.imag + mass.transverse_stiffness * orbit.x.imag
-    across = across + mass.normal_load * orbit.friction.imag
-    scale = np.abs(mass.force) + np.abs(mass.transverse_force)
-
-    smooth = np.abs(orbit.v - scene.belt_speed).min(axis=1) > 0.05 * np.abs(orbit.v).max()
-    off = acceleration.real + along - (mass.force * turn).imag
-    off_across = acceleration.imag + across - (mass.transverse_force * turn).imag
-    assert np.abs(off[smooth]).max() <= 1e-4 * scale
-    assert np.abs(off_across[smooth]).max() <= 1e-4 * scale

@@ -57,6 +57,8 @@ class Session:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: Any) -> bool:
+        for name in registry.law_names():  # which parameters go together is found out once, for all forks
+            unloaded_laws(registry.law_class(name))
         for check in (
             lambda: _battery_notices(_laws(ROOT / "dahl.py")),
             lambda: _tests_notice(session.items),
@@ -151,10 +153,6 @@ def main() -> None:
     asked = parser.parse_args()
     hypothesis.settings.register_profile("mutation", max_examples=EXAMPLES, deadline=None, database=None)
     running.quietly = lambda examples, *_: quietly(examples)  # the first counterexample will do
-    for name in registry.law_names():
-        unloaded_laws(
-            registry.law_class(name)
-        )  # which parameters go together is found out once, for all forks
     session = Session(_of(asked.files, asked.every))
     where = [str(ROOT / "tests" / name) for name in ("laws", "theory")]
     quiet = ["-n", "0", "-q", "-W", "ignore", "-p", "no:cacheprovider", "--hypothesis-profile", "mutation"]

@@ -106,14 +106,6 @@ class FeedingDamping(Bristles):
         return self.stiffness * z - self.damping * dz + self.viscosity * v
 
 
-class SaysPassive(Bristles):
-    """Forgets the bound of Barahanov and Ortega."""
-
-    def passive(self) -> bool:
-        """Always."""
-        return True
-
-
 class BoundUpsideDown(Bristles):
     """The bound of passivity with its ratio upside down."""
 
@@ -174,7 +166,6 @@ CASES = (
     Case(BoundLost, Dahl, "invariant_set"),
     Case(UnsignedPower, Dahl, "invariant_set"),
     Case(FeedingDamping, Bristles, "passivity"),
-    Case(SaysPassive, Bristles, "passivity", examples=100),
     Case(BoundUpsideDown, Bristles, "passivity", examples=100),
     Case(SaysNotPassive, Bristles, "not_passive"),
     Case(SaysDampsAcross, Bristles, "damps_across"),

@@ -97,22 +97,6 @@ class BreaksAwayLate(Sticking):
         return 1.1 * super().breakaway(v, k)
 
 
-class BreaksAwayAcross(Sticking):
-    """Elements that hold more across the belt."""
-
-    def breakaway(self, v: Any, k: int) -> float:
-        """Twice as much."""
-        return (1.0 + abs(v.imag) / (abs(v) or 1.0)) * super().breakaway(v, k)
-
-
-class HoldsNothingQuick(Sticking):
-    """Elements without a breakaway at high speed."""
-
-    def breakaway(self, v: Any, k: int) -> float:
-        """None beyond the speeds that are drawn."""
-        return super().breakaway(v, k) if abs(v) < 1e7 else 0.0
-
-
 class CreepsAtRest(Sticking):
     """Elements that relax where nothing slips."""
 
@@ -153,14 +137,6 @@ class SteadyTwice(Ageing):
         return 2.0 * super().steady(v, k)
 
 
-class OtherAgeing(Ageing):
-    """Friction in steady sliding of another age."""
-
-    def friction(self, v: Any, memory: Any, rates: Any) -> Any:
-        """Of twice the age."""
-        return super().friction(v, [2.0 * memory[0]], rates)
-
-
 class GrowsYounger(Ageing):
     """Ages that slip takes below zero."""
 
@@ -192,15 +168,12 @@ CASES = (
     Case(SecondYieldsEarly, Declared, "yield_deflection"),
     Case(InSeries, Springs, "uncoupled"),
     Case(BreaksAwayLate, Sticking, "breakaway"),
-    Case(BreaksAwayAcross, Sticking, "breakaway"),
-    Case(HoldsNothingQuick, Sticking, "breakaway"),
     Case(CreepsAtRest, Sticking, "breakaway"),
     Case(YieldsToo, Sticking, "breakaway"),
     Case(BreaksAwayUnasked, Sticking, "breakaway"),
     Case(StoresTwice, Springs, "passivity"),
     Case(Ageing, Renewed, "unit_scaling"),
     Case(SteadyTwice, Ageing, "steady_sliding"),
-    Case(OtherAgeing, Ageing, "steady_sliding"),
     Case(GrowsYounger, Ageing, "invariant_set"),
     Case(RenewsQuicker, Ageing, "largest_rate"),
     Case(Backwards, Ageing, "oddness"),

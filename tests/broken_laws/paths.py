@@ -11,14 +11,6 @@ from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.jenkins import Jenkins
 
 
-class ForgetsViscosity(Bristles):
-    """Steady sliding is told without viscosity."""
-
-    def sliding_friction(self, speed: float) -> float:
-        """The curve alone."""
-        return curve(self, speed)
-
-
 class OtherCurve(Bristles):
     """Bristles tend to another curve than the one told: its exponent is one less."""
 
@@ -58,14 +50,6 @@ class SaturatesEarly(Dahl):
         return 0.5 * super().saturation_path(z, side)
 
 
-class SaturatesFromRest(Jenkins):
-    """The path to the limit, wherever the spring is."""
-
-    def saturation_path(self, z: float, side: float) -> float:
-        """From no deflection."""
-        return self.reach
-
-
 class ElasticTooFar(BreakingAway):
     """Bristles that break away sooner than told."""
 
@@ -94,22 +78,11 @@ class YieldsEarly(Jenkins):
         return v - (along / (z * z.conjugate()).real) * z
 
 
-class StopsAtYield(Jenkins):
-    """A slider that stops its spring in the plane too, in place of letting it turn."""
-
-    def rate(self, v: Any, z: Any) -> Any:
-        """Drawn back towards no deflection."""
-        rate = super().rate(v, z)
-        return rate if rate == v else rate - 0.1 * abs(v) * z / abs(z)
-
-
 CASES = (
-    Case(ForgetsViscosity, Bristles, "steady_sliding"),
     Case(OtherCurve, Bristles, "steady_sliding"),
     Case(TwiceAsFar, Dahl, "exact_path"),
     Case(Straightened, Dahl, "path_splitting"),
     Case(SaturatesEarly, Dahl, "saturation_path"),
-    Case(SaturatesFromRest, Jenkins, "saturation_path"),
     Case(ElasticTooFar, BreakingAway, "elastic_deflection"),
     Case(SlipsBack, BreakingAway, "elastic_unloading"),
     Case(YieldsEarly, Jenkins, "yield_deflection"),

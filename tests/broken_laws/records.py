@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import random
-import time
 from typing import Any, ClassVar
 
 from broken_laws.case import Case
@@ -98,25 +97,6 @@ class Random(Bristles):
         return super().friction(v, z, dz) * random.uniform(0.999, 1.001)
 
 
-class Ages(Falling):
-    """Depends on the time of day."""
-
-    def sliding_friction(self, speed: float) -> float:
-        """Wears off."""
-        return super().sliding_friction(speed) * (1.0 + 1e-9 * time.perf_counter())
-
-
-class Remembers(Falling):
-    """Keeps what it was last asked."""
-
-    last: ClassVar[list[float]] = [0.0]
-
-    def sliding_friction(self, speed: float) -> float:
-        """More after quicker slip."""
-        before, self.last[0] = self.last[0], speed
-        return super().sliding_friction(speed) * (1.01 if before > speed else 1.0)
-
-
 class Shares(Falling):
     """Keeps the curve of the first law that was asked, for all of them."""
 
@@ -194,8 +174,6 @@ CASES = (
     Case(DividesAtRest, Bristles, "extremes"),
     Case(Overflows, Falling, "extremes"),
     Case(Random, Bristles, "repeatable"),
-    Case(Ages, Falling, "repeatable"),
-    Case(Remembers, Falling, "repeatable"),
     Case(LeavesBehind, Bristles, "repeatable"),
     Case(Shares, Falling, "parameters_matter"),
     Case(CountsInstances, Falling, "instances_apart"),

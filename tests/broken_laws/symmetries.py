@@ -6,7 +6,7 @@ from typing import Any
 
 from broken_laws.case import Case
 from broken_laws.twins import BreakingAway, Bristles, Falling, curve
-from frictionlab.laws.base import NonNegative, Positive
+from frictionlab.laws.base import Positive
 from frictionlab.laws.compliant import Stiffness
 
 
@@ -16,14 +16,6 @@ class MissingAbs(Bristles):
     def rate(self, v: Any, z: Any) -> Any:
         """v z in place of |v| z."""
         return v - (self.stiffness * v.real / curve(self, abs(v))) * z
-
-
-class SignSlip(Bristles):
-    """A minus too many in one direction."""
-
-    def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """Viscosity of speed in place of slip."""
-        return self.stiffness * z + self.damping * dz + self.viscosity * abs(v)
 
 
 class SignedBreakaway(BreakingAway):
@@ -76,36 +68,19 @@ class SpeedWithoutUnits(Falling):
     speed: Positive
 
 
-class ViscosityWithoutUnits(Falling):
-    """Viscosity is annotated as a mere number."""
-
-    viscosity: NonNegative
-
-
 class DampingInUnitsOfStiffness(Bristles):
     """Damping is annotated as a stiffness."""
 
     damping: Stiffness
 
 
-class HiddenLength(Bristles):
-    """A length written into the law."""
-
-    def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """Springs that harden over a thousandth of a scene length."""
-        return super().friction(v, z, dz) * (1.0 + abs(z) / (1e-3 + abs(z)))
-
-
 CASES = (
     Case(MissingAbs, Bristles, "oddness"),
-    Case(SignSlip, Bristles, "oddness"),
     Case(SignedBreakaway, BreakingAway, "oddness"),
     Case(PerAxis, Bristles, "rotation"),
     Case(SquareOfFriction, Falling, "rotation"),
     Case(Handed, Falling, "reflection"),
     Case(WeakerInThePlane, Falling, "straight_planar_slide"),
     Case(SpeedWithoutUnits, Falling, "unit_scaling"),
-    Case(ViscosityWithoutUnits, Falling, "unit_scaling"),
     Case(DampingInUnitsOfStiffness, Bristles, "unit_scaling"),
-    Case(HiddenLength, Bristles, "unit_scaling"),
 )

@@ -47,6 +47,10 @@ shares = st.floats(0.0, 1.0 - 1e-9)
 turns = st.builds(lambda angle: cmath.rect(1.0, angle), angles)
 
 
+def dot(a: complex, b: complex) -> float:
+    return (a * b.conjugate()).real
+
+
 def has_a_vector_form(law: Any) -> bool:
     return not law.no_vector_form()
 
@@ -347,3 +351,43 @@ def test_small_changes_of_slip_meet_the_impedance_of_lugre_friction(frequency):
         z = z + h / 6.0 * (dz + 2.0 * b + 2.0 * c + law.rate(slip(t + h), z + h * c))
 
     assert abs(total - point.impedance(1j * frequency)) <= 1e-3 * abs(point.impedance(1j * frequency))
+
+
+@every_law
+@given(data=st.data(), v=velocities, share=shares, turn=turns)
+def test_bristles_unload_elastically_where_the_law_says_so(name, data, v, share, turn):
+    law = data.draw(VECTOR_LAWS[name])
+    z = share * law.largest_deflection() * turn
+    z = z if dot(z, v) <= 0.0 else -z
+
+    if law.elastic_unloading():
+        assert law.rate(v, z) == v
+    elif share > 1e-3 and z != 0.0 and dot(z, v) < -1e-3 * abs(z) * abs(v):
+        assert abs(law.rate(v, z) - v) > 1e-7 * abs(v)
+
+
+@pytest.mark.parametrize("angle", [0.6, 1.5, 2.9])
+def test_radial_return_of_the_spring_approaches_the_tractrix_at_first_order(angle):
+    law = Jenkins(mu=1.0, stiffness=1.0)
+
+    def returned(steps: int) -> complex:
+        z = cmath.rect(1.0, angle)
+        for _ in range(steps):
+            z = z + 3.0 / steps
+            z = z / max(abs(z), 1.0)
+        return z
+
+    exact = law.deflected(cmath.rect(1.0, angle), 3.0 + 0.0j)
+    errors = [abs(returned(steps) - exact) for steps in (100, 1000)]
+    assert 8.0 < errors[0] / errors[1] < 12.0
+    assert errors[0] < 0.05
+
+
+@every_law
+def test_without_damping_viscosity_and_a_fall_friction_knows_only_the_path(name):
+    fields = {"mu_static": None, "damping": None, "viscosity": 0.0}
+    law = EXAMPLES[name]
+
+    assert law.model_copy(
+        update={field: value for field, value in fields.items() if hasattr(law, field)}
+    ).rate_independent()

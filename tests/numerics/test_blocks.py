@@ -58,14 +58,6 @@ def test_a_pair_times_its_inverse_is_the_identity(matrix: Any) -> None:
     assert matrix_of(turned_back) == pytest.approx(np.eye(2), abs=1e-9)
 
 
-@given(mean=number, split=number)
-def test_a_diagonal_scales_each_axis_by_itself(mean: float, split: float) -> None:
-    on_both = matrix_of(in_the_plane(blocks.diagonal)(mean, split, 0j))
-
-    assert on_both == pytest.approx(np.diag([mean + split, mean - split]), abs=1e-14)
-    assert blocks.diagonal(mean, split, 0.0) == mean + split
-
-
 @given(matrix=matrices)
 def test_an_array_keeps_a_map_on_the_line_and_in_the_plane(matrix: Any) -> None:
     vectors, numbers = np.zeros(4, complex), np.zeros(4)

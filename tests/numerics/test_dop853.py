@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from typing import NamedTuple
 
@@ -93,35 +92,6 @@ def test_powers_of_time_below_the_eighth_are_integrated_exactly(power):
         assert taken.x == pytest.approx(0.3 - 0.2 * h + second, rel=1e-14, abs=1e-15)
 
 
-def test_the_eighth_power_of_time_is_not():
-    taken = power_step(Power(8, 0.0), 0.0, 0.0, 0.0, 1.0)
-    assert abs(taken.v - 1.0 / 9.0) > 1e-9
-
-
-def test_free_motion_is_straight_and_has_no_error():
-    taken = power_step(Power(0, 0.0), 0.0, 1.0, 2.0, 0.5)
-    assert taken.x == pytest.approx(1.0 + 2.0 * 0.5 + 0.125, rel=1e-15)
-    for name in ("x_error5", "x_error3", "v_error5", "v_error3"):
-        assert abs(getattr(taken, name)) <= 1e-14, name
-
-
-def test_powers_the_error_estimates_are_blind_to_are_those_of_their_order():
-    for power in range(7):
-        taken = power_step(Power(power, 0.0), 0.0, 0.0, 0.0, 1.0)
-        assert (abs(taken.v_error5) < 1e-14) == (power < 5)
-        assert (abs(taken.v_error3) < 1e-14) == (power < 3)
-
-
-def test_a_spring_is_stepped_to_the_ninth_power_of_the_step():
-    def error(h):
-        taken = power_step(Power(0, 1.0), 0.0, 2.0, 0.0, h)
-        return abs(taken.x - (1.0 + math.cos(h)))
-
-    steps = np.array([0.5, 0.7, 1.0, 1.4])
-    slope = np.polyfit(np.log(steps), np.log([error(h) for h in steps]), 1)[0]
-    assert 8.5 <= slope <= 10.5
-
-
 def test_planar_coulomb_friction_is_integrated_to_order_eight():
     problem, start = Belt(10.0, 4.0, 5.0), (0.4 - 9.0j, 9.0 + 1.0j)
     end = 2.0 * math.pi
@@ -147,25 +117,9 @@ def test_a_step_is_known_to_order_seven_between_its_ends(share):
         assert errors[0] < 1e-12
 
 
-@pytest.mark.parametrize("share", [0.0, 1.0])
-def test_between_its_ends_a_step_ends_where_it_ends(share):
-    problem, start, h = Belt(10.0, 4.0, 5.0), (0.4 - 9.0j, 9.0 + 1.0j), 0.2
-    ended = belt_run(problem, *start, h, 1)[:2] if share else start
-    assert belt_within(problem, *start, h, share) == pytest.approx(ended, rel=1e-14)
-
-
 def test_the_error_estimates_shrink_with_their_order():
     problem, start = Belt(10.0, 2.0, 1.5), (0.4 - 9.0j, 9.0 + 1.0j)
     steps = np.array([0.05, 0.1, 0.2])
     fifth, third = np.array([belt_errors(problem, *start, h) for h in steps]).T
     assert 5.5 <= np.polyfit(np.log(steps), np.log(fifth), 1)[0] <= 7.0
     assert 3.5 <= np.polyfit(np.log(steps), np.log(third), 1)[0] <= 5.0
-
-
-def test_line_and_plane_are_one_step():
-    on_the_line = power_step(Power(2, 1.3), 0.2, 0.7, -0.4, 0.6)
-    turn = cmath.rect(1.0, 0.0)
-    in_the_plane = power_step(Power(2, 1.3), 0.2, 0.7 * turn, -0.4 * turn, 0.6)
-    assert in_the_plane.x.imag == in_the_plane.v.imag == 0.0
-    assert in_the_plane.x.real == pytest.approx(on_the_line.x, rel=1e-15)
-    assert in_the_plane.v.real == pytest.approx(on_the_line.v, rel=1e-15)

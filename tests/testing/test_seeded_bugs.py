@@ -21,9 +21,9 @@ def first_counterexample(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(running, "quietly", lambda examples, *phases: quietly(examples))
 
 
-def caught(law: type[FrictionLaw], case: Case) -> str:
+def caught(law: type[FrictionLaw], case: Case, examples: int | None = None) -> str:
     """What the check says against the law; '' where it passes."""
-    report = check_law(law, only=[case.check], examples=case.examples, on_failure="return")
+    report = check_law(law, only=[case.check], examples=examples or case.examples, on_failure="return")
     outcome = report.outcome(case.check)
     assert outcome.result in ("passed", "failed"), outcome.line()
     return outcome.counterexample
@@ -36,7 +36,7 @@ def test_a_seeded_bug_is_caught_by_the_check_meant_for_it(case: Case) -> None:
 
 @pytest.mark.parametrize("case", TWINS, ids=lambda case: f"{case.twin.__name__}-{case.check}")
 def test_the_law_without_the_bug_passes_that_check(case: Case) -> None:
-    assert caught(case.twin, case) == ""
+    assert caught(case.twin, case, 12) == ""
 
 
 @deep_alone

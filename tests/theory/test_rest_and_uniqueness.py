@@ -136,13 +136,6 @@ def test_falling_friction_is_measured_under_the_largest_normal_load(
     assert np.all(np.diff(never, axis=0) <= 1e-12 * never[0])
 
 
-def test_beyond_the_limit_of_the_largest_normal_load_motions_part_for_a_while() -> None:
-    where = shaken(2.0, "square", (0.0, 0.0, 0.0), damping_ratio=0.15)
-    apart = energies(followed(where, 0.3 / 2.2, 4))
-
-    assert np.any(np.diff(apart, axis=0) > 1e-9 * apart[:-1])
-
-
 def test_the_theorem_says_when_it_does_not_hold() -> None:
     where = shaken(2.0, "square", (0.0, 0.0, 0.0), damping_ratio=0.15)
     falls = Stribeck(mu_kinetic=0.4, mu_static=0.5, stribeck_speed=1.0, curve="hyperbolic")
@@ -160,14 +153,6 @@ def test_the_theorem_says_when_it_does_not_hold() -> None:
     assert not is_unique(where.model_copy(update={"damping_ratio": 0.0}), LAW)
     assert not is_unique(where, Dahl(mu=0.5, stiffness=10.0))
     assert not is_unique(Scene(belt_speed=1.0, slip={"velocity_amplitude": 1.0, "frequency": 1.0}), LAW)
-
-
-def test_motions_converge_on_a_belt_of_mean_speed_zero_that_leaves_no_rest() -> None:
-    where = shaken(0.0, "square", (0.0, 0.0, 0.0), damping_ratio=0.15)
-    apart = energies(followed(where, 0.0, 30))
-
-    assert is_unique(where, LAW)
-    assert apart[-1].max() <= 1e-3 * apart[0].min()
 
 
 def test_a_mass_that_rides_on_its_belt_has_more_than_one_motion() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import solve_ivp
 from scipy.special import i1e
 from strategies import sizes
 
@@ -24,9 +24,7 @@ from frictionlab.theory import (
     dahl_loop_area,
     dahl_path,
     jenkins_describing_function,
-    mean_prescribed_circular,
     mean_prescribed_longitudinal,
-    mean_prescribed_transverse,
     mean_soft_circular,
     mean_soft_dahl,
     mean_soft_elasto_plastic,
@@ -39,7 +37,6 @@ from frictionlab.theory import (
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 below_one = st.floats(1e-3, 0.999)
-ANGLE = 2 * np.pi * np.arange(4096) / 4096
 
 
 # Loops and their first harmonic
@@ -69,12 +66,6 @@ def test_soft_dahl_friction_is_a_spring_that_loses_the_cube_of_the_amplitude(a: 
     assert found.imag == pytest.approx(4 / (3 * math.pi) * a, rel=a**2 + 1e-14)
 
 
-def test_the_area_of_a_loop_loses_no_digits_where_its_forms_meet() -> None:
-    around = dahl_loop_area([1 - 1e-12, 1.0, 1 + 1e-12])
-
-    np.testing.assert_allclose(around, 4 * (1 - math.tanh(1)), rtol=1e-11)
-
-
 def test_jenkins_friction_is_a_spring_until_its_slider_moves_and_coulombs_far_beyond() -> None:
     a = np.logspace(2, 8, 50)
     found = jenkins_describing_function(a)
@@ -85,33 +76,12 @@ def test_jenkins_friction_is_a_spring_until_its_slider_moves_and_coulombs_far_be
     np.testing.assert_allclose(found.imag * a, 4 / np.pi * (1 - 1 / a), rtol=1e-14)
 
 
-@pytest.mark.parametrize("a", [1.0 + 1e-9, 1.05, 1.3, 2.5, 15.0, 20.0])
-def test_jenkins_friction_over_a_sine_has_the_fundamental_of_its_loop(a: float) -> None:
-    def unloading(angle: float) -> float:  # from the end of a stroke: the spring first, then the slider
-        return max(1.0 - a * (1.0 - math.cos(angle)), -1.0)
-
-    corner = [2.0 * math.asin(1.0 / math.sqrt(a))]
-    cosine = quad(lambda angle: unloading(angle) * math.cos(angle), 0, math.pi, points=corner)[0]
-    sine = quad(lambda angle: unloading(angle) * math.sin(angle), 0, math.pi, points=corner)[0]
-
-    expected = 2.0 / (math.pi * a) * complex(cosine, -sine)
-    assert abs(complex(jenkins_describing_function(a)) - expected) <= 1e-10
-
-
 @given(st.floats(-0.999, 0.999), st.floats(-0.999, 0.999))
 def test_creep_needs_forces_of_unequal_size_and_goes_the_way_of_the_larger(low: float, high: float) -> None:
     assert dahl_drift(-high, high) == 0
     assert dahl_drift(low, high) == -dahl_drift(high, low)
     assume(abs(high) > abs(low) + 1e-6)
     assert dahl_drift(low, high) > 0
-
-
-@pytest.mark.parametrize("exponent", [0.0, 0.5, 1.0, 1.5, 3.0])
-@pytest.mark.parametrize("start", [-1.0, 0.3, 1.4])
-def test_a_path_of_no_length_changes_nothing_and_its_parts_add_up(start: float, exponent: float) -> None:
-    assert dahl_path(start, 0.0, exponent) == pytest.approx(start)
-    parts = dahl_path(dahl_path(start, 0.2, exponent), 0.5, exponent)
-    assert parts == pytest.approx(dahl_path(start, 0.7, exponent), abs=1e-14)
 
 
 @given(st.floats(-3, 3), sizes(1e-6, 1e3), st.floats(1e-12, 1e-4))
@@ -133,33 +103,6 @@ def test_soft_means_are_those_computed_by_quadrature_elsewhere() -> None:
     np.testing.assert_allclose(transverse, [0.07806354, 0.41403702, 0.82236387, 0.97349718], atol=5e-9)
     assert mean_soft_transverse(0.5) == pytest.approx(0.5961, abs=5e-5)
     assert mean_soft_circular(0.3) == pytest.approx(0.293, abs=5e-4)
-
-
-@pytest.mark.parametrize("ratio", [0.05, 0.6, 1.0, 1.4, -0.6])
-def test_soft_means_are_mean_velocity_over_mean_speed(ratio: float) -> None:
-    across, turning = ratio + 1j * np.sin(ANGLE), ratio + np.exp(1j * ANGLE)
-
-    assert mean_soft_transverse(ratio) == pytest.approx(ratio / np.mean(abs(across)), rel=1e-10)
-    assert mean_soft_circular(ratio) == pytest.approx(ratio / np.mean(abs(turning)), rel=1e-6)
-    assert mean_soft_dahl(ratio) == pytest.approx(ratio / np.mean(abs(ratio + np.sin(ANGLE))), rel=1e-6)
-
-
-@given(st.floats(1e-4, 0.9999))
-def test_soft_bristles_raise_longitudinal_and_circular_means_and_lower_transverse_ones(ratio: float) -> None:
-    assert mean_soft_dahl(ratio) > mean_prescribed_longitudinal(ratio)
-    assert mean_soft_circular(ratio) > mean_prescribed_circular(ratio)
-    assert mean_soft_transverse(ratio) < mean_prescribed_transverse(ratio)
-
-
-@given(st.floats(0.9, 1.0))
-def test_the_slip_back_loses_no_digits_where_it_ends(ratio: float) -> None:
-    angle = math.acos(ratio)
-    back, forth = slip_back_and_forth(ratio)
-    lead = 2 * angle**3 / 3 * (1 - angle**2 / 10 + angle**4 / 280 - angle**6 / 15120 + angle**8 / 1330560)
-
-    assert back == pytest.approx(lead, rel=1e-11)
-    assert forth - back == pytest.approx(2 * math.pi * ratio, rel=1e-14)
-    assert float(slip_back_and_forth(1.3)[0]) == 0.0
 
 
 def one_period(law: Dahl | Jenkins, ratio: float) -> float:
@@ -259,32 +202,6 @@ def test_a_mass_slides_steadily_where_every_root_of_its_equation_decays(
         )
 
 
-def test_damping_steadies_bristles_that_lead_a_falling_characteristic() -> None:
-    contact = SteadySliding(slope=-0.5, lag=0.1, lead=1.0, viscosity=0.1)
-
-    assert max(np.roots([0.1, 1 + 0.11 - 0.5, 0.1 + 1.1 - 0.5, 1.0]).real) < 0
-    assert contact.stable(damping=1.0, stiffness=1.0)
-
-
-def test_bristles_that_lead_a_falling_characteristic_too_far_let_go() -> None:
-    contact = SteadySliding(slope=-0.5, lag=0.1, lead=2.0, viscosity=0.1)
-
-    assert max(np.roots([0.1, 1 + 0.11 - 1.0, 0.1 + 1.1 - 0.5, 1.0]).real) > 0
-    assert not contact.stable(damping=1.0, stiffness=1.0)
-
-
-def test_the_impedance_runs_from_the_slope_to_that_of_the_bristle_dashpots() -> None:
-    contact = SteadySliding(slope=-0.3, lag=2.0, lead=0.5, viscosity=0.1)
-
-    assert contact.impedance(0) == pytest.approx(-0.2)
-    assert contact.impedance(1e12j) == pytest.approx(-0.3 * 0.5 / 2.0 + 0.1, abs=1e-9)
-
-
-def test_bristles_that_lag_steady_a_falling_characteristic() -> None:
-    assert not SteadySliding(slope=-0.3, lag=1e-6).stable(damping=0.2, stiffness=1.0)
-    assert SteadySliding(slope=-0.3, lag=2.0).stable(damping=0.2, stiffness=1.0)
-
-
 @given(friction=sizes(1e-2, 1e2), acceleration=sizes(1e-2, 1e2))
 def test_the_kick_of_a_reversal_is_what_dahl_friction_adds_to_the_velocity(
     friction: float, acceleration: float
@@ -299,7 +216,3 @@ def test_the_kick_of_a_reversal_is_what_dahl_friction_adds_to_the_velocity(
     gained = found.y[1, -1] - acceleration * 40 * fast
 
     assert gained == pytest.approx(reversal_kick(friction, acceleration) * math.sqrt(length), rel=1e-6)
-
-
-def test_the_kick_of_weak_friction_is_that_of_a_path_it_does_not_change() -> None:
-    assert reversal_kick(1e-9, 2.0) / 1e-9 == pytest.approx(math.sqrt(2 * math.pi / 2.0), rel=1e-8)

@@ -19,11 +19,7 @@ from outside_forcing import BELT1, LOAD1, NORMAL, forcing
 from profiles import DEEP, deep
 from scenes_of_every_kind import (
     COULOMB,
-    DAHL,
-    IN_THE_PLANE,
-    LUGRE,
     ON_THE_LINE,
-    PRESCRIBED,
     SCENES,
     line,
     plane,
@@ -129,15 +125,6 @@ def test_a_sine_of_the_belt_is_a_drive(phase, belt_speed):
     assert mean(shaken) == pytest.approx(mean(driven), abs=1e-10)
 
 
-@deep("kernels of bristles")
-@pytest.mark.parametrize("law", [DAHL, LUGRE], ids=lambda law: law["kind"])
-def test_a_sine_of_the_belt_is_a_drive_of_bristles(law):
-    shaken = line(1.5, {}, belt_vibration={"velocity_amplitude": 3.0, "phase": 50.0})
-    both = shaken["drive"]["amplitude"] + of_belt(shaken, 3.0, math.radians(50.0))
-    driven = line(1.5, {"amplitude": abs(both), "phase": math.degrees(np.angle(both))})
-    assert mean(shaken, law) == pytest.approx(mean(driven, law), abs=1e-10)
-
-
 def test_a_slider_pulled_over_a_plate_is_the_scene_seen_from_the_plate():
     """By its own equations, with scipy: the far end of the spring moves evenly, the plate vibrates, no stick."""
     speed, mu, load, damping, swing, omega = 3.0, 0.4, 2.0, 0.2, 5.0, 1.4
@@ -194,43 +181,6 @@ def test_a_direction_is_two_loads(angle, waveform):
     assert mean(turned) == pytest.approx(mean(plane(3.0, one, other)), abs=1e-10)
 
 
-@pytest.mark.parametrize(
-    ("one", "other"),
-    [
-        ({"waveform": {"harmonics": [{"order": 1, "amplitude": 1.0}]}}, {}),
-        (
-            {"waveform": {"harmonics": [{"order": 1, "amplitude": 0.5, "phase": 30.0}]}},
-            {"amplitude": 5.0, "phase": 30.0},
-        ),
-        ({"waveform": "square", "phase": 180.0}, {"waveform": "square", "phase": -180.0}),
-        ({"waveform": "sine"}, {}),
-    ],
-    ids=["first harmonic", "half of it, later", "a turn later", "named"],
-)
-def test_drives_that_are_the_same(one, other):
-    assert mean(line(2.0, one)) == pytest.approx(mean(line(2.0, other)), abs=1e-10)
-
-
-@pytest.mark.parametrize(
-    "more",
-    [
-        {"belt_vibration": {"velocity_amplitude": 0.0, "waveform": "square"}},
-        {"normal_load_variation": {"amplitude": 0.0, "frequency_ratio": "3/2"}},
-    ],
-    ids=["belt", "load"],
-)
-def test_what_changes_by_nothing_is_left_out(more):
-    assert mean(line(2.0, {}, **more)) == pytest.approx(mean(line(2.0, {})), abs=1e-10)
-
-
-@pytest.mark.parametrize("part", ["belt_vibration", "normal_load_variation"])
-def test_a_frequency_ratio_of_one_is_none(part):
-    size = {"velocity_amplitude": 2.0} if part == "belt_vibration" else {"amplitude": 0.4}
-    without = line(2.0, {}, **{part: size | {"waveform": "triangle"}})
-    given = line(2.0, {}, **{part: size | {"waveform": "triangle", "frequency_ratio": 1}})
-    assert mean(given) == pytest.approx(mean(without), abs=1e-10)
-
-
 def test_a_triangle_is_the_limit_of_its_harmonics():
     """The mean comes nearer as the third power of how many are kept, or faster."""
     whole = mean(line(2.0, {"waveform": "triangle", "amplitude": 14.0}))
@@ -245,13 +195,6 @@ def test_a_triangle_is_the_limit_of_its_harmonics():
         off.append(abs(mean(line(2.0, {"waveform": {"harmonics": terms}, "amplitude": 14.0})) - whole))
     assert off[1] < off[0] / 5.0**2
     assert off[1] < 1e-4
-
-
-def test_the_truth_has_its_closed_form():
-    """mu v_b/V of slip in a triangle."""
-    scene, law = PRESCRIBED["slip in a triangle"]
-    true = float(TRUTH["slip in a triangle"]["mean_friction"])
-    assert true == pytest.approx(law["mu"] * scene["belt_speed"], abs=1e-13)
 
 
 @given(convergent())
@@ -273,10 +216,6 @@ def test_signals_are_those_of_the_contract(drawn):
             assert value[index] == pytest.approx(
                 signal(tau) + mean_value, abs=1e-9 * (1.0 + abs(value).max())
             )
-
-
-def test_scenes_of_all_kinds_are_among_the_sixty():
-    assert (len(ON_THE_LINE), len(IN_THE_PLANE), len(PRESCRIBED)) == (40, 12, 8)
 
 
 @deep("seconds of steps")

@@ -316,14 +316,6 @@ def test_mean_friction_under_prescribed_slip_rises_with_belt_speed_up_to_the_coe
     np.testing.assert_allclose(mean, -mean[::-1], atol=float((error + error[::-1]).max()))
 
 
-@given(amplitude=sizes(0.01, 100.0), ratio=st.floats(1.0, 100.0), side=signs)
-def test_a_belt_that_outruns_a_prescribed_slip_feels_full_friction(amplitude, ratio, side):
-    slip = Slip(velocity_amplitude=amplitude, frequency=1.0)
-    answers = with_columns(Exact(), [Scene(belt_speed=side * ratio * amplitude, slip=slip)], LAW, 1e-11)
-
-    assert answers.columns["mean_friction"][0] == pytest.approx(side * MU, abs=answers.columns["error"][0])
-
-
 # --- energies -----------------------------------------------------------------------------------------------------
 
 
@@ -359,20 +351,6 @@ def test_without_a_load_across_the_belt_the_plane_is_the_line(scene):
         assert np.all(found.orbit.friction.imag == 0.0)
 
 
-@given(scene=scenes_on_the_line(), factor=sizes(1e-3, 1e3))
-def test_the_curve_scales_with_the_load_on_the_line(scene, factor):
-    drive = moved(scene.drive, amplitude=factor * scene.drive.amplitude)
-    one = exact(scene)
-    other = exact(
-        moved(
-            scene, drive=drive, normal_load=factor * scene.normal_load, belt_speed=factor * scene.belt_speed
-        )
-    )
-
-    assert other.mean_friction == pytest.approx(one.mean_friction, abs=one.error + other.error)
-    assert other.velocity_amplitude == pytest.approx(factor * one.velocity_amplitude, rel=1e-9)
-
-
 @given(scene=scenes_in_the_plane(), factor=sizes(0.1, 10.0))
 def test_the_curve_scales_with_the_load_in_the_plane(scene, factor):
     drive = moved(scene.drive, amplitude=factor * scene.drive.amplitude)
@@ -389,15 +367,6 @@ def test_the_curve_scales_with_the_load_in_the_plane(scene, factor):
     )
 
     assert other.mean_friction == pytest.approx(one.mean_friction, abs=one.error + other.error)
-
-
-@given(scene=scenes_on_the_line(), factor=sizes(0.01, 100.0))
-def test_normal_load_and_coefficient_count_only_as_their_product(scene, factor):
-    one = exact(scene)
-    other = exact(moved(scene, normal_load=scene.normal_load / factor), Coulomb(mu=MU * factor))
-
-    within = one.error + other.error / factor
-    assert other.mean_friction / factor == pytest.approx(one.mean_friction, abs=within)
 
 
 # undamped and slow, superharmonics resonate at 1/3, 1/5, ...: there Den Hartog's formula divides by zero

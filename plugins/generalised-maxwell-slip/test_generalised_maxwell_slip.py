@@ -74,22 +74,6 @@ def test_the_reference_of_constant_friction_is_maxwell_slip_along_a_line(name):
     assert abs(found.mean_friction - float(row["mean_friction"])) <= found.error <= TOLERANCE
 
 
-@compiling
-@pytest.mark.parametrize("attraction", [0.01, 1.0, 100.0])
-def test_along_a_line_and_with_constant_friction_it_is_maxwell_slip_whatever_the_attraction(attraction):
-    law = GeneralisedMaxwellSlip(
-        share=[0.5, 0.375, 0.125], stiffness=[1, 3, 10], mu_kinetic=0.4, attraction=attraction
-    )
-
-    found = fl.steady_state(BODY, law, "shooting", tolerance=TOLERANCE)
-    same = fl.steady_state(
-        BODY, MaxwellSlip(mu=[0.2, 0.15, 0.05], stiffness=[1, 3, 10]), "shooting", tolerance=1e-8
-    )
-
-    assert found.status == "ok", found.reason
-    assert abs(found.mean_friction - same.mean_friction) <= found.error + same.error
-
-
 def test_equal_elements_of_constant_friction_are_jenkins_along_a_line():
     law = GeneralisedMaxwellSlip(share=[1, 1, 1], stiffness=[4 / 3] * 3, mu_kinetic=0.4, attraction=2)
 
@@ -98,28 +82,6 @@ def test_equal_elements_of_constant_friction_are_jenkins_along_a_line():
 
     assert found.status == "ok", found.reason
     assert abs(found.mean_friction - same.mean_friction) <= found.error + same.error
-
-
-@compiling
-@pytest.mark.parametrize("attraction", [1.0, 10.0])
-def test_while_every_element_slips_in_the_plane_the_mean_of_constant_friction_is_coulombs(attraction):
-    slip, across = (
-        fl.Slip(velocity_amplitude=10, frequency=1),
-        fl.TransverseSlip(velocity_amplitude=10, phase=90),
-    )
-    scene = fl.Scene(belt_speed=1, slip=slip, transverse_slip=across)
-    law = GeneralisedMaxwellSlip(
-        share=[0.5, 0.375, 0.125], stiffness=[1, 3, 10], mu_kinetic=0.4, attraction=attraction
-    )
-
-    found = fl.steady_state(scene, law, tolerance=TOLERANCE)
-    coulomb = fl.steady_state(scene, fl.Coulomb(mu=0.4), tolerance=TOLERANCE)
-
-    assert found.status == "ok", found.reason
-    assert found.mean_friction > 0.01
-    assert (
-        abs(found.mean_friction - coulomb.mean_friction) <= found.error + coulomb.error
-    )  # 0 = e - f/s in the mean
 
 
 @given(pairs=elements, v=vectors, z=vectors)

@@ -7,7 +7,7 @@ import itertools
 from pathlib import Path
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from maxwell_slip import MaxwellSlip
 
@@ -75,51 +75,6 @@ def test_after_a_closed_minor_loop_force_is_what_it_was_before(pairs, before, mi
     assert force(law, closed) == pytest.approx(force(law, memory), abs=1e-12 * law.sliding_friction(0.0))
 
 
-@given(pairs=elements, turn=turns)
-def test_after_a_long_slide_every_element_is_at_its_steady_deflection(pairs, turn):
-    law = law_of(pairs)
-    memory = law.deflected([0.5j * reach for reach in law.reach], 100.0 * max(law.reach) * turn)
-
-    assert memory == pytest.approx([law.steady(turn, k) for k in range(law.count())], rel=1e-12)
-    assert abs(law.friction(turn, memory, memory)) == pytest.approx(law.sliding_friction(1.0))
-    assert law.within(memory)
-
-
-@settings(deadline=None, max_examples=20)
-@given(pairs=elements, path=turns)
-def test_its_rates_lead_where_the_exact_path_does(pairs, path):
-    law, steps = law_of(pairs), 4000
-    memory = [0.3j * reach for reach in law.reach]
-    end = law.deflected(memory, path)
-
-    for _ in range(steps):
-        memory = [z + law.rate(path, memory, k) / steps for k, z in enumerate(memory)]
-    assert memory == pytest.approx(end, abs=20.0 / steps)
-
-
-@settings(deadline=None, max_examples=20)
-@given(pairs=elements, path=turns)
-def test_the_work_of_a_slip_is_stored_or_lost(pairs, path):
-    law, steps = law_of(pairs), 200
-    memory, work = [0.0j] * len(pairs), 0.0
-    for _ in range(steps):
-        work += (law.friction(path, memory, memory) * path.conjugate()).real / steps
-        memory = law.deflected(memory, path / steps)
-        work += (law.friction(path, memory, memory) * path.conjugate()).real / steps
-
-    assert work / 2.0 >= law.stored(memory) - 1e-9
-
-
-@given(mu=sizes, stiffness=sizes, v=turns, z=turns, beyond=st.floats(1e-9, 0.5))
-def test_a_spring_beyond_its_reach_comes_back_to_it(mu, stiffness, v, z, beyond):
-    law = MaxwellSlip(mu=[mu], stiffness=[stiffness])
-    memory = [(1.0 + beyond) * law.reach[0] * z]
-    assume(abs((v * z.conjugate()).real) > 1e-6)
-
-    assert not law.within(memory) or beyond < 2e-9
-    assert (law.rate(v, memory, 0) * memory[0].conjugate()).real < 0.0
-
-
 def test_under_a_given_slip_the_means_of_its_elements_add_up():
     law, mean = MaxwellSlip(mu=[0.2, 0.1, 0.1], stiffness=[0.2, 0.02, 0.005]), 0.0
     scene = fl.Scene(belt_speed=5, slip=fl.Slip(velocity_amplitude=10, frequency=1))
@@ -136,14 +91,3 @@ def test_its_study_keeps_its_promises():
 
     assert [verdict.sentence for verdict in done.verdicts if not verdict.passed] == []
     assert set(done.table["status"]) == {"ok"}
-
-
-def test_elements_that_go_on_yielding_are_followed_in_long_steps_to_the_mean_time_stepping_finds():
-    law = MaxwellSlip(mu=[0.15, 0.1, 0.15], stiffness=[10, 2, 0.5])
-    drive = fl.Drive(unbalance=10, frequency=1.5)
-    scene = fl.Scene(damping_ratio=0.4, normal_load=10, belt_speed=0.5, drive=drive)
-
-    found = fl.steady_state(scene, law, "shooting", tolerance=1e-6)
-
-    assert found.status == "ok", found.reason
-    assert abs(found.mean_friction - 0.00764493) <= 1e-6  # march of 32704 steps per period, error 6e-7

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from pathlib import Path
 from typing import Any
@@ -142,18 +141,6 @@ def test_a_mass_on_a_spring_is_unstable_below_the_stiffness_of_rice_and_ruina(la
 
     critical = (law.b - law.a) / law.slip_length * (1.0 + mass * speed**2 / (law.a * law.slip_length))
     assert brentq(growth, 0.5 * critical, 2.0 * critical, xtol=1e-12) == pytest.approx(critical, rel=1e-6)
-
-
-@both
-@given(v=st.floats(-10.0, 10.0), age=st.floats(1e-3, 1e3), turn=st.floats(-3.1, 3.1))
-def test_it_turns_with_the_slip_and_is_continuous_through_rest(law, v, age, turn):
-    turned = cmath.rect(1.0, turn)
-    friction = law.friction(v, [age], [0.0])
-
-    assert law.friction(-v, [age], [0.0]) == -friction
-    assert law.friction(turned * v, [age], [0.0]) == pytest.approx(turned * friction, rel=1e-12)
-    assert law.friction(0.0, [age], [0.0]) == 0.0
-    assert abs(law.friction(1e-60, [age], [0.0])) < 1e-20
 
 
 def test_a_contact_at_rest_heals_by_the_ageing_law_alone():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import subprocess
 import sys
 import threading
@@ -19,7 +18,7 @@ import frictionlab as fl
 from frictionlab.compile import cache, call, interpret
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import inner, njit
-from frictionlab.compile.interpret import TooLong, interpreted, limited_to
+from frictionlab.compile.interpret import interpreted, limited_to
 from frictionlab.compile.notice import compiled_here
 
 
@@ -128,12 +127,6 @@ def friction_at(law, v):
     return law.sliding_vector(v)
 
 
-def test_a_limit_of_time_ends_with_its_block():
-    with limited_to(0.0), pytest.raises(TooLong):
-        interpreted(_work)(1.0)
-    assert interpreted(_work)(1.0) == 1.0
-
-
 def test_a_limit_of_time_is_that_of_one_thread():
     done = []
     with limited_to(0.0):
@@ -213,26 +206,6 @@ def test_a_first_answer_compiles_nothing(without_kernels):
 
     assert done.stdout == "ok\n"
     assert suffixes(without_kernels) == set()
-
-
-def test_everything_is_compiled_at_once_where_that_is_asked_for(without_kernels):
-    with call.compiling_at_once():
-        assert KernelCall(halve_slowly)(np.array([1.0]), 1) == 0.5
-    assert suffixes(without_kernels) == {".kernel"}
-
-
-def test_everything_is_compiled_at_once_where_the_environment_asks_for_it():
-    asks = "from frictionlab.compile import call; print(call._choice.always_compile)"
-    told = [
-        subprocess.run(
-            [sys.executable, "-c", asks], env=environment, capture_output=True, text=True, check=True
-        ).stdout
-        for environment in (
-            {**os.environ, "FRICTIONLAB_COMPILE": "always"},
-            {**os.environ, "FRICTIONLAB_COMPILE": ""},
-        )
-    ]
-    assert told == ["True\n", "False\n"]
 
 
 def test_the_columns_of_a_table_count_no_time_of_compiling(without_kernels, monkeypatch):

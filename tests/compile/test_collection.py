@@ -40,13 +40,3 @@ def test_the_collector_is_on_again_after_a_function_that_cannot_be_compiled():
         seen_while_compiling(fails=True)
 
     assert gc.isenabled()
-
-
-def test_a_collector_that_was_off_stays_off():
-    gc.disable()
-    try:
-        seen_while_compiling()
-
-        assert not gc.isenabled()
-    finally:
-        gc.enable()

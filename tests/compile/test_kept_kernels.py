@@ -12,7 +12,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from profiles import deep
 
 from frictionlab.compile import cache, kept
 from frictionlab.compile.cache import compiled
@@ -126,30 +125,6 @@ def test_a_kernel_under_the_name_of_another_is_not_run(folder, file, capfd):
     assert "it is that of another kernel" in capfd.readouterr().err
 
 
-def test_a_folder_in_the_place_of_a_kernel_is_left_alone(file, capfd):
-    file.unlink()
-    file.mkdir()
-    (file / "something of a person").write_text("kept")
-
-    assert first_call() == 3.0
-
-    unread, unwritten = capfd.readouterr().err.splitlines()
-    assert unread == f"kernel cache: {file} cannot be read (Is a directory); its kernel is compiled afresh"
-    assert "kernels cannot be kept in" in unwritten
-    assert (file / "something of a person").read_text() == "kept"
-
-
-def test_a_kernel_that_may_not_be_read_is_compiled_afresh(file, monkeypatch, capfd):
-    def denied(path: Path) -> bytes:  # permissions do not stop an administrator
-        raise PermissionError(13, "Permission denied", str(path))
-
-    monkeypatch.setattr(Path, "read_bytes", denied)
-
-    assert first_call() == 3.0
-
-    assert "cannot be read (Permission denied)" in capfd.readouterr().err
-
-
 def test_a_cache_removed_while_a_program_runs_is_written_anew(folder, file, capfd):
     file.unlink()
     folder.rmdir()
@@ -223,31 +198,6 @@ def test_what_a_killed_process_did_not_finish_is_removed_by_a_later_one(folder, 
 
     assert fresh.exists()
     assert not left.exists()
-
-
-def test_an_edit_of_where_kernels_are_kept_recompiles_none():
-    assert Path(kept.__file__).read_bytes() not in cache._COMPILER
-    assert Path(cache.__file__).read_bytes() in cache._COMPILER
-
-
-PROCESS = """
-from frictionlab.compile.cache import compiled
-from test_kept_kernels import difference
-print(compiled(difference)(5.0, 2.0))
-"""
-
-
-@deep("ten processes take a minute")
-def test_ten_processes_on_a_cold_cache_are_all_right(folder):
-    places = Path(__file__).parent, Path(__file__).parents[1]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, places))}
-    racing = [
-        subprocess.Popen([sys.executable, "-c", PROCESS], env=environment, stdout=subprocess.PIPE, text=True)
-        for _ in range(10)
-    ]
-
-    assert [process.communicate(timeout=300)[0] for process in racing] == ["3.0\n"] * 10
-    assert len(kernels(folder)) == len(list(folder.iterdir())) == 1
 
 
 INTERPRETED = """

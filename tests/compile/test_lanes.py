@@ -154,13 +154,3 @@ def test_the_least_of_eight_is_in_every_lane():
     interpreted(over_lanes(_least))(np.concatenate([A, B]), longer)
     assert (out == -40.0).all()
     assert longer.tolist() == [-40.0] * LANE_COUNT + [-7.0] * LANE_COUNT
-
-
-@njit
-def _chosen_of_one(x):
-    return select(x > 1.0, x, -1.0)
-
-
-def test_of_one_number_the_choice_is_pythons():
-    assert [_chosen_of_one(x) for x in (0.5, 2.0, math.nan)] == [-1.0, 2.0, -1.0]
-    assert type(interpreted(_chosen_of_one)(2.0)) is float

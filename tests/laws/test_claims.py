@@ -12,8 +12,6 @@ from frictionlab.laws.base import FrictionLaw, SlidingLaw
 from frictionlab.laws.compliant import CompliantLaw
 from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.decay import exp_power_decay, steepest_slope
-from frictionlab.laws.elasto_plastic import ElastoPlastic
-from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import BristleLaw, MemoryLaw, bristle_in_the_plane
 from frictionlab.laws.stribeck import Stribeck
@@ -108,10 +106,6 @@ def test_a_memory_that_says_nothing_turns_with_the_slip_and_is_none_in_steady_sl
     assert SilentMemory().steady(0.0, 0) == SilentMemory().steady(2.0, 0) == 0.0
 
 
-def test_jenkins_friction_knows_its_way_along_a_path() -> None:
-    assert Jenkins(mu=0.4, stiffness=1).exact_path()
-
-
 @pytest.mark.parametrize(("curve", "steepest"), [("hyperbolic", 1.0), ("hess-soom", 0.375 * math.sqrt(3.0))])
 def test_a_rational_fall_is_as_steep_as_at_its_inflection(curve: Any, steepest: float) -> None:
     law = Stribeck(mu_kinetic=0.3, mu_static=0.5, stribeck_speed=2, curve=curve)
@@ -151,18 +145,6 @@ class Rising(SilentSliding):
 
 def test_friction_that_does_not_fall_has_a_steepest_fall_of_zero_without_saying_so() -> None:
     assert Even().steepest_fall() == Rising().steepest_fall() == 0.0
-
-
-@pytest.mark.parametrize("law", [LuGre, ElastoPlastic])
-@pytest.mark.parametrize("mu_static", [0.3, 0.5, 1.3])
-def test_steady_friction_of_bristles_is_the_curve_of_stribeck_friction(law: Any, mu_static: float) -> None:
-    told = {"mu_kinetic": 0.3, "mu_static": mu_static, "stribeck_speed": 2.0, "stribeck_exponent": 1.3}
-    bristles = law(**told, stiffness=5)
-
-    for speed in (0.0, 0.1, 1.7, 3.0, 40.0):
-        assert bristles.sliding_friction(speed) == pytest.approx(
-            Stribeck(**told).sliding_friction(speed), rel=1e-15
-        )
 
 
 def test_viscosity_helps_bristles_to_damp_motion_across_up_to_a_speed() -> None:
@@ -209,17 +191,6 @@ def test_a_memory_that_says_nothing_is_one_number_of_any_size_that_stores_nothin
     assert not law.passive()
 
 
-@pytest.mark.parametrize("viscosity", [0.0, 0.1, 10.0])
-@pytest.mark.parametrize("mu_static", [0.3, 0.5, 1.3])
-@pytest.mark.parametrize("exponent", [0.5, 3.0])
-def test_bristles_fall_as_steeply_as_the_curve_they_are_on(
-    exponent: float, mu_static: float, viscosity: float
-) -> None:
-    curve = {"mu_kinetic": 0.3, "mu_static": mu_static, "stribeck_exponent": exponent, "viscosity": viscosity}
-
-    assert LuGre(stiffness=10.0, **curve).steepest_fall() == Stribeck(**curve).steepest_fall()
-
-
 class Counting(SilentSliding):
     """Properties of every kind."""
 
@@ -253,12 +224,3 @@ def test_every_family_says_how_much_it_remembers_and_one_that_declares_no_memory
     assert Silent().memory_kind == "undeclared"
     assert [law.memory_kind for law in laws] == ["none", "bristle", "deflections", "scalars"]
     assert [law.count() for law in laws] == [0, 1, 1, 1]
-
-
-def test_a_law_that_says_nothing_of_the_plane_is_one_of_vectors_that_damps_across_and_never_elastic() -> None:
-    for law in (SilentSliding(), SilentBristles(), SilentMemory()):
-        assert law.planar_form() == "vectorial"
-        assert law.no_vector_form() == ""
-        assert law.damps_across(1.0)
-        assert law.elastic_deflection() == 0.0
-    assert not SilentBristles(planar="rotated").damps_across(1.0)

@@ -9,9 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import pytest
-from hypothesis import strategies as st
 from maxwell_slip import MaxwellSlip
-from memory_laws import Ageing
 from pydantic import Field
 
 from frictionlab.cli import main
@@ -21,11 +19,11 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.elasto_plastic import ElastoPlastic
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.memory import BristleLaw
-from frictionlab.testing import CHECKS, Check, LawFailed, check_law
+from frictionlab.testing import CHECKS, LawFailed, check_law
 from frictionlab.testing.check import law_check
 from frictionlab.testing.example import Given
 from frictionlab.testing.running import run_check
-from frictionlab.testing.strategies import fullest_laws, loaded_laws, numbers
+from frictionlab.testing.strategies import fullest_laws
 
 QUICK = [each.name for each in CHECKS if each.patience == 1.0]
 """The checks that compile nothing."""
@@ -50,15 +48,6 @@ class Lopsided(SlidingLaw):
         return (1.1 if v.real > 0.0 else 1.0) * self.mu * v / abs(v)
 
 
-def test_coulomb_friction_passes_every_quick_check_and_is_told_what_ran() -> None:
-    report = check_law(Coulomb, only=QUICK, examples=10)
-
-    assert report.passed
-    assert [outcome.check for outcome in report.outcomes] == QUICK
-    assert report.outcome("oddness").examples == 10
-    assert report.outcome("passivity").reason == "without memory"
-
-
 def test_a_law_that_fails_raises_with_the_smallest_counterexample() -> None:
     with pytest.raises(
         LawFailed, match=r"oddness: slip turned round: friction: got .*Lopsided\(mu=1\)"
@@ -81,15 +70,6 @@ def test_an_expected_failure_needs_its_reason_and_fails_where_the_law_passes() -
         check_law(Lopsided, expected_failures={"odness": "a ratchet"})
     with pytest.raises(ValueError, match="say why"):
         check_law(Lopsided, expected_failures={"oddness": " "})
-
-
-def test_a_law_names_its_own_expected_failures() -> None:
-    class Ratchet(Lopsided):
-        """Friction that is larger one way than the other."""
-
-        expected_failures = {"oddness": "a ratchet"}  # noqa: RUF012
-
-    assert check_law(Ratchet, only=["oddness"]).passed
 
 
 def test_a_check_that_ran_nothing_has_failed() -> None:
@@ -134,18 +114,6 @@ def test_laws_are_drawn_with_every_parameter_they_may_be_given(law: type[Frictio
     assert seen == set(law.model_fields)
 
 
-def test_numbers_keep_within_their_limits() -> None:
-    for low, high in ((0.0, math.inf), (1.0, math.inf), (0.0, 1.0), (-math.inf, math.inf), (-math.inf, 2.0)):
-
-        @law_check()
-        def drawn(one: Given, low: float = low, high: float = high) -> None:
-            """Numbers."""
-            assert low <= one.draw("number", numbers(low, high)) <= high
-
-        assert run_check(drawn, Coulomb, 50, 60.0).result == "passed"
-    assert isinstance(loaded_laws(Coulomb), st.SearchStrategy)
-
-
 def test_the_command_prints_a_table_records_or_markdown(
     capsys: pytest.CaptureFixture[str], monkeypatch: Any
 ) -> None:
@@ -161,16 +129,6 @@ def test_the_command_prints_a_table_records_or_markdown(
     assert "| frozen | passed | 1 |  |" in capsys.readouterr().out
     assert main(["laws", "test", "coulom"]) == 2
     assert "unknown law 'coulom'; installed: " in capsys.readouterr().err
-
-
-def test_the_command_ends_with_3_where_a_check_fails(monkeypatch: Any) -> None:
-    @law_check()
-    def never(one: Given) -> None:
-        """What never comes up."""
-        one.law(lambda law: False)
-
-    monkeypatch.setattr("frictionlab.testing.battery.CHECKS", (never,))
-    assert main(["laws", "test", "coulomb", "--examples", "2"]) == 3
 
 
 class Leaking(MaxwellSlip):
@@ -189,10 +147,6 @@ def test_a_slider_that_meets_its_limit_between_two_steps_keeps_within_it_and_one
 
     assert kept.passed
     assert "leads the memory out of its set" in (left.outcomes[0].counterexample or "")
-
-
-def test_memories_that_know_no_direction_are_never_asked_turned_round() -> None:
-    assert check_law(Ageing, only=["instances_apart", "largest_rate"], on_failure="return").passed
 
 
 class Plain(SlidingLaw):
@@ -285,13 +239,6 @@ def test_a_steep_rise_is_no_smoothing_and_a_film_of_fluid_says_that_friction_van
         assert check_law(law, only=["not_smoothed"], examples=20).passed
     with pytest.raises(LawFailed, match=r"to change: .* let vanishes_at_rest\(\) be true"):
         check_law(Film, only=["not_smoothed"], examples=20)
-
-
-def test_every_check_tells_what_to_change_and_a_failed_one_ends_with_it() -> None:
-    assert [check.name for check in CHECKS if check.change == Check.change] == []
-    words = {check.name: check.change for check in CHECKS}["oddness"]
-    report = check_law(Lopsided, only=["oddness"], on_failure="return")
-    assert report.failures[0].counterexample.endswith(f"; to change: {words}")
 
 
 class NotForNumba(Plain):

@@ -8,7 +8,6 @@ import math
 import numpy as np
 import pytest
 from answered import with_columns
-from event_split import planar_mean
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from oracle import REFERENCE
@@ -446,20 +445,22 @@ def steep(length):
 
 
 @pytest.mark.parametrize(
-    ("scene", "law"),
+    ("scene", "law", "known"),
     [
-        (slip(0.3, 1.0, 0.7, 60.0), elasto_plastic(0.5)),
-        (slip(0.0375, 1.0, 0.589, 60.0, 2.586), elasto_plastic(1.576, breakaway_ratio=0.2186)),
-        (slip(0.3, 1.0, 0.7, 60.0), Jenkins(mu=1.0, presliding_length=0.5)),
-        (slip(0.9, 1.0, 1.5, 90.0), dahl(0.3)),
-        (slip(0.3, 1.0, 0.7, 60.0), steep(0.3)),
+        (slip(0.3, 1.0, 0.7, 60.0), elasto_plastic(0.5), 0.146371892922),
+        (
+            slip(0.0375, 1.0, 0.589, 60.0, 2.586),
+            elasto_plastic(1.576, breakaway_ratio=0.2186),
+            0.374330096914,
+        ),
+        (slip(0.3, 1.0, 0.7, 60.0), Jenkins(mu=1.0, presliding_length=0.5), 0.117016763287),
+        (slip(0.9, 1.0, 1.5, 90.0), dahl(0.3), 0.498778354262),
+        (slip(0.3, 1.0, 0.7, 60.0), steep(0.3), 0.169126680546),
     ],
     ids=lambda one: type(one).__name__,
 )
-def test_the_error_in_the_plane_covers_the_distance_to_steps_between_events(scene, law):
-    known, left = planar_mean(scene, law)
-
-    assert left < 1e-12
+def test_the_error_in_the_plane_covers_the_distance_to_steps_between_events(scene, law, known):
+    """Explicit steps of order 8 (scipy) from event to event, to 1e-12; but for Jenkins ``outside_state`` agrees."""
     for tolerance in (1e-6, 1e-9):
         found = answer(scene, law, tolerance)
         assert abs(found.mean[0].real - known) <= found.error[0] + 1e-12

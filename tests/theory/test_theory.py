@@ -206,3 +206,22 @@ def test_the_one_harmonic_curve_starts_above_zero_where_friction_holds_the_load(
     assert 2 / math.pi * math.asin(least) == pytest.approx(0.673, abs=5e-4)
     assert one_harmonic_velocity(scene, 1.6, least) == pytest.approx(0, abs=1e-12)
     assert one_harmonic_velocity(scene, 1.6, least + 1e-6) > 0
+
+
+def test_the_circular_mean_is_continuous_where_the_slip_stops_for_an_instant() -> None:
+    around = mean_prescribed_circular([1 - 1e-9, 1.0, 1 + 1e-9])
+
+    assert around[1] == pytest.approx(2 / np.pi, rel=1e-15)
+    np.testing.assert_allclose(around, around[1], rtol=1e-7)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.3, 1.0])
+def test_load_and_friction_of_twice_the_size_move_the_mass_twice_as_fast(ratio: float) -> None:
+    once = _scene(0.6, drive=Drive(amplitude=1.5, frequency=0.6))
+    twice = _scene(0.6, drive=Drive(amplitude=3, frequency=0.6))
+
+    assert one_harmonic_velocity(twice, 2.0, ratio) == pytest.approx(
+        2.0 * one_harmonic_velocity(once, 1.0, ratio), rel=1e-14
+    )
+    assert one_harmonic_least_ratio(twice, 6.0) == pytest.approx(one_harmonic_least_ratio(once, 3.0))
+    assert one_harmonic_least_ratio(once, 3.0) == pytest.approx(math.sqrt(1 - (math.pi / 8) ** 2))

@@ -171,3 +171,25 @@ def test_v_lin_is_infinite_where_any_harmonic_of_the_load_is_at_undamped_resonan
     drive = {"amplitude": 1.0, "frequency": 1.0 / 3.0, "waveform": "square"}
 
     assert friction_free_velocity(scene(damping_ratio=0.0, drive=drive)) == math.inf
+
+
+def test_a_square_slip_of_the_belts_speed_rests_for_half_of_the_period() -> None:
+    found = direction("square", 30.0, 1.0)
+
+    assert found.at_rest == pytest.approx(0.5, abs=1e-14)
+    assert found.mean == pytest.approx(0.5, abs=1e-14)
+    assert math.isnan(float(mean_prescribed_longitudinal(1.0, "square")))
+
+
+def test_v_lin_of_a_sine_on_a_belt_that_vibrates_with_it_is_that_of_the_sum() -> None:
+    vibration = {"velocity_amplitude": 0.7, "phase": 50.0}
+    response = 1.3 * 3.0 * 1j / (1 - 1.3**2 + 2j * 0.1 * 1.3)
+    sum_ = response - 0.7 * np.exp(1j * math.radians(50.0))
+
+    assert friction_free_velocity(scene(belt_vibration=vibration)) == pytest.approx(abs(sum_), rel=1e-14)
+
+
+def test_v_lin_of_a_slip_is_its_largest_velocity_along_the_belt() -> None:
+    slip = {"velocity_amplitude": 2.0, "frequency": 1.0, "waveform": "triangle", "direction": 60.0}
+
+    assert friction_free_velocity(Scene(belt_speed=1, slip=slip)) == pytest.approx(1.0, rel=1e-14)

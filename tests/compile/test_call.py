@@ -208,6 +208,7 @@ def test_a_first_answer_compiles_nothing(without_kernels):
     assert suffixes(without_kernels) == set()
 
 
+@dear
 def test_the_columns_of_a_table_count_no_time_of_compiling(without_kernels, monkeypatch):
     """A kernel of columns that is compiled while they are read; numba takes seconds, the points milliseconds."""
     monkeypatch.setattr(call._choice, "always_compile", True)

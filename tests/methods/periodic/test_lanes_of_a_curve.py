@@ -75,9 +75,8 @@ def rows_of(speeds: np.ndarray) -> Any:
     return rows
 
 
-@pytest.mark.parametrize(
-    "law", [LAW, pytest.param(FALLING, marks=deep("more kernels to compile"))], ids=["Coulomb", "Stribeck"]
-)
+@deep("more kernels to compile")
+@pytest.mark.parametrize("law", [LAW, FALLING], ids=["Coulomb", "Stribeck"])
 def test_a_lane_is_the_map_of_its_belt_speed(law):
     body, speeds = problem_of(scene_of()).body, np.linspace(5.0, 60.0, 8)
     one = compiled(mapped_one_by_one, law)(body, rows_of(speeds), 1e-12)
@@ -90,6 +89,7 @@ def test_a_lane_is_the_map_of_its_belt_speed(law):
         np.testing.assert_allclose(found.impulse, one.impulse, rtol=0, atol=1e-10)
 
 
+@deep("more kernels to compile")
 def test_a_lane_that_comes_to_rest_leaves_and_stops_no_other():
     body = problem_of(scene_of(normal_load=2000.0)).body
     speeds = np.array([1e-3, *np.linspace(5000.0, 6000.0, 7)])

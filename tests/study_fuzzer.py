@@ -1,16 +1,10 @@
-"""Studies as nobody would write them: sound ones, changed at random in their values, their keys or their text.
-
-``python tests/study_fuzzer.py 10000 [SEED]`` reads as many and says what came of them.
-"""
+"""Studies as nobody would write them: sound ones, changed at random in their values, their keys or their text."""
 
 from __future__ import annotations
 
 import copy
 import random
-import sys
-import tempfile
 import time
-from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -262,23 +256,3 @@ def _of_accepted(study: Study, folder: Path) -> str:
         return "is another study when saved and read again"
     few = sum(map(len, study.sweep.values())) < 20_000
     return "has another digest when saved and read again" if few and again.digest() != study.digest() else ""
-
-
-def main(number: int, first: int) -> int:
-    """Read studies and say what came of them; how many were answered wrongly."""
-    found: Counter[str] = Counter()
-    longest = (0.0, first)
-    with tempfile.TemporaryDirectory() as folder:
-        for seed in range(first, first + number):
-            before = time.process_time()
-            wrong = complaint(seed, Path(folder))
-            longest = max(longest, (time.process_time() - before, seed))
-            found[wrong.partition(":")[0] or "accepted"] += 1
-            if wrong not in ("", "refused"):
-                print(f"seed {seed}: {wrong}", flush=True)
-    print(f"{dict(found)}, the longest {longest[0]:.1f} s (seed {longest[1]})")
-    return number - found["accepted"] - found["refused"]
-
-
-if __name__ == "__main__":
-    sys.exit(min(1, main(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0)))

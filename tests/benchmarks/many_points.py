@@ -1,4 +1,4 @@
-"""What a run costs by how many points it has: python tests/benchmarks/many_points.py [LARGEST [FIGURE.svg]].
+"""What a run costs by how many points it has: python tests/benchmarks/many_points.py [LARGEST].
 
 Coulomb friction on a line, every column, curves of up to 50,000 belt speeds, from 1e2 points to LARGEST (1e6): each
 run is a command of its own into an empty folder, with kernels compiled before. Wall and processor time, the most
@@ -64,27 +64,7 @@ def measured(points: int) -> tuple[Cost, Cost, float, float]:
         return first, again, (out / "results.parquet").stat().st_size / 1e6, size(out.parent / ".cache")
 
 
-def draw(counts: list[int], costs: list[Cost], again: list[Cost], figure: Path) -> None:
-    """Time per point against points."""
-    import matplotlib.pyplot as plt
-
-    chart, axes = plt.subplots(figsize=(4.2, 3.0), layout="constrained")
-    series = {
-        ("processor time", "o-"): [cost.processor for cost in costs],
-        ("wall time", "s--"): [cost.wall for cost in costs],
-        ("wall time, found again", "^:"): [cost.wall for cost in again],
-    }
-    for (name, style), seconds in series.items():
-        each = [1e6 * spent / points for spent, points in zip(seconds, counts, strict=True)]
-        axes.loglog(counts, each, style, label=name, ms=4)
-    axes.set_xlabel("points of the run")
-    axes.set_ylabel("time per point [µs]")
-    axes.grid(True, which="major", alpha=0.3)
-    axes.legend(frameon=False)
-    chart.savefig(figure, metadata={"Date": None} if figure.suffix == ".svg" else None)
-
-
-def main(largest: int, figure: Path | None) -> None:
+def main(largest: int) -> None:
     """Measure and print a row for each number of points."""
     counts = [10**power for power in range(2, 9) if 10**power <= largest]
     run_once, _, _, _ = measured(100)  # kernels are compiled here
@@ -93,21 +73,14 @@ def main(largest: int, figure: Path | None) -> None:
         "|  points | wall, s | processor, s | us a point | memory, MB | table, MB | chunks, MB | found again, s |"
     )
     print("|---|---|---|---|---|---|---|---|")
-    found = []
     for points in counts:
         cost, again, table, chunks = measured(points)
-        found.append((cost, again))
         print(
             f"| {points:,} | {cost.wall:.1f} | {cost.processor:.1f} | {1e6 * cost.processor / points:.1f} | "
             f"{cost.memory:.0f} | {table:.1f} | {chunks:.1f} | {again.wall:.1f} |",
             flush=True,
         )
-    if figure is not None:
-        draw(counts, [cost for cost, _ in found], [again for _, again in found], figure)
 
 
 if __name__ == "__main__":
-    main(
-        int(float(sys.argv[1])) if len(sys.argv) > 1 else 10**6,
-        Path(sys.argv[2]) if len(sys.argv) > 2 else None,
-    )
+    main(int(float(sys.argv[1])) if len(sys.argv) > 1 else 10**6)

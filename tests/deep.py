@@ -1,8 +1,9 @@
 """The deep profile in ten parts of at most ten minutes each: .venv/bin/python tests/deep.py [PART...].
 
-PART is 1 to 10; all of them where none is named. The collected tests are cut, in their order, by the seconds of their
-files in ``reference/deep_seconds.csv``, which each part brings up to date; a file that is not in it is estimated.
-Every part is a pytest of its own, whose words go to ``build/deep/partN.txt``. Exit code 1 where a part fails.
+PART is 1 to 10; all of them where none is named. The collected tests are cut, in their order, by the seconds of
+their files in ``reference/deep_seconds.csv``; a file that is not in it is estimated. Every part is a pytest of its
+own, whose words go to ``build/deep/partN.txt`` and whose seconds to ``build/deep/partN.csv``; once all ten are there,
+the table is brought up to date. Exit code 1 where a part fails.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import pytest
 
 PROJECT = Path(__file__).parents[1]
 TABLE = Path(__file__).parent / "reference" / "deep_seconds.csv"
+FOLDER = PROJECT / "build" / "deep"
 PARTS = 10
 LIMIT = 600.0
 """Seconds that a part may take."""
@@ -60,26 +62,42 @@ class Clock:
         self.counts[file] += report.when == "call" or report.skipped
 
     def pytest_sessionfinish(self) -> None:
-        """Bring the table up to date."""
-        told = recorded() | {file: self.seconds[file] / n for file, n in self.counts.items() if n}
-        with TABLE.open("w", encoding="utf-8", newline="") as file:
-            rows = csv.writer(file, lineterminator="\n")
-            rows.writerows(
-                [("file", "seconds_per_test"), *((name, f"{told[name]:.3g}") for name in sorted(told))]
-            )
+        """Write those of this part."""
+        found = {file: self.seconds[file] / n for file, n in self.counts.items() if n}
+        write_seconds(FOLDER / f"part{os.environ['DEEP_PART']}.csv", found)
 
 
-def recorded() -> dict[str, float]:
-    """Seconds of a test of each file, in the mean."""
-    if not TABLE.exists():
+def write_seconds(path: Path, found: dict[str, float]) -> None:
+    """Of a test of each file, in the mean."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerows(
+            [("file", "seconds_per_test"), *((name, f"{found[name]:.3g}") for name in sorted(found))]
+        )
+
+
+def seconds_in(path: Path) -> dict[str, float]:
+    """What ``write_seconds`` wrote."""
+    if not path.exists():
         return {}
-    with TABLE.open(encoding="utf-8", newline="") as file:
+    with path.open(encoding="utf-8", newline="") as file:
         return {row["file"]: float(row["seconds_per_test"]) for row in csv.DictReader(file)}
+
+
+def record() -> None:
+    """Bring the table up to date, once all parts have run; until then they are cut as it stood."""
+    parts_run = [FOLDER / f"part{part}.csv" for part in range(1, PARTS + 1)]
+    if all(path.exists() for path in parts_run):
+        found: dict[str, float] = {}
+        for path in parts_run:
+            found |= seconds_in(path)
+            path.unlink()
+        write_seconds(TABLE, found)
 
 
 def parts(items: Sequence[pytest.Item]) -> list[list[pytest.Item]]:
     """All tests in their order, cut into parts of the same seconds."""
-    known = recorded()
+    known = seconds_in(TABLE)
     weights = [_seconds(item, known) for item in items]
     found: list[list[pytest.Item]] = [[] for _ in range(PARTS)]
     for item, weight, end in zip(items, weights, itertools.accumulate(weights), strict=True):
@@ -100,11 +118,11 @@ def _seconds(item: pytest.Item, known: dict[str, float]) -> float:
 # The command.
 
 
-def run(part: int, folder: Path) -> int:
+def run(part: int) -> int:
     """Run a part and print a line about it; its exit code."""
     path = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
     more = {"HYPOTHESIS_PROFILE": "deep", "DEEP_PART": str(part), "PYTHONPATH": path}
-    words, begun = folder / f"part{part}.txt", time.perf_counter()
+    words, begun = FOLDER / f"part{part}.txt", time.perf_counter()
     with words.open("w", encoding="utf-8") as file:
         command = [sys.executable, "-m", "pytest", "-p", "deep", "--durations=30"]
         code = subprocess.run(
@@ -125,9 +143,10 @@ def main(arguments: Sequence[str]) -> int:
     if any(not word.isdigit() or not 1 <= int(word) <= PARTS for word in arguments):
         print(f"{' '.join(arguments)!r}: a part is a number from 1 to {PARTS}", file=sys.stderr)
         return 2
-    folder = PROJECT / "build" / "deep"
-    folder.mkdir(parents=True, exist_ok=True)
-    return max([run(part, folder) for part in map(int, arguments or range(1, PARTS + 1))])
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    code = max([run(part) for part in map(int, arguments or range(1, PARTS + 1))])
+    record()
+    return code
 
 
 if __name__ == "__main__":

@@ -134,9 +134,11 @@ def test_a_wrong_request_is_told(given: str, told: str, tmp_path: Path) -> None:
 
 
 @deep("minutes")
-def test_orders_are_within_a_tenth_of_theory_wherever_they_are_asymptotic() -> None:
-    rows = orders(" ".join(MOTIONS), " ".join(ORDER_SOLVERS), samples=24).rows
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_orders_are_within_a_tenth_of_theory_wherever_they_are_asymptotic(motion: str) -> None:
+    # fewer grids leave orders .06 apart by which grids they are
+    rows = orders(motion, " ".join(ORDER_SOLVERS), samples=64).rows
 
     known = [row for row in rows if row.asymptotic]
-    assert len(known) >= 20
-    assert [(row.solver, row.motion.name, row.fit) for row in known if not row.agrees] == []
+    assert known
+    assert [(row.solver, row.fit) for row in known if not row.agrees] == []

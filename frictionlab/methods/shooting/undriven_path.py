@@ -13,6 +13,7 @@ import numpy as np
 from frictionlab.compile.call import Held, KernelCall
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.interpret import interpreted
+from frictionlab.dynamics.motion import START, belt_velocity
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.maps.sliding import MOST_STEPS
 from frictionlab.methods.periodic.period_map import size_of, start_of
@@ -104,10 +105,10 @@ class UndrivenPath:
         """The numbers of the scene."""
         return self.scene.mass()
 
-    @property
+    @cached_property
     def speed(self) -> float:
-        """Of the belt."""
-        return self.scene.belt_speed
+        """Of the belt, which does not vibrate."""
+        return float(interpreted(belt_velocity)(self._body, self.scene.belt_speed, START))
 
     @property
     def side(self) -> float:
@@ -172,7 +173,7 @@ class UndrivenPath:
     def follow(self, state: Floats, turns: float, accuracy: float = FOLLOWED, room: int = 0) -> Span:
         """So many turns, on a track with so much room. Raises NotFound."""
         span: Span
-        arguments = self._maps, self.speed, float(turns), state, accuracy * self.mass.normal_load, room
+        arguments = self._maps, self.scene.belt_speed, float(turns), state, accuracy * self.mass.normal_load, room
         span, seconds = KernelCall(follow_undriven).timed(*arguments)
         self.effort.seconds += seconds
         self.effort.work += span.steps

@@ -173,7 +173,8 @@ class UndrivenPath:
     def follow(self, state: Floats, turns: float, accuracy: float = FOLLOWED, room: int = 0) -> Span:
         """So many turns, on a track with so much room. Raises NotFound."""
         span: Span
-        arguments = self._maps, self.scene.belt_speed, float(turns), state, accuracy * self.mass.normal_load, room
+        accuracy *= self.mass.normal_load
+        arguments = self._maps, self.scene.belt_speed, float(turns), state, accuracy, room
         span, seconds = KernelCall(follow_undriven).timed(*arguments)
         self.effort.seconds += seconds
         self.effort.work += span.steps

@@ -22,7 +22,7 @@ from frictionlab import cli
 from frictionlab.charts import figures  # noqa: F401  # imported once, before the copies
 from frictionlab.methods.exact import method  # noqa: F401  # the same
 from frictionlab.report import write_report  # noqa: F401  # the same
-from frictionlab.runner import accumulate, api  # noqa: F401  # the same
+from frictionlab.runner import api  # noqa: F401  # the same
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.saved import read_saved
 
@@ -43,13 +43,12 @@ TABLES |= {"curves.csv": pd.read_csv}
 
 
 def started(study: Path, out: Path) -> int:
-    """A run in a process of its own, which saves as often as it can."""
+    """A run in a process of its own, without a word."""
     process = os.fork()
     if process == 0:
         null = os.open(os.devnull, os.O_RDWR)
         for stream in (0, 1, 2):
             os.dup2(null, stream)
-        accumulate.SAVE_EVERY = 0.0
         os._exit(cli.main(["run", str(study), "-o", str(out), "--cache", f"{out}.kept", "-j", "2"]))
     return process
 

@@ -23,7 +23,7 @@ from frictionlab.columns import (
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import si_columns, si_scales
-from frictionlab.results.part import KeptRows, Part, Places
+from frictionlab.results.part import KeptRows, Part
 from frictionlab.scene.units import scaled_parameters
 from frictionlab.study import StudyCurve
 
@@ -154,46 +154,22 @@ EVERY_ROW = slice(None)
 class Results:
     """The result columns of a run, filled as its parts come in; what has not come in is ``killed``."""
 
-    def __init__(self, size: int, columns: frozenset[str]) -> None:
+    def __init__(self, size: int, columns: frozenset[str], rest: str = "not finished") -> None:
+        """rest: why what does not come in is missing."""
         self._columns = columns
         self._words = {name: np.full(size, "", dtype=object) for name in TEXT}
         self._words["status"][:] = "killed"
-        self._words["reason"][:] = "not finished"
+        self._words["reason"][:] = rest
         names = [name for name in RESULTS if name not in TEXT and name in columns]
         self._numbers: dict[str, Floats] = {name: np.full(size, np.nan) for name in names}
 
-    def put(self, part: Part) -> None:
-        """Fill the rows of a part. Raises KeyError for a column that was not asked for."""
+    def put(self, part: Part, first: int = 0) -> None:
+        """Fill the rows of a part, the first here being this one. Raises KeyError for a column not asked for."""
+        rows = part.rows - first
         for name, words in part.text.items():
-            self._words[name][part.rows] = words
+            self._words[name][rows] = words
         for name, numbers in part.numbers.items():
-            self._numbers[name][part.rows] = numbers
-
-    def put_earlier(self, rows: list[int], earlier: pd.DataFrame) -> None:
-        """Fill rows from as many rows of an earlier table of the same study."""
-        for name in TEXT & self._columns:
-            self._words[name][rows] = earlier[name].fillna("").to_numpy(dtype=object)
-        for name, column in self._numbers.items():
-            column[rows] = earlier[name].to_numpy(dtype=float)
-
-    def put_rows(self, rows: Places, other: Results, there: Places) -> None:
-        """Fill rows from as many rows of other results with the same columns."""
-        for mine, theirs in ((self._words, other._words), (self._numbers, other._numbers)):
-            for name, column in mine.items():
-                column[rows] = theirs[name][there]
-
-    def lacking(self, earlier: pd.DataFrame) -> bool:
-        """Whether an earlier table has not every column asked for."""
-        return any(name in RESULTS and name not in earlier for name in self._columns)
-
-    def unfinished(self, reason: str) -> None:
-        """Say why what has not come in has not."""
-        self._words["reason"][self._words["status"] == "killed"] = reason
-
-    def counts(self) -> dict[str, int]:
-        """How many rows have each status."""
-        names, counts = np.unique(self._words["status"].astype(str), return_counts=True)
-        return dict(zip(names.tolist(), counts.tolist(), strict=True))
+            self._numbers[name][rows] = numbers
 
     def frame(
         self, given: Inputs, rows: slice = EVERY_ROW, names: Collection[str] | None = None
@@ -248,16 +224,21 @@ def swept_inputs(table: pd.DataFrame) -> list[str]:
     return [name for name in apart if name != speed]
 
 
-def finished_rows(given: Inputs, earlier: pd.DataFrame) -> tuple[list[int], pd.DataFrame]:
-    """Rows of this run that an earlier table has finished, and its rows for them, in the same order."""
-    if not set(given.columns) <= set(earlier.columns):
-        return [], earlier.iloc[:0]
+def finished_part(
+    given: Inputs, earlier: pd.DataFrame, wanted: Collection[str], orbits: KeptRows | None = None
+) -> Part:
+    """The rows of this run that an earlier table has finished, with these columns and their orbits."""
     done = earlier[earlier["status"].isin(FINISHED)]
-    places = {key: place for place, key in enumerate(_keys([done[name].tolist() for name in given.columns]))}
-    keys = _keys(column.tolist() for column in given.columns.values())
-    matches = [(row, places.get(key)) for row, key in enumerate(keys)]
-    found = [(row, place) for row, place in matches if place is not None]
-    return [row for row, _ in found], done.iloc[[place for _, place in found]]
+    names = list(given.columns)
+    places = {key: place for place, key in enumerate(_keys(done[name].tolist() for name in names))}
+    keys = _keys(given.columns[name].tolist() for name in names)
+    found = {row: places[key] for row, key in enumerate(keys) if key in places}
+    table = done.iloc[list(found.values())]
+    text = {name: table[name].fillna("").tolist() for name in TEXT if name in wanted}
+    numbers = {name: table[name].to_numpy(float) for name in RESULTS if name in wanted and name not in TEXT}
+    pairs = zip(found, table.index.tolist(), strict=True)
+    kept = {row: orbits[there] for row, there in pairs if there in orbits} if orbits else {}
+    return Part(np.array([*found], dtype=np.int64), text, numbers, {"orbits": kept})
 
 
 def _keys(columns: Iterable[list[Any]]) -> Iterable[Hashable]:
@@ -276,17 +257,20 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
-def orbit_rows(
-    orbits: KeptRows, earlier: pd.DataFrame | None, finished: Places, memories: Sequence[str] = ()
-) -> pd.DataFrame | None:
+def orbit_rows(orbits: KeptRows, memories: Sequence[str] = ()) -> pd.DataFrame | None:
     """The kept orbits, one row per sample; ``row`` is the point's place in the table. None without any.
 
     memories: columns of memory to be there whether or not one of these laws remembers so much; NaN where none does.
     """
     frames = [pd.DataFrame({"row": row, **samples}) for row, samples in sorted(orbits.items())]
-    if earlier is not None:
-        frames.append(earlier[earlier["row"].isin(finished)])
     if not frames:
         return None
-    rows = pd.concat(frames).sort_values("row", kind="stable", ignore_index=True)
-    return rows.reindex(columns=list(dict.fromkeys([*rows.columns, *memories]))) if memories else rows
+    rows = pd.concat(frames, ignore_index=True)
+    return rows.reindex(columns=list(dict.fromkeys([*rows.columns, *memories])))
+
+
+def kept_rows(orbits: pd.DataFrame) -> KeptRows:
+    """What ``orbit_rows`` made a table of."""
+    columns = [name for name in orbits if name != "row"]
+    groups = orbits.groupby("row", sort=True)
+    return {int(row): {name: own[name].to_numpy() for name in columns} for row, own in groups}

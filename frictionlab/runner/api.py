@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping, Sequence
-from concurrent.futures import BrokenExecutor, Executor
-from dataclasses import dataclass, replace
+from concurrent.futures import Executor
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -13,19 +14,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from frictionlab import __version__, registry
+from frictionlab import __version__
 from frictionlab.columns import selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.quantities import at_least_one
 from frictionlab.results.attractor_table import attractor_table
-from frictionlab.results.curve_table import curve_table
-from frictionlab.results.expectations import judge
-from frictionlab.results.part import Part
 from frictionlab.results.run import Run
-from frictionlab.results.table import inputs
-from frictionlab.results.thinned import LONG_TABLE
-from frictionlab.runner.accumulate import Accumulator
 from frictionlab.runner.arguments import (
     Existing,
     check_executor,
@@ -38,39 +33,31 @@ from frictionlab.runner.arguments import (
     given_study,
     given_tolerance,
 )
-from frictionlab.runner.chosen_speeds import ChosenSpeeds, choose_speeds, rows_of_round
-from frictionlab.runner.chunks import Task, task_of
+from frictionlab.runner.chunks import Task
 from frictionlab.runner.code_digest import code_digest
-from frictionlab.runner.errors import SaveError
-from frictionlab.runner.folder import Identity, RunFolder
+from frictionlab.runner.folder import ASKED, SOLVER, Identity, RunFolder
+from frictionlab.runner.gathering import whole_table
 from frictionlab.runner.in_use import alone_in
-from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, KeptChunks, Keys, kept_beside
-from frictionlab.runner.long_run import LongRun
-from frictionlab.runner.onsets import onset_table
-from frictionlab.runner.open_chunks import OpenChunk, answered, each_once, open_chunks
+from frictionlab.runner.kept_chunks import USUAL_GIGABYTES, kept_beside
 from frictionlab.runner.progress import Progress, silent
+from frictionlab.runner.solving import Solving
+from frictionlab.runner.study_run import Interrupted, RunWays, StudyRun, UnsavedError
 from frictionlab.runner.workforce import Workforce, workforce
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import MethodChoice, Study, StudyCurve
-from frictionlab.study.grid import grid_size
 from frictionlab.study.objects import kind_of
 
-
-class Interrupted(KeyboardInterrupt):
-    """A run was stopped; ``run`` is what it had found, already saved where it has a folder."""
-
-    def __init__(self, run: Run) -> None:
-        super().__init__("interrupted")
-        self.run = run
-
-
-class UnsavedError(SaveError):
-    """A run whose results could not be written; ``run`` holds them."""
-
-    def __init__(self, problem: SaveError, run: Run) -> None:
-        super().__init__(str(problem))
-        self.run = run
+__all__ = [
+    "Interrupted",
+    "UnsavedError",
+    "attractors",
+    "curve",
+    "run",
+    "run_folder",
+    "table_of",
+    "with_onsets",
+]
 
 
 def run(
@@ -108,120 +95,23 @@ def run(
     check_ways(existing, executor)
     ready = given_study(study, overrides, columns)
     kept = kept_beside(out, cache, cache_gigabytes)
-    how = overrides, existing, executor, progress, as_csv
+    ways = RunWays(overrides, existing, executor, progress, as_csv)
     if out is None:
-        return _run_into(None, ready, kept, *how)
+        return StudyRun(ready, None, kept, ways).run()
     folder = run_folder(ready, Path(out))
     with alone_in(folder.path):
         folder.check(existing)
-        return _run_into(folder, ready, kept, *how)
-
-
-def _run_into(
-    folder: RunFolder | None,
-    ready: Study,
-    kept: KeptChunks | None,
-    overrides: Sequence[str],
-    existing: Existing,
-    executor: Executor | Workforce | None,
-    progress: Progress,
-    as_csv: bool,
-) -> Run:
-    if folder is not None and kept is not None and grid_size(ready) > LONG_TABLE:
-        return _run_long(
-            LongRun(ready, folder, kept, overrides), folder, existing, executor, progress, as_csv
-        )
-    attractors, harmonics = _earlier_texts(folder, existing)
-    chosen = None
-    if ready.chosen_range is not None:
-        chosen = choose_speeds(ready, _RoundSolver(folder, kept, existing, executor, progress).solve)
-        ready = chosen.study
-    curves = list(ready.curves())
-    gathering = Accumulator(inputs(curves), folder, progress, overrides, ready.selected())
-    task = task_of(ready)
-    if ready.keep_harmonics is None or harmonics is not None:
-        gathering.resume(existing, task.samples, in_part=ready.keep_harmonics is None)
-    complete = gathering.complete
-    left = [] if complete or chosen else list(open_chunks(curves, task, gathering.finished, Keys(ready.code)))
-    if folder is not None:
-        folder.open(existing)
-    if chosen is None or complete:
-        stopped = _solve(gathering, left, kept, executor)
-    else:
-        stopped = _take_over(chosen, curves, gathering)
-    attractors, harmonics = (attractors, harmonics) if gathering.complete else (None, None)
-    done = _finished(ready, gathering, folder, stopped)
-    return _with_attractors(_with_harmonics(done, harmonics, gathering, folder), attractors, folder)
-
-
-@dataclass
-class _RoundSolver:
-    """Solves the rounds in which belt speeds are chosen; points of an earlier run in the folder are taken over."""
-
-    folder: RunFolder | None
-    kept: KeptChunks | None
-    existing: Existing
-    executor: Executor | Workforce | None
-    progress: Progress
-    points: int = 0
-
-    def solve(self, study: Study, curves: list[StudyCurve]) -> tuple[Accumulator, bool]:
-        """The rows of these curves, and whether that was interrupted."""
-        task, before = task_of(study), self.points
-        gathering = Accumulator(
-            inputs(curves),
-            progress=lambda done, total: self.progress(before + done, before + total),
-            columns=study.selected(),
-        )
-        if study.keep_harmonics is None:
-            gathering.resume(self.existing, task.samples, folder=self.folder)
-        left = list(open_chunks(curves, task, gathering.finished, Keys(study.code)))
-        self.points += sum(len(each.rows) for each in curves)
-        return gathering, _solve(gathering, left, self.kept, self.executor)
-
-
-def _take_over(chosen: ChosenSpeeds, curves: Sequence[StudyCurve], gathering: Accumulator) -> bool:
-    """Enter the rows of every round; True where the last was interrupted."""
-    for one in chosen.rounds:
-        gathering.take_over(one.gathering, *rows_of_round(one, curves))
-    return chosen.stopped
-
-
-def _earlier_texts(
-    folder: RunFolder | None, existing: Existing
-) -> tuple[pd.DataFrame | None, pd.DataFrame | None]:
-    """Attractors and harmonics that an earlier run of this study wrote once it was whole."""
-    if folder is None:
-        return None, None
-    files = folder.attractors_file, folder.harmonics_file
-    attractors, harmonics = (folder.earlier_text(file, existing) for file in files)
-    return attractors, harmonics
-
-
-def _run_long(
-    long: LongRun,
-    folder: RunFolder,
-    existing: Existing,
-    executor: Executor | Workforce | None,
-    progress: Progress,
-    as_csv: bool,
-) -> Run:
-    if existing == "reuse" and long.is_whole(as_csv):
-        return long.taken_over()
-    folder.open(existing)
-    with workforce(executor) as force:
-        stopped = long.solve(force, progress)
-    done = long.gather(stopped, as_csv)
-    if stopped:
-        raise Interrupted(done)
-    return done
+        return StudyRun(ready, folder, kept, ways).run()
 
 
 def run_folder(study: Study, out: Path) -> RunFolder:
     """The output folder of a study."""
     file = study.path.name if study.path is not None else None
     told = study.resolved(), study.digest(), __version__, file, study.code, study.law_texts()
-    return RunFolder(out, Identity(*told, solver=code_digest(study)))
+    kept = study.keep_orbit, study.keep_harmonics, study.keep_attractors
+    asked = repr((list(study.sweep), kept, sorted(study.selected())))
+    marks = {SOLVER: code_digest(study), ASKED: hashlib.sha256(asked.encode()).hexdigest()}
+    return RunFolder(out, Identity(*told, marks=marks))
 
 
 def with_onsets(done: Run) -> Run:
@@ -231,136 +121,12 @@ def with_onsets(done: Run) -> Run:
     """
     assert done.folder is not None
     folder = run_folder(done.study, done.folder)
-    earlier = folder.onsets() if done.computed == 0 else None
+    earlier = folder.read_text(folder.onsets_file) if done.computed == 0 else None
     if earlier is not None:
         return replace(done, onsets_made=lambda: earlier)
     if not done.curves.empty:
-        folder.save_onsets(done.onsets)
+        folder.save_text(folder.onsets_file, done.onsets)
     return done
-
-
-def _solve(
-    gathering: Accumulator,
-    left: list[OpenChunk],
-    kept: KeptChunks | None,
-    executor: Executor | Workforce | None,
-) -> bool:
-    """Solve what is left and put it in the table; True when that was interrupted."""
-    if not left:
-        return False
-    gathering.describe()
-    try:
-        unknown = _look_up(left, kept, gathering)
-        with workforce(executor) as force:
-            force.solve(unknown, lambda work, parts: _take(work, parts, kept, gathering), gathering.tick)
-    except KeyboardInterrupt:
-        gathering.unfinished("interrupted")
-        return True
-    except BrokenExecutor as problem:
-        gathering.unfinished(f"a worker died: {problem}")
-    finally:
-        if kept is not None:
-            kept.trim()
-    return False
-
-
-def _look_up(left: Sequence[OpenChunk], kept: KeptChunks | None, gathering: Accumulator) -> list[OpenChunk]:
-    """Enter what is known already; the rest, each once."""
-    unknown = []
-    for work in left:
-        part = kept.found(work.key) if kept is not None and work.key is not None else None
-        if part is None:
-            unknown.append(work)
-        else:
-            gathering.take_found(work.of(part))
-    return each_once(unknown)
-
-
-def _take(work: OpenChunk, parts: list[Part], kept: KeptChunks | None, gathering: Accumulator) -> None:
-    """Keep and enter what was found of a chunk."""
-    part = answered(work, parts)
-    if part is None:
-        gathering.take(parts)
-        return
-    own, *others = work.of(part)
-    gathering.take([own], kept is not None and kept.keeps(work.key, part))
-    gathering.take_found(others)
-
-
-def _finished(study: Study, gathering: Accumulator, folder: RunFolder | None, stopped: bool) -> Run:
-    """The run, saved and judged. Raises Interrupted or UnsavedError, both with the run."""
-    table, orbits = gathering.table, gathering.orbits
-    laws = registry.Laws({law.kind: law.law_class for law in study.laws})
-    read = table.iloc[:0] if stopped else table
-    curves = curve_table(read, laws)
-    verdicts = () if stopped else tuple(judge(expectation, table, curves) for expectation in study.expect)
-    gathering.judged(verdicts)
-    unsaved = _saved(gathering, table, orbits, curves)
-    path = folder.path if folder is not None and unsaved is None else None
-    done = Run(
-        study,
-        lambda: table,
-        lambda: orbits,
-        verdicts,
-        path,
-        gathering.computed,
-        curves,
-        onsets_made=lambda: onset_table(study, read),
-    )
-    if unsaved is not None:
-        raise UnsavedError(unsaved, done) from unsaved
-    if stopped:
-        raise Interrupted(done)
-    return done
-
-
-def _with_harmonics(
-    done: Run, found: pd.DataFrame | None, gathering: Accumulator, folder: RunFolder | None
-) -> Run:
-    """The run with its harmonics, where the study keeps them. Raises UnsavedError."""
-    if done.study.keep_harmonics is None:
-        return done
-    done = replace(done, harmonics=gathering.harmonics if found is None else found)
-    try:
-        if folder is not None and found is None:
-            assert done.harmonics is not None
-            folder.save_harmonics(done.harmonics)
-    except SaveError as problem:
-        raise UnsavedError(problem, done) from problem
-    return done
-
-
-def _with_attractors(done: Run, found: pd.DataFrame | None, folder: RunFolder | None) -> Run:
-    """The run with its attractors, where the study keeps them. Raises Interrupted, UnsavedError."""
-    count = done.study.keep_attractors
-    if count is None:
-        return done
-    try:
-        table = (
-            attractor_table(list(done.study.curves()), done.study.tolerance, count)
-            if found is None
-            else found
-        )
-    except KeyboardInterrupt:
-        raise Interrupted(done) from None
-    done = replace(done, attractors=table)
-    try:
-        if folder is not None and found is None:
-            folder.save_attractors(table)
-    except SaveError as problem:
-        raise UnsavedError(problem, done) from problem
-    return done
-
-
-def _saved(
-    gathering: Accumulator, table: pd.DataFrame, orbits: pd.DataFrame | None, curves: pd.DataFrame
-) -> SaveError | None:
-    """Save the run; what kept it from being saved, to be raised once the run is whole."""
-    try:
-        gathering.save_all(table, orbits, curves)
-    except SaveError as problem:
-        return problem
-    return None
 
 
 def curve(
@@ -399,10 +165,10 @@ def curve(
 
 def table_of(curves: Sequence[StudyCurve], task: Task, executor: Executor | None = None) -> pd.DataFrame:
     """The result table of curves whose rows follow one another; nothing is kept. Raises BrokenPlugin."""
-    gathering = Accumulator(inputs(curves), columns=task.columns)
+    solving = Solving(curves, task)
     with workforce(executor) as force:
-        force.solve(list(open_chunks(curves, task)), lambda _, parts: gathering.take(parts), gathering.tick)
-    return gathering.table
+        solving.solve(force)
+    return whole_table(solving)
 
 
 def attractors(

@@ -11,8 +11,9 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.results.bends import halves_to_add
-from frictionlab.results.part import Places
-from frictionlab.runner.accumulate import Accumulator
+from frictionlab.results.part import Part
+from frictionlab.runner.chunks import Task
+from frictionlab.runner.solving import Solving
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Mistake, Study, StudyCurve, StudyError
 from frictionlab.study.grid import grid_size
@@ -27,8 +28,16 @@ Known = tuple[Floats, Floats, Floats]
 class Round:
     """The curves of a round, at the belt speeds that are new in it, and what came of them."""
 
-    curves: list[StudyCurve]
-    gathering: Accumulator
+    solving: Solving
+
+    def moved_to(self, curves: Sequence[StudyCurve]) -> list[Part]:
+        """Its rows as those of these curves, which hold all belt speeds."""
+        rows = np.empty(self.solving.points, np.int64)
+        for each, whole in zip(self.solving.curves, curves, strict=True):
+            rows[each.rows.start : each.rows.stop] = whole.rows.start + np.searchsorted(
+                whole.scenes.given, each.scenes.given
+            )
+        return [part.moved(rows[part.rows]) for part in self.solving.parts()]
 
 
 @dataclass(frozen=True)
@@ -39,10 +48,15 @@ class ChosenSpeeds:
     rounds: list[Round]
     stopped: bool
 
+    def solved(self, task: Task) -> Solving:
+        """The rows of all rounds as those of the study."""
+        curves = list(self.study.curves())
+        found = Solving(curves, task, known=[part for one in self.rounds for part in one.moved_to(curves)])
+        found.rest = self.rounds[-1].solving.rest
+        return found
 
-def choose_speeds(
-    study: Study, solve: Callable[[Study, list[StudyCurve]], tuple[Accumulator, bool]]
-) -> ChosenSpeeds:
+
+def choose_speeds(study: Study, solve: Callable[[list[StudyCurve]], tuple[Solving, bool]]) -> ChosenSpeeds:
     """Solve at more and more belt speeds until chords are within what the study says; those of a scene are shared.
 
     Every law and method of a scene is solved at all of its belt speeds: begin with evenly spaced ones and V_lin, then
@@ -62,9 +76,9 @@ def choose_speeds(
     while any(map(len, new)) and not stopped:
         one = study.with_speeds([each.tolist() for each in new])
         curves = list(one.curves())
-        gathering, stopped = solve(one, curves)
-        rounds.append(Round(curves, gathering))
-        known = [_merged(*both) for both in zip(known, _found(curves, gathering), strict=True)]
+        solving, stopped = solve(curves)
+        rounds.append(Round(solving))
+        known = [_merged(*both) for both in zip(known, _found(solving), strict=True)]
         asked = [_asked(known[at::count], breaks[at], along) for at in range(count)]
         new = [each if not stopped else np.empty(0) for each in asked]
         speeds = [np.union1d(*both) for both in zip(speeds, new, strict=True)]
@@ -117,24 +131,18 @@ def _nothing() -> Known:
     return np.empty(0), np.empty(0), np.empty(0)
 
 
-def _found(curves: Sequence[StudyCurve], gathering: Accumulator) -> list[Known]:
-    table = gathering.table
-    means, errors = (table[name].to_numpy(dtype=float) for name in ("mean_friction", "error"))
-    rows = [np.arange(each.rows.start, each.rows.stop) for each in curves]
-    return [(each.scenes.given, means[own], errors[own]) for each, own in zip(curves, rows, strict=True)]
+def _found(solving: Solving) -> list[Known]:
+    means, errors = np.full((2, solving.points), np.nan)
+    for part in solving.parts():
+        for name, column in (("mean_friction", means), ("error", errors)):
+            column[part.rows] = part.numbers.get(name, np.nan)
+    rows = [slice(each.rows.start, each.rows.stop) for each in solving.curves]
+    return [
+        (each.scenes.given, means[own], errors[own]) for each, own in zip(solving.curves, rows, strict=True)
+    ]
 
 
 def _merged(known: Known, found: Known) -> Known:
     speeds, means, errors = (np.concatenate(both) for both in zip(known, found, strict=True))
     rising = np.argsort(speeds, kind="stable")
     return speeds[rising], means[rising], errors[rising]
-
-
-def rows_of_round(one: Round, curves: Sequence[StudyCurve]) -> tuple[Places, Places]:
-    """The rows of a round, and where they are in the table of these curves, which hold all belt speeds."""
-    there = [np.arange(each.rows.start, each.rows.stop) for each in one.curves]
-    here = [
-        whole.rows.start + np.searchsorted(whole.scenes.given, each.scenes.given)
-        for each, whole in zip(one.curves, curves, strict=True)
-    ]
-    return np.concatenate(there), np.concatenate(here)

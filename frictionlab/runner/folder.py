@@ -6,17 +6,21 @@ import errno
 import io
 import json
 import os
+import secrets
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
+import pyarrow.parquet as pq
 
 from frictionlab.faults import INTERNAL, MARK
 from frictionlab.printable import printable
+from frictionlab.results.curve_table import CURVE_TEXT
 from frictionlab.runner.arguments import Existing
 from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.files import damage, remove_leftovers, stamp, stamp_of_file, stamps, write_whole
@@ -29,8 +33,8 @@ MOST_DIFFERENCES = 2
 """Lines shown of each of two studies that differ."""
 SHOWN = 72
 """Letters shown of such a line."""
-SOLVER = "solver"
-"""Where a saved table holds the digest of the code that found it."""
+SOLVER, ASKED = "solver", "asked"
+"""Where a saved table holds the digest of the code that found it, and of what was asked for beside the numbers."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +42,8 @@ class Identity:
     """What a folder's results answer: the study, whole and as a digest of what determines its numbers.
 
     file: the name of the file it came from, for the record. code: SHA-256 by law, of those from outside.
-    law_texts: its law files, by their names in the folder. solver: a digest of all code that finds the numbers.
+    law_texts: its law files, by their names in the folder. marks: what its tables are marked with, a digest of all
+    code that finds the numbers (``SOLVER``), and one of columns, order of rows and what is kept beside (``ASKED``).
     """
 
     study: dict[str, Any]
@@ -47,7 +52,7 @@ class Identity:
     file: str | None = None
     code: Mapping[str, str] = field(default_factory=dict)
     law_texts: Mapping[str, str] = field(default_factory=dict)
-    solver: str = ""
+    marks: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def text(self) -> str:
@@ -86,11 +91,13 @@ class RunFolder:
         return self.path / "results.csv"
 
     @property
-    def _curves(self) -> Path:
+    def curves_file(self) -> Path:
+        """Where the table of curves is."""
         return self.path / "curves.csv"
 
     @property
-    def _onsets(self) -> Path:
+    def onsets_file(self) -> Path:
+        """Where the table of onsets is."""
         return self.path / "onsets.csv"
 
     @property
@@ -191,7 +198,7 @@ class RunFolder:
         if table is None or not {"status", "reason"} <= set(table):
             return table
         again = table["status"] == "failed"
-        if table.attrs.get(SOLVER) == self.identity.solver:
+        if table.attrs.get(SOLVER) == self.identity.marks.get(SOLVER):
             again &= table["reason"].astype("str").str.startswith((INTERNAL, MARK))
         return table[~again]
 
@@ -207,7 +214,7 @@ class RunFolder:
             same = self._study.read_text(encoding="utf-8") == self.identity.text
         except (OSError, ValueError):
             return None
-        return pd.read_csv(file) if same else None
+        return _read_text(file) if same else None
 
     def _earlier(self, path: Path, existing: Existing) -> pd.DataFrame | None:
         if existing == "replace" or not path.exists() or self._damage(path.name):
@@ -252,66 +259,76 @@ class RunFolder:
             remove_leftovers(self.path / LAW_COPIES)
             kept = self.identity.law_texts
             copies = [path for path in self._copies() if path.relative_to(self.path).as_posix() not in kept]
-            for path in [*self._results(), *copies] if existing == "replace" else ():
+            # study.yaml before provenance.json: without it a study.yaml is treated as a user's own file.
+            old = [*self._results(), *copies, self._study, self._account]
+            for path in old if existing == "replace" else ():
                 path.unlink(missing_ok=True)
         except OSError as problem:
             _refuse_folder(self.path, problem)
 
+    @property
+    def _tables(self) -> list[Path]:
+        own = [self.table, self.orbits_file]
+        return [*own, *self._texts]
+
+    @property
+    def _texts(self) -> list[Path]:
+        return [self.csv_file, self.curves_file, self.onsets_file, self.attractors_file, self.harmonics_file]
+
     def _results(self) -> Iterator[Path]:
-        yield from (
-            self.table,
-            self.csv_file,
-            self._curves,
-            self._onsets,
-            self.orbits_file,
-            self.attractors_file,
-            self.harmonics_file,
-        )
-        yield self.path / "report.html"
+        yield from (*self._tables, self.path / "report.html")
         for pattern in ("*.svg", "*.png"):
             yield from (self.path / "figures").glob(pattern)
 
-    def describe(self, runs: dict[str, Any]) -> None:
-        """Write study.yaml and provenance.json. Raises SaveError."""
+    def describe(self, runs: dict[str, Any], done: bool = False) -> None:
+        """Write study.yaml and provenance.json. done: all files are as they stay. Raises SaveError."""
+        for name in self.identity.law_texts:
+            _make_folder((self.path / name).parent)
         provenance = {
             "frictionlab": self.identity.version,
             "study": self.identity.file,
             "digest": self.identity.digest,
             "code": dict(self.identity.code),
             "plugins": list(self.identity.law_texts),
+            "unknown_code": self.unknown_code,
             **runs,
             **machine_and_versions(),
-            "files": self._stamps_of_files(),
+            "files": {path.name: [stamp_of_file(path)] for path in self._tables if path.exists()}
+            if done
+            else self._stamps_of_files(),
         }
+        copies = {name: law.encode() for name, law in self.identity.law_texts.items()}
+        provenance["files"] |= {name: [stamp(law)] for name, law in copies.items()}
         # provenance.json first: a study.yaml without it is treated as a user's own file.
         self._write_account(provenance)
-        for name, law in self.identity.law_texts.items():
-            _make_folder((self.path / name).parent)
-            self._put(self.path / name, law.encode())
+        for name, law in copies.items():
+            write_whole(self.path / name, law)
         write_whole(self._study, self.identity.text.encode())
 
     def _write_account(self, account: dict[str, Any]) -> None:
         write_whole(self._account, (json.dumps(account, indent=2) + "\n").encode())
 
-    def _put(self, path: Path, content: bytes) -> None:
-        """Write a file, its stamp first: a crash between the two leaves a file that is known."""
-        name, new = path.relative_to(self.path).as_posix(), stamp(content)
-        known = self._stamps().get(name, [])
-        if known == [new] and not self._damage(name):
-            return
-        self._know(name, [*known, new])
-        write_whole(path, content)
-        self._know(name, [new])
-
     def _stamps_of_files(self) -> dict[str, list[dict[str, Any]]]:
         return {name: known for name, known in self._stamps().items() if (self.path / name).exists()}
 
-    def _know(self, name: str, known: list[dict[str, Any]]) -> None:
-        try:
-            account = self._provenance()
-        except FolderError:  # somebody took it away; the end of the run writes it again
-            account = {}
-        self._write_account(account | {"files": self._stamps_of_files() | {name: known}})
+    def know_only(self, paths: Iterable[Path] = (), new: Path | None = None) -> None:
+        """Of the files of a run know these and a new one: a file that is about to be replaced is not known."""
+        names = {path.name for path in paths}
+        files = {
+            name: known for name, known in self._stamps_of_files().items() if name in names or "/" in name
+        }
+        if new is not None:
+            files[new.name] = [stamp_of_file(new)]
+        with suppress(FolderError):  # somebody took the account away; the end of the run writes it again
+            self._write_account(self._provenance() | {"files": files})
+
+    @property
+    def unknown_code(self) -> str:
+        """What stands for code that is not known in the names of kept chunks: another in every folder."""
+        found = None
+        with suppress(FolderError):
+            found = self._provenance().get("unknown_code")
+        return str(found or secrets.token_hex(16))
 
     def previous_runs(self) -> list[dict[str, Any]]:
         """When and how long earlier runs of this study worked in this folder."""
@@ -321,74 +338,42 @@ class RunFolder:
         """How many rows of an earlier run have each status. Raises FolderError."""
         return dict(self._provenance().get("counts", {}))
 
-    def is_intact(self, as_csv: bool) -> bool:
-        """Whether the files of an earlier run are there as they were written; as_csv: its table as text, too."""
+    def is_whole(self, as_csv: bool) -> bool:
+        """Whether all that this run would write is there as it was written, by the same code and without a gap."""
         known = self._stamps()
         wanted = {self.table.name, *([self.csv_file.name] if as_csv else [])}
-        return wanted <= known.keys() and not any(map(self._damage, known))
+        if not wanted <= known.keys() or any(map(self._damage, known)):
+            return False
+        counts = self.counts()
+        return (
+            bool(counts)
+            and not {"killed", "failed"} & counts.keys()
+            and marks_of_file(self.table) == dict(self.identity.marks)
+        )
 
-    def curves(self) -> pd.DataFrame:
-        """The table of curves of an earlier run; empty where it has none."""
-        return pd.read_csv(self._curves) if self._curves.exists() else pd.DataFrame()
-
-    def save(self, table: pd.DataFrame, orbits: pd.DataFrame | None) -> None:
-        """Write what a run continues from: results.parquet, and orbits.parquet if any. Raises SaveError."""
-        self.remove_texts()
-        if orbits is not None:
-            self._put(self.orbits_file, _as_parquet(orbits))
-        marked = table.copy(deep=False)
-        marked.attrs = {SOLVER: self.identity.solver}
-        self._put(self.table, _as_parquet(marked))
+    def save_text(self, path: Path, table: pd.DataFrame) -> None:
+        """Write a table as text, floats in shortest round-trip form. Raises SaveError."""
+        write_whole(path, table.to_csv(None, index=False, lineterminator="\n").encode())
+        self.know_only(self._tables, path)
 
     def remove_texts(self) -> None:
         """Remove what was made from an earlier table. Raises SaveError."""
-        texts = self.csv_file, self._curves, self._onsets, self.attractors_file, self.harmonics_file
-        for path in texts:
+        for path in self._texts:
             try:
                 path.unlink(missing_ok=True)
             except OSError as problem:
                 raise SaveError(f"cannot replace {path}: {problem.strerror}") from problem
 
-    def adopt(self, path: Path, written: Path) -> None:
-        """Put a file that is written already in its place, its stamp first. Raises SaveError."""
-        try:
-            name, new = path.relative_to(self.path).as_posix(), stamp_of_file(written)
-            self._know(name, [*self._stamps().get(name, []), new])
-            os.replace(written, path)
-        except OSError as problem:
-            raise SaveError(f"cannot write {path}: {problem.strerror}") from problem
-        self._know(name, [new])
+    def read_curves(self) -> pd.DataFrame:
+        """The table of curves of an earlier run; empty where it has none."""
+        found = self.read_text(self.curves_file)
+        words = {name: pd.StringDtype(na_value=np.nan) for name in CURVE_TEXT}
+        return pd.DataFrame() if found is None else found.astype(words)
 
-    def save_csv(self, table: pd.DataFrame) -> None:
-        """Write results.csv; floats in shortest round-trip form. Raises SaveError."""
-        self._put(self.csv_file, _as_csv(table))
-
-    def save_curves(self, curves: pd.DataFrame) -> None:
-        """Write curves.csv, where there are curves. Raises SaveError."""
-        if not curves.empty:
-            self._put(self._curves, _as_csv(curves))
-
-    def onsets(self) -> pd.DataFrame | None:
-        """The table of onsets of an earlier run; None without an intact one."""
-        known = self._onsets.name in self._stamps() and not self._damage(self._onsets.name)
-        return pd.read_csv(self._onsets, dtype={"how": "str"}) if known else None  # "-1" is a word there
-
-    def save_onsets(self, onsets: pd.DataFrame) -> None:
-        """Write onsets.csv. Raises SaveError."""
-        self._put(self._onsets, _as_csv(onsets))
-
-    def save_attractors(self, attractors: pd.DataFrame) -> None:
-        """Write attractors.csv. Raises SaveError."""
-        self._put(self.attractors_file, _as_csv(attractors))
-
-    def save_harmonics(self, harmonics: pd.DataFrame) -> None:
-        """Write harmonics.csv. Raises SaveError."""
-        self._put(self.harmonics_file, _as_csv(harmonics))
-
-    @property
-    def has_csv(self) -> bool:
-        """Whether the table is there as text too, and intact."""
-        return self.csv_file.exists() and not self._damage(self.csv_file.name)
+    def read_text(self, path: Path) -> pd.DataFrame | None:
+        """A table of an earlier run as text; None without an intact one."""
+        known = path.name in self._stamps() and not self._damage(path.name)
+        return _read_text(path) if known else None
 
 
 REMEDY = "choose another folder with -o, or replace what is there with --force"
@@ -407,12 +392,17 @@ def _parquet(path: Path) -> pd.DataFrame | None:
         return None
 
 
-def _as_parquet(table: pd.DataFrame) -> bytes:
-    return bytes(table.to_parquet(None, index=False))
+def _read_text(path: Path) -> pd.DataFrame:
+    return pd.read_csv(path, dtype={"how": "str"})  # "-1" is a word there
 
 
-def _as_csv(table: pd.DataFrame) -> bytes:
-    return table.to_csv(None, index=False, lineterminator="\n").encode()
+def marks_of_file(path: Path) -> dict[str, str]:
+    """What a table is marked with; nothing for what is no table."""
+    try:
+        with path.open("rb") as opened:
+            return dict(json.loads(pq.read_schema(opened).metadata[b"pandas"]).get("attributes", {}))
+    except Exception:  # a damaged file makes pyarrow raise whatever it stumbles over
+        return {}
 
 
 def _brief(line: str, others: Sequence[str]) -> str:

@@ -18,11 +18,12 @@ import numpy as np
 
 from frictionlab import registry
 from frictionlab.faults import INTERNAL, MARK, from_outside
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
 from frictionlab.results.part import KeptRows, Part
 from frictionlab.runner.chunks import Chunk
 from frictionlab.runner.code_digest import solving_code
-from frictionlab.runner.errors import SaveError
 from frictionlab.runner.files import remove_leftovers, write_whole
 
 FolderName = str | PathLike[str]
@@ -36,17 +37,18 @@ _CHECKSUM = 64
 class Keys:
     """The hash of what a chunk computes: of everything its numbers hang on.
 
-    law_code: SHA-256 by kind of each law of a study that is not frictionlab's own.
+    law_code: SHA-256 by kind of each law of a study that is not frictionlab's own. unknown: what stands for code that
+    is not known.
     """
 
-    def __init__(self, law_code: Mapping[str, str]) -> None:
-        self._law_code, self._code = law_code, solving_code()
+    def __init__(self, law_code: Mapping[str, str], unknown: str = "") -> None:
+        self._law_code, self._unknown, self._code = law_code, unknown, solving_code()
 
     def of(self, chunk: Chunk, kind: str, method: str) -> str | None:
         """The key of a chunk of a law of this kind by the method of this name; None where their code is not known."""
-        law_code, method_code = self._law_code.get(kind, ""), _code_of_method(method)
-        known = {type(chunk.law): law_code, type(chunk.method): method_code}
-        if any(from_outside(record) and not code for record, code in known.items()):
+        law_code = self._law_code.get(kind) or self._stand_in(chunk.law)
+        method_code = _code_of_method(method) or self._stand_in(chunk.method)
+        if law_code is None or method_code is None:
             return None
         task, scenes = chunk.task, chunk.scenes
         told = [
@@ -65,6 +67,9 @@ class Keys:
         if chunk.method.hangs_on_curve(scenes, chunk.law, task.tolerance):
             digest.update(scenes.curve.belt_speeds.tobytes())
         return digest.hexdigest()
+
+    def _stand_in(self, record: FrictionLaw | Method) -> str | None:
+        return (self._unknown or None) if from_outside(type(record)) else ""
 
 
 _BESIDE = {"belt_speed": 0.0, "dimensional": None}
@@ -98,14 +103,6 @@ class KeptChunks:
             os.utime(path) if part is not None else path.unlink()
         return part
 
-    def has(self, key: str) -> bool:
-        """Whether answers are kept under a key, intact or not; they stay until this run ends."""
-        try:
-            os.utime(self._path(key))
-        except OSError:
-            return False
-        return True
-
     def keep(self, key: str, part: Part) -> bool:
         """Keep answers, by their places in the chunk, but for those to be tried anew. Raises SaveError."""
         if not _is_an_answer(part):
@@ -115,12 +112,6 @@ class KeptChunks:
             path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, _packed(part))
         return True
-
-    def keeps(self, key: str | None, part: Part | None) -> bool:
-        """Keep answers, if there are any, they have a key and the disk takes them; whether they are kept."""
-        with suppress(SaveError):  # the caller has the answers, and says so where it cannot save them either
-            return key is not None and part is not None and self.keep(key, part)
-        return False
 
     def trim(self) -> None:
         """Remove those used longest ago until the rest is small enough; none that this run has used."""

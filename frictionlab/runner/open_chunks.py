@@ -18,11 +18,12 @@ from frictionlab.study import StudyCurve
 class OpenChunk:
     """A chunk to solve, and where its answers go.
 
-    whole: the rows of all its points; of these ``left`` are the places without an answer. key: the hash of what the
-    whole computes, None where that cannot be known. same: other chunks that compute the same.
+    number: its place among all chunks. whole: the rows of all its points; of these ``left`` are the places without an
+    answer. key: the hash of what the whole computes, None where that cannot be known. same: others of the same key.
     """
 
     chunk: Chunk
+    number: int
     whole: Places
     left: Places
     key: str | None = None
@@ -33,11 +34,10 @@ class OpenChunk:
         """Whether every point of the chunk is to be solved."""
         return len(self.left) == len(self.whole)
 
-    def of(self, part: Part) -> list[Part]:
+    def of(self, part: Part) -> Part:
         """The rows that are answered by the answers of a whole chunk, by their places."""
         answered = part.moved(self.whole)
-        own = answered if self.is_whole else answered.only(self.left)
-        return [own, *(each for other in self.same for each in other.of(part))]
+        return answered if self.is_whole else answered.only(self.left)
 
 
 def open_chunks(
@@ -51,28 +51,15 @@ def open_chunks(
     Curves are cut before finished rows are left out: a run stopped and continued then solves the very chunks
     of one that went through.
     """
-    for cut in cuts(curves):
+    for number, cut in enumerate(cuts(curves)):
         places = np.arange(len(cut.rows))
         left = places if finished is None else np.flatnonzero(~finished[cut.rows])
         if len(left):
             chunk = cut.chunk(task)
             key = None if keys is None else keys.of(chunk, cut.curve.kind, cut.curve.method.name)
-            yield OpenChunk(chunk if len(left) == len(places) else chunk.of(left), cut.rows, left, key)
-
-
-def each_once(found: Iterable[OpenChunk]) -> list[OpenChunk]:
-    """Those that compute the same as another joined to it: they are solved once."""
-    first: dict[str, OpenChunk] = {}
-    kept: list[OpenChunk] = []
-    for work in found:
-        other = first.get(work.key) if work.key is not None else None
-        if other is not None and other.is_whole:
-            other.same.append(work)
-        else:
-            kept.append(work)
-            if work.key is not None:
-                first[work.key] = work
-    return kept
+            yield OpenChunk(
+                chunk if len(left) == len(places) else chunk.of(left), number, cut.rows, left, key
+            )
 
 
 def answered(work: OpenChunk, parts: list[Part]) -> Part | None:

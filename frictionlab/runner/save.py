@@ -9,6 +9,7 @@ from pathlib import Path
 from frictionlab.results.run import Run
 from frictionlab.runner.api import run_folder
 from frictionlab.runner.in_use import alone_in
+from frictionlab.runner.table_files import TableFiles
 
 
 def save_run(done: Run, out: Path, seconds: float) -> Run:
@@ -32,11 +33,12 @@ def _saved_alone(done: Run, out: Path, seconds: float) -> Run:
         "runs": [told | {"computed": done.computed, "seconds": seconds}],
     }
     folder.describe(account)
-    folder.save(done.table, done.orbits)
-    folder.save_csv(done.table)
-    folder.save_curves(done.curves)
-    if done.attractors is not None:
-        folder.save_attractors(done.attractors)
-    if done.harmonics is not None:
-        folder.save_harmonics(done.harmonics)
+    with TableFiles(folder) as files:
+        files.add_rows(done.table)
+        files.add_orbits(done.orbits)
+        files.add_harmonics(done.harmonics)
+    for file, table in ((folder.curves_file, done.curves), (folder.attractors_file, done.attractors)):
+        if table is not None and not table.empty:
+            folder.save_text(file, table)
+    folder.describe(account, done=True)
     return replace(done, folder=out)

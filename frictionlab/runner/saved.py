@@ -23,7 +23,7 @@ from frictionlab.results.thinned import LONG_TABLE, shown_rows, thinned
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.files import damage, stamps
 from frictionlab.runner.folder import rerun
-from frictionlab.runner.long_files import read_pieces, read_whole, rows_of_file
+from frictionlab.runner.table_files import read_pieces, read_whole, rows_of_file
 from frictionlab.study import Study, StudyError, read_back
 from frictionlab.study.grid import grid_size
 

@@ -328,7 +328,7 @@ def test_a_folder_of_studies_runs_each_into_a_folder_of_its_own(frictionlab: Any
 
     assert said.code == 0
     assert [record["study"] for record in json.loads(said.out)] == ["one"] * 4 + ["two"] * 4
-    assert sorted(path.name for path in Path("runs/set").iterdir()) == ["index.html", "one", "two"]
+    assert sorted(path.name for path in Path("runs/set").iterdir()) == [".cache", "index.html", "one", "two"]
 
 
 def test_a_run_prints_what_to_cite_for_it_and_computes_nothing_anew_for_that(frictionlab: Any) -> None:

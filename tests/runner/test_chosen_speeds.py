@@ -19,6 +19,7 @@ from frictionlab.runner.kept_chunks import KeptChunks
 from frictionlab.runner.plan import plan
 from frictionlab.runner.saved import read_saved
 from frictionlab.runner.share import run_share
+from frictionlab.runner.solving import Solving
 from frictionlab.study import StudyError, load_study, parse_study
 
 WITHIN = 1e-3
@@ -125,16 +126,15 @@ def test_the_same_run_again_computes_nothing(tmp_path: Path) -> None:
 def test_an_interrupted_run_keeps_its_rounds_and_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole, calls, solve = api.run(STUDY).table, [0], api._solve
+    whole, calls, solve = api.run(STUDY).table, [0], Solving.solve
 
-    def interrupted(*given: Any) -> bool:
+    def interrupted(*given: Any) -> None:
         calls[0] += 1
         if calls[0] == 3:
-            given[0].unfinished("interrupted")
-            return True
-        return solve(*given)
+            raise KeyboardInterrupt
+        solve(*given)
 
-    monkeypatch.setattr(api, "_solve", interrupted)
+    monkeypatch.setattr(Solving, "solve", interrupted)
     with pytest.raises(api.Interrupted) as problem:
         api.run(STUDY, out=tmp_path / "run")
     table = problem.value.run.table

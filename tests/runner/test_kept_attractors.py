@@ -14,7 +14,7 @@ import frictionlab as fl
 from frictionlab import cli
 from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.columns import ATTRACTORS
-from frictionlab.runner import api
+from frictionlab.runner import study_run
 
 STUDY = """
 schema: 1
@@ -73,7 +73,7 @@ def test_the_same_study_takes_them_over(ran: Path, monkeypatch: pytest.MonkeyPat
         counts.append(given[-1])
         return pd.DataFrame({"law": ["x"]})
 
-    monkeypatch.setattr(api, "attractor_table", count)
+    monkeypatch.setattr(study_run, "attractor_table", count)
     first = fl.run(ran / "study.yaml", ran / "out")
     assert counts == []
     assert first.attractors is not None

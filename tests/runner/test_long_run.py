@@ -16,7 +16,7 @@ from pandas.testing import assert_frame_equal
 import frictionlab as fl
 from frictionlab import cli
 from frictionlab.results import thinned
-from frictionlab.runner import api, long_run, saved
+from frictionlab.runner import api, gathering, saved, study_run
 from frictionlab.runner.saved import read_saved
 from frictionlab.study import parse_study
 from frictionlab.study.yaml_text import yaml_text
@@ -43,10 +43,10 @@ def study(**changes: Any) -> dict[str, Any]:
 @pytest.fixture
 def short_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs of more than 100 rows are long, and written 60 rows at a time."""
-    for place in (api, saved):
+    for place in (study_run, saved):
         monkeypatch.setattr(place, "LONG_TABLE", 100)
-    monkeypatch.setattr(long_run, "ROWS_TOGETHER", 50)
-    monkeypatch.setattr(long_run, "ROWS_AT_ONCE", 60)
+    monkeypatch.setattr(gathering, "ROWS_TOGETHER", 50)
+    monkeypatch.setattr(gathering, "ROWS_AT_ONCE", 60)
 
 
 ORDERS = [

@@ -11,7 +11,7 @@ from fake_methods import Fake, breaks_down, is_wrong
 
 import frictionlab as fl
 from frictionlab import registry
-from frictionlab.runner import api
+from frictionlab.runner import code_digest
 
 Trouble = Callable[[dict[float, Callable[[], None]]], None]
 STUDY: dict[str, Any] = {
@@ -36,6 +36,11 @@ def trouble(monkeypatch: pytest.MonkeyPatch) -> Trouble:
     return lambda troubles: monkeypatch.setattr(Fake, "troubles", troubles)
 
 
+def mended(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From here on all code is another."""
+    monkeypatch.setattr(code_digest, "own_code", lambda: "mended")
+
+
 def test_a_point_that_failed_is_taken_over_while_all_code_is_the_same(
     trouble: Trouble, tmp_path: Path
 ) -> None:
@@ -53,7 +58,7 @@ def test_a_point_that_failed_is_tried_again_by_other_code(
 ) -> None:
     trouble({4.0: breaks_down})
     fl.run(STUDY, out=tmp_path)
-    monkeypatch.setattr(api, "code_digest", lambda study: "mended")
+    mended(monkeypatch)
     trouble({})
 
     again = fl.run(STUDY, out=tmp_path)
@@ -84,7 +89,7 @@ def test_a_run_by_other_code_that_dies_before_it_saves_keeps_nothing_that_failed
 
     trouble({4.0: breaks_down})
     fl.run(STUDY, out=tmp_path)
-    monkeypatch.setattr(api, "code_digest", lambda study: "mended")
+    mended(monkeypatch)
     with pytest.raises(MemoryError):
         fl.run(STUDY, out=tmp_path, progress=dies)
     trouble({})

@@ -1,11 +1,10 @@
-"""The files of a table too long to be held: written piece by piece, and read that way."""
+"""The files of a table: written piece by piece, whole in the end or not at all, and read that way."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from functools import wraps
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -15,62 +14,65 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from frictionlab.runner.errors import SaveError
-from frictionlab.runner.folder import SOLVER, RunFolder
+from frictionlab.runner.folder import RunFolder
 
 
-def told_as_a_save_error(write: Callable[..., None]) -> Callable[..., None]:
-    """A method that writes to a file, with SaveError for OSError."""
+class TableFiles:
+    """results.parquet, results.csv, orbits.parquet and harmonics.csv of a run while they are written.
 
-    @wraps(write)
-    def written(self: LongFiles, path: Path, table: pd.DataFrame) -> None:
-        try:
-            write(self, path, table)
-        except OSError as problem:
-            raise SaveError(f"cannot write {path}: {problem.strerror or problem}") from problem
-
-    return written
-
-
-class LongFiles:
-    """results.parquet, orbits.parquet and results.csv while they are written: whole in the end, or not at all.
-
-    as_csv: whether the table is wanted as text, too.
+    folder: None where nothing is. as_csv: whether the table is wanted as text, too. Once a file cannot be written
+    none is, and the end of ``with`` raises SaveError.
     """
 
-    def __init__(self, folder: RunFolder, as_csv: bool) -> None:
+    def __init__(self, folder: RunFolder | None, as_csv: bool = True) -> None:
         self._folder, self._as_csv = folder, as_csv
         self._open: dict[Path, Any] = {}
         self._begun: dict[Path, Path] = {}
         self._files: list[Any] = []
+        self._problem: SaveError | None = None
 
     def __enter__(self) -> Self:
-        self._folder.remove_texts()
+        if self._folder is not None:
+            self._folder.remove_texts()
         return self
 
     def add_rows(self, table: pd.DataFrame) -> None:
-        """The next rows of the table. Raises SaveError."""
-        self._add(self._folder.table, table)
-        if self._as_csv:
-            self._add_text(self._folder.csv_file, table)
+        """The next rows of the table."""
+        if self._folder is not None:
+            self._add(self._folder.table, table, self._add_parquet)
+        if self._folder is not None and self._as_csv:
+            self._add(self._folder.csv_file, table, self._add_text)
 
     def add_orbits(self, orbits: pd.DataFrame | None) -> None:
-        """The next rows of the orbits, where there are any. Raises SaveError."""
-        if orbits is not None:
-            self._add(self._folder.orbits_file, orbits)
+        """The next rows of the orbits, where there are any."""
+        if self._folder is not None and orbits is not None:
+            self._add(self._folder.orbits_file, orbits, self._add_parquet)
 
-    @told_as_a_save_error
-    def _add(self, path: Path, table: pd.DataFrame) -> None:
+    def add_harmonics(self, harmonics: pd.DataFrame | None) -> None:
+        """The next rows of the harmonics, where they are kept."""
+        if self._folder is not None and harmonics is not None:
+            self._add(self._folder.harmonics_file, harmonics, self._add_text)
+
+    def _add(self, path: Path, table: pd.DataFrame, write: Callable[[Path, pd.DataFrame], None]) -> None:
+        if self._problem is not None:
+            return
+        try:
+            write(path, table)
+        except OSError as problem:
+            self._problem = SaveError(f"cannot write {path}: {problem.strerror or problem}")
+
+    def _add_parquet(self, path: Path, table: pd.DataFrame) -> None:
+        assert self._folder is not None
         marked = table.copy(deep=False)
-        marked.attrs = {SOLVER: self._folder.identity.solver}
+        marked.attrs = self._folder.identity.marks
         writer = self._open.get(path)
         if writer is None:
             content = pa.Table.from_pandas(marked, _with_text(marked), preserve_index=False)
             writer = self._open[path] = pq.ParquetWriter(self._opened(path), content.schema)
         else:
             content = pa.Table.from_pandas(marked, writer.schema, preserve_index=False)
-        writer.write_table(content, row_group_size=len(table))
+        writer.write_table(content)
 
-    @told_as_a_save_error
     def _add_text(self, path: Path, table: pd.DataFrame) -> None:
         first = path not in self._open
         if first:
@@ -90,12 +92,19 @@ class LongFiles:
         self, kind: type[BaseException] | None, problem: BaseException | None, trace: TracebackType | None
     ) -> None:
         for file in [*self._open.values(), *self._files]:
-            with suppress(OSError):  # a disk that is full was told above
+            try:
                 file.close()
+            except OSError as full:
+                self._problem = self._problem or SaveError(f"cannot write the table: {full.strerror or full}")
+        if self._begun and self._folder is not None and problem is None:
+            self._folder.know_only()
         for path, temporary in self._begun.items():
             if problem is None:
-                self._folder.adopt(path, temporary)
-            temporary.unlink(missing_ok=True)
+                self._add(path, pd.DataFrame(), lambda path, _: os.replace(self._begun[path], path))
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+        if problem is None and self._problem is not None:
+            raise self._problem
 
 
 def _with_text(table: pd.DataFrame) -> pa.Schema:

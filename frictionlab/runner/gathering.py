@@ -1,0 +1,145 @@
+"""The table of a run, gathered from the answers to its chunks: in one piece, or piece by piece where it is long."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain, islice
+
+import pandas as pd
+
+from frictionlab import registry
+from frictionlab.columns import ALWAYS, OF_SHAPE
+from frictionlab.results.curve_table import curve_table
+from frictionlab.results.harmonic_table import harmonic_table
+from frictionlab.results.part import KeptRows, Part, Places
+from frictionlab.results.table import InputColumns, Inputs, Results, orbit_rows, status_counts
+from frictionlab.results.thinned import Thinned
+from frictionlab.runner.solving import Solving
+from frictionlab.runner.table_files import TableFiles
+from frictionlab.study import StudyCurve
+
+ROWS_TOGETHER = 20_000
+"""Rows of a piece of a long table, at least; more where those of a curve are more, or lie farther apart."""
+ROWS_AT_ONCE = 10_000
+"""Rows of it that are made a table at once."""
+
+
+@dataclass(frozen=True)
+class TablePiece:
+    """Rows of the table that make whole curves. kept: their orbits and harmonics; memories: columns of all orbits."""
+
+    inputs: Inputs
+    first: int
+    results: Results
+    kept: dict[str, KeptRows]
+    memories: Sequence[str]
+
+    def table(self) -> pd.DataFrame:
+        """The rows."""
+        return self.results.frame(self.inputs)
+
+    def tables(self) -> Iterator[pd.DataFrame]:
+        """The rows, so many at a time."""
+        for first in range(0, self.inputs.size, ROWS_AT_ONCE):
+            yield self.results.frame(self.inputs, slice(first, first + ROWS_AT_ONCE))
+
+    def for_curves(self) -> pd.DataFrame:
+        """What the shape of curves is read from."""
+        return self.results.frame(self.inputs, names={*OF_SHAPE, *ALWAYS})
+
+    @property
+    def orbits(self) -> pd.DataFrame | None:
+        """The kept orbits; None without any."""
+        return orbit_rows(self.kept.get("orbits", {}), self.memories)
+
+    @property
+    def harmonics(self) -> pd.DataFrame:
+        """The kept harmonics."""
+        own = {row - self.first: found for row, found in self.kept.get("harmonics", {}).items()}
+        return harmonic_table(self.inputs, own)
+
+
+class GatheredTable:
+    """A table on its way to its files. shown: the rows of a long one that are held; None for all rows."""
+
+    def __init__(self, shown: Places | None) -> None:
+        self._shown = None if shown is None else Thinned(shown)
+        self._tables: list[pd.DataFrame] = []
+        self._curves: list[pd.DataFrame] = []
+        self._counts = Counter[str]()
+        self.orbits: pd.DataFrame | None = None
+        self.harmonics: pd.DataFrame | None = None
+
+    def gather(self, solving: Solving, files: TableFiles, laws: registry.Laws, stopped: bool) -> None:
+        """Write the table, held in whole or in part. stopped: curves are not read then."""
+        for piece in pieces(solving):
+            for table in [piece.table()] if self._shown is None else piece.tables():
+                files.add_rows(table)
+                self._tables.append(table) if self._shown is None else self._shown.add(table)
+                self._counts.update(status_counts(table))
+            orbits, harmonics = piece.orbits, piece.harmonics if solving.task.harmonics else None
+            files.add_orbits(orbits)
+            files.add_harmonics(harmonics)
+            if self._shown is None:
+                self.orbits, self.harmonics = orbits, harmonics
+            read = piece.for_curves()
+            self._curves.append(curve_table(read.iloc[:0] if stopped else read, laws))
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """The rows that are held."""
+        return self._tables[0] if self._shown is None else self._shown.table
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many of all rows have each status, the commonest first."""
+        return dict(self._counts.most_common())
+
+    @property
+    def curves(self) -> pd.DataFrame:
+        """The table of curves; pieces without a row say nothing about types."""
+        filled = [table for table in self._curves if len(table)] or self._curves[:1]
+        return pd.concat(filled, ignore_index=True)
+
+
+def pieces(solving: Solving) -> Iterator[TablePiece]:
+    """The table: one piece where all answers are held, else one after another."""
+    curves, found = solving.curves, solving.answers()
+    columns, memories = InputColumns(curves), _memories(solving)
+    for block in [range(len(curves))] if solving.in_memory else blocks(curves):
+        inputs, first = columns.of(block), min(curves[place].rows.start for place in block)
+        results, kept = Results(inputs.size, solving.task.columns, solving.rest), dict[str, KeptRows]()
+        parts: Iterator[Part] = chain.from_iterable(islice(found, len(block)))
+        for part in chain(solving.known, parts):
+            results.put(part, first)
+            for name, rows in part.kept.items():
+                kept.setdefault(name, {}).update(rows)
+        yield TablePiece(inputs, first, results, kept, memories)
+
+
+def whole_table(solving: Solving) -> pd.DataFrame:
+    """The table of answers that are held."""
+    (piece,) = pieces(solving)
+    return piece.table()
+
+
+def _memories(solving: Solving) -> list[str]:
+    """The columns of memory of all laws, where orbits are kept: all rows of a file have the same."""
+    if not solving.task.samples:
+        return []
+    from frictionlab.orbit.sample import memory_columns  # imports numba: only where it is needed
+
+    laws = {id(curve.given_law): curve.given_law for curve in solving.curves}.values()
+    return list(dict.fromkeys(name for law in laws for name in memory_columns(law)))
+
+
+def blocks(curves: Sequence[StudyCurve]) -> Iterator[range]:
+    """Curves one after another whose rows together are neighbours: the pieces of a table."""
+    start, low, high, rows = 0, 0, 0, 0
+    for place, curve in enumerate(curves):
+        high, rows = max(high, curve.rows[-1] + 1), rows + len(curve.rows)
+        if high - low == rows and (rows >= ROWS_TOGETHER or place == len(curves) - 1):
+            yield range(start, place + 1)
+            start, low, rows = place + 1, high, 0

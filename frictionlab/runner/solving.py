@@ -1,0 +1,173 @@
+"""The chunks of a study and their answers: looked up where they are kept, else solved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import BrokenExecutor
+from itertools import chain, count
+from typing import NamedTuple
+
+import numpy as np
+
+from frictionlab.results.part import Part
+from frictionlab.runner.chunks import Cut, Task, cuts
+from frictionlab.runner.errors import SaveError
+from frictionlab.runner.kept_chunks import KeptChunks, Keys
+from frictionlab.runner.limit import solve_within
+from frictionlab.runner.open_chunks import OpenChunk, answered, open_chunks
+from frictionlab.runner.progress import Progress, silent
+from frictionlab.runner.workforce import Workforce
+from frictionlab.study import StudyCurve
+
+
+class Keeping(NamedTuple):
+    """Where answers stay until they are gathered.
+
+    kept: the folder of kept chunks, if there is one. keys: what chunks are looked up by; None where none is.
+    in_memory: whether all answers are held, else those alone that cannot be kept. must_keep: whether it is an error
+    where the disk does not take them.
+    """
+
+    kept: KeptChunks | None = None
+    keys: Keys | None = None
+    in_memory: bool = True
+    must_keep: bool = False
+
+    def keep(self, key: str | None, part: Part) -> bool:
+        """Keep the answers to a chunk, if they have a key; whether they are kept. Raises SaveError."""
+        if self.kept is None or key is None:
+            return False
+        try:
+            return self.kept.keep(key, part)
+        except SaveError:  # the run has the answers, and says so where it cannot save them either
+            if self.must_keep:
+                raise
+            return False
+
+
+IN_MEMORY = Keeping()
+
+
+class Solving:
+    """Curves cut into chunks, and what is known of each.
+
+    known: rows that are answered already. points: how many there are to answer; computed, found: those that this run
+    answered itself, and those of kept chunks. rest: why rows without an answer have none.
+    """
+
+    def __init__(
+        self,
+        curves: Sequence[StudyCurve],
+        task: Task,
+        keeping: Keeping = IN_MEMORY,
+        known: Sequence[Part] = (),
+    ) -> None:
+        self.curves, self.task, self.known = curves, task, known
+        self.points = sum(len(each.rows) for each in curves)
+        self.computed = self.found = 0
+        self.rest = "not finished"
+        self._keeping = keeping
+        self._answers: dict[int, str | list[Part]] = {}
+        self._by_key: dict[str, Part] = {}
+        self._sent: dict[str, OpenChunk] = {}
+
+    @property
+    def in_memory(self) -> bool:
+        """Whether all answers are held."""
+        return self._keeping.in_memory
+
+    # --- solving ----------------------------------------------------------------------------------------------------
+
+    def solve(self, force: Workforce, progress: Progress = silent, share: tuple[int, int] = (1, 1)) -> None:
+        """Solve every N-th chunk from the I-th on, for share = (I, N), but for what is kept.
+
+        Raises BrokenPlugin; BrokenExecutor, KeyboardInterrupt with what was solved by then taken.
+        """
+        number, shares = share
+        if shares > 1:
+            own = (cut for at, cut in enumerate(cuts(self.curves)) if at % shares == number - 1)
+            self.points = sum(len(cut.rows) for cut in own)
+        known = sum(len(part.rows) for part in self.known)
+
+        def tick() -> None:
+            progress(known + self.found + self.computed, self.points)
+
+        try:
+            chunks = (each for each in self._open_chunks() if each.number % shares == number - 1)
+            force.solve((each for each in chunks if not self._is_known(each)), self._take, tick)
+        finally:
+            if self._keeping.kept is not None:
+                self._keeping.kept.trim()
+
+    def solve_or_say_why_not(self, force: Workforce, progress: Progress) -> bool:
+        """Solve every chunk; True where that was interrupted."""
+        try:
+            self.solve(force, progress)
+        except KeyboardInterrupt:
+            self.rest = "interrupted"
+        except BrokenExecutor as problem:
+            self.rest = f"a worker died: {problem}"
+        return self.rest == "interrupted"
+
+    def _open_chunks(self) -> Iterator[OpenChunk]:
+        finished = np.zeros(sum(len(each.rows) for each in self.curves), np.bool_)
+        for part in self.known:
+            finished[part.rows] = True
+        return open_chunks(self.curves, self.task, finished if self.known else None, self._keeping.keys)
+
+    def _is_known(self, work: OpenChunk) -> bool:
+        """Whether a chunk needs no solving: it is kept, or the same as one that is being solved."""
+        key, kept = work.key, self._keeping.kept
+        if key is None:
+            return False
+        part = self._by_key.get(key)
+        is_kept = part is None and kept is not None and (part := kept.found(key)) is not None
+        if part is not None:
+            self._enter(work, part, is_kept)
+            self.found += len(work.left)
+        elif key in self._sent:
+            self._sent[key].same.append(work)
+        else:
+            self._sent |= {key: work} if work.is_whole else {}
+            return False
+        return True
+
+    def _take(self, work: OpenChunk, parts: list[Part]) -> None:
+        self.computed += len(work.left)
+        self._sent.pop(work.key or "", None)
+        part = answered(work, parts)
+        if part is None:
+            self._answers[work.number] = parts
+            return
+        is_kept = self._keeping.keep(work.key, part)
+        for each in (work, *work.same):
+            self._enter(each, part, is_kept)
+        self.found += sum(len(each.left) for each in work.same)
+
+    def _enter(self, work: OpenChunk, part: Part, is_kept: bool) -> None:
+        if is_kept and work.key is not None and not self.in_memory:
+            self._answers[work.number] = work.key
+            return
+        self._answers[work.number] = [work.of(part)]
+        if work.key is not None:
+            self._by_key[work.key] = part
+
+    # --- answers ----------------------------------------------------------------------------------------------------
+
+    def parts(self) -> list[Part]:
+        """All answers that are there."""
+        return [*self.known, *chain.from_iterable(self.answers())]
+
+    def answers(self) -> Iterator[list[Part]]:
+        """Of one curve after another, the answers that are there."""
+        numbers = count()
+        for curve in self.curves:
+            yield [part for cut in cuts([curve]) for part in self._answer(next(numbers), cut)]
+
+    def _answer(self, number: int, cut: Cut) -> list[Part]:
+        """What was found of a chunk; one that is no longer kept is solved now."""
+        found = self._answers.get(number, [])
+        if not isinstance(found, str):
+            return found
+        part = None if self._keeping.kept is None else self._keeping.kept.found(found)
+        return [part.moved(cut.rows)] if part is not None else solve_within(cut.chunk(self.task))

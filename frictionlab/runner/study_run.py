@@ -1,0 +1,289 @@
+"""A study to its run: what is left of it solved in chunks, gathered, judged, and written where it has a folder."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Collection, Sequence
+from concurrent.futures import Executor
+from dataclasses import asdict, replace
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+import pandas as pd
+
+from frictionlab import registry
+from frictionlab.columns import ALWAYS, INPUTS, RESULTS
+from frictionlab.results.attractor_table import attractor_table
+from frictionlab.results.expectations import Verdict, judge
+from frictionlab.results.part import Part
+from frictionlab.results.run import Run
+from frictionlab.results.table import finished_part, inputs, kept_rows
+from frictionlab.results.thinned import LONG_TABLE, shown_rows, thinned
+from frictionlab.runner.arguments import Existing
+from frictionlab.runner.chosen_speeds import choose_speeds
+from frictionlab.runner.chunks import task_of
+from frictionlab.runner.errors import SaveError
+from frictionlab.runner.folder import RunFolder
+from frictionlab.runner.gathering import GatheredTable
+from frictionlab.runner.kept_chunks import KeptChunks, Keys
+from frictionlab.runner.onsets import READ_FOR_ONSETS, onset_table
+from frictionlab.runner.progress import Progress, silent
+from frictionlab.runner.solving import Keeping, Solving
+from frictionlab.runner.table_files import TableFiles, read_columns_of_file, read_pieces, read_whole
+from frictionlab.runner.workforce import Workforce, workforce
+from frictionlab.study import Study, StudyCurve
+from frictionlab.study.grid import grid_size
+
+
+class Interrupted(KeyboardInterrupt):
+    """A run was stopped; ``run`` is what it had found, already saved where it has a folder."""
+
+    def __init__(self, run: Run) -> None:
+        super().__init__("interrupted")
+        self.run = run
+
+
+class UnsavedError(SaveError):
+    """A run whose results could not be written; ``run`` holds them."""
+
+    def __init__(self, problem: SaveError, run: Run) -> None:
+        super().__init__(str(problem))
+        self.run = run
+
+
+class RunWays(NamedTuple):
+    """How to go about a run: as ``fl.run`` is told."""
+
+    overrides: Sequence[str] = ()
+    existing: Existing = "reuse"
+    executor: Executor | Workforce | None = None
+    progress: Progress = silent
+    as_csv: bool = False
+
+
+class StudyRun:
+    """One run of a study. folder: where its results go; kept: where its chunks are; None for nowhere."""
+
+    def __init__(
+        self, study: Study, folder: RunFolder | None, kept: KeptChunks | None, ways: RunWays
+    ) -> None:
+        self.study, self.folder, self.kept, self.ways = study, folder, kept, ways
+        self._started, self._clock = datetime.now(UTC), time.monotonic()
+        self._earlier_runs: list[dict[str, Any]] = []
+        self._points = self._computed = self._found = 0
+        self._is_idle = False
+
+    def run(self) -> Run:
+        """What came of it. Raises Interrupted or UnsavedError, both with the run; SaveError, FolderError."""
+        if self.folder is not None and self.ways.existing == "reuse":
+            self._earlier_runs = self.folder.previous_runs()
+            if self._is_there():
+                return self._taken_over()
+        earlier, attractors = self._earlier_table(), self._earlier_attractors()
+        if self.folder is not None:
+            self.folder.open(self.ways.existing)
+            self._describe({}, ())
+        self._keys = Keys(self.study.code, "" if self.folder is None else self.folder.unknown_code)
+        solving, stopped = self._solved(earlier)
+        self._is_idle = bool(self._earlier_runs) and not self._computed and not self._found and not stopped
+        done = self._gathered(solving, stopped)
+        return self._with_attractors(done, None if self._computed else attractors)
+
+    # --- what an earlier run left -----------------------------------------------------------------------------------
+
+    @property
+    def _is_long(self) -> bool:
+        return self.folder is not None and grid_size(self.study) > LONG_TABLE
+
+    @property
+    def _as_csv(self) -> bool:
+        return self.ways.as_csv or not self._is_long
+
+    def _is_there(self) -> bool:
+        """Whether the folder holds all that this run would write."""
+        folder, study = self.folder, self.study
+        assert folder is not None
+        kept = {
+            folder.orbits_file: study.keep_orbit,
+            folder.harmonics_file: study.keep_harmonics,
+            folder.attractors_file: study.keep_attractors,
+        }
+        there = all(file.exists() for file, asked in kept.items() if asked is not None)
+        return there and study.chosen_range is None and folder.is_whole(self._as_csv)
+
+    def _taken_over(self) -> Run:
+        """The run as the folder holds it, judged anew."""
+        assert self.folder is not None
+        folder, study, self._is_idle = self.folder, self.study, True
+        shown = (
+            thinned(read_pieces(folder.table), shown_rows(list(study.curves()))) if self._is_long else None
+        )
+        done = self._read_run(shown, folder.counts(), folder.read_curves())
+        if study.keep_harmonics is not None:
+            done = replace(done, harmonics=folder.read_text(folder.harmonics_file))
+        if study.keep_attractors is not None:
+            done = replace(done, attractors=folder.read_text(folder.attractors_file))
+        done = self._judged(done)
+        self._describe(done.counts, done.verdicts, done=True)
+        return done
+
+    def _earlier_table(self) -> pd.DataFrame | None:
+        """The rows that an earlier run found, not those of a long run."""
+        if self.folder is None or self._is_long or self.study.keep_harmonics is not None:
+            return None
+        return self.folder.earlier(self.ways.existing)
+
+    def _earlier_attractors(self) -> pd.DataFrame | None:
+        if self.folder is None or self.study.keep_attractors is None:
+            return None
+        return self.folder.earlier_text(self.folder.attractors_file, self.ways.existing)
+
+    def _known(self, curves: Sequence[StudyCurve], earlier: pd.DataFrame | None) -> list[Part]:
+        """Rows of these curves that are in an earlier table, with their orbits."""
+        given, wanted = inputs(curves), self.study.selected()
+        names = {*given.columns, *(name for name in RESULTS if name in wanted)}
+        if earlier is None or not names <= {*earlier.columns}:
+            return []
+        if self.study.keep_orbit is None or self.folder is None:
+            return [finished_part(given, earlier, wanted)]
+        orbits = self.folder.earlier_orbits(self.ways.existing)
+        if orbits is None or not (orbits.groupby("row").size() == self.study.keep_orbit).all():
+            return []
+        return [finished_part(given, earlier, wanted, kept_rows(orbits))]
+
+    # --- solving ----------------------------------------------------------------------------------------------------
+
+    def _solved(self, earlier: pd.DataFrame | None) -> tuple[Solving, bool]:
+        """All that could be solved, and whether that was interrupted; belt speeds are chosen as it goes."""
+        if self.study.chosen_range is None:
+            return self._solve(list(self.study.curves()), earlier)
+        chosen = choose_speeds(self.study, lambda curves: self._solve(curves, earlier))
+        self.study = chosen.study
+        return chosen.solved(task_of(self.study)), chosen.stopped
+
+    def _solve(self, curves: list[StudyCurve], earlier: pd.DataFrame | None) -> tuple[Solving, bool]:
+        keeping = Keeping(self.kept, self._keys, not self._is_long)
+        solving = Solving(curves, task_of(self.study), keeping, self._known(curves, earlier))
+        before, tell = self._points, self.ways.progress
+        self._points += solving.points
+        with workforce(self.ways.executor) as force:
+            stopped = solving.solve_or_say_why_not(force, lambda done, of: tell(before + done, before + of))
+        self._computed += solving.computed
+        self._found += solving.found
+        return solving, stopped
+
+    # --- gathering --------------------------------------------------------------------------------------------------
+
+    def _gathered(self, solving: Solving, stopped: bool) -> Run:
+        """The run, written and judged. Raises Interrupted or UnsavedError, both with the run."""
+        gathered = GatheredTable(shown_rows(solving.curves) if self._is_long else None)
+        done, unsaved = None, None
+        try:
+            with TableFiles(self.folder, self._as_csv) as files:
+                gathered.gather(solving, files, self._laws, stopped)
+            if self.folder is not None and not gathered.curves.empty:
+                self.folder.save_text(self.folder.curves_file, gathered.curves)
+        except SaveError as problem:
+            if self._is_long:
+                raise
+            unsaved = problem
+        done = self._judged(self._as_run(gathered, stopped), stopped)
+        try:
+            if unsaved is None:
+                self._describe(done.counts, done.verdicts, done=True)
+        except SaveError as problem:
+            unsaved = problem
+        if unsaved is not None:
+            raise UnsavedError(unsaved, replace(done, folder=None)) from unsaved
+        if stopped:
+            raise Interrupted(done)
+        return done
+
+    @property
+    def _laws(self) -> registry.Laws:
+        return registry.Laws({law.kind: law.law_class for law in self.study.laws})
+
+    def _as_run(self, gathered: GatheredTable, stopped: bool) -> Run:
+        if self._is_long:
+            return self._read_run(gathered.table, gathered.counts, gathered.curves)
+        study, table, orbits = self.study, gathered.table, gathered.orbits
+        read = table.iloc[:0] if stopped else table
+        return Run(
+            study,
+            lambda: table,
+            lambda: orbits,
+            (),
+            None if self.folder is None else self.folder.path,
+            self._computed,
+            gathered.curves,
+            lambda: onset_table(study, read),
+            harmonics=None if study.keep_harmonics is None else gathered.harmonics,
+        )
+
+    def _read_run(self, shown: pd.DataFrame | None, counts: dict[str, int], curves: pd.DataFrame) -> Run:
+        """A run whose table stays in its file."""
+        assert self.folder is not None
+        study, table, orbits = self.study, self.folder.table, self.folder.orbits_file
+        return Run(
+            study,
+            lambda: read_whole(table),
+            lambda: read_whole(orbits) if study.keep_orbit is not None and orbits.exists() else None,
+            (),
+            self.folder.path,
+            self._computed,
+            curves,
+            lambda: onset_table(study, read_columns_of_file(table, _is_read_for({*READ_FOR_ONSETS}))),
+            shown,
+            counts,
+        )
+
+    def _judged(self, done: Run, stopped: bool = False) -> Run:
+        """The run with its verdicts, judged on the columns that they speak of."""
+        expect = self.study.expect
+        if stopped or not expect:
+            return done
+        table, wanted = self.folder and self.folder.table, {*ALWAYS, *(each.column for each in expect)}
+        read = read_columns_of_file(table, _is_read_for(wanted)) if self._is_long and table else done.table
+        return replace(done, verdicts=tuple(judge(each, read, done.curves) for each in expect))
+
+    def _describe(self, counts: dict[str, int], verdicts: Sequence[Verdict], done: bool = False) -> None:
+        """Write what the folder answers and how far it is. Raises SaveError."""
+        if self.folder is None:
+            return
+        this = {
+            "started": self._started.isoformat(timespec="seconds"),
+            "overrides": list(self.ways.overrides),
+            "computed": self._computed,
+            "found": self._found,
+            "seconds": round(time.monotonic() - self._clock, 3),
+        }
+        runs = [*self._earlier_runs, *([] if self._is_idle else [this])]
+        self.folder.describe(
+            {"counts": counts, "expect": [asdict(each) for each in verdicts], "runs": runs}, done
+        )
+
+    def _with_attractors(self, done: Run, found: pd.DataFrame | None) -> Run:
+        """The run with its attractors, where the study keeps them. Raises Interrupted, UnsavedError."""
+        starts = done.study.keep_attractors
+        if starts is None:
+            return done
+        try:
+            table = (
+                attractor_table(list(done.study.curves()), done.study.tolerance, starts)
+                if found is None
+                else found
+            )
+        except KeyboardInterrupt:
+            raise Interrupted(done) from None
+        done = replace(done, attractors=table)
+        try:
+            if self.folder is not None:
+                self.folder.save_text(self.folder.attractors_file, table)
+        except SaveError as problem:
+            raise UnsavedError(problem, done) from problem
+        return done
+
+
+def _is_read_for(wanted: Collection[str | None]) -> Callable[[str], bool]:
+    """Whether a column is an input or one of these."""
+    return lambda name: name in wanted or name in INPUTS or name.startswith(("scene.", "law."))

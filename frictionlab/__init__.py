@@ -1,4 +1,4 @@
-"""Average-friction curves of vibrated sliding bodies, every point with a true error."""
+"""Average-friction curves of vibrated sliding bodies, every point with an error bound."""
 
 from __future__ import annotations
 

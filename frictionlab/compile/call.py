@@ -22,7 +22,7 @@ from frictionlab.laws.base import FrictionLaw
 
 _config: Any = numba.config
 
-WORTH = 2.0
+PYTHON_AT_MOST = 2.0
 """Processor time [s] that a process lets Python spend on a kernel before it compiles it, in 2 to 20 s, once."""
 
 
@@ -168,7 +168,7 @@ class KernelCall:
         return by_itself(self.law) if _choice.own_kernels else by_address(self.law, _is_planar(arguments))
 
     def _is_for_machine(self, key: Any, arguments: tuple[Any, ...]) -> bool:
-        if _config.DISABLE_JIT or _choice.always_compile or _spent.get(key, 0.0) >= WORTH:
+        if _config.DISABLE_JIT or _choice.always_compile or _spent.get(key, 0.0) >= PYTHON_AT_MOST:
             return True
         return self.is_kept(arguments)
 
@@ -191,12 +191,12 @@ class KernelCall:
         begin, start = time.thread_time(), time.perf_counter()
         with _unwritten(arguments) as keep:
             try:
-                with limited_to(WORTH - spent), np.errstate(all="ignore"):
+                with limited_to(PYTHON_AT_MOST - spent), np.errstate(all="ignore"):
                     found = self.by_python(*arguments), time.perf_counter() - start
                 keep()
                 _spent[key] = spent + time.thread_time() - begin
             except (TooLong, ArithmeticError, ValueError):  # Python refuses numbers that machine code takes
-                _spent[key] = WORTH
+                _spent[key] = PYTHON_AT_MOST
         return found
 
 

@@ -22,7 +22,7 @@ import numba.core.compiler
 import numba.core.serialize
 import numba.core.types
 
-from frictionlab.compile.notice import compiled_here, is_not_kept
+from frictionlab.compile.notice import compiled_here, mark_cache_miss
 
 _Cache: Any = numba.core.caching._Cache  # internals of numba, untyped
 _compiler: Any = numba.core.compiler
@@ -35,7 +35,7 @@ CHECKSUM = 32
 ABANDONED = 3600.0
 """Age [s] from which a file that was never finished is taken for one of a process that was killed."""
 
-_told: set[str] = set()
+_warned: set[str] = set()
 
 
 def cache_folder() -> Path | None:
@@ -62,7 +62,7 @@ class KeptEntry(_Cache):  # type: ignore[misc]
         context.refresh()
         found = self._found(signature, context)
         if found is None:
-            is_not_kept()
+            mark_cache_miss()
         return found
 
     def _found(self, signature: Any, context: Any) -> Any:
@@ -180,7 +180,7 @@ def _abandoned(folder: Path) -> Iterator[Path]:
 
 def _tell(message: str) -> None:
     """Say it once; a closed stderr is no error."""
-    if message not in _told and sys.stderr is not None:
-        _told.add(message)
+    if message not in _warned and sys.stderr is not None:
+        _warned.add(message)
         with contextlib.suppress(OSError, ValueError):
             print(message, file=sys.stderr)

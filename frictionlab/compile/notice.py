@@ -51,8 +51,8 @@ def named_while_it_compiles(name: str) -> Iterator[None]:
         _called.remove(called)
 
 
-def is_not_kept() -> None:
-    """What this thread asks for is to be compiled."""
+def mark_cache_miss() -> None:
+    """Note that the kernel this thread asks for is not in the cache."""
     for called in _called:
         if called.thread == threading.get_ident():
             called.not_kept = True

@@ -319,7 +319,7 @@ def _of_a_panel(
 ) -> Sums:
     """The part of one panel; of numbers at its nodes, or of arrays of them."""
     half = 0.5 * (tau[NODES.size - 1] - tau[0])
-    position, rubbed, harmonic_1, harmonic_2 = 0j, 0j, 0j, 0j
+    position, friction_impulse, harmonic_1, harmonic_2 = 0j, 0j, 0j, 0j
     put_in, viscous, taken, contact = 0.0, 0.0, 0.0, 0.0
     way, force, swing, strongest, fastest = 0j, 0j, 0.0, 0.0, 0.0
     for node in range(NODES.size):
@@ -330,7 +330,7 @@ def _of_a_panel(
         slips[node] = w
         # Each direction by itself: of the one across the belt nothing may be known.
         position = position + complex(weight * x[node].real, weight * x[node].imag)
-        rubbed = rubbed + complex(weight * rub.real, weight * rub.imag)
+        friction_impulse = friction_impulse + complex(weight * rub.real, weight * rub.imag)
         harmonic_1 = harmonic_1 + weight * velocity.real * turn.conjugate()
         harmonic_2 = harmonic_2 + weight * velocity.imag * turn.conjugate()
         # Powers: of the load, of the dashpots (springs give back what they take), and of friction, whose part in
@@ -349,7 +349,7 @@ def _of_a_panel(
     return Sums(
         2.0 * half,
         position,
-        rubbed,
+        friction_impulse,
         harmonic_1,
         harmonic_2,
         put_in,

@@ -124,7 +124,7 @@ def _several(found: Sequence[_Verdict]) -> Markup:
 
 
 def _named(own: Sequence[_Verdict], shape: str, found: Sequence[_Verdict], first: bool) -> Markup:
-    """Those of one shape, each by what tells it from the others."""
+    """Curve labels, grouped by shape."""
     one_law = len({each.law for each in found}) == 1
     names = listed([named({"law": each.law} | dict(each.where), one_law) for each in own])
     subject = ("The curves", "The curve") if first else ("those", "that")

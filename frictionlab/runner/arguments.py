@@ -32,7 +32,7 @@ def given_scene(scene: Scene) -> Scene:
     if isinstance(scene, Scene):
         return scene.checked()
     hint = "did you mean fl.Scene(**scene)?" if isinstance(scene, Mapping) else ""
-    raise TypeError(_told("scene must be an fl.Scene", scene, hint))
+    raise TypeError(_refusal("scene must be an fl.Scene", scene, hint))
 
 
 def given_law(law: FrictionLaw) -> FrictionLaw:
@@ -43,7 +43,7 @@ def given_law(law: FrictionLaw) -> FrictionLaw:
     if isinstance(law, str) and (name := closest(law, registry.law_names())):
         kind = registry.law_class(name)
     hint = f"did you mean {_call(kind)}?" if isinstance(kind, type) and issubclass(kind, FrictionLaw) else ""
-    raise TypeError(_told("law must be a friction law such as fl.Coulomb(mu=0.4)", law, hint))
+    raise TypeError(_refusal("law must be a friction law such as fl.Coulomb(mu=0.4)", law, hint))
 
 
 def given_method(method: str | Method) -> Method:
@@ -53,7 +53,7 @@ def given_method(method: str | Method) -> Method:
     if not isinstance(method, str):
         hint = f"did you mean {_call(method)}?" if isinstance(method, type) else ""
         raise TypeError(
-            _told("method must be a name such as 'auto', or a method such as fl.March()", method, hint)
+            _refusal("method must be a name such as 'auto', or a method such as fl.March()", method, hint)
         )
     if method not in registry.method_names():
         raise ValueError(_with(*unknown_name("method", method, registry.method_names())))
@@ -64,7 +64,7 @@ def given_tolerance(tolerance: float, name: str = "tolerance") -> float:
     """The tolerance of this name. Raises ValueError."""
     number = isinstance(tolerance, Real) and not isinstance(tolerance, bool)
     if not (number and isfinite(tolerance) and tolerance > 0.0):
-        raise ValueError(_told(f"{name} must be a positive number", tolerance))
+        raise ValueError(_refusal(f"{name} must be a positive number", tolerance))
     return float(tolerance)
 
 
@@ -73,13 +73,13 @@ def given_speeds(belt_speed: ArrayLike) -> Floats:
     given = np.atleast_1d(np.asarray(belt_speed, dtype=object))
     if given.ndim != 1 or isinstance(belt_speed, str | Mapping):
         hint = "fl.compare and fl.sweep take ranges" if isinstance(belt_speed, Mapping) else ""
-        raise ValueError(_told("belt_speed must be a list of finite numbers", belt_speed, hint))
+        raise ValueError(_refusal("belt_speed must be a list of finite numbers", belt_speed, hint))
     if not given.size:
         raise ValueError("belt_speed must be a list of finite numbers, got none")
     for place, each in enumerate(given):
         if isinstance(each, bool) or not isinstance(each, Real) or not isfinite(each):
             where = f" at [{place}]" if np.ndim(belt_speed) else ""
-            raise ValueError(f"{_told('belt_speed must be a list of finite numbers', each)}{where}")
+            raise ValueError(f"{_refusal('belt_speed must be a list of finite numbers', each)}{where}")
     return given.astype(np.float64)
 
 
@@ -87,7 +87,7 @@ def given_columns(names: Sequence[str], scene: Scene) -> tuple[str, ...]:
     """The names, each of a result column of such a scene. Raises ValueError."""
     known = [*RESULTS, *(SI if scene.dimensional is not None else ())]
     if isinstance(names, str) or not isinstance(names, Sequence):
-        raise ValueError(_told("columns must be a list of names", names))
+        raise ValueError(_refusal("columns must be a list of names", names))
     for name in names:
         if name not in known:
             raise ValueError(_with(f"columns: no result column '{name}'", did_you_mean(str(name), known)))
@@ -101,7 +101,7 @@ def given_study(
 ) -> Study:
     """The study of a file, a mapping or a record, its values checked. Raises StudyError, TypeError, ValueError."""
     if isinstance(overrides, str) or not all(isinstance(each, str) for each in overrides):
-        raise TypeError(_told("overrides must be a list such as ['scene.belt_speed=5']", overrides))
+        raise TypeError(_refusal("overrides must be a list such as ['scene.belt_speed=5']", overrides))
     if isinstance(study, Study):
         ready = _checked_study(study)
     elif isinstance(study, Mapping):
@@ -109,7 +109,7 @@ def given_study(
     elif isinstance(study, str | PathLike):
         ready = load_study(study, overrides)
     else:
-        raise TypeError(_told("study must be the path of a study file, a mapping or a Study", study))
+        raise TypeError(_refusal("study must be the path of a study file, a mapping or a Study", study))
     return ready if columns is None else replace(ready, columns=given_columns(columns, ready.scene))
 
 
@@ -125,17 +125,17 @@ def check_ways(existing: Existing, executor: Executor | Workforce | None) -> Non
     """Check how to go about a run. Raises ValueError, TypeError."""
     if existing not in get_args(Existing):
         allowed = " or ".join(map(repr, get_args(Existing)))
-        raise ValueError(_told(f"existing must be {allowed}", existing))
+        raise ValueError(_refusal(f"existing must be {allowed}", existing))
     check_executor(executor)
 
 
 def check_executor(executor: Executor | Workforce | None) -> None:
     """Raises TypeError."""
     if executor is not None and not isinstance(executor, Executor | Workforce):
-        raise TypeError(_told("executor must be a concurrent.futures.Executor", executor))
+        raise TypeError(_refusal("executor must be a concurrent.futures.Executor", executor))
 
 
-def _told(allowed: str, value: Any, hint: str = "") -> str:
+def _refusal(allowed: str, value: Any, hint: str = "") -> str:
     return _with(f"{allowed}, got {python_text(value)}", hint)
 
 

@@ -55,8 +55,8 @@ class Keys:
             self._code,
             law_code,
             method_code,
-            *_told(chunk.law),
-            *_told(chunk.method),
+            *_identity(chunk.law),
+            *_identity(chunk.method),
             repr(sorted(scenes.scene.model_copy(update=_BESIDE).values().items())),
             repr(
                 (task.tolerance, task.samples, task.harmonics, task.seconds_per_point, sorted(task.columns))
@@ -77,7 +77,7 @@ _BESIDE = {"belt_speed": 0.0, "dimensional": None}
 _code_of_method = cache(registry.method_code)
 
 
-def _told(record: Any) -> tuple[str, str]:
+def _identity(record: Any) -> tuple[str, str]:
     """The class of a law or method, whose code is told apart where it is another's, and its numbers."""
     kind = type(record)
     home = "" if from_outside(kind) else kind.__module__

@@ -62,9 +62,9 @@ def _problem(
         return None
     except TimeLimitExceeded:
         what = f"no answer within {seconds:g} s; does a method of the law never return?"
-        return _told(what, counted, "let every loop of its methods end")
+        return _described(what, counted, "let every loop of its methods end")
     except Exception as problem:
-        return _told(_describe_failure(problem, law), counted, _change(check, problem))
+        return _described(_describe_failure(problem, law), counted, _change(check, problem))
     return None
 
 
@@ -90,7 +90,7 @@ def _examples(
     return quietly(examples, Phase.shrink)(given(st.data())(body))
 
 
-def _told(what: str, counted: ExampleCount, change: str) -> str:
+def _described(what: str, counted: ExampleCount, change: str) -> str:
     """What is wrong, with which numbers, and what to change."""
     drawn = counted.last.told() if counted.last is not None else ""
     return "; ".join([what, *([f"seen with {drawn}"] if drawn else []), f"to change: {change}"])

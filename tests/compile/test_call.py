@@ -51,7 +51,7 @@ def test_what_is_called_once_is_run_by_python(without_kernels):
 
 
 def test_what_has_taken_long_enough_in_all_calls_together_is_compiled(without_kernels, monkeypatch):
-    monkeypatch.setattr(call, "WORTH", 0.15)
+    monkeypatch.setattr(call, "PYTHON_AT_MOST", 0.15)
     for _ in range(50):
         KernelCall(halve_slowly)(np.array([1.0]), 300_000)
         if ".kernel" in suffixes(without_kernels):
@@ -72,7 +72,7 @@ def test_what_another_process_has_compiled_is_not_run_by_python(without_kernels,
 
 def test_a_call_that_takes_too_long_is_begun_anew_by_machine_code(without_kernels, monkeypatch):
     """The interpreted one had already changed what it was given."""
-    monkeypatch.setattr(call, "WORTH", 0.1)
+    monkeypatch.setattr(call, "PYTHON_AT_MOST", 0.1)
     monkeypatch.setattr(interpret, "LONG", 0)
     numbers = np.array([1.0, 3.0, 5.0])
     KernelCall(give_up_late)(numbers, 60)
@@ -179,7 +179,7 @@ def test_python_and_machine_code_answer_the_same(scene, law, method, monkeypatch
     quick = fl.steady_state(scene, law, method=method, tolerance=1e-6)
     monkeypatch.setattr(call._choice, "always_compile", False)
     monkeypatch.setattr(call, "_ready", set())
-    monkeypatch.setattr(call, "WORTH", 1e9)
+    monkeypatch.setattr(call, "PYTHON_AT_MOST", 1e9)
     monkeypatch.setattr(KernelCall, "is_kept", lambda *_: False)
     slow = fl.steady_state(scene, law, method=method, tolerance=1e-6)
 

@@ -31,7 +31,7 @@ def total(a, b):
 def first_call(kernel=difference) -> float:
     """What a process that has loaded nothing yet would answer."""
     cache._entry.cache_clear()
-    kept._told.clear()
+    kept._warned.clear()
     return compiled(kernel)(5.0, 2.0)
 
 

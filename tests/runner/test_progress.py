@@ -14,7 +14,7 @@ from typing import Any, TextIO
 
 import pytest
 
-from frictionlab.compile.notice import is_not_kept, named_while_it_compiles
+from frictionlab.compile.notice import mark_cache_miss, named_while_it_compiles
 from frictionlab.runner.progress import Meter
 from frictionlab.runner.progress_line import fitted, spoken
 
@@ -74,7 +74,7 @@ def test_time_spent_compiling_is_named_and_not_held_against_the_points(
         elsewhere.submit(global_compiler_lock.acquire).result()
         now[0] = 124.0
         meter(100, 400)
-        is_not_kept()
+        mark_cache_miss()
         now[0] = 130.0
         meter(100, 400)
         elsewhere.submit(global_compiler_lock.release).result()

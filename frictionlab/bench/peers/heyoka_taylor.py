@@ -87,10 +87,10 @@ class _Line(LineMotion):
         if place is not start:
             slip.reset_cooldowns()
         slip.propagate_until(self.period)
-        x, v, rubbed = slip.state.tolist()
+        x, v, friction_impulse = slip.state.tolist()
         stopped = slip.time < self.period
         end = MotionState(slip.time, x, self.belt_speed if stopped else v)
-        return end, self.limit * (rubbed + side * (place.t - start.t))
+        return end, self.limit * (friction_impulse + side * (place.t - start.t))
 
     def _held(self, place: MotionState) -> MotionState:
         stick = self._stick
@@ -105,7 +105,7 @@ def _slip(mass: Mass, limit: float, tolerance: float) -> Any:
     """(x, v, time integral of the side); the side of the slip and the belt speed are parameters."""
     import heyoka as hy
 
-    x, v, rubbed = hy.make_vars("x", "v", "rubbed")
+    x, v, friction_impulse = hy.make_vars("x", "v", "friction_impulse")
     belt_speed, side = hy.par[0], hy.par[1]
     rate = _wave(mass.force, mass.frequency) - mass.damping * v - x - side * limit
     wave = mass.force, mass.frequency, mass.damping
@@ -121,7 +121,7 @@ def _slip(mass: Mass, limit: float, tolerance: float) -> Any:
         return True
 
     ends = hy.t_event(v - belt_speed, callback=turned)
-    system = [(x, v), (v, rate), (rubbed, side + 0.0 * x)]
+    system = [(x, v), (v, rate), (friction_impulse, side + 0.0 * x)]
     return hy.taylor_adaptive(system, [0.0] * 3, pars=[0.0] * 2, tol=tolerance, t_events=[ends])
 
 
@@ -158,9 +158,9 @@ def _plane(mass: Mass, friction: float, speeds: Floats, tolerance: float, lanes:
         integrator.propagate_until(count * period)
         end = integrator.state.copy()
         gap = np.sqrt(((end[:4] - state[:4]) ** 2).sum(axis=0)).max()
-        rubbed, state = end[4] - state[4], end
+        friction_impulse, state = end[4] - state[4], end
         if closing.done(float(gap)):
-            return (-rubbed / period)[: len(speeds)]
+            return (-friction_impulse / period)[: len(speeds)]
     raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
 
 
@@ -169,14 +169,14 @@ def _batch(mass: Mass, friction: float, tolerance: float, lanes: int) -> Any:
     """(x1, v1, x2, v2, integral of the friction coefficient along x1), the belt speed a parameter of each lane."""
     import heyoka as hy
 
-    x1, v1, x2, v2, rubbed = hy.make_vars("x1", "v1", "x2", "v2", "rubbed")
+    x1, v1, x2, v2, friction_impulse = hy.make_vars("x1", "v1", "x2", "v2", "friction_impulse")
     slip = v1 - hy.par[0]
     rub = friction * (slip * slip + v2 * v2) ** -0.5
     m = mass
     a1 = _wave(m.force, m.frequency) - m.damping * v1 - x1 - m.normal_load * rub * slip
     across = m.transverse_damping * v2 + m.transverse_stiffness * x2 + m.normal_load * rub * v2
     system = [(x1, v1), (v1, a1), (x2, v2), (v2, _wave(m.transverse_force, m.frequency) - across)]
-    system.append((rubbed, rub * slip))
+    system.append((friction_impulse, rub * slip))
     zeros = np.zeros((5, lanes))
     return hy.taylor_adaptive_batch(system, zeros, pars=np.zeros((1, lanes)), tol=tolerance)
 

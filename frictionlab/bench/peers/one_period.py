@@ -132,11 +132,11 @@ def _creep(tolerance: float) -> Any:
     """(x1, v1, x2, v2, integral of the friction coefficient), drive at frequency 1."""
     import heyoka as hy
 
-    x, v, x2, v2, rubbed = hy.make_vars("x", "v", "x2", "v2", "rubbed")
+    x, v, x2, v2, friction_impulse = hy.make_vars("x", "v", "x2", "v2", "friction_impulse")
     force, damping, load, mu, belt, width = (hy.par[i] for i in range(6))
     rub = mu * hy.tanh((v - belt) / width)
     rate = force * hy.sin(hy.time) - damping * v - x - load * rub
-    system = [(x, v), (v, rate), (x2, 0.0 * x2), (v2, 0.0 * v2), (rubbed, rub)]
+    system = [(x, v), (v, rate), (x2, 0.0 * x2), (v2, 0.0 * v2), (friction_impulse, rub)]
     return hy.taylor_adaptive(system, [0.0] * 5, pars=[0.0] * 6, tol=tolerance)
 
 
@@ -145,11 +145,11 @@ def _plane(tolerance: float) -> Any:
     """The same of slip in the plane."""
     import heyoka as hy
 
-    x, v, x2, v2, rubbed = hy.make_vars("x", "v", "x2", "v2", "rubbed")
+    x, v, x2, v2, friction_impulse = hy.make_vars("x", "v", "x2", "v2", "friction_impulse")
     force, damping, load, mu, belt, force_2, damping_2, stiffness_2 = (hy.par[i] for i in range(8))
     slip = v - belt
     rub = mu * (slip * slip + v2 * v2) ** -0.5
     along = force * hy.sin(hy.time) - damping * v - x - load * rub * slip
     across = force_2 * hy.sin(hy.time) - damping_2 * v2 - stiffness_2 * x2 - load * rub * v2
-    system = [(x, v), (v, along), (x2, v2), (v2, across), (rubbed, rub * slip)]
+    system = [(x, v), (v, along), (x2, v2), (v2, across), (friction_impulse, rub * slip)]
     return hy.taylor_adaptive(system, [0.0] * 5, pars=[0.0] * 8, tol=tolerance)

@@ -54,7 +54,7 @@ def follow_states(
     points = [_from_starts(problem, i, scene, count) for i, scene in moving]
     _carry(pairwise(points), FROM_BELOW)
     _carry(pairwise(reversed(points)), FROM_ABOVE)
-    return [_told(problem, point.place, state, way) for point in points for state, way in point.states]
+    return [_found_state(problem, point.place, state, way) for point in points for state, way in point.states]
 
 
 def _from_starts(problem: PeriodicProblem, place: int, scene: Scene, count: int) -> _Point:
@@ -77,7 +77,7 @@ def _carry(neighbours: Iterable[tuple[_Point, _Point]], found_from: str) -> None
                 there.note(found_from)
 
 
-def _told(problem: PeriodicProblem, place: int, state: Attractor, found_from: str) -> FoundState:
+def _found_state(problem: PeriodicProblem, place: int, state: Attractor, found_from: str) -> FoundState:
     x, velocity = problem.positions(state.points)
     error = math.nan if state.curve is None else float(state.curve.closed.error[0])
     numbers = state.mean, error, state.low, state.high

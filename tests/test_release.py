@@ -33,7 +33,7 @@ def test_a_wheel_is_held_against_the_source_file_by_file(tmp_path: Path) -> None
 
 
 def test_ten_parts_of_the_same_seconds_hold_every_test_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(deep, "recorded", lambda: {"a.py": 1.0, "b.py": 9.0})
+    monkeypatch.setattr(deep, "seconds_in", lambda table: {"a.py": 1.0, "b.py": 9.0})
     tests: list[Any] = [
         SimpleNamespace(nodeid=f"{file}::{k}") for file in ("a.py", "b.py") for k in range(50)
     ]

@@ -13,59 +13,103 @@ INPUTS: dict[str, str] = {
 }
 """The first columns; ``scene.<path>`` for every scene value and ``law.<parameter>`` for every law follow."""
 
-RESULTS: dict[str, str] = {
-    "mean_friction": "steady-state mean of the friction coefficient along x1, positive for belt_speed > 0",
-    "error": "bound on the absolute error of mean_friction against the scene as stated",
-    "error_kind": "guaranteed (proved) or estimated",
-    "status": "ok, refused, failed, not_unique or killed",
-    "reason": "why the status is not ok, or what to note about an ok point",
-    "unique": "proved, tested or no: whether every start ends in this state; empty where nothing was asked",
-    "mean_low": "smallest mean seen where the steady state is not unique",
-    "mean_high": "largest mean seen where the steady state is not unique",
-    "window": "periods averaged for mean_low and mean_high",
-    "mean_friction_transverse": "time mean of the friction coefficient along x2",
-    "velocity_amplitude": "half the peak-to-peak value of x1'",
-    "velocity_harmonic": "amplitude of the first harmonic of x1'",
-    "velocity_phase": "phase of that harmonic against the load along x1, in degrees, + = lead",
-    "transverse_velocity_amplitude": "half the peak-to-peak value of x2'",
-    "transverse_velocity_harmonic": "amplitude of the first harmonic of x2'",
-    "transverse_velocity_phase": "phase of that harmonic against the load along x1, in degrees, + = lead",
-    "stick_fraction": "share of the period in stick",
-    "reversals": "sign changes of the slip velocity along x1, per period",
-    "force_reversals": "sign changes of the friction force along x1, per period",
-    "energy_input": "work of the loads, per period of the response",
-    "energy_viscous": "loss in the dashpots, per period",
-    "energy_friction": "work absorbed by friction, per period",
-    "energy_contact": "heat in the contact, per period",
-    "energy_input_error": "bound on the absolute error of energy_input, estimated",
-    "energy_viscous_error": "bound on the absolute error of energy_viscous, estimated",
-    "energy_friction_error": "bound on the absolute error of energy_friction, estimated",
-    "energy_contact_error": "bound on the absolute error of energy_contact, estimated",
-    "period": "period of the response in drive periods, of an undriven one in units of 2 pi",
-    "floquet": "largest modulus of the Floquet multipliers, without the trivial one of an undriven orbit",
-    "floquet_error": "bound on the absolute error of floquet, estimated",
-    "normalized_friction": "mean_friction / steady sliding friction at the belt speed",
-    "velocity_ratio": "belt_speed / V_lin, the largest friction-free velocity of x1 over the belt's vibration",
-    "friction_to_drive": "friction coefficient * normal_load / force amplitude",
-    "presliding_ratio": "presliding length * frequency / V_lin",
-    "model": "the method that computed the number, and for auto the reason for its choice",
-    "seconds": "kernel time",
+
+class Column(NamedTuple):
+    """A result column. group: by which it is asked for. made: what it comes from: the method's answer, the orbit
+    of the motion, or the inputs. words, symbol: of figures. scale: of the unit in a scene given in SI units."""
+
+    name: str
+    meaning: str
+    group: str
+    made: str = "answer"
+    words: str = ""
+    symbol: str = ""
+    scale: str = ""
+    in_si: str = ""  # its meaning there, where it is another
+    symbol_in_si: str = ""
+    is_text: bool = False
+
+
+_UNITS = {
+    "load": ("N", "N"),
+    "velocity": ("m_per_s", "m/s"),
+    "energy": ("J", "J"),
+    "drive period": ("s", "s"),
 }
-"""The columns after the inputs, in the order of the table, with one line each."""
+"""The scales of result columns: the end of the name in SI units, and the unit."""
 
-ENERGIES = "energy_input", "energy_viscous", "energy_friction", "energy_contact"
+COLUMNS: tuple[Column, ...] = (
+    Column("mean_friction", "steady-state mean of the friction coefficient along x1, positive for belt_speed > 0",
+           "always", words="mean friction coefficient", symbol=r"\bar\mu", scale="load",
+           in_si="mean friction force along x1"),
+    Column("error", "bound on the absolute error of mean_friction against the scene as stated", "always",
+           scale="load", in_si="bound on the absolute error of mean_friction_N"),
+    Column("error_kind", "guaranteed (proved) or estimated", "answer", is_text=True),
+    Column("status", "ok, refused, failed, not_unique or killed", "always", is_text=True),
+    Column("reason", "why the status is not ok, or what to note about an ok point", "always", is_text=True),
+    Column("unique", "proved, tested or no: whether every start ends in this state; empty where nothing was asked",
+           "uniqueness", is_text=True),
+    Column("mean_low", "smallest mean seen where the steady state is not unique", "uniqueness"),
+    Column("mean_high", "largest mean seen where the steady state is not unique", "uniqueness"),
+    Column("window", "periods averaged for mean_low and mean_high", "uniqueness"),
+    Column("mean_friction_transverse", "time mean of the friction coefficient along x2", "transverse", scale="load",
+           in_si="mean friction force along x2"),
+    Column("velocity_amplitude", "half the peak-to-peak value of x1'", "motion", "orbit", "velocity amplitude",
+           r"\hat v_1", "velocity", symbol_in_si=r"\hat V_1"),
+    Column("velocity_harmonic", "amplitude of the first harmonic of x1'", "motion", "orbit", scale="velocity"),
+    Column("velocity_phase", "phase of that harmonic against the load along x1, in degrees, + = lead", "motion",
+           "orbit"),
+    Column("transverse_velocity_amplitude", "half the peak-to-peak value of x2'", "transverse", "orbit",
+           "transverse velocity amplitude", r"\hat v_2", "velocity", symbol_in_si=r"\hat V_2"),
+    Column("transverse_velocity_harmonic", "amplitude of the first harmonic of x2'", "transverse", "orbit",
+           scale="velocity"),
+    Column("transverse_velocity_phase", "phase of that harmonic against the load along x1, in degrees, + = lead",
+           "transverse", "orbit"),
+    Column("stick_fraction", "share of the period in stick", "motion", "orbit"),
+    Column("reversals", "sign changes of the slip velocity along x1, per period", "motion", "orbit"),
+    Column("force_reversals", "sign changes of the friction force along x1, per period", "motion", "orbit"),
+    Column("energy_input", "work of the loads, per period of the response", "energies", "orbit", "work of the loads",
+           r"E_\mathrm{in}", "energy"),
+    Column("energy_viscous", "loss in the dashpots, per period", "energies", "orbit", "viscous loss",
+           r"E_\mathrm{v}", "energy"),
+    Column("energy_friction", "work absorbed by friction, per period", "energies", "orbit",
+           "work absorbed by friction", r"E_\mathrm{f}", "energy"),
+    Column("energy_contact", "heat in the contact, per period", "energies", "orbit", "heat in the contact",
+           r"E_\mathrm{c}", "energy"),
+    Column("energy_input_error", "bound on the absolute error of energy_input, estimated", "energies", "orbit",
+           scale="energy", in_si="bound on the error of energy_input_J"),
+    Column("energy_viscous_error", "bound on the absolute error of energy_viscous, estimated", "energies", "orbit",
+           scale="energy", in_si="bound on the error of energy_viscous_J"),
+    Column("energy_friction_error", "bound on the absolute error of energy_friction, estimated", "energies", "orbit",
+           scale="energy", in_si="bound on the error of energy_friction_J"),
+    Column("energy_contact_error", "bound on the absolute error of energy_contact, estimated", "energies", "orbit",
+           scale="energy", in_si="bound on the error of energy_contact_J"),
+    Column("period", "period of the response in drive periods, of an undriven one in units of 2 pi", "answer",
+           scale="drive period", in_si="period of the response"),
+    Column("floquet", "largest modulus of the Floquet multipliers, without the trivial one of an undriven orbit",
+           "multipliers"),
+    Column("floquet_error", "bound on the absolute error of floquet, estimated", "multipliers"),
+    Column("normalized_friction", "mean_friction / steady sliding friction at the belt speed", "ratios", "inputs"),
+    Column("velocity_ratio", "belt_speed / V_lin, the largest friction-free velocity of x1 over the belt's vibration",
+           "ratios", "inputs", "relative belt speed", r"v_b/V_\mathrm{lin}"),
+    Column("friction_to_drive", "friction coefficient * normal_load / force amplitude", "ratios", "inputs"),
+    Column("presliding_ratio", "presliding length * frequency / V_lin", "ratios", "inputs"),
+    Column("model", "the method that computed the number, and for auto the reason for its choice", "answer",
+           is_text=True),
+    Column("seconds", "kernel time", "answer"),
+)  # fmt: skip
+"""The columns after the inputs, in the order of the table."""
 
-FROM_ORBITS: tuple[str, ...] = (
-    *("velocity_amplitude", "velocity_harmonic", "velocity_phase"),
-    *("transverse_velocity_amplitude", "transverse_velocity_harmonic", "transverse_velocity_phase"),
-    *("stick_fraction", "reversals", "force_reversals"),
-    *ENERGIES,
-    *(f"{name}_error" for name in ENERGIES),
-)
+RESULTS: dict[str, str] = {each.name: each.meaning for each in COLUMNS}
+"""What each of them is."""
+FROM_ORBITS: tuple[str, ...] = tuple(each.name for each in COLUMNS if each.made == "orbit")
 """The result columns that are read from orbits."""
-
-DERIVED: tuple[str, ...] = ("normalized_friction", "velocity_ratio", "friction_to_drive", "presliding_ratio")
+DERIVED: tuple[str, ...] = tuple(each.name for each in COLUMNS if each.made == "inputs")
 """Those that follow from a point's inputs and its mean friction."""
+TEXT: frozenset[str] = frozenset(each.name for each in COLUMNS if each.is_text)
+"""Those that hold text; every other one holds a number, empty where it does not apply."""
+ALWAYS: tuple[str, ...] = tuple(each.name for each in COLUMNS if each.group == "always")
+"""Those of every table, whatever is asked for."""
 
 
 class InSI(NamedTuple):
@@ -77,36 +121,69 @@ class InSI(NamedTuple):
 
 
 SI: dict[str, InSI] = {
-    "mean_friction_N": InSI("mean_friction", "load", "mean friction force along x1 [N]"),
-    "error_N": InSI("error", "load", "bound on the absolute error of mean_friction_N [N]"),
-    "mean_friction_transverse_N": InSI(
-        "mean_friction_transverse", "load", "mean friction force along x2 [N]"
-    ),
-    "velocity_amplitude_m_per_s": InSI("velocity_amplitude", "velocity", "velocity_amplitude [m/s]"),
-    "velocity_harmonic_m_per_s": InSI("velocity_harmonic", "velocity", "velocity_harmonic [m/s]"),
-    "transverse_velocity_amplitude_m_per_s": InSI(
-        "transverse_velocity_amplitude", "velocity", "transverse_velocity_amplitude [m/s]"
-    ),
-    "transverse_velocity_harmonic_m_per_s": InSI(
-        "transverse_velocity_harmonic", "velocity", "transverse_velocity_harmonic [m/s]"
-    ),
-    "energy_input_J": InSI("energy_input", "energy", "work of the loads, per period of the response [J]"),
-    "energy_viscous_J": InSI("energy_viscous", "energy", "loss in the dashpots, per period [J]"),
-    "energy_friction_J": InSI("energy_friction", "energy", "work absorbed by friction, per period [J]"),
-    "energy_contact_J": InSI("energy_contact", "energy", "heat in the contact, per period [J]"),
-    "energy_input_error_J": InSI("energy_input_error", "energy", "bound on the error of energy_input_J [J]"),
-    "energy_viscous_error_J": InSI(
-        "energy_viscous_error", "energy", "bound on the error of energy_viscous_J [J]"
-    ),
-    "energy_friction_error_J": InSI(
-        "energy_friction_error", "energy", "bound on the error of energy_friction_J [J]"
-    ),
-    "energy_contact_error_J": InSI(
-        "energy_contact_error", "energy", "bound on the error of energy_contact_J [J]"
-    ),
-    "period_s": InSI("period", "drive period", "period of the response [s]"),
+    f"{each.name}_{_UNITS[each.scale][0]}": InSI(
+        each.name,
+        each.scale,
+        f"{each.in_si or (each.name if each.scale == 'velocity' else each.meaning)} [{_UNITS[each.scale][1]}]",
+    )
+    for each in COLUMNS
+    if each.scale
 }
 """The columns at the end of the table of a scene given in SI units."""
+
+OF_SHAPE = (
+    *("normalized_friction", "velocity_ratio", "velocity_amplitude"),
+    *("reversals", "stick_fraction"),
+)
+"""The result columns that the measures of a curve's shape are read from, besides the mean and its error."""
+OF_REST = "status", "stick_fraction", "reversals"
+"""Those between which stick and reversal begin and end."""
+OF_MULTIPLIERS = "status", "period", "floquet"
+"""Those between which a multiplier leaves the unit circle."""
+
+ALL, SHAPE, ONSETS_GROUP = "all", "shape", "onsets"
+GROUPS: dict[str, str] = {
+    "answer": "how the mean was found",
+    "uniqueness": "whether every start ends in the same state, and between which means if not",
+    "motion": "velocity along the belt, stick and reversals",
+    "transverse": "mean friction and velocity across the belt",
+    "energies": "work of loads, dashpots and friction, per period, with errors",
+    "multipliers": "Floquet multipliers of the orbit",
+    "ratios": "mean friction, belt speed, friction and presliding length in natural scales",
+    SHAPE: "curves.csv: where curves end and how they bend",
+    ONSETS_GROUP: "onsets.csv: belt speeds at which the motion changes its kind",
+    ALL: "every column, and every table",
+}
+"""Names that ``columns`` takes for several columns each."""
+_OF_TABLES = {SHAPE: OF_SHAPE, ONSETS_GROUP: tuple(dict.fromkeys((*OF_REST, *OF_MULTIPLIERS)))}
+
+DEFAULT: tuple[str, ...] = (
+    *("mean_friction", "error", "error_kind", "status", "reason", "unique", "stick_fraction", "reversals"),
+    *(
+        "velocity_amplitude",
+        "velocity_ratio",
+        "normalized_friction",
+        "period",
+        "window",
+        "mean_low",
+        "mean_high",
+    ),
+    "model",
+)
+"""The result columns where none are asked for, each only where some row has it."""
+
+
+def columns_of(group: str) -> tuple[str, ...]:
+    """The result columns of a group."""
+    if group == ALL:
+        return tuple(RESULTS)
+    return _OF_TABLES.get(group) or tuple(each.name for each in COLUMNS if each.group == group)
+
+
+def asks_for(asked: Iterable[str] | None, group: str) -> bool:
+    """Whether the names of columns and groups ask for this group."""
+    return asked is not None and bool({group, ALL} & {*asked})
+
 
 BELT_SPEED = "scene.belt_speed"
 _GIVEN_IN_SI = "scene.dimensional."
@@ -159,20 +236,13 @@ def given(names: Iterable[str]) -> list[str]:
     return in_si if belt_speed(columns) != BELT_SPEED else columns
 
 
-ALWAYS = "mean_friction", "error", "status", "reason"
-"""The result columns of every table, whatever is asked for."""
-OF_SHAPE = (
-    *("normalized_friction", "velocity_ratio", "velocity_amplitude"),
-    *("reversals", "stick_fraction", "friction_to_drive"),
-)
-"""The result columns that the measures of a curve's shape are read from, besides the mean and its error."""
+def selected(asked: Iterable[str] | None, needed: Iterable[str] = ()) -> frozenset[str]:
+    """The result columns of a table that is asked for these columns and groups, in both scales.
 
-
-def selected(asked: Iterable[str] | None) -> frozenset[str]:
-    """The result columns of a table that is asked for these: with what every table has, each in both scales."""
-    if asked is None:
-        return frozenset([*RESULTS, *SI])
-    wanted = {*ALWAYS, *(SI[name].column if name in SI else name for name in asked)}
+    None: the default ones. needed: besides. Each table has those of ``ALWAYS``.
+    """
+    names = DEFAULT if asked is None else [one for name in asked for one in (columns_of(name) or [name])]
+    wanted = {*ALWAYS, *(SI[name].column if name in SI else name for name in (*names, *needed))}
     return frozenset([*wanted, *(name for name, made in SI.items() if made.column in wanted)])
 
 
@@ -259,21 +329,10 @@ SHAPES: dict[str, tuple[str, ...]] = {
 }
 """Measures of shape and the verdicts each can give."""
 
-TEXT: frozenset[str] = frozenset({"error_kind", "status", "reason", "unique", "model"})
-"""The result columns that hold text; every other one holds a number, empty where it does not apply."""
-
 STATUSES: tuple[str, ...] = ("ok", "refused", "failed", "not_unique", "killed")
 
 
-_NAMES = {
-    "mean_friction": (r"mean friction coefficient", r"\bar\mu"),
-    "velocity_amplitude": ("velocity amplitude", r"\hat v_1"),
-    "transverse_velocity_amplitude": ("transverse velocity amplitude", r"\hat v_2"),
-    "energy_input": ("work of the loads", r"E_\mathrm{in}"),
-    "energy_viscous": ("viscous loss", r"E_\mathrm{v}"),
-    "energy_friction": ("work absorbed by friction", r"E_\mathrm{f}"),
-    "energy_contact": ("heat in the contact", r"E_\mathrm{c}"),
-    "velocity_ratio": ("relative belt speed", r"v_b/V_\mathrm{lin}"),
+_NAMES = {  # words, symbol, unit
     "scene.belt_speed": ("belt speed", "v_b"),
     "scene.damping_ratio": ("damping ratio", r"\beta_1"),
     "scene.normal_load": ("normal load", r"\gamma^2"),
@@ -328,12 +387,6 @@ _LAWS = {  # words, symbol, unit in SI
 _LAWS_IN_SI = "law.dimensional."
 
 _IN_SI = {  # words, symbol, unit; inputs without the "scene.dimensional." before them
-    "velocity_amplitude_m_per_s": ("velocity amplitude", r"\hat V_1", "m/s"),
-    "transverse_velocity_amplitude_m_per_s": ("transverse velocity amplitude", r"\hat V_2", "m/s"),
-    "energy_input_J": ("work of the loads", r"E_\mathrm{in}", "J"),
-    "energy_viscous_J": ("viscous loss", r"E_\mathrm{v}", "J"),
-    "energy_friction_J": ("work absorbed by friction", r"E_\mathrm{f}", "J"),
-    "energy_contact_J": ("heat in the contact", r"E_\mathrm{c}", "J"),
     "mass_kg": ("mass", "M", "kg"),
     "stiffness_N_per_m": ("stiffness", "K_1", "N/m"),
     "damping_N_s_per_m": ("damping", "C_1", "N s/m"),
@@ -353,6 +406,20 @@ _IN_SI = {  # words, symbol, unit; inputs without the "scene.dimensional." befor
     "belt_vibration.velocity_amplitude_m_per_s": ("belt vibration amplitude", r"\hat V_b", "m/s"),
     "belt_vibration.frequency_rad_per_s": ("belt vibration frequency", r"\omega", "rad/s"),
     "normal_load_variation.frequency_rad_per_s": ("normal load frequency", r"\omega", "rad/s"),
+}
+
+
+_OF_RESULTS: dict[str, tuple[str, ...]] = {
+    **{each.name: (each.words, each.symbol) for each in COLUMNS if each.words},
+    **{
+        f"{each.name}_{_UNITS[each.scale][0]}": (
+            each.words,
+            each.symbol_in_si or each.symbol,
+            _UNITS[each.scale][1],
+        )
+        for each in COLUMNS
+        if each.words and each.scale and each.scale != "load"
+    },
 }
 
 
@@ -380,6 +447,6 @@ def _entry(name: str) -> tuple[str, ...]:
         parameter = name.removeprefix(_LAWS_IN_SI)
         return _LAWS[parameter] if parameter in _LAWS else _entry(f"law.{parameter}")
     plain = {f"law.{parameter}": entry[:2] for parameter, entry in _LAWS.items()}
-    known: dict[str, tuple[str, ...]] = {**_IN_SI, **_NAMES, **plain}
+    known: dict[str, tuple[str, ...]] = {**_IN_SI, **_NAMES, **plain, **_OF_RESULTS}
     inside = name.removeprefix(_GIVEN_IN_SI)
     return known.get(inside) or (known.get(f"scene.{inside}", ()) if inside != name else ())

@@ -127,6 +127,7 @@ ARROWS = {
     "cli": [
         "bench",
         "charts",
+        "columns",
         "explore",
         "faults",
         "least_model",

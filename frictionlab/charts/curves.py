@@ -17,7 +17,8 @@ from frictionlab.columns import BELT_SPEEDS, SCALED, SHOWN_IN_PART, belt_speed, 
 T = TypeVar("T")
 MOST_PICTURES = 12  # in which several laws are compared; of more values each law has a picture of its own
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
-READ_FOR_KINKS = "velocity_ratio", "mean_friction", "normalized_friction", "transverse_velocity_amplitude"
+READ_FOR_KINKS = "velocity_ratio", "mean_friction", "normalized_friction"
+INPUTS_ACROSS = "load.unbalance", "load.amplitude", "slip.velocity_amplitude", "direction"  # ends of inputs
 _ROUNDING = 1e-15  # rounding of a mean of order one
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
 SweptValue = tuple[
@@ -271,13 +272,24 @@ def kinks_of(curve: pd.DataFrame) -> tuple[float, ...]:
         return ()
     rows = curve[curve["velocity_ratio"].abs() > 0]
     sliding = (rows["mean_friction"] / rows["normalized_friction"]).dropna().abs()
-    across = rows["transverse_velocity_amplitude"].abs().max() > 0
-    if across or sliding.empty or sliding.max() - sliding.min() > 1e-9 * sliding.max():
+    if _moves_across(rows) or sliding.empty or sliding.max() - sliding.min() > 1e-9 * sliding.max():
         return ()
     speeds = curve[belt_speed(curve.columns)]
     limit = float((speeds[rows.index] / rows["velocity_ratio"]).median())
     low, high = speeds.min(), speeds.max()
     return tuple(speed for speed in (-limit, limit) if low < speed < high)
+
+
+def _moves_across(rows: pd.DataFrame) -> bool:
+    """Whether something moves the body across the belt: a load or slip there, or one at an angle to the belt."""
+    if "transverse_velocity_amplitude" in rows:
+        return bool(rows["transverse_velocity_amplitude"].abs().max() > 0)
+    names = [
+        name
+        for name in rows
+        if name.endswith(INPUTS_ACROSS) and ("transverse" in name or "direction" in name)
+    ]
+    return any(is_numeric_dtype(rows[name]) and (rows[name].abs() > 0).any() for name in names)
 
 
 EVEN = 0.3

@@ -32,7 +32,7 @@ from frictionlab.cli.output import (
 )
 
 COMMANDS = (
-    *("bench", "check", "explore", "laws", "methods", "needs", "new", "plot", "report", "run"),
+    *("bench", "check", "columns", "explore", "laws", "methods", "needs", "new", "plot", "report", "run"),
     *("schema", "warm"),
 )
 """Each is the function ``NAME_command`` of the module of its name."""

@@ -13,9 +13,17 @@ from frictionlab.cli.output import print_message, print_result
 
 @click.command("report")
 @click.argument("run", type=options.PATH)
-def report_command(run: Path) -> None:
-    """Write the figures and the report.html of RUN anew, a folder that ``run`` wrote. Nothing is computed."""
-    from frictionlab.report import write_report
+@click.option("--figures", is_flag=True, help="Draw the figures alone.")
+def report_command(run: Path, figures: bool) -> None:
+    """Draw the figures and write the report.html of RUN anew, a folder that ``run`` wrote. Nothing is computed.
+
+    Width, formats and all else of the figures are those of ``figures`` in RUN/study.yaml, which may be edited.
+    """
+    drawn_anew(run, figures)
+
+
+def drawn_anew(run: Path, figures: bool) -> None:
+    """The figures of a run, and its report unless they alone are asked for."""
     from frictionlab.runner.in_use import alone_in
     from frictionlab.runner.saved import read_saved
 
@@ -23,6 +31,12 @@ def report_command(run: Path) -> None:
         saved = read_saved(run)
         for line in saved.damaged:
             print_message(line)
-        draw_saved(saved, run)
-        page = write_report(saved)
-    print_result(str(page))
+        files = draw_saved(saved, run)
+        if not figures:
+            from frictionlab.report import write_report
+
+            files = [write_report(saved)]
+    if files:
+        print_result("\n".join(map(str, files)))
+    else:
+        print_message(f"no figures: the study of {run} sweeps nothing")

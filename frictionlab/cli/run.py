@@ -23,6 +23,7 @@ from frictionlab.cli.output import (
     print_records,
     print_result,
 )
+from frictionlab.columns import ONSETS_GROUP
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -98,7 +99,7 @@ class RunOptions(NamedTuple):
 @click.option(
     "--columns",
     metavar="A,B",
-    help="The result columns to find; inputs, mean_friction, error, status and reason always.",
+    help="The result columns to find, and groups of them, as `frictionlab columns` tells them; all for every one.",
 )
 @click.option(
     "-j", "workers", type=click.IntRange(min=1), metavar="N", help="Threads; all cores if left out."
@@ -208,11 +209,12 @@ def _run(job: Job, asked: RunOptions, meter: Meter) -> Run:
 
 
 def _shown(job: Job, result: Run, asked: RunOptions, meter: Meter) -> Run:
-    """The run with its onsets, drawn, its report written."""
+    """The run drawn, its report written, its onsets found where they are asked for."""
     from frictionlab.runner import api
 
-    meter.begins("finding onsets")
-    result = api.with_onsets(result)
+    if job.study.asks_for(ONSETS_GROUP):
+        meter.begins("finding onsets")
+        result = api.with_onsets(result)
     meter.begins("drawing", "figures")
     _draw(job, result, asked, meter)
     meter.begins("writing the report")
@@ -270,7 +272,8 @@ def _draw(job: Job, result: Run, asked: RunOptions, meter: Meter) -> None:
     from frictionlab.runner.saved import saved_as
 
     table = result.table if asked.figures else result.to_show
-    onsets = None if result.curves.empty else result.onsets
+    with_onsets = job.study.asks_for(ONSETS_GROUP) and not result.curves.empty
+    onsets = result.onsets if with_onsets else None
     title, curves = job.study.title or job.name, None if result.curves.empty else result.curves
     if draw_into(
         whole(table),

@@ -8,7 +8,7 @@ from frictionlab.charts.curves import CurveData
 from frictionlab.columns import BELT_SPEEDS
 from frictionlab.results.loads_in_time import scene_of
 
-RATIOS = "velocity_ratio", "friction_to_drive"
+RATIOS = "velocity_ratio", "normalized_friction"
 
 
 class PageScene(NamedTuple):
@@ -37,10 +37,11 @@ def page_scene(curve: CurveData, abscissa: str) -> PageScene | None:
     if scene.degrees_of_freedom != 1 or not scene.is_harmonic or not load or not scene.damping_ratio:
         return None
     rows = curve.rows[curve.rows["velocity_ratio"].abs() > 0.0]
-    friction = rows["friction_to_drive"]
-    if rows.empty or not friction.max() - friction.min() <= 1e-12 * friction.max():
+    left = rows["normalized_friction"] != 0.0
+    friction = (rows["mean_friction"] / rows["normalized_friction"])[left].abs()
+    if friction.empty or not friction.max() - friction.min() <= 1e-12 * friction.max():
         return None
     limit = float((rows[abscissa] / rows["velocity_ratio"]).median())
-    share = float(friction.iloc[0])
-    mu = share * abs(load) / (scene.normal_load or 1.0)
+    mu = float(friction.iloc[0])
+    share = mu * (scene.normal_load or 1.0) / abs(load)
     return PageScene(scene.frequency, scene.damping_ratio, share, mu, limit)

@@ -90,7 +90,15 @@ def _loads(given: Mapping[str, Any], laws: registry.Laws) -> Loads:
     forces = force("scene.drive"), force("scene.transverse.load")
     bristles = _bristle_law(given, laws)
     shakedown = None if bristles is None else _shakedown(bristles, value, forces, any(slips))
-    return Loads(*forces, slips[1], static or math.nan, any(slips), shakedown, _unknown_start(given, laws))
+    return Loads(
+        *forces,
+        slips[1],
+        static or math.nan,
+        any(slips),
+        shakedown,
+        _unknown_start(given, laws),
+        normal_load=value("scene.normal_load"),
+    )
 
 
 def _unknown_start(given: Mapping[str, Any], laws: registry.Laws) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.results.derived import force_amplitude
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signal
 from frictionlab.scene.waveforms import told
@@ -68,6 +69,9 @@ def loads_of(given: Mapping[str, Any], law: FrictionLaw | None) -> Loads:
         unknown_start=unknown,
         start=start,
         lags=remembers and scene.constant_contact,
+        # where forces are not told, in shares of the largest
+        normal_load=(scene.normal_load or 0.0)
+        / (1.0 if scene.is_harmonic else force_amplitude(scene) or math.nan),
     )
 
 

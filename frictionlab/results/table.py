@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from frictionlab.columns import (
+    ALWAYS,
     BELT_SPEEDS,
     RESULTS,
     SCALED,
@@ -33,7 +34,7 @@ FINISHED = ("ok", "refused", "failed", "not_unique")
 class Inputs(NamedTuple):
     """The input columns of each row; scales: the units of its results, for scenes in SI units."""
 
-    columns: dict[str, Column]
+    columns: dict[str, ColumnValues]
     size: int
     scales: dict[str, Floats] | None = None
 
@@ -62,7 +63,7 @@ class InputColumns:
         first = min(each.rows.start for each in curves)
         where = [slice_of(each.rows, first) for each in curves]
         size = sum(len(each.rows) for each in curves)
-        columns: dict[str, Column] = {}
+        columns: dict[str, ColumnValues] = {}
         for (prefix, records), kinds in zip(self._records, self._kinds, strict=True):
             columns |= _spread(prefix, records[chosen.start : chosen.stop], kinds, where, size)
         for each, places in zip(curves, where, strict=True):
@@ -72,7 +73,7 @@ class InputColumns:
         return Inputs(columns, size, _scales(curves, where, size))
 
 
-Column = NDArray[Any]
+ColumnValues = NDArray[Any]
 Told = TypeVar("Told")
 
 
@@ -129,9 +130,9 @@ def _kinds(records: list[dict[str, Any]]) -> dict[str, bool]:
 
 def _spread(
     prefix: str, records: list[dict[str, Any]], kinds: dict[str, bool], where: list[slice], size: int
-) -> dict[str, Column]:
+) -> dict[str, ColumnValues]:
     """A column for each name, each record's value at its places; numbers with gaps as floats."""
-    found: dict[str, Column] = {}
+    found: dict[str, ColumnValues] = {}
     for name, are_numbers in kinds.items():
         column = np.full(size, np.nan) if are_numbers else np.full(size, None, dtype=object)
         for record, places in zip(records, where, strict=True):
@@ -190,19 +191,33 @@ class Results:
         return frame
 
 
+def without_empty(table: pd.DataFrame) -> pd.DataFrame:
+    """The table without the result columns that no row has."""
+    return table.drop(columns=[n for n in table.columns if may_be_left_out(n) and table[n].isna().all()])
+
+
+def may_be_left_out(name: str) -> bool:
+    """Whether a column is left out where no row has it: a result that not every table has."""
+    return (name in RESULTS or name in SI) and name not in ALWAYS
+
+
 def whole(table: pd.DataFrame) -> pd.DataFrame:
     """The table with every result column, empty where it was not asked for."""
     if all(name in table for name in RESULTS):
         return table
     given = [name for name in table.columns if name not in RESULTS and name not in SI]
-    return table.reindex(columns=[*given, *RESULTS, *(name for name in SI if name in table)])
+    found = table.reindex(columns=[*given, *RESULTS, *(name for name in SI if name in table)])
+    return found.astype({name: _WORDS for name in TEXT if name not in table})
+
+
+_WORDS = pd.StringDtype(na_value=np.nan)
 
 
 def _column_of_words_or_numbers(column: pd.Series) -> pd.Series:
     """Numbers with gaps as floats; words as strings, the empty word as a gap."""
     if all(value is None or isinstance(value, float | int) for value in column):
         return column.astype(float)
-    return column.where(column != "", None).astype(pd.StringDtype(na_value=np.nan))
+    return column.where(column != "", None).astype(_WORDS)
 
 
 def status_counts(table: pd.DataFrame) -> dict[str, int]:

@@ -21,6 +21,7 @@ from frictionlab.methods.base import Method
 from frictionlab.quantities import at_least_one
 from frictionlab.results.attractor_table import attractor_table
 from frictionlab.results.run import Run
+from frictionlab.results.table import without_empty
 from frictionlab.runner.arguments import (
     Existing,
     check_executor,
@@ -67,7 +68,7 @@ def run(
     existing: Existing = "reuse",
     executor: Executor | Workforce | None = None,
     progress: Progress = silent,
-    columns: Sequence[str] | None = None,
+    columns: Sequence[str] | str | None = None,
     cache: str | PathLike[str] | None = None,
     cache_gigabytes: float = USUAL_GIGABYTES,
     as_csv: bool = False,
@@ -80,7 +81,8 @@ def run(
     cache: the folder that keeps solved chunks for this and other studies, ``.cache`` beside ``out`` by default; above
     so many gigabytes those used longest ago are removed. Without ``out`` and ``cache`` nothing is written.
     as_csv: write a table of more than 1e5 rows as text, too; it is read from its file where ``.table`` is asked for.
-    columns: result columns, in place of those of the study; inputs, mean_friction, error, status and reason always.
+    columns: result columns and groups of them (``frictionlab columns`` tells them), in place of those of the study;
+    ``"all"`` for every one.
 
     >>> import frictionlab as fl
     >>> scene = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5, "drive": {"unbalance": 10, "frequency": 1}}
@@ -135,14 +137,14 @@ def curve(
     belt_speed: ArrayLike,
     method: str | Method = "auto",
     tolerance: float = 1e-8,
-    columns: Sequence[str] | None = None,
+    columns: Sequence[str] | str | None = None,
     executor: Executor | None = None,
 ) -> pd.DataFrame:
     """The result table of one law over belt speeds: a row each, in the order given.
 
     belt_speed [omega_1 L; m/s for a scene given in SI units]: a number, or a list or array of one dimension.
     method: a name, or a method such as ``fl.March(steps=1000)``. tolerance [-]: absolute, on mean_friction.
-    columns: result columns, all by default; inputs, mean_friction, error, status and reason always.
+    columns: result columns and groups of them, as for ``run``.
     executor: any; threads of this process by default.
 
     >>> import frictionlab as fl
@@ -160,7 +162,8 @@ def curve(
     # a method is never given a belt speed twice
     different, places = np.unique(given_speeds(belt_speed), return_inverse=True)
     whole = _one_curve(kind, law, ready, Scenes(scene, different))
-    return table_of([whole], task, executor).iloc[places].reset_index(drop=True)
+    table = table_of([whole], task, executor).iloc[places].reset_index(drop=True)
+    return without_empty(table) if columns is None else table
 
 
 def table_of(curves: Sequence[StudyCurve], task: Task, executor: Executor | None = None) -> pd.DataFrame:

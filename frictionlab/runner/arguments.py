@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from frictionlab import registry
-from frictionlab.columns import RESULTS, SI
+from frictionlab.columns import ALL, GROUPS, RESULTS, SI
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.mistakes.notes import closest, did_you_mean, python_text, unknown_name
@@ -83,21 +83,24 @@ def given_speeds(belt_speed: ArrayLike) -> Floats:
     return given.astype(np.float64)
 
 
-def given_columns(names: Sequence[str], scene: Scene) -> tuple[str, ...]:
-    """The names, each of a result column of such a scene. Raises ValueError."""
-    known = [*RESULTS, *(SI if scene.dimensional is not None else ())]
+def given_columns(names: Sequence[str] | str, scene: Scene) -> tuple[str, ...]:
+    """The names, each of a result column of such a scene or of a group of them. Raises ValueError."""
+    known = [*RESULTS, *(SI if scene.dimensional is not None else ()), *GROUPS]
+    if names == ALL:
+        return (ALL,)
     if isinstance(names, str) or not isinstance(names, Sequence):
         raise ValueError(_refusal("columns must be a list of names", names))
     for name in names:
         if name not in known:
-            raise ValueError(_with(f"columns: no result column '{name}'", did_you_mean(str(name), known)))
+            hint = did_you_mean(str(name), known)
+            raise ValueError(_with(f"columns: no result column or group '{name}'", hint))
     return tuple(dict.fromkeys(names))
 
 
 def given_study(
     study: str | PathLike[str] | Mapping[str, Any] | Study,
     overrides: Sequence[str],
-    columns: Sequence[str] | None,
+    columns: Sequence[str] | str | None,
 ) -> Study:
     """The study of a file, a mapping or a record, its values checked. Raises StudyError, TypeError, ValueError."""
     if isinstance(overrides, str) or not all(isinstance(each, str) for each in overrides):

@@ -14,7 +14,7 @@ from frictionlab.columns import ALWAYS, OF_SHAPE
 from frictionlab.results.curve_table import curve_table
 from frictionlab.results.harmonic_table import harmonic_table
 from frictionlab.results.part import KeptRows, Part, Places
-from frictionlab.results.table import InputColumns, Inputs, Results, orbit_rows, status_counts
+from frictionlab.results.table import InputColumns, Inputs, Results, orbit_rows, status_counts, without_empty
 from frictionlab.results.thinned import Thinned
 from frictionlab.runner.solving import Solving
 from frictionlab.runner.table_files import TableFiles
@@ -62,9 +62,13 @@ class TablePiece:
 
 
 class GatheredTable:
-    """A table on its way to its files. shown: the rows of a long one that are held; None for all rows."""
+    """A table on its way to its files.
 
-    def __init__(self, shown: Places | None) -> None:
+    shown: the rows of a long one that are held; None for all rows. leave_out_empty: result columns that no row has.
+    """
+
+    def __init__(self, shown: Places | None, leave_out_empty: bool = False) -> None:
+        self._leave_out_empty = leave_out_empty
         self._shown = None if shown is None else Thinned(shown)
         self._tables: list[pd.DataFrame] = []
         self._curves: list[pd.DataFrame] = []
@@ -75,7 +79,7 @@ class GatheredTable:
     def gather(self, solving: Solving, files: TableFiles, laws: registry.Laws, stopped: bool) -> None:
         """Write the table, held in whole or in part. stopped: curves are not read then."""
         for piece in pieces(solving):
-            for table in [piece.table()] if self._shown is None else piece.tables():
+            for table in [self._whole(piece)] if self._shown is None else piece.tables():
                 files.add_rows(table)
                 self._tables.append(table) if self._shown is None else self._shown.add(table)
                 self._counts.update(status_counts(table))
@@ -86,6 +90,9 @@ class GatheredTable:
                 self.orbits, self.harmonics = orbits, harmonics
             read = piece.for_curves()
             self._curves.append(curve_table(read.iloc[:0] if stopped else read, laws))
+
+    def _whole(self, piece: TablePiece) -> pd.DataFrame:
+        return without_empty(piece.table()) if self._leave_out_empty else piece.table()
 
     @property
     def table(self) -> pd.DataFrame:

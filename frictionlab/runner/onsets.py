@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import ONSETS
+from frictionlab.columns import OF_MULTIPLIERS, OF_REST, ONSETS
 from frictionlab.methods.base import Answers
 from frictionlab.results.curve_table import curve_inputs
 from frictionlab.results.table import slice_of
@@ -23,10 +23,6 @@ from frictionlab.theory.uniqueness import is_convergent
 if TYPE_CHECKING:
     from frictionlab.onsets.curve import Onset
 
-OF_REST = ("status", "stick_fraction", "reversals")
-"""The result columns between which stick and reversal begin and end."""
-OF_MULTIPLIERS = ("status", "period", "floquet")
-"""Those between which a multiplier leaves the unit circle."""
 READ_FOR_ONSETS = frozenset([*OF_REST, *OF_MULTIPLIERS])
 _FEWEST = 2000
 """Motions of all curves together, however few points a run has."""
@@ -52,6 +48,13 @@ def onset_table(study: Study, table: pd.DataFrame) -> pd.DataFrame:
         found += own
         heads += [each.rows.start] * len(own)
     return _frame(found, heads, keys, table)
+
+
+def lacks_multipliers(study: Study, table: pd.DataFrame) -> bool:
+    """Whether onsets of multipliers would be missed, since the table was not asked for what they are found from."""
+    return not set(OF_MULTIPLIERS) <= set(table.columns) and any(
+        _is_followed(each) and _may_lose_stability(each) for each in study.curves()
+    )
 
 
 def _is_followed(curve: StudyCurve) -> bool:

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from frictionlab import __version__
-from frictionlab.columns import INPUTS, RESULTS, TEXT, belt_speed
+from frictionlab.columns import ALWAYS, INPUTS, RESULTS, TEXT, belt_speed
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
 from frictionlab.results.table import status_counts, whole
@@ -199,7 +199,7 @@ def _with_chosen_speeds(study: Study, table: pd.DataFrame) -> Study:
 
 def _wrong(table: pd.DataFrame, study: Study) -> str:
     """What keeps a table from being a result table; nothing for one that is."""
-    asked = study.selected() | INPUTS.keys()
+    asked = INPUTS.keys() | (ALWAYS if study.columns is None else study.selected())
     missing = [name for name in [*INPUTS, *RESULTS] if name in asked and name not in table]
     if missing:
         return f"it has no column {missing[0]}"

@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from frictionlab.columns import RESULTS
+from frictionlab.columns import ALL, RESULTS, selected
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.results.derived import si_columns, si_scales
@@ -37,7 +37,7 @@ def steady_state(
     Raises ValueError or TypeError for what makes no sense, BrokenPlugin.
     """
     scene, law, ready = given_scene(scene), given_law(law), given_method(method)
-    task = Task(given_tolerance(tolerance))
+    task = Task(given_tolerance(tolerance), columns=selected([ALL]))
     chunk = Chunk(np.zeros(1, np.int64), Scenes.of([scene]), law_in_scene(law, scene), ready, task)
     (piece,) = within(inf, answer, chunk)  # an interrupt is obeyed while a kernel runs
     (part,) = within(inf, parts, chunk, [piece])

@@ -12,21 +12,21 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 from frictionlab import registry
-from frictionlab.columns import ALWAYS, INPUTS, RESULTS
+from frictionlab.columns import ALWAYS, INPUTS, ONSETS_GROUP, RESULTS
 from frictionlab.results.attractor_table import attractor_table
 from frictionlab.results.expectations import Verdict, judge
 from frictionlab.results.part import Part
 from frictionlab.results.run import Run
-from frictionlab.results.table import finished_part, inputs, kept_rows
+from frictionlab.results.table import finished_part, inputs, kept_rows, whole
 from frictionlab.results.thinned import LONG_TABLE, shown_rows, thinned
 from frictionlab.runner.arguments import Existing
 from frictionlab.runner.chosen_speeds import choose_speeds
 from frictionlab.runner.chunks import task_of
 from frictionlab.runner.errors import SaveError
-from frictionlab.runner.folder import RunFolder
+from frictionlab.runner.folder import ASKED, RunFolder
 from frictionlab.runner.gathering import GatheredTable
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
-from frictionlab.runner.onsets import READ_FOR_ONSETS, onset_table
+from frictionlab.runner.onsets import READ_FOR_ONSETS, lacks_multipliers, onset_table
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.solving import Keeping, Solving
 from frictionlab.runner.table_files import TableFiles, read_columns_of_file, read_pieces, read_whole
@@ -142,9 +142,13 @@ class StudyRun:
         """Rows of these curves that are in an earlier table, with their orbits."""
         given, wanted = inputs(curves), self.study.selected()
         names = {*given.columns, *(name for name in RESULTS if name in wanted)}
-        if earlier is None or not names <= {*earlier.columns}:
+        if earlier is None or self.folder is None:
             return []
-        if self.study.keep_orbit is None or self.folder is None:
+        if earlier.attrs.get(ASKED) == self.folder.identity.marks[ASKED]:  # what it lacks no row has
+            earlier = whole(earlier)
+        if not names <= {*earlier.columns}:
+            return []
+        if self.study.keep_orbit is None:
             return [finished_part(given, earlier, wanted)]
         orbits = self.folder.earlier_orbits(self.ways.existing)
         if orbits is None or not (orbits.groupby("row").size() == self.study.keep_orbit).all():
@@ -176,10 +180,11 @@ class StudyRun:
 
     def _gathered(self, solving: Solving, stopped: bool) -> Run:
         """The run, written and judged. Raises Interrupted or UnsavedError, both with the run."""
-        gathered = GatheredTable(shown_rows(solving.curves) if self._is_long else None)
+        usual = self.study.columns is None
+        gathered = GatheredTable(shown_rows(solving.curves) if self._is_long else None, usual)
         done, unsaved = None, None
         try:
-            with TableFiles(self.folder, self._as_csv) as files:
+            with TableFiles(self.folder, self._as_csv, usual and self._is_long) as files:
                 gathered.gather(solving, files, self._laws, stopped)
             if self.folder is not None and not gathered.curves.empty:
                 self.folder.save_text(self.folder.curves_file, gathered.curves)
@@ -216,7 +221,7 @@ class StudyRun:
             None if self.folder is None else self.folder.path,
             self._computed,
             gathered.curves,
-            lambda: onset_table(study, read),
+            lambda: self._onsets(read),
             harmonics=None if study.keep_harmonics is None else gathered.harmonics,
         )
 
@@ -232,10 +237,18 @@ class StudyRun:
             self.folder.path,
             self._computed,
             curves,
-            lambda: onset_table(study, read_columns_of_file(table, _is_read_for({*READ_FOR_ONSETS}))),
+            lambda: self._onsets(read_columns_of_file(table, _is_read_for({*READ_FOR_ONSETS}))),
             shown,
             counts,
         )
+
+    def _onsets(self, table: pd.DataFrame) -> pd.DataFrame:
+        """The onsets of the curves; where the table lacks what they are found from, the points are solved again."""
+        study = self.study
+        if len(table) and lacks_multipliers(study, table):
+            asked = replace(study, columns=(ONSETS_GROUP,), expect=())
+            table = StudyRun(asked, None, self.kept, RunWays()).run().table
+        return onset_table(study, table)
 
     def _judged(self, done: Run, stopped: bool = False) -> Run:
         """The run with its verdicts, judged on the columns that they speak of."""
@@ -243,7 +256,11 @@ class StudyRun:
         if stopped or not expect:
             return done
         table, wanted = self.folder and self.folder.table, {*ALWAYS, *(each.column for each in expect)}
-        read = read_columns_of_file(table, _is_read_for(wanted)) if self._is_long and table else done.table
+        read = (
+            read_columns_of_file(table, _is_read_for(wanted))
+            if self._is_long and table
+            else whole(done.table)
+        )
         return replace(done, verdicts=tuple(judge(each, read, done.curves) for each in expect))
 
     def _describe(self, counts: dict[str, int], verdicts: Sequence[Verdict], done: bool = False) -> None:

@@ -22,7 +22,7 @@ class Loads(NamedTuple):
     rest if the law defines one, else NaN. prescribed: whether the slip is prescribed. shakedown: for bristles, their
     state on a belt of vanishing speed. unknown_start: why the start of the curve is not known, '' where it is.
     start: the mean friction at vanishing belt speed where that is known beforehand, else NaN. lags: whether the
-    friction of bristles lags behind the normal load.
+    friction of bristles lags behind the normal load. normal_load: its mean.
     """
 
     along: complex
@@ -34,6 +34,7 @@ class Loads(NamedTuple):
     unknown_start: str = ""
     start: float = math.nan
     lags: bool = False
+    normal_load: float = math.nan
 
     @property
     def along_belt_only(self) -> bool:
@@ -57,7 +58,6 @@ class Rows(NamedTuple):
     velocity_amplitude: Floats
     reversals: Floats
     stick_fraction: Floats
-    friction_to_drive: Floats
 
     @property
     def steady(self) -> Floats:
@@ -129,7 +129,7 @@ def start_friction(rows: Rows, loads: Loads) -> Estimate:
         raise UnreadableCurve(
             "no load drives the body: the limit of friction at vanishing belt speed is not known"
         )
-    kinetic = float(np.nanmax(rows.friction_to_drive)) * force
+    kinetic = float(np.nanmax(np.abs(rows.steady))) * loads.normal_load
     limit = kinetic if math.isnan(loads.static_limit) else max(kinetic, loads.static_limit)
     if limit <= loads.largest:
         return Estimate(0.0, 0.0)

@@ -180,13 +180,20 @@ def _column(given: Any, path: Path, table: Table, notes: Notes) -> str | None:
     return name
 
 
-def result_column(given: Any, path: Path, results: Sequence[str], notes: Notes) -> str | None:
+def column_or_group(given: Any, path: Path, known: Sequence[str], notes: Notes) -> str | None:
+    """The name of one of these result columns or groups of them; None, noted, where it is none."""
+    return result_column(given, path, known, notes, "result column or a group of them")
+
+
+def result_column(
+    given: Any, path: Path, results: Sequence[str], notes: Notes, what: str = "result column"
+) -> str | None:
     """The name of one of these result columns; None, noted, where it is none."""
     if not isinstance(given, str) or given not in results:
         hint = did_you_mean(given, results) if isinstance(given, str) else ""
         in_si = given in columns.SI if isinstance(given, str) else False
         needed = " (this one needs a scene given in SI units: scene.dimensional)" if in_si else ""
-        notes.add(path, f"must be a result column, got {value_text(given)}{needed}", "" if in_si else hint)
+        notes.add(path, f"must be a {what}, got {value_text(given)}{needed}", "" if in_si else hint)
         return None
     return given
 

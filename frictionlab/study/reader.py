@@ -21,7 +21,7 @@ from frictionlab.study.choices import (
     method_choice,
     note_equal_labels,
 )
-from frictionlab.study.expectations import Table, expectations, result_column
+from frictionlab.study.expectations import Table, column_or_group, expectations
 from frictionlab.study.figure_options import read_figure_options
 from frictionlab.study.grid import StudyGrid
 from frictionlab.study.law_files import (
@@ -165,9 +165,11 @@ class _StudyReader:
     def _columns(self, scene: Scene | None) -> tuple[str, ...] | None:
         if "columns" not in self._tree:
             return None
-        given = items(self._tree["columns"], ("columns",), "[floquet, stick_fraction]", self._notes)
-        known = self._table(scene, Sweeps()).results
-        read = [result_column(name, ("columns", i), known, self._notes) for i, name in enumerate(given)]
+        if self._tree["columns"] == columns.ALL:
+            return (columns.ALL,)
+        given = items(self._tree["columns"], ("columns",), "[floquet, energies], or all", self._notes)
+        known = (*self._table(scene, Sweeps()).results, *columns.GROUPS)
+        read = [column_or_group(name, ("columns", i), known, self._notes) for i, name in enumerate(given)]
         return tuple(dict.fromkeys(name for name in read if name is not None))
 
     def _expect(self, scene: Scene | None, sweep: Sweeps) -> Any:

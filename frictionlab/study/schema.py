@@ -31,7 +31,7 @@ _KEYS = {
     "sweep": "values to vary, by dotted path: scene.<value>, laws.<label>.<parameter> or friction; "
     "all combinations are solved",
     "expect": "what the table is expected to say; where it does not, run ends with exit code 3",
-    "columns": "result columns to find; inputs, mean_friction, error, status and reason always; all where left out",
+    "columns": "result columns and groups of them to find, told by `frictionlab columns`; all for every one",
     "limit": "what a point may cost",
     "figures": "how figures are drawn",
     "keep": "what to write beside the table",
@@ -95,7 +95,16 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
         "tolerance": {"type": "number", "exclusiveMinimum": 0, "default": reader.DEFAULT_TOLERANCE},
         "sweep": _sweep(),
         "expect": {"type": "array", "items": {"oneOf": _expectations()}},
-        "columns": {"type": "array", "minItems": 1, "items": {"enum": [*columns.RESULTS, *columns.SI]}},
+        "columns": {
+            "oneOf": [
+                {"const": columns.ALL},
+                {
+                    "type": "array",
+                    "minItems": 1,
+                    "items": {"enum": [*columns.RESULTS, *columns.SI, *columns.GROUPS]},
+                },
+            ]
+        },
         "limit": _closed_object({LIMIT_KEY: _TIME}, []),
         "figures": _figures(),
         "keep": _closed_object(

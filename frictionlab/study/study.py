@@ -34,8 +34,9 @@ class Study(StudyGrid):
     tolerance: absolute, on mean_friction [-]. keep_orbit: samples per period to keep, None for none.
     keep_attractors: starts a point from which every state is looked for, None for none. keep_harmonics: the highest
     harmonic of velocity and friction to keep, None for none.
-    columns: result columns asked for, None for all. seconds_per_point: the time a point may take [s].
-    figures: how they are drawn. plugins: its law files. code: SHA-256 of every law that is not frictionlab's own.
+    columns: result columns and groups asked for, None for the default ones. seconds_per_point: the time a point may
+    take [s]. figures: how they are drawn. plugins: its law files. code: SHA-256 of every law that is not
+    frictionlab's own.
     ``Study.of`` makes one of Python objects, ``fl.run`` solves it.
 
     >>> import frictionlab as fl
@@ -148,11 +149,13 @@ class Study(StudyGrid):
 
     def selected(self) -> frozenset[str]:
         """The result columns of its table: those asked for, those of every table and those that ``expect`` judges."""
-        if self.columns is None:
-            return columns.selected(None)
         judged = [each.column for each in self.expect if each.column is not None]
         of_shape = columns.OF_SHAPE if any(each.shape is not None for each in self.expect) else ()
-        return columns.selected([*self.columns, *judged, *of_shape])
+        return columns.selected(self.columns, [*judged, *of_shape])
+
+    def asks_for(self, group: str) -> bool:
+        """Whether a group of columns is asked for by its name."""
+        return columns.asks_for(self.columns, group)
 
     def law_texts(self) -> dict[str, str]:
         """The files of laws, by the names under which a run keeps copies of them."""

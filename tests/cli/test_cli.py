@@ -493,6 +493,12 @@ def test_laws_are_listed_with_parameters_limits_and_what_they_declare(frictionla
     assert "the subdifferential of mu |v|" in alone["declares"]["monotone"]
 
 
+def test_columns_and_their_groups_are_listed(frictionlab: Any) -> None:
+    columns = {record["column"]: record for record in json.loads(frictionlab("columns", "--json").out)}
+    assert (columns["floquet"]["group"], columns["floquet"]["default"]) == ("multipliers", False)
+    assert "energies: work of loads" in frictionlab("columns").out
+
+
 def test_methods_are_listed(frictionlab: Any) -> None:
     assert "exact" in frictionlab("methods").out
     records = {record["name"]: record for record in json.loads(frictionlab("methods", "--json").out)}

@@ -123,7 +123,7 @@ def test_the_solver_of_the_page_takes_the_scenes_that_are_its_own(saved: Saved) 
         {"scene.damping_ratio": 0.0},
         {"scene.drive.waveform": "square"},
         {"scene.transverse.natural_frequency": 1.0, "scene.transverse.damping_ratio": 0.1},
-        {"friction_to_drive": np.linspace(0.3, 0.4, 11)},
+        {"normalized_friction": np.linspace(0.3, 0.4, 11)},
         {"velocity_ratio": None},
     ):
         assert page_scene(curve_of(saved, **changed), speed) is None

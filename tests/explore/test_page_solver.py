@@ -68,7 +68,9 @@ def exact_curve(scene: dict[str, Any], ratios: Any) -> pd.DataFrame:
     body = fl.Scene(
         damping_ratio=scene["damping"], normal_load=scene["friction"] / MU, belt_speed=1.0, drive=drive
     )
-    return fl.curve(body, fl.Coulomb(mu=MU), belt_speed=np.array(ratios) * v_lin(scene), method="exact")
+    return fl.curve(
+        body, fl.Coulomb(mu=MU), belt_speed=np.array(ratios) * v_lin(scene), method="exact", columns="all"
+    )
 
 
 POINTS = """

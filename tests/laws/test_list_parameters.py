@@ -63,7 +63,7 @@ def test_a_list_is_not_swept() -> None:
 
 
 def test_every_number_of_a_list_has_a_column_in_every_table_and_a_run_is_taken_over(tmp_path: Path) -> None:
-    plan = study(LAW, methods=["mdsm"])
+    plan = study(LAW, methods=["mdsm"], columns=["seconds"])
     plan["laws"] += [{"kind": "jenkins", "mu": 0.4, "stiffness": 2}]
     first = fl.run(plan, out=tmp_path / "run").table
     again = fl.run(plan, out=tmp_path / "run").table
@@ -80,7 +80,7 @@ def test_every_number_of_a_list_has_a_column_in_every_table_and_a_run_is_taken_o
 
 
 def test_every_number_of_a_list_in_si_units_is_scaled() -> None:
-    plan = study(LAW, methods=["mdsm"]) | {"scene": {"dimensional": BODY}}
+    plan = study(LAW, methods=["mdsm"], columns=["seconds"]) | {"scene": {"dimensional": BODY}}
     table = fl.run(plan).table
 
     (law,) = parse_study(plan).laws_in_scenes(parse_study(plan).laws[0])

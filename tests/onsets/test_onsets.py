@@ -141,12 +141,12 @@ def test_a_table_without_their_columns_has_no_onsets() -> None:
 
 
 def test_the_command_writes_onsets_and_takes_them_over(tmp_path: Path, monkeypatch: Any) -> None:
-    from frictionlab.runner import api
+    from frictionlab.runner import study_run
     from frictionlab.study.yaml_text import yaml_text
 
     monkeypatch.setattr("frictionlab.cli.run._draw", lambda *_: None)
     file, out = tmp_path / "study.yaml", tmp_path / "out"
-    file.write_text(yaml_text(study(LINE, np.linspace(30.0, 55.0, 6))))
+    file.write_text(yaml_text(study(LINE, np.linspace(30.0, 55.0, 6), columns=["onsets"])))
     assert cli.main(["run", str(file), "-o", str(out)]) == 0
     text = (out / "onsets.csv").read_bytes()
     assert pd.read_csv(out / "onsets.csv")["onset"].tolist() == [
@@ -160,7 +160,7 @@ def test_the_command_writes_onsets_and_takes_them_over(tmp_path: Path, monkeypat
     assert page.count(">stick begins</td>") == page.count(">stick ends</td>") == 1
 
     with monkeypatch.context() as patch:
-        patch.setattr(api, "onset_table", lambda *_: pytest.fail("onsets were found again"))
+        patch.setattr(study_run, "onset_table", lambda *_: pytest.fail("onsets were found again"))
         assert cli.main(["run", str(file), "-o", str(out)]) == 0
     (out / "onsets.csv").write_bytes(text[:-3])  # damaged
     assert cli.main(["run", str(file), "-o", str(out)]) == 0

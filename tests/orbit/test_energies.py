@@ -11,7 +11,9 @@ from profiles import deep
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
-from frictionlab.columns import ENERGIES
+from frictionlab.columns import columns_of
+
+ENERGIES = [name for name in columns_of("energies") if not name.endswith("_error")]
 
 HELD = fl.Scene(  # in presliding: the mean friction force is forty times the load
     damping_ratio=0.0487, normal_load=3914.0, belt_speed=4.31, drive=fl.Drive(amplitude=26.3, frequency=2.16)

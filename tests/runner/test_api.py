@@ -24,7 +24,7 @@ from run_folders import without_stamps
 
 import frictionlab as fl
 from frictionlab import registry
-from frictionlab.columns import RESULTS, TEXT
+from frictionlab.columns import ALWAYS, DEFAULT, RESULTS, TEXT
 from frictionlab.results.summary import summary
 from frictionlab.results.table import inputs, records
 from frictionlab.runner import api, table_files
@@ -79,7 +79,11 @@ def test_the_table_has_the_inputs_first_and_every_result_column_in_the_order_of_
         "drive.frequency",
     ]
     given = ["law", "kind", "method", *(f"scene.{name}" for name in scene), "law.mu"]
-    assert list(table.columns) == [*given, *RESULTS]
+    usual = [name for name in RESULTS if name in table]
+    assert list(table.columns) == [*given, *usual]
+    assert {*ALWAYS} < {*usual} < {*DEFAULT}
+    assert all(table[name].notna().any() for name in usual if name != "reason")
+    assert list(fl.run(study(), columns="all").table) == [*given, *RESULTS]
 
 
 def test_rows_are_in_the_order_of_the_cases() -> None:
@@ -156,7 +160,7 @@ def test_a_method_that_answers_too_few_points_is_found_out(monkeypatch: pytest.M
 
 
 def test_mean_friction_belt_speed_and_load_are_told_against_their_natural_scales() -> None:
-    table = fl.run(study()).table
+    table = fl.run(study(), columns=["ratios"]).table
 
     assert table["normalized_friction"].tolist()[2] == pytest.approx(math.tanh(2) / 3, rel=1e-14)
     assert np.isnan(table["normalized_friction"].tolist()[3])
@@ -169,7 +173,7 @@ def test_mean_friction_belt_speed_and_load_are_told_against_their_natural_scales
 def test_friction_is_told_against_the_load_across_the_belt_where_nothing_pushes_along_it() -> None:
     across = {"natural_frequency": 2, "damping_ratio": 0.1, "load": {"amplitude": 8}}
     scene = study()["scene"] | {"drive": {"amplitude": 0, "frequency": 1}, "transverse": across}
-    table = fl.run(study(scene=scene)).table
+    table = fl.run(study(scene=scene), columns=["ratios"]).table
 
     assert set(table["friction_to_drive"]) == {0.5}
     assert table["velocity_ratio"].isna().all()
@@ -177,7 +181,7 @@ def test_friction_is_told_against_the_load_across_the_belt_where_nothing_pushes_
 
 def test_a_prescribed_slip_has_no_force_to_tell_friction_against() -> None:
     scene = {"belt_speed": 5, "slip": {"velocity_amplitude": 8, "frequency": 1}}
-    table = fl.run(study(scene=scene)).table
+    table = fl.run(study(scene=scene), columns=["ratios"]).table
 
     assert table["friction_to_drive"].isna().all()
     assert table["velocity_ratio"].tolist()[0] == 0.5
@@ -220,8 +224,8 @@ def test_rows_do_not_depend_on_the_number_of_workers() -> None:
         with ThreadPoolExecutor(workers) as pool:
             return fl.run(study(methods=["exact", "fake"], sweep=MANY), executor=pool).table
 
-    one = run_with(1).drop(columns="seconds")
-    assert_frame_equal(one, run_with(7).drop(columns="seconds"), check_exact=True)
+    one = run_with(1)
+    assert_frame_equal(one, run_with(7), check_exact=True)
 
 
 def test_chunks_and_answers_can_cross_to_another_process() -> None:
@@ -511,7 +515,7 @@ def test_a_steady_state_has_every_result_column_and_nothing_else() -> None:
 
 def test_a_steady_state_is_the_row_of_the_same_scene() -> None:
     state = fl.steady_state(SCENE, LAW)
-    (row,) = records(fl.curve(SCENE, LAW, belt_speed=[5.0]))
+    (row,) = records(fl.curve(SCENE, LAW, belt_speed=[5.0], columns="all"))
 
     for name in set(RESULTS) - {"seconds"}:
         value = getattr(state, name)

@@ -12,7 +12,7 @@ import pytest
 
 import frictionlab as fl
 from frictionlab import cli
-from frictionlab.columns import ALWAYS, FROM_ORBITS, RESULTS, TEXT
+from frictionlab.columns import ALWAYS, FROM_ORBITS, GROUPS, RESULTS, TEXT, columns_of
 from frictionlab.methods.exact.method import _Curve
 from frictionlab.methods.periodic import continuation
 from frictionlab.methods.periodic.problem import PeriodicProblem
@@ -55,9 +55,20 @@ def test_a_table_has_the_columns_asked_for_and_those_of_every_table() -> None:
     np.testing.assert_array_equal(by_key["floquet"], curve["floquet"])
 
 
+def test_a_group_asks_for_its_columns_and_all_for_every_one() -> None:
+    energies = fl.run(study(columns=["energies", "floquet"])).table
+    every = fl.run(study(columns="all"))
+
+    assert found(energies) == [
+        name for name in RESULTS if name in {*ALWAYS, *columns_of("energies"), "floquet"}
+    ]
+    assert found(every.table) == found(fl.run(study(), columns="all").table) == list(RESULTS)
+    assert every.study.resolved()["columns"] == ["all"]
+
+
 @pytest.mark.parametrize(("scene", "method"), [(LINE, "exact"), (PLANE, "shooting")])
 def test_a_column_alone_is_the_one_of_the_whole_row(scene: dict[str, Any], method: str) -> None:
-    whole = fl.run(study(scene=scene, methods=[method])).table
+    whole = fl.run(study(scene=scene, methods=[method], columns="all")).table
 
     for name in RESULTS:
         alone = fl.run(study(scene=scene, methods=[method], columns=[name])).table
@@ -146,7 +157,7 @@ def test_in_si_units_a_column_comes_in_both_scales() -> None:
     told = {"energy_input", "energy_input_J", "mean_friction_N", "error_N"}
     assert told <= set(table.columns)
     assert "energy_viscous_J" not in table
-    with pytest.raises(ValueError, match="no result column 'energy_input_J'"):
+    with pytest.raises(ValueError, match="no result column or group 'energy_input_J'"):
         fl.run(study(), columns=["energy_input_J"])
 
 
@@ -163,7 +174,7 @@ def test_a_name_that_is_no_column_is_a_mistake_at_its_place(tmp_path: Path, caps
 
     (mistake,) = caught.value.mistakes
     assert (mistake.place.line, mistake.place.column) == (line, 20)
-    assert "must be a result column, got the text 'flouqet'" in str(mistake)
+    assert "must be a result column or a group of them, got the text 'flouqet'" in str(mistake)
     assert "did you mean 'floquet'?" in str(mistake)
     assert cli.main(["run", str(file), "-o", str(tmp_path / "out")]) == 2
     assert f"study.yaml:{line}:20: columns[1]" in capsys.readouterr().err
@@ -171,7 +182,12 @@ def test_a_name_that_is_no_column_is_a_mistake_at_its_place(tmp_path: Path, caps
 
 @pytest.mark.parametrize(
     ("columns", "told"),
-    [([], "the list is empty"), ("floquet", "must be a list such as"), ([1], "must be a result column")],
+    [
+        ([], "the list is empty"),
+        ("floquet", r"must be a list such as \[floquet, energies\], or all, got"),
+        ([1], "must be a result column or a group"),
+        (["enrgies"], "did you mean 'energies'"),
+    ],
 )
 def test_columns_are_a_list_of_names(columns: Any, told: str) -> None:
     with pytest.raises(StudyError, match=told):
@@ -179,14 +195,16 @@ def test_columns_are_a_list_of_names(columns: Any, told: str) -> None:
 
 
 def test_python_is_told_what_was_perhaps_meant() -> None:
-    with pytest.raises(ValueError, match="no result column 'flouqet'; did you mean 'floquet'"):
+    with pytest.raises(ValueError, match="no result column or group 'flouqet'; did you mean 'floquet'"):
         fl.run(study(), columns=["flouqet"])
     with pytest.raises(ValueError, match="must be a list of names"):
         fl.curve(fl.Scene.model_validate(LINE), fl.Coulomb(mu=0.4), SPEEDS, columns="floquet")
 
 
 def test_the_schema_knows_the_columns() -> None:
-    assert set(FROM_ORBITS) < set(schema()["properties"]["columns"]["items"]["enum"])
+    every, several = schema()["properties"]["columns"]["oneOf"]
+    assert every == {"const": "all"}
+    assert {*FROM_ORBITS, *GROUPS} < set(several["items"]["enum"])
 
 
 # --- folders and the command --------------------------------------------------------------------------------------
@@ -197,7 +215,7 @@ def test_a_folder_with_other_columns_is_used_where_it_has_those_asked_for(tmp_pa
     again = fl.run(study(columns=["floquet"]), tmp_path)
     more = fl.run(study(columns=["floquet", "reversals"]), tmp_path)
     fewer = fl.run(study(columns=["reversals"]), tmp_path)
-    every = fl.run(study(), tmp_path)
+    every = fl.run(study(columns="all"), tmp_path)
 
     assert [done.computed for done in (few, again, more, fewer, every)] == [2, 0, 2, 0, 2]
     assert more.table["reversals"].notna().all()

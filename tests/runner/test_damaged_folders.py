@@ -190,7 +190,7 @@ def test_a_file_that_is_being_replaced_is_known_before_and_after(monkeypatch: py
 
 def test_a_table_is_not_left_beside_the_text_of_an_earlier_one() -> None:
     fl.run("mine.yaml", out="out")
-    part = fl.run("mine.yaml", out="out", columns=["floquet"], existing="reuse")
+    part = fl.run("mine.yaml", out="out", columns=["reversals"], existing="reuse")
     assert part.computed == 0
     assert (
         list(pd.read_csv("out/results.csv"))

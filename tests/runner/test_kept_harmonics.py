@@ -19,6 +19,7 @@ STUDY = {
     "methods": ["exact", "mdsm"],
     "sweep": {"scene.belt_speed": [5.0, 25.0]},
     "keep": {"harmonics": 3},
+    "columns": ["motion", "energies"],
 }
 
 

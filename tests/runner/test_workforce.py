@@ -36,7 +36,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 
 def timeless(run: Any) -> Any:
-    return run.table.drop(columns="seconds")
+    return run.table
 
 
 @pytest.mark.parametrize("way", ["processes", "cluster", pytest.param("parts", marks=deep("six processes"))])

@@ -295,7 +295,7 @@ def test_a_law_given_in_si_units_is_converted_for_the_method_and_kept_in_the_tab
 
 
 def test_the_table_keeps_both_sets_of_columns_and_only_where_there_are_two() -> None:
-    both = fl.run(study()).table
+    both = fl.run(study(columns="all")).table
     scene = si_scene(**BODY)
     plain = fl.curve(
         Scene(damping_ratio=0.1, normal_load=1, belt_speed=1, drive={"unbalance": 1, "frequency": 1}),
@@ -330,7 +330,8 @@ def test_belt_speeds_in_python_are_in_the_units_of_the_scene() -> None:
 
 
 def swept(**sweep: Any) -> pd.DataFrame:
-    return fl.run(study(sweep={f"scene.dimensional.{path}": values for path, values in sweep.items()})).table
+    swept = {f"scene.dimensional.{path}": values for path, values in sweep.items()}
+    return fl.run(study(sweep=swept), columns="all").table
 
 
 def test_sweeps_over_si_values_move_the_nondimensional_ones_with_them() -> None:

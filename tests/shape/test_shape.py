@@ -354,7 +354,7 @@ def test_reference_curves_in_the_plane_have_the_areas_they_are_known_by(
             "velocity_amplitude": read["V1"],
             "reversals": np.where(highest > speed, 2.0, 0.0),
             "stick_fraction": 0.0,
-            "friction_to_drive": 0.4 / 160,
+            "scene.normal_load": 1.0,
             "status": "ok",
         }
     )

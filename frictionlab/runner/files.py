@@ -23,11 +23,12 @@ def write_whole(path: Path, content: bytes) -> None:
     try:
         temporary.write_bytes(content)
         os.replace(temporary, path)
-    except OSError as problem:
-        raise SaveError(f"cannot write {path}: {problem.strerror or problem}") from problem
-    finally:
+    except BaseException as problem:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
+        if isinstance(problem, OSError):
+            raise SaveError(f"cannot write {path}: {problem.strerror or problem}") from problem
+        raise
 
 
 def remove_leftovers(folder: Path) -> None:

@@ -20,6 +20,7 @@ import pyarrow.parquet as pq
 
 from frictionlab.faults import INTERNAL, MARK
 from frictionlab.printable import printable
+from frictionlab.results.csv_text import as_csv
 from frictionlab.results.curve_table import CURVE_TEXT
 from frictionlab.runner.arguments import Existing
 from frictionlab.runner.errors import FolderError, SaveError
@@ -353,7 +354,7 @@ class RunFolder:
 
     def save_text(self, path: Path, table: pd.DataFrame) -> None:
         """Write a table as text, floats in shortest round-trip form. Raises SaveError."""
-        write_whole(path, table.to_csv(None, index=False, lineterminator="\n").encode())
+        write_whole(path, as_csv(table))
         self.know_only(self._tables, path)
 
     def remove_texts(self) -> None:

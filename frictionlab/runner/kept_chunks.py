@@ -7,6 +7,7 @@ import json
 import math
 import os
 import time
+import zlib
 from collections.abc import Mapping
 from contextlib import suppress
 from functools import cache
@@ -29,8 +30,8 @@ from frictionlab.runner.files import remove_leftovers, write_whole
 FolderName = str | PathLike[str]
 FOLDER = ".cache"
 USUAL_GIGABYTES = 4.0
-_HEAD = b"frictionlab chunk 2 "
-_CHECKSUM = 64
+_HEAD = b"frictionlab chunk 3 "
+_CHECKSUM = 8
 """Letters of a checksum."""
 
 
@@ -90,6 +91,7 @@ class KeptChunks:
     def __init__(self, folder: Path, gigabytes: float = USUAL_GIGABYTES) -> None:
         self.folder, self._most = folder, gigabytes * 1e9
         self._began = time.time()
+        self._made = set[Path]()
 
     def found(self, key: str) -> Part | None:
         """The answers kept under a key, by their places in the chunk; None without, or where the file is damaged."""
@@ -108,8 +110,10 @@ class KeptChunks:
         if not _is_an_answer(part):
             return False
         path = self._path(key)
-        with suppress(OSError):  # the file cannot be written then either, and says so
-            path.parent.mkdir(parents=True, exist_ok=True)
+        if path.parent not in self._made:
+            with suppress(OSError):  # the file cannot be written then either, and says so
+                path.parent.mkdir(parents=True, exist_ok=True)
+            self._made.add(path.parent)
         write_whole(path, _packed(part))
         return True
 
@@ -178,14 +182,13 @@ def _packed(part: Part) -> bytes:
         for values in columns.values()
     ]
     content = b"".join([json.dumps(told).encode(), b"\n", *numbers, *indices, *kept])
-    return _HEAD + hashlib.sha256(content).hexdigest().encode() + b"\n" + content
+    return _HEAD + _checksum(content) + b"\n" + content
 
 
 def _indexed(column: list[str]) -> tuple[list[str], list[int]]:
     """The different words, and for each row which of them."""
-    places: dict[str, int] = {}
-    found = [places.setdefault(word, len(places)) for word in column]
-    return list(places), found
+    places = {word: place for place, word in enumerate(dict.fromkeys(column))}
+    return list(places), [places[word] for word in column] if len(places) > 1 else [0] * len(column)
 
 
 def _unpacked(content: bytes) -> Part | None:
@@ -230,4 +233,4 @@ def _kept_of(told: Mapping[str, dict[str, Any]], numbers: Floats) -> dict[str, K
 
 
 def _checksum(content: bytes) -> bytes:
-    return hashlib.sha256(content).hexdigest().encode()
+    return b"%08x" % zlib.crc32(content)

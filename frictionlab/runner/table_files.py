@@ -13,6 +13,7 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from frictionlab.results.csv_text import as_csv
 from frictionlab.results.table import may_be_left_out
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.folder import RunFolder
@@ -77,8 +78,8 @@ class TableFiles:
     def _add_text(self, path: Path, table: pd.DataFrame) -> None:
         first = path not in self._open
         if first:
-            self._open[path] = self._beginning(path).open("w", encoding="utf-8", newline="")
-        table.to_csv(self._open[path], index=False, header=first, lineterminator="\n")
+            self._open[path] = self._beginning(path).open("wb")
+        self._open[path].write(as_csv(table, header=first))
 
     def _opened(self, path: Path) -> Any:
         """A file of our own: arrow opens none whose name is no text."""

@@ -270,14 +270,16 @@ def kinks_of(curve: pd.DataFrame) -> tuple[float, ...]:
     contact = curve.get("scene.normal_load_variation.contact")
     if contact is not None and (contact == "constant").any():
         return ()
-    rows = curve[curve["velocity_ratio"].abs() > 0]
-    sliding = (rows["mean_friction"] / rows["normalized_friction"]).dropna().abs()
-    if _moves_across(rows) or sliding.empty or sliding.max() - sliding.min() > 1e-9 * sliding.max():
+    ratio, mean, normalized = (curve[name].to_numpy(dtype=float) for name in READ_FOR_KINKS)
+    moving = np.abs(ratio) > 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sliding = np.abs(mean / normalized)[moving]
+    sliding = sliding[~np.isnan(sliding)]
+    if _moves_across(curve[moving]) or not len(sliding) or np.ptp(sliding) > 1e-9 * sliding.max():
         return ()
-    speeds = curve[belt_speed(curve.columns)]
-    limit = float((speeds[rows.index] / rows["velocity_ratio"]).median())
-    low, high = speeds.min(), speeds.max()
-    return tuple(speed for speed in (-limit, limit) if low < speed < high)
+    speeds = curve[belt_speed(curve.columns)].to_numpy(dtype=float)
+    limit = float(np.median(speeds[moving] / ratio[moving]))
+    return tuple(speed for speed in (-limit, limit) if speeds.min() < speed < speeds.max())
 
 
 def _moves_across(rows: pd.DataFrame) -> bool:

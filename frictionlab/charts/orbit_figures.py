@@ -160,7 +160,8 @@ def _values(family: Family, panel: tuple[SweptValue, ...], positive: str | None 
     rows = [curve.rows for curve in family.curves if curve.panel == panel]
     if positive is not None:
         rows = [each[each[positive] > 0] if positive in each else each.iloc[:0] for each in rows]
-    return sorted({float(value) for each in rows for value in each[family.abscissa].dropna()})
+    found = np.unique(np.concatenate([each[family.abscissa].to_numpy(dtype=float) for each in rows]))
+    return [float(value) for value in found if not np.isnan(value)]
 
 
 def _chosen(family: Family) -> Iterator[tuple[tuple[SweptValue, ...], list[tuple[CurveData, pd.Series]]]]:

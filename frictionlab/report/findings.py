@@ -14,7 +14,7 @@ from frictionlab.report.markup import symbol_html
 from frictionlab.report.tables import Cell, Grid, grid, joined_values
 from frictionlab.report.trouble import SAYS_PROVED, SAYS_TESTED, place_of
 from frictionlab.results.expectations import Verdict
-from frictionlab.results.summary import alike, pattern
+from frictionlab.results.summary import alike, each_once, pattern
 from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import counted
 
@@ -78,9 +78,9 @@ def _point(row: pd.Series, swept: Sequence[str]) -> Markup:
 def models_grid(table: pd.DataFrame) -> Grid:
     """What produced the numbers, in the methods' own sentences, with how many points each produced."""
     told = table[table["model"].notna()]
-    groups = told.groupby([told["method"], told["model"].map(pattern)], sort=False)
+    groups = told.groupby([told["method"], each_once(told["model"], pattern)], sort=False)
     rows = [
-        [str(method), alike(rows["model"]), counted(len(rows), "point"), joined_values(rows["law"])]
+        [str(method), alike(rows["model"].unique()), counted(len(rows), "point"), joined_values(rows["law"])]
         for (method, _), rows in groups
     ]
     return grid("What produced the numbers", ["method", "model, and why", "points", "laws"], rows, "models")
@@ -89,10 +89,11 @@ def models_grid(table: pd.DataFrame) -> Grid:
 def uniqueness_grid(table: pd.DataFrame) -> Grid:
     """How it is known of points that no start ends elsewhere, in the methods' own sentences; by how many points."""
     told = table[table["unique"].notna()]
-    how = told["model"].where(told["unique"] == "proved", told["reason"]).map(_how_unique)
-    groups = told.assign(how=how).groupby([told["unique"], how.map(pattern)], sort=False)
+    how = told["model"].where(told["unique"] == "proved", told["reason"])
+    how = each_once(how, _how_unique)
+    groups = told.assign(how=how).groupby([told["unique"], each_once(how, pattern)], sort=False)
     rows = [
-        [str(verdict), alike(rows["how"]), counted(len(rows), "point"), joined_values(rows["law"])]
+        [str(verdict), alike(rows["how"].unique()), counted(len(rows), "point"), joined_values(rows["law"])]
         for (verdict, _), rows in groups
     ]
     return grid(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import cache
 from html.entities import html5
 
 from markupsafe import Markup, escape
@@ -21,6 +22,7 @@ _TOKEN = re.compile(
 )
 
 
+@cache
 def symbol_html(name: str) -> Markup:
     """The symbol of an input or column; for one without a symbol the last part of its path."""
     return html(symbol(name))
@@ -31,6 +33,7 @@ def word_html(name: str) -> Markup:
     return html(word(name))
 
 
+@cache
 def unit_html(name: str) -> Markup:
     """The unit of an input or column with a space before it; nothing where it has none."""
     found = _UNIT.search(word(name))

@@ -12,7 +12,7 @@ from frictionlab.columns import belt_speed
 from frictionlab.printable import with_error
 from frictionlab.report.curves import in_given_units, speed_scales
 from frictionlab.report.markup import symbol_html, unit_html
-from frictionlab.report.tables import Grid, curve_rows, grid, listed, named, whose
+from frictionlab.report.tables import MOST_ROWS, Grid, curve_rows, grid, listed, named, whose
 from frictionlab.results.summary import alike, pattern
 from frictionlab.results.table import swept_inputs
 from frictionlab.results.words import counted
@@ -156,10 +156,11 @@ def shape_grid(saved: Saved) -> Grid | None:
         return None
     own = [name for name in MEASURES if name in curves]
     scales = speed_scales(saved.table)
-    found = curve_rows(curves, _told(saved, curves))
+    found = curve_rows(curves.head(MOST_ROWS), _told(saved, curves))
+    each = [scales.get(curve.key, 1.0) for curve in found] if scales else [1.0] * len(found)
     rows = [
-        [*who, *(_measure(curve.rows.iloc[0], name, scales.get(curve.key, 1.0)) for name in own)]
-        for who, curve in zip(whose(found), found, strict=True)
+        [*who, *(_measure(curve.rows.iloc[0], name, scale) for name in own)]
+        for who, curve, scale in zip(whose(found), found, each, strict=True)
     ]
     unit = unit_html(belt_speed(saved.table))
     heads = [Markup("{}{}").format(MEASURES[name], unit if name == "reversal_end" else "") for name in own]
@@ -170,6 +171,7 @@ def shape_grid(saved: Saved) -> Grid | None:
         rows,
         "curves",
         "curves.csv",
+        len(curves) - len(rows),
     )
 
 

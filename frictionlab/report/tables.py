@@ -111,7 +111,7 @@ def size(value: float) -> str:
 
 def joined_values(words: Iterable[Cell]) -> Markup:
     """Words, each once, with commas."""
-    return Markup(", ").join(dict.fromkeys(escape(word) for word in words))
+    return Markup(", ").join(map(escape, dict.fromkeys(words)))
 
 
 def listed(parts: Sequence[Cell]) -> Markup:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from frictionlab.printable import PLUS_MINUS, with_error
@@ -14,12 +16,20 @@ from frictionlab.results.run import Run
 from frictionlab.results.table import swept_inputs, whole
 from frictionlab.results.words import counted, in_words
 
+Rows = Mapping[str, np.ndarray]
+"""Columns of some rows of a table."""
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
 
 
 def pattern(sentence: Any) -> str:
     """A sentence without its numbers; nothing for what is no sentence."""
     return _NUMBER.sub("#", sentence) if isinstance(sentence, str) else ""
+
+
+def each_once(column: pd.Series, told: Callable[[Any], str]) -> pd.Series:
+    """What is told of every cell, found once for each different one."""
+    places, different = pd.factorize(column, use_na_sentinel=False)
+    return pd.Series(np.array([told(each) for each in different], dtype=object)[places], column.index)
 
 
 def alike(sentences: Iterable[str]) -> str:
@@ -56,7 +66,12 @@ def _curve_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
     keys = ["law", "method", *swept_inputs(table)]
     groups = table.groupby(keys, sort=False, dropna=False)
     models = _models(table)
-    return [_curve_line(dict(zip(keys, key, strict=True)), rows, models) for key, rows in groups]
+    read = {name: table[name].to_numpy() for name in ("mean_friction", "error", "status", "model")}
+    found = sorted(groups.indices.items(), key=lambda one: int(one[1].min()))
+    return [
+        _curve_line(dict(zip(keys, key, strict=True)), {name: read[name][at] for name in read}, models)
+        for key, at in found
+    ]
 
 
 def _models(table: pd.DataFrame) -> dict[str, int]:
@@ -72,27 +87,32 @@ def _model_lines(table: pd.DataFrame) -> list[str]:
     return [f"model {number}: {alike(group)}" for number, group in groups.items()]
 
 
-def _curve_line(inputs: dict[str, Any], rows: pd.DataFrame, models: dict[str, int]) -> tuple[str, ...]:
+def _curve_line(inputs: dict[str, Any], rows: Rows, models: dict[str, int]) -> tuple[str, ...]:
     law, method = str(inputs.pop("law")), str(inputs.pop("method"))
     where = ", ".join(f"{_brief(name)} {in_words(x)}" for name, x in inputs.items() if x == x)
-    error = f"{rows['error'].max():.1e}" if rows["error"].notna().any() else ""
-    used = ", ".join(dict.fromkeys(str(models[model]) for model in rows["model"].dropna().unique()))
+    errors = rows["error"][~np.isnan(rows["error"])]
+    error = f"{errors.max():.1e}" if len(errors) else ""
+    used = ", ".join(
+        dict.fromkeys(str(models[each]) for each in dict.fromkeys(rows["model"]) if each in models)
+    )
     return law, method, where, statuses(rows), mean_span(rows, " ... ", " +- "), error, used
 
 
 def mean_span(
-    rows: pd.DataFrame, to: str = " \N{HORIZONTAL ELLIPSIS} ", between: str = PLUS_MINUS, unit: str = ""
+    rows: Rows | pd.DataFrame,
+    to: str = " \N{HORIZONTAL ELLIPSIS} ",
+    between: str = PLUS_MINUS,
+    unit: str = "",
 ) -> str:
     """The least and the greatest mean friction of rows, each with its error; '' where none has a number.
 
     unit: the end of the columns' names, ``_N`` for a force.
     """
-    mean, error = f"mean_friction{unit}", f"error{unit}"
-    found = rows[rows[mean].notna()]
-    if found.empty:
+    means, errors = (np.asarray(rows[f"{name}{unit}"], dtype=float) for name in ("mean_friction", "error"))
+    if np.isnan(means).all():
         return ""
-    ends = [found.loc[at] for at in (found[mean].idxmin(), found[mean].idxmax())]
-    told = [with_error(float(end[mean]), float(end[error]), between=between) for end in ends]
+    ends = int(np.nanargmin(means)), int(np.nanargmax(means))
+    told = [with_error(float(means[end]), float(errors[end]), between=between) for end in ends]
     return to.join(dict.fromkeys(told))
 
 
@@ -101,9 +121,9 @@ def _brief(name: str) -> str:
     return name.removeprefix("scene.").removeprefix("dimensional.")
 
 
-def statuses(rows: pd.DataFrame) -> str:
+def statuses(rows: Rows | pd.DataFrame) -> str:
     """How many rows have each status, in words."""
-    return ", ".join(f"{count} {status}" for status, count in rows["status"].value_counts().items())
+    return ", ".join(f"{count} {status}" for status, count in Counter(rows["status"]).most_common())
 
 
 def columns(rows: Sequence[Sequence[str]]) -> list[str]:

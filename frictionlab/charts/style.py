@@ -49,7 +49,8 @@ def write_figure(figure: Figure, path: Path, formats: Sequence[str] = ("svg", "p
     files = [path.with_suffix(f".{each}") for each in formats]
     for file in files:
         figure.savefig(file, metadata=_UNDATED[file.suffix[1:]])
-        figure.set_layout_engine("none")  # the layout found for the first file serves the others
+        with mpl.rc_context({"figure.constrained_layout.use": False}):
+            figure.set_layout_engine(None)  # the layout found for the first file serves the others
     return files
 
 

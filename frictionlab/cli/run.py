@@ -209,16 +209,22 @@ def _run(job: Job, asked: RunOptions, meter: Meter) -> Run:
 
 
 def _shown(job: Job, result: Run, asked: RunOptions, meter: Meter) -> Run:
-    """The run drawn, its report written, its onsets found where they are asked for."""
-    from frictionlab.runner import api
+    """The run drawn, its report written, its onsets found where asked for; nothing is made again that is there."""
+    from frictionlab.runner import api, pages
 
     if job.study.asks_for(ONSETS_GROUP):
         meter.begins("finding onsets")
         result = api.with_onsets(result)
+    if pages.pages_are_there(result, asked.figures):
+        for what, there in {"figures": job.out / "figures", "report": job.out / "report.html"}.items():
+            if there.exists():
+                print_message(f"{what} in {there}")
+        return result
     meter.begins("drawing", "figures")
     _draw(job, result, asked, meter)
     meter.begins("writing the report")
     _report(result)
+    pages.know_pages(result, asked.figures)
     return result
 
 

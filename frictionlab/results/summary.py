@@ -16,7 +16,7 @@ from frictionlab.results.run import Run
 from frictionlab.results.table import swept_inputs, whole
 from frictionlab.results.words import counted, in_words
 
-Rows = Mapping[str, np.ndarray]
+RowArrays = Mapping[str, np.ndarray]
 """Columns of some rows of a table."""
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?", re.IGNORECASE)
 
@@ -87,7 +87,7 @@ def _model_lines(table: pd.DataFrame) -> list[str]:
     return [f"model {number}: {alike(group)}" for number, group in groups.items()]
 
 
-def _curve_line(inputs: dict[str, Any], rows: Rows, models: dict[str, int]) -> tuple[str, ...]:
+def _curve_line(inputs: dict[str, Any], rows: RowArrays, models: dict[str, int]) -> tuple[str, ...]:
     law, method = str(inputs.pop("law")), str(inputs.pop("method"))
     where = ", ".join(f"{_brief(name)} {in_words(x)}" for name, x in inputs.items() if x == x)
     errors = rows["error"][~np.isnan(rows["error"])]
@@ -99,7 +99,7 @@ def _curve_line(inputs: dict[str, Any], rows: Rows, models: dict[str, int]) -> t
 
 
 def mean_span(
-    rows: Rows | pd.DataFrame,
+    rows: RowArrays | pd.DataFrame,
     to: str = " \N{HORIZONTAL ELLIPSIS} ",
     between: str = PLUS_MINUS,
     unit: str = "",
@@ -121,7 +121,7 @@ def _brief(name: str) -> str:
     return name.removeprefix("scene.").removeprefix("dimensional.")
 
 
-def statuses(rows: Rows | pd.DataFrame) -> str:
+def statuses(rows: RowArrays | pd.DataFrame) -> str:
     """How many rows have each status, in words."""
     return ", ".join(f"{count} {status}" for status, count in Counter(rows["status"]).most_common())
 

@@ -141,13 +141,13 @@ class RunFolder:
     def _copies(self) -> list[Path]:
         """The copies of laws that the run in this folder kept."""
         try:
-            names = self._provenance().get("plugins", [])
+            names = self.account().get("plugins", [])
         except FolderError:  # without provenance.json the folder may not be a run
             names = []
         return [self.path / LAW_COPIES / Path(str(name)).name for name in names]
 
     def _check_same_study(self) -> None:
-        there = self._provenance()
+        there = self.account()
         if there.get("frictionlab") != self.identity.version:
             raise FolderError(
                 f"{self.path} holds results of frictionlab {there.get('frictionlab')}, this is "
@@ -158,7 +158,8 @@ class RunFolder:
             told = f":\n{difference}\n{REMEDY}" if difference else f"; {REMEDY}"
             raise FolderError(f"{self.path} holds results of another study{told}")
 
-    def _provenance(self) -> dict[str, Any]:
+    def account(self) -> dict[str, Any]:
+        """What provenance.json says. Raises FolderError where there is none."""
         try:
             found = json.loads(self._account.read_text(encoding="utf-8"))
             stamps(found)
@@ -185,7 +186,7 @@ class RunFolder:
 
     def _edited(self) -> list[str]:
         """The plugin laws whose code has changed."""
-        there = self._provenance().get("code", {})
+        there = self.account().get("code", {})
         laws = [law for law, code in self.identity.code.items() if there.get(law, code) != code]
         return [f"  the code of law '{law}' was edited since" for law in laws]
 
@@ -249,7 +250,7 @@ class RunFolder:
     def _stamps(self) -> dict[str, list[dict[str, Any]]]:
         """What the files of an earlier run are known to hold; nothing where that is not known."""
         with suppress(FolderError):
-            return stamps(self._provenance())
+            return stamps(self.account())
         return {}
 
     def open(self, existing: Existing) -> None:
@@ -300,13 +301,16 @@ class RunFolder:
         }
         copies = {name: law.encode() for name, law in self.identity.law_texts.items()}
         provenance["files"] |= {name: [stamp(law)] for name, law in copies.items()}
+        with suppress(FolderError):
+            provenance |= {"pages": self.account()["pages"]} if "pages" in self.account() else {}
         # provenance.json first: a study.yaml without it is treated as a user's own file.
-        self._write_account(provenance)
+        self.write_account(provenance)
         for name, law in copies.items():
             write_whole(self.path / name, law)
         write_whole(self._study, self.identity.text.encode())
 
-    def _write_account(self, account: dict[str, Any]) -> None:
+    def write_account(self, account: dict[str, Any]) -> None:
+        """Write provenance.json. Raises SaveError."""
         write_whole(self._account, (json.dumps(account, indent=2) + "\n").encode())
 
     def _stamps_of_files(self) -> dict[str, list[dict[str, Any]]]:
@@ -321,23 +325,23 @@ class RunFolder:
         if new is not None:
             files[new.name] = [stamp_of_file(new)]
         with suppress(FolderError):  # somebody took the account away; the end of the run writes it again
-            self._write_account(self._provenance() | {"files": files})
+            self.write_account(self.account() | {"files": files})
 
     @property
     def unknown_code(self) -> str:
         """What stands for code that is not known in the names of kept chunks: another in every folder."""
         found = None
         with suppress(FolderError):
-            found = self._provenance().get("unknown_code")
+            found = self.account().get("unknown_code")
         return str(found or secrets.token_hex(16))
 
     def previous_runs(self) -> list[dict[str, Any]]:
         """When and how long earlier runs of this study worked in this folder."""
-        return list(self._provenance().get("runs", [])) if self.table.exists() else []
+        return list(self.account().get("runs", [])) if self.table.exists() else []
 
     def counts(self) -> dict[str, int]:
         """How many rows of an earlier run have each status. Raises FolderError."""
-        return dict(self._provenance().get("counts", {}))
+        return dict(self.account().get("counts", {}))
 
     def is_whole(self, as_csv: bool) -> bool:
         """Whether all that this run would write is there as it was written, by the same code and without a gap."""

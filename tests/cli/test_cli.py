@@ -19,6 +19,7 @@ import pytest
 from fake_methods import Fake, breaks_down, is_broken
 
 from frictionlab import cli, registry
+from frictionlab.charts import figures
 from frictionlab.registry.bibliography import read_bibtex
 from frictionlab.runner import api, execute
 from frictionlab.runner.in_use import alone_in
@@ -112,6 +113,23 @@ def test_a_run_writes_its_report_last_with_its_figures_inside(frictionlab: Any, 
     assert {path.suffix for path in Path("out/figures").iterdir()} == {".svg", ".png"}
     assert Path("out/report.html").read_text().count('<img src="data:image/') == 1
     assert said.out.splitlines()[-1] == "table in out/results.parquet"
+
+
+def test_the_same_run_again_makes_only_pages_that_are_gone_or_changed(
+    frictionlab: Any, monkeypatch: Any, drawn: None
+) -> None:
+    name, made = study(columns=["mean_friction"]), []
+    first = frictionlab("run", name, "-o", "out")
+    before = {path: path.read_bytes() for path in Path("out").rglob("*.*g")}
+    draw = figures.draw_figures
+    monkeypatch.setattr(figures, "draw_figures", lambda *given: made.append(1) or draw(*given))
+    again = frictionlab("run", name, "-o", "out")
+    assert (again.err.splitlines()[-2:], made) == (first.err.splitlines()[-2:], [])
+    for deed in (Path.unlink, lambda file: file.write_text("mine")):
+        deed(Path("out/figures/mean_friction.svg"))
+        frictionlab("run", name, "-o", "out")
+        assert {path: path.read_bytes() for path in Path("out").rglob("*.*g")} == before
+    assert len(made) == 2
 
 
 def test_plot_and_report_make_again_what_a_run_made_and_compute_nothing(

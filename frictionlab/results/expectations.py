@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
 import pandas as pd
 
 from frictionlab.columns import INPUTS, belt_speed
@@ -50,15 +51,15 @@ def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame | 
 
 
 def _matching(where: dict[str, str | float], table: pd.DataFrame) -> pd.DataFrame:
-    chosen = pd.Series(True, index=table.index)
+    chosen = np.ones(len(table), np.bool_)
     for column, wanted in where.items():
         if column not in table:
             return table.iloc[:0]
         if isinstance(wanted, str):
-            chosen &= table[column] == wanted
+            chosen &= (table[column] == wanted).to_numpy(dtype=bool)
         else:
-            size = table[column].abs().clip(lower=abs(wanted))
-            chosen &= (table[column] - wanted).abs() <= _SAME * size
+            values = table[column].to_numpy(dtype=float)
+            chosen &= np.abs(values - wanted) <= _SAME * np.maximum(np.abs(values), abs(wanted))
     return table[chosen]
 
 

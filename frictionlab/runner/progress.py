@@ -11,8 +11,7 @@ from threading import Event, Lock, Thread
 from types import TracebackType
 from typing import Self, TextIO
 
-from frictionlab.compile.notice import compiled_here, kernel_at_work
-from frictionlab.runner.progress_line import RunStage, fitted, stage_words
+from frictionlab.compile.notice import kernel_at_work
 
 Progress = Callable[[int, int], None]
 """Called now and then with the number of points done and of all points."""
@@ -48,43 +47,49 @@ class Meter:
         self._stream, self._whose = stream, whose
         self._updating = stream.isatty() and os.environ.get("TERM") != "dumb"
         self._start = time.monotonic()
-        self._next = self._start + QUIET
-        self._stage = RunStage("solving", "points", self._start)
-        self._compiled_before = len(compiled_here)
-        self._shown = 0
+        self._next, self._shown = self._start + QUIET, 0
         self._one_at_a_time, self._ended, self._thread = Lock(), Event(), Thread(target=self._go_on)
-
-    def __call__(self, done: int, total: int) -> None:
-        """Tell how far the stage is, if it is time to."""
-        self._stage.reaches(done, total)
-        self.look()
+        self.begins("solving", "points")
 
     def begins(self, doing: str, things: str = "") -> None:
         """The next stage of the run, and what is counted in it."""
-        self._stage = RunStage(doing, things, time.monotonic())
+        self._doing, self._things = doing, things
+        self._done = self._total = self._at_first = 0
+        self._working, self._last = 0.0, time.monotonic()
+
+    def __call__(self, done: int, total: int) -> None:
+        """Tell how far the stage is, if it is time to."""
+        self._at_first = self._at_first if self._total else done
+        self._done, self._total = done, total
+        self.look()
 
     def look(self) -> None:
         """Tell what goes on, if it is time to."""
         with self._one_at_a_time:
-            now, waiting, stage = time.monotonic(), compiling(), self._stage
-            stage.passes(now, waiting)
+            now, waiting = time.monotonic(), compiling()
+            self._working += 0.0 if waiting else now - self._last
+            self._last = now
             if now < self._next or self._ended.is_set():
                 return
             self._next = now + (OFTEN if self._updating else NOW_AND_THEN)
-            name = kernel_at_work() if waiting else ""
-            number = len(compiled_here) - self._compiled_before + 1
-            kernel = f"compiling kernel {number} ({name})" if name else ""
-            facts = stage_words(stage, now - self._start, kernel)
-            self._write([f"{self._whose}{facts[0]}", *facts[1:]], stage.share)
+            self._write(self._words(now - self._start, kernel_at_work() if waiting else ""))
 
-    def _write(self, facts: list[str], share: float | None) -> None:
+    def _words(self, passed: float, kernel: str) -> str:
+        count = f": {self._done} of {self._total} {self._things}" if self._total else ""
+        new = self._done - self._at_first  # kernels are compiled once: that is not held against the points
+        left = self._working / new * (self._total - self._done) if new else 0.0
+        facts = [f"compiling {kernel}"] if kernel else []
+        facts += [self._doing + count, *([f"about {spoken(left)} left"] if left > 0.5 else [])]
+        return self._whose + ", ".join([*facts, f"{spoken(passed)} so far"])
+
+    def _write(self, line: str) -> None:
         with suppress(OSError, ValueError):  # a stream that was closed is no error
             if self._updating:
-                line = fitted(facts, share, self._room())
+                line = line[: self._room()]
                 self._stream.write("\r" + line.ljust(self._shown))
                 self._shown = len(line)
             else:
-                self._stream.write(", ".join(facts) + "\n")
+                self._stream.write(line + "\n")
             self._stream.flush()
 
     def _room(self) -> int:
@@ -97,13 +102,10 @@ class Meter:
     def clear(self) -> None:
         """Erase the updating line: something else is about to be printed."""
         with self._one_at_a_time, suppress(OSError, ValueError):
-            self._erase()
-
-    def _erase(self) -> None:
-        if self._shown:
-            self._stream.write("\r" + " " * min(self._shown, self._room()) + "\r")
-            self._stream.flush()
-            self._shown = 0
+            if self._shown:
+                self._stream.write("\r" + " " * min(self._shown, self._room()) + "\r")
+                self._stream.flush()
+                self._shown = 0
 
     def close(self) -> None:
         """Tell nothing more."""
@@ -124,3 +126,11 @@ class Meter:
     ) -> None:
         self.close()
         self._thread.join()
+
+
+def spoken(seconds: float) -> str:
+    """A time in words, to about a hundredth."""
+    if seconds < 99.5:
+        return f"{seconds:.0f} s" if seconds > 9.5 else f"{seconds:.1g} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest:02} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60:02} min"

@@ -123,7 +123,7 @@ def with_onsets(done: Run) -> Run:
     """
     assert done.folder is not None
     folder = run_folder(done.study, done.folder)
-    earlier = folder.read_text(folder.onsets_file) if done.computed == 0 else None
+    earlier = folder.intact_text(folder.onsets_file) if done.computed == 0 else None
     if earlier is not None:
         return replace(done, onsets_made=lambda: earlier)
     if not done.curves.empty:

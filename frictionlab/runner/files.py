@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -66,32 +65,3 @@ def stamp_of_file(path: Path) -> dict[str, Any]:
     with path.open("rb") as file:
         checksum = hashlib.file_digest(file, "sha256").hexdigest()
         return {"bytes": file.tell(), "sha256": checksum}
-
-
-def stamps(account: Mapping[str, Any]) -> dict[str, list[dict[str, Any]]]:
-    """By file, what it may hold: while it is replaced, old or new. Raises ValueError where the account is damaged."""
-    files = account.get("files", {})
-    each = files.values() if isinstance(files, dict) else [None]
-    if not all(isinstance(known, list) and known and all(map(_is_stamp, known)) for known in each):
-        raise ValueError("no stamps of files")
-    return dict(files)
-
-
-def _is_stamp(known: Any) -> bool:
-    return isinstance(known, dict) and isinstance(known.get("bytes"), int) and "sha256" in known
-
-
-def damage(path: Path, known: Iterable[Mapping[str, Any]]) -> str:
-    """What is wrong with a file that was written with one of these stamps; '' for an intact one. Raises OSError."""
-    expected = list(known)
-    if not expected:  # written before files had stamps
-        return ""
-    if not path.exists():
-        return "is missing"
-    found = stamp_of_file(path)
-    if found in expected:
-        return ""
-    size = expected[-1]["bytes"]
-    if found["bytes"] != size:
-        return f"is damaged: it has {found['bytes']} bytes, and {size} were written"
-    return "is damaged: its bytes are not those that were written"

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import errno
-import io
 import json
 import os
 import secrets
-import shlex
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,11 +18,11 @@ import pyarrow.parquet as pq
 
 from frictionlab.faults import INTERNAL, MARK
 from frictionlab.printable import printable
-from frictionlab.results.csv_text import as_csv
 from frictionlab.results.curve_table import CURVE_TEXT
 from frictionlab.runner.arguments import Existing
 from frictionlab.runner.errors import FolderError, SaveError
-from frictionlab.runner.files import damage, remove_leftovers, stamp, stamp_of_file, stamps, write_whole
+from frictionlab.runner.files import remove_leftovers, stamp, stamp_of_file, write_whole
+from frictionlab.runner.folder_files import FolderFiles, read_parquet
 from frictionlab.runner.machine import machine_and_versions
 from frictionlab.study.study import LAW_COPIES
 from frictionlab.study.yaml_text import yaml_text
@@ -61,55 +59,12 @@ class Identity:
         return yaml_text(self.study)
 
 
-@dataclass(frozen=True)
-class RunFolder:
+class RunFolder(FolderFiles):
     """The output folder of one study."""
 
-    path: Path
-    identity: Identity
-
-    @property
-    def table(self) -> Path:
-        """Where the table is."""
-        return self.path / "results.parquet"
-
-    @property
-    def _study(self) -> Path:
-        return self.path / "study.yaml"
-
-    @property
-    def _account(self) -> Path:
-        return self.path / "provenance.json"
-
-    @property
-    def orbits_file(self) -> Path:
-        """Where the kept orbits are."""
-        return self.path / "orbits.parquet"
-
-    @property
-    def csv_file(self) -> Path:
-        """Where the table is as text."""
-        return self.path / "results.csv"
-
-    @property
-    def curves_file(self) -> Path:
-        """Where the table of curves is."""
-        return self.path / "curves.csv"
-
-    @property
-    def onsets_file(self) -> Path:
-        """Where the table of onsets is."""
-        return self.path / "onsets.csv"
-
-    @property
-    def attractors_file(self) -> Path:
-        """Where the table of attractors is."""
-        return self.path / "attractors.csv"
-
-    @property
-    def harmonics_file(self) -> Path:
-        """Where the table of harmonics is."""
-        return self.path / "harmonics.csv"
+    def __init__(self, path: Path, identity: Identity) -> None:
+        super().__init__(path)
+        self.identity = identity
 
     def check(self, existing: Existing) -> None:
         """Raises FolderError where this run cannot be written, or would mix with another study."""
@@ -120,7 +75,7 @@ class RunFolder:
             raise FolderError(
                 f"{self.path}: no permission to write in {nearest}; give another folder with -o"
             )
-        if self._study.exists() and not self._account.exists() and not self.table.exists():
+        if self.study_file.exists() and not self.account_file.exists() and not self.table.exists():
             raise FolderError(
                 f"{self.path} holds a study.yaml that no run wrote; choose another folder with -o"
             )
@@ -158,24 +113,10 @@ class RunFolder:
             told = f":\n{difference}\n{REMEDY}" if difference else f"; {REMEDY}"
             raise FolderError(f"{self.path} holds results of another study{told}")
 
-    def account(self) -> dict[str, Any]:
-        """What provenance.json says. Raises FolderError where there is none."""
-        try:
-            found = json.loads(self._account.read_text(encoding="utf-8"))
-            stamps(found)
-        except (OSError, ValueError, AttributeError):
-            found = None
-        if not isinstance(found, dict):
-            raise FolderError(
-                f"{self.path} holds results, but no readable provenance.json; replace them: "
-                f"{rerun(self.path)} --force, or choose another folder with -o"
-            )
-        return found
-
     def _difference(self) -> str:
         """The first lines in which the studies differ, for the message."""
         try:
-            there = self._study.read_text(encoding="utf-8").splitlines()
+            there = self.study_file.read_text(encoding="utf-8").splitlines()
         except (OSError, ValueError):
             return ""
         here = self.identity.text.splitlines()
@@ -210,48 +151,35 @@ class RunFolder:
 
     def earlier_text(self, file: Path, existing: Existing) -> pd.DataFrame | None:
         """The table that an earlier run of this very study file wrote as text; None where missing or damaged."""
-        if existing == "replace" or not file.exists() or self._damage(file.name):
-            return None
         try:
-            same = self._study.read_text(encoding="utf-8") == self.identity.text
+            same = self.study_file.read_text(encoding="utf-8") == self.identity.text
         except (OSError, ValueError):
             return None
-        return _read_text(file) if same else None
+        return self.intact_text(file) if same and existing == "reuse" else None
+
+    def intact_text(self, file: Path) -> pd.DataFrame | None:
+        """A table that an earlier run wrote as text; None without an intact one."""
+        return self.read_text(file) if file.name in self.stamps() and not self.damage(file.name) else None
 
     def _earlier(self, path: Path, existing: Existing) -> pd.DataFrame | None:
-        if existing == "replace" or not path.exists() or self._damage(path.name):
+        if existing == "replace" or not path.exists():
             return None
-        return _parquet(path)
+        wrong = self.damage(path.name)
+        if wrong.startswith("cannot"):
+            raise FolderError(f"{path} {wrong}; {REMEDY}")
+        return None if wrong else read_parquet(path)
 
     def damaged(self) -> list[str]:
         """What is wrong with the files of an earlier run of this study, and what the next run does about it."""
-        if not self._account.exists():
+        if not self.account_file.exists():
             return []
         what = {self.table.name: "its points are", self.orbits_file.name: "its points are"}
-        found = {name: self._damage(name) for name in self._stamps()}
+        found = {name: self.damage(name) for name in self.stamps()}
         return [
             f"{self.path / name} {wrong}; {what.get(name, 'it is')} made again"
             for name, wrong in found.items()
             if wrong
         ]
-
-    def _damage(self, name: str) -> str:
-        """What is wrong with a file of an earlier run; '' for an intact one. Raises FolderError."""
-        path = self.path / name
-        try:
-            wrong = damage(path, self._stamps().get(name, []))
-        except OSError as problem:
-            raise FolderError(f"{path} cannot be read ({problem.strerror}); {REMEDY}") from problem
-        known = self._stamps().get(name)
-        if not wrong and not known and path.suffix == ".parquet" and path.exists() and _parquet(path) is None:
-            return "is damaged: it is no table"
-        return wrong
-
-    def _stamps(self) -> dict[str, list[dict[str, Any]]]:
-        """What the files of an earlier run are known to hold; nothing where that is not known."""
-        with suppress(FolderError):
-            return stamps(self.account())
-        return {}
 
     def open(self, existing: Existing) -> None:
         """Create the folder; ``replace`` removes the results in it. Raises FolderError, SaveError."""
@@ -262,29 +190,27 @@ class RunFolder:
             kept = self.identity.law_texts
             copies = [path for path in self._copies() if path.relative_to(self.path).as_posix() not in kept]
             # study.yaml before provenance.json: without it a study.yaml is treated as a user's own file.
-            old = [*self._results(), *copies, self._study, self._account]
+            old = [*self._results(), *copies, self.study_file, self.account_file]
             for path in old if existing == "replace" else ():
                 path.unlink(missing_ok=True)
         except OSError as problem:
             _refuse_folder(self.path, problem)
 
-    @property
-    def _tables(self) -> list[Path]:
-        own = [self.table, self.orbits_file]
-        return [*own, *self._texts]
-
-    @property
-    def _texts(self) -> list[Path]:
-        return [self.csv_file, self.curves_file, self.onsets_file, self.attractors_file, self.harmonics_file]
-
     def _results(self) -> Iterator[Path]:
-        yield from (*self._tables, self.path / "report.html")
+        yield from (*self.tables, self.path / "report.html")
         for pattern in ("*.svg", "*.png"):
             yield from (self.path / "figures").glob(pattern)
 
     def describe(self, runs: dict[str, Any], done: bool = False) -> None:
         """Write study.yaml and provenance.json. done: all files are as they stay. Raises SaveError."""
-        for name in self.identity.law_texts:
+        there = [path for path in self.tables if path.exists()]
+        stamps = {path.name: stamp_of_file(path) for path in there} if done else self.stamps()
+        copies = {name: law.encode() for name, law in self.identity.law_texts.items()}
+        laws = {name: stamp(law) for name, law in copies.items()}
+        pages: dict[str, Any] = {}
+        with suppress(FolderError):
+            pages = self.account().get("pages", {})
+        for name in copies:
             _make_folder((self.path / name).parent)
         provenance = {
             "frictionlab": self.identity.version,
@@ -295,37 +221,14 @@ class RunFolder:
             "unknown_code": self.unknown_code,
             **runs,
             **machine_and_versions(),
-            "files": {path.name: [stamp_of_file(path)] for path in self._tables if path.exists()}
-            if done
-            else self._stamps_of_files(),
+            "files": {name: [known] for name, known in {**stamps, **laws}.items()},
+            "pages": pages,
         }
-        copies = {name: law.encode() for name, law in self.identity.law_texts.items()}
-        provenance["files"] |= {name: [stamp(law)] for name, law in copies.items()}
-        with suppress(FolderError):
-            provenance |= {"pages": self.account()["pages"]} if "pages" in self.account() else {}
         # provenance.json first: a study.yaml without it is treated as a user's own file.
         self.write_account(provenance)
         for name, law in copies.items():
             write_whole(self.path / name, law)
-        write_whole(self._study, self.identity.text.encode())
-
-    def write_account(self, account: dict[str, Any]) -> None:
-        """Write provenance.json. Raises SaveError."""
-        write_whole(self._account, (json.dumps(account, indent=2) + "\n").encode())
-
-    def _stamps_of_files(self) -> dict[str, list[dict[str, Any]]]:
-        return {name: known for name, known in self._stamps().items() if (self.path / name).exists()}
-
-    def know_only(self, paths: Iterable[Path] = (), new: Path | None = None) -> None:
-        """Of the files of a run know these and a new one: a file that is about to be replaced is not known."""
-        names = {path.name for path in paths}
-        files = {
-            name: known for name, known in self._stamps_of_files().items() if name in names or "/" in name
-        }
-        if new is not None:
-            files[new.name] = [stamp_of_file(new)]
-        with suppress(FolderError):  # somebody took the account away; the end of the run writes it again
-            self.write_account(self.account() | {"files": files})
+        write_whole(self.study_file, self.identity.text.encode())
 
     @property
     def unknown_code(self) -> str:
@@ -345,9 +248,9 @@ class RunFolder:
 
     def is_whole(self, as_csv: bool) -> bool:
         """Whether all that this run would write is there as it was written, by the same code and without a gap."""
-        known = self._stamps()
+        known = self.stamps()
         wanted = {self.table.name, *([self.csv_file.name] if as_csv else [])}
-        if not wanted <= known.keys() or any(map(self._damage, known)):
+        if not wanted <= known.keys() or any(map(self.damage, known)):
             return False
         counts = self.counts()
         return (
@@ -356,14 +259,9 @@ class RunFolder:
             and marks_of_file(self.table) == dict(self.identity.marks)
         )
 
-    def save_text(self, path: Path, table: pd.DataFrame) -> None:
-        """Write a table as text, floats in shortest round-trip form. Raises SaveError."""
-        write_whole(path, as_csv(table))
-        self.know_only(self._tables, path)
-
     def remove_texts(self) -> None:
         """Remove what was made from an earlier table. Raises SaveError."""
-        for path in self._texts:
+        for path in self.texts:
             try:
                 path.unlink(missing_ok=True)
             except OSError as problem:
@@ -371,34 +269,12 @@ class RunFolder:
 
     def read_curves(self) -> pd.DataFrame:
         """The table of curves of an earlier run; empty where it has none."""
-        found = self.read_text(self.curves_file)
+        found = self.intact_text(self.curves_file)
         words = {name: pd.StringDtype(na_value=np.nan) for name in CURVE_TEXT}
         return pd.DataFrame() if found is None else found.astype(words)
 
-    def read_text(self, path: Path) -> pd.DataFrame | None:
-        """A table of an earlier run as text; None without an intact one."""
-        known = path.name in self._stamps() and not self._damage(path.name)
-        return _read_text(path) if known else None
-
 
 REMEDY = "choose another folder with -o, or replace what is there with --force"
-
-
-def rerun(folder: Path, study: str = "STUDY") -> str:
-    """The command that runs a study into a folder."""
-    return f"frictionlab run {study} -o {shlex.quote(str(folder))}"
-
-
-def _parquet(path: Path) -> pd.DataFrame | None:
-    """The table of a file; None for one that holds none."""
-    try:
-        return pd.read_parquet(io.BytesIO(path.read_bytes()))
-    except Exception:  # a damaged file makes pyarrow raise whatever it stumbles over
-        return None
-
-
-def _read_text(path: Path) -> pd.DataFrame:
-    return pd.read_csv(path, dtype={"how": "str"})  # "-1" is a word there
 
 
 def marks_of_file(path: Path) -> dict[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,8 +20,7 @@ from frictionlab.results.run import Run
 from frictionlab.results.table import status_counts, whole
 from frictionlab.results.thinned import LONG_TABLE, shown_rows, thinned
 from frictionlab.runner.errors import FolderError
-from frictionlab.runner.files import damage, stamps
-from frictionlab.runner.folder import rerun
+from frictionlab.runner.folder_files import FolderFiles, rerun
 from frictionlab.runner.table_files import read_pieces, read_whole, rows_of_file
 from frictionlab.study import Study, StudyError, read_back
 from frictionlab.study.grid import grid_size
@@ -53,17 +51,20 @@ class Saved:
     @cached_property
     def onsets(self) -> pd.DataFrame | None:
         """onsets.csv; None where there is none. Raises FolderError."""
-        return _text_table(self.folder / "onsets.csv")
+        return self._read("onsets.csv")
 
     @cached_property
     def attractors(self) -> pd.DataFrame | None:
         """attractors.csv; None where there is none. Raises FolderError."""
-        return _text_table(self.folder / "attractors.csv")
+        return self._read("attractors.csv")
 
     @cached_property
     def harmonics(self) -> pd.DataFrame | None:
         """harmonics.csv; None where there is none. Raises FolderError."""
-        return _text_table(self.folder / "harmonics.csv")
+        return self._read("harmonics.csv")
+
+    def _read(self, name: str) -> pd.DataFrame | None:
+        return FolderFiles(self.folder).read_text(self.folder / name)
 
     def orbits_of(self, rows: Sequence[int]) -> pd.DataFrame | None:
         """The kept orbits of these rows; None where none are kept, or their file is damaged."""
@@ -102,9 +103,10 @@ class Saved:
 def read_saved(folder: Path) -> Saved:
     """The run of this folder. Raises FolderError where it is no run or a damaged one, StudyError."""
     _check_is_a_run(folder)
-    account = _account(folder)
+    files = FolderFiles(folder)
+    account = files.account()
     study = _study(folder, account)
-    wrong = _damaged(folder, account, study)
+    wrong = _damaged(files, account, study)
     for name in REPORT_FILES & wrong.keys():
         raise FolderError(wrong[name])
     table = _table(folder, study)
@@ -112,7 +114,7 @@ def read_saved(folder: Path) -> Saved:
     rows = rows_of_file(folder / "results.parquet")
     long = rows if rows > LONG_TABLE else None
     saved = Saved(
-        folder, study, whole(table), _text_table(folder / "curves.csv"), account, tuple(wrong.values()), long
+        folder, study, whole(table), files.read_text(files.curves_file), account, tuple(wrong.values()), long
     )
     _check_belongs_together(saved)
     return saved
@@ -121,9 +123,15 @@ def read_saved(folder: Path) -> Saved:
 def saved_as(run: Run) -> Saved:
     """A run that was just written. Raises FolderError where somebody took its account away meanwhile."""
     assert run.folder is not None
-    account, long = _account(run.folder), None if run.shown is None else run.size
+    files, long = FolderFiles(run.folder), None if run.shown is None else run.size
     return Saved(
-        run.folder, run.study, whole(run.to_show), _text_table(run.folder / "curves.csv"), account, (), long
+        run.folder,
+        run.study,
+        whole(run.to_show),
+        files.read_text(files.curves_file),
+        files.account(),
+        (),
+        long,
     )
 
 
@@ -156,20 +164,12 @@ def _study(folder: Path, account: dict[str, Any]) -> Study:
         raise FolderError(f"{problem}\nput it right there, or {_remedy(folder, force=False)}") from problem
 
 
-def _damaged(folder: Path, account: dict[str, Any], study: Study) -> dict[str, str]:
+def _damaged(files: FolderFiles, account: dict[str, Any], study: Study) -> dict[str, str]:
     """By file, what is wrong with it and the command that mends it."""
-    found = {name: _wrong_file(folder / name, known) for name, known in stamps(account).items()}
-    wrong = {name: what for name, what in found.items() if what}
+    wrong = {name: what for name in files.stamps() if (what := files.damage(name))}
     complete = study.digest() == account.get("digest") and not any(name.endswith(".py") for name in wrong)
-    command = rerun(folder, shlex.quote(str(folder / "study.yaml")) if complete else "STUDY")
-    return {name: f"{folder / name} {what}; mend it: {command}" for name, what in wrong.items()}
-
-
-def _wrong_file(file: Path, known: list[dict[str, Any]]) -> str:
-    try:
-        return damage(file, known)
-    except OSError as problem:
-        return f"cannot be read ({problem.strerror})"
+    command = rerun(files.path, shlex.quote(str(files.study_file)) if complete else "STUDY")
+    return {name: f"{files.path / name} {what}; mend it: {command}" for name, what in wrong.items()}
 
 
 def _table(folder: Path, study: Study) -> pd.DataFrame:
@@ -207,38 +207,6 @@ def _wrong(table: pd.DataFrame, study: Study) -> str:
     if words:
         return f"its column {words[0]} does not hold numbers"
     return "it is empty" if table.empty else ""
-
-
-def _text_table(file: Path) -> pd.DataFrame | None:
-    """A table kept as text; None where there is none."""
-    if not file.exists():
-        return None
-    try:
-        return pd.read_csv(file, dtype={"how": "str"})  # "-1" is a word there
-    except pd.errors.EmptyDataError:
-        return None
-    except (OSError, ValueError) as problem:
-        reason = str(problem).partition("\n")[0]
-        raise FolderError(f"{file} cannot be read ({reason}); {_remedy(file.parent)}") from problem
-
-
-def _account(folder: Path) -> dict[str, Any]:
-    file = folder / "provenance.json"
-    try:
-        account = json.loads(file.read_text(encoding="utf-8"))
-        whole = {"expect": [], "runs": [], "packages": {}, "code": {}} | account
-        sound = (
-            all(isinstance(each["sentence"], str) and "passed" in each for each in whole["expect"])
-            and all(isinstance(run["seconds"], float | int) for run in whole["runs"])
-            and isinstance(whole["packages"], dict)
-            and isinstance(whole["code"], dict)
-            and stamps(whole) is not None
-        )
-    except (OSError, ValueError, TypeError, KeyError, AttributeError):
-        sound = False
-    if not sound:
-        raise FolderError(f"{file} is not the account of a run; {_remedy(folder)}")
-    return whole
 
 
 def _check_belongs_together(saved: Saved) -> None:

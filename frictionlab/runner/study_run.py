@@ -120,9 +120,9 @@ class StudyRun:
         )
         done = self._read_run(shown, folder.counts(), folder.read_curves())
         if study.keep_harmonics is not None:
-            done = replace(done, harmonics=folder.read_text(folder.harmonics_file))
+            done = replace(done, harmonics=folder.intact_text(folder.harmonics_file))
         if study.keep_attractors is not None:
-            done = replace(done, attractors=folder.read_text(folder.attractors_file))
+            done = replace(done, attractors=folder.intact_text(folder.attractors_file))
         done = self._judged(done)
         self._describe(done.counts, done.verdicts, done=True)
         return done

@@ -186,12 +186,8 @@ OUTSIDE = {
         *(
             "charts",
             "notebook.comparison",  # the type of a figure alone
-            "bench.chart",
-            "bench.drawing",
-            "bench.orders.chart",
-            "bench.stability.chart",
-            "bench.failures.chart",
-            "bench.models.chart",
+            "bench.charts",
+            "bench.pictures",
         ),
     ],
     # inside functions alone: nothing imports it before it is needed

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from frictionlab.bench.listed import Bench, UnknownCurve, bench_summary, measure
-from frictionlab.bench.reader import load_bench
-from frictionlab.bench.sections import BenchPicture, Section, SectionResult
+from frictionlab.bench.reading import load_bench
+from frictionlab.bench.sections import Section, SectionResult
 
 __all__ = [
     "Bench",
-    "BenchPicture",
     "Section",
     "SectionResult",
     "UnknownCurve",

@@ -3,13 +3,42 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from frictionlab.bench.circumstances import circumstances
-from frictionlab.bench.sections import BenchPicture, SectionResult, file_stem
+from frictionlab import __version__
+from frictionlab.bench.peers.listing import PEERS
+from frictionlab.bench.sections import SectionResult, file_stem
 from frictionlab.runner.files import write_whole
+from frictionlab.runner.machine import cores, machine_and_versions
+
+PRINTED = ("numpy", "numba", "scipy")
+"""Packages in the small print of a chart, besides the peers."""
+
+
+@cache
+def circumstances() -> dict[str, Any]:
+    """Machine, date and versions, of the peers, too."""
+    packages = [*PRINTED, *(peer.package for peer in PEERS.values())]
+    found = machine_and_versions(dict.fromkeys(packages))
+    day = datetime.now(UTC).strftime("%Y-%m-%d")
+    return {"frictionlab": __version__, "date": day, "cores": cores(), **found}
+
+
+def small_print() -> str:
+    """Machine, date and versions in a line."""
+    return print_of(circumstances())
+
+
+def print_of(told: Mapping[str, Any]) -> str:
+    """Machine, date and versions of an entry in a line."""
+    versions = {"frictionlab": told["frictionlab"], "Python": told["python"], **told["packages"]}
+    packages = ", ".join(f"{name} {number}" for name, number in versions.items())
+    return f"{told['processor']}, {told['cores']} cores; {told['date']}; {packages}"
+
 
 ACCOUNT = "bench.json"
 ENTRY_KEYS = {
@@ -19,16 +48,14 @@ ENTRY_KEYS = {
 """What the page asks of an entry; one without them is another version's."""
 
 
-def entry_of(
-    measured: SectionResult, tables: Sequence[Path], pictures: Sequence[BenchPicture]
-) -> dict[str, Any]:
+def entry_of(measured: SectionResult, tables: Sequence[Path], pictures: Sequence[Any]) -> dict[str, Any]:
     """The entry of a curve or section: its files, and what is said of it."""
     return {
         "kind": measured.kind,
         "name": measured.name,
         "title": measured.title,
         "notes": measured.notes,
-        "missing": dict(measured.left_out),
+        "missing": dict(measured.left_out or {}),
         "summary": measured.summary(),
         "tables": [path.name for path in tables if path.suffix == ".csv"],
         "pictures": [picture._asdict() for picture in pictures],

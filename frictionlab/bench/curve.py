@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
 from frictionlab.bench import report
 from frictionlab.bench.measure import measured_row, with_first_run
 from frictionlab.bench.record import ReferenceMeans, Row, Workload
-from frictionlab.bench.references import reference_means
 from frictionlab.bench.sections import SectionResult, file_stem
+from frictionlab.bench.solvers import reference_means
 
 CAPTION = (
     "Lower is nearer the reference, further left is cheaper: read what each error costs along a level line."
@@ -20,7 +20,7 @@ CAPTION = (
 
 @dataclass(frozen=True)
 class CurveResult(SectionResult):
-    """A curve with its references and rows; missing: peers that are not installed, with the remedy."""
+    """A curve with its references and rows; left_out: peers that are not installed, with the remedy."""
 
     kind: ClassVar[str] = "curve"
 
@@ -29,17 +29,8 @@ class CurveResult(SectionResult):
     work: Workload
     references: list[ReferenceMeans]
     rows: list[Row]
-    missing: dict[str, str] = field(default_factory=dict)
-
-    @property
-    def caption(self) -> str:
-        """How to read its chart."""
-        return CAPTION
-
-    @property
-    def left_out(self) -> Mapping[str, str]:
-        """The peers that are missing."""
-        return self.missing
+    left_out: Mapping[str, str] | None = None
+    caption = CAPTION
 
     @property
     def notes(self) -> list[str]:
@@ -56,7 +47,7 @@ class CurveResult(SectionResult):
     def markdown(self) -> str:
         """The table, with what its errors are measured against."""
         heading = f"## {self.name}{': ' + self.title if self.title else ''}"
-        notes = [*([report.left_out(self.missing)] if self.missing else []), *self.notes]
+        notes = [*([report.left_out(self.left_out)] if self.left_out else []), *self.notes]
         lines = [heading, "", *(f"- {note}" for note in notes), "", *report.markdown_lines(self.records())]
         return "\n".join(lines) + "\n"
 
@@ -65,12 +56,6 @@ class CurveResult(SectionResult):
         text = folder / f"{file_stem(self.name)}.md"
         text.write_text(self.markdown(), encoding="utf-8")
         return [*super().write(folder), text]
-
-    def figure(self) -> Any:
-        """Error against time."""
-        from frictionlab.bench.chart import chart
-
-        return chart(f"{self.name}: {self.title}" if self.title else self.name, self.references, self.rows)
 
     def summary(self) -> str:
         """The time per point to reach an error, for every contender, with the ratio to the best method."""

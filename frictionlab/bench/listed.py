@@ -65,6 +65,8 @@ def measure(bench: Bench, tell: Callable[[str], None], first_runs: bool = False)
 
 def bench_summary(done: Sequence[SectionResult]) -> str:
     """What every curve and section came to, and in one line the peers that are not installed."""
-    missing = {label: told for each in done if each.kind == "curve" for label, told in each.left_out.items()}
+    missing = {
+        label: told for each in done if each.kind == "curve" for label, told in (each.left_out or {}).items()
+    }
     told = [each.summary() for each in done]
     return "\n\n".join([*told, left_out(missing)] if missing else told)

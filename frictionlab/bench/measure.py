@@ -2,22 +2,79 @@
 
 from __future__ import annotations
 
+import gc
 import math
+import os
+import pickle
+import subprocess
+import sys
+import tempfile
+import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frictionlab.bench.first_run import first_run
 from frictionlab.bench.peers.base import Peer
-from frictionlab.bench.record import BENCH_STATUSES, Contender, ReferenceMeans, Row, Workload
-from frictionlab.bench.references import independent
-from frictionlab.bench.solvers import SolverAnswers, solve_points, whole_task
-from frictionlab.bench.timing import NO_TIME, Times, time_task
+from frictionlab.bench.record import (
+    BENCH_STATUSES,
+    NO_TIME,
+    Contender,
+    ReferenceMeans,
+    Row,
+    Times,
+    Workload,
+)
+from frictionlab.bench.solvers import SolverAnswers, independent, solve_points, whole_task
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method, ReducedModel
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
+
+
+def time_task(task: Callable[[], object], repeats: int, seconds: float) -> Times:
+    """Run a task so many times, or for so long if that is less, but once at least; the caller has warmed it up."""
+    spent: list[float] = []
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        while not spent or (len(spent) < repeats and sum(spent) < seconds):
+            start = time.perf_counter()
+            task()
+            spent.append(time.perf_counter() - start)
+    finally:
+        if collecting:
+            gc.enable()
+    low, middle, high = np.percentile(spent, (25, 50, 75)).tolist()
+    return Times(min(spent), (low, middle, high), len(spent))
+
+
+SCRIPT = """
+import pickle, sys, time
+method, scenes, law, tolerance = pickle.load(sys.stdin.buffer)
+from frictionlab.bench.solvers import whole_task
+whole_task(method, scenes, law, tolerance)()
+print(time.process_time())
+"""
+
+
+def first_run(method: Method, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> float:
+    """Processor time [s] of every column of a curve, imports and compiling included.
+
+    Raises CalledProcessError where the method raises.
+    """
+    with tempfile.TemporaryDirectory() as empty:
+        environment = {name: value for name, value in os.environ.items() if name != "FRICTIONLAB_COMPILE"}
+        done = subprocess.run(
+            [sys.executable, "-c", SCRIPT],
+            input=pickle.dumps((method, list(scenes), law, tolerance)),
+            env=environment | {"FRICTIONLAB_CACHE": empty},
+            stdout=subprocess.PIPE,
+            check=True,
+        )
+    return float(done.stdout)
+
 
 ANSWERED = ("ok", "not_unique")
 """The points that are worth timing."""

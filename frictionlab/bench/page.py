@@ -7,8 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from frictionlab.bench.account import add_to_account, entry_of
-from frictionlab.bench.circumstances import print_of
+from frictionlab.bench.account import add_to_account, entry_of, print_of
 from frictionlab.bench.report import cell_text, left_out, readable_rows
 from frictionlab.bench.sections import SectionResult
 from frictionlab.report.figures import address
@@ -34,7 +33,9 @@ def save(measured: SectionResult, folder: Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         tables = measured.write(folder)
-        pictures = measured.draw(folder)
+        from frictionlab.bench.pictures import draw
+
+        pictures = draw(measured, folder)
     except OSError as problem:
         raise SaveError(f"cannot write into {folder}: {problem.strerror or problem}") from problem
     page, entry = folder / PAGE_NAME, entry_of(measured, tables, pictures)

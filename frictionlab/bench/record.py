@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from frictionlab.bench.peers.base import Peer
-from frictionlab.bench.timing import NO_TIME, Times
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
@@ -42,6 +41,11 @@ class Contender:
     def side(self) -> Literal["method", "peer"]:
         """Whether it is a method of frictionlab or a peer."""
         return "peer" if isinstance(self.solvers[0][1], Peer) else "method"
+
+    def missing(self) -> str | None:
+        """How to install a peer that is not there."""
+        solver = self.solvers[0][1]
+        return solver.missing() if isinstance(solver, Peer) else None
 
 
 @dataclass(frozen=True)
@@ -79,11 +83,7 @@ class Workload:
 
     def missing(self) -> dict[str, str]:
         """The peers that are not installed, by label, with how to install them."""
-        return {
-            contender.label: told
-            for contender in self.contenders
-            if isinstance(peer := contender.solvers[0][1], Peer) and (told := peer.missing())
-        }
+        return {each.label: told for each in self.contenders if (told := each.missing())}
 
 
 @dataclass(frozen=True)
@@ -94,6 +94,22 @@ class ReferenceMeans:
     kind: str
     means: Floats
     errors: Floats
+
+
+class Times(NamedTuple):
+    """Least wall time [s] of repeated runs, their quartiles, and how many there were."""
+
+    least: float
+    quartiles: tuple[float, float, float]
+    repeats: int
+
+    def each_of(self, points: int) -> Times:
+        """The same per point of so many."""
+        low, middle, high = (quartile / points for quartile in self.quartiles)
+        return Times(self.least / points, (low, middle, high), self.repeats)
+
+
+NO_TIME = Times(math.nan, (math.nan,) * 3, 0)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What a bench list measures: curves and other sections, each with a table, a picture and a summary."""
+"""What a bench list measures: curves and other sections, each with a table and a summary."""
 
 from __future__ import annotations
 
@@ -8,47 +8,56 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Annotated, Any, ClassVar, Protocol
+
+from pydantic import BeforeValidator, Field
+
+Count = Annotated[int, Field(strict=True, ge=1)]
 
 
-class BenchPicture(NamedTuple):
-    """A chart, written as SVG and PNG under this stem; the caption is one sentence on how to read it."""
+def _filled(given: Any) -> Any:
+    if isinstance(given, list) and not given:
+        raise ValueError("the list is empty; give at least one, or leave the key out")
+    return given
 
-    file_stem: str
-    caption: str
+
+FILLED = BeforeValidator(_filled)
+"""Refuses a list without items."""
+
+
+def one_of(known: Mapping[str, Any]) -> BeforeValidator:
+    """Reads a name in a list as what it stands for."""
+
+    def named(name: Any) -> Any:
+        if not isinstance(name, str) or name not in known:
+            raise ValueError(f"must be one of {', '.join(map(repr, known))}")
+        return known[name]
+
+    return BeforeValidator(named)
 
 
 class SectionResult(ABC):
-    """What a section came to."""
+    """What a section came to.
+
+    caption: how to read its figure; style: of that, beside the style of all. left_out: what is not installed, with
+    how to install it.
+    """
 
     kind: ClassVar[str] = "section"
     style: ClassVar[Mapping[str, Any]] = {}
-    """Of its figure, beside that of all."""
     name: str
     title: str
-
-    @property
-    def caption(self) -> str:
-        """How to read its figure."""
-        return ""
+    caption: str
+    left_out: Mapping[str, str] | None = None
 
     @property
     def notes(self) -> list[str]:
         """Sentences below its title."""
         return []
 
-    @property
-    def left_out(self) -> Mapping[str, str]:
-        """What is not installed, with how to install it."""
-        return {}
-
     @abstractmethod
     def records(self) -> Sequence[Mapping[str, Any]]:
         """The rows of its CSV file."""
-
-    @abstractmethod
-    def figure(self) -> Any:
-        """Its chart, a figure of matplotlib; None where there is nothing to draw."""
 
     @abstractmethod
     def summary(self) -> str:
@@ -64,13 +73,6 @@ class SectionResult(ABC):
             writer.writeheader()
             writer.writerows(records)
         return [path]
-
-    def draw(self, folder: Path) -> list[BenchPicture]:
-        """The chart, written as SVG and PNG. Raises OSError."""
-        from frictionlab.bench.drawing import save_in_style
-
-        drawn = save_in_style(self.figure, self.style, folder, file_stem(self.name))
-        return [BenchPicture(file_stem(self.name), self.caption)] if drawn else []
 
 
 class Section(Protocol):

@@ -311,6 +311,8 @@ def _value_mistake(error: Any, text_of: Callable[[Any], str]) -> str:
         return f"must be {sign} {number_text(error['ctx'][name])}, got {given}"
     if error["type"] == "literal_error":
         return f"must be {error['ctx']['expected']}; got {given}"
+    if error["type"] == "string_type":
+        return f"must be text, got {given}"
     if error["type"] == "tuple_type":
         return f"must be a list such as [1, 2], got {given}"
     if error["type"] == "too_short":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -16,13 +17,13 @@ from fake_methods import Another, Fake, breaks_down
 from matplotlib.figure import Figure
 
 from frictionlab import bench, cli, registry
-from frictionlab.bench import reader, timing
+from frictionlab.bench import pictures
 from frictionlab.bench.curve import CurveResult
-from frictionlab.bench.measure import chosen
+from frictionlab.bench.measure import chosen, time_task
 from frictionlab.bench.peers import base
 from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.peers.scipy_steps import ScipySteps
-from frictionlab.bench.record import Row
+from frictionlab.bench.record import Row, Times
 from frictionlab.bench.solvers import solve_points
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
@@ -207,7 +208,7 @@ def test_a_method_that_fails_keeps_its_place_in_tables_and_chart(monkeypatch: py
     found = measured(LIST + "      - another\n")
 
     written(found)
-    drawn = found.figure()
+    drawn = pictures.curve_figure(found)
 
     failed, good = rows_of(found, "off"), rows_of(found, "another")
     assert [row.counts["failed"] for row in failed] == [4, 4]
@@ -225,11 +226,11 @@ def test_peers_that_are_not_installed_are_one_line_and_no_rows(monkeypatch: pyte
     found = measured(f"{LIST}    peers:\n{peers}")
 
     assert {row.contender.label for row in found.rows} == {"off"}
-    assert found.missing == {name: f"not installed: {peer.remedy}" for name, peer in PEERS.items()}
+    assert found.left_out == {name: f"not installed: {peer.remedy}" for name, peer in PEERS.items()}
     for told in (bench.bench_summary([found]), found.markdown()):
         (line,) = (line for line in told.splitlines() if "not installed" in line)
         assert line.removeprefix("- ").startswith(f"Peers left out: {', '.join(PEERS)} (not installed: ")
-    assert {text.get_text() for text in found.figure().legends[0].get_texts()} == {"off"}
+    assert {text.get_text() for text in pictures.curve_figure(found).legends[0].get_texts()} == {"off"}
 
 
 def test_few_points_of_a_curve_are_spread_over_it() -> None:
@@ -245,15 +246,15 @@ def test_few_points_of_a_curve_are_spread_over_it() -> None:
 def clock(monkeypatch: pytest.MonkeyPatch, spent: Sequence[float]) -> None:
     """A clock on which a task takes these times, one after the other."""
     ticks = iter([tick for each in spent for tick in (0.0, each)])
-    monkeypatch.setattr(timing.time, "perf_counter", lambda: next(ticks))
+    monkeypatch.setattr(time, "perf_counter", lambda: next(ticks))
 
 
 def test_the_time_of_a_task_is_the_least_of_its_repeats(monkeypatch: pytest.MonkeyPatch) -> None:
     clock(monkeypatch, [4.0, 2.0, 3.0, 9.0])
 
-    times = timing.time_task(lambda: None, repeats=4, seconds=100.0)
+    times = time_task(lambda: None, repeats=4, seconds=100.0)
 
-    assert times == timing.Times(2.0, (2.75, 3.5, 5.25), 4)
+    assert times == Times(2.0, (2.75, 3.5, 5.25), 4)
     assert times.each_of(2).least == 1.0
 
 
@@ -311,14 +312,13 @@ def test_an_interrupted_bench_keeps_the_curves_that_are_done(
 class Told(bench.SectionResult):
     """What the fake section came to."""
 
+    caption = "how to read it"
+
     def __init__(self, name: str) -> None:
         self.name, self.title = name, "a fake"
 
     def records(self) -> list[dict[str, Any]]:
         return [{"a": 1}]
-
-    def figure(self) -> Figure:
-        return Figure()
 
     def summary(self) -> str:
         return f"{self.name}: told"
@@ -336,18 +336,21 @@ class Part:
 
 
 def sections(monkeypatch: pytest.MonkeyPatch, *parts: Part) -> None:
-    """A bench list whose key ``fakes`` means these sections."""
-    monkeypatch.setitem(reader.SECTIONS, "fakes", lambda reader, given, path: parts)
-    monkeypatch.setattr(reader, "BENCH_KEYS", (*reader.BENCH_KEYS, "fakes"))
+    """A bench list has these sections, too."""
+    read = bench.load_bench
+    monkeypatch.setitem(pictures.FIGURES, Told, lambda result: Figure())
+    monkeypatch.setattr(
+        bench, "load_bench", lambda path: replace(found := read(path), sections=(*found.sections, *parts))
+    )
 
 
 def test_a_list_may_have_sections_alone(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     sections(monkeypatch, Part("one"), Part("two"))
-    Path("list.yaml").write_text("schema: 1\nfakes: true\n")
+    Path("list.yaml").write_text("schema: 1\nstability: {steppers: [rk4]}\n")
 
-    assert cli.main(["bench", "list.yaml", "-o", "out"]) == 0
+    assert cli.main(["bench", "list.yaml", "-o", "out", "--only", "one", "--only", "two"]) == 0
 
     assert capsys.readouterr().out == "one: told\n\ntwo: told\n"
     assert sorted(path.name for path in Path("out").iterdir()) == [
@@ -366,7 +369,7 @@ def test_a_section_is_chosen_by_name_beside_curves(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     sections(monkeypatch, Part("one"), Part("two"))
-    Path("list.yaml").write_text(f"{LIST}fakes: true\n")
+    Path("list.yaml").write_text(LIST)
 
     assert cli.main(["bench", "list.yaml", "--only", "two", "-o", "out"]) == 0
     assert capsys.readouterr().out == "two: told\n"
@@ -385,12 +388,12 @@ MISTAKES = [
     ),
     ("kind: off", "kind: of", "list.yaml:11:", "unknown method 'of'"),
     ("kind: off", "kind: auto", "list.yaml:11:", "auto only chooses"),
-    ("by: [", "points: [4], by: [", "list.yaml:11:", "only one value may be a list"),
+    ("by: [", "says: [4], by: [", "list.yaml:11:", "only one value may be a list"),
     ("by: [1.0e-3, 1.0e-6]", "by: [1.0e-3, x]", "list.yaml:11:", "scenes[0].methods[0].by: must be a number"),
     ("by: [1.0e-3, 1.0e-6]", "points: 0", "list.yaml:11:", "points: must be >= 1, got 0"),
     ("known.csv", "unknown.csv", "list.yaml:9:", "scenes[0].references[0].values: cannot be read"),
     ("known.csv", "list.yaml", "list.yaml:9:", "must be a CSV file of numbers with the columns belt_speed"),
-    (", error: 1.0e-15", "", "list.yaml:9:", "error: required key is missing: how well the values are known"),
+    (", error: 1.0e-15", "", "list.yaml:9:", "error: required key is missing"),
     ("    references: [{values: known.csv, error: 1.0e-15}]\n", "", "list.yaml:5:", "no references"),
     ("repeats: 2", "repeat: 2", "list.yaml:3:", "repeat: unknown key"),
     (

@@ -12,7 +12,7 @@ from pages import Page
 
 from frictionlab import bench, cli
 from frictionlab.bench import account
-from frictionlab.bench.circumstances import circumstances, small_print
+from frictionlab.bench.account import circumstances, small_print
 from frictionlab.bench.curve import CurveResult
 from frictionlab.bench.page import MOST_ROWS_ON_PAGE, bench_page
 from frictionlab.bench.peers import base

@@ -10,10 +10,8 @@ from typing import Any
 import pytest
 
 from frictionlab import bench, cli
-from frictionlab.bench.models.record import BenchedModel, ModelRow, front
-from frictionlab.bench.models.section import ModelsResult
-from frictionlab.bench.record import BenchSetting, Contender, Row
-from frictionlab.bench.timing import NO_TIME, Times
+from frictionlab.bench.models import BenchedModel, ModelRow, ModelsResult, front
+from frictionlab.bench.record import NO_TIME, BenchSetting, Contender, Row, Times
 from frictionlab.study import StudyError
 
 LIST = """

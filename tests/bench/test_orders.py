@@ -24,11 +24,8 @@ SIZES = 0.5 ** np.arange(8)
 
 def orders(motions: str, solvers: str, samples: int = 8) -> OrdersResult:
     """Of these motions and solvers."""
-    section = OrdersSection(
-        tuple(MOTIONS[name] for name in motions.split()),
-        tuple(ORDER_SOLVERS[name] for name in solvers.split()),
-        samples,
-    )
+    named = {"motions": motions.split(), "steppers": solvers.split()}
+    section = OrdersSection.model_validate({**named, "samples": samples})
     return section.measure(lambda line: None)
 
 

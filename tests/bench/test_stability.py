@@ -13,6 +13,7 @@ import pytest
 from profiles import deep
 
 from frictionlab import bench, cli
+from frictionlab.bench.pictures import draw
 from frictionlab.bench.stability import steppers
 from frictionlab.bench.stability.limits import measured_limit, predicted_limit, stepper_limit
 from frictionlab.bench.stability.peers import MAPPED_PEERS, peer_limit
@@ -172,7 +173,7 @@ def test_the_table_holds_every_point_with_the_limits(tmp_path: Path) -> None:
 
 
 def test_the_picture_is_drawn_and_says_how_to_read_it(tmp_path: Path) -> None:
-    (picture,) = mapped("exponential", "bristle", 4).draw(tmp_path)
+    (picture,) = draw(mapped("exponential", "bristle", 4), tmp_path)
 
     assert picture.file_stem == "stability_exponential"
     assert "Colour is the true error" in picture.caption
@@ -214,6 +215,6 @@ def test_a_wrong_request_is_told(given: str, told: str, tmp_path: Path) -> None:
 @deep("minutes")
 @pytest.mark.parametrize("name", MAPPED_STEPPERS)
 def test_no_stepper_is_wrong_without_a_word(name: str) -> None:
-    for problem in MAPPED_STEPPERS[name].problems():
+    for problem in MAPPED_STEPPERS[name].problems:
         (drawn,) = mapped(name, problem, 40).maps
         assert [point for point in drawn.points if point.region == "wrong_and_silent"] == []

@@ -14,8 +14,7 @@ import numpy as np
 from frictionlab.bench.failures.record import FailureMap, GridRow
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Contender, ReferenceSource
-from frictionlab.bench.references import known_means
-from frictionlab.bench.solvers import SolverAnswers, solve_points
+from frictionlab.bench.solvers import SolverAnswers, known_means, solve_points
 from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
 from frictionlab.runner.chunks import Chunk, Task

@@ -10,16 +10,15 @@ from dataclasses import astuple, dataclass, fields
 from typing import Any, ClassVar
 
 from frictionlab.bench.failures.measure import OUTCOMES, MapOutcome, MapTruth, PointOutcome, measure_map
-from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Contender
-from frictionlab.bench.sections import SectionResult
+from frictionlab.bench.sections import SectionResult, file_stem
 
 MAPS_CAPTION = (
     "A panel at one value of its vertical axis is a curve over belt speed: shade is the error of the mean friction "
     "(left stated, right true), hatching is no number, a cross is a number that is wrong without a word."
 )
 
-CELLS = {field.name: field.name for field in fields(PointOutcome)} | {
+CELLS = {each.name: each.name for each in fields(PointOutcome)} | {
     "stated": "stated_error",
     "true": "true_error",
 }
@@ -28,34 +27,22 @@ CELLS = {field.name: field.name for field in fields(PointOutcome)} | {
 
 @dataclass(frozen=True)
 class FailureResult(SectionResult):
-    """What one method or peer came to on every map it was given.
-
-    missing: why nothing was measured, of a peer that is not installed.
-    """
+    """What one method or peer came to on every map it was given; nothing where it is left out."""
 
     name: str
     title: str
     side: str
-    outcomes: tuple[MapOutcome, ...]
-    truths: tuple[MapTruth, ...]
-    missing: str = ""
+    outcomes: tuple[MapOutcome, ...] = ()
+    truths: tuple[MapTruth, ...] = ()
+    left_out: Mapping[str, str] | None = None
 
     style: ClassVar[Mapping[str, Any]] = {"hatch.linewidth": 0.5, "svg.fonttype": "none"}
     """Many panels: letters stay text."""
+    caption = MAPS_CAPTION
 
     def counts(self) -> Counter[str]:
         """How many points of all maps came to what."""
         return sum((outcome.counts() for outcome in self.outcomes), Counter[str]())
-
-    @property
-    def caption(self) -> str:
-        """How to read the figure."""
-        return MAPS_CAPTION
-
-    @property
-    def left_out(self) -> Mapping[str, str]:
-        """Itself, where nothing was measured."""
-        return {self.name: self.missing} if self.missing else {}
 
     def records(self) -> list[dict[str, Any]]:
         """Every point of every map."""
@@ -65,20 +52,10 @@ class FailureResult(SectionResult):
             for point in outcome.points
         ]
 
-    def figure(self) -> Any:
-        """A row of panels for each map; none where every point is refused."""
-        if not any(outcome.has_panel for outcome in self.outcomes):
-            return None
-        from frictionlab.bench.failures.chart import figure_of_maps
-
-        counts = self.counts()
-        title = f"{self.title}: {counts.total():,} points, {counts['silent']:,} wrong without a word"
-        return figure_of_maps(title, list(zip(self.outcomes, self.truths, strict=True)), self.side)
-
     def summary(self) -> str:
         """Counts by map, those that are wrong without a word last."""
-        if self.missing:
-            return f"{self.name}: {self.missing}"
+        if self.left_out:
+            return f"{self.name}: {self.left_out[self.name]}"
         wide = max(len(outcome.drawn.name) for outcome in self.outcomes)
         heads = [*map(word_of, OUTCOMES), "known to"]
         lines = [f"{self.title}: points", " " * wide + "".join(f"{head:>14}" for head in heads)]
@@ -118,14 +95,9 @@ class FailureSection:
     def measure(self, tell: Callable[[str], None]) -> FailureResult:
         """Solve every point of every map. What the references say is found once for all sections."""
         first = self.maps[0][1]
-        solver = first.solvers[0][1]
-        whose = (
-            self.name,
-            f"Failure maps of {self.label}{' (peer)' if first.side == 'peer' else ''}",
-            first.side,
-        )
-        if isinstance(solver, Peer) and (missing := solver.missing()):
-            return FailureResult(*whose, (), (), missing)
+        title = f"Failure maps of {self.label}{' (peer)' if first.side == 'peer' else ''}"
+        if missing := first.missing():
+            return FailureResult(self.name, title, first.side, left_out={self.name: missing})
         for truth, _ in self.maps:
             tell(f"{self.name}: {truth.drawn.name}, references")
             truth.known  # noqa: B018  # found here, where it is told, and not within a time
@@ -133,15 +105,16 @@ class FailureSection:
         for truth, contender in self.maps:
             tell(f"{self.name}: {truth.drawn.name}")
             found.append(measure_map(truth, contender))
-        return FailureResult(*whose, tuple(found), tuple(truth for truth, _ in self.maps))
+        truths = tuple(truth for truth, _ in self.maps)
+        return FailureResult(self.name, title, first.side, tuple(found), truths)
 
 
-def by_label(
-    maps: Sequence[tuple[MapTruth, Sequence[Contender]]],
-) -> dict[str, list[tuple[MapTruth, Contender]]]:
-    """The maps each contender is measured on, by its label, in the order of their first map."""
+def failure_sections(maps: Sequence[tuple[MapTruth, Sequence[Contender]]]) -> list[FailureSection]:
+    """A section for each contender of these maps, in the order of their first map."""
     found: dict[str, list[tuple[MapTruth, Contender]]] = {}
     for truth, contenders in maps:
         for contender in contenders:
             found.setdefault(contender.label, []).append((truth, contender))
-    return found
+    return [
+        FailureSection(f"failures_{file_stem(label)}", label, tuple(each)) for label, each in found.items()
+    ]

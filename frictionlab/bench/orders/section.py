@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
-from frictionlab.bench.orders.fit import NO_FIT, fit_order
-from frictionlab.bench.orders.motions import KindOfMotion
-from frictionlab.bench.orders.record import OrderRow
-from frictionlab.bench.orders.solvers import OrderSolver
-from frictionlab.bench.orders.theory import theory_of
-from frictionlab.bench.sections import SectionResult
+from frictionlab.bench.orders.fit import NO_FIT, Fit, fit_order
+from frictionlab.bench.orders.motions import MOTIONS, KindOfMotion
+from frictionlab.bench.orders.solvers import ORDER_SOLVERS, Refinement
+from frictionlab.bench.orders.theory import TheoryOfOrder, theory_of
+from frictionlab.bench.sections import FILLED, Count, SectionResult, one_of
 from frictionlab.bench.solvers import solve_points
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
+from frictionlab.quantities import Record
 
 REFERENCE_TOLERANCE = 1e-12
 """Tolerance of a reference."""
@@ -29,27 +29,60 @@ ORDERS_CAPTION = (
 
 
 @dataclass(frozen=True)
+class OrderRow:
+    """One solver on one motion; reference: the method whose mean errors are measured against."""
+
+    solver: str
+    motion: KindOfMotion
+    refinement: Refinement
+    fit: Fit
+    theory: TheoryOfOrder
+    reference: str
+
+    @property
+    def asymptotic(self) -> bool:
+        """Whether the slope is steady and theory gives a plain power."""
+        return self.fit.asymptotic and self.theory.plain
+
+    @property
+    def agrees(self) -> bool:
+        """Whether an asymptotic order is within 0.1 of theory."""
+        return abs(self.fit.order - self.theory.order) <= 0.1
+
+    def record(self) -> dict[str, Any]:
+        """A row of the CSV; empty where nothing was fitted."""
+        fit, refinement = self.fit, self.refinement
+        fitted = not math.isnan(fit.order)
+        return {
+            "solver": self.solver,
+            "motion": self.motion.name,
+            "law": self.motion.law_text,
+            "setting": refinement.setting,
+            "settings_from": refinement.values[fit.first] if fitted else "",
+            "settings_to": refinement.values[fit.last] if fitted else "",
+            "order": fit.order if fitted else "",
+            "spread": fit.spread if fitted else "",
+            "theory": "" if math.isnan(self.theory.order) else self.theory.order,
+            "reason": self.theory.reason,
+            "asymptotic": "yes" if self.asymptotic else "no",
+            "error_from": float(refinement.errors[fit.first if fitted else 0]),
+            "error_to": float(refinement.errors[fit.last if fitted else -1]),
+            "reference": self.reference,
+        }
+
+
+@dataclass(frozen=True)
 class OrdersResult(SectionResult):
     """Every order that was measured."""
 
     rows: list[OrderRow]
     name: str = "orders"
     title: str = "Observed orders on every kind of motion"
-
-    @property
-    def caption(self) -> str:
-        """How to read the picture."""
-        return ORDERS_CAPTION
+    caption = ORDERS_CAPTION
 
     def records(self) -> list[dict[str, Any]]:
         """A row an order."""
         return [row.record() for row in self.rows]
-
-    def figure(self) -> Any:
-        """A panel a motion."""
-        from frictionlab.bench.orders.chart import orders_figure
-
-        return orders_figure(self.rows)
 
     def summary(self) -> str:
         """A line a motion and solver, asymptotic orders first compared with theory."""
@@ -66,30 +99,34 @@ class OrdersResult(SectionResult):
         return "\n".join(lines)
 
 
-@dataclass(frozen=True)
-class OrdersSection:
-    """Solvers and motions; samples: places of the grid that irregular errors are averaged over."""
+class OrdersSection(Record):
+    """Solvers and motions, all where none is named; samples: places of the grid that irregular errors are averaged
+    over.
+    """
 
-    motions: tuple[KindOfMotion, ...]
-    solvers: tuple[OrderSolver, ...]
-    samples: int
-    name: str = "orders"
+    name: ClassVar[str] = "orders"
+
+    motions: Annotated[tuple[Annotated[Any, one_of(MOTIONS)], ...], FILLED] = (*MOTIONS.values(),)
+    steppers: Annotated[tuple[Annotated[Any, one_of(ORDER_SOLVERS)], ...], FILLED] = (
+        *ORDER_SOLVERS.values(),
+    )
+    samples: Count = 40
+
+    def sections(self) -> list[OrdersSection]:
+        """Itself."""
+        return [self]
 
     def measure(self, tell: Callable[[str], None]) -> OrdersResult:
         """Measure every solver on every motion that it can follow."""
         rows = []
         for motion in self.motions:
             mean, known, reference = reference_mean(motion)
-            for solver in self.solvers:
-                if solver.refusal(motion) is None:
-                    tell(f"{self.name}: {motion.name}, {solver.name}")
-                    found = solver.refined(motion, mean, self.samples)
-                    fit = fit_order(found.sizes, found.errors, known) if found.sizes.size > 1 else NO_FIT
-                    rows.append(
-                        OrderRow(
-                            solver.name, motion, found, fit, theory_of(solver.name, motion.name), reference
-                        )
-                    )
+            for solver in (each for each in self.steppers if each.refusal(motion) is None):
+                tell(f"{self.name}: {motion.name}, {solver.name}")
+                found = solver.refined(motion, mean, self.samples)
+                fit = fit_order(found.sizes, found.errors, known) if found.sizes.size > 1 else NO_FIT
+                theory = theory_of(solver.name, motion.name)
+                rows.append(OrderRow(solver.name, motion, found, fit, theory, reference))
         return OrdersResult(rows)
 
 

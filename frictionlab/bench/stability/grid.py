@@ -1,14 +1,17 @@
-"""The grid of a stability map, and what is known at each of its rates."""
+"""The grid of a stability map, what is known at each of its rates, and what a stepper or peer makes of it."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
 from frictionlab.bench.solvers import solve_points
-from frictionlab.bench.stability.problems import PROBLEMS, width_at
+from frictionlab.bench.stability.problems import PROBLEMS, StabilityProblem, width_at
+from frictionlab.bench.stability.record import MapPoint, StabilityMap, StepLimit
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.march.run import MarchRun, MarchState, Resolution
 from frictionlab.methods.shooting.method import Shooting
@@ -63,3 +66,33 @@ def local_rate(problem: str, known: KnownState, rate: float) -> float:
         return rate
     law: Any = known.law
     return float(law.largest_rate(known.most_slip))
+
+
+@dataclass(frozen=True)
+class MappedSolver(ABC):
+    """A stepper or peer on the grid; problems: those it can take, integrated: what each point integrates."""
+
+    setting: ClassVar[Literal["steps", "tolerance"]] = "tolerance"
+    name: str
+    problems: tuple[str, ...]
+    integrated: str
+
+    def missing(self) -> str:
+        """How to install it where it is not there."""
+        return ""
+
+    @abstractmethod
+    def limit(self, problem: StabilityProblem) -> StepLimit:
+        """How long its steps may be."""
+
+    @abstractmethod
+    def point(self, problem: StabilityProblem, rate: float, at: float) -> MapPoint:
+        """What it comes to at a rate and a setting."""
+
+    def map_of(self, problem: StabilityProblem, n: int) -> StabilityMap:
+        """n settings by n rates."""
+        rates, settings = spaced(problem.rates, n), spaced(problem.tolerances, n)
+        if self.setting == "steps":
+            settings = [float(count) for count in whole_steps(problem.steps, n)]
+        points = [self.point(problem, rate, at) for rate in rates for at in settings]
+        return StabilityMap(problem, self.setting, self.limit(problem), settings, rates, points)

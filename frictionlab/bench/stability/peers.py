@@ -10,7 +10,6 @@ import numpy as np
 
 from frictionlab.bench.peers.one_period import (
     SOLVE_IVP_METHODS,
-    PeriodByPeer,
     by_heyoka,
     by_solve_ivp,
     growth_by_heyoka,
@@ -18,57 +17,41 @@ from frictionlab.bench.peers.one_period import (
     missing_heyoka,
     rates_of,
 )
-from frictionlab.bench.stability.grid import KnownState, known_state, local_rate, spaced
+from frictionlab.bench.stability.grid import KnownState, MappedSolver, known_state, local_rate
 from frictionlab.bench.stability.limits import measured_limit, predicted_limit
 from frictionlab.bench.stability.problems import StabilityProblem, width_at
-from frictionlab.bench.stability.record import TIMES_ASKED, MapPoint, StabilityMap, StepLimit
+from frictionlab.bench.stability.record import TIMES_ASKED, MapPoint, StepLimit
 from frictionlab.quantities import Floats
+
+ONE_PERIOD = "one period, from a state of the periodic motion"
 
 
 @dataclass(frozen=True)
-class MappedPeer:
+class MappedPeer(MappedSolver):
     """A solver of solve_ivp, or heyoka: it states no error, so that ten times what was asked is allowed."""
 
-    name: str
-
-    @property
-    def integrated(self) -> str:
-        """For the caption."""
-        return "one period, from a state of the periodic motion"
-
-    def problems(self) -> list[str]:
-        """Heyoka's series need friction without corners."""
-        return ["smoothing", "plane"] if self.name == "heyoka" else ["bristle", "smoothing", "plane"]
-
-    def refusal(self) -> str | None:
+    def missing(self) -> str:
         """Only heyoka may be missing."""
-        return missing_heyoka() if self.name == "heyoka" else None
+        return missing_heyoka() or "" if self.name == "heyoka" else ""
 
-    def map_of(self, problem: StabilityProblem, n: int) -> StabilityMap:
-        """n tolerances by n rates."""
-        rates, tolerances = spaced(problem.rates, n), spaced(problem.tolerances, n)
-        limit = StepLimit(predicted_limit(self.name), peer_limit(self.name))
-        points = []
-        for rate in rates:
-            known = known_state(problem.name, rate, smoothed=problem.name == "smoothing")
-            real = local_rate(problem.name, known, rate)
-            width = width_at(rate) if problem.name == "smoothing" else None
-            points += [self._point(known, width, tolerance, real) for tolerance in tolerances]
-        return StabilityMap(problem, "tolerance", limit, tolerances, rates, points)
+    def limit(self, problem: StabilityProblem) -> StepLimit:
+        """By theory, and of one step."""
+        return StepLimit(predicted_limit(self.name), peer_limit(self.name))
 
-    def _point(self, known: KnownState, width: float | None, tolerance: float, rate: float) -> MapPoint:
-        found = self._one_period(known, width, tolerance)
-        status = "failed" if found.reason else "ok"
-        error = abs(found.mean - known.mean)
-        allowed = TIMES_ASKED * tolerance + known.error
-        return MapPoint(tolerance, rate, found.step, status, found.reason, error, allowed)
-
-    def _one_period(self, known: KnownState, width: float | None, tolerance: float) -> PeriodByPeer:
+    def point(self, problem: StabilityProblem, rate: float, at: float) -> MapPoint:
+        """At a tolerance."""
+        width = width_at(rate) if problem.name == "smoothing" else None
+        known = known_state(problem.name, rate, smoothed=width is not None)
         state = start_of_period(known)
         if self.name == "heyoka":
-            return by_heyoka(known.scene, known.law, state, width, tolerance)
-        rates = rates_of(known.scene, known.law, width)
-        return by_solve_ivp(self.name, rates, state, 2.0 * math.pi / known.scene.frequency, tolerance)
+            found = by_heyoka(known.scene, known.law, state, width, at)
+        else:
+            rates, period = rates_of(known.scene, known.law, width), 2.0 * math.pi / known.scene.frequency
+            found = by_solve_ivp(self.name, rates, state, period, at)
+        status, error = "failed" if found.reason else "ok", abs(found.mean - known.mean)
+        rate = local_rate(problem.name, known, rate)
+        allowed = TIMES_ASKED * at + known.error
+        return MapPoint(at, rate, found.step, status, found.reason, error, allowed)
 
 
 def start_of_period(known: KnownState) -> Floats:
@@ -87,5 +70,10 @@ def peer_limit(name: str) -> float:
     return measured_limit(growth_by_heyoka if name == "heyoka" else partial(growth_by_solve_ivp, name))
 
 
-MAPPED_PEERS = {name: MappedPeer(name) for name in (*SOLVE_IVP_METHODS, "heyoka")}
+_ALL_PROBLEMS = ("bristle", "smoothing", "plane")
+_ALL = (
+    *(MappedPeer(name, _ALL_PROBLEMS, ONE_PERIOD) for name in SOLVE_IVP_METHODS),
+    MappedPeer("heyoka", ("smoothing", "plane"), ONE_PERIOD),  # whose series need friction without corners
+)
+MAPPED_PEERS = {peer.name: peer for peer in _ALL}
 """By name, in the order of tables and pictures."""

@@ -5,11 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Annotated, Any, ClassVar
 
-from frictionlab.bench.sections import SectionResult, cell
-from frictionlab.bench.stability.problems import StabilityProblem
+from pydantic import Field
+
+from frictionlab.bench.sections import FILLED, SectionResult, cell, one_of
+from frictionlab.bench.stability.grid import MappedSolver
+from frictionlab.bench.stability.peers import MAPPED_PEERS
+from frictionlab.bench.stability.problems import PROBLEMS, StabilityProblem
 from frictionlab.bench.stability.record import StabilityMap
+from frictionlab.bench.stability.steppers import MAPPED_STEPPERS
+from frictionlab.quantities import Record
 
 STABILITY_CAPTION = (
     "Colour is the true error of the mean friction at each step (or tolerance) and local rate; hatched: wrong, and "
@@ -18,66 +24,26 @@ STABILITY_CAPTION = (
 )
 
 
-class MappedSolver(Protocol):
-    """A stepper or peer that can be put on the grid."""
-
-    @property
-    def name(self) -> str:
-        """As in files."""
-
-    @property
-    def integrated(self) -> str:
-        """What each point integrates, for the caption."""
-
-    def problems(self) -> list[str]:
-        """Those it can take."""
-
-    def refusal(self) -> str | None:
-        """Why it is not there; None when it is."""
-
-    def map_of(self, problem: StabilityProblem, n: int) -> StabilityMap:
-        """n settings by n rates."""
-
-
 @dataclass(frozen=True)
 class StabilityResult(SectionResult):
-    """The maps of one stepper or peer, one a problem; missing: why there are none."""
+    """The maps of one stepper or peer, one a problem; none where it is left out."""
 
     name: str
     title: str
-    integrated: str
+    caption: str
     maps: Sequence[StabilityMap]
-    missing: str
+    left_out: Mapping[str, str] | None = None
 
     style: ClassVar[Mapping[str, Any]] = {"hatch.linewidth": 0.5, "savefig.dpi": 200}
-
-    @property
-    def caption(self) -> str:
-        """How to read the picture."""
-        return STABILITY_CAPTION.format(what=self.integrated)
-
-    @property
-    def left_out(self) -> Mapping[str, str]:
-        """Itself, where there are no maps."""
-        return {self.name: self.missing} if not self.maps else {}
 
     def records(self) -> list[dict[str, Any]]:
         """The points of every map, with the limits."""
         return [record for each in self.maps for record in _records(each)]
 
-    def figure(self) -> Any:
-        """A panel a problem."""
-        if not self.maps:
-            return None
-        from frictionlab.bench.stability.chart import stability_figure
-
-        return stability_figure(self.maps, self.title)
-
     def summary(self) -> str:
         """A line a problem: regions counted, limits predicted and measured."""
-        if not self.maps:
-            return f"{self.name}: {self.missing}"
-        return "\n".join(_line(self.name, each) for each in self.maps)
+        lines = [_line(self.name, each) for each in self.maps]
+        return "\n".join(lines or [f"{name}: {why}" for name, why in (self.left_out or {}).items()])
 
 
 def _line(name: str, drawn: StabilityMap) -> str:
@@ -127,12 +93,26 @@ class StabilitySection:
 
     def measure(self, tell: Callable[[str], None]) -> StabilityResult:
         """Map every problem that it can take."""
-        missing, maps = self.mapped.refusal(), list[StabilityMap]()
-        if missing is None:
-            for problem in (each for each in self.problems if each.name in self.mapped.problems()):
+        missing, maps = self.mapped.missing(), list[StabilityMap]()
+        for problem in self.problems if not missing else ():
+            if problem.name in self.mapped.problems:
                 tell(f"{self.name}: {problem.name}")
                 maps.append(self.mapped.map_of(problem, self.grid))
-        title = f"Stability of {self.mapped.name}"
-        return StabilityResult(
-            self.name, title, self.mapped.integrated, maps, missing or "takes none of these problems"
-        )
+        left_out = None if maps else {self.name: missing or "takes none of these problems"}
+        caption = STABILITY_CAPTION.format(what=self.mapped.integrated)
+        return StabilityResult(self.name, f"Stability of {self.mapped.name}", caption, maps, left_out)
+
+
+class StabilityMaps(Record):
+    """Which steppers and peers, all where neither is named; on which problems; a grid of how many by how many."""
+
+    steppers: Annotated[tuple[Annotated[Any, one_of(MAPPED_STEPPERS)], ...], FILLED] = ()
+    peers: Annotated[tuple[Annotated[Any, one_of(MAPPED_PEERS)], ...], FILLED] = ()
+    problems: Annotated[tuple[Annotated[Any, one_of(PROBLEMS)], ...], FILLED] = (*PROBLEMS.values(),)
+    grid: Annotated[int, Field(strict=True, ge=2)] = 70
+    """Settings, and rates: about 5,000 points a stepper and problem."""
+
+    def sections(self) -> list[StabilitySection]:
+        """One for each stepper and peer."""
+        named = (*self.steppers, *self.peers) or (*MAPPED_STEPPERS.values(), *MAPPED_PEERS.values())
+        return [StabilitySection(each, self.problems, self.grid) for each in named]

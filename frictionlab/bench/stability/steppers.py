@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from frictionlab.bench.solvers import solve_points
-from frictionlab.bench.stability.grid import KnownState, known_state, local_rate, spaced, whole_steps
+from frictionlab.bench.stability.grid import KnownState, MappedSolver, known_state, local_rate
 from frictionlab.bench.stability.limits import predicted_limit, stepper_limit
 from frictionlab.bench.stability.problems import StabilityProblem, width_at
-from frictionlab.bench.stability.record import MapPoint, StabilityMap, StepLimit
+from frictionlab.bench.stability.record import MapPoint, StepLimit
 from frictionlab.methods.march.error import Plan, march_mean
 from frictionlab.methods.march.method import March
 from frictionlab.methods.march.run import MarchRun, Resolution
@@ -21,55 +22,34 @@ from frictionlab.numerics.steppers import exponential
 LONGEST_MARCH = 200
 """That a motion is waited for to repeat: where it is right, it does so in twenty, but for rounding."""
 OFFERED_THETAS = 0.5, 1.0
+MARCHED = "a mass by march until its motion repeats, for 200 periods at most"
+CREPT = "the creep of a mass that would stick, by march until it repeats, at several widths"
 
 
 @dataclass(frozen=True)
-class MappedStepper:
+class MappedStepper(MappedSolver):
     """A stepper of march at fixed steps."""
 
-    name: str
+    setting: ClassVar[Literal["steps", "tolerance"]] = "steps"
     stepper: str
     theta: float = 0.5
 
-    @property
-    def integrated(self) -> str:
-        """For the caption."""
-        return "a mass by march until its motion repeats, for 200 periods at most"
+    def limit(self, problem: StabilityProblem) -> StepLimit:
+        """By theory, and of one step."""
+        measured = stepper_limit(self.stepper, self.theta, problem.memory)
+        held = exponential.DECAY if self.stepper == "exponential" else math.inf
+        return StepLimit(predicted_limit(self.stepper, self.theta), measured, held)
 
-    def refusal(self) -> str | None:
-        """It is always there."""
-        return None
-
-    def problems(self) -> list[str]:
-        """Those whose law it takes."""
-        known = {"rk4": ["bristle", "plane"], "moreau": ["plane"]}
-        return known.get(self.stepper, ["bristle"])
-
-    def map_of(self, problem: StabilityProblem, n: int) -> StabilityMap:
-        """n steps per period by n rates."""
-        rates, steps = spaced(problem.rates, n), whole_steps(problem.steps, n)
-        limit = StepLimit(
-            predicted_limit(self.stepper, self.theta),
-            stepper_limit(self.stepper, self.theta, problem.memory),
-            held=exponential.DECAY if self.stepper == "exponential" else math.inf,
-        )
-        points = []
-        for rate in rates:
-            known = known_state(problem.name, rate)
-            points += [self._point(known, count, local_rate(problem.name, known, rate)) for count in steps]
-        return StabilityMap(problem, "steps", limit, [float(count) for count in steps], rates, points)
-
-    def _point(self, known: KnownState, steps: int, rate: float) -> MapPoint:
-        step = 2.0 * math.pi / (known.scene.frequency * steps)
+    def point(self, problem: StabilityProblem, rate: float, at: float) -> MapPoint:
+        """At so many steps per period."""
+        known, steps = known_state(problem.name, rate), round(at)
+        rate, step = local_rate(problem.name, known, rate), 2.0 * math.pi / (known.scene.frequency * steps)
         if self.stepper == "moreau" and self.theta not in OFFERED_THETAS:
             return self._not_offered(known, steps, rate, step)
         theta = self.theta if self.stepper == "moreau" else None
         method = March(stepper=self.stepper, theta=theta, steps=steps, periods=LONGEST_MARCH)
-        found = solve_points(method, [known.scene], known.law, 1e-6)
-        error = abs(float(found.means[0]) - known.mean)
-        stated = float(found.errors[0]) + known.error
         held = step * quickest_when_held(known.scene, known.law) if self.stepper == "exponential" else 0.0
-        return MapPoint(float(steps), rate, step, found.status[0], found.reason[0], error, stated, held)
+        return _answered(method, known, 1e-6, MapPoint(at, rate, step, "", "", 0.0, 0.0, held))
 
     def _not_offered(self, known: KnownState, steps: int, rate: float, step: float) -> MapPoint:
         pace = Resolution(steps=steps, theta=self.theta, enough=1e-9, most=LONGEST_MARCH)
@@ -80,58 +60,40 @@ class MappedStepper:
 
 
 @dataclass(frozen=True)
-class MappedSmoothing:
+class MappedSmoothing(MappedSolver):
     """March on smoothed friction, whose steps adapt to the tolerance; its error is that against friction as it is."""
 
-    name: str = "smoothed"
+    def limit(self, problem: StabilityProblem) -> StepLimit:
+        """By theory, and of one step."""
+        return StepLimit(predicted_limit("dop853"), stepper_limit("smoothed", 0.5, problem.memory))
 
-    @property
-    def integrated(self) -> str:
-        """For the caption."""
-        return "the creep of a mass that would stick, by march until it repeats, at several widths"
-
-    def refusal(self) -> str | None:
-        """It is always there."""
-        return None
-
-    def problems(self) -> list[str]:
-        """The one whose rate is that of the smoothing."""
-        return ["smoothing"]
-
-    def map_of(self, problem: StabilityProblem, n: int) -> StabilityMap:
-        """n tolerances by n rates."""
-        rates, tolerances = spaced(problem.rates, n), spaced(problem.tolerances, n)
-        limit = StepLimit(predicted_limit("dop853"), stepper_limit("smoothed", 0.5, problem.memory))
-        points = [
-            self._point(known_state(problem.name, rate), rate, tolerance)
-            for rate in rates
-            for tolerance in tolerances
-        ]
-        return StabilityMap(problem, "tolerance", limit, tolerances, rates, points)
-
-    def _point(self, known: KnownState, rate: float, tolerance: float) -> MapPoint:
+    def point(self, problem: StabilityProblem, rate: float, at: float) -> MapPoint:
+        """At a tolerance; the step is the mean one of the run that was asked for."""
+        known = known_state(problem.name, rate)
+        march = MarchRun(known.scene, known.law, "smoothed")
+        plan = Plan("smoothed", 0.5, 8, None, width_at(rate), "tanh", 100_000)
+        run = march_mean(march, plan, at).runs[-1]
+        step = run.laps * march.lap / run.steps
         method = March(stepper="smoothed", width=width_at(rate))
-        found = solve_points(method, [known.scene], known.law, tolerance)
-        error = abs(float(found.means[0]) - known.mean)
-        stated = float(found.errors[0]) + known.error
-        step = _usual_step(known, rate, tolerance)
-        return MapPoint(tolerance, rate, step, found.status[0], found.reason[0], error, stated)
+        return _answered(method, known, at, MapPoint(at, rate, step, "", "", 0.0, 0.0))
 
 
-def _usual_step(known: KnownState, rate: float, tolerance: float) -> float:
-    """The mean step of the run that was asked for."""
-    march = MarchRun(known.scene, known.law, "smoothed")
-    plan = Plan("smoothed", 0.5, 8, None, width_at(rate), "tanh", 100_000)
-    run = march_mean(march, plan, tolerance).runs[-1]
-    return run.laps * march.lap / run.steps
+def _answered(method: March, known: KnownState, tolerance: float, point: MapPoint) -> MapPoint:
+    """A point with what the method answers at this tolerance."""
+    found = solve_points(method, [known.scene], known.law, tolerance)
+    error, stated = abs(float(found.means[0]) - known.mean), float(found.errors[0]) + known.error
+    return point._replace(status=found.status[0], reason=found.reason[0], error=error, stated=stated)
 
 
-_ALL: tuple[MappedStepper | MappedSmoothing, ...] = (
-    MappedStepper("rk4", "rk4"),
-    *(MappedStepper(f"moreau_{theta:g}", "moreau", theta) for theta in (0.25, 0.5, 0.75, 1.0)),
-    MappedSmoothing(),
-    MappedStepper("exponential", "exponential"),
-    MappedStepper("sdirk2", "sdirk2"),
+_ALL: tuple[MappedSolver, ...] = (
+    MappedStepper("rk4", ("bristle", "plane"), MARCHED, "rk4"),
+    *(
+        MappedStepper(f"moreau_{theta:g}", ("plane",), MARCHED, "moreau", theta)
+        for theta in (0.25, 0.5, 0.75, 1.0)
+    ),
+    MappedSmoothing("smoothed", ("smoothing",), CREPT),
+    MappedStepper("exponential", ("bristle",), MARCHED, "exponential"),
+    MappedStepper("sdirk2", ("bristle",), MARCHED, "sdirk2"),
 )
 MAPPED_STEPPERS = {stepper.name: stepper for stepper in _ALL}
 """By name, in the order of tables and pictures."""

@@ -11,9 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.bench.drawing import OURS, dress, new_figure
-from frictionlab.bench.models.record import ModelRow, front
-from frictionlab.bench.record import ReferenceMeans
+from frictionlab.bench.charts.style import OURS, dress, new_figure
+from frictionlab.bench.models import ModelRow, ModelsResult, front
 from frictionlab.bench.report import largest
 
 MARKS_OF_METHODS = "osD^v<>phPX*"
@@ -29,8 +28,9 @@ FRONT: dict[str, Any] = {
 }
 
 
-def models_figure(title: str, rows: Sequence[ModelRow], references: Sequence[ReferenceMeans]) -> Figure:
+def models_figure(result: ModelsResult) -> Figure:
     """One panel; models told apart by colour and by filling, methods by marks."""
+    rows, title = result.rows, result.title or result.name
     figure = new_figure(CHART_HEIGHT)
     axes = figure.add_subplot()
     axes.set_xscale("log")
@@ -38,7 +38,7 @@ def models_figure(title: str, rows: Sequence[ModelRow], references: Sequence[Ref
     labels = list(dict.fromkeys(each.model.label for each in rows))
     methods = list(dict.fromkeys(each.row.contender.label for each in rows))
     drawn = [each for each in rows if math.isfinite(each.row.largest)]
-    known = largest([largest(reference.errors) for reference in references])
+    known = largest([largest(reference.errors) for reference in result.references])
     for label in labels:
         for method in methods:
             own = [each for each in drawn if (each.model.label, each.row.contender.label) == (label, method)]

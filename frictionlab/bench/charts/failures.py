@@ -20,10 +20,11 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
-from frictionlab.bench.drawing import new_figure
+from frictionlab.bench.charts.style import new_figure
 from frictionlab.bench.failures.boundaries import free_velocities, rest_edge, uniqueness_edge
 from frictionlab.bench.failures.measure import MapOutcome, MapTruth
 from frictionlab.bench.failures.record import OF_FRICTION_TO_LOAD
+from frictionlab.bench.failures.section import FailureResult
 from frictionlab.columns import word
 from frictionlab.quantities import Floats
 
@@ -50,10 +51,12 @@ class Mesh(NamedTuple):
     logarithmic: tuple[bool, bool]
 
 
-def figure_of_maps(title: str, maps: Sequence[tuple[MapOutcome, MapTruth]], side: str) -> Figure:
+def failures_figure(result: FailureResult) -> Figure | None:
     """A row for each map that is not refused everywhere: stated error, where any is stated, and true error."""
-    shown = [each for each in maps if each[0].has_panel]
-    kinds = ["true"] if side == "peer" else ["stated", "true"]
+    maps = [*zip(result.outcomes, result.truths, strict=True)]
+    if not (shown := [each for each in maps if each[0].has_panel]):
+        return None
+    kinds = ["true"] if result.side == "peer" else ["stated", "true"]
     refused = _refused_everywhere([outcome for outcome, _ in maps if not outcome.has_panel])
     figure = new_figure(_PANEL * len(shown) + _LEGEND + 0.12 * refused.count("\n"))
     grid = figure.subplots(len(shown), len(kinds), squeeze=False)
@@ -76,6 +79,8 @@ def figure_of_maps(title: str, maps: Sequence[tuple[MapOutcome, MapTruth]], side
     figure.legend(
         handles=_legend(), loc="outside lower center", ncols=4, title=refused or None, columnspacing=1.2
     )
+    counts = result.counts()
+    title = f"{result.title}: {counts.total():,} points, {counts['silent']:,} wrong without a word"
     figure.suptitle(title, x=0.01, ha="left", fontsize=8)
     return figure
 

@@ -13,8 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from frictionlab.bench.drawing import new_figure
+from frictionlab.bench.charts.style import new_figure
 from frictionlab.bench.stability.record import StabilityMap, StepLimit
+from frictionlab.bench.stability.section import StabilityResult
 from frictionlab.charts.style import PAGE
 
 MAP_HEIGHT, WIDEST_MAP = 2.9, 2.6
@@ -27,14 +28,16 @@ NEAR_LIMIT = 0.85
 """Steps that adapt hover about the limit: drawn is where they first come so near."""
 
 
-def stability_figure(maps: Sequence[StabilityMap], title: str) -> Figure:
+def stability_figure(result: StabilityResult) -> Figure | None:
     """A panel a problem."""
+    if not (maps := result.maps):
+        return None
     figure = new_figure(MAP_HEIGHT, min(PAGE, WIDEST_MAP * len(maps) + 1.2))
     panels = figure.subplots(1, len(maps), squeeze=False)[0]
     for axes, drawn in zip(panels, maps, strict=True):
         colors = _draw_map(axes, drawn)
     figure.colorbar(colors, ax=list(panels), label="true error of the mean friction", extend="both", pad=0.01)
-    figure.suptitle(title, x=0.01, ha="left", fontsize=8, fontweight="bold")
+    figure.suptitle(result.title, x=0.01, ha="left", fontsize=8, fontweight="bold")
     figure.legend(handles=_legend(maps), loc="outside lower center", ncols=2, handlelength=2.6)
     return figure
 

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.bench.drawing import LINE_STYLES, OURS, THEIRS, dress, new_figure
-from frictionlab.bench.orders.record import OrderRow
+from frictionlab.bench.charts.style import LINE_STYLES, OURS, THEIRS, dress, new_figure
+from frictionlab.bench.orders.section import OrderRow, OrdersResult
 
 COLUMNS, PANEL = 3, 1.95
 LOWEST = 1e-16
@@ -24,8 +24,9 @@ NEAREST_LABELS = 1.3
 """Powers of ten between two numbers at the right end."""
 
 
-def orders_figure(rows: Sequence[OrderRow]) -> Figure:
+def orders_figure(result: OrdersResult) -> Figure:
     """Small multiples: one panel a motion, one line a solver."""
+    rows = result.rows
     motions = list({row.motion.name: row.motion for row in rows}.values())
     solvers = list(dict.fromkeys(row.solver for row in rows))
     lines = math.ceil(len(motions) / COLUMNS)

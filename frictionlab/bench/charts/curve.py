@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.bench.drawing import LINE_STYLES, OURS, THEIRS, dress, new_figure
+from frictionlab.bench.charts.style import LINE_STYLES, OURS, THEIRS, dress, new_figure
+from frictionlab.bench.curve import CurveResult
 from frictionlab.bench.record import Contender, ReferenceMeans, Row
 from frictionlab.bench.report import largest, point_remark
 
@@ -23,11 +24,11 @@ LETTERS = 36
 """On a line of the legend."""
 
 
-def chart(title: str, references: Sequence[ReferenceMeans], rows: Sequence[Row]) -> Figure:
-    """The chart of one curve."""
+def curve_figure(result: CurveResult) -> Figure:
+    """Times and errors of every contender."""
     figure = new_figure(HEIGHT)
     axes = figure.add_subplot()
-    entries = [_draw(axes, contender, look, own) for contender, look, own in _looks(rows)]
+    entries = [_draw(axes, contender, look, own) for contender, look, own in _looks(result.rows)]
     lines = sum(str(entry.get_label()).count("\n") + 1.4 for entry in entries)
     figure.set_figheight(max(HEIGHT, 0.4 + 0.11 * lines))
     axes.set_xscale("log")
@@ -36,8 +37,8 @@ def chart(title: str, references: Sequence[ReferenceMeans], rows: Sequence[Row])
         r"time per point [$\mathrm{\mu s}$]; thin: with every other column; dotted: a model without its error"
     )
     axes.set_ylabel("largest error of the mean friction")
-    _shade_what_is_not_known(axes, references)
-    dress(axes, title, fontweight="bold")
+    _shade_what_is_not_known(axes, result.references)
+    dress(axes, f"{result.name}: {result.title}" if result.title else result.name, fontweight="bold")
     figure.legend(handles=entries, loc="outside right upper", handlelength=3.2)
     return figure
 

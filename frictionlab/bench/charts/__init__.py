@@ -1,0 +1,1 @@
+"""The charts of bench results; no word of what is drawn is decided here."""

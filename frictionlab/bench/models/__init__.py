@@ -1,1 +1,0 @@
-"""Speed against accuracy over models: what laws, simpler scenes and methods cost, and how far they are off."""

@@ -6,8 +6,7 @@ import inspect
 import math
 import re
 import types
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
@@ -111,16 +110,35 @@ def build_record(record: type[_RecordT], tree: Any, path: Path, notes: Notes) ->
     """The record of this mapping; None, with every mistake noted, if it cannot be built."""
     if notes.mapping(tree, path) is None:
         return None
-    check = _Check(record, path, notes)
-    made = check.made(tree)
-    assert isinstance(made, record)
-    return made if check.right else None
+    nulls = dict(_nulls(record, tree))
+    for at, wanted in nulls.items():
+        notes.add((*path, *at), f"must be {wanted}, got null")
+    try:
+        made = record.model_validate(tree)
+    except ValidationError as problem:
+        _Told(record, tree, path, notes).add(problem, rules=not nulls)
+        return None
+    return None if nulls else made
+
+
+def _nulls(record: type[BaseModel], tree: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:
+    """The keys that a study leaves without a value, and what each should have."""
+    for key in (key for key in tree if key in record.model_fields):
+        part = nested(record, key)
+        if tree[key] is None:
+            number = float in _alternatives(record.model_fields[key].annotation)
+            yield (key,), "a mapping" if part else "a number" if number else "a value"
+        elif part is not None and isinstance(tree[key], Mapping):
+            yield from (((key, *below), wanted) for below, wanted in _nulls(part, tree[key]))
 
 
 def wrong_values(record: type[BaseModel], values: Mapping[str, Any]) -> WrongValues:
     """What is wrong with values that Python code gave for a record that refuses them, in the sentences of studies."""
     notes = Notes(notation=PYTHON)
-    _Check(record, (), notes).made(values)
+    try:
+        record.model_validate(values)
+    except ValidationError as problem:
+        _Told(record, values, (), notes).add(problem)
     return WrongValues([_in_python(note, record.__name__, values) for note in notes.all])
 
 
@@ -153,136 +171,74 @@ def _shown(value: Any) -> str:
     return repr(value) if isinstance(value, str) else PYTHON.text_of(value)
 
 
-class _Check:
-    """One look at the values of a record, those of its parts first.
+class _Told:
+    """The mistakes of values that a record refuses, as notes.
 
-    Others stand in for mistaken ones, so that the rules of the whole are asked all the same.
+    Of a key that is one letter off it is not told as well that the right one is missing.
     """
 
-    def __init__(self, record: type[BaseModel], path: Path, notes: Notes) -> None:
-        self._record, self._path, self._notes = record, path, notes
-        self._spelt: dict[str, str] = {}
-        self._filled_in: set[str] = set()
-        self.right = True
+    def __init__(self, record: type[BaseModel], given: Mapping[str, Any], path: Path, notes: Notes) -> None:
+        self._record, self._given, self._path, self._notes = record, given, path, notes
 
-    def made(self, given: Mapping[str, Any]) -> BaseModel:
-        """The record; where it is not right, one that stands in for it."""
-        values = {name: self._part(name, value) for name, value in self._spelled(given).items()}
-        values = {name: value for name, value in values.items() if value is not _NOTHING}
-        try:
-            return self._record.model_validate(values)
-        except ValidationError as problem:
-            self.right = False
-            errors = problem.errors(include_url=False)
-        if not errors[0]["loc"]:
-            return self._ruled_out(errors)
+    def add(self, problem: ValidationError, rules: bool = True) -> None:
+        """Note every one of them; rules: those of values together, too."""
+        errors: list[Any] = problem.errors(include_url=False)
+        if not rules:
+            errors = [each for each in errors if not self._is_rule(each)]
+        unknown = [each["loc"] for each in errors if each["type"] == "extra_forbidden"]
+        there = {self._misspelt(loc) for loc in unknown}
         for error in errors:
-            self._mistaken(error, values)
-        try:
-            return self._record.model_validate(values)
-        except ValidationError as problem:
-            # a rule of one value refuses what stands in for it: only rules of the whole are told
-            return self._ruled_out([each for each in problem.errors(include_url=False) if not each["loc"]])
-
-    def _ruled_out(self, errors: Sequence[Any]) -> BaseModel:
-        """Note what the values are not together, right as each may be."""
-        for error in errors:
-            self._rule(error)
-        return _stand_in(self._record)
-
-    def _note(self, name: str | int, *deeper: str | int, what: str, hint: str = "") -> None:
-        self.right = False
-        self._notes.add((*self._path, self._spelt.get(str(name), name), *deeper), what, hint)
-
-    def _spelled(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """The values by the names of fields; an unknown key is noted, and taken for the one most like it."""
-        fields = self._record.model_fields
-        required = [name for name, field in fields.items() if field.is_required()]
-        values = {name: value for name, value in given.items() if name in fields}
-        for key in (key for key in given if key not in fields):
-            self.right = False
-            self._notes.unknown_key((*self._path, key), fields, given, required)
-            missing = [name for name in required if name not in values]
-            meant = closest(str(key), [name for name in fields if name not in values], missing)
-            if meant is not None and closest(str(key), fields, missing) in (None, meant):
-                values[meant], self._spelt[meant] = given[key], key
-        return values
-
-    def _part(self, name: str, value: Any) -> Any:
-        """A value, of a part the record; a key without a value is a mistake in a study."""
-        part = nested(self._record, name)
-        if part is not None and isinstance(value, Mapping):
-            check = _Check(part, (*self._path, self._spelt.get(name, name)), self._notes)
-            made = check.made(value)
-            self.right = self.right and check.right
-            return made
-        if value is None and self._notes.notation is not PYTHON:
-            wanted = "a mapping" if part else "a number" if self._is_number(name) else "a value"
-            self._note(name, what=f"must be {wanted}, got null")
-            return _stand_in(part) if part else _NOTHING
-        return value
-
-    def _is_number(self, name: str) -> bool:
-        return name in number_paths(self._record)
-
-    def _mistaken(self, error: Any, values: dict[str, Any]) -> None:
-        """Note the mistake in one value, for which another then stands in."""
-        name, *deeper = error["loc"]
-        part = nested(self._record, name)
-        if error["type"] == "missing":
-            self._note(name, what="required key is missing")
-        elif part is not None:
-            wanted = self._notes.notation.part.format(part.__name__)
-            given = self._notes.notation.text_of(error["input"])
-            self._note(name, what=f"must be {wanted}, got {given}")
-            values[name] = _stand_in(part)
-            return
-        else:
-            what = _value_mistake(error, self._notes.notation.text_of)
-            path, what = placed((name, *deeper), what, error["input"])
-            self._note(*path, what=what, hint=_meant(error))
-        values.pop(name, None)
-        if self._is_number(name):
-            values[name] = valid_number(self._record, name)
-            self._filled_in.add(name)
-
-    def _rule(self, error: Any) -> None:
-        """Note what the values are not together: of one of them, or of the whole."""
-        for path, what in self._said(_message(error)):
-            required = what.startswith("required")
-            if any(f"{name} = " in what for name in self._filled_in):  # a number that nobody gave
-                continue
-            told = what.replace("required", "required key is missing", 1) if required else what
-            if path:
-                self._note(*path, what=told)
+            if error["type"] == "missing":
+                told = "" if error["loc"] in there else "required key is missing"
             else:
-                self._notes.add(self._path, told)
+                told = "" if error["loc"] in unknown else self._mistake(error)
+            if told:
+                self._notes.add((*self._path, *error["loc"]), told)
 
-    def _said(self, message: str) -> list[tuple[Path, str]]:
-        """The paths and messages in the message of a record, written ``path: what; path: what``."""
+    def _is_rule(self, error: Any) -> bool:
+        return "error" in error.get("ctx", {}) and record_at(self._record, error["loc"]) is not None
+
+    def _misspelt(self, loc: Path) -> Path:
+        """Note an unknown key; where the one that was meant belongs."""
+        owner, given = self._record, self._given
+        for step in loc[:-1]:
+            owner, given = nested(owner, str(step)) or owner, given[str(step)]
+        key, fields = str(loc[-1]), owner.model_fields
+        required = [name for name, field in fields.items() if field.is_required()]
+        self._notes.unknown_key((*self._path, *loc), fields, given, required)
+        left = [name for name in fields if name not in given]
+        return (*loc[:-1], closest(key, left, [name for name in required if name in left]) or key)
+
+    def _mistake(self, error: Any) -> str:
+        """The sentence for a value, a part or the rules of one, where it is not noted here."""
+        loc, text_of = error["loc"], self._notes.notation.text_of
+        part = record_at(self._record, loc)
+        if part is not None and self._is_rule(error):
+            return self._rules(part, loc, _message(error))
+        if part is not None:
+            return f"must be {self._notes.notation.part.format(part.__name__)}, got {text_of(error['input'])}"
+        path, what = placed((*self._path, *loc), _value_mistake(error, text_of), error["input"])
+        self._notes.add(path, what, _meant(error))
+        return ""
+
+    def _rules(self, part: type[BaseModel], loc: Path, message: str) -> str:
+        """What the values of a part are not together, written ``path: what; path: what`` where it is of some."""
         said: list[tuple[Path, str]] = []
         for piece in message.split("; "):
             found = re.fullmatch(r"([\w.]+): (.*)", piece, re.DOTALL)
             path = tuple(found[1].split(".")) if found else ()
-            record = record_at(self._record, path[:-1])
+            record = record_at(part, path[:-1])
             if not found or record is None or path[-1] not in record.model_fields:
-                return [((), message)]
+                return message
             said.append((path, found[2]))
-        return said
-
-
-_NOTHING = object()
-"""In place of a value that was left out."""
-
-
-def _stand_in(part: type[BaseModel]) -> BaseModel:
-    """A record with a one for every number that it requires, and where rules ask for one more, for that."""
-    numbers = [name for name in number_paths(part) if name in part.model_fields]
-    required = {name: valid_number(part, name) for name in numbers if part.model_fields[name].is_required()}
-    for more in ({}, *({name: 1.0} for name in numbers)):
-        with suppress(ValidationError):
-            return part.model_validate(required | more)
-    return part.model_construct(None, **required)
+        for path, what in said:
+            told = (
+                what.replace("required", "required key is missing", 1)
+                if what.startswith("required")
+                else what
+            )
+            self._notes.add((*self._path, *loc, *path), told)
+        return ""
 
 
 def _message(error: Any) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from frictionlab import registry
@@ -67,43 +67,6 @@ def label_of(given: Any) -> str | None:
     """The label of an item, whatever other mistakes the item has."""
     label = given.get("label", given.get("kind")) if isinstance(given, dict) else given
     return label if isinstance(label, str) else None
-
-
-def certain_labels(given: Any, installed: Iterable[str]) -> tuple[str, ...] | None:
-    """The labels of a list of laws or methods; None where a mistake leaves them uncertain.
-
-    References to labels are then not checked, so that one mistake is not reported as many.
-    """
-    names = list(installed)
-    labels = [label_of(item) for item in given] if isinstance(given, list) else []
-    kinds = [item.get("kind") if isinstance(item, dict) else item for item in given] if labels else []
-    right = all(label and label.isprintable() for label in labels) and all(kind in names for kind in kinds)
-    unique = len(set(labels)) == len(labels) > 0
-    return tuple(str(label) for label in labels) if right and unique else None
-
-
-def certain_law_labels(given: Any, laws: registry.Laws) -> tuple[str, ...] | None:
-    """The labels of a list of laws; None where a mistake leaves them uncertain."""
-    mappings = isinstance(given, list) and all(isinstance(item, dict) for item in given)
-    return certain_labels(given, laws.names()) if mappings else None
-
-
-class Anything:
-    """A container of all labels."""
-
-    def __contains__(self, label: object) -> bool:
-        """Always."""
-        return True
-
-
-def possible_labels(given: Any, laws: registry.Laws) -> Container[str]:
-    """The labels that may become known when other mistakes in the laws are corrected."""
-    if not isinstance(given, list) or not given or not all(isinstance(item, dict) for item in given):
-        return Anything()
-    labels = [label_of(item) for item in given if "label" in item or "kind" in item]
-    if not all(each and each.isprintable() for each in labels) or len(set(labels)) < len(labels):
-        return Anything()
-    return laws.names() if certain_law_labels(given, laws) is None else ()
 
 
 def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:

@@ -15,10 +15,9 @@ from frictionlab.study.law_files import (
     refuse_law_files,
     saved_law_reader,
 )
-from frictionlab.study.mapping_source import read_mapping
 from frictionlab.study.reader import read_values
 from frictionlab.study.study import Study
-from frictionlab.study.yaml_source import Source, read_file
+from frictionlab.study.yaml_source import Source, read_file, read_mapping
 
 
 def load_study(

@@ -14,9 +14,9 @@ from frictionlab.mistakes.notes import Notes, python_text
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import Form
 from frictionlab.study.law_files import StudyLaws
-from frictionlab.study.mapping_source import read_mapping
 from frictionlab.study.parts import SCHEMA
 from frictionlab.study.reader import read_values
+from frictionlab.study.yaml_source import read_mapping
 
 LawsGiven = FrictionLaw | Sequence[FrictionLaw] | Mapping[str, FrictionLaw]
 """One law, several, or several by label."""

@@ -13,8 +13,6 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.units import dimensions
 from frictionlab.study.axes import FRICTION, LINKED, STATIC, GridValue
 from frictionlab.study.choices import (
-    certain_labels,
-    certain_law_labels,
     items,
     label_of,
     law_choice,
@@ -70,6 +68,8 @@ class _StudyReader:
         self._source, self._notes, self._bring = source, notes, bring
         self._tree: dict[str, Any] = source.tree
         self._known = registry.Laws()
+        self._labels: dict[str, tuple[str, ...] | None] = {}
+        """Of laws and methods; None where a mistake leaves them open, and what refers to them is not checked."""
 
     def values(self) -> dict[str, Any] | None:
         if self._notes.mapping(self._tree, ()) is None:
@@ -84,6 +84,10 @@ class _StudyReader:
             if "scene" in self._tree
             else None
         )
+        self._labels = {
+            head: None if self._notes.below((head,)) else tuple(each.label for each in choices)
+            for head, choices in (("laws", laws), ("methods", methods))
+        }
         told = self._plain_values()
         told["expect"] = self._expect(scene, sweep)
         told["columns"] = self._columns(scene)
@@ -158,8 +162,7 @@ class _StudyReader:
         if LIMIT_KEY in limit:
             told[LIMIT_KEY] = notes.positive(limit[LIMIT_KEY], ("limit", LIMIT_KEY))
         if "figures" in tree:
-            labels = certain_law_labels(tree.get("laws"), self._known)
-            told["figures"] = read_figure_options(tree["figures"], labels, notes)
+            told["figures"] = read_figure_options(tree["figures"], self._labels["laws"], notes)
         return told
 
     def _columns(self, scene: Scene | None) -> tuple[str, ...] | None:
@@ -179,8 +182,7 @@ class _StudyReader:
     def _table(self, scene: Scene | None, sweep: Sweeps) -> Table:
         """The columns that ``where`` may name; all possible ones where the scene or a law has mistakes."""
         values = dict.fromkeys(value_paths(Scene)) if scene is None else scene.values()
-        laws = certain_law_labels(self._tree.get("laws"), self._known)
-        methods = certain_labels(self._tree.get("methods", list(DEFAULT_METHODS)), registry.method_names())
+        laws, methods = self._labels["laws"], self._labels["methods"]
         kinds = tuple(dict.fromkeys(law["kind"] for law in self._tree["laws"])) if laws else None
         known = self._known.usable() if kinds is None else kinds
         classes = [self._known.named(kind) for kind in known]

@@ -10,15 +10,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from frictionlab import columns
+from frictionlab.mistakes.as_typed import typed
 from frictionlab.registry.law_file import LawFile
 from frictionlab.scene.scene import Scene
-from frictionlab.study.as_typed import study_as_typed
 from frictionlab.study.axes import FRICTION, LINKED
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 from frictionlab.study.grid import StudyGrid
 from frictionlab.study.objects import values_of_objects
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA, Expectation, LawChoice, natural
 from frictionlab.study.ranges import SpeedRange
+from frictionlab.study.reader import DEFAULT_TOLERANCE
 from frictionlab.study.yaml_text import yaml_text
 
 LAW_COPIES = "laws"
@@ -89,7 +90,15 @@ class Study(StudyGrid):
 
     def __repr__(self) -> str:
         """What one would type to make it of objects; of long lists the ends."""
-        return study_as_typed(self, self.resolved())
+        laws = _as_given({choice.label: (choice.kind, choice.law()) for choice in self.laws})
+        methods = _as_given(
+            {one.label: (one.name, one.method if one.parameters else one.name) for one in self.methods}
+        )
+        parts = [repr(self.scene), laws, *([] if methods == "'auto'" else [f"methods={methods}"])]
+        told = self.resolved()
+        usual = {*_OBJECTS, *(["tolerance"] if told["tolerance"] == DEFAULT_TOLERANCE else [])}
+        parts += [f"{key}={_typed(value)}" for key, value in told.items() if key not in usual]
+        return f"Study.of({', '.join(parts)})"
 
     def to_yaml(self) -> str:
         """The study as a study file that loads to an equal study; law files of its own have to lie beside it.
@@ -191,3 +200,25 @@ class Study(StudyGrid):
     def _fixed(self, law: LawChoice) -> dict[str, Any]:
         swept = self.swept_parameters(law)
         return {name: v for name, v in law.parameters.items() if name not in swept}
+
+
+_OBJECTS = {"schema", "scene", "plugins", "laws", "methods"}
+_MOST_TYPED = 8
+"""Values of a list that are shown."""
+
+
+def _as_given(named: Mapping[str, tuple[str, Any]]) -> str:
+    """One as it is, several as a list, those with a label of their own by it."""
+    if any(label != kind for label, (kind, _) in named.items()):
+        return repr({label: each for label, (_, each) in named.items()})
+    each = [one for _, one in named.values()]
+    return repr(each[0] if len(each) == 1 else each)
+
+
+def _typed(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key!r}: {_typed(item)}' for key, item in value.items())}}}"
+    if isinstance(value, list):
+        shown = [_typed(item) for item in value]
+        return f"[{', '.join([*shown[:2], '...', shown[-1]] if len(shown) > _MOST_TYPED else shown)}]"
+    return typed(value)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -15,7 +14,7 @@ from frictionlab.mistakes.validation import number_paths, record_at, value_paths
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
 from frictionlab.study.axes import FRICTION, LINKED, STATIC
-from frictionlab.study.choices import label_of, possible_labels
+from frictionlab.study.choices import label_of
 from frictionlab.study.parts import coefficient_of
 
 _GROUPS = (
@@ -65,8 +64,13 @@ class Targets:
         return paths
 
     @cached_property
-    def _possible_labels(self) -> Container[str]:
-        return possible_labels(self._tree.get("laws"), self._laws)
+    def _all_known(self) -> bool:
+        """Whether no mistake in a law leaves its label or its kind open."""
+        laws, kinds = self._tree.get("laws"), self._laws.names()
+        each = laws if isinstance(laws, list) else []
+        visible = all(label.strip() and label.isprintable() for label in self._labels)
+        sure = visible and len(self._labels) == len(each) > 0
+        return sure and all(isinstance(law, dict) and law.get("kind") in kinds for law in each)
 
     def at(self, key: str, path: Path) -> list[Target]:
         """What a sweep of this name, at this path, varies; nothing, noted, where there is no such thing."""
@@ -146,7 +150,7 @@ class Targets:
     def _of_law(self, key: str, path: Path) -> Target | None:
         label, _, parameter = key.removeprefix("laws.").rpartition(".")
         index = self._labels.get(label)
-        if index is None and label in self._possible_labels:
+        if index is None and not self._all_known:
             return None
         if index is None:
             what = f"no law is labelled '{label}'" if label else "write laws.<label>.<parameter>"

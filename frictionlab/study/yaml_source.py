@@ -1,9 +1,9 @@
-"""Reading of YAML text to plain values, with the position of every key and value."""
+"""Plain values of YAML text, with the position of every key and value, and of a Python mapping."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path as FilePath
@@ -97,6 +97,16 @@ def read_text(text: str, name: str) -> Source:
             raise unreadable(source, "the study is empty", TextPosition(1, 1))
         source.tree = _value(source, node, ())
     except RecursionError:  # an alias of what it stands in, too
+        raise unreadable(source, TOO_DEEP) from None
+    return source
+
+
+def read_mapping(mapping: Mapping[str, Any], name: str) -> Source:
+    """The values of a mapping. Raises StudyError for one that no study file can hold."""
+    source = Source(name)
+    try:
+        source.tree = _plain_value(mapping)
+    except RecursionError:
         raise unreadable(source, TOO_DEEP) from None
     return source
 
@@ -203,6 +213,20 @@ def plain_number(value: int | float) -> int | float:
     except OverflowError:
         return float("inf") if value > 0 else float("-inf")
     return value
+
+
+def _plain_value(value: Any) -> Any:
+    """The value in the types that YAML text gives."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain_value(item) for key, item in value.items()}
+    if hasattr(value, "tolist"):  # of numpy and pandas
+        return _plain_value(value.tolist())
+    if isinstance(value, (list, tuple, range)):
+        return [_plain_value(item) for item in value]
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return plain_number(value)
+    known = value is None or isinstance(value, (str, bool))
+    return value if known else UnsupportedValue(f"a {type(value).__name__}")
 
 
 _SCALARS: dict[str, Any] = {

@@ -177,7 +177,7 @@ def test_numbers_of_numpy_and_pandas_are_taken_for_what_they_are() -> None:
 
 def test_every_mistake_is_told_at_once() -> None:
     with pytest.raises(WrongValues) as caught:
-        fl.Scene(damping_ratio=None, normal_load="x", drive={"frequency": 0, "unbalnce": 1})
+        fl.Scene(damping_ratio=-1, normal_load="x", drive={"frequency": 0, "unbalnce": 1})
 
     assert {mistake.path for mistake in caught.value.mistakes} == {
         *("belt_speed", "normal_load", "drive.unbalnce", "drive.frequency", "damping_ratio"),

@@ -354,16 +354,13 @@ def test_the_caret_stands_under_the_column_of_a_line_with_tabs(written: Any) -> 
     assert line.expandtabs()[caret.expandtabs().index("^")] == "x"
 
 
-@pytest.mark.parametrize(("swept", "told"), [("laws.sofd.mu", True), ("laws.dahl.mu", False)])
-def test_a_sweep_of_no_law_is_told_beside_a_law_of_unknown_kind_unless_that_may_be_the_one(
-    swept: str, told: bool
-) -> None:
+def test_a_sweep_of_no_law_is_not_told_beside_a_law_of_unknown_kind_which_may_be_the_one() -> None:
     laws = [{"kind": "coulomb", "mu": 0.4}, {"kind": "dhal", "mu": 0.4, "stiffness": 1}]
+    swept = {"laws.dahl.mu": [0.1, 0.2]}
     with pytest.raises(StudyError) as caught:
-        parse_study({"schema": 1, "scene": good()["scene"], "laws": laws, "sweep": {swept: [0.1, 0.2]}})
+        parse_study({"schema": 1, "scene": good()["scene"], "laws": laws, "sweep": swept})
 
-    assert "laws[1].kind: unknown law 'dhal'" in str(caught.value)
-    assert ("no law is labelled 'sofd'" in str(caught.value)) == told
+    assert [mistake.path for mistake in caught.value.mistakes] == ["laws[1].kind"]
 
 
 def test_a_parameter_that_is_a_word_is_not_swept_and_the_way_to_vary_it_is_told() -> None:
@@ -378,7 +375,7 @@ def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) ->
     text = (
         GOOD.replace("schema: 1", "schema: 2")
         .replace("damping_ratio: 0.1\n  normal", "damping_ratio: -0.1\n  normal")
-        .replace("drive: {unbalance: 10, frequency: 1}", "drive: {amplitude: 1, unbalanse: '10'}")
+        .replace("drive: {unbalance: 10, frequency: 1}", "drive: {amplitude: 1, unbalanse: 10}")
         .replace("mu: 0.4", "mu: true")
         .replace("tolerance: 1e-6", "tolerance: .inf")
         .replace("num: 120", "num: 1")
@@ -390,10 +387,8 @@ def test_every_mistake_is_told_at_once_in_the_order_of_the_file(written: Any) ->
         "study.yaml:1:9: schema: must be 1, got 2",
         "study.yaml:5:18: scene.damping_ratio: must be >= 0, got -0.1",
         "study.yaml:8:3: scene.drive.frequency: required key is missing",
-        "study.yaml:8:3: scene.drive: give exactly one of unbalance and amplitude",
         "study.yaml:8:25: scene.drive.unbalanse: unknown key; allowed: unbalance, amplitude, phase, "
         "waveform, frequency, direction",
-        "study.yaml:8:36: scene.drive.unbalanse: must be a number, got the text '10' (remove the quotes)",
         "study.yaml:14:25: laws[0].mu: must be a number, got true",
         "study.yaml:17:12: tolerance: must be a finite number, got .inf",
         "study.yaml:19:49: sweep.scene.belt_speed.num: must be >= 2, got 1",

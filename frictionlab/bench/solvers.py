@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import ReferenceMeans, ReferenceSource, Workload
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Method
+from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
 from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.solve import FROM_METHODS, answer, number_columns
@@ -21,37 +21,41 @@ from frictionlab.scene.scenes import Scenes
 
 @dataclass(frozen=True)
 class SolverAnswers:
-    """Status, reason, mean friction and stated error of each point; NaN where there is none."""
+    """Status, reason, mean friction and stated error of each point; NaN where there is none. more: other columns."""
 
     status: list[str]
     reason: list[str]
     means: Floats
     errors: Floats
+    more: dict[str, Floats] = field(default_factory=dict)
 
     @classmethod
     def without(cls, status: str, reason: str, n: int) -> SolverAnswers:
         """The same answer n times: none."""
         return cls([status] * n, [reason] * n, np.full(n, np.nan), np.full(n, np.nan))
 
-    def put(self, places: Sequence[int], answers: Answers) -> None:
-        """A method's answers at these places."""
-        for at, place in enumerate(places):
-            self.status[place] = answers.status[at]
-            self.reason[place] = answers.reason[at]
-        self.means[places] = answers.mean.real
-        self.errors[places] = answers.error
-
 
 def solve_points(
-    solver: Method | Peer, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float
+    solver: Method | Peer,
+    scenes: Sequence[Scene],
+    law: FrictionLaw,
+    tolerance: float,
+    more: Sequence[str] = (),
 ) -> SolverAnswers:
-    """The results of a solver, refusals and failures included."""
+    """The results of a solver, refusals and failures included; more: columns to read from a method's orbits."""
     if isinstance(solver, Peer):
         return _peer_answers(solver, scenes, law, tolerance)
-    n = len(scenes)
+    n, along = len(scenes), Scenes.of(scenes)
     found = SolverAnswers.without("failed", "", n)
-    for piece in answer(Chunk(np.arange(n), Scenes.of(scenes), law, solver, Task(tolerance))):
-        found.put(piece.places, piece.answers)
+    found.more.update({name: np.full(n, np.nan) for name in more})
+    for places, answers in answer(Chunk(np.arange(n), along, law, solver, Task(tolerance))):
+        for at, place in enumerate(places):
+            found.status[place], found.reason[place] = answers.status[at], answers.reason[at]
+        found.means[places], found.errors[places] = answers.mean.real, answers.error
+        if more and "ok" in answers.status:
+            read = number_columns(answers, along.taken(places), more)
+            for name in more:
+                found.more[name][places] = read[name]
     return found
 
 

@@ -14,7 +14,7 @@ import pytest
 from fake_methods import Another, Fake
 
 from frictionlab import bench, cli, registry
-from frictionlab.bench.failures.boundaries import free_velocities, rest_edge, uniqueness_edge
+from frictionlab.bench.failures.boundaries import edges, free_velocities
 from frictionlab.bench.failures.measure import MapTruth
 from frictionlab.bench.failures.section import FailureResult
 from frictionlab.bench.peers.scipy_steps import ScipySteps
@@ -151,9 +151,7 @@ def test_friction_holds_the_load_from_equal_sizes_on_and_the_axis_says_so() -> N
     drawn = truth_of(LIST).drawn
 
     assert [drawn.ordinate(row) for row in drawn.rows] == pytest.approx([0.1, 1.0, 10.0])
-    edge = rest_edge(drawn)
-    assert edge.holds == "above"
-    assert edge.ordinates == pytest.approx([1.0])
+    assert edges(drawn)["rest"] == pytest.approx([1.0])
 
 
 def test_the_free_velocity_is_the_load_over_the_damping_at_resonance() -> None:
@@ -170,21 +168,19 @@ def test_one_steady_state_is_proved_where_damping_outweighs_the_fall() -> None:
         "normal_load: 10}]", "damping_ratio: 1}]"
     )
     law = "{kind: stribeck, mu_kinetic: 0.2, mu_static: 0.4, stribeck_speed: 1, stribeck_exponent: 1}"
-    edge = uniqueness_edge(truth_of(fall.replace("{kind: coulomb, mu: 0.4}", law)).drawn)
+    edge = edges(truth_of(fall.replace("{kind: coulomb, mu: 0.4}", law)).drawn)["unique"]
 
-    assert edge.holds == "above"
-    assert edge.ordinates == pytest.approx([1.0])  # 10 * 0.2 = 2 damping_ratio
-    assert uniqueness_edge(truth_of(LIST).drawn).holds == "everywhere"
+    assert edge == pytest.approx([1.0])  # 10 * 0.2 = 2 damping_ratio
+    assert edges(truth_of(LIST).drawn)["unique"] == ()
 
 
 def test_where_the_mass_sticks_and_reverses_is_read_from_the_first_reference() -> None:
     text = LIST.replace("kind: another", "kind: exact").replace("13]", "60]")
-    truth = truth_of(text)
-    assert truth.motions is not None
+    motions = truth_of(text).motions()
 
-    assert truth.motions.reverses.tolist() == [[1, 1, 1, 0]] * 3
-    assert truth.motions.sticks[2].tolist() == [1, 1, 1, 0]
-    assert truth.motions.sticks[0, 0] == 0
+    assert motions["reverses"].tolist() == [[1, 1, 1, 0]] * 3
+    assert motions["sticks"][2].tolist() == [1, 1, 1, 0]
+    assert motions["sticks"][0, 0] == 0
 
 
 # --- files --------------------------------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
 from frictionlab.bench.charts.style import new_figure
-from frictionlab.bench.failures.boundaries import free_velocities, rest_edge, uniqueness_edge
+from frictionlab.bench.failures.boundaries import edges, free_velocities
 from frictionlab.bench.failures.measure import MapOutcome, MapTruth
 from frictionlab.bench.failures.record import OF_FRICTION_TO_LOAD
 from frictionlab.bench.failures.section import FailureResult
@@ -205,13 +205,10 @@ def _draw_lines(axes: Axes, truth: MapTruth, rising: NDArray[np.int64]) -> None:
     """Those of theory, and those that are read from the motion of the first reference."""
     speeds, ordinates = free_velocities(truth.drawn)
     axes.plot(speeds[rising], ordinates[rising], **(_line("free") | {"zorder": 3.5}))
-    for name, edge in (("unique", uniqueness_edge(truth.drawn)), ("rest", rest_edge(truth.drawn))):
-        for ordinate in edge.ordinates:
+    for name, ordinates_of_edge in edges(truth.drawn).items():
+        for ordinate in ordinates_of_edge:
             axes.axhline(ordinate, **_line(name))
-    motions = truth.motions
-    if motions is None:
-        return
-    for name, where in (("reverses", motions.reverses), ("sticks", motions.sticks)):
+    for name, where in truth.motions().items():
         if (where == 0.0).any() and (where == 1.0).any():
             look = _line(name)
             border = axes.contour(

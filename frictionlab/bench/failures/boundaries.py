@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.bench.failures.record import FailureMap
+from frictionlab.bench.failures.record import FailureMap, GridRow
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
@@ -20,49 +19,32 @@ _HALVINGS = 30
 """Of the interval between two values of the grid in which an edge lies."""
 
 
-class ConditionEdge(NamedTuple):
-    """Where a condition on the other quantity alone changes: the ordinates at which it does, and where it holds.
-
-    holds: ``everywhere``, ``nowhere``, ``above`` or ``below`` the edge; ``in part`` for several edges.
-    """
-
-    ordinates: tuple[float, ...]
-    holds: str
-
-
 def free_velocities(drawn: FailureMap) -> tuple[Floats, Floats]:
     """V_lin at every value of the map, and the ordinates; infinite where the friction-free motion has no bound."""
     speeds = [friction_free_velocity(row.scenes[0], row.law) for row in drawn.rows]
     return np.array(speeds), np.array([drawn.ordinate(row) for row in drawn.rows])
 
 
-def uniqueness_edge(drawn: FailureMap) -> ConditionEdge:
-    """Where theorem T1 proves that the steady state is the only one and attracts every start."""
-    return _edge(drawn, is_unique)
+def edges(drawn: FailureMap) -> dict[str, tuple[float, ...]]:
+    """The ordinates at which a condition on the other quantity alone changes.
+
+    unique: theorem T1 proves that the steady state is the only one and attracts every start. rest: static friction
+    can hold the mass against the load on a belt at rest.
+    """
+    return {"unique": _edges(drawn, is_unique), "rest": _edges(drawn, can_hold)}
 
 
-def rest_edge(drawn: FailureMap) -> ConditionEdge:
-    """Where static friction can hold the mass against the load on a belt at rest."""
-    return _edge(drawn, can_hold)
+def _edges(drawn: FailureMap, condition: Callable[[Scene, FrictionLaw], bool]) -> tuple[float, ...]:
+    def row(value: float) -> GridRow:
+        return drawn.row(value, drawn.speeds[-1:])
 
-
-def _edge(drawn: FailureMap, condition: Callable[[Scene, FrictionLaw], bool]) -> ConditionEdge:
     def true(value: float) -> bool:
-        row = drawn.row(value, drawn.speeds[-1:])
-        return condition(row.scenes[0], row.law)
+        return condition(row(value).scenes[0], row(value).law)
 
     values = drawn.values.tolist()
     told = [true(value) for value in values]
-    if len(set(told)) == 1:
-        return ConditionEdge((), "everywhere" if told[0] else "nowhere")
     places = [i for i in range(len(told) - 1) if told[i] != told[i + 1]]
-    found = [_between(true, values[i], values[i + 1]) for i in places]
-    ordinates = tuple(drawn.ordinate(drawn.row(value, drawn.speeds[-1:])) for value in found)
-    if len(found) > 1:
-        return ConditionEdge(ordinates, "in part")
-    rows = drawn.rows
-    rises = drawn.ordinate(rows[-1]) > drawn.ordinate(rows[0])
-    return ConditionEdge(ordinates, "above" if told[-1] == rises else "below")
+    return tuple(drawn.ordinate(row(_between(true, values[i], values[i + 1]))) for i in places)
 
 
 def _between(true: Callable[[float], bool], low: float, high: float) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -15,10 +15,7 @@ from frictionlab.bench.failures.record import FailureMap, GridRow
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.record import Contender, ReferenceSource
 from frictionlab.bench.solvers import SolverAnswers, known_means, solve_points
-from frictionlab.methods.base import Method
 from frictionlab.quantities import Floats
-from frictionlab.runner.chunks import Chunk, Task
-from frictionlab.runner.solve import answer, number_columns
 
 OUTCOMES = ("ok", "refused", "failed", "not_unique", "silent")
 """What a point can come to. ``silent``: a number that is wrong without a word: for a method its true error is above
@@ -29,22 +26,14 @@ MOTION = ("stick_fraction", "reversals")
 
 class KnownMeans(NamedTuple):
     """The answers of a reference on a map: mean friction and its error, NaN where it has none, a row for each value
-    and one for each named point.
+    and one for each named point. more: the columns of ``MOTION``, of a method.
     """
 
     label: str
     kind: str
     means: list[Floats]
     errors: list[Floats]
-
-
-class GridMotions(NamedTuple):
-    """Where on the grid the mass sticks, and where its slip reverses or sticks: 1 or 0, NaN where that is not known;
-    a row for each value.
-    """
-
-    sticks: Floats
-    reverses: Floats
+    more: list[dict[str, Floats]]
 
 
 @dataclass(frozen=True)
@@ -96,53 +85,38 @@ class MapTruth:
 
     def __init__(self, drawn: FailureMap) -> None:
         self.drawn = drawn
-        self._motions: GridMotions | None = None
 
     @cached_property
     def known(self) -> list[KnownMeans]:
         """The answers of every reference."""
         return [self._known(trusted) for trusted in self.drawn.references]
 
-    @property
-    def motions(self) -> GridMotions | None:
-        """Where the mass sticks and its slip reverses, by the first reference; None without references."""
-        return self._motions if self.known else None
+    def motions(self) -> dict[str, Floats]:
+        """Where on the grid the slip reverses or sticks, and where the mass sticks, by the first method among the
+        references: 1 or 0, NaN where that is not known; a row for each value.
+        """
+        first = next((each.more for each in self.known if each.more[0]), None)
+        if first is None:
+            return {}
+        rows = first[: len(self.drawn.rows)]
+        stick, turns = (np.array([row[name] for row in rows]) for name in MOTION)
+        sticks = np.where(np.isnan(stick), np.nan, stick > 0.0)
+        return {
+            "reverses": np.where(np.isnan(turns), np.nan, (stick > 0.0) | (turns > 0.0)),
+            "sticks": sticks,
+        }
 
     def _known(self, trusted: ReferenceSource) -> KnownMeans:
         assert trusted.solver is not None
         rows = (*self.drawn.rows, *self.drawn.named_rows)
-        if isinstance(trusted.solver, Peer) or self._motions is not None:
-            answers = [solve_points(trusted.solver, row.scenes, row.law, trusted.tolerance) for row in rows]
-        else:
-            solved = [_with_motion(trusted.solver, row, trusted.tolerance) for row in rows]
-            answers = [found for found, _ in solved]
-            self._motions = _motions(np.array([motion for _, motion in solved[: len(self.drawn.rows)]]))
+        methods = (each for each in self.drawn.references if not isinstance(each.solver, Peer))
+        wanted = MOTION if trusted is next(methods, None) else ()
+        found = [solve_points(trusted.solver, row.scenes, row.law, trusted.tolerance, wanted) for row in rows]
         pairs = [
-            known_means(trusted, found, row.scenes, row.law) for found, row in zip(answers, rows, strict=True)
+            known_means(trusted, each, row.scenes, row.law) for each, row in zip(found, rows, strict=True)
         ]
-        return KnownMeans(
-            trusted.label, trusted.kind, [means for means, _ in pairs], [errors for _, errors in pairs]
-        )
-
-
-def _motions(columns: Floats) -> GridMotions:
-    """From the columns of ``MOTION``, on the second axis."""
-    stick, reversals = columns[:, 0], columns[:, 1]
-    sticks = np.where(np.isnan(stick), np.nan, stick > 0.0)
-    return GridMotions(sticks, np.where(np.isnan(reversals), np.nan, (stick > 0.0) | (reversals > 0.0)))
-
-
-def _with_motion(method: Method, row: GridRow, tolerance: float) -> tuple[SolverAnswers, Floats]:
-    """The answers along a row, and the columns of ``MOTION``."""
-    n = len(row.scenes)
-    found, columns = SolverAnswers.without("failed", "", n), np.full((len(MOTION), n), np.nan)
-    for piece in answer(Chunk(np.arange(n), row.scenes, row.law, method, Task(tolerance))):
-        found.put(piece.places, piece.answers)
-        if "ok" in piece.answers.status:
-            read = number_columns(piece.answers, row.scenes.taken(piece.places), MOTION)
-            for place, name in enumerate(MOTION):
-                columns[place, piece.places] = read[name]
-    return found, columns
+        means, errors = (list(part) for part in zip(*pairs, strict=True))
+        return KnownMeans(trusted.label, trusted.kind, means, errors, [each.more for each in found])
 
 
 def measure_map(truth: MapTruth, contender: Contender) -> MapOutcome:
@@ -155,8 +129,7 @@ def measure_map(truth: MapTruth, contender: Contender) -> MapOutcome:
         rows.append(_row(truth, contender, place, row, outcome))
     size = len(drawn.rows)
     named = [
-        PointOutcome(**(vars(points[0]) | {"point": point.name}))
-        for points, point in zip(rows[size:], drawn.points, strict=True)
+        replace(points[0], point=point.name) for points, point in zip(rows[size:], drawn.points, strict=True)
     ]
     return MapOutcome(drawn, tuple(rows[:size]), tuple(named))
 
@@ -168,24 +141,13 @@ def _row(
     found = []
     for i, speed in enumerate(row.scenes.belt_speeds.tolist()):
         label, mean, known = _reference_at(truth.known, contender.kind, place, i)
-        status = outcome.status[i]
+        status, stated = outcome.status[i], float(outcome.errors[i])
         off = abs(float(outcome.means[i]) - mean) if status == "ok" else math.nan
-        stated = float(outcome.errors[i])
         claimed = PEER_MARGIN * setting.tolerance if isinstance(solver, Peer) else stated
-        silent = status == "ok" and off > claimed + known
-        found.append(
-            PointOutcome(
-                speed,
-                row.value,
-                ratio,
-                "silent" if silent else status,
-                outcome.reason[i],
-                stated if status == "ok" else math.nan,
-                off,
-                label,
-                known,
-            )
-        )
+        said = "silent" if status == "ok" and off > claimed + known else status
+        stated = stated if status == "ok" else math.nan
+        point = speed, row.value, ratio, said, outcome.reason[i], stated, off, label, known
+        found.append(PointOutcome(*point))
     return tuple(found)
 
 

@@ -13,7 +13,6 @@ import numpy as np
 from frictionlab.bench.record import ReferenceSource
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
-from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
 from frictionlab.study import GridValue, Study
 from frictionlab.theory.rest import friction_at_rest
@@ -88,10 +87,6 @@ class FailureMap:
         sweep: dict[str, tuple[GridValue, ...]] = {self.speed_path: along, self.quantity: (value,)}
         (curve,) = replace(self.study, sweep=sweep, ranges={}).curves()
         return GridRow(value, curve.scenes, curve.law)
-
-    def scene(self, value: float) -> Scene:
-        """The scene at a value, at the largest belt speed of the map."""
-        return self.row(value, self.speeds[-1:]).scenes[0]
 
     def ordinate(self, row: GridRow) -> float:
         """What a row is drawn at: its value, or friction over load where the quantity makes that vary."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -103,13 +102,6 @@ def test_a_shape_is_expected_by_area_unless_it_says_else_and_loads_back() -> Non
     assert parse_study(found.resolved()) == found
 
 
-def test_a_shape_needs_a_curve() -> None:
-    with pytest.raises(
-        StudyError, match=re.escape("expect[0].shape: a shape needs a curve: sweep scene.belt_speed")
-    ):
-        parse_study(good() | {"expect": [{"shape": "mixed"}]})
-
-
 def test_a_shape_asks_for_the_belt_speed_of_its_scene_also_beside_other_mistakes() -> None:
     wrong = {"scene": good()["scene"] | {"normal_load": -1}, "expect": [{"shape": "mixed"}]}
 
@@ -184,16 +176,6 @@ def test_a_study_with_a_byte_order_mark_and_windows_lines_is_the_same_study(writ
     assert load_study(written(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())) == plain
 
 
-def test_a_resolved_study_is_complete_and_reads_naturally() -> None:
-    resolved = parse_study(good(), ["scene.belt_speed=2"]).resolved()
-
-    assert resolved["scene"]["drive"] == {"unbalance": 10, "phase": 0, "frequency": 1}
-    assert resolved["scene"]["belt_speed"] == 2
-    assert isinstance(resolved["scene"]["belt_speed"], int)
-    assert resolved["methods"] == ["auto"]
-    assert resolved["tolerance"] == 1e-8
-
-
 @pytest.mark.parametrize(
     "change",
     [
@@ -231,12 +213,6 @@ def test_a_value_that_is_swept_anyway_is_not_in_the_digest() -> None:
     other["laws"] = [{"kind": "coulomb", "mu": 0.7}]
 
     assert parse_study(other).digest() == parse_study(good() | sweep).digest()
-
-
-def test_numpy_numbers_and_arrays_do_in_a_mapping() -> None:
-    study = parse_study(good() | {"sweep": {"scene.belt_speed": np.linspace(1, 2, 3)}})
-
-    assert study.sweep["scene.belt_speed"] == (1.0, 1.5, 2.0)
 
 
 # Overrides

@@ -30,7 +30,6 @@ from frictionlab.scene.units import Units, dimensions
 from frictionlab.shape.shakedown import Shakedown, shakedown_of_body, shakedown_of_slip
 from frictionlab.shape.verdict import UnreadableCurve
 from frictionlab.study import StudyError, load_study, parse_study
-from frictionlab.study.schema import schema
 from frictionlab.theory import friction_free_velocity, mean_soft_elasto_plastic
 
 Floats = NDArray[np.float64]
@@ -105,14 +104,6 @@ def test_a_sweep_of_one_that_the_file_gives_otherwise_is_a_mistake(kind: str) ->
     assert mistakes(study(law, sweep={f"laws.{kind}.presliding_length": [1, 2]})) == [
         f"study: sweep.laws.{kind}.presliding_length: the law '{kind}' gives stiffness, so presliding_length "
         "cannot be swept"
-    ]
-
-
-def test_an_override_of_one_that_the_file_gives_otherwise_is_a_mistake() -> None:
-    found = mistakes(study({"kind": "dahl", "mu": 0.4, "stiffness": 40}), "laws.dahl.presliding_length=1")
-
-    assert found == [
-        "--set laws.dahl.presliding_length=1: laws[0].presliding_length: leave it out where stiffness is given"
     ]
 
 
@@ -288,20 +279,6 @@ def test_the_listing_of_a_law_has_every_parameter_with_limits_unit_and_meaning(k
     assert given["planar"]["limits"] == "vectorial | rotated | per-axis"
     assert all(parameter["limits"] and parameter["meaning"] for parameter in given.values())
     assert {"passive", "rate_independent"} <= set(listed(kind)["declares"])
-
-
-def test_the_schema_knows_every_parameter_of_every_law() -> None:
-    said = {law["title"]: law["properties"] for law in schema()["properties"]["laws"]["items"]["oneOf"]}
-
-    for kind in LAWS:
-        assert set(said[kind]) == {"kind", "label", *registry.law_class(kind).model_fields}
-        assert said[kind]["planar"]["enum"] == ["vectorial", "rotated", "per-axis"]
-        assert said[kind]["contact_stiffness"] | {"title": "", "description": ""} == {
-            "type": "number",
-            "exclusiveMinimum": 0,
-            "title": "",
-            "description": "",
-        }
 
 
 def test_the_study_reference_has_every_parameter_of_every_law_with_its_unit() -> None:

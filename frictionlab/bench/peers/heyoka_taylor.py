@@ -12,8 +12,8 @@ import numpy as np
 from pydantic import Field
 
 from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest, Peer
+from frictionlab.bench.peers.equations import start
 from frictionlab.bench.peers.line import MOST_EVENTS, LineMotion, MotionState, first_step, means
-from frictionlab.bench.peers.scipy_steps import start
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass

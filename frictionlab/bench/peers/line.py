@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest
+from frictionlab.bench.peers.equations import free_orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
@@ -107,13 +108,6 @@ def means(line: LineMotion, scenes: Sequence[Scene], tolerance: float) -> Floats
         line.belt_speed = scene.belt_speed
         found.append(_steady_mean(line, scene.mass(), tolerance))
     return np.array(found)
-
-
-def free_orbit(damping: float, stiffness: float, frequency: float, force: complex) -> tuple[float, float]:
-    """Position and velocity at t = 0 of the friction-free response; rest at undamped resonance."""
-    dynamic = complex(stiffness - frequency**2, damping * frequency)
-    response = force / dynamic if dynamic != 0 else 0j
-    return response.imag, (1j * frequency * response).imag
 
 
 def _steady_mean(line: LineMotion, mass: Mass, tolerance: float) -> float:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
-from frictionlab.bench.peers.scipy_steps import start
+from frictionlab.bench.peers.equations import start
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.compile.dispatch import by_dimension

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 import warnings
 from functools import lru_cache
@@ -11,11 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frictionlab.bench.peers.bristle_motion import BristleMotion
-from frictionlab.bench.peers.scipy_steps import Rates
+from frictionlab.bench.peers.equations import Creeping, Equations, OnBristles, Sliding
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
 
 SOLVE_IVP_METHODS = "RK23", "RK45", "DOP853", "Radau", "LSODA"
@@ -34,48 +31,28 @@ class PeriodByPeer(NamedTuple):
     reason: str
 
 
-class CreepRates(Rates):
-    """The equations of motion along the belt with friction smoothed by tanh over a width."""
-
-    def __init__(self, mass: Mass, friction: float, belt_speed: float, width: float) -> None:
-        super().__init__(mass, friction, belt_speed)
-        self._width, self._load = width, mass.normal_load
-
-    def __call__(self, t: float, y: Floats) -> list[float]:
-        """Of (x1, v1, x2, v2, integral of the friction coefficient)."""
-        self._calls += 1
-        if self._calls > MOST_CALLS_OF_A_PERIOD:
-            raise ArithmeticError(f"gave up after {MOST_CALLS_OF_A_PERIOD} calls of the equations of motion")
-        m = self._mass
-        x, v = float(y[0]), float(y[1])
-        rub = self._friction * math.tanh((v - self._belt_speed) / self._width)
-        drive = (m.force * cmath.exp(1j * m.frequency * t)).imag
-        return [v, drive - m.damping * v - x - self._load * rub, 0.0, 0.0, rub]
-
-
-def rates_of(scene: Scene, law: FrictionLaw, width: float | None) -> Any:
+def equations_of(scene: Scene, law: FrictionLaw, width: float | None) -> Equations:
     """The equations of motion as a user would type them in; width: of smoothed friction, None for what it is."""
     if law.memory_kind == "bristle":
-        return BristleMotion(scene, law, MOST_CALLS_OF_A_PERIOD)
-    friction = law.sliding_friction(1.0)
+        return OnBristles(scene, law, MOST_CALLS_OF_A_PERIOD)
     if width is None:
-        return Rates(scene.mass(), friction, scene.belt_speed)
-    return CreepRates(scene.mass(), friction, scene.belt_speed, width)
+        return Sliding(scene, law, MOST_CALLS_OF_A_PERIOD)
+    return Creeping(scene, law, MOST_CALLS_OF_A_PERIOD, width)
 
 
-def by_solve_ivp(solver: str, rates: Any, state: Floats, period: float, tolerance: float) -> PeriodByPeer:
+def by_solve_ivp(solver: str, equations: Equations, state: Floats, tolerance: float) -> PeriodByPeer:
     """One period; the last number of the state is the integral of the friction coefficient."""
     from scipy.integrate import solve_ivp
 
     settings: dict[str, Any] = {"method": solver, "rtol": max(tolerance, LEAST_RTOL), "atol": tolerance}
     try:
         with warnings.catch_warnings(action="ignore"), np.errstate(all="ignore"):
-            found = solve_ivp(rates, (0.0, period), state, **settings)
+            found = solve_ivp(equations, (0.0, equations.period), state, **settings)
     except (ArithmeticError, ValueError) as problem:
         return PeriodByPeer(math.nan, math.nan, str(problem))
     if found.status < 0:
         return PeriodByPeer(math.nan, math.nan, f"solve_ivp: {found.message}")
-    return PeriodByPeer(-float(found.y[-1, -1]) / period, float(np.median(np.diff(found.t))), "")
+    return PeriodByPeer(-float(found.y[-1, -1]) / equations.period, float(np.median(np.diff(found.t))), "")
 
 
 def growth_by_solve_ivp(solver: str, z: float) -> float:

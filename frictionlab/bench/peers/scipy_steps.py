@@ -1,23 +1,23 @@
-"""scipy's solve_ivp as most people call it: the equations of motion as they stand, no events."""
+"""scipy's integrators as most people call them: the equations of motion as they stand, no events."""
 
 from __future__ import annotations
 
-import cmath
-import math
+import warnings
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
-from frictionlab.bench.peers.line import free_orbit
+from frictionlab.bench.peers.equations import Equations, OnBristles, Sliding
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
-from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
 
-MOST_CALLS = 500_000
+MOST_CALLS, MOST_BRISTLE_CALLS = 500_000, 5_000_000
 """Of the equations of motion per scene: where friction jumps, step control can grind for ever."""
+MOST_ODEINT_STEPS = 1_000_000
+"""Per period: odeint's own default of 500 is too few for stiff bristles."""
 
 
 class ScipySteps(Peer):
@@ -33,57 +33,65 @@ class ScipySteps(Peer):
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Floats:
         """One scene after the other."""
-        friction = law.sliding_friction(1.0)
-        return np.array([_settled(scene, friction, self.solver, tolerance) for scene in scenes])
+        equations = (Sliding(scene, law, MOST_CALLS) for scene in scenes)
+        return np.array([_settled(each, self.solver, tolerance) for each in equations])
 
 
-def _settled(scene: Scene, friction: float, solver: str, tolerance: float) -> float:
+class ScipyBristle(Peer):
+    """scipy on bristle laws, from the friction-free orbit with bristles at rest until the period closes.
+
+    solver: LSODA (default; by odeint, whose loop is compiled), or Radau or BDF by solve_ivp. rtol and atol are the
+    tolerance, atol of the deflection in deflections of steady slip.
+    """
+
+    name: ClassVar[str] = "scipy_bristle"
+    package: ClassVar[str] = "scipy"
+
+    solver: Literal["LSODA", "Radau", "BDF"] = "LSODA"
+
+    def other_law(self, law: FrictionLaw) -> str | None:
+        """Everything but bristle laws."""
+        return None if law.memory_kind == "bristle" else "scipy_bristle is set up for bristle laws"
+
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Floats:
+        """One scene after the other."""
+        solver = "odeint" if self.solver == "LSODA" else self.solver
+        equations = (OnBristles(scene, law, MOST_BRISTLE_CALLS) for scene in scenes)
+        return np.array([_settled(each, solver, tolerance) for each in equations])
+
+
+def _settled(equations: Equations, solver: str, tolerance: float) -> float:
+    closing = ClosureTest(tolerance, equations.mass.normal_load, equations.period)
+    return closed_mean(
+        lambda state: one_period(equations, state, solver, tolerance),
+        equations.start,
+        equations.places,
+        closing,
+        equations.period,
+    )
+
+
+def one_period(equations: Equations, state: Floats, solver: str, tolerance: float) -> Floats:
+    """The state at the end, by ``odeint`` or a solver of solve_ivp. Raises ArithmeticError where it gives up."""
+    settings: dict[str, Any] = {"rtol": max(tolerance, 3e-14), "atol": tolerance * equations.scales}
+    if solver == "odeint":
+        return _odeint(equations, state, settings | {"mxstep": MOST_ODEINT_STEPS})
     from scipy.integrate import solve_ivp
 
-    mass = scene.mass()
-    period, rates = 2.0 * math.pi / mass.frequency, Rates(mass, friction, scene.belt_speed)
-    state = np.array([*start(mass), 0.0])
-    settings: dict[str, Any] = {"method": solver, "rtol": max(tolerance, 3e-14), "atol": tolerance}
-
-    def one_period(start: Floats) -> Floats:
-        found = solve_ivp(rates, (0.0, period), start, t_eval=[period], **settings)
-        if found.status < 0:
-            raise ArithmeticError(f"solve_ivp: {found.message}")
-        return found.y[:, -1]
-
-    closing = ClosureTest(tolerance, mass.normal_load, period)
-    return closed_mean(one_period, state, slice(0, 4), closing, period)
+    span, ends = (0.0, equations.period), [equations.period]
+    found = solve_ivp(equations, span, state, method=solver, t_eval=ends, **settings)
+    if found.status < 0:
+        raise ArithmeticError(f"solve_ivp: {found.message}")
+    return found.y[:, -1]
 
 
-def start(mass: Mass) -> tuple[float, float, float, float]:
-    """x1, v1, x2, v2 on the friction-free orbit at t = 0."""
-    along = free_orbit(mass.damping, mass.stiffness, mass.frequency, mass.force)
-    across = (0.0, 0.0)
-    if mass.transverse_force != 0:
-        numbers = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
-        across = free_orbit(*numbers)
-    return *along, *across
+def _odeint(equations: Equations, state: Floats, settings: dict[str, Any]) -> Floats:
+    from scipy.integrate import odeint
 
-
-class Rates:
-    """The equations of motion of (x1, v1, x2, v2, integral of the friction coefficient along x1)."""
-
-    def __init__(self, mass: Mass, friction: float, belt_speed: float) -> None:
-        self._mass, self._friction, self._belt_speed = mass, friction, belt_speed
-        self._straight = mass.transverse_force == 0
-        self._calls = 0
-
-    def __call__(self, t: float, y: Floats) -> list[float]:
-        self._calls += 1
-        if self._calls > MOST_CALLS:
-            raise ArithmeticError(f"gave up after {MOST_CALLS} calls of the equations of motion")
-        m = self._mass
-        x1, v1, x2, v2, _ = y.tolist()
-        slip, turn = v1 - self._belt_speed, cmath.exp(1j * m.frequency * t)
-        speed = abs(slip) if self._straight else math.hypot(slip, v2)
-        rub = self._friction / speed if speed > 0.0 else 0.0
-        a1 = (m.force * turn).imag - m.damping * v1 - x1 - m.normal_load * rub * slip
-        if self._straight:
-            return [v1, a1, 0.0, 0.0, rub * slip]
-        across = m.transverse_damping * v2 + m.transverse_stiffness * x2 + m.normal_load * rub * v2
-        return [v1, a1, v2, (m.transverse_force * turn).imag - across, rub * slip]
+    with warnings.catch_warnings(action="ignore"):  # its message says the same
+        found, told = odeint(
+            equations, state, [0.0, equations.period], tfirst=True, full_output=True, **settings
+        )
+    if told["message"] != "Integration successful.":
+        raise ArithmeticError(f"odeint: {told['message']}")
+    return found[-1]

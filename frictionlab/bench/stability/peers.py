@@ -12,10 +12,10 @@ from frictionlab.bench.peers.one_period import (
     SOLVE_IVP_METHODS,
     by_heyoka,
     by_solve_ivp,
+    equations_of,
     growth_by_heyoka,
     growth_by_solve_ivp,
     missing_heyoka,
-    rates_of,
 )
 from frictionlab.bench.stability.grid import KnownState, MappedSolver, known_state, local_rate
 from frictionlab.bench.stability.limits import measured_limit, predicted_limit
@@ -46,8 +46,8 @@ class MappedPeer(MappedSolver):
         if self.name == "heyoka":
             found = by_heyoka(known.scene, known.law, state, width, at)
         else:
-            rates, period = rates_of(known.scene, known.law, width), 2.0 * math.pi / known.scene.frequency
-            found = by_solve_ivp(self.name, rates, state, period, at)
+            equations = equations_of(known.scene, known.law, width)
+            found = by_solve_ivp(self.name, equations, state, at)
         status, error = "failed" if found.reason else "ok", abs(found.mean - known.mean)
         rate = local_rate(problem.name, known, rate)
         allowed = TIMES_ASKED * at + known.error

@@ -16,8 +16,8 @@ import numpy as np
 from campaign import Campaign, Drawn, Keys, Unknown, covered, log_uniform, sound
 
 import frictionlab as fl
-from frictionlab.bench.peers.bristle_motion import BristleMotion
-from frictionlab.bench.peers.scipy_bristle import absolute_scales, one_period
+from frictionlab.bench.peers.equations import OnBristles
+from frictionlab.bench.peers.scipy_steps import one_period
 from frictionlab.theory import friction_free_velocity
 
 LAWS = "dahl", "dahl exponent", "lugre", "lugre stribeck", "elasto-plastic", "jenkins"
@@ -82,20 +82,20 @@ def followed(one: Drawn, state: fl.SteadyState) -> tuple[float, float]:
 
 def _settled(one: Drawn, state: fl.SteadyState, rtol: float) -> tuple[float, float]:
     scene, law = one.made()
-    motion = BristleMotion(scene, law, CALLS)
+    motion = OnBristles(scene, law, CALLS)
     turns = round(state.period) if state.period > 0.0 else 1
-    place, sizes = _start(motion, state), absolute_scales(motion, law, scene) * rtol
+    place = _start(motion, state)
     means: list[float] = []
     while (left := _left(means, state.floquet)) > SETTLED:
         total = 0.0
         for _ in range(turns):
-            end = one_period(motion, place, "LSODA", rtol, sizes)
+            end = one_period(motion, place, "odeint", rtol)
             place, total = np.append(end[:-1], 0.0), total - float(end[-1])
         means.append(total / (turns * motion.period))
     return means[-1], left
 
 
-def _start(motion: BristleMotion, state: fl.SteadyState) -> Any:
+def _start(motion: OnBristles, state: fl.SteadyState) -> Any:
     first = state.orbit(1)
     x1, v1, x2, v2 = (float(part[0]) for part in (first.x1, first.v1, first.x2, first.v2))
     return np.array([x1, v1, x2, v2, 0.0, 0.0, 0.0] if motion.planar else [x1, v1, 0.0, 0.0])

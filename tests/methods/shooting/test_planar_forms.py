@@ -10,8 +10,8 @@ from answered import with_columns
 from profiles import deep
 
 import frictionlab as fl
-from frictionlab.bench.peers.bristle_motion import BristleMotion
-from frictionlab.bench.peers.scipy_bristle import absolute_scales, one_period
+from frictionlab.bench.peers.equations import OnBristles
+from frictionlab.bench.peers.scipy_steps import one_period
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.shooting.method import Shooting
 
@@ -41,10 +41,7 @@ def solved(scene: fl.Scene, law: BristleLaw, tolerance: float = 1e-8) -> tuple[d
 
 def followed(scene: fl.Scene, law: BristleLaw, state: list[float]) -> np.ndarray:
     """The state after a period, and the integral of friction."""
-    motion = BristleMotion(scene, law, 1_000_000)
-    return one_period(
-        motion, np.array([*state, 0.0]), "LSODA", 1e-12, absolute_scales(motion, law, scene) * 1e-12
-    )
+    return one_period(OnBristles(scene, law, 1_000_000), np.array([*state, 0.0]), "odeint", 1e-12)
 
 
 def start_of(orbit: fl.Orbit, deflection: complex) -> list[float]:

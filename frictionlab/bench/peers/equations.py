@@ -1,0 +1,138 @@
+"""Equations of motion as a user of an integrator types them in: called with time and state, they give the rates."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from abc import ABC, abstractmethod
+from typing import Any
+
+import numpy as np
+
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.memory import bristle_in_the_plane, bristle_on_the_line
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Mass
+from frictionlab.scene.scene import Scene
+
+
+def free_orbit(damping: float, stiffness: float, frequency: float, force: complex) -> tuple[float, float]:
+    """Position and velocity at t = 0 of the friction-free response; rest at undamped resonance."""
+    dynamic = complex(stiffness - frequency**2, damping * frequency)
+    response = force / dynamic if dynamic != 0 else 0j
+    return response.imag, (1j * frequency * response).imag
+
+
+def start(mass: Mass) -> tuple[float, float, float, float]:
+    """x1, v1, x2, v2 on the friction-free orbit at t = 0."""
+    along = free_orbit(mass.damping, mass.stiffness, mass.frequency, mass.force)
+    across = (0.0, 0.0)
+    if mass.transverse_force != 0:
+        numbers = mass.transverse_damping, mass.transverse_stiffness, mass.frequency, mass.transverse_force
+        across = free_orbit(*numbers)
+    return *along, *across
+
+
+class Equations(ABC):
+    """Those of one scene. The last number of a state is the integral of the friction coefficient along x1.
+
+    places: those of positions and velocities in a state; scales: what an absolute tolerance is told in, by number.
+    Raises ArithmeticError after ``most_calls``.
+    """
+
+    places = slice(0, 4)
+
+    def __init__(self, scene: Scene, most_calls: int) -> None:
+        self.mass: Mass = scene.mass()
+        self.belt_speed, self.period = scene.belt_speed, 2.0 * math.pi / self.mass.frequency
+        self.calls, self.most_calls, self.turning = 0, most_calls, 1j * self.mass.frequency
+        self.start = np.array([*start(self.mass), 0.0])
+        self.scales = np.ones(5)
+
+    def __call__(self, t: float, y: Floats) -> list[float]:
+        """The rates."""
+        self.calls += 1
+        if self.calls > self.most_calls:
+            raise ArithmeticError(f"gave up after {self.most_calls} calls of the equations of motion")
+        return self.rates(cmath.exp(self.turning * t), y.tolist())
+
+    @abstractmethod
+    def rates(self, turn: complex, y: list[float]) -> list[float]:
+        """The same where the drive has turned so far."""
+
+
+class Sliding(Equations):
+    """Constant friction against the slip: x1, v1, x2, v2 and that integral."""
+
+    def __init__(self, scene: Scene, law: FrictionLaw, most_calls: int) -> None:
+        super().__init__(scene, most_calls)
+        self.friction, self.straight = law.sliding_friction(1.0), self.mass.transverse_force == 0
+
+    def rates(self, turn: complex, y: list[float]) -> list[float]:
+        m = self.mass
+        x1, v1, x2, v2, _ = y
+        slip = v1 - self.belt_speed
+        speed = abs(slip) if self.straight else math.hypot(slip, v2)
+        rub = self.friction / speed if speed > 0.0 else 0.0
+        a1 = (m.force * turn).imag - m.damping * v1 - x1 - m.normal_load * rub * slip
+        if self.straight:
+            return [v1, a1, 0.0, 0.0, rub * slip]
+        across = m.transverse_damping * v2 + m.transverse_stiffness * x2 + m.normal_load * rub * v2
+        return [v1, a1, v2, (m.transverse_force * turn).imag - across, rub * slip]
+
+
+class Creeping(Sliding):
+    """The same along the belt, with friction smoothed by tanh over a width."""
+
+    def __init__(self, scene: Scene, law: FrictionLaw, most_calls: int, width: float) -> None:
+        super().__init__(scene, law, most_calls)
+        self.width = width
+
+    def rates(self, turn: complex, y: list[float]) -> list[float]:
+        m, x, v = self.mass, y[0], y[1]
+        rub = self.friction * math.tanh((v - self.belt_speed) / self.width)
+        return [v, (m.force * turn).imag - m.damping * v - x - m.normal_load * rub, 0.0, 0.0, rub]
+
+
+class _Plain:
+    """A law's own formulas on its bare numbers, as a user would type them in: no checks on the way."""
+
+    def __init__(self, law: FrictionLaw) -> None:
+        self.__dict__.update(law.numbers())
+        for formula in ("rate", "friction"):
+            setattr(self, formula, getattr(type(law), formula).__get__(self))
+
+
+class OnBristles(Equations):
+    """The formulas of a bristle law, on the line of x, v, z and that integral, in the plane of x1, v1, x2, v2, z1, z2
+    and that integral.
+
+    An absolute tolerance of a deflection is told in deflections of steady slip where these are small.
+    """
+
+    def __init__(self, scene: Scene, law: FrictionLaw, most_calls: int) -> None:
+        super().__init__(scene, most_calls)
+        ready: Any = law.under_load(self.mass.normal_load)
+        self.law: Any = _Plain(ready)
+        self.planar = not scene.load_along_belt_only
+        x1, v1, x2, v2, _ = self.start.tolist()
+        reach = min(1.0, ready.sliding_friction(0.0) / ready.bristle_stiffness)
+        if self.planar:
+            self.start, self.scales = np.array([x1, v1, x2, v2, 0.0, 0.0, 0.0]), np.ones(7)
+            self.scales[4:6] = reach
+        else:
+            self.start, self.scales = np.array([x1, v1, 0.0, 0.0]), np.array([1.0, 1.0, reach, 1.0])
+            self.places = slice(0, 2)
+
+    def rates(self, turn: complex, y: list[float]) -> list[float]:
+        m = self.mass
+        if not self.planar:
+            x, v, z, _ = y
+            dz, rub = bristle_on_the_line(self.law, v - self.belt_speed, z)
+            return [v, (m.force * turn).imag - m.damping * v - m.stiffness * x - m.normal_load * rub, dz, rub]
+        x1, v1, x2, v2, z1, z2, _ = y
+        dz, rub = bristle_in_the_plane(self.law, complex(v1 - self.belt_speed, v2), complex(z1, z2))
+        a1 = (m.force * turn).imag - m.damping * v1 - m.stiffness * x1 - m.normal_load * rub.real
+        across = m.transverse_damping * v2 + m.transverse_stiffness * x2 + m.normal_load * rub.imag
+        a2 = (m.transverse_force * turn).imag - across
+        return [v1, a1, v2, a2, dz.real, dz.imag, rub.real]

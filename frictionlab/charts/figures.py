@@ -126,7 +126,7 @@ def figure_of(
 
     Raises ValueError, with the names there are, where the table has no such figure.
     """
-    wanted = replace(options, shape=True) if name == "shape" else options
+    wanted = options.model_copy(update={"shape": True}) if name == "shape" else options
     found = figures_of(table, printable(title), onsets, curves, wanted, kept)
     if name not in found:
         has = ", ".join(sorted(found)) if found else "none, for no number is swept"
@@ -174,7 +174,7 @@ def _difference_figure(one: CurveFigure) -> CurveFigure | None:
         return None
     what = r"$\bar\mu/\mu$" if one.words else r"$\bar\mu$"
     words = {"mean_friction": f"{what} less that of\n{plain(law)}"}
-    options = replace(one.options, inset=False)
+    options = one.options.model_copy(update={"inset": False})
     return replace(one, family=less, columns=["mean_friction"], options=options, words=words, level=True)
 
 

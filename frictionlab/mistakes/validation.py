@@ -183,6 +183,8 @@ class _Told:
     def add(self, problem: ValidationError, rules: bool = True) -> None:
         """Note every one of them; rules: those of values together, too."""
         errors: list[Any] = problem.errors(include_url=False)
+        above = {each["loc"][:-1] for each in errors}  # a list is short of items that are wrong
+        errors = [each for each in errors if each["type"] != "too_short" or each["loc"] not in above]
         if not rules:
             errors = [each for each in errors if not self._is_rule(each)]
         unknown = [each["loc"] for each in errors if each["type"] == "extra_forbidden"]

@@ -14,7 +14,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
 from frictionlab.study.axes import FRICTION, LINKED
-from frictionlab.study.figure_options import FIGURE_KEYS, FLAGS, FORMATS, WIDTHS
+from frictionlab.study.figure_options import FigureOptions
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA
 from frictionlab.study.ranges import WITHIN
 from frictionlab.study.study import SECONDS_PER_POINT
@@ -106,7 +106,7 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
             ]
         },
         "limit": _closed_object({LIMIT_KEY: _TIME}, []),
-        "figures": _figures(),
+        "figures": _record(FigureOptions, definitions) | {"description": _KEYS["figures"]},
         "keep": _closed_object(
             {name: {"type": "integer", "minimum": least} for name, least in reader.KEPT.items()}, []
         ),
@@ -191,16 +191,6 @@ def _kind(name: str, record: dict[str, Any]) -> dict[str, Any]:
     }
     closed = _closed_object({**own, **record.get("properties", {})}, ["kind"])
     return {"title": name, "description": record.get("description", ""), **closed}
-
-
-def _figures() -> dict[str, Any]:
-    """How figures are drawn; the same words mean other things elsewhere in a study."""
-    formats = {"type": "array", "minItems": 1, "uniqueItems": True, "items": {"enum": list(FORMATS)}}
-    words: dict[str, Any] = {"against": _TEXT, "width": {"enum": list(WIDTHS)}, "formats": formats}
-    kinds: dict[str, Any] = {name: {"type": "boolean"} for name in FLAGS} | words
-    return _closed_object(
-        {name: {**kinds[name], "description": FIGURE_KEYS[name]} for name in FIGURE_KEYS}, []
-    )
 
 
 def _sweep() -> dict[str, Any]:

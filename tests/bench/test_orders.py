@@ -116,7 +116,7 @@ def test_the_command_measures_the_orders_of_a_list(
     ("given", "told"),
     [
         ("{motions: [smoth]}", "did you mean 'smooth'"),
-        ("{steppers: []}", "the list is empty"),
+        ("{steppers: []}", "a list of at least 1"),
         ("{samples: 0}", "must be >= 1"),
         ("{solvers: [rk4]}", "unknown key"),
         ("false", "must be a mapping"),

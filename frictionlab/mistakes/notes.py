@@ -213,12 +213,16 @@ class Notes:
         """Remember that this path and those above it have a mistake."""
         self._above.update(path[:length] for length in range(len(path) + 1))
 
-    def add(self, path: Path, what: str, hint: str = "") -> None:
-        """A mistake in the value at this path."""
+    def add(self, path: Path, what: str, hint: str = "", on_key: bool = False) -> None:
+        """A mistake in the value at this path, or in its key."""
         if path not in self._settled:
             self._settled.add(path)
             self._mark(path)
-            self.all.append(Note(path, what, hint))
+            self.all.append(Note(path, what, hint, on_key))
+
+    def on_key(self, path: Path, what: str, hint: str = "") -> None:
+        """A mistake in the key itself."""
+        self.add(path, what, hint, on_key=True)
 
     def unknown_key(
         self, path: Path, allowed: Iterable[str], given: Iterable[str] = (), required: Iterable[str] = ()
@@ -234,13 +238,6 @@ class Notes:
             if not hint and str(path[-1]).isdecimal():  # 0,4 in braces is 0, and a key 4
                 hint = f"numbers are written with a point, such as 0.{path[-1]}"
             what = f"unknown key; allowed: {', '.join(names) or 'none'}"
-            self.all.append(Note(path, what, hint, on_key=True))
-
-    def on_key(self, path: Path, what: str, hint: str = "") -> None:
-        """A mistake in the key itself."""
-        if path not in self._settled:
-            self._settled.add(path)
-            self._mark(path)
             self.all.append(Note(path, what, hint, on_key=True))
 
     def below(self, path: Path) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -38,20 +38,6 @@ class Refinement(NamedTuple):
     values: list[float]
     sizes: Floats
     errors: Floats
-
-
-class OrderSolver(Protocol):
-    """A solver whose order is measured."""
-
-    @property
-    def name(self) -> str:
-        """As in tables."""
-
-    def refusal(self, motion: KindOfMotion) -> str | None:
-        """Why it cannot follow this motion; None when it can."""
-
-    def refined(self, motion: KindOfMotion, mean: float, samples: int) -> Refinement:
-        """Its errors against this mean; samples: places of the grid that irregular errors are averaged over."""
 
 
 @dataclass(frozen=True)
@@ -153,6 +139,8 @@ def with_phase(scene: Scene, degrees: float) -> Scene:
     return scene.model_copy(update=later)
 
 
+OrderSolver = FixedSteps | Widths | Tolerances
+"""A solver whose order is measured."""
 _ALL: tuple[OrderSolver, ...] = (
     FixedSteps("rk4", "rk4", ("none", "bristle")),
     FixedSteps("moreau_0.5", "moreau", ("none",), 0.5),

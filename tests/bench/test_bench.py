@@ -451,6 +451,16 @@ def test_every_mistake_of_a_list_is_told_and_none_that_follows_from_another(
     assert all(text.startswith(start) for text, start in zip(told, mistakes, strict=True))
 
 
+def test_two_curves_whose_files_would_be_one_are_refused() -> None:
+    second = LIST.partition("  - name: A\n")[2].replace(
+        "mu: 0.4}", "mu: 0.4}, {kind: coulomb, mu: 0.3, label: x y}"
+    )
+    Path("list.yaml").write_text(f"{LIST.replace('name: A', 'name: B_x_y')}  - name: B\n{second}")
+
+    with pytest.raises(StudyError, match="'B_x_y' and 'B x y' would both be written to B_x_y"):
+        bench.load_bench(Path("list.yaml"))
+
+
 def test_what_is_no_list_is_told_as_a_list(tmp_path: Path) -> None:
     (tmp_path / "empty.yaml").write_text("")
 

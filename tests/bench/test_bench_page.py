@@ -17,7 +17,6 @@ from frictionlab.bench.curve import CurveResult
 from frictionlab.bench.page import MOST_ROWS_ON_PAGE, bench_page
 from frictionlab.bench.peers import base
 from frictionlab.methods.reduced import common
-from frictionlab.study import StudyError
 
 LIST = """\
 schema: 1
@@ -190,20 +189,6 @@ def test_a_page_that_a_person_wrote_is_not_overwritten(
     assert "index.html is there already" in capsys.readouterr().err
     assert (tmp_path / "index.html").read_text() == "mine"
     assert not list(tmp_path.glob("*.csv"))
-
-
-def test_two_curves_whose_files_would_be_one_are_refused(tmp_path: Path) -> None:
-    (tmp_path / "list.yaml").write_text(_colliding())
-
-    with pytest.raises(StudyError, match="would both be written to W1_half_dry"):
-        bench.load_bench(tmp_path / "list.yaml")
-
-
-def _colliding() -> str:
-    """A curve 'W1 half dry' beside one called W1_half_dry."""
-    curves = LIST.partition("failures:")[0]
-    block = curves.partition("scenes:\n")[2].replace("&line ", "").replace("name: W1", "name: W1_half_dry")
-    return curves + block.replace(", {kind: coulomb, mu: 0.3, label: half dry}]", "]")
 
 
 # --- what is told ------------------------------------------------------------------------------------------------

@@ -16,7 +16,7 @@ from typing import Any
 
 import pandas as pd
 import pytest
-from fake_methods import Fake, breaks_down, is_broken
+from fake_methods import Fake, breaks_down
 
 from frictionlab import cli, registry
 from frictionlab.charts import figures
@@ -301,6 +301,7 @@ def test_a_value_set_on_the_command_line_is_in_the_table_and_in_the_study_kept(f
         ["run"],
         ["run", "study.yaml", "-j", "0"],
         ["run", "study.yaml", "--no-such-option"],
+        ["run", "study.yaml", "--cite", "--json"],
         ["laws", "glue"],
         ["run", "missing.yaml"],
         ["check", "missing.yaml"],
@@ -366,13 +367,6 @@ def test_publications_that_several_studies_draw_on_are_cited_once(frictionlab: A
     keys = [entry.key for entry in read_bibtex(frictionlab("run", "set", "--cite").out)]
 
     assert len(keys) == len(set(keys)) == 5
-
-
-def test_records_and_citations_are_not_printed_at_once(frictionlab: Any) -> None:
-    said = frictionlab("run", study(), "--cite", "--json")
-
-    assert said.code == 2
-    assert "give one of them" in said.err
 
 
 def test_a_folder_that_holds_another_study_stops_all_of_them(frictionlab: Any) -> None:
@@ -442,14 +436,6 @@ def test_figures_that_cannot_be_written_are_code_3_with_the_table_safe(frictionl
     assert said.code == 3
     assert "cannot write the figures" in said.err
     assert len(pd.read_parquet("out/results.parquet")) == 4
-
-
-def test_a_broken_plugin_is_code_4(frictionlab: Any, monkeypatch: Any) -> None:
-    monkeypatch.setattr(Fake, "troubles", {4.0: is_broken})
-    said = frictionlab("run", study())
-
-    assert said.code == 4
-    assert said.err.strip() == "law 'x' does not compile"
 
 
 def test_a_bug_of_ours_is_code_1_with_a_traceback_and_a_plea(frictionlab: Any, monkeypatch: Any) -> None:
@@ -523,10 +509,6 @@ def test_methods_are_listed(frictionlab: Any) -> None:
 
     assert {"auto", "exact", "shooting", "fake"} <= set(records)
     assert records["fake"]["parameters"][0]["default"] == 0.0
-
-
-def test_the_schema_of_a_study_is_json(frictionlab: Any) -> None:
-    assert "properties" in json.loads(frictionlab("schema").out)
 
 
 def test_the_version_is_told(frictionlab: Any) -> None:

@@ -407,13 +407,3 @@ def test_no_plugins_refuses_a_study_that_lists_some_before_any_of_their_code_run
     study("good")
     assert cli.main(["check", "good.yaml", "--no-plugins", "--law", "good.py"]) == 0
     assert Path("marks").exists()
-
-
-def test_a_law_file_that_is_no_text_is_a_mistake_of_the_study(
-    capsys: pytest.CaptureFixture[str], listed: Callable[[str], None]
-) -> None:
-    listed("")
-    Path("good.py").write_bytes(f"# -*- coding: latin-1 -*-\n# \xe9\n{GOOD}".encode("latin-1"))
-
-    assert cli.main(["check", "good.yaml"]) == 2
-    assert "good.yaml:1:11: plugins[0]: good.py: is not UTF-8 text (byte 29)" in capsys.readouterr().err

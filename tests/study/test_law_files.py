@@ -112,12 +112,6 @@ EDITS = pytest.mark.parametrize(
 
 
 @EDITS
-def test_an_edited_file_gives_new_numbers(old: str, new: str, share: float) -> None:
-    assert mean(study()) == pytest.approx(CLOSED, abs=1e-8)
-    assert mean(study(law=LAW.replace(old, new))) == pytest.approx(share * CLOSED, abs=1e-8)
-
-
-@EDITS
 def test_kernels_compiled_for_a_file_are_not_those_of_the_edited_one(
     old: str, new: str, share: float
 ) -> None:
@@ -223,15 +217,6 @@ def test_a_file_that_cannot_be_read_is_one_mistake_at_its_place(listed: str, wor
     (mistake,) = said(study(plugins=[listed]))
     assert mistake.startswith("study.yaml:3:")
     assert mistake.endswith(words)
-
-
-def test_a_law_nobody_brings_is_told_with_what_there_is_and_what_to_do() -> None:
-    (mistake,) = said(study(laws=[{"kind": "my-lwa", "mu": 0.4}]))
-
-    assert "laws[0].kind: unknown law 'my-lwa'; installed: " in mistake
-    assert "coulomb, dahl, " in mistake
-    assert "my-law" in mistake
-    assert mistake.endswith("install the package that provides it, or list its file under plugins")
 
 
 def test_a_name_is_given_once(capsys: pytest.CaptureFixture[str]) -> None:

@@ -15,11 +15,11 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.charts.style import PAGE, STYLE, write_figure
+from frictionlab.charts.style import PAGE, STYLE, blank_figure, write_figure
+from frictionlab.charts.words import write_title
 from frictionlab.columns import ATTRACTORS, word
 from frictionlab.printable import printable
 
@@ -56,9 +56,8 @@ def draw_bifurcations(attractors: pd.DataFrame, title: str, folder: Path) -> lis
 
 
 def _figure(rows: pd.DataFrame, title: str) -> Figure:
-    figure = Figure(figsize=(PAGE, 4.6), layout="constrained")
-    FigureCanvasAgg(figure)
-    figure.suptitle(title.replace("$", r"\$"), x=0.01, ha="left", fontsize=8, fontweight="bold")
+    figure = blank_figure(PAGE, 4.6)
+    write_title(figure, title)
     above, below = figure.subplots(2, 1, sharex=True)
     states = rows[rows["point"] == 1]
     _draw_means(above, states)

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import textwrap
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
-from frictionlab.charts.style import PAGE, STYLE, write_figure
+from frictionlab.charts.style import LINE, PAGE, STYLE, blank_figure, write_figure
+from frictionlab.charts.words import plain, write_title
 from frictionlab.printable import printable
 
 PLUS = " + "
@@ -39,17 +38,14 @@ def needs_figure(table: pd.DataFrame, title: str = "") -> Figure:
     names = [name for name in dict.fromkeys(table["without"]) if PLUS not in name] + [SMALLEST]
     wide = min(2, len(curves))
     high = -(-len(curves) // wide)
-    lines = textwrap.wrap(title.replace("$", r"\$"), 90)
-    height = high * (BAR * len(names) + AROUND) + 0.6 + 0.16 * len(lines)
+    height = high * (BAR * len(names) + AROUND) + 0.6
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(PAGE, height), layout="constrained")
-        FigureCanvasAgg(figure)
-        if lines:
-            figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight="bold")
+        figure = blank_figure(PAGE, height)
+        figure.set_figheight(height + LINE * write_title(figure, title))
         for place, (curve, rows) in enumerate(curves):
             axes = figure.add_subplot(high, wide, place + 1)
             _draw_panel_of_needs(axes, names, rows, _ends(table))
-            axes.set_title(str(curve).replace("$", r"\$"), loc="left")
+            axes.set_title(plain(str(curve)), loc="left")
             if place % wide:
                 axes.set_yticklabels([])
             if place + wide < len(curves):

@@ -111,7 +111,7 @@ EDITS = [
     ("num: 120}", "num: 100000}\n  scene.damping_ratio: {start: 1, stop: 2, num: 2000}", "18:1: sweep: the grid has 1200000000 points, more"),
     (", num: 120", ", within: 1e-6", "19:52: sweep.scene.belt_speed.within: must be >= 1e-05, 10 times tolerance, got 1e-06"),
     ("laws.soft.mu: [0.1, 0.2]", "laws.soft.mu: {start: 0.1, stop: 0.2, within: 1e-3}", "20:41: sweep.laws.soft.mu.within: belt speeds alone are"),
-    ("num: 120", "num: 120, spacing: logg", "19:63: sweep.scene.belt_speed.spacing: must be one of linear, log; got the"),
+    ("num: 120", "num: 120, spacing: logg", "19:63: sweep.scene.belt_speed.spacing: must be 'linear' or 'log'; got the text"),
     ("start: 0.5, stop: 60, num: 120", "start: 0, stop: 60, num: 120, spacing: log",
      "19:29: sweep.scene.belt_speed.start: must be > 0 for log spacing, got 0"),
     ("start: 0.5, stop: 60", "start: 1, stop: 1.000000000000001", "19:3: sweep.scene.belt_speed: there are no 120 different"),

@@ -3,21 +3,46 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Annotated, Any, Literal, Self
 
-SPACINGS = ("linear", "log")
+from pydantic import Field, model_validator
+
+from frictionlab.laws.base import Finite, Positive, Record
+from frictionlab.mistakes.notes import number_text
+
+LARGEST_RANGE = 1_000_000
 
 
-@dataclass(frozen=True)
-class SweepRange:
-    """The values from start to stop (> start), num (>= 2) of them, evenly spaced or evenly in the logarithm."""
+class _Ends(Record):
+    """A range.
 
-    start: float
-    stop: float
-    num: int
-    spacing: str = "linear"
+    start: first value
+    stop: last value
+    """
+
+    start: Finite
+    stop: Finite
+
+    @model_validator(mode="after")
+    def _check_ends(self) -> Self:
+        start, stop = map(number_text, (self.start, self.stop))
+        if self.stop <= self.start:
+            raise ValueError(f"stop: must be > start = {start}, got {stop}")
+        if self.start <= 0.0 and getattr(self, "spacing", "") == "log":
+            raise ValueError(f"start: must be > 0 for log spacing, got {start}")
+        return self
+
+
+class SweepRange(_Ends):
+    """Values from start to stop (> start), evenly spaced or evenly in the logarithm.
+
+    num: number of values, both ends included
+    spacing: equal differences (linear) or equal ratios (log)
+    """
+
+    num: Annotated[int, Field(strict=True, ge=2, le=LARGEST_RANGE)]
+    spacing: Literal["linear", "log"] = "linear"
 
     def values(self) -> tuple[float, ...]:
         """Every value, in rising order."""
@@ -25,8 +50,7 @@ class SweepRange:
 
     def resolved(self) -> dict[str, Any]:
         """The entry of a study file; linear spacing is left out."""
-        told = asdict(self)
-        return told if self.spacing != "linear" else {key: told[key] for key in ("start", "stop", "num")}
+        return self.model_dump(exclude_defaults=True)
 
     def _linear(self) -> tuple[float, ...]:
         """Evenly spaced and correctly rounded: {0.1, 1, 10} holds 0.3, not 0.30000000000000004."""
@@ -57,31 +81,29 @@ _KNOWN_SPEEDS = 187
 """Belt speeds by which methods know the curve: as many as of the longest that is solved in one piece."""
 
 
-@dataclass(frozen=True)
-class SpeedRange:
-    """Belt speeds from start to stop (> start), to be chosen until straight lines between them are near the curve.
+class SpeedRange(_Ends):
+    """Belt speeds from start to stop (> start), to be chosen as a run goes.
 
-    within: how near [-], absolute in mean friction.
+    within: belt speeds are chosen until straight lines between points are within this of mean_friction
     """
 
-    start: float
-    stop: float
-    within: float
+    within: Positive
+
+    def _even(self, num: int) -> tuple[float, ...]:
+        return SweepRange.model_construct(start=self.start, stop=self.stop, num=num).values()
 
     def first(self) -> tuple[float, ...]:
         """Those to begin with."""
-        return SweepRange(self.start, self.stop, FIRST_SPEEDS).values()
+        return self._even(FIRST_SPEEDS)
 
     def known(self) -> tuple[float, ...]:
         """Those by which methods know the curve, whichever are chosen: its model does not change as others come."""
-        return SweepRange(self.start, self.stop, _KNOWN_SPEEDS).values()
+        return self._even(_KNOWN_SPEEDS)
 
     def about(self) -> tuple[float, ...]:
         """About as many as will be chosen, evenly spaced: mostly where the curve bends at V_lin."""
-        return SweepRange(
-            self.start, self.stop, FIRST_SPEEDS + math.ceil(0.6 / math.sqrt(self.within))
-        ).values()
+        return self._even(FIRST_SPEEDS + math.ceil(0.6 / math.sqrt(self.within)))
 
     def resolved(self) -> dict[str, Any]:
         """The entry of a study file."""
-        return asdict(self)
+        return self.model_dump()

@@ -16,9 +16,8 @@ from frictionlab.study import reader
 from frictionlab.study.axes import FRICTION, LINKED
 from frictionlab.study.figure_options import FigureOptions
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA
-from frictionlab.study.ranges import WITHIN
+from frictionlab.study.ranges import SpeedRange, SweepRange
 from frictionlab.study.study import SECONDS_PER_POINT
-from frictionlab.study.sweeps import LARGEST_RANGE
 
 _KEYS = {
     "schema": "version of the rules that the study is written by",
@@ -41,10 +40,6 @@ _KEYS = {
     "harmonics": "harmonics of velocity and friction of every orbit, written to harmonics.csv",
     "kind": "registered name",
     "label": "name of its rows; kind where left out",
-    "start": "first value",
-    "stop": "last value",
-    "num": "number of values, both ends included",
-    "spacing": "equal differences (linear) or equal ratios (log)",
     FRICTION: "friction coefficients: mu or mu_kinetic of every law, mu_static keeping its ratio",
     LINKED: "lists that advance together, by dotted path; entries and other sweeps make the grid",
     "where": "the rows that are meant, by the values of input columns; all where left out",
@@ -67,7 +62,6 @@ _WORD_OR_NUMBER: dict[str, Any] = {
 """What a sweep of a scene runs over, and what selects rows of its table."""
 _TEXT = {"type": "string"}
 _POSITIVE: dict[str, Any] = {"type": "number", "exclusiveMinimum": 0}
-_WITHIN = "belt speeds are chosen until straight lines between points are within this of mean_friction"
 _SPEEDS = (
     "belt speeds: a list, a range, or start, stop and within, between which they are chosen as the run goes"
 )
@@ -195,15 +189,8 @@ def _kind(name: str, record: dict[str, Any]) -> dict[str, Any]:
 
 def _sweep() -> dict[str, Any]:
     listed = {"type": "array", "minItems": 1, "uniqueItems": True, "items": _WORD_OR_NUMBER}
-    ranged = _closed_object(
-        {
-            "start": _NUMBER,
-            "stop": _NUMBER,
-            "num": {"type": "integer", "minimum": 2, "maximum": LARGEST_RANGE},
-            "spacing": {"enum": ["linear", "log"], "default": "linear"},
-        },
-        ["start", "stop", "num"],
-    )
+    ranged = _record(SweepRange, {}) | {"required": ["start", "stop", "num"]}
+    chosen = _record(SpeedRange, {}) | {"required": ["start", "stop", "within"]}
     values = {"oneOf": [listed, ranged]}
     together = {"type": "array", "minItems": 1, "items": _WORD_OR_NUMBER}
     entry = {
@@ -212,10 +199,6 @@ def _sweep() -> dict[str, Any]:
         "propertyNames": {"pattern": r"^(scene\..+|laws\..+\..+|friction)$"},
         "additionalProperties": {"oneOf": [together, ranged]},
     }
-    chosen = _closed_object(
-        {"start": _NUMBER, "stop": _NUMBER, WITHIN: {**_POSITIVE, "description": _WITHIN}},
-        ["start", "stop", WITHIN],
-    )
     speeds = {"oneOf": [listed, ranged, chosen]}
     return {
         "type": "object",

@@ -11,17 +11,15 @@ from frictionlab import registry
 from frictionlab.columns import BELT_SPEEDS
 from frictionlab.mistakes.notes import Notes, Path, number_text, value_text
 from frictionlab.mistakes.validation import (
+    build_record,
     checked_value,
     placed,
     valid_number,
     wrong_value,
 )
 from frictionlab.study.axes import LINKED, GridValue
-from frictionlab.study.ranges import SPACINGS, WITHIN, SpeedRange, SweepRange
+from frictionlab.study.ranges import WITHIN, SpeedRange, SweepRange
 from frictionlab.study.sweep_targets import Target, Targets, value_at
-
-LARGEST_RANGE = 1_000_000
-_KEYS = ("start", "stop", "num", "spacing")
 
 
 @dataclass
@@ -159,7 +157,8 @@ def _read_values(given: Any, target: Target | None, path: Path, notes: Notes, un
             _note_doubles(values, path, notes)
         return tuple(value for value in values if value is not None)
     if isinstance(given, dict) and not words:
-        return _read_range(given, path, notes) or ()
+        kind: type[SpeedRange | SweepRange] = SpeedRange if WITHIN in given else SweepRange
+        return build_record(kind, given, path, notes) or ()
     wanted = "must be a list" if words else "must be a list or {start, stop, num, spacing}"
     notes.add(path, f"{wanted}, got {value_text(given)}")
     return ()
@@ -191,31 +190,6 @@ def _list_value(item: Any, target: Target | None, path: Path, notes: Notes) -> G
     if what is not None:
         notes.add(*placed(path, what, item), hint)
     return value
-
-
-def _read_range(given: dict[str, Any], path: Path, notes: Notes) -> SweepRange | SpeedRange | None:
-    chosen = WITHIN in given
-    usual = (*_KEYS, WITHIN) if path[-1] in BELT_SPEEDS else _KEYS
-    notes.mapping(given, path, ("start", "stop", WITHIN) if chosen else usual)
-    for key in ("start", "stop") if chosen else ("start", "stop", "num"):
-        if key not in given:
-            notes.add((*path, key), "required key is missing")
-    ends = [notes.number(given[key], (*path, key)) if key in given else None for key in ("start", "stop")]
-    start, stop = ends
-    num = notes.whole_number(given["num"], (*path, "num"), 2) if "num" in given else None
-    spacing = notes.one_of(given.get("spacing", "linear"), (*path, "spacing"), SPACINGS)
-    if start is not None and spacing == "log" and start <= 0:
-        notes.add((*path, "start"), f"must be > 0 for log spacing, got {number_text(start)}")
-    if start is not None and stop is not None and stop <= start:
-        notes.add((*path, "stop"), f"must be > start = {number_text(start)}, got {number_text(stop)}")
-    if num is not None and num > LARGEST_RANGE:
-        notes.add((*path, "num"), f"must be <= {LARGEST_RANGE}, got {num}")
-    within = notes.positive(given[WITHIN], (*path, WITHIN)) if chosen else None
-    if chosen and start is not None and stop is not None and within is not None:
-        return None if notes.below(path) else SpeedRange(start, stop, within)
-    if notes.below(path) or start is None or stop is None or num is None or spacing is None:
-        return None
-    return SweepRange(start, stop, num, spacing)
 
 
 def _built(read: Read, path: Path, notes: Notes) -> tuple[GridValue, ...]:

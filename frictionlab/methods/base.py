@@ -5,10 +5,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import field_validator
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.orbit.record import Orbit, Orbits
@@ -142,11 +143,19 @@ class Method(Record, ABC):
 class ReducedModel(Method):
     """A method that solves a simpler problem than the scene states.
 
-    error: how it tells what that leaves out: ``bound``, from its own motion, where there is such a bound, or
-    ``distance`` from the full answer, which is asked for then.
+    error: what that leaves out is always told by the ``distance`` to the full answer.
     """
 
-    error: Literal["bound", "distance"] = "bound"
+    error: Literal["distance"] = "distance"
+
+    @field_validator("error", mode="before")
+    @classmethod
+    def _is_the_distance(cls, told: Any) -> Any:
+        if told == "bound":
+            raise ValueError(
+                "bounds are gone: the error of a reduced model is its distance to the full answer"
+            )
+        return told
 
     @abstractmethod
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:

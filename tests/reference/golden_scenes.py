@@ -368,7 +368,7 @@ Rows = dict[str, dict[str, Any]]
 def solved(name: str) -> tuple[Rows, Rows]:
     """The rows of a group's result table and of its curves, each under its key."""
     (group,) = (group for group in GROUPS if group.name == name)
-    done = fl.run(group.study)
+    done = fl.run(group.study, columns="all")
     swept = [_column(path) for path in group.study.get("sweep", {})]
     return _rows(done.table, name, swept), _rows(done.curves, name, swept)
 

@@ -66,7 +66,7 @@ EIGHT: list[tuple[Callable[[], object], str]] = [
 
 MORE: list[tuple[Callable[[], object], str]] = [
     (lambda: fl.Scene({"belt_speed": 5}), "Scene takes its values by name: write Scene(**values)"),  # type: ignore[call-arg]
-    (lambda: fl.Mdsm("bound"), "Mdsm takes its values by name: write Mdsm(error='bound')"),  # type: ignore[call-arg]
+    (lambda: fl.Mdsm("distance"), "Mdsm takes its values by name: write Mdsm(error='distance')"),  # type: ignore[call-arg]
     (
         lambda: fl.HarmonicBalance(3),
         "HarmonicBalance takes its values by name: write HarmonicBalance(harmonics=3)",

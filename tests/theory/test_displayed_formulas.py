@@ -348,7 +348,7 @@ FORMULAS = [
         "means",
         "mdsm",
         lambda: 2.0 * mu / pi * np.arcsin(v_b / friction_free_velocity(scene)),
-        lambda: fl.steady_state(scene, coulomb, fl.Mdsm(error="bound")).mean_friction,
+        lambda: fl.steady_state(scene, coulomb, fl.Mdsm()).mean_friction,
     ),
     Formula("means", "one-harmonic", lambda: 1.0, one_harmonic_residual),
     Formula(

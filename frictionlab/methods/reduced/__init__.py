@@ -1,1 +1,1 @@
-"""Reduced models: direct separation of motion and one-harmonic balance, with bounds on their error."""
+"""Reduced models: direct separation of motion and one-harmonic balance, with their distance to the full answer."""

@@ -1,7 +1,7 @@
 """Code of all reduced models of Coulomb friction along a line: accepted scenes, model error, results.
 
-A reduced model gives the motion as one harmonic. What it leaves out is told by bounds on the mean friction of the
-full problem, from the friction along the model's motion as a trial (gap.py), or by its distance from that mean.
+A reduced model gives the motion as one harmonic. What it leaves out is told by its distance from the mean friction of
+the full problem.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,13 +21,10 @@ from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.exact.method import REDUCED
 from frictionlab.methods.prescribed.motion import displacement, velocity
 from frictionlab.methods.prescribed.quadrature import orbit_of_slip
-from frictionlab.methods.reduced.friction_free_gap import closed_bound
 from frictionlab.methods.reduced.full_mean import full_means
-from frictionlab.methods.reduced.gap import line_bounds
-from frictionlab.methods.reduced.reversals import Driven, one_wave
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.orbit.record import Orbit
-from frictionlab.quantities import EPSILON, Floats
+from frictionlab.quantities import Floats
 from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
@@ -35,8 +32,6 @@ from frictionlab.theory import friction_free_velocity
 from frictionlab.theory.equivalent_drive import equivalent_drive
 from frictionlab.theory.uniqueness import falls_slowly
 
-WIDEST = 0.25
-"""Error, relative to the friction coefficient, above which a bound is of no use."""
 ROUNDING = 1e-10
 """Of models, relative to the friction coefficient: their formulas keep twelve digits or more."""
 
@@ -53,16 +48,10 @@ class Harmonic:
     reasons: list[str]
 
 
-ToldBy = Literal["bound", "distance"]
-"""How a model's error is told: by a bound on what it leaves out, or by its distance from the full answer."""
-ASK_FOR_THE_DISTANCE = "use error: distance, which asks for the full answer"
-
-
 class LeftOut(NamedTuple):
-    """The error of each point of a model, its kind, and why it is not known or of no use; empty where it is."""
+    """The error of each point of a model, and why it is not known; empty where it is."""
 
     error: Floats
-    kinds: list[str]
     reasons: list[str]
 
 
@@ -75,7 +64,7 @@ class Modelled(NamedTuple):
 
 
 UNBOUNDED_ENERGIES = "; energies are those of this motion, without an error"
-"""Said of every row: what one harmonic leaves out is bounded in the mean friction alone."""
+"""Said of every row: what one harmonic leaves out is known in the mean friction alone."""
 
 EQUIVALENT = "; the belt's vibration as the drive that is equivalent to it"
 
@@ -182,9 +171,9 @@ def line_means(scenes: Sequence[Scene], law: FrictionLaw, model: Model) -> Float
 
 
 def answer_line(
-    scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, text: str, model: Model, told_by: ToldBy
+    scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, text: str, model: Model
 ) -> Answers:
-    """Answers of a model on scenes that differ in belt speed alone, their error told by bounds or the full mean."""
+    """Answers of a model on scenes that differ in belt speed alone."""
     start = time.perf_counter()
     mu = law.sliding_friction(1.0)
     speeds = belt_speeds_of(scenes)
@@ -194,50 +183,14 @@ def answer_line(
     against = [
         point_refusal(scene, friction) or own for scene, own in zip(scenes, found.reasons, strict=True)
     ]
-    if told_by == "bound":
-        left_out = _left_out(scenes, law, found, tolerance)
-    else:
-        left_out = far_from_full(scenes, law, mean, against)
+    left_out = far_from_full(scenes, law, mean, against)
     seconds = time.perf_counter() - start
-    reasons = [own or other for own, other in zip(against, left_out.reasons, strict=True)]
     text += REDUCED if scenes[0].degrees_of_freedom == 2 else ""
 
     def orbit(i: int) -> Orbit:
         return _orbit(scenes[i], law, found, i)
 
-    answers = judged(Modelled(mean, left_out.error, seconds), reasons, text, tolerance, orbit)
-    kinds = [kind if ok == "ok" else "" for kind, ok in zip(left_out.kinds, answers.status, strict=True)]
-    return replace(answers, error_kind=kinds)
-
-
-def _left_out(scenes: Sequence[Scene], law: FrictionLaw, found: Harmonic, tolerance: float) -> LeftOut:
-    """By bounds: in closed form where the motion is the friction-free one and the tolerance is met by them."""
-    mu, mass, speeds = law.sliding_friction(1.0), scenes[0].mass(), np.abs(belt_speeds_of(scenes))
-    free = mass.force / (mass.damping + 1j * (mass.frequency - mass.stiffness / mass.frequency))
-    body = Driven(0.5 * mass.damping, mass.frequency, mu * mass.normal_load, np.array([free]))
-    reverses = (speeds > 0.0) & (speeds < abs(free))
-    error = np.where(reverses, np.inf, _at_the_ends(body, speeds))
-    proved = ~reverses
-    if np.all(found.velocity == free):
-        error[reverses] = closed_bound(body, speeds[reverses])
-        proved = proved | (mu * error <= tolerance)
-    open_points = np.flatnonzero(~proved)
-    if len(open_points):
-        trial = one_wave(found.velocity[open_points], mass.frequency, speeds[open_points])
-        low, high = line_bounds(body, trial, speeds[open_points])
-        mean = found.mean[open_points]
-        wide = np.maximum(high - mean, mean - low)
-        proved[open_points] = error[open_points] <= wide
-        error[open_points] = np.minimum(error[open_points], wide)
-    kinds = np.where(proved, "guaranteed", "estimated").tolist()
-    return LeftOut(mu * error, kinds, [too_wide(each, mu) for each in error.tolist()])
-
-
-def _at_the_ends(body: Driven, belt_speeds: Floats) -> Floats:
-    """What rounding leaves open where symmetry or slip without reversal tells the mean, relative to mu."""
-    free = abs(body.free[0]) * (1.0 + body.unsure())
-    share = np.arccos(np.minimum(belt_speeds / free, 1.0)) / math.pi
-    return np.where(belt_speeds > 0.0, 4.0 * share, 0.0) + 4.0 * EPSILON
+    return judged(Modelled(mean, left_out.error, seconds), left_out.reasons, text, tolerance, orbit)
 
 
 def far_from_full(
@@ -254,7 +207,7 @@ def far_from_full(
         error[asked] = np.abs(full.mean - mean[asked]) + full.error + size
         for i, reason in zip(asked, full.reasons, strict=True):
             reasons[i] = reason
-    return LeftOut(error, ["estimated"] * len(scenes), reasons)
+    return LeftOut(error, reasons)
 
 
 def judged(
@@ -279,15 +232,6 @@ def judged(
         orbit=lambda i: None if reasons[i] else orbit(i),
         balanced=False,
     )
-
-
-def too_wide(error: float, mu: float) -> str:
-    """Why an error, relative to mu, is of no use; empty where it is."""
-    if error <= WIDEST:
-        return ""
-    off = f"may be off by {min(error, 2.0) * mu:.2g}" if error < math.inf else "may be anything"
-    because = "because of stick, nearly resting slip or further reversals"
-    return f"no useful bound on the model error: {because} the mean {off}; {ASK_FOR_THE_DISTANCE}"
 
 
 def model_orbit(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:

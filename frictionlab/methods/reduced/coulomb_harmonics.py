@@ -31,19 +31,13 @@ from frictionlab.methods.reduced.balanced_rests import (
 )
 from frictionlab.methods.reduced.balanced_reversals import DrivenLine, balanced_reversals
 from frictionlab.methods.reduced.common import (
-    ROUNDING,
-    LeftOut,
     Modelled,
-    ToldBy,
     far_from_full,
     judged,
     line_refusal,
     point_refusal,
-    too_wide,
 )
 from frictionlab.methods.reduced.full_mean import TOLERANCE
-from frictionlab.methods.reduced.gap import Bounds, line_bounds
-from frictionlab.methods.reduced.reversals import Driven, Switched
 from frictionlab.methods.reduced.switch_response import harmonic_impedances, switch_response
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -99,15 +93,12 @@ class Balanced(NamedTuple):
     """Motions at belt speeds >= 0: their means relative to mu, NaN without one.
 
     half, middle: of forward slip, where it reverses twice. rests: of other motions that reverse, by their places.
-    full: the exact means that those started from, and their errors, NaN elsewhere.
     """
 
     mean: Floats
     half: Floats
     middle: Floats
     rests: dict[int, BalancedLegs]
-    full: Floats
-    full_error: Floats
 
 
 def coulomb_refusal(name: str, scene: Scene, law: FrictionLaw, harmonics: int) -> str | None:
@@ -127,12 +118,7 @@ def coulomb_means(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int, tai
 
 
 def answer_coulomb(
-    scenes: Sequence[Scene],
-    law: FrictionLaw,
-    tolerance: float,
-    told_by: ToldBy,
-    harmonics: int,
-    tail: bool,
+    scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, harmonics: int, tail: bool
 ) -> Answers:
     """Answers on scenes that differ in belt speed alone."""
     start = time.perf_counter()
@@ -140,7 +126,7 @@ def answer_coulomb(
     what = Balancing(scenes[0], mu, harmonics, tail)
     found = balanced(what, law, np.abs(speeds))
     means = mu * np.copysign(1.0, speeds) * found.mean
-    left_out = _left_out(what, found, law, scenes, told_by)
+    left_out = far_from_full(scenes, law, means, np.where(np.isnan(means), "no mean", "").tolist())
     without = (NOT_FOUND if tail else CROSSES_AGAIN).format(harmonics=harmonics)
     reasons = [
         point_refusal(scene, what.friction) or (without if math.isnan(mean) else other)
@@ -160,49 +146,17 @@ def answer_coulomb(
     )
 
 
-def _left_out(
-    what: Balancing, found: Balanced, law: FrictionLaw, scenes: Sequence[Scene], told_by: ToldBy
-) -> LeftOut:
-    """By bounds from friction that switches as the model's does; where the model rests, it started from the exact
-    mean, and its distance from that is known."""
-    speeds = belt_speeds_of(scenes)
-    if told_by == "distance":
-        known = np.where(np.isnan(found.mean), "no mean", "").tolist()
-        left_out = far_from_full(scenes, law, what.mu * np.copysign(1.0, speeds) * found.mean, known)
-        return left_out._replace(reasons=[""] * len(scenes))
-    error = np.abs(found.full / what.mu - found.mean) + found.full_error / what.mu
-    error[(np.abs(speeds) >= friction_free_velocity(what.scene)) | (speeds == 0.0)] = 0.0
-    bounded = np.flatnonzero(np.isfinite(found.half) & (speeds != 0.0))
-    if len(bounded):
-        low, high = _bounds(what, found, np.abs(speeds), bounded)
-        error[bounded] = np.maximum(high - found.mean[bounded], found.mean[bounded] - low)
-    error = error + ROUNDING
-    return LeftOut(
-        what.mu * error, ["estimated"] * len(scenes), [too_wide(each, what.mu) for each in error.tolist()]
-    )
-
-
-def _bounds(what: Balancing, found: Balanced, speeds: Floats, places: NDArray[np.int64]) -> Bounds:
-    mass = what.scene.mass()
-    free = mass.force / harmonic_impedances(mass, 1)
-    body = Driven(0.5 * mass.damping, mass.frequency, what.friction, free)
-    ends = np.stack([found.middle - found.half, found.middle + found.half], axis=1)[places]
-    switches = (ends - what.lead()) / mass.frequency
-    trial = Switched(switches, np.broadcast_to(np.array([1.0, -1.0]), switches.shape))
-    return line_bounds(body, trial, speeds[places])
-
-
 def balanced(what: Balancing, law: FrictionLaw, speeds: Floats) -> Balanced:
     """Motions at belt speeds >= 0."""
     line = what.driven_line()
-    mean, half, middle, full, full_error = np.full((5, len(speeds)), np.nan)
+    mean, half, middle = np.full((3, len(speeds)), np.nan)
     reverses = speeds < line.friction_free
     mean[~reverses] = 1.0
     if reverses.any():
         half[reverses], middle[reverses], settled = balanced_reversals(line, speeds[reverses])
         half[reverses] = np.where(settled, half[reverses], np.nan)
         mean[reverses] = 1.0 - 2.0 / math.pi * half[reverses]
-    found = Balanced(mean, half, middle, {}, full, full_error)
+    found = Balanced(mean, half, middle, {})
     others = np.flatnonzero(np.isnan(mean))
     if what.tail and len(others):
         _add_rests(what, law, speeds, others, found)
@@ -220,7 +174,6 @@ def _add_rests(
         orbit = full.orbit(k)
         if full.status[k] != "ok" or orbit is None:
             continue
-        found.full[place], found.full_error[place] = float(full.mean[k].real), float(full.error[k])
         legs = balanced_legs(line, _legs(orbit, what.scene.frequency, lead), float(speeds[place]))
         if legs is not None:
             found.rests[place] = legs

@@ -1,4 +1,4 @@
-"""The mean friction of the full problem, by which a reduced model's error is told where no bound tells it."""
+"""The mean friction of the full problem, by which a reduced model's error is told."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from frictionlab.scene.scene import Scene
 
 TOLERANCE = 1e-9
 """On the mean, relative to the friction coefficient in quick slip."""
-NOT_KNOWN = "no useful bound on the model error: the steady state is not known"
+NOT_KNOWN = "the model error is not known, for the steady state is not"
 
 
 class FullMeans(NamedTuple):

@@ -15,7 +15,6 @@ from frictionlab.methods.base import Answers, ReducedModel
 from frictionlab.methods.reduced.bristle import answer_bristle, bristle_means, bristle_refusal
 from frictionlab.methods.reduced.common import (
     Harmonic,
-    ToldBy,
     answer_line,
     answer_steadied,
     line_means,
@@ -57,10 +56,10 @@ class HarmonicBalance(ReducedModel):
 
     Amplitude and belt speed follow from their ratio without a search (theory.one_harmonic_velocity); only a given
     belt speed asks for that ratio, the one root of a rising function. The error is what the left-out harmonics,
-    stick included, do to the mean: a bound from the friction along its motion (methods/reduced/gap.py).
+    stick included, do to the mean: the distance to that of ``exact`` or ``shooting``.
 
     Bristle friction has a part in phase with the displacement as well, and both parts ask for a loop of the law at
-    every amplitude looked at (methods/reduced/bristle.py); its error comes from the mean that shooting finds.
+    every amplitude looked at (methods/reduced/bristle.py).
 
     Source: Sulollari, van Dalen & Cabboi, Eqs. 5, 8 and 9 and appendix A.
 
@@ -105,7 +104,7 @@ class HarmonicBalance(ReducedModel):
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer scenes that differ in belt speed alone."""
         return answer_steadied(
-            scenes, lambda others: self._balance(others[0], law).answer(others, law, tolerance, self.error)
+            scenes, lambda others: self._balance(others[0], law).answer(others, law, tolerance)
         )
 
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
@@ -157,20 +156,20 @@ class _Balance(NamedTuple):
     """One harmonic balanced for a kind of law."""
 
     refusal: Callable[[str, Scene, Any], str | None]
-    answer: Callable[[Sequence[Scene], Any, float, ToldBy], Answers]
+    answer: Callable[[Sequence[Scene], Any, float], Answers]
     means: Callable[[Sequence[Scene], Any], Floats | NDArray[np.complex128]]
     cost: Callable[[Scene], float]
 
 
 _OF_COULOMB = _Balance(
     line_refusal,
-    lambda scenes, law, tolerance, told_by: answer_line(scenes, law, tolerance, TEXT, one_harmonic, told_by),
+    lambda scenes, law, tolerance: answer_line(scenes, law, tolerance, TEXT, one_harmonic),
     lambda scenes, law: line_means(scenes, law, one_harmonic),
     lambda scene: 5e-5 * max(1.0, 1.0 / scene.frequency),
 )
 _OF_BRISTLES = _Balance(
     bristle_refusal,
-    lambda scenes, law, tolerance, _told_by: answer_bristle(scenes, law, tolerance),
+    answer_bristle,
     bristle_means,
     lambda _scene: 4e-2,
 )
@@ -181,9 +180,7 @@ def _on_switches(harmonics: int, tail: bool | None) -> _Balance:
     summed = tail is not False
     return _Balance(
         lambda name, scene, law: coulomb_refusal(name, scene, law, harmonics),
-        lambda scenes, law, tolerance, told_by: answer_coulomb(
-            scenes, law, tolerance, told_by, harmonics, summed
-        ),
+        lambda scenes, law, tolerance: answer_coulomb(scenes, law, tolerance, harmonics, summed),
         lambda scenes, law: coulomb_means(scenes, law, harmonics, summed),
         lambda _scene: 1e-5 + 1e-6 * harmonics,
     )
@@ -193,7 +190,7 @@ def _on_legs(harmonics: int, tail: bool | None) -> _Balance:
     """Two harmonics or more, along the belt, of friction that varies with the slip speed."""
     return _Balance(
         lambda name, scene, law: sliding_refusal(name, scene, law, harmonics, tail),
-        lambda scenes, law, tolerance, _told_by: answer_sliding(scenes, law, tolerance, harmonics),
+        lambda scenes, law, tolerance: answer_sliding(scenes, law, tolerance, harmonics),
         lambda scenes, law: sliding_means(scenes, law, harmonics),
         lambda _scene: 2e-2 + 4e-3 * harmonics,
     )
@@ -203,7 +200,7 @@ def _on_samples(harmonics: int, tail: bool | None) -> _Balance:
     """Two harmonics or more of planar friction without memory."""
     return _Balance(
         lambda name, scene, law: planar_refusal(name, scene, law, tail),
-        lambda scenes, law, tolerance, _told_by: answer_planar(scenes, law, tolerance, harmonics),
+        lambda scenes, law, tolerance: answer_planar(scenes, law, tolerance, harmonics),
         lambda scenes, law: planar_means(scenes, law, harmonics),
         lambda _scene: 2e-3 + 1e-5 * harmonics**1.5,
     )

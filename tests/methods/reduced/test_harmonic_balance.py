@@ -280,7 +280,6 @@ def test_friction_far_above_the_load_is_in_the_error() -> None:
     true = with_columns(Exact(), [one], LAW, 1e-9)
     apart = abs(found.columns["mean_friction"][0] - true.columns["mean_friction"][0])
 
-    assert HarmonicBalance().solve([one], LAW, 1e-8).status == ["refused"]
     assert found.status == ["ok"]
     assert apart <= found.columns["error"][0] < 1.01 * apart + 1e-8
 

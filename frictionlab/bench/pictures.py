@@ -30,7 +30,7 @@ UNSTAMPED: dict[str, Mapping[str, Any]] = {"svg": {"Date": None}, "png": {"Softw
 """The kinds of file of a chart, and what is left out of each so that the same chart is the same file."""
 _DIGITS = re.compile(r"(?<=[ -])(\d+\.\d\d)\d+")
 """A coordinate: a hundredth of a point is kept of it, which takes a third off the file."""
-FIGURES: dict[type, Callable[[Any], Figure | None]] = {
+FIGURES_OF_SECTIONS: dict[type, Callable[[Any], Figure | None]] = {
     CurveResult: curve_figure,
     OrdersResult: orders_figure,
     StabilityResult: stability_figure,
@@ -51,7 +51,7 @@ def draw(result: SectionResult, folder: Path) -> list[BenchPicture]:
     """Write the chart of a result as SVG and PNG. Raises OSError."""
     stem, look = file_stem(result.name), dict[Any, Any](STYLE | result.style)
     with mpl.rc_context(look):
-        if (figure := FIGURES[type(result)](result)) is None:
+        if (figure := FIGURES_OF_SECTIONS[type(result)](result)) is None:
             return []
         save_figure(figure, folder, stem)
     return [BenchPicture(stem, result.caption)]

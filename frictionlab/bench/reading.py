@@ -23,7 +23,7 @@ from frictionlab.bench.orders.section import OrdersSection
 from frictionlab.bench.peers.base import Peer
 from frictionlab.bench.peers.listing import PEERS
 from frictionlab.bench.record import BenchSetting, Contender, ReferenceSource, Workload
-from frictionlab.bench.sections import FILLED, Count, Section, file_stem
+from frictionlab.bench.sections import FILLED, AtLeastOne, Section, file_stem
 from frictionlab.bench.stability.section import StabilityMaps
 from frictionlab.methods.base import Method
 from frictionlab.mistakes.notes import Mistake, Notes, Path, StudyError, dotted
@@ -55,12 +55,12 @@ class Measured(Record):
     peers: Many = ()
 
 
-class Keys(Measured):
+class ListKeys(Measured):
     """The keys of a list, but for its schema."""
 
     title: str = ""
     scenes: Many = ()
-    repeats: Count = 30
+    repeats: AtLeastOne = 30
     seconds: Positive = 2.0
     orders: Any = None
     stability: Any = None
@@ -68,7 +68,7 @@ class Keys(Measured):
     models: Many = ()
 
 
-class Block(Measured):
+class ListItem(Measured):
     """A study, whose keys are checked by the reader of studies, and who is measured on it."""
 
     name: str
@@ -78,26 +78,26 @@ class Block(Measured):
     sweep: Any = None
 
 
-class CurveBlock(Block):
+class CurveBlock(ListItem):
     """An item of ``scenes``."""
 
     name: Annotated[str, AfterValidator(_of_a_file)]
 
 
-class MapBlock(Block):
+class MapBlock(ListItem):
     """An item of ``failures``."""
 
     sweep: Any
     points: Many = ()
 
 
-class ModelsBlock(Block):
+class ModelsBlock(ListItem):
     """An item of ``models``."""
 
     sweep: Any
     references: Many
     without: Annotated[tuple[str, ...], FILLED] = ()
-    repeats: Count = 20
+    repeats: AtLeastOne = 20
     seconds: Positive = 1.0
 
 
@@ -105,10 +105,10 @@ class Asked(Record):
     """What a method or peer is asked for beside its own parameters."""
 
     tolerance: Positive = 1e-8
-    points: Count | None = None
+    points: AtLeastOne | None = None
 
 
-class Values(Record):
+class ValuesOfFile(Record):
     """Reference values from a file, relative to the list, and how well they are known."""
 
     values: str
@@ -155,22 +155,22 @@ class _Reader:
 
     def read(self, tree: Any) -> tuple[str, list[Section]]:
         """The title, and every section; empty where there are mistakes."""
-        notes, names = self.notes, Keys.model_fields
+        notes, names = self.notes, ListKeys.model_fields
         if notes.mapping(tree, (), ("schema", *names)) is None:
             return "", []
         sections = tree.keys() & {"orders", "stability", "failures", "models"}
         notes.head(tree, ["schema"] if sections else ["schema", "scenes"], BENCH_SCHEMA)
         told = {key: value for key, value in tree.items() if key in names}
-        keys = build_record(Keys, told, (), notes)
+        keys = build_record(ListKeys, told, (), notes)
         if keys is None:  # what can be read of it may have more mistakes
-            keys = Keys.model_construct(
+            keys = ListKeys.model_construct(
                 **{key: value for key, value in told.items() if not notes.below((key,))}
             )
         found = [*self._curves(keys), *self._records(keys), *self._maps(keys), *self._models(keys)]
         self._note_equal([section.name for section in found], ("scenes",))
         return keys.title, found
 
-    def _records(self, keys: Keys) -> Iterator[Section]:
+    def _records(self, keys: ListKeys) -> Iterator[Section]:
         """Sections that are one record each; ``true`` asks for all they have."""
         for head, kind in (("orders", OrdersSection), ("stability", StabilityMaps)):
             if (given := getattr(keys, head)) is None:
@@ -181,7 +181,7 @@ class _Reader:
 
     # --- blocks: a study each -------------------------------------------------------------------------------------
 
-    def _blocks(self, kind: type[_KeysT], keys: Keys, head: str) -> list[tuple[Path, _KeysT]]:
+    def _blocks(self, kind: type[_KeysT], keys: ListKeys, head: str) -> list[tuple[Path, _KeysT]]:
         """The blocks of a key of the list, with their places."""
         given = getattr(keys, head)
         found = [((head, i), self._keys(kind, item, (head, i))) for i, item in enumerate(given)]
@@ -198,7 +198,7 @@ class _Reader:
         rest: Any = kind.model_construct({*right}, **(required | right))
         return rest
 
-    def _curves(self, keys: Keys) -> Iterator[Section]:
+    def _curves(self, keys: ListKeys) -> Iterator[Section]:
         """A curve for each law of each scene; what a scene does not say holds for all."""
         if not keys.scenes:
             return
@@ -215,7 +215,7 @@ class _Reader:
                 name = block.name if len(study.laws) == 1 else f"{block.name} {label}"
                 yield BenchCurve(name, block.title, work)
 
-    def _maps(self, keys: Keys) -> list[Section]:
+    def _maps(self, keys: ListKeys) -> list[Section]:
         """A section for each method and peer that a list of maps names."""
         found = list[tuple[MapTruth, Sequence[Contender]]]()
         for path, block in self._blocks(MapBlock, keys, "failures"):
@@ -260,7 +260,7 @@ class _Reader:
             if speed is not None and value is not None:
                 yield NamedPoint(name, speed, value)
 
-    def _models(self, keys: Keys) -> Iterator[Section]:
+    def _models(self, keys: ListKeys) -> Iterator[Section]:
         """Of each scene: the first law on all of it is the richest model, which the others are held against."""
         for path, block in self._blocks(ModelsBlock, keys, "models"):
             contenders = self._measured(block, path)
@@ -317,7 +317,7 @@ class _Reader:
     # --- who is measured ------------------------------------------------------------------------------------------
 
     def _measured(
-        self, block: Block, path: Path, shared: dict[str, Contender] | None = None
+        self, block: ListItem, path: Path, shared: dict[str, Contender] | None = None
     ) -> tuple[Contender, ...]:
         """The methods and peers of a block, and those of all."""
         found = (shared or {}) | self._contenders(block, path)
@@ -404,7 +404,7 @@ class _Reader:
         if not files:
             self.notes.add(path[:-1], "give methods: a table of values knows one curve of one model alone")
             return None
-        told = build_record(Values, item, path, self.notes)
+        told = build_record(ValuesOfFile, item, path, self.notes)
         table = None if told is None else self._table(self.folder / told.values, (*path, "values"))
         if told is None or table is None:
             return None
@@ -433,7 +433,7 @@ class _Reader:
                 self.notes.add(path, f"{what}; give each a name of its own")
 
 
-def _told(block: Block) -> dict[str, Any]:
+def _told(block: ListItem) -> dict[str, Any]:
     """The study of a block, as it is written."""
     own = {key: getattr(block, key) for key in OF_A_STUDY if key in block.model_fields_set}
     return {"schema": 1, **own}

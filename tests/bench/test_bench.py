@@ -338,7 +338,7 @@ class Part:
 def sections(monkeypatch: pytest.MonkeyPatch, *parts: Part) -> None:
     """A bench list has these sections, too."""
     read = bench.load_bench
-    monkeypatch.setitem(pictures.FIGURES, Told, lambda result: Figure())
+    monkeypatch.setitem(pictures.FIGURES_OF_SECTIONS, Told, lambda result: Figure())
     monkeypatch.setattr(
         bench, "load_bench", lambda path: replace(found := read(path), sections=(*found.sections, *parts))
     )

@@ -11,7 +11,7 @@ from frictionlab.bench.orders.fit import NO_FIT, Fit, fit_order
 from frictionlab.bench.orders.motions import MOTIONS, KindOfMotion
 from frictionlab.bench.orders.solvers import ORDER_SOLVERS, Refinement
 from frictionlab.bench.orders.theory import TheoryOfOrder, theory_of
-from frictionlab.bench.sections import FILLED, Count, SectionResult, one_of
+from frictionlab.bench.sections import FILLED, AtLeastOne, SectionResult, one_of
 from frictionlab.bench.solvers import solve_points
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
@@ -110,7 +110,7 @@ class OrdersSection(Record):
     steppers: Annotated[tuple[Annotated[Any, one_of(ORDER_SOLVERS)], ...], FILLED] = (
         *ORDER_SOLVERS.values(),
     )
-    samples: Count = 40
+    samples: AtLeastOne = 40
 
     def sections(self) -> list[OrdersSection]:
         """Itself."""

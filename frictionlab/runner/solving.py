@@ -96,7 +96,7 @@ class Solving:
             chunks = (each for each in self._open_chunks() if each.number % shares == number - 1)
             force.solve((each for each in chunks if not self._is_known(each)), self._take, tick)
         finally:
-            if self._keeping.kept is not None:
+            if self._keeping.kept is not None and not self._keeping.must_keep:
                 self._keeping.kept.trim()
 
     def solve_or_say_why_not(self, force: Workforce, progress: Progress) -> bool:

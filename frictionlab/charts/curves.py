@@ -275,23 +275,25 @@ def kinks_of(curve: pd.DataFrame) -> tuple[float, ...]:
     with np.errstate(divide="ignore", invalid="ignore"):
         sliding = np.abs(mean / normalized)[moving]
     sliding = sliding[~np.isnan(sliding)]
-    if _moves_across(curve[moving]) or not len(sliding) or np.ptp(sliding) > 1e-9 * sliding.max():
+    if _moves_across(curve, moving) or not len(sliding) or np.ptp(sliding) > 1e-9 * sliding.max():
         return ()
     speeds = curve[belt_speed(curve.columns)].to_numpy(dtype=float)
     limit = float(np.median(speeds[moving] / ratio[moving]))
     return tuple(speed for speed in (-limit, limit) if speeds.min() < speed < speeds.max())
 
 
-def _moves_across(rows: pd.DataFrame) -> bool:
+def _moves_across(rows: pd.DataFrame, moving: NDArray[np.bool_]) -> bool:
     """Whether something moves the body across the belt: a load or slip there, or one at an angle to the belt."""
     if "transverse_velocity_amplitude" in rows:
-        return bool(rows["transverse_velocity_amplitude"].abs().max() > 0)
+        across = rows["transverse_velocity_amplitude"].to_numpy(dtype=float)
+        return bool((np.abs(across[moving]) > 0.0).any())
     names = [
         name
         for name in rows
         if name.endswith(INPUTS_ACROSS) and ("transverse" in name or "direction" in name)
     ]
-    return any(is_numeric_dtype(rows[name]) and (rows[name].abs() > 0).any() for name in names)
+    numbers = [rows[name].to_numpy(dtype=float) for name in names if is_numeric_dtype(rows[name])]
+    return any(bool((np.abs(each[moving]) > 0.0).any()) for each in numbers)
 
 
 EVEN = 0.3

@@ -157,11 +157,14 @@ def _worth_drawing(family: Family, panel: tuple[SweptValue, ...], most: int) -> 
 
 def _values(family: Family, panel: tuple[SweptValue, ...], positive: str | None = None) -> list[float]:
     """Those along the axis of a panel, or those of them at which a column of some curve is positive."""
-    rows = [curve.rows for curve in family.curves if curve.panel == panel]
-    if positive is not None:
-        rows = [each[each[positive] > 0] if positive in each else each.iloc[:0] for each in rows]
-    found = np.unique(np.concatenate([each[family.abscissa].to_numpy(dtype=float) for each in rows]))
-    return [float(value) for value in found if not np.isnan(value)]
+    found = []
+    for curve in (each for each in family.curves if each.panel == panel):
+        values = curve.rows[family.abscissa].to_numpy(dtype=float)
+        if positive is not None:
+            there = curve.rows.get(positive, pd.Series(0.0, curve.rows.index)).to_numpy(dtype=float) > 0.0
+            values = values[there]
+        found.append(values[~np.isnan(values)])
+    return [float(value) for value in np.unique(np.concatenate(found))]
 
 
 def _chosen(family: Family) -> Iterator[tuple[tuple[SweptValue, ...], list[tuple[CurveData, pd.Series]]]]:

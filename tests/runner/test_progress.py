@@ -108,6 +108,12 @@ def terminal(columns: int) -> Iterator[tuple[TextIO, list[str]]]:
     os.close(ours)
 
 
+def until_written(seen: list[str], times: int) -> None:
+    """Wait until the line has been written so often."""
+    while "".join(seen).count("\r") < times:
+        time.sleep(0.01)
+
+
 @pytest.mark.parametrize("columns", [20, 50, 120])
 def test_the_line_goes_on_by_itself_never_wraps_and_is_gone_at_the_end(
     columns: int, monkeypatch: Any
@@ -116,10 +122,10 @@ def test_the_line_goes_on_by_itself_never_wraps_and_is_gone_at_the_end(
     monkeypatch.setattr("frictionlab.runner.progress.OFTEN", 0.01)
     with terminal(columns) as (stream, seen), Meter(stream, "study 2 of 15: ") as meter:
         meter.begins("finding the onsets of curves that are known by now")
-        time.sleep(0.1)
+        until_written(seen, 3)
         meter.begins("drawing", "figures")
         meter(1, 3)
-        time.sleep(0.1)
+        until_written(seen, 6)
         meter.close()
 
     states = "".join(seen).removesuffix("end").split("\r")

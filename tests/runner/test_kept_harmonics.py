@@ -56,8 +56,6 @@ def test_harmonics_across_the_belt_where_there_is_motion_across() -> None:
         fl.Coulomb(mu=0.4),
         method="mdsm",
     )
-    if state.status == "refused":
-        pytest.skip("mdsm has no bound here")
     along, over = state.harmonics(2), state.harmonics(2, across=True)
     assert along.velocity_amplitude[1] == pytest.approx(state.velocity_harmonic)
     assert over.velocity_amplitude[1] == pytest.approx(state.transverse_velocity_harmonic)

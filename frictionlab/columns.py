@@ -141,22 +141,6 @@ OF_REST = "status", "stick_fraction", "reversals"
 OF_MULTIPLIERS = "status", "period", "floquet"
 """Those between which a multiplier leaves the unit circle."""
 
-ALL, SHAPE, ONSETS_GROUP = "all", "shape", "onsets"
-GROUPS: dict[str, str] = {
-    "answer": "how the mean was found",
-    "uniqueness": "whether every start ends in the same state, and between which means if not",
-    "motion": "velocity along the belt, stick and reversals",
-    "transverse": "mean friction and velocity across the belt",
-    "energies": "work of loads, dashpots and friction, per period, with errors",
-    "multipliers": "Floquet multipliers of the orbit",
-    "ratios": "mean friction, belt speed, friction and presliding length in natural scales",
-    SHAPE: "curves.csv: where curves end and how they bend",
-    ONSETS_GROUP: "onsets.csv: belt speeds at which the motion changes its kind",
-    ALL: "every column, and every table",
-}
-"""Names that ``columns`` takes for several columns each."""
-_OF_TABLES = {SHAPE: OF_SHAPE, ONSETS_GROUP: tuple(dict.fromkeys((*OF_REST, *OF_MULTIPLIERS)))}
-
 DEFAULT: tuple[str, ...] = (
     *("mean_friction", "error", "error_kind", "status", "reason", "unique", "stick_fraction", "reversals"),
     *(
@@ -171,6 +155,27 @@ DEFAULT: tuple[str, ...] = (
     "model",
 )
 """The result columns where none are asked for, each only where some row has it."""
+
+ALL, USUAL, SHAPE, ONSETS_GROUP = "all", "usual", "shape", "onsets"
+GROUPS: dict[str, str] = {
+    USUAL: "those found where no columns are asked for",
+    "answer": "how the mean was found",
+    "uniqueness": "whether every start ends in the same state, and between which means if not",
+    "motion": "velocity along the belt, stick and reversals",
+    "transverse": "mean friction and velocity across the belt",
+    "energies": "work of loads, dashpots and friction, per period, with errors",
+    "multipliers": "Floquet multipliers of the orbit",
+    "ratios": "mean friction, belt speed, friction and presliding length in natural scales",
+    SHAPE: "curves.csv: where curves end and how they bend",
+    ONSETS_GROUP: "onsets.csv: belt speeds at which the motion changes its kind",
+    ALL: "every column, and every table",
+}
+"""Names that ``columns`` takes for several columns each."""
+_OF_TABLES = {
+    USUAL: DEFAULT,
+    SHAPE: OF_SHAPE,
+    ONSETS_GROUP: tuple(dict.fromkeys((*OF_REST, *OF_MULTIPLIERS))),
+}
 
 
 def columns_of(group: str) -> tuple[str, ...]:

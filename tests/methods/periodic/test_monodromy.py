@@ -81,7 +81,7 @@ def test_where_the_map_has_no_derivative_there_is_no_multiplier_but_a_reason() -
         mu_kinetic=0.3295774612701697, presliding_length=0.49855881722710593, damping=1.091685038792133
     )
 
-    row = fl.curve(scene, law, [scene.belt_speed], "shooting", 1e-8).iloc[0]
+    row = fl.curve(scene, law, [scene.belt_speed], "shooting", 1e-8, columns="all").iloc[0]
 
     assert row["status"] == "ok"
     assert np.isnan(row["floquet"])

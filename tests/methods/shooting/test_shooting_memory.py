@@ -184,7 +184,8 @@ def test_the_error_covers_what_scipy_finds_on_the_interpreted_law(
 
 
 def test_a_curve_of_elements_has_every_column_of_a_steady_state() -> None:
-    table = fl.curve(driven(1.0), THREE, belt_speed=np.linspace(0.5, 25.0, 8), tolerance=1e-6)
+    speeds = np.linspace(0.5, 25.0, 8)
+    table = fl.curve(driven(1.0), THREE, belt_speed=speeds, tolerance=1e-6, columns="all")
 
     assert set(table["status"]) == {"ok"}
     assert "mass and memory" in table["model"][0]

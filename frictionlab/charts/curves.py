@@ -184,7 +184,7 @@ def _curves(table: pd.DataFrame, abscissa: str, panels: list[str], member: str |
         own = settings.pop() if member else None
         settings = [*([("law", law)] if apart else []), *settings]
         place = 0 if apart else laws.index(law), _index(members, own), methods.index(method)
-        rows = rows.sort_values(abscissa)
+        rows = rows if rows[abscissa].is_monotonic_increasing else rows.sort_values(abscissa)
         kinks = kinks_of(rows) if abscissa in BELT_SPEEDS else ()
         curves.append(CurveData(law, method, tuple(settings), own, place, rows, kinks))
     seen = list(dict.fromkeys(curve.panel for curve in curves))

@@ -72,15 +72,6 @@ class Signals(NamedTuple):
     sines: np.ndarray
 
 
-class Count(NamedTuple):
-    """Of a period: time at rest, sign changes of w1 and of the friction force along x1, steps."""
-
-    rest: float
-    reversals: int
-    force_reversals: int
-    steps: int
-
-
 @numba.njit(cache=True)
 def signals_at(now, t):
     """Loads, belt velocity and normal load at t, in their order, and the belt's acceleration."""

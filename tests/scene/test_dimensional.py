@@ -17,7 +17,7 @@ import frictionlab as fl
 from frictionlab.charts import figures
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import family_of
-from frictionlab.columns import RESULTS, SI
+from frictionlab.columns import SI
 from frictionlab.laws.base import Dimension, Positive, Record
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.units import Units, dimensions, scaled_law
@@ -79,19 +79,6 @@ def in_si(scene: Scene, mass: float, stiffness: float, length: float) -> dict[st
 
 def si_scene(**body: Any) -> Scene:
     return Scene(dimensional=fl.Dimensional.model_validate(body))
-
-
-def numbers(state: fl.SteadyState) -> dict[str, float]:
-    """Every nondimensional result that does not depend on the machine."""
-    found = {name: getattr(state, name) for name in RESULTS}
-    return {name: x for name, x in found.items() if isinstance(x, float) and name not in ("seconds", "error")}
-
-
-def assert_close(one: dict[str, float], other: dict[str, float], within: float) -> None:
-    assert one.keys() == other.keys()
-    for name, value in one.items():
-        size = max(1.0, abs(value))
-        assert other[name] == pytest.approx(value, rel=0.0, abs=within * size, nan_ok=True), name
 
 
 # One physics

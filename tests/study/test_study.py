@@ -527,14 +527,6 @@ def _keys_of(made: dict[str, Any], at: dict[str, Any]) -> set[str]:
     return found
 
 
-def _refused_as_unknown(tree: dict[str, Any], path: str) -> bool:
-    try:
-        parse_study(tree)
-    except StudyError as problem:
-        return any(m.path == path and m.what.startswith("unknown key") for m in problem.mistakes)
-    return False
-
-
 def _allowed(tree: dict[str, Any], path: str) -> list[str]:
     """The keys that a refusal of a nonsense key says are allowed."""
     with pytest.raises(StudyError) as caught:

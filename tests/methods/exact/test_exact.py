@@ -10,6 +10,7 @@ import pytest
 from answered import with_columns
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from resonance import at_resonance as scene
 
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
@@ -32,17 +33,6 @@ from frictionlab.theory import (
 REFERENCE = Path(__file__).parents[2] / "reference"
 FILES = sorted(REFERENCE.glob("sdof_fig*.csv"))
 LAW = Coulomb(mu=0.4)
-
-
-def scene(belt_speed, **changes):
-    """Paper, Fig. 4b, but for the changes."""
-    values = {
-        "damping_ratio": 0.1,
-        "normal_load": 10.0,
-        "drive": Drive(unbalance=10.0, frequency=1.0),
-        **changes,
-    }
-    return Scene(belt_speed=belt_speed, **values)
 
 
 def solve(scenes, tolerance=1e-11, law=LAW):

@@ -11,6 +11,7 @@ import pytest
 from answered import with_columns
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from resonance import at_resonance as scene
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
@@ -27,17 +28,6 @@ FIG_4 = {1.0: "sdof_fig4b_fig7a_Om1_g10.csv", 1.5: "sdof_fig4a_Om1.5_g10.csv"}
 
 decades = st.floats(-2.5, 0.0).map(lambda exponent: 10.0**exponent)
 frequencies = st.floats(-0.5, 1.0).map(lambda exponent: 10.0**exponent)
-
-
-def scene(belt_speed, frequency=1.0, **changes):
-    """Paper, Fig. 4, but for the changes."""
-    values = {
-        "damping_ratio": 0.1,
-        "normal_load": 10.0,
-        "drive": Drive(unbalance=10.0, frequency=frequency),
-        **changes,
-    }
-    return Scene(belt_speed=belt_speed, **values)
 
 
 def driven(frequency, damping, ratio, share):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from answered import with_columns
 from profiles import deep
+from resonance import at_resonance as scene
 
 from frictionlab.compile.cache import compiled
 from frictionlab.laws.coulomb import Coulomb
@@ -43,17 +44,6 @@ def over_a_sine(law, kappa, exact=None):
         contact = contact._replace(exact=exact)
     found = Harmonics(*compiled(harmonic_friction, law)(contact, 1.0, kappa, 1.0))
     return found._replace(mean=found.mean / MU, sine=found.sine / MU, cosine=found.cosine / MU)
-
-
-def scene(belt_speed, frequency=1.0, **changes):
-    """Paper, Fig. 4, but for the changes."""
-    values = {
-        "damping_ratio": 0.1,
-        "normal_load": 10.0,
-        "drive": Drive(unbalance=10.0, frequency=frequency),
-        **changes,
-    }
-    return Scene(belt_speed=belt_speed, **values)
 
 
 def solve(scenes, law):

@@ -161,7 +161,7 @@ def _stand_in(kind: str, given: list[dict[str, Any]], told: LawText) -> type[Fri
     fields: dict[str, Any] = {
         key: ((float | None) if isinstance(value, int | float) else Any, None)
         for key, value in values.items()
-        if key not in ("kind", "label")
+        if str(key).isidentifier() and key not in ("kind", "label")
     }
     made = create_model(kind, __base__=SavedLaw, __doc__=told.docstring, **fields)
     made.bibtex = told.bibtex

@@ -17,7 +17,7 @@ from frictionlab.registry.law_file import read_law_file
 from frictionlab.report import write_report
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.saved import read_saved
-from frictionlab.study import StudyError, load_study
+from frictionlab.study import StudyError, load_study, read_back
 from frictionlab.study.yaml_text import yaml_text
 
 LAW = '''"""A law for tests."""
@@ -270,3 +270,12 @@ def test_a_file_that_is_named_twice_is_one() -> None:
 
     assert cli.main(["run", str(path), "--law", "laws/my_law.py", "-o", "out"]) == 0
     assert load_study("out/study.yaml").resolved()["plugins"] == ["laws/my_law.py"]
+
+
+def test_a_saved_law_with_a_damaged_parameter_is_told_as_a_mistake(tmp_path: Path) -> None:
+    file = tmp_path / "study.yaml"
+    scene = "{belt_speed: 1, slip: {velocity_amplitude: 2, frequency: 1}}"
+    file.write_text(f'schema: 1\nscene: {scene}\nlaws: [{{kind: steady, "mu:!0.4": null}}]\n')
+
+    with pytest.raises(StudyError, match=r"mu:!0\.4"):
+        read_back(file, {"steady": "0" * 64})

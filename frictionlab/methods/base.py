@@ -131,10 +131,6 @@ class Method(Record, ABC):
         """
         return []
 
-    def hangs_on_curve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> bool:
-        """Whether the answers of these scenes hang on the other belt speeds of their curve, ``Scenes.curve``."""
-        return False
-
     @abstractmethod
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Expected kernel time per point [s], once compiled; for planning only."""

@@ -65,8 +65,6 @@ class Keys:
         ]
         digest = hashlib.sha256("\0".join(told).encode())
         digest.update(scenes.belt_speeds.tobytes())
-        if chunk.method.hangs_on_curve(scenes, chunk.law, task.tolerance):
-            digest.update(scenes.curve.belt_speeds.tobytes())
         return digest.hexdigest()
 
     def _stand_in(self, record: FrictionLaw | Method) -> str | None:

@@ -118,9 +118,8 @@ def _onsets_of_multipliers(curve: StudyCurve, rows: pd.DataFrame, tolerance: flo
 
 
 def _solved(curve: StudyCurve, tolerance: float, scenes: Scenes) -> list[tuple[Answers, int]]:
-    """The answers of every scene, by the model that answered the points of the table."""
-    rows, scenes = np.arange(len(scenes)), Scenes(scenes.scene, scenes.given, curve.scenes.curve.given)
-    pieces = answer(Chunk(rows, scenes, curve.law, curve.method.method, Task(tolerance)))
+    """The answers of every scene."""
+    pieces = answer(Chunk(np.arange(len(scenes)), scenes, curve.law, curve.method.method, Task(tolerance)))
     places = {place: (each.answers, i) for each in pieces for i, place in enumerate(each.places)}
     return [places[i] for i in range(len(scenes))]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cached_property
 from typing import overload
 
 import numpy as np
@@ -12,15 +11,11 @@ from numpy.typing import NDArray
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
-MOST_TOLD = 187
-"""Belt speeds by which a piece of a curve knows the whole: all of those of a curve that is solved in one piece."""
-
 
 class Scenes(Sequence[Scene]):
     """A scene along an array of belt speeds; a scene of its own is made of one of them where somebody asks for it.
 
     given: the belt speeds in the units in which the scene was given [scene velocity; m/s for a scene in SI units].
-    told: those of the curve that these are a piece of; None where they are all.
 
     >>> from frictionlab import Drive
     >>> scene = Scene(damping_ratio=0.1, normal_load=1, belt_speed=0, drive=Drive(amplitude=1, frequency=2))
@@ -28,8 +23,8 @@ class Scenes(Sequence[Scene]):
     2.0
     """
 
-    def __init__(self, scene: Scene, given: Floats, told: Floats | None = None) -> None:
-        self.scene, self.given, self._told = scene, given, told
+    def __init__(self, scene: Scene, given: Floats) -> None:
+        self.scene, self.given = scene, given
 
     @classmethod
     def of(cls, scenes: Sequence[Scene]) -> Scenes:
@@ -45,18 +40,6 @@ class Scenes(Sequence[Scene]):
         si = self.scene.dimensional
         return self.given if si is None else self.given / si.scales.velocity
 
-    @cached_property
-    def curve(self) -> Scenes:
-        """The curve that these are a piece of, the same for every piece: ascending, each belt speed once.
-
-        Of a long one ``MOST_TOLD`` belt speeds, as evenly spread over its points as they can be, both ends included.
-        """
-        if self._told is None:
-            rising = np.unique(self.given)
-            picked = np.linspace(0, len(rising) - 1, min(len(rising), MOST_TOLD)).round().astype(np.int64)
-            return Scenes(self.scene, rising[picked])
-        return Scenes(self.scene, self._told)
-
     def __len__(self) -> int:
         return len(self.given)
 
@@ -68,7 +51,7 @@ class Scenes(Sequence[Scene]):
 
     def __getitem__(self, place: int | slice) -> Scene | Scenes:
         if isinstance(place, slice):
-            return Scenes(self.scene, self.given[place], self.curve.given)
+            return Scenes(self.scene, self.given[place])
         return self.scene.at(float(self.given[place]))
 
     def __iter__(self) -> Iterator[Scene]:
@@ -76,7 +59,7 @@ class Scenes(Sequence[Scene]):
 
     def taken(self, places: Sequence[int] | NDArray[np.int64]) -> Scenes:
         """Those at these places."""
-        return Scenes(self.scene, self.given[np.asarray(places, dtype=np.int64)], self.curve.given)
+        return Scenes(self.scene, self.given[np.asarray(places, dtype=np.int64)])
 
 
 def belt_speeds_of(scenes: Sequence[Scene]) -> Floats:

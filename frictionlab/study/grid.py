@@ -157,10 +157,9 @@ class StudyGrid:
 
     def _along_chosen(self, built: list[Scene]) -> tuple[tuple[Scenes, range], ...]:
         assert self.chosen_range is not None
-        known = np.array(self.chosen_range.known())
         ends = list(itertools.accumulate(map(len, self.chosen), initial=0))
         return tuple(
-            (Scenes(scene, np.array(speeds, dtype=np.float64), known), range(start, start + len(speeds)))
+            (Scenes(scene, np.array(speeds, dtype=np.float64)), range(start, start + len(speeds)))
             for scene, speeds, start in zip(built, self.chosen, ends[:-1], strict=True)
         )
 

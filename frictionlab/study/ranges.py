@@ -77,7 +77,6 @@ FIRST_SPEEDS = 17
 """Belt speeds, evenly spaced, from which others are chosen."""
 CLOSEST = 2.0**-20
 """Share of a range within which no belt speed is chosen beside another: there a jump of friction is left."""
-_KNOWN_SPEEDS = 187
 """Belt speeds by which methods know the curve: as many as of the longest that is solved in one piece."""
 
 
@@ -95,10 +94,6 @@ class SpeedRange(_Ends):
     def first(self) -> tuple[float, ...]:
         """Those to begin with."""
         return self._even(FIRST_SPEEDS)
-
-    def known(self) -> tuple[float, ...]:
-        """Those by which methods know the curve, whichever are chosen: its model does not change as others come."""
-        return self._even(_KNOWN_SPEEDS)
 
     def about(self) -> tuple[float, ...]:
         """About as many as will be chosen, evenly spaced: mostly where the curve bends at V_lin."""

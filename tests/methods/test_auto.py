@@ -8,14 +8,11 @@ from answered import with_columns
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
-from frictionlab.laws.dahl import Dahl
 from frictionlab.laws.stribeck import Stribeck
-from frictionlab.methods.auto import METHODS_BY_COST, RUNGS, Auto
+from frictionlab.methods.auto import METHODS_BY_COST, Auto
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.reduced.stiff_bristle import StiffBristle
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse
-from frictionlab.scene.scenes import Scenes
 
 LAW = Coulomb(mu=0.4)
 
@@ -129,72 +126,3 @@ def test_what_exact_refuses_along_the_belt_is_answered_by_shooting(one, law):
 
     assert isinstance(method, Shooting)
     assert "exact needs" in why
-
-
-STIFF = Dahl(mu=0.4, presliding_length=1e-5)
-"""Coulomb friction differs by less than 1e-2 at every belt speed, by less than 1e-3 on slow belts alone."""
-
-
-def curve(*belt_speeds, law_scene=None):
-    return Scenes(law_scene or scene(1.0), np.array(belt_speeds))
-
-
-def test_a_stiff_bristle_is_coulomb_friction_where_that_is_within_the_tolerance():
-    scenes = curve(0.7, 20.0, 47.0, 70.0)
-    answers, true = Auto().solve(scenes, STIFF, 1e-2), Shooting().solve(scenes, STIFF, 1e-6)
-    assert answers.status == ["ok"] * 4
-    assert np.all(answers.error <= 1e-2)
-    assert np.all(np.abs(answers.mean - true.mean.real) <= answers.error + true.error)
-    for model in answers.model:
-        assert model.startswith("Coulomb friction for a stiff contact: ")
-        assert "(auto: exact, least model within 1e-02 along the curve: leaves out the deflection of" in model
-        assert "by no more than error; shooting on the full model takes about 133 us a point)" in model
-
-
-def test_at_a_tolerance_that_a_smaller_model_misses_somewhere_the_whole_curve_is_solved_in_full():
-    slow, whole = curve(0.7, 2.0), curve(0.7, 2.0, 20.0, 47.0)
-    assert all(model.startswith("Coulomb") for model in Auto().solve(slow, STIFF, 1e-3).model)
-    assert all(model.startswith("shooting") for model in Auto().solve(whole, STIFF, 1e-3).model)
-
-
-def test_pieces_of_a_curve_are_solved_by_the_model_of_the_curve():
-    whole = curve(*np.linspace(0.7, 47.0, 8))
-    for tolerance, start in ((1e-2, "Coulomb"), (1e-3, "shooting")):
-        for piece in (whole[:3], whole[3:], whole.taken([0, 4]), whole[:3].taken([1])):
-            assert all(model.startswith(start) for model in Auto().solve(piece, STIFF, tolerance).model)
-            assert Auto().hangs_on_curve(piece, STIFF, tolerance)
-    pieces = [Auto().solve(piece, STIFF, 1e-2) for piece in (whole[:3], whole[3:])]
-    together = np.concatenate([piece.mean for piece in pieces])
-    np.testing.assert_allclose(together, Auto().solve(whole, STIFF, 1e-2).mean, rtol=0.0, atol=1e-12)
-
-
-def test_of_a_long_curve_a_piece_knows_both_ends_and_points_between():
-    speeds = np.random.default_rng(1).permutation(np.linspace(0.5, 60.0, 5000))
-    told = Scenes(scene(1.0), speeds).taken(range(100)).curve.belt_speeds
-    assert (told[0], told[-1]) == (0.5, 60.0)
-    assert len(told) < 200
-    assert np.all((np.diff(told) > 0.0) & (np.diff(told) < 0.4))
-
-
-@pytest.mark.parametrize(("law", "load"), [(LAW, None), (LAW, 10.0), (STIFF, None)])
-def test_at_the_usual_tolerance_no_smaller_model_is_tried(monkeypatch, law, load):
-    def tried(*_):
-        raise AssertionError
-
-    for rung in RUNGS:
-        monkeypatch.setattr(type(rung), "solve", tried)
-    one = scene(5.0, load)
-    assert not Auto().hangs_on_curve(curve(5.0, law_scene=one), law, 1e-8)
-    assert Auto().solve([one], law, 1e-8).status == ["ok"]
-
-
-def test_a_smaller_model_is_solved_once_for_a_curve_of_one_piece(monkeypatch):
-    solved, solve = [], StiffBristle.solve
-
-    def counted(self, scenes, law, tolerance):
-        solved.append(len(scenes))
-        return solve(self, scenes, law, tolerance)
-
-    monkeypatch.setattr(StiffBristle, "solve", counted)
-    Auto().solve(curve(0.7, 20.0, 47.0), STIFF, 1e-2)
-    assert solved == [3]

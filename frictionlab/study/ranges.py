@@ -77,7 +77,6 @@ FIRST_SPEEDS = 17
 """Belt speeds, evenly spaced, from which others are chosen."""
 CLOSEST = 2.0**-20
 """Share of a range within which no belt speed is chosen beside another: there a jump of friction is left."""
-"""Belt speeds by which methods know the curve: as many as of the longest that is solved in one piece."""
 
 
 class SpeedRange(_Ends):

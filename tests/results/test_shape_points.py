@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import frictionlab as fl
@@ -29,6 +29,8 @@ def has_all_measures(speeds: list[float], end: float) -> bool:
         return False
 
 
+@example(shares=[5e-324], decade=0.0)
+@example(shares=[5e-324], decade=1.0)
 @given(
     shares=st.lists(st.floats(-0.1, 1.5) | st.floats(0.0, 0.12), max_size=30),
     decade=st.floats(-6.0, 6.0),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from profiles import DEEP
 
-KILLS = 100 if DEEP else 1
+KILLS = 50 if DEEP else 1
 
 
 def test_a_killed_run_is_gone_on_with_to_the_same_files_and_none_besides() -> None:

@@ -11,7 +11,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes
-from frictionlab.shape.interpolant import LEAST_POINTS, ROUNDING, STEP, WIDEST_GAP
+from frictionlab.shape.interpolant import LEAST_POINTS, NO_SHARE, STEP, WIDEST_GAP
 from frictionlab.theory.linear import friction_free_velocity
 
 BEYOND = 1.05
@@ -46,7 +46,7 @@ def _end(scene: Scene, law: FrictionLaw) -> float:
 
 def lacking_speeds(speeds: Floats | Sequence[float], end: float) -> list[float]:
     """Belt speeds that all measures of shape ask for, beyond those given. end: of reversal, > 0."""
-    known = sorted({float(speed) for speed in speeds if speed > ROUNDING * end})
+    known = sorted({float(speed) for speed in speeds if speed > NO_SHARE * end})
     given = set(known)
     if not known or known[-1] < end:
         known.append(_round(BEYOND * end))

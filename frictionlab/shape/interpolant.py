@@ -18,7 +18,7 @@ WINDOW = 0.8
 """Share of the range in which the curve is interpolated a second time, without the kink at the end of reversal."""
 STEP = 0.05
 """Step of the second difference at rest, as a share of the end of reversal."""
-ROUNDING = 1e-12
+NO_SHARE = 1e-12
 """Share of the range, or of friction, that is taken for none."""
 
 _FLAT = "friction may not rise between rest and the end of reversal"
@@ -50,7 +50,7 @@ class Estimate(NamedTuple):
     @property
     def ends(self) -> list[float]:
         """Both ends of the interval of the number; empty where they agree to rounding."""
-        sharp = self.error <= ROUNDING * abs(self.value)
+        sharp = self.error <= NO_SHARE * abs(self.value)
         return [] if sharp else [self.value - self.error, self.value + self.error]
 
 
@@ -73,13 +73,13 @@ class FrictionCurve:
     def inside(self) -> NDArray[np.bool_]:
         """Which points lie between rest and the end of reversal, apart from either by more than rounding."""
         share = self.speed / self.end.value
-        return (share > ROUNDING) & (share < 1.0 - ROUNDING)
+        return (share > NO_SHARE) & (share < 1.0 - NO_SHARE)
 
     @property
     def end_friction(self) -> float:
         """Friction at the end of reversal: of the first point beyond a kink, interpolated for smooth friction."""
         if self.kinked:
-            first = int(np.searchsorted(self.speed, self.end.value * (1.0 - ROUNDING)))
+            first = int(np.searchsorted(self.speed, self.end.value * (1.0 - NO_SHARE)))
             return float(self.friction[first])
         return float(monotone_cubic(self.speed, self.friction)(self.end.value))
 
@@ -104,14 +104,14 @@ def interpolant_of(curve: FrictionCurve) -> Interpolant:
     Raises UnreadableCurve for a curve that does not rise.
     """
     low, high = curve.start.value, curve.end_friction
-    if high - low <= ROUNDING * float(np.abs(curve.friction).max()):
+    if high - low <= NO_SHARE * float(np.abs(curve.friction).max()):
         raise UnreadableCurve(_FLAT)
     inside = curve.inside
     angle = np.concatenate(([0.0], np.arcsin(curve.speed[inside] / curve.end.value), [0.5 * np.pi]))
     path = monotone_cubic(angle, np.concatenate(([low], curve.friction[inside], [high])))
     edge, half, first, second = path(np.arcsin([WINDOW, 0.5, STEP, 2.0 * STEP]))
     rise = max(
-        float(edge) - low, ROUNDING * abs(high)
+        float(edge) - low, NO_SHARE * abs(high)
     )  # a curve that falls again may have no rise within the window
     return Interpolant(
         range=(path(_ANGLE) - low) / (high - low),
@@ -124,7 +124,7 @@ def interpolant_of(curve: FrictionCurve) -> Interpolant:
 def check_points(curve: FrictionCurve) -> None:
     """Raises UnreadableCurve for a curve that ends below the end of reversal or has too few points up to it."""
     end, below = curve.end.value, curve.speed[curve.inside]
-    if not curve.speed.size or curve.speed[-1] < end * (1.0 - ROUNDING):
+    if not curve.speed.size or curve.speed[-1] < end * (1.0 - NO_SHARE):
         last = f"ends at belt speed {curve.speed[-1]:.6g}," if curve.speed.size else "has no points"
         raise UnreadableCurve(f"the curve {last} below the end of reversal, {end:.6g}")
     if below.size < LEAST_POINTS:

@@ -16,7 +16,8 @@ from frictionlab.bench.orders.motions import MOTIONS
 from frictionlab.bench.orders.section import OrdersResult, OrdersSection
 from frictionlab.bench.orders.solvers import ORDER_SOLVERS
 from frictionlab.bench.orders.theory import theory_of
-from frictionlab.methods.march.run import MarchRun, Resolution
+from frictionlab.methods.march.run import MarchRun
+from frictionlab.methods.march.steppers import Resolution
 from frictionlab.study import StudyError
 
 SIZES = 0.5 ** np.arange(8)

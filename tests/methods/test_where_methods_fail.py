@@ -17,7 +17,8 @@ from scipy.integrate import solve_ivp
 
 import frictionlab as fl
 from frictionlab.methods.march.method import March
-from frictionlab.methods.march.run import MarchRun, Resolution
+from frictionlab.methods.march.run import MarchRun
+from frictionlab.methods.march.steppers import Resolution
 
 # Strong friction at resonance: x'' + 0.2 x' + x + 4 Sgn(x' - v_b) = 10 sin(tau); slip reverses below v_b = 50.
 DAMPING, LOAD, FRICTION, MU = 0.1, 10.0, 4.0, 0.4

@@ -12,7 +12,8 @@ from frictionlab.bench.orders.motions import KindOfMotion
 from frictionlab.bench.solvers import solve_points
 from frictionlab.methods.base import Method
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.march.run import MarchResult, MarchRun, Resolution
+from frictionlab.methods.march.run import MarchResult, MarchRun
+from frictionlab.methods.march.steppers import Resolution, StepperName
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
@@ -45,7 +46,7 @@ class FixedSteps:
     """A stepper of march with steps of one length."""
 
     name: str
-    stepper: str
+    stepper: StepperName
     memory: tuple[str, ...]
     theta: float = 0.5
 

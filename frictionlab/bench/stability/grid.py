@@ -13,7 +13,8 @@ from frictionlab.bench.solvers import solve_points
 from frictionlab.bench.stability.problems import PROBLEMS, StabilityProblem, width_at
 from frictionlab.bench.stability.record import MapPoint, StabilityMap, StepLimit
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.march.run import MarchRun, MarchState, Resolution
+from frictionlab.methods.march.run import MarchRun, MarchState
+from frictionlab.methods.march.steppers import Resolution, StepperName
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Scene
 
@@ -55,7 +56,7 @@ def known_state(problem: str, rate: float, smoothed: bool = False) -> KnownState
         return KnownState(scene, ready, run.mean.real, 1e-9, run.met, run.place)
     found = solve_points(Shooting(), [scene], law, BEST_TOLERANCE)
     steps = max(FINE_STEPS[problem], int(8.0 * rate))
-    stepper = "moreau" if problem == "smoothing" else "rk4"
+    stepper: StepperName = "moreau" if problem == "smoothing" else "rk4"
     run = MarchRun(scene, ready, stepper).run(Resolution(steps=steps, enough=1e-12, most=SETTLED_LAPS))
     return KnownState(scene, ready, float(found.means[0]), float(found.errors[0]), run.met, run.place)
 

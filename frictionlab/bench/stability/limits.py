@@ -15,7 +15,8 @@ from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
-from frictionlab.methods.march.run import MarchRun, MarchState, Resolution
+from frictionlab.methods.march.run import MarchRun, MarchState
+from frictionlab.methods.march.steppers import Resolution, StepperName
 from frictionlab.numerics.steppers import dop853, rk4
 from frictionlab.scene.scene import Drive, Load, Scene, Transverse
 
@@ -52,7 +53,7 @@ def measured_limit(growth: Callable[[float], float]) -> float:
 
 
 @cache
-def stepper_limit(stepper: str, theta: float, memory: str) -> float:
+def stepper_limit(stepper: StepperName, theta: float, memory: str) -> float:
     """The measured limit of a stepper of march, on bristles or on slip in the plane."""
     if stepper == "smoothed":
         return measured_limit(_growth_of_dop853)
@@ -60,7 +61,7 @@ def stepper_limit(stepper: str, theta: float, memory: str) -> float:
     return measured_limit(lambda z: grows(stepper, theta, z))
 
 
-def _growth_of_bristles(stepper: str, theta: float, z: float) -> float:
+def _growth_of_bristles(stepper: StepperName, theta: float, z: float) -> float:
     """Of a deflection, under a slip that nothing changes: the difference of two steps."""
     scene = Scene(
         damping_ratio=0.0,
@@ -75,7 +76,7 @@ def _growth_of_bristles(stepper: str, theta: float, z: float) -> float:
     return abs(complex(ends[1].z[0] - ends[0].z[0]))
 
 
-def _growth_across(stepper: str, theta: float, z: float) -> float:
+def _growth_across(stepper: StepperName, theta: float, z: float) -> float:
     """Of a small velocity across the belt, while the spring balances friction along it."""
     small = 1e-6
     scene = Scene(
@@ -89,7 +90,9 @@ def _growth_across(stepper: str, theta: float, z: float) -> float:
     return abs(end.v.imag) / small
 
 
-def _one_step(scene: Scene, law: FrictionLaw, stepper: str, theta: float, start: MarchState) -> MarchState:
+def _one_step(
+    scene: Scene, law: FrictionLaw, stepper: StepperName, theta: float, start: MarchState
+) -> MarchState:
     """A lap of one step."""
     return MarchRun(scene, law, stepper).run(Resolution(steps=1, most=1, theta=theta), start).place
 

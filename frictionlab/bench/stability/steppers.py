@@ -15,9 +15,9 @@ from frictionlab.bench.stability.problems import StabilityProblem, width_at
 from frictionlab.bench.stability.record import MapPoint, StepLimit
 from frictionlab.methods.march.error import Plan, march_mean
 from frictionlab.methods.march.method import March
-from frictionlab.methods.march.run import MarchRun, Resolution
+from frictionlab.methods.march.run import MarchRun
 from frictionlab.methods.march.stability import quickest_when_held
-from frictionlab.numerics.steppers import exponential
+from frictionlab.methods.march.steppers import STEPPERS, Resolution, StepperName
 
 LONGEST_MARCH = 200
 """That a motion is waited for to repeat: where it is right, it does so in twenty, but for rounding."""
@@ -31,14 +31,19 @@ class MappedStepper(MappedSolver):
     """A stepper of march at fixed steps."""
 
     setting: ClassVar[Literal["steps", "tolerance"]] = "steps"
-    stepper: str
+    stepper: StepperName
     theta: float = 0.5
+
+    @property
+    def _held(self) -> float:
+        """Largest step times frequency of a mass held by its contact, where nothing else limits steps."""
+        facts = STEPPERS[self.stepper]
+        return math.inf if facts.limited_by_rates else facts.held
 
     def limit(self, problem: StabilityProblem) -> StepLimit:
         """By theory, and of one step."""
         measured = stepper_limit(self.stepper, self.theta, problem.memory)
-        held = exponential.DECAY if self.stepper == "exponential" else math.inf
-        return StepLimit(predicted_limit(self.stepper, self.theta), measured, held)
+        return StepLimit(predicted_limit(self.stepper, self.theta), measured, self._held)
 
     def point(self, problem: StabilityProblem, rate: float, at: float) -> MapPoint:
         """At so many steps per period."""
@@ -48,7 +53,7 @@ class MappedStepper(MappedSolver):
             return self._not_offered(known, steps, rate, step)
         theta = self.theta if self.stepper == "moreau" else None
         method = March(stepper=self.stepper, theta=theta, steps=steps, periods=LONGEST_MARCH)
-        held = step * quickest_when_held(known.scene, known.law) if self.stepper == "exponential" else 0.0
+        held = step * quickest_when_held(known.scene, known.law) if math.isfinite(self._held) else 0.0
         return _answered(method, known, 1e-6, MapPoint(at, rate, step, "", "", 0.0, 0.0, held))
 
     def _not_offered(self, known: KnownState, steps: int, rate: float, step: float) -> MapPoint:

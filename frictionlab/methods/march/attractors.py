@@ -81,7 +81,7 @@ class OtherStarts:
     @property
     def _steps(self) -> float:
         """The error of a mean from the time steps."""
-        if self.march.stepper == "smoothed":  # no grid, and a bias that both runs share
+        if self.march.facts.adaptive:  # no grid, and a bias that both runs share
             return 1e-5 * self.march.at_rest
         beside = abs(self.like.mean.real - self.mean.mean.real)
         return self.mean.error + beside + crossing(self.march, self.like)

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from frictionlab.methods.march.laps import CLOSED, LATE, STALLED, TIRED, TOO_FAST, TOO_STIFF
-from frictionlab.methods.march.run import MarchResult, MarchRun, Resolution
+from frictionlab.methods.march.run import MarchResult, MarchRun
 from frictionlab.methods.march.stability import MARGIN, lightest_contact
+from frictionlab.methods.march.steppers import Resolution, StepperName
 from frictionlab.numerics.richardson import FEWEST, REVERSING, SMOOTH, STICKING, bias, first_error, richardson
 
 COARSEST, WORK = 64, 16_000_000
@@ -26,7 +27,7 @@ ROUNDING = 1e-13
 class Plan(NamedTuple):
     """The parameters of a study for time stepping, defaults filled in."""
 
-    stepper: str
+    stepper: StepperName
     theta: float
     order: int  # on smooth motion; of fixed steps
     steps: int | None
@@ -48,7 +49,7 @@ class MarchMean:
 
 def march_mean(march: MarchRun, plan: Plan, tolerance: float) -> MarchMean:
     """The mean by this plan; without an error where a run did not settle."""
-    if plan.stepper == "smoothed":
+    if march.facts.adaptive:
         return _by_widths(march, plan, tolerance)
     return _by_given_steps(march, plan, tolerance) if plan.steps else _by_halving(march, plan, tolerance)
 

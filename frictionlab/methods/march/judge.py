@@ -127,7 +127,7 @@ class MarchedPoint:
 
     def _lost_in_chatter(self, mean: MarchMean) -> float:
         """All that the mean may be off by, where the belt is slower than the jumps that rk4 makes about rest."""
-        if self.law.memory_kind != "none" or self.plan.stepper != "rk4":
+        if not self.march.facts.is_blind(self.law.memory_kind):
             return 0.0
         step = 2.0 * math.pi / self.scene.frequency / mean.runs[-1].pace.steps
         jump = self.march.mass.normal_load * self.march.at_rest * step
@@ -137,7 +137,7 @@ class MarchedPoint:
         self.reason = "; ".join(filter(None, (self.reason, said)))
 
     def _theta(self) -> str:
-        return f" with theta {self.plan.theta:g}" if self.plan.stepper == "moreau" else ""
+        return f" with theta {self.plan.theta:g}" if "theta" in self.march.facts.keys else ""
 
     def _accept(self, mean: MarchMean, readable: MarchResult, tolerance: float) -> None:
         last = mean.runs[-1]
@@ -179,7 +179,7 @@ class MarchedPoint:
         laps = laps if run.verdict == STALLED else run.stride
         periods = max(1, laps // own)
         orbit = replace(self.march.track(run, periods * own), periods=periods)
-        return orbit if self.plan.stepper == "moreau" else replace(orbit, stick=None)
+        return orbit if self.march.facts.sticks else replace(orbit, stick=None)
 
 
 def nowhere() -> None:

@@ -14,8 +14,9 @@ from frictionlab.methods.march.error import WORK, Plan
 from frictionlab.methods.march.judge import MarchedPoint
 from frictionlab.methods.march.prescribed import SampledPoint
 from frictionlab.methods.march.prescribed_bristle import SteppedPoint
-from frictionlab.methods.march.refusal import STEPPERS, Request, reasons_against
+from frictionlab.methods.march.refusal import Request, reasons_against
 from frictionlab.methods.march.stability import fewest_steps
+from frictionlab.methods.march.steppers import STEPPERS, StepperName, steppers_of
 from frictionlab.scene.scene import Scene
 
 
@@ -34,22 +35,6 @@ def _half_or_one(given: object) -> object:
 Theta = Annotated[float, BeforeValidator(_half_or_one)]
 Count = Annotated[int, BeforeValidator(_whole), Field(ge=4, le=100_000_000)]
 
-OWN_KEYS = {
-    "moreau": ("theta", "steps"),
-    "rk4": ("steps",),
-    "smoothed": ("width", "smoothing"),
-    "exponential": ("steps",),
-    "sdirk2": ("steps",),
-}
-ORDERS = {
-    ("moreau", 0.5): 2,
-    ("moreau", 1.0): 1,
-    ("rk4", 0.5): 4,
-    ("smoothed", 0.5): 8,
-    ("exponential", 0.5): 2,
-    ("sdirk2", 0.5): 2,
-}
-"""Of each stepper on smooth motion, by theta where it has one."""
 STEP_SECONDS = {"none": 5e-8, "bristle": 1e-7, "deflections": 3e-7, "scalars": 3e-7}
 """Of one step, by what the law remembers; for planning."""
 
@@ -95,7 +80,7 @@ class March(Method):
 
     name: ClassVar[str] = "march"
 
-    stepper: Literal["moreau", "rk4", "smoothed", "exponential", "sdirk2"] | None = None
+    stepper: StepperName | None = None
     theta: Theta | None = None
     steps: Count | None = None
     width: Positive | None = None
@@ -106,8 +91,8 @@ class March(Method):
     @classmethod
     def _key_of_the_stepper(cls, given: object, info: ValidationInfo) -> object:
         """Key by key, not for all at once, so that it is told beside whatever else is wrong."""
-        stepper = info.data.get("stepper", "") or "moreau"
-        own = OWN_KEYS[stepper] if "stepper" in info.data else None
+        stepper: StepperName = info.data.get("stepper") or "moreau"
+        own = STEPPERS[stepper].keys if "stepper" in info.data else None
         if given is not None and own is not None and info.field_name not in own:
             known = ", ".join(own)
             raise ValueError(f"leave it out, stepper {stepper} knows {known} and periods")
@@ -121,16 +106,17 @@ class March(Method):
         law = law.under_load(scene.normal_load)
         return next(reasons_against(Request(scene, law, self._stepper(law), self.theta, self.steps)), None)
 
-    def _stepper(self, law: FrictionLaw) -> str:
-        return self.stepper or STEPPERS.get(law.memory_kind, ("",))[0]
+    def _stepper(self, law: FrictionLaw) -> StepperName:
+        known: list[StepperName] = [*steppers_of(law.memory_kind), "moreau"]
+        return self.stepper or known[0]
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Some twenty periods of 50 ns steps, errors falling as one over their number; at most what WORK takes."""
-        if self.stepper == "smoothed":
+        if STEPPERS[self._stepper(law)].adaptive:
             return 0.05
         if law.count() > 0:
             assert scene.normal_load is not None
-            fewest = fewest_steps(scene, law.under_load(scene.normal_load), self._stepper(law))
+            fewest = fewest_steps(scene, law.under_load(scene.normal_load), STEPPERS[self._stepper(law)])
             steps = min(30.0 * max(4.0 * (self.steps or 4096), 2.0 * fewest), WORK)
             return STEP_SECONDS[law.memory_kind] * steps
         steps = 4.0 * self.steps if self.steps else 2.0 * law.sliding_friction(1.0) / tolerance
@@ -149,7 +135,7 @@ class March(Method):
         return Plan(
             stepper=stepper,
             theta=theta,
-            order=ORDERS[stepper, theta],
+            order=STEPPERS[stepper].order(theta),
             steps=self.steps,
             width=self.width or 0.01,
             smoothing=self.smoothing or "tanh",

@@ -23,7 +23,7 @@ from frictionlab.methods.march.adapters import in_shares
 from frictionlab.methods.march.answers import PointAnswer
 from frictionlab.methods.march.error import COARSEST, ROUNDING, Plan
 from frictionlab.methods.march.prescribed_slip import load_at_angle, piece_angles, slip_at_angle, whole_angle
-from frictionlab.methods.march.run import SMOOTHINGS
+from frictionlab.methods.march.steppers import SMOOTHINGS
 from frictionlab.methods.prescribed.memory import driven
 from frictionlab.methods.prescribed.quadrature import orbit_of_slip
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint

@@ -37,6 +37,7 @@ from frictionlab.methods.march.prescribed_slip import (
     whole_angle,
 )
 from frictionlab.methods.march.stability import fewest_steps, lightest_contact, shares_of_load
+from frictionlab.methods.march.steppers import STEPPERS
 from frictionlab.methods.prescribed.memory import driven
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip, piece_at
 from frictionlab.numerics.richardson import REVERSING, SMOOTH, first_error, richardson
@@ -285,7 +286,7 @@ class SteppedPoint:
 
     def _halved(self, tolerance: float) -> tuple[complex, float]:
         """Steps doubled until the error is below the tolerance; ``runs`` keeps the finest, and one before it."""
-        steps = max(COARSEST, fewest_steps(self.scene, self.law, self.plan.stepper))
+        steps = max(COARSEST, fewest_steps(self.scene, self.law, STEPPERS[self.plan.stepper]))
         runs, error, value, across, coarsest = [self._run(steps, 0.0, 1)], math.inf, 0.0, 0.0, steps
         while error > tolerance and (2 * steps <= MOST_STEPS or len(runs) < 3):
             steps *= 2

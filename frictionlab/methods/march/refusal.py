@@ -10,18 +10,12 @@ from typing import Any
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.march.error import FEWEST_LAPS, WORK
 from frictionlab.methods.march.stability import fewest_steps
+from frictionlab.methods.march.steppers import STEPPERS, StepperFacts, StepperName, steppers_of
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import friction_at_rest
 
-STEPPERS = {
-    "none": ("moreau", "rk4", "smoothed"),
-    "bristle": ("exponential", "rk4", "sdirk2"),
-    "deflections": ("rk4",),
-    "scalars": ("rk4",),
-}
-"""Of each kind of memory, the one taken where none is named first."""
 SEVERAL = "deflections", "scalars"
 """Kinds of memory that are several numbers, or no deflection."""
 
@@ -32,7 +26,7 @@ class Request:
 
     scene: Scene
     law: Any
-    stepper: str
+    stepper: StepperName
     theta: float | None
     steps: int | None
 
@@ -41,11 +35,16 @@ class Request:
         """What the law remembers."""
         return self.law.memory_kind
 
+    @property
+    def facts(self) -> StepperFacts:
+        """Of the stepper."""
+        return STEPPERS[self.stepper]
+
 
 def reasons_against(asked: Request) -> Iterator[str]:
     """Every reason why march cannot do what is asked, the first to be mended first."""
     law, scene = asked.law, asked.scene
-    if asked.kind not in STEPPERS:
+    if not steppers_of(asked.kind):
         yield "march needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         return
     yield from _against_the_stepper(asked)
@@ -70,14 +69,14 @@ def _against_constant_contact(asked: Request) -> Iterator[str]:
 
 
 def _against_the_stepper(asked: Request) -> Iterator[str]:
-    if asked.stepper in STEPPERS[asked.kind]:
+    if asked.kind in asked.facts.kinds:
         return
+    use = " or ".join(", ".join(steppers_of(asked.kind)).rsplit(", ", 1))
     if asked.kind == "none":
-        yield f"stepper {asked.stepper} needs a bristle law; use moreau, rk4 or smoothed"
-    elif asked.kind == "bristle":
-        yield f"stepper {asked.stepper} does not support friction with memory; use exponential, rk4 or sdirk2"
+        yield f"stepper {asked.stepper} needs a bristle law; use {use}"
     else:
-        yield f"stepper {asked.stepper} does not support laws with several memories or scalars; use rk4"
+        what = "friction with memory" if asked.kind == "bristle" else "laws with several memories or scalars"
+        yield f"stepper {asked.stepper} does not support {what}; use {use}"
 
 
 def _against_several_memories(asked: Request) -> Iterator[str]:
@@ -104,7 +103,7 @@ def _against_jumps(asked: Request) -> Iterator[str]:
             scene,
             law,
         )
-    if asked.stepper != "moreau":
+    if not asked.facts.sticks:
         yield (
             f"stepper {asked.stepper} has no stick, and static friction above sliding friction needs it; "
             f"use stepper moreau"
@@ -114,21 +113,19 @@ def _against_jumps(asked: Request) -> Iterator[str]:
 def _against_rates(asked: Request) -> Iterator[str]:
     """Rates of a memory without a bound, or that jump."""
     law = asked.law
-    if asked.stepper == "rk4" and math.isinf(law.largest_rate(1.0)):
+    if asked.facts.limited_by_rates and math.isinf(law.largest_rate(1.0)):
         what, use = ("the memory", "shooting") if asked.kind in SEVERAL else ("bristles", "exponential")
         yield f"stepper rk4 needs a bound on the decay rate of {what}, and this law has none; use {use}"
-    if asked.stepper != "sdirk2":
-        return
-    if asked.scene.degrees_of_freedom == 0:
+    if asked.stepper == "sdirk2" and asked.scene.degrees_of_freedom == 0:
         yield "stepper sdirk2 is not needed under a prescribed slip; use exponential, for any stiffness"
-    if math.isfinite(law.yield_deflection()):
-        yield "stepper sdirk2 needs continuous rates, and those of this law jump at yield; use exponential"
+    if not asked.facts.bears_jumps and math.isfinite(law.yield_deflection()):
+        yield f"stepper {asked.stepper} needs continuous rates, and those of this law jump at yield; use exponential"
 
 
 def _against_so_few_steps(asked: Request) -> Iterator[str]:
     """A stepper that needs more steps than are given, or than can be refined."""
     law, stepper = asked.law, asked.stepper
-    fewest = fewest_steps(asked.scene, law, stepper)
+    fewest = fewest_steps(asked.scene, law, asked.facts)
     if asked.steps is not None and asked.steps < fewest:
         yield unstable(asked.steps, fewest, law, stepper)
     if asked.steps is None and 3 * FEWEST_LAPS * fewest > WORK:

@@ -11,9 +11,7 @@ import numpy as np
 from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import mean_friction, quickest_of, span
-from frictionlab.dynamics.smoothing import ARCTAN, SQUARE_ROOT, TANH
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.march.adapters import Exponential, Moreau, Rk4, Sdirk2, Smoothed, Stepper
 from frictionlab.methods.march.lap import NOTHING, MarchSettings
 from frictionlab.methods.march.laps import (
     CLOSED,
@@ -33,6 +31,7 @@ from frictionlab.methods.march.stability import (
     shares_of_load,
     steps_through_rest,
 )
+from frictionlab.methods.march.steppers import STEPPERS, Resolution, StepperName
 from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -40,29 +39,8 @@ from frictionlab.scene.body import Mass, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.rest import friction_at_rest
 
-OF_NO_NUMBERS: dict[str, Stepper] = {"rk4": Rk4(), "exponential": Exponential(), "sdirk2": Sdirk2()}
-"""Steppers of which a run sets nothing but the number of steps."""
-SMOOTHINGS = {"tanh": TANH, "square_root": SQUARE_ROOT, "arctan": ARCTAN}
-GRIDDED = "moreau", "rk4", "exponential"
-"""Steppers that meet the load at half steps alone."""
 LONGEST_PERIOD = 8
 """Of a response that repeats only after several laps."""
-
-
-@dataclass(frozen=True)
-class Resolution:
-    """How finely to step, and how well to close: numbers of one run."""
-
-    steps: int = 1  # per period of the drive, or per 2 pi; of fixed steps
-    theta: float = 0.5
-    width: float = 1.0
-    smoothing: str = "tanh"
-    accuracy: float = 1.0  # of each adaptive step, in the norm of energy
-    enough: float = 0.0  # distance from the closed orbit, in the same norm
-    most: int = 1  # laps
-    work: int = 1_000_000_000  # steps
-    refined: int = 1  # times as many as in the coarsest run: a power of two
-    rate: float = 0.0  # at which gaps are known to shrink, 0: unknown
 
 
 class MarchState(NamedTuple):
@@ -114,8 +92,8 @@ class MarchResult:
 class MarchRun:
     """Everything of a scene and a law that does not change from run to run; counts the seconds."""
 
-    def __init__(self, scene: Scene, law: FrictionLaw, stepper: str) -> None:
-        self.scene, self.law, self.stepper = scene, law, stepper
+    def __init__(self, scene: Scene, law: FrictionLaw, stepper: StepperName) -> None:
+        self.scene, self.law, self.stepper, self.facts = scene, law, stepper, STEPPERS[stepper]
         self.mass: Mass = scene.mass()
         self.through_rest = steps_through_rest(scene, law)
         straight = along_the_belt(scene, law) and not _starts_across(scene)
@@ -174,7 +152,7 @@ class MarchRun:
 
     def fewest(self) -> int:
         """Steps per period that the stepper needs not to explode; 1 where any number will do."""
-        return fewest_steps(self.scene, self.law, self.stepper)
+        return fewest_steps(self.scene, self.law, self.facts)
 
     def run(self, pace: Resolution, place: MarchState | None = None) -> MarchResult:
         """March to the steady state, period doublings included."""
@@ -207,7 +185,7 @@ class MarchRun:
 
     def fastest(self, pace: Resolution) -> float:
         """The slip speed that steps of this pace can bear."""
-        if self.stepper != "rk4":
+        if not self.facts.limited_by_rates:
             return 1e300
         return fastest_slip(self.law, self.drive_period / pace.steps / lightest_contact(self.scene))
 
@@ -222,26 +200,19 @@ class MarchRun:
         x, v = (place.x.real, place.v.real) if self.straight else (place.x, place.v)
         z = np.array(place.z.real) if real else place.z.astype(complex)
         call = KernelCall(march_laps, self.law)
-        history, seconds = call.timed(self.body, self._stepper_of(pace), way, MarchStart(x, v, z))
+        history, seconds = call.timed(self.body, self.facts.record(pace), way, MarchStart(x, v, z))
         self.seconds += seconds
         return history
 
-    def _stepper_of(self, pace: Resolution) -> Stepper:
-        if self.stepper == "moreau":
-            return Moreau(pace.theta)
-        if self.stepper == "smoothed":
-            return Smoothed(pace.width, SMOOTHINGS[pace.smoothing], pace.accuracy)
-        return OF_NO_NUMBERS[self.stepper]
-
     def _way(self, pace: Resolution) -> MarchSettings:
         driven, h = not self.scene.undriven, self.drive_period / pace.steps
-        adaptive = self.stepper == "smoothed"
+        adaptive = self.facts.adaptive
         quickest: float = interpreted(quickest_of)(self.body)
         reach = 2.0 * math.pi / quickest / 12.0 if adaptive else h
         return MarchSettings(
             belt_speed=self.scene.belt_speed,
             driven=driven,
-            steps=pace.steps if driven and self.stepper in GRIDDED else 1,
+            steps=pace.steps if driven and self.facts.gridded else 1,
             span=self.lap if driven else self.lap * pace.most,
             first=1e-3 * reach if adaptive else h,
             slack=0.5 if driven and not adaptive else 1e-9,
@@ -262,10 +233,10 @@ class MarchRun:
 
     def _near(self, pace: Resolution) -> float:
         """Slip speed that smoothing makes of stick, or the jump of slip over a step that is blind to stick."""
-        if self.stepper == "smoothed":
+        if self.facts.adaptive:
             return 3.0 * pace.width
         force = self.heaviest * self.mass.normal_load * self.law.sliding_friction(0.0)
-        blind = self.stepper == "rk4" and self.law.memory_kind == "none"
+        blind = self.facts.is_blind(self.law.memory_kind)
         return 2.0 * force * self.drive_period / pace.steps if blind else 0.0
 
     def _creeping(self, pace: Resolution, march: MarchHistory) -> float:
@@ -273,7 +244,7 @@ class MarchRun:
 
         Chatter of a stepper that is blind to stick is erratic: its creep is trusted at an eighth of that alone.
         """
-        trusted = 1.0 if self.stepper == "smoothed" else 8.0
+        trusted = 1.0 if self.facts.adaptive else 8.0
         near, belt_speed = self._near(pace), abs(self.scene.belt_speed)
         if trusted * near < belt_speed or march.trace.lingered == 0.0:
             return 0.0

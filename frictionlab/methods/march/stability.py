@@ -10,7 +10,8 @@ import numpy as np
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.contact import friction_of, rate_of
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.numerics.steppers import exponential, rk4
+from frictionlab.methods.march.steppers import StepperFacts
+from frictionlab.numerics.steppers import rk4
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.linear import velocity_scale
@@ -160,21 +161,21 @@ def fastest_slip(law: FrictionLaw, h: float) -> float:
     return low
 
 
-def fewest_steps(scene: Scene, law: FrictionLaw, stepper: str) -> int:
+def fewest_steps(scene: Scene, law: FrictionLaw, facts: StepperFacts) -> int:
     """Steps per period that a stepper needs; 1 where any number is stable, 0 where the law names no rate.
 
     For slip as fast as that of the friction-free motion on this belt, and for a mass held by its contact.
     """
-    if law.memory_kind == "none" or stepper == "sdirk2":
+    if law.memory_kind == "none" or math.isinf(facts.held):
         return 1
     lap = 2.0 * math.pi / scene.frequency
     held = 0.0 if scene.degrees_of_freedom == 0 else quickest_when_held(scene, law)
-    if stepper == "exponential":
-        return math.ceil(MARGIN * lap * held / exponential.DECAY)
+    if not facts.limited_by_rates:
+        return math.ceil(MARGIN * lap * held / facts.held)
     rate = law.largest_rate(expected_slip(scene)) / lightest_contact(scene)
     if not math.isfinite(rate):
         return 0
-    return math.ceil(MARGIN * lap * max(held / rk4.DECAY, rate / stable_decay(law)))
+    return math.ceil(MARGIN * lap * max(held / facts.held, rate / stable_decay(law)))
 
 
 def quickest_when_held(scene: Scene, law: FrictionLaw) -> float:

@@ -11,7 +11,7 @@ from draws_of_every_kind import Numpy, scene_of_every_kind
 
 import frictionlab as fl
 from drawers.outside import followed
-from frictionlab.methods.march.refusal import STEPPERS
+from frictionlab.methods.march.steppers import steppers_of
 
 STEPS = 200
 
@@ -20,7 +20,7 @@ def draw(rng: np.random.Generator) -> Drawn:
     """A scene, a law and a stepper."""
     source = Numpy(rng)
     scene, law = scene_of_every_kind(source)
-    stepper = source.among(STEPPERS[law_of(law).memory_kind])
+    stepper = source.among(steppers_of(law_of(law).memory_kind))
     method = fl.March(stepper=stepper)
     if stepper != "smoothed":
         own = fl.March(stepper=stepper, steps=STEPS * (2 if stepper == "rk4" else 1))

@@ -18,7 +18,8 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.march.method import March
-from frictionlab.methods.march.run import MarchRun, Resolution
+from frictionlab.methods.march.run import MarchRun
+from frictionlab.methods.march.steppers import Resolution
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.mistakes.notes import WrongValues
 from frictionlab.numerics.richardson import REVERSING, SMOOTH, bias, richardson

@@ -11,6 +11,7 @@ from profiles import deep
 from frictionlab.laws.jenkins import Jenkins
 from frictionlab.methods.march.method import March
 from frictionlab.methods.march.stability import fewest_steps
+from frictionlab.methods.march.steppers import STEPPERS
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Drive, Scene, Slip, Transverse
 
@@ -92,7 +93,7 @@ def test_a_motion_faster_than_without_friction_takes_more_steps_by_itself():
     """The longer spring brings the body to resonance."""
     soft = elements(stiffness=(0.1, 0.35), reach=(4.0, 0.07))
     scene = driven(2.0, damping_ratio=0.1)
-    fewest = fewest_steps(scene, soft, "rk4")
+    fewest = fewest_steps(scene, soft, STEPPERS["rk4"])
     given = with_columns(March(steps=fewest), [scene], soft, 1e-2)
 
     assert given.status == ["refused"]

@@ -298,6 +298,8 @@ def _by_share(work: Work, flow: Flow, now: Instant, w: Any, like: Any) -> None:
     """What a changing load adds where the contact keeps its stiffness: its share is a part of every deflection."""
     law, body, n = flow.law, flow.body, count_of(flow.law)
     share, rate, bend = work.share[0], work.share[1], work.share[2]
+    # With n = N/N_mean the state holds zeta = z/n, and zeta' = z'/n - (n'/n) zeta: -n'/n more in its own block, and
+    # the derivative of n'/n, which is n''/n - (n'/n)^2, in the slope in time.
     strain = rate / share
     turn = bend / share - strain * strain  # its rate
     for k in range(n):

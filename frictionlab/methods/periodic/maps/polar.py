@@ -126,9 +126,11 @@ def _set_out(case: Case, tau: float, x: complex, w: complex, room: Workspace) ->
     tangent, r, body = room.tangent, abs(w), case.body
     resting = r <= 1e-14 * (swing_of(body) + abs(case.belt_speed))
     unit = w.conjugate() / r if not resting else 0j
+    # 0 and 2 move the position along and across, 1 and 3 the slip w = r exp(i theta), each by one in energy
     for k in range(DIRECTIONS):
         tangent.x[k], tangent.total[k], tangent.r[k], tangent.theta[k] = 0j, 0j, 0.0, 0.0
     tangent.x[0], tangent.x[2] = 1.0 / root_along(body) + 0j, 1j / root_across(body)
+    # dr + i r dtheta = dw exp(-i theta); a mass at rest has no direction of slip to move
     if not resting:
         tangent.r[1], tangent.theta[1] = unit.real, unit.imag / r
         tangent.r[3], tangent.theta[3] = -unit.imag, unit.real / r
@@ -157,6 +159,8 @@ def _rest(case: Case, way: Way, end: float, room: Workspace, track: Track) -> Wa
     room.totals[POSITION] += lasts * place.x + belt_path_integral(body, belt_speed, tau, until)
     x = place.x + belt_path(body, belt_speed, tau, until)
     held, _rate, _bend = holding_force(body, belt_speed, instant_at(body, until), x)
+    # A shifted mass is carried along as far as this one. Slip sets off along the held force, which the shift turns
+    # by Im(dF conj(F))/|F|^2; when it does, changes the state by nothing of first order: slip begins from zero.
     for k in range(DIRECTIONS):
         shift = tangent.x[k]
         tangent.total[k] += lasts * shift
@@ -171,6 +175,7 @@ def _land(case: Case, place: SlipPlace, wait: float, room: Workspace, track: Tra
     body, belt_speed, tangent = case.body, case.belt_speed, room.tangent
     tau, turned = place.tau + wait, cmath.exp(1j * place.theta)
     w = place.r * turned
+    # slip falls from w to zero at an even rate: half of w on the way, a third of that in the integral of position
     if track.stick.size > 0 and wait > 0.0:
         pressed = normal_load(body, instant_at(body, place.tau))
         held, _rate, _bend = holding_force(body, belt_speed, instant_at(body, place.tau), place.x)
@@ -209,6 +214,7 @@ def _approach(case: Case, place: SlipPlace) -> Approach:
     pressed = normal_load(body, now)
     limit = pressed * case.law.sliding_friction(0.0)
     turned = cmath.exp(1j * place.theta)
+    # r' = a.e - f(r): the force along the slip, dashpots included, less friction
     force = held - restoring_force(body, 0j, place.r * turned)
     closing = pressed * case.law.sliding_friction(place.r) - (force * turned.conjugate()).real
     wait = place.r / closing if closing > 0.0 and place.r > 0.0 else math.inf
@@ -242,14 +248,14 @@ def _slip(case: Case, way: Way, end: float, accuracy: float, room: Workspace, tr
     near = _approach(case, place)
     if not way.leaving and _lands(case, place, near, accuracy):
         return _land(case, place, near.wait, room, track)
-    finer = (
-        accuracy / _unit(case) / FIRST_ACCURACY
-    ) ** 0.08  # else two maps may agree because both are limited by it
+    # the longest step falls with the accuracy: else two maps may agree because both are limited by it
+    finer = (accuracy / _unit(case) / FIRST_ACCURACY) ** 0.08
     h = min(min(way.h, finer / quickest(case.body)), end - place.tau)
     if not way.leaving:
         h = min(h, 0.8 * near.wait)
     if h < SHORTEST_SLIP * span(case.body) and end - place.tau > h:
         return _give_way(case, place, near, room, track)
+    # the polynomial of the step before goes on into this one, a step that is taken shorter is a part of its own
     if way.before > 0.0 and h < 2.0 * way.before:
         guess_on(place, 1.0, 1.0 + h / way.before, step)
     elif way.before < 0.0:
@@ -260,6 +266,7 @@ def _slip(case: Case, way: Way, end: float, accuracy: float, room: Workspace, tr
     if not solve_step(case, place, h, step):
         return Way(place, False, way.leaving, 0.3 * h, 0.0)
     error = step_error(h, accuracy, step)
+    # five stages: the highest of their Legendre polynomials, which the error is read from, falls as h^5
     growth = min(4.0, 0.9 / (error + 1e-300) ** 0.2)
     if error > 1.0:
         return Way(place, False, way.leaving, max(0.2, growth) * h, -h)

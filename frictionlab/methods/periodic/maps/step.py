@@ -52,6 +52,7 @@ def factor(flow: Flow, h: float, work: Work, like: Any) -> None:
         by_slip = add(by_slip, product(block(work.jacobian, 3 * k + 2, like), moved, like), like)
         keep(work.factors, 2 * k, alone, like)
         keep(work.factors, 2 * k + 1, moved, like)
+    # the mass, with its springs at the end of the step: y' = u makes them gamma h K in the block of u
     mean = diagonally + body.damping_mean + GAMMA * h * body.stiffness_mean
     mass = diagonal(mean, body.damping_split + GAMMA * h * body.stiffness_split, like)
     keep(

@@ -6,22 +6,19 @@ that the figure reads in black and white; motions that do not repeat are pale ba
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.charts.style import PAGE, STYLE, blank_figure, write_figure
+from frictionlab.charts.style import PAGE, blank_figure
 from frictionlab.charts.words import write_title
 from frictionlab.columns import ATTRACTORS, word
-from frictionlab.printable import printable
 
 PERIOD_MARKERS: dict[int, tuple[str, str]] = {
     1: ("o", "#000000"),
@@ -44,15 +41,9 @@ def bifurcations(attractors: pd.DataFrame) -> dict[str, pd.DataFrame]:
     return {f"{number}_bifurcation": rows for number, rows in enumerate(curves, 1)}
 
 
-def draw_bifurcations(attractors: pd.DataFrame, title: str, folder: Path) -> list[Path]:
-    """Draw them into a folder; the files. Raises OSError where it cannot be written."""
-    files = []
-    with mpl.rc_context(STYLE), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph .* missing from")  # of a title: an empty box says it
-        for name, rows in bifurcations(attractors).items():
-            folder.mkdir(parents=True, exist_ok=True)
-            files += write_figure(_figure(rows, printable(title)), folder / name)
-    return files
+def bifurcation_figures(attractors: pd.DataFrame, title: str) -> dict[str, Callable[[], Figure]]:
+    """What draws each of them, by its name."""
+    return {name: partial(_figure, rows, title) for name, rows in bifurcations(attractors).items()}
 
 
 def _figure(rows: pd.DataFrame, title: str) -> Figure:

@@ -12,6 +12,7 @@ import matplotlib as mpl
 import pandas as pd
 from matplotlib.figure import Figure
 
+from frictionlab.charts.bifurcation import bifurcation_figures
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import Family, family_of
 from frictionlab.charts.derived import differences, is_along_speed, normalized, reference_law
@@ -54,23 +55,30 @@ class Kept(NamedTuple):
     harmonics: pd.DataFrame | None
 
 
-def draw_figures(
-    table: pd.DataFrame,
-    title: str,
-    folder: Path,
-    onsets: pd.DataFrame | None = None,
-    curves: pd.DataFrame | None = None,
-    options: FigureOptions = USUAL_FIGURES,
-    kept: Kept | None = None,
-    told: Callable[[int, int], None] = lambda done, total: None,
-) -> list[Path]:
-    """Draw every figure of a result table into a folder, onsets marked along belt speed; the files written.
+class FigureData(NamedTuple):
+    """What figures are drawn of: a result table, and of the same run what there is of the rest.
 
-    curves: of ``curves.csv``, with the shapes. told: called with the number of figures done and of all. A table
-    without a sweep has no figure, nor has a quantity that applies nowhere. Raises OSError where the folder cannot be
-    written.
+    curves: of ``curves.csv``, with the shapes; attractors: of ``attractors.csv``.
     """
-    found = figures_of(table, printable(title), onsets, curves, options, kept)
+
+    table: pd.DataFrame
+    title: str = ""
+    onsets: pd.DataFrame | None = None
+    curves: pd.DataFrame | None = None
+    attractors: pd.DataFrame | None = None
+    kept: Kept | None = None
+    options: FigureOptions = USUAL_FIGURES
+
+
+def draw_figures(
+    data: FigureData, folder: Path, told: Callable[[int, int], None] = lambda done, total: None
+) -> list[Path]:
+    """Draw every figure of a run into a folder, onsets marked along belt speed; the files written.
+
+    told: called with the number of figures done and of all. A table without a sweep has no figure, nor has a quantity
+    that applies nowhere. Raises OSError where the folder cannot be written.
+    """
+    found = figures_of(data)
     if not found:
         return []
     folder.mkdir(parents=True, exist_ok=True)
@@ -79,7 +87,7 @@ def draw_figures(
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # of a title: an empty box says it
         for number, (name, draw) in enumerate(found.items()):
             told(number, len(found))
-            files += write_figure(draw(), folder / name, options.formats)
+            files += write_figure(draw(), folder / name, data.options.formats)
     _remove_others(folder, files)
     return files
 
@@ -91,43 +99,31 @@ def _remove_others(folder: Path, files: Sequence[Path]) -> None:
         file.unlink(missing_ok=True)
 
 
-def figures_of(
-    table: pd.DataFrame,
-    title: str = "",
-    onsets: pd.DataFrame | None = None,
-    curves: pd.DataFrame | None = None,
-    options: FigureOptions = USUAL_FIGURES,
-    kept: Kept | None = None,
-) -> dict[str, Callable[[], Figure]]:
-    """What draws each figure of a table, by its name."""
-    family = family_of(table)
+def figures_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
+    """What draws each figure of a run, by its name."""
+    title = printable(data.title)
+    several = {} if data.attractors is None else bifurcation_figures(data.attractors, title)
+    family = family_of(data.table)
     if family is None:
-        return {}
-    found = _of_table(table, family, title, onsets, curves, options)
-    if kept is None:
-        return found
-    if (loops := orbit_figures(family, kept.orbits, title, options)) is not None:
+        return several
+    found = _of_table(family, data._replace(title=title))
+    if data.kept is None:
+        return found | several
+    if (loops := orbit_figures(family, data.kept.orbits, title, data.options)) is not None:
         found |= loops.figures()
-    if kept.harmonics is not None:
-        found |= harmonic_figures(kept.harmonics, title, options)
-    return found
+    if data.kept.harmonics is not None:
+        found |= harmonic_figures(data.kept.harmonics, title, data.options)
+    return found | several
 
 
-def figure_of(
-    table: pd.DataFrame,
-    name: str = "mean_friction",
-    title: str = "",
-    onsets: pd.DataFrame | None = None,
-    curves: pd.DataFrame | None = None,
-    options: FigureOptions = USUAL_FIGURES,
-    kept: Kept | None = None,
-) -> Figure:
-    """One figure of a table, as ``draw_figures`` would write it; nothing is written, and pyplot knows nothing of it.
+def figure_of(data: FigureData, name: str = "mean_friction") -> Figure:
+    """One figure of a run, as ``draw_figures`` would write it; nothing is written, and pyplot knows nothing of it.
 
-    Raises ValueError, with the names there are, where the table has no such figure.
+    Raises ValueError, with the names there are, where the run has no such figure.
     """
-    wanted = options.model_copy(update={"shape": True}) if name == "shape" else options
-    found = figures_of(table, printable(title), onsets, curves, wanted, kept)
+    if name == "shape":
+        data = data._replace(options=data.options.model_copy(update={"shape": True}))
+    found = figures_of(data)
     if name not in found:
         has = ", ".join(sorted(found)) if found else "none, for no number is swept"
         raise ValueError(f"no figure {name!r}; this table has: {has}")
@@ -137,15 +133,9 @@ def figure_of(
     return figure
 
 
-def _of_table(
-    table: pd.DataFrame,
-    family: Family,
-    title: str,
-    onsets: pd.DataFrame | None,
-    curves: pd.DataFrame | None,
-    options: FigureOptions,
-) -> dict[str, Callable[[], Figure]]:
-    of_speed = onsets if is_along_speed(family) else None
+def _of_table(family: Family, data: FigureData) -> dict[str, Callable[[], Figure]]:
+    table, title, curves, options = data.table, data.title, data.curves, data.options
+    of_speed = data.onsets if is_along_speed(family) else None
     shares = normalized(family) if options.normalized else None
     one = CurveFigure(shares or family, (), title, of_speed, options, IN_SHARES if shares else {})
     maps = map_of(table)

@@ -274,24 +274,21 @@ def _show_failed(result: Run) -> None:
 
 
 def _draw(job: Job, result: Run, asked: RunOptions, meter: Meter) -> None:
+    from frictionlab.charts.figures import FigureData
     from frictionlab.results.table import whole
     from frictionlab.runner.saved import saved_as
 
-    table = result.table if asked.figures else result.to_show
     with_onsets = job.study.asks_for(ONSETS_GROUP) and not result.curves.empty
-    onsets = result.onsets if with_onsets else None
-    title, curves = job.study.title or job.name, None if result.curves.empty else result.curves
-    if draw_into(
-        whole(table),
-        title,
-        job.out,
-        onsets,
-        result.attractors,
-        curves,
-        job.study.figures,
-        kept_of(saved_as(result)),
-        meter,
-    ):
+    data = FigureData(
+        table=whole(result.table if asked.figures else result.to_show),
+        title=job.study.title or job.name,
+        onsets=result.onsets if with_onsets else None,
+        curves=None if result.curves.empty else result.curves,
+        attractors=result.attractors,
+        kept=kept_of(saved_as(result)),
+        options=job.study.figures,
+    )
+    if draw_into(job.out, data, meter):
         print_message(f"figures in {job.out / 'figures'}")
 
 

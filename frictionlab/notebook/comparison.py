@@ -152,12 +152,13 @@ class Comparison:
 
         Raises ValueError for a figure that there is none of, and for options that mean nothing.
         """
-        from frictionlab.charts.figures import figure_of  # with matplotlib, which takes a second
+        from frictionlab.charts.figures import FigureData, figure_of  # with matplotlib, which takes a second
 
         study = self.study
         asked = figure_options(study.figures.resolved() | options, tuple(law.label for law in study.laws))
         marked = self.onsets if onsets else None
-        return figure_of(whole(self.table), figure, study.title, marked, self.curves, asked)
+        data = FigureData(whole(self.table), study.title, marked, self.curves, options=asked)
+        return figure_of(data, figure)
 
     def save(self, folder: str | PathLike[str]) -> Path:
         """Write what ``frictionlab run`` writes into a folder, its figures and report included; where it is.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from frictionlab.charts.figures import draw_figures
+from frictionlab.charts.figures import FigureData, draw_figures
 from frictionlab.report.page import write_report
 from frictionlab.results.run import Run
 from frictionlab.runner.api import with_onsets
@@ -16,6 +16,7 @@ def draw_and_report(written: Run) -> Path:
     written = with_onsets(written)
     saved = saved_as(written)
     folder = saved.folder / "figures"
-    draw_figures(saved.table, saved.title, folder, saved.onsets, saved.curves, saved.study.figures)
+    data = FigureData(saved.table, saved.title, saved.onsets, saved.curves, options=saved.study.figures)
+    draw_figures(data, folder)
     write_report(saved)
     return saved.folder

@@ -19,7 +19,7 @@ from oracle import table_in_the_plane, table_of_one_degree_of_freedom
 from frictionlab.charts import figures
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import family_of, is_logarithmic
-from frictionlab.charts.figures import FIGURES, draw_figures
+from frictionlab.charts.figures import FIGURES, FigureData, draw_figures
 from frictionlab.charts.looks import MOST_VALUES_IN_LEGEND
 from frictionlab.charts.style import STYLE
 from frictionlab.columns import RESULTS, symbol
@@ -58,14 +58,14 @@ def _curves(figure: Figure, panel: int = 0) -> list[tuple[np.ndarray, np.ndarray
 
 
 def test_a_single_point_gives_no_figure_and_no_folder(line: pd.DataFrame, tmp_path: Path) -> None:
-    assert draw_figures(line.iloc[:1], "One point", tmp_path / "figures") == []
+    assert draw_figures(FigureData(line.iloc[:1], "One point"), tmp_path / "figures") == []
     assert not (tmp_path / "figures").exists()
 
 
 def test_a_quantity_that_applies_nowhere_gives_no_figure(resonance: pd.DataFrame, tmp_path: Path) -> None:
     resonance[FIGURES["energies"]] = np.nan
 
-    assert [file.name for file in draw_figures(resonance, "No energies", tmp_path)] == [
+    assert [file.name for file in draw_figures(FigureData(resonance, "No energies"), tmp_path)] == [
         "mean_friction.svg",
         "mean_friction.png",
         "velocity.svg",
@@ -411,7 +411,8 @@ def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
     laws = [resonance.assign(law=label) for label in (r"$\nope{$", "costs $5", "L" * 200)]
     table = pd.concat(laws, ignore_index=True)
 
-    assert len(draw_figures(table, r"$\bad{ 摩擦 and $3", tmp_path)) == 2 * len(figures.figures_of(table))
+    data = FigureData(table, r"$\bad{ 摩擦 and $3")
+    assert len(draw_figures(data, tmp_path)) == 2 * len(figures.figures_of(data))
     assert _legend(_figure(table)) == [r"\$\nope{\$", r"costs \$5", "L" * 35 + "…"]
 
 

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from oracle import table_of_one_degree_of_freedom
 
-from frictionlab.charts.figures import draw_figures, figure_of, figures_of
+from frictionlab.charts.figures import FigureData, draw_figures, figure_of, figures_of
 from frictionlab.charts.style import STYLE
 from frictionlab.study import StudyError, parse_study
 from frictionlab.study.figure_options import FigureOptions, figure_options
@@ -44,7 +44,9 @@ SHAPES = pd.DataFrame(
 def _drawn(table: pd.DataFrame, name: str = "mean_friction", **options: Any) -> Figure:
     curves = SHAPES if options.get("shape") else None
     with mpl.rc_context(STYLE):
-        return figures_of(table, "A title", None, curves, FigureOptions(**options))[name]()
+        return figures_of(FigureData(table, "A title", curves=curves, options=FigureOptions(**options)))[
+            name
+        ]()
 
 
 def _legend(figure: Figure) -> list[str]:
@@ -133,8 +135,8 @@ def test_widths_are_those_of_a_journal(laws: pd.DataFrame, width: str, millimetr
 
 def test_formats_and_title_are_as_asked_for(laws: pd.DataFrame, tmp_path: Path) -> None:
     few = laws[(laws["law"] == "coulomb") & (laws["scene.drive.frequency"] == 1.0)]
-    draw_figures(few, "Of before", tmp_path)
-    files = draw_figures(few, "T", tmp_path, None, None, FigureOptions(formats=("pdf",), title=False))
+    draw_figures(FigureData(few, "Of before"), tmp_path)
+    files = draw_figures(FigureData(few, "T", options=FigureOptions(formats=("pdf",), title=False)), tmp_path)
 
     assert {file.suffix for file in tmp_path.iterdir()} == {".pdf"}
     assert len(files) == 3
@@ -190,7 +192,9 @@ def test_mistakes_in_it_are_told(figures: Any, message: str) -> None:
 def test_one_figure_is_had_without_files_or_pyplot(laws: pd.DataFrame) -> None:
     before = dict(mpl.rcParams)
 
-    figure = figure_of(laws, "differences", options=FigureOptions(against="other", width="single"))
+    figure = figure_of(
+        FigureData(laws, options=FigureOptions(against="other", width="single")), "differences"
+    )
 
     assert dict(mpl.rcParams) == before
     assert figure.axes[0].get_ylabel().endswith("other")
@@ -198,7 +202,7 @@ def test_one_figure_is_had_without_files_or_pyplot(laws: pd.DataFrame) -> None:
     assert {label.get_fontsize() for label in labels} == {STYLE["ytick.labelsize"]}
     pixels = imread(BytesIO(figure._repr_png_()))
     assert pixels.shape[1] == pytest.approx(85.0 / 25.4 * 200, abs=1)
-    shape = figure_of(laws[laws["law"] == "coulomb"], "shape", curves=SHAPES)
+    shape = figure_of(FigureData(laws[laws["law"] == "coulomb"], curves=SHAPES), "shape")
     assert len(shape.axes) == 2
 
 
@@ -206,9 +210,9 @@ def test_a_figure_that_is_not_there_is_refused_with_those_that_are(laws: pd.Data
     with pytest.raises(
         ValueError, match="no figure 'shapes'; this table has: differences, energies, mean_fr"
     ):
-        figure_of(laws, "shapes")
+        figure_of(FigureData(laws), "shapes")
     with pytest.raises(ValueError, match="none, for no number is swept"):
-        figure_of(laws.iloc[:1])
+        figure_of(FigureData(laws.iloc[:1]))
 
 
 def test_keywords_are_checked_as_the_keys_of_a_study_are() -> None:

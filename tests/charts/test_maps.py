@@ -12,7 +12,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 
-from frictionlab.charts.figures import figures_of
+from frictionlab.charts.figures import FigureData, figures_of
 from frictionlab.charts.maps import map_of
 from frictionlab.charts.style import STYLE
 
@@ -34,7 +34,7 @@ def grid(law: str = "coulomb", method: str = "auto", **more: object) -> pd.DataF
 
 def drawn(table: pd.DataFrame, name: str = "mean_friction", curves: pd.DataFrame | None = None) -> Figure:
     with mpl.rc_context(STYLE):
-        return figures_of(table, "A title", None, curves)[name]()
+        return figures_of(FigureData(table, "A title", curves=curves))[name]()
 
 
 def meshes(figure: Figure) -> list[QuadMesh]:
@@ -102,7 +102,7 @@ def test_beside_belt_speed_the_measures_of_curves_are_a_map() -> None:
     figure = drawn(table, "map", curves)
 
     assert map_of(table) is None
-    assert "differences" not in figures_of(table)
+    assert "differences" not in figures_of(FigureData(table))
     areas = [one for one in figure.axes[2].collections if isinstance(one, QuadContourSet)]
     assert 0.0 in areas[0].levels
     broadest = areas[0].get_linewidths()[list(areas[0].levels).index(0.0)]

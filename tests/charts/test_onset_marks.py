@@ -84,7 +84,7 @@ def test_a_figure_draws_them_and_names_each_kind_once(
         return plot(self, *arguments, **look)  # type: ignore[arg-type]  # as they were given
 
     monkeypatch.setattr(Axes, "plot", noted)
-    figures.draw_figures(TABLE, "Two curves", tmp_path, ONSETS)
+    figures.draw_figures(figures.FigureData(TABLE, "Two curves", ONSETS), tmp_path)
 
     assert sorted(drawn) == [(44.0, ">"), (50.0, "<"), (50.0, "d")]
     family = family_of(TABLE)

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
-from frictionlab.charts.figures import Kept, figures_of
+from frictionlab.charts.figures import FigureData, Kept, figures_of
 from frictionlab.charts.style import STYLE
 
 SPEEDS = np.arange(1.0, 13.0)
@@ -60,7 +60,7 @@ def orbits_of(rows: Sequence[int], periods: int = 2) -> pd.DataFrame:
 
 def drawn(name: str, harmonics: pd.DataFrame | None = None) -> Figure:
     with mpl.rc_context(STYLE):
-        return figures_of(TABLE, "A title", kept=Kept(orbits_of, harmonics))[name]()
+        return figures_of(FigureData(TABLE, "A title", kept=Kept(orbits_of, harmonics)))[name]()
 
 
 def test_orbits_are_of_points_at_which_slip_reverses_each_law_a_line() -> None:
@@ -82,7 +82,7 @@ def test_a_point_at_which_the_body_sticks_is_among_them() -> None:
     sticks = TABLE.assign(stick_fraction=np.where(TABLE["scene.belt_speed"] == 7.0, 0.1, 0.0))
 
     with mpl.rc_context(STYLE):
-        figure = figures_of(sticks, kept=Kept(orbits_of, None))["phase"]()
+        figure = figures_of(FigureData(sticks, kept=Kept(orbits_of, None)))["phase"]()
 
     assert [axes.get_title(loc="left")[-1] for axes in figure.axes] == ["3", "4", "7"]
 
@@ -92,7 +92,7 @@ def test_panels_stand_beside_each_other() -> None:
     both = pd.concat([TABLE, higher], ignore_index=True)
 
     with mpl.rc_context(STYLE):
-        figure = figures_of(both, kept=Kept(orbits_of, None))["hysteresis"]()
+        figure = figures_of(FigureData(both, kept=Kept(orbits_of, None)))["hysteresis"]()
 
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert [title.split(",")[0][-1] for title in titles] == ["2", "3", "2", "3", "2", "3"]
@@ -117,7 +117,7 @@ def test_time_runs_in_drive_periods_and_constant_friction_is_level() -> None:
 
 
 def test_without_orbits_there_are_no_such_figures() -> None:
-    names = figures_of(TABLE, kept=Kept(lambda rows: None, None))
+    names = figures_of(FigureData(TABLE, kept=Kept(lambda rows: None, None)))
 
     assert {"hysteresis", "phase", "time_series"}.isdisjoint(names)
 

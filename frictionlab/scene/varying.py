@@ -33,10 +33,11 @@ class Function(NamedTuple):
     lines: Any
     slopes: Any
 
-    def reversed(self) -> Function:
-        """The same with the other sign."""
+    def scaled(self, factor: float) -> Function:
+        """So many times it."""
         frequency, sine, cosine = self.waves
-        return Function(Waves(frequency, -sine, -cosine), -self.lines, -self.slopes)
+        waves = Waves(frequency, factor * sine, factor * cosine)
+        return Function(waves, factor * self.lines, factor * self.slopes)
 
 
 class Varying(NamedTuple):

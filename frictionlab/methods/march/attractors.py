@@ -6,9 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from frictionlab.methods.march.error import WORK, MarchMean, crossing, steps_needed, why_not
 from frictionlab.methods.march.laps import CLOSED, STALLED, TOO_FAST
-from frictionlab.methods.march.run import MarchResult, MarchRun
+from frictionlab.methods.march.run import MarchResult, MarchRun, MarchState
 from frictionlab.methods.shooting.attractors import starts
 
 NOISE = 1e-3
@@ -45,21 +47,30 @@ class OtherStarts:
 
     def arrivals(self) -> tuple[list[Arrival], str]:
         """Where every start led, the first one's first, equal ones the same object; why one led nowhere, or ''."""
-        scene, march = self.march.scene, self.march
-        known, limit = [self.first], march.mass.normal_load * march.at_rest
-        enough = min(self.like.pace.enough, SHUT * march.mass.normal_load)
+        march = self.march
+        known = [self.first]
+        enough = min(self.like.pace.enough, SHUT * march.unit)
         pace = replace(self.like.pace, rate=0.0, enough=enough, work=max(self.like.pace.work, WORK))
-        for start in starts(scene, limit)[1:]:
-            run = march.run(pace, march.place(start))
+        for place in self._places():
+            run = march.run(pace, place)
             if run.verdict == TOO_FAST:  # flung: it needs more steps than where it ends
                 steps = math.ceil(steps_needed(march, run))
-                run = march.run(replace(pace, steps=steps), march.place(start))
+                run = march.run(replace(pace, steps=steps), place)
             if not run.settled:
                 return known, f"from another start the motion {why_not(run)}"
             found = self._led(run)
             same = (old for old in known if self._agree(old, found, run))
             known.append(next(same, found))
         return known, ""
+
+    def _places(self) -> list[MarchState]:
+        """The other starts; of a slip that is prescribed, deflections to either side."""
+        march = self.march
+        if march.unmoved:
+            depth = march.law.presliding()
+            return [MarchState(0j, 0j, np.array([side * depth])) for side in (1.0, -1.0)]
+        limit = march.mass.normal_load * march.at_rest
+        return [march.place(start) for start in starts(march.scene, limit)[1:]]
 
     def _led(self, run: MarchResult) -> Arrival:
         mean, like, spread = run.mean.real, self.like, run.high - run.low

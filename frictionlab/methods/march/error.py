@@ -157,7 +157,7 @@ def _next_run(
         steps=steps,
         refined=steps // runs[0].pace.steps if runs else 1,
         theta=plan.theta,
-        enough=0.25 * share * march.mass.normal_load,
+        enough=0.25 * share * march.unit,
         most=plan.periods,
         work=max(work, FEWEST_LAPS * steps),
         rate=before.rate if before is not None and before.verdict == CLOSED else 0.0,
@@ -182,7 +182,10 @@ def crossing(march: MarchRun, run: MarchResult) -> float:
     per_period = run.pace.steps * run.period / march.drive_period
     slip = march.slipping
     if march.law.count() > 0:
-        return slip * run.crossings / per_period * _unresolved(march, run)
+        turns = run.crossings * _unresolved(march, run) + run.flips * run.stride * _unresolved_jump(
+            march, run
+        )
+        return slip * (turns / per_period + march.unseen_share(run.pace.steps))
     release = march.at_rest - slip if run.stuck > 0.0 else 0.0
     return (slip * run.crossings + release * run.stride) / per_period
 
@@ -194,12 +197,21 @@ def _unresolved(march: MarchRun, run: MarchResult) -> float:
     a path of at most a h^2/8 to either side, a part (h/time)^2/4 of that length, and for as long as that time the
     friction is off by this part of its jump, 2 at most.
     """
-    step = run.period / run.stride / march.periods / run.pace.steps if run.pace.steps else 0.0
+    step, presliding = _step(march, run), lightest_contact(march.scene) * march.law.presliding()
     if run.turn == 0.0:
         return 0.0
-    presliding = lightest_contact(march.scene) * march.law.presliding()
     bending = math.sqrt(2.0 * presliding / run.turn)
     return min(1.0, 0.5 * step / bending) if bending > 0.0 else 1.0
+
+
+def _unresolved_jump(march: MarchRun, run: MarchResult) -> float:
+    """The same where slip reverses by a jump of the belt: it covers the presliding length at once at its speed."""
+    presliding = lightest_contact(march.scene) * march.law.presliding()
+    return min(1.0, 0.5 * _step(march, run) * run.met / presliding) if presliding > 0.0 else 1.0
+
+
+def _step(march: MarchRun, run: MarchResult) -> float:
+    return run.period / run.stride / march.periods / run.pace.steps if run.pace.steps else 0.0
 
 
 def _creep(march: MarchRun, run: MarchResult) -> float:
@@ -238,12 +250,12 @@ def _coarsest(march: MarchRun) -> int:
 def _slowness(march: MarchRun) -> int:
     """Steps are counted per period; a slow drive needs more of them for the body's own motion."""
     mass = march.mass
-    quickest = max(1.0, mass.damping)
+    quickest = 0.0 if march.unmoved else max(1.0, mass.damping)
     if mass.varying:
         quickest = max(quickest, mass.varying.quickest)
     if not march.straight:
         quickest = max(quickest, math.sqrt(mass.transverse_stiffness), mass.transverse_damping)
-    return max(1, math.ceil(quickest / mass.frequency))
+    return max(1, math.ceil(quickest / mass.frequency - 1e-9))
 
 
 def _changes_for_ever(runs: Sequence[MarchResult], march: MarchRun) -> bool:
@@ -289,16 +301,17 @@ def _by_widths(march: MarchRun, plan: Plan, tolerance: float) -> MarchMean:
     """The mean of this width; twice, half and a quarter of it tell the bias, a run of looser steps their error."""
     load = march.mass.normal_load * march.law.sliding_friction(plan.width)
     accuracy = max(min(1e-5 * tolerance * load, 1e-3 * plan.width, 1e-6 * load), 1e-13 * load)
+    enough = accuracy * march.unit / march.mass.normal_load
     pace = Resolution(
         width=plan.width,
         smoothing=plan.smoothing,
         accuracy=accuracy,
-        enough=1e3 * accuracy,
+        enough=1e3 * enough,
         most=plan.periods,
         work=MOST_ADAPTIVE,
     )
     paces = {
-        "loose": replace(pace, accuracy=32.0 * accuracy, enough=32e3 * accuracy),
+        "loose": replace(pace, accuracy=32.0 * accuracy, enough=32e3 * enough),
         "wide": replace(pace, width=2.0 * plan.width),
         "narrow": replace(pace, width=0.5 * plan.width),
         "narrowest": replace(pace, width=0.25 * plan.width),

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
+import numpy as np
+
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Status
-from frictionlab.methods.march.answers import PointAnswer
+from frictionlab.methods.base import Answers, Status
 from frictionlab.methods.march.attractors import Arrival, OtherStarts, first_arrival, one_motion
 from frictionlab.methods.march.error import MarchMean, Plan, march_mean, restless, steps_needed, why_not
 from frictionlab.methods.march.laps import RESTING, STALLED, TOO_FAST, TOO_STIFF
+from frictionlab.methods.march.prescribed import as_prescribed
 from frictionlab.methods.march.refusal import unstable
 from frictionlab.methods.march.run import LONGEST_PERIOD, MarchResult, MarchRun
 from frictionlab.methods.march.stability import friction_falls
+from frictionlab.methods.prescribed.varying_slip import VaryingPoint
 from frictionlab.methods.shooting.attractors import describe
 from frictionlab.orbit.read import read_columns
 from frictionlab.orbit.record import Orbit
@@ -29,6 +32,20 @@ WATCHED = 300
 """Laps over which a motion that never repeats is averaged."""
 
 
+@dataclass(frozen=True)
+class PointAnswer:
+    """Mean friction (x1 + i x2), the error of its x1 and the period; the range of a mean that depends on the start.
+
+    Whatever is not known is NaN.
+    """
+
+    mean: complex = complex(math.nan, math.nan)
+    error: float = math.nan
+    period: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
+
+
 class MarchedPoint:
     """One scene, marched, and what came of it."""
 
@@ -39,11 +56,26 @@ class MarchedPoint:
         self.status: Status = "failed"
         self.reason, self.model = "", ""
         self.orbit: Callable[[], Orbit | None] = nowhere
-        if stays_at_rest(scene, law) and scene.initial is None and not scene.undriven:
+        if self.march.unmoved and (known := self._left_open_by_rest()) is not None:
+            self._range(known.found.low, known.found.high)
+            self.reason = known.reason
+        elif (
+            not self.march.unmoved
+            and stays_at_rest(scene, law)
+            and scene.initial is None
+            and not scene.undriven
+        ):
             self._leave_open(-resting_range(scene, law, -1.0), resting_range(scene, law))
         else:
             self._judge(march_mean(self.march, plan, tolerance), tolerance)
         self.seconds = self.march.seconds
+
+    def _left_open_by_rest(self) -> VaryingPoint | None:
+        """A prescribed slip that rests for a while: no step tells friction there, unless it is remembered."""
+        if self.law.memory_kind != "none":
+            return None
+        known = VaryingPoint(self.scene, self.law)
+        return None if known.status == "ok" else known
 
     def _leave_open(self, low: float, high: float) -> None:
         self._range(low, high)
@@ -103,6 +135,8 @@ class MarchedPoint:
     def _may_depend_on_start(self) -> bool:
         """Whether another start may lead elsewhere, in a row that is not about one start alone."""
         scene, law = self.scene, self.law
+        if self.march.unmoved:
+            return law.count() > 0
         if scene.undriven or stays_at_rest(scene, law):
             return False
         if law.memory_kind == "none":
@@ -127,7 +161,7 @@ class MarchedPoint:
 
     def _lost_in_chatter(self, mean: MarchMean) -> float:
         """All that the mean may be off by, where the belt is slower than the jumps that rk4 makes about rest."""
-        if not self.march.facts.is_blind(self.law.memory_kind):
+        if self.march.unmoved or not self.march.facts.is_blind(self.law.memory_kind):
             return 0.0
         step = 2.0 * math.pi / self.scene.frequency / mean.runs[-1].pace.steps
         jump = self.march.mass.normal_load * self.march.at_rest * step
@@ -158,7 +192,8 @@ class MarchedPoint:
 
     def _moves_on(self) -> bool:
         """Whether bristles that a moving belt drags along forget where the mass started."""
-        return self.law.count() > 0 and not self.scene.undriven and self.scene.belt_speed != 0.0
+        moves = self.scene.belt_speed != 0.0 and not self.scene.undriven
+        return self.march.unmoved or (self.law.count() > 0 and moves)
 
     def _period(self, mean: MarchMean, last: MarchResult) -> float:
         if not self.scene.undriven:
@@ -179,8 +214,30 @@ class MarchedPoint:
         laps = laps if run.verdict == STALLED else run.stride
         periods = max(1, laps // own)
         orbit = replace(self.march.track(run, periods * own), periods=periods)
-        return orbit if self.march.facts.sticks else replace(orbit, stick=None)
+        if self.march.unmoved:
+            orbit = as_prescribed(self.scene, orbit)
+        known = self.march.facts.sticks or (self.march.unmoved and self.law.count() == 0)
+        return orbit if known else replace(orbit, stick=None)
 
 
 def nowhere() -> None:
     """The orbit of a point without one."""
+
+
+def answers_of(points: Sequence[MarchedPoint]) -> Answers:
+    """The answers of points, none of which hangs on another."""
+    low = np.array([point.answer.low for point in points])
+    return Answers(
+        status=[point.status for point in points],
+        reason=[point.reason for point in points],
+        model=[point.model for point in points],
+        error_kind=["estimated" if point.status == "ok" else "" for point in points],
+        mean=np.array([point.answer.mean for point in points]),
+        error=np.array([point.answer.error for point in points]),
+        period=np.array([point.answer.period for point in points]),
+        mean_low=low,
+        mean_high=np.array([point.answer.high for point in points]),
+        window=np.where(np.isnan(low), np.nan, 1.0),
+        seconds=np.array([point.seconds for point in points]),
+        orbit=lambda i: points[i].orbit(),
+    )

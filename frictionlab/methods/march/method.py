@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from frictionlab.laws.base import FrictionLaw, Positive
 from frictionlab.methods.base import Answers, Method
-from frictionlab.methods.march.answers import AnsweredPoint, answers_of
 from frictionlab.methods.march.error import WORK, Plan
-from frictionlab.methods.march.judge import MarchedPoint
-from frictionlab.methods.march.prescribed import SampledPoint
-from frictionlab.methods.march.prescribed_bristle import SteppedPoint
+from frictionlab.methods.march.judge import MarchedPoint, answers_of
 from frictionlab.methods.march.refusal import Request, reasons_against
 from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.methods.march.steppers import STEPPERS, StepperName, steppers_of
@@ -37,12 +34,6 @@ Count = Annotated[int, BeforeValidator(_whole), Field(ge=4, le=100_000_000)]
 
 STEP_SECONDS = {"none": 5e-8, "bristle": 1e-7, "deflections": 3e-7, "scalars": 3e-7}
 """Of one step, by what the law remembers; for planning."""
-
-PRESCRIBED: dict[str, Callable[[Scene, FrictionLaw, float, Plan], AnsweredPoint]] = {
-    "none": SampledPoint,
-    "bristle": SteppedPoint,
-}
-"""What answers a scene of prescribed slip, by what the law remembers: there is no mass to be stepped."""
 
 
 class March(Method):
@@ -127,8 +118,7 @@ class March(Method):
         assert scenes[0].normal_load is not None
         law = law.under_load(scenes[0].normal_load)
         plan = self._plan(law)
-        point = PRESCRIBED[law.memory_kind] if scenes[0].degrees_of_freedom == 0 else MarchedPoint
-        return answers_of([point(scene, law, tolerance, plan) for scene in scenes])
+        return answers_of([MarchedPoint(scene, law, tolerance, plan) for scene in scenes])
 
     def _plan(self, law: FrictionLaw) -> Plan:
         theta, stepper = self.theta or 0.5, self._stepper(law)

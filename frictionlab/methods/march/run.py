@@ -22,7 +22,9 @@ from frictionlab.methods.march.laps import (
     MarchStart,
     march_laps,
 )
+from frictionlab.methods.march.prescribed import unmoved_mass, unseen_share
 from frictionlab.methods.march.stability import (
+    elastic_stiffness,
     fastest_slip,
     fewest_steps,
     first_memory,
@@ -39,6 +41,8 @@ from frictionlab.scene.body import Mass, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.rest import friction_at_rest
 
+UNMOVED = 2.0**100
+"""Of friction in the norm of energy, where it moves no mass: rounding of a mass at rest is nothing beside it."""
 LONGEST_PERIOD = 8
 """Of a response that repeats only after several laps."""
 
@@ -94,7 +98,8 @@ class MarchRun:
 
     def __init__(self, scene: Scene, law: FrictionLaw, stepper: StepperName) -> None:
         self.scene, self.law, self.stepper, self.facts = scene, law, stepper, STEPPERS[stepper]
-        self.mass: Mass = scene.mass()
+        self.unmoved = scene.degrees_of_freedom == 0
+        self.mass: Mass = unmoved_mass(scene) if self.unmoved else scene.mass()
         self.through_rest = steps_through_rest(scene, law)
         straight = along_the_belt(scene, law) and not _starts_across(scene)
         self.straight = straight
@@ -106,13 +111,19 @@ class MarchRun:
         sine, cosine = self.body.reference_sine, self.body.reference_cosine
         self._free = complex(cosine), complex(scene.frequency * sine)
         self._fresh = first_memory(scene, law)
-        self._spring = memory_stiffness(scene, law)
+        self._spring = self._memory_stiffness()
         self.start = self.place(scene.start if scene.undriven else scene.initial)
-        self.forgets = scene.belt_speed != 0.0  # on a belt at rest the mass stays wherever a run left it
+        # on a belt at rest the mass stays wherever a run left it
+        self.forgets = scene.belt_speed != 0.0 or self.unmoved
         self.drive_period = 2.0 * math.pi / self.mass.frequency
         self.lap: float = interpreted(span)(self.body)
         self.window = self._relaxing()
         self.seconds = 0.0
+
+    @property
+    def unit(self) -> float:
+        """The distance of two states, in the norm of energy, that makes friction differ by its coefficient."""
+        return UNMOVED if self.unmoved else self.mass.normal_load
 
     @property
     def at_rest(self) -> float:
@@ -149,6 +160,16 @@ class MarchRun:
         if start is None:
             return MarchState(*self._free, self._fresh)
         return MarchState(complex(start.x, start.x2), complex(start.velocity, start.velocity2), self._fresh)
+
+    def _memory_stiffness(self) -> Floats:
+        """Of each memory, in the norm of energy; where nothing moves the distance is that of friction alone."""
+        if self.unmoved:
+            return np.array([(UNMOVED * elastic_stiffness(self.law)) ** 2])
+        return memory_stiffness(self.scene, self.law)
+
+    def unseen_share(self, steps: int) -> float:
+        """What steps do not see of bristles under a slip that turns: friction by this share, where it is known."""
+        return unseen_share(self.scene, self.law, steps) if self.unmoved else 0.0
 
     def fewest(self) -> int:
         """Steps per period that the stepper needs not to explode; 1 where any number will do."""
@@ -233,6 +254,8 @@ class MarchRun:
 
     def _near(self, pace: Resolution) -> float:
         """Slip speed that smoothing makes of stick, or the jump of slip over a step that is blind to stick."""
+        if self.unmoved:
+            return 0.0
         if self.facts.adaptive:
             return 3.0 * pace.width
         force = self.heaviest * self.mass.normal_load * self.law.sliding_friction(0.0)
@@ -300,12 +323,12 @@ class MarchRun:
             return 1e-12 + self._from_sliding(march)
         if march.progress.verdict == STALLED:
             led = self._apart(march, len(march.laps.impulse), len(march.laps.impulse) - self.window)
-            return spread + 2.0 * led / self.mass.normal_load
+            return spread + 2.0 * led / self.unit
         ends = (1.0 + self.mass.damping) * drift
         doubt = (
             2.0 if self.law.memory_kind == "none" else 4.0
         )  # with memory, orbits may part before they meet
-        left = doubt * float(march.progress.distance + ends / self.lap) / self.mass.normal_load
+        left = doubt * float(march.progress.distance + ends / self.lap) / self.unit
         return left + (self._from_sliding(march) if self._only_slides(march) else 0.0)
 
     def _only_slides(self, march: MarchHistory) -> bool:

@@ -151,5 +151,5 @@ def _moved_belt(varying: Any, like: complex) -> Any:
     """What varies, where the belt moves instead of the body."""
     if not varying:
         return varying
-    moved = varying._replace(belt=varying.belt.reversed())
+    moved = varying._replace(belt=varying.belt.scaled(-1.0))
     return packed(moved, isinstance(like, complex))

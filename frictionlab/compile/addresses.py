@@ -48,10 +48,24 @@ def _intrinsic(body: Any, in_python: Any = None) -> Any:
 def _written_to(typing: Any, thing: Any, room: Any) -> Any:
     def codegen(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         data = _arrays.make_array(room)(context, builder, given[1]).data
-        builder.store(given[0], builder.bitcast(data, context.get_value_type(thing).as_pointer()))
+        written = _unowned(context, builder, thing, given[0])
+        builder.store(written, builder.bitcast(data, context.get_value_type(thing).as_pointer()))
         return builder.ptrtoint(data, _ADDRESS)
 
     return INDEX(thing, room), codegen
+
+
+def _unowned(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """The value, its arrays without the count of their users: numba drops that when the call ends, arrays stay."""
+    if isinstance(kind, _types.Array):
+        array = _arrays.make_array(kind)(context, builder, value)
+        array.meminfo = _cgutils.get_null_value(array.meminfo.type)
+        array.parent = _cgutils.get_null_value(array.parent.type)
+        return array._getvalue()
+    if isinstance(kind, _types.BaseTuple):
+        parts = zip(kind.types, _cgutils.unpack_tuple(builder, value), strict=True)
+        return context.make_tuple(builder, kind, [_unowned(context, builder, *part) for part in parts])
+    return value
 
 
 def _bytes_of(typing: Any, thing: Any) -> Any:
@@ -62,7 +76,7 @@ def _bytes_of(typing: Any, thing: Any) -> Any:
 
 
 written_to = _intrinsic(_written_to, lambda thing, room: thing)
-"""written_to(thing, room): write a thing to an array of bytes; where that lies."""
+"""written_to(thing, room): write a thing to an array of bytes; where that lies. Its arrays have to outlive it."""
 bytes_of = _intrinsic(_bytes_of, lambda thing: 0)
 """bytes_of(thing): how many bytes it takes."""
 

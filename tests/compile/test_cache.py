@@ -22,8 +22,7 @@ from frictionlab.faults import CannotCompile
 from frictionlab.laws.base import Positive, SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.lugre import LuGre
-from frictionlab.methods.march.prescribed import sample_friction
-from frictionlab.methods.march.prescribed_bristle import step_periods
+from frictionlab.methods.march.laps import march_laps
 from frictionlab.methods.periodic.continuation import answer_curve
 from frictionlab.methods.periodic.setting import maps_of
 from frictionlab.methods.reduced.contact import harmonic_friction
@@ -202,7 +201,7 @@ def test_words_and_the_place_in_the_file_change_nothing(compiled_once, name, bef
 
 
 @pytest.mark.parametrize(
-    "root", [answer_curve, maps_of, follow_undriven, sample_friction, step_periods, harmonic_friction, LuGre]
+    "root", [answer_curve, maps_of, follow_undriven, march_laps, harmonic_friction, LuGre]
 )
 def test_the_name_of_a_kept_kernel_holds_no_address(root):
     assert not [piece for piece in cache._pieces([root], set()) if " at 0x" in piece]

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 import time
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.compile.call import KernelCall
-from frictionlab.compile.decorators import njit
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.loop import Vectors
@@ -117,22 +115,6 @@ def piece_at(edges: Floats, tau: Floats) -> PieceNumbers:
     return np.clip(np.searchsorted(edges, tau, side="right") - 1, 0, len(edges) - 2)
 
 
-def friction_along(law: FrictionLaw, slip: Vectors) -> Vectors:
-    """The friction that resists each slip; zero at rest."""
-    if law.constant_sliding_friction():
-        return sliding_vectors(law, slip)
-    friction = np.empty(slip.size, np.complex128)
-    KernelCall(friction_of_slips, law)(slip.ravel(), friction)
-    return friction.reshape(slip.shape)
-
-
-@njit
-def friction_of_slips(law: Any, slip: Any, friction: Any) -> None:
-    """Fill friction with that of a law without memory at each slip velocity."""
-    for i in range(slip.size):
-        friction[i] = law.sliding_vector(slip[i]) if slip[i] != 0.0 else 0j
-
-
 class VaryingPoint:
     """One scene of such a slip, a law without memory, and the answer; slip: another than the prescribed one."""
 
@@ -200,7 +182,7 @@ class VaryingPoint:
         tau, weights = nodes(edges)
         slip = self.slip.velocity(tau, k[:, None]) - self.belt_speed
         load = self.slip.normal_load.at(tau, k[:, None])[0]
-        friction = load * friction_along(self.law, slip)
+        friction = load * sliding_vectors(self.law, slip)
         largest = float(np.abs(friction).max())
         if less:
             friction = friction - load * less * slip / np.maximum(np.abs(slip), 1e-300)
@@ -220,4 +202,4 @@ class VaryingPoint:
         tau, _ = nodes(edges)
         slip = self.slip.velocity(tau, k[:, None]) - self.belt_speed
         load = self.slip.normal_load.at(tau, k[:, None])[0]
-        return tau, load * friction_along(self.law, slip)
+        return tau, load * sliding_vectors(self.law, slip)

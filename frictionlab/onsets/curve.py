@@ -205,7 +205,9 @@ class _Search:
     def _noise(self, low: DistanceAt, high: DistanceAt, error: float) -> float:
         """By how much the error of the motions moves the place at most, by the mean slope of the distance."""
         slope = abs(high.f - low.f) / (high.x - low.x)
-        return _NOISE * error / (self.motions.limit * slope) if slope > 0.0 and math.isfinite(slope) else 0.0
+        if not (slope > 0.0 and math.isfinite(slope)):
+            return 0.0
+        return _NOISE * error / (self.motions.friction * slope)
 
     def _why_not(self) -> str:
         if math.isinf(self.motions.seconds):

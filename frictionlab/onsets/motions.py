@@ -21,6 +21,8 @@ from frictionlab.theory.rest import friction_at_rest
 
 _LEAST = 1e-12
 """The least distance from stick of a motion that slips throughout."""
+_NOTHING = 1e-100
+"""The static limit of a contact that holds nothing."""
 _FINE = interpolation_weights(np.linspace(-1.0, 1.0, 201))
 
 
@@ -59,7 +61,9 @@ class CurveMotions:
     def __init__(self, scene: Scene, law: FrictionLaw, solve: SolveScenes, seconds: float) -> None:
         self.scene, self.law, self.solve, self.seconds = scene, law, solve, seconds
         self.looks = 0
-        self.limit = friction_at_rest(law)
+        # a film that holds nothing at rest never sticks; its friction is measured by that of slip
+        self.limit = friction_at_rest(law) or _NOTHING
+        self.friction = friction_at_rest(law) or law.sliding_friction(1.0)
         self.scale = velocity_scale(scene)
         if not math.isfinite(self.scale) or self.scale == 0.0:
             self.scale = 1.0

@@ -198,6 +198,34 @@ DOUBLING = LINE | {"drive": {"unbalance": 10, "frequency": 1.5}}
 DAMPED = {"kind": "lugre", "mu_kinetic": 0.4, "presliding_length": 10, "contact_damping": 2}
 
 
+FILM = """
+from frictionlab.laws.base import Positive, SlidingLaw
+
+
+class Film(SlidingLaw):
+    mu: Positive
+
+    def sliding_friction(self, speed):
+        return self.mu * speed / (1.0 + speed)
+
+    def vanishes_at_rest(self):
+        return True
+"""
+
+
+def test_friction_that_vanishes_at_rest_never_sticks_and_its_reversals_end(tmp_path: Path) -> None:
+    (tmp_path / "film.py").write_text(FILM)
+    of_film = study(LINE, [1.0, 5.0, 9.0, 20.0, 60.0], {"kind": "film", "mu": 0.4})
+    of_film |= {"plugins": [str(tmp_path / "film.py")]}
+    onsets = fl.run(of_film | {"columns": ["onsets"]}).onsets
+
+    assert onsets["onset"].tolist() == ["reversal_ends"]
+    table = fl.run(of_film | {"columns": "all"}).table
+    place, speeds = onsets["belt_speed"][0], table["scene.belt_speed"]
+    assert table["reversals"][speeds < place].all()
+    assert not table["reversals"][speeds > place].any()
+
+
 @deep("seconds of bristles at a tolerance")
 def test_a_multiplier_leaves_at_minus_one_where_the_period_doubles() -> None:
     onsets = fl.run(study(DOUBLING, [11.0, 12.5], DAMPED, tolerance=1e-6)).onsets

@@ -380,6 +380,18 @@ def test_corners_inside_steps_of_a_prescribed_slip_in_the_plane_are_in_the_error
     assert abs(found["mean_friction"][0] - mean) <= found["error"][0] <= tolerance
 
 
+def test_bristles_that_bend_back_within_a_step_after_a_jump_of_the_slip_are_in_the_error():
+    """Halved steps agree as long as all of them are longer than that takes."""
+    law, square = (
+        Dahl(mu=0.4, stiffness=4000.0),
+        Slip(velocity_amplitude=1.0, frequency=3.0, waveform="square"),
+    )
+    found = solve(Scene(belt_speed=0.5, normal_load=2.0, slip=square), law, 1e-4).columns
+    # Dahl's friction comes to its limit as exp(-path/length): it lacks 2 mu length/speed of its impulse after a jump
+    mean = 2.0 * 0.4 * law.presliding() * (1.0 / 0.5 - 1.0 / 1.5) / (2.0 * math.pi / 3.0)
+    assert abs(found["mean_friction"][0] - mean) <= found["error"][0] <= 1e-4
+
+
 def test_friction_that_nears_its_limit_ever_more_slowly_is_as_far_off_as_the_error_says():
     law = Dahl(mu=0.4, presliding_length=0.1, exponent=2.0)
     found = solve(Scene(damping_ratio=0.1, normal_load=10.0, belt_speed=1.0), law, 1e-6).columns

@@ -9,19 +9,14 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.periodic.continuation import FINE
-from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.methods.periodic.map_kinds import MAP_KINDS, map_kind
+from frictionlab.methods.periodic.problem import PeriodicProblem, along_the_belt
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.study.grid import law_in_scene
 
 _WITH_ONE_DEFLECTION = 3
 """Numbers of a state on the line: position, velocity, deflection."""
-_TOLERANCE = {"none": 1e-12, "exact path": 1e-12}
-_TOLERANCE_WITH_MEMORY = 1e-10
-"""Steps of order 5 are many more for finer maps."""
-_NOISE = {"none": 1e-14, "exact path": 1e-14}
-_NOISE_WITH_MEMORY = 2e-12
-"""What steps chosen otherwise change in a map, relative to the size of its state."""
 
 
 class OnePeriod(NamedTuple):
@@ -35,10 +30,8 @@ class OnePeriod(NamedTuple):
     def of(cls, scene: Scene, law: FrictionLaw) -> OnePeriod:
         """That of a driven mass."""
         inside = law_in_scene(law, scene)
-        problem = PeriodicProblem(scene, inside, _TOLERANCE_WITH_MEMORY)
-        if problem.kind in _TOLERANCE:
-            problem = PeriodicProblem(scene, inside, _TOLERANCE[problem.kind])
-        return cls(problem, scene, inside)
+        kind = map_kind(inside, not along_the_belt(scene, inside))
+        return cls(PeriodicProblem(scene, inside, MAP_KINDS[kind].finest), scene, inside)
 
     def like(self, other: OnePeriod) -> bool:
         """Whether states of the other are states of this one, followed by the same map."""
@@ -50,7 +43,7 @@ class OnePeriod(NamedTuple):
 
     def noise(self, z: Floats) -> Floats:
         """By how much state and mean friction jump where steps are chosen otherwise."""
-        relative = _NOISE.get(self.problem.kind, _NOISE_WITH_MEMORY)
+        relative = MAP_KINDS[self.problem.kind].noise
         return np.append(np.full(z.size, relative * (1.0 + float(np.linalg.norm(z)))), relative)
 
     def drift(self, z: Floats) -> Floats:

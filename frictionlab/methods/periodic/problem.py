@@ -36,6 +36,7 @@ from frictionlab.methods.periodic.continuation import (
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.lane_calls import FEWEST_IN_LANES, LaneCalls
 from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT
+from frictionlab.methods.periodic.map_kinds import MAP_KINDS, map_kind
 from frictionlab.methods.periodic.near_rest import answer_near_rest
 from frictionlab.methods.periodic.period_map import size_of, unpack
 from frictionlab.methods.periodic.setting import maps_of
@@ -74,11 +75,6 @@ def _largest(signal: Signal, period: float) -> float:
     return max(map(abs, signal.extremes(period)))
 
 
-def map_kind(law: FrictionLaw, planar: bool) -> str:
-    """Which period map serves a law: that of an exact path along a line, else that of its kind of memory."""
-    return "exact path" if "exact path" in law.structure() and not planar else law.memory_kind
-
-
 class Transient(NamedTuple):
     """A motion followed until it repeats: after how many periods of all that changes in time (0: never, ARRIVED: it
     ends on the orbit that is known), its one-period means, the states at the end of each [n, size], its end."""
@@ -90,8 +86,6 @@ class Transient(NamedTuple):
     seconds: float
 
 
-ROUGH = {"none": 1e-9, "bristle": 1e-6, "deflections": 1e-7, "scalars": 1e-7}
-"""Accuracy of the maps that follow a transient, by what the law remembers: with memory they are of lower order."""
 FINEST = 1e-15
 """No orbit is asked to be closed to less: rounding moves the mean more, and steps would go on for ever."""
 
@@ -251,7 +245,7 @@ class PeriodicProblem:
         self, belt_speed: float, state: Floats, most: int, known: KnownOrbit | None = None
     ) -> Transient:
         """The motion from a state, that of another belt speed for one; the rest as ``transient``."""
-        return self._iterate(belt_speed, state, most, ROUGH[self.law.memory_kind], known)
+        return self._iterate(belt_speed, state, most, MAP_KINDS[self.kind].rough, known)
 
     def positions(self, states: Floats) -> tuple[Floats, Floats]:
         """Position and velocity along x1 of states at the start of a period."""

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import NOT_UNIQUE, PROVED, TESTED, Answers, Multipliers, Status
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
-from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus, map_kind
+from frictionlab.methods.periodic.map_kinds import MAP_KINDS
+from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus
 from frictionlab.methods.periodic.sharpened import ClosedMotion, sharpened
 from frictionlab.methods.shooting.attractors import (
     FEWEST,
@@ -36,14 +37,6 @@ from frictionlab.theory.uniqueness import ALONE, why_unique
 Complexes = NDArray[np.complex128]
 
 UNKNOWN = complex(math.nan, math.nan)
-SOLVED = {
-    "none": "",
-    "exact path": "; deflection as a function of the slip path",
-    "bristle": "; mass and bristle solved together (Rodas5P)",
-    "deflections": "; mass and memory solved together (Rodas5P)",
-    "scalars": "; mass and memory solved together (Rodas5P)",
-}
-"""How the period map treats what the law remembers."""
 SURELY = 1e-6
 """By how much a multiplier above one is no rounding error."""
 CENTRAL = 1e-6
@@ -388,7 +381,7 @@ def _model(scene: Scene, problem: PeriodicProblem, solved_by: PeriodicProblem) -
         ": without a load across the belt x2 decays" if scene.degrees_of_freedom == 2 and not planar else ""
     )
     implicit = "" if solved_by is problem else NEAR_REST
-    return f"shooting, {directions}{decays}{SOLVED[map_kind(problem.law, planar)]}{implicit}"
+    return f"shooting, {directions}{decays}{MAP_KINDS[problem.kind].said}{implicit}"
 
 
 def _multipliers(curve: Curve) -> Floats:

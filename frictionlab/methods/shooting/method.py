@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, FoundState, Method
-from frictionlab.methods.periodic.problem import along_the_belt, map_kind
+from frictionlab.methods.periodic.map_kinds import MAP_KINDS, map_kind
+from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
@@ -32,23 +33,6 @@ CASES: tuple[tuple[Applies, Solve], ...] = (
 """Kinds of scene and law, and what answers a curve of them: the first that applies."""
 
 
-class Cost(NamedTuple):
-    """Seconds a point on the line and in the plane at a tolerance; steps grow with its inverse to a power."""
-
-    line: float
-    plane: float
-    tolerance: float
-    power: float
-
-
-MEMORY = Cost(2e-2, 2e-1, 1e-6, 0.2)
-COSTS = {
-    "none": Cost(1e-4, 3e-4, 1e-9, 0.125),
-    "exact path": Cost(1e-3, 1e-3, 1e-9, 0.125),
-    "bristle": Cost(1e-2, 5e-2, 1e-6, 0.2),
-    "deflections": MEMORY,
-    "scalars": MEMORY,
-}
 CONSTANT_CONTACT = (
     "normal_load_variation.contact: constant keeps the stiffness of one bristle; a law with another memory has none "
     "of its own: give per_load"
@@ -95,7 +79,7 @@ class Shooting(Method):
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """An undriven start across the belt, or of a contact that creeps; a law of none of the kinds known."""
-        if law.memory_kind not in COSTS:
+        if law.memory_kind not in MAP_KINDS:
             return "shooting needs a SlidingLaw, a BristleLaw or a MemoryLaw"
         if scene.constant_contact and law.memory_kind in ("deflections", "scalars"):
             return CONSTANT_CONTACT
@@ -117,8 +101,8 @@ class Shooting(Method):
         as long undriven with any memory.
         """
         planar = not scene.load_along_belt_only
-        cost = MEMORY if scene.undriven and law.count() > 0 else COSTS[map_kind(law, planar)]
-        return (cost.plane if planar else cost.line) * (cost.tolerance / tolerance) ** cost.power
+        kind = "deflections" if scene.undriven and law.count() > 0 else map_kind(law, planar)
+        return MAP_KINDS[kind].cost.seconds(planar, tolerance)
 
     def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
         """Answer a curve by continuation in belt speed."""

@@ -138,6 +138,16 @@ def failing_law(problem: BaseException) -> str | None:
     return None
 
 
+def lost_error(law: FrictionLaw) -> str | None:
+    """As ``failing_law``, what sliding friction raises at some slip speed of 1e-6 to 1e6: machine code loses it."""
+    for speed in (10.0 ** (tenth / 10.0) for tenth in range(-60, 61)):
+        try:
+            law.sliding_friction(speed)
+        except Exception as problem:
+            return failing_law(problem)
+    return None
+
+
 def outside_files(problem: BaseException) -> set[str]:
     """The files in the traceback of an error, without those of frictionlab, of pydantic and of Python itself."""
     names = {frame.filename for frame in traceback.extract_tb(problem.__traceback__)}

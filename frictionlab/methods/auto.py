@@ -89,7 +89,7 @@ class Auto(Method):
         assert method is not None, why
         answers = method.solve(scenes, law, tolerance)
         status, reason = list(answers.status), list(answers.reason)
-        for i in np.flatnonzero(~(answers.error <= tolerance)).tolist():
+        for i in np.flatnonzero(answers.error > tolerance).tolist():
             if status[i] == "ok":
                 status[i] = "failed"
                 reason[i] = (

@@ -10,7 +10,16 @@ import numpy as np
 
 from frictionlab.columns import DERIVED, FROM_ORBITS, RESULTS, TEXT
 from frictionlab.compile.notice import seconds_compiling
-from frictionlab.faults import INTERNAL, MARK, BrokenPlugin, CannotCompile, failing_law, text_of_error
+from frictionlab.faults import (
+    INTERNAL,
+    MARK,
+    BrokenPlugin,
+    CannotCompile,
+    failing_law,
+    lost_error,
+    text_of_error,
+)
+from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import NOT_UNIQUE, Answers, refused
 from frictionlab.quantities import Floats
 from frictionlab.results.derived import derived_columns
@@ -49,11 +58,8 @@ def _solved(chunk: Chunk, places: list[int]) -> list[Piece]:
         return []
     scenes = chunk.scenes.taken(places)
     try:
-        return [
-            Piece(
-                places, _believable(chunk.method.solve(scenes, chunk.law, chunk.task.tolerance), len(scenes))
-            )
-        ]
+        answers = chunk.method.solve(scenes, chunk.law, chunk.task.tolerance)
+        return [Piece(places, _believable(answers, chunk.law, len(scenes)))]
     except BrokenPlugin:
         raise
     except (Exception, SystemExit) as problem:
@@ -78,14 +84,15 @@ def _reason(problem: BaseException) -> str:
     if _numerical(problem):
         return sentence
     law = str(problem) if isinstance(problem, CannotCompile) else failing_law(problem)
-    return (
-        f"{INTERNAL}{sentence}"
-        if law is None
-        else MARK + "; ".join(line.strip() for line in law.splitlines())
-    )
+    return f"{INTERNAL}{sentence}" if law is None else _broken(law)
 
 
-def _believable(answers: Answers, size: int) -> Answers:
+def _broken(law: str) -> str:
+    """The reason of a point that failed in a law of another package."""
+    return MARK + "; ".join(line.strip() for line in law.splitlines())
+
+
+def _believable(answers: Answers, law: FrictionLaw, size: int) -> Answers:
     """The answers, every ``ok`` without a number made ``failed``. Raises TypeError for a wrong count."""
     lists: list[Sized | None] = [answers.status, answers.reason, answers.model, answers.error_kind]
     lists += [answers.mean, answers.error, answers.unique, *(getattr(answers, name) for name in OWN)]
@@ -97,10 +104,9 @@ def _believable(answers: Answers, size: int) -> Answers:
     if not bad.any():
         return answers
     status = ["failed" if wrong else old for wrong, old in zip(bad, answers.status, strict=True)]
-    reason = [
-        "the method gave no finite mean_friction and error" if wrong else old
-        for wrong, old in zip(bad, answers.reason, strict=True)
-    ]
+    lost = lost_error(law)
+    why = "the method gave no finite mean_friction and error" if lost is None else _broken(lost)
+    reason = [why if wrong else old for wrong, old in zip(bad, answers.reason, strict=True)]
     return replace(answers, status=status, reason=reason)
 
 

@@ -120,6 +120,7 @@ def integrals(motion: Motion, belt_speed: float, law: FrictionLaw, edges: Floats
     angle, weights = nodes(edges)
     slip = velocity(motion, angle) - belt_speed
     friction = sliding_vectors(law, slip)
-    mean = complex((weights * friction).sum() / (2.0 * math.pi))
+    with np.errstate(invalid="ignore"):  # where a law gives no number, neither is the mean
+        mean = complex((weights * friction).sum() / (2.0 * math.pi))
     direction = complex((weights * _directions(slip)).sum() / (2.0 * math.pi))
     return Integrals(mean, float(np.abs(friction).max()), direction)

@@ -5,6 +5,7 @@ About fifteen minutes, and more for kernels on a machine that has none. The site
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import tempfile
@@ -19,7 +20,10 @@ COMMAND = Path(sys.executable).parent / "frictionlab"
 
 
 class Exhibit(NamedTuple):
-    """A study in the gallery: its group, name and title, and what is said of it."""
+    """A study in the gallery: its group, name and title, and what is said of it.
+
+    rows: regular expression of the printed lines that answer the question; all of them where left out.
+    """
 
     group: str
     name: str
@@ -28,13 +32,12 @@ class Exhibit(NamedTuple):
     read: str
     found: str
     figure: str = "mean_friction"
+    rows: str = ""
 
     def page(self, printed: str) -> str:
         """The page of the study; printed: what the command says."""
         study = f"../../studies/{self.name}.yaml"
         return f"""# {self.question}
-
-**{self.title}.**
 
 ![{self.title}](figures/{self.name}.svg)
 
@@ -66,9 +69,17 @@ from [{self.name}.yaml]({study}):
         return f"""### {self.question}
 
 [![{self.title}](figures/{self.name}.svg)]({self.name}.md)
-
-{self.found} [More]({self.name}.md)
 """
+
+    def excerpt(self, printed: str) -> str:
+        """Of what the command says without its models: the counts, the lines that answer, the last line."""
+        *body, expected = printed.splitlines()
+        counts, table, *reasons = "\n".join(body).split("\n\n")
+        head, *lines = (line[: table.index("  model")].rstrip() for line in table.splitlines())
+        lines += "\n".join(reasons).splitlines()
+        kept = [line for line in lines if re.search(self.rows, line)]
+        more = [f"... {len(lines) - len(kept)} more lines; every point is in runs/{self.name}/results.csv"]
+        return "\n".join([counts, "", head, *kept, *(more if len(kept) < len(lines) else []), expected])
 
 
 def exhibits() -> list[Exhibit]:
@@ -96,7 +107,7 @@ def make(exhibit: Exhibit) -> None:
         figure = Path(folder, "run", "figures", f"{exhibit.figure}.svg").read_text()
     lines = [line for line in done.stdout.splitlines()[1:] if not line.startswith(("model ", "table in "))]
     (GALLERY / "figures" / f"{exhibit.name}.svg").write_text(figure)
-    (GALLERY / f"{exhibit.name}.md").write_text(exhibit.page("\n".join(lines).strip()))
+    (GALLERY / f"{exhibit.name}.md").write_text(exhibit.page(exhibit.excerpt("\n".join(lines).strip())))
 
 
 def index(shown: list[Exhibit]) -> str:
@@ -106,8 +117,8 @@ def index(shown: list[Exhibit]) -> str:
     sections = [f"## {group}\n\n" + "\n".join(map(Exhibit.card, inside)) for group, inside in groups.items()]
     return f"""# Gallery
 
-Each picture is a study of the repository, and each asks one question. `python docs/gallery/make.py` runs the studies
-and draws all of it again.
+What have others computed? Each picture is a study of the repository and leads to a page with the answer, the study
+and what it prints. `python docs/gallery/make.py` runs them all again.
 
 ```{{toctree}}
 :hidden:

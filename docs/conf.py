@@ -1,4 +1,4 @@
-"""How Sphinx builds the site; docs/tests.md has the command."""
+"""How Sphinx builds the site; CONTRIBUTING.md has the command."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ class SteadyState:
 
     mean_friction, error [-]: the mean friction coefficient along the belt and the bound on its error; lengths in L,
     velocities in omega_1 L, energies of one period in K_1 L^2, period in those of the drive. All columns are
-    told in docs/study.md. si: the columns in SI units by name, where the scene is given in them.
+    in docs/results.md. si: the columns in SI units by name, where the scene is given in them.
 
     >>> import frictionlab as fl
     >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))

@@ -281,11 +281,11 @@ def test_the_listing_of_a_law_has_every_parameter_with_limits_unit_and_meaning(k
     assert {"passive", "rate_independent"} <= set(listed(kind)["declares"])
 
 
-def test_the_study_reference_has_every_parameter_of_every_law_with_its_unit() -> None:
-    reference = (DOCS / "study.md").read_text()
-    section = reference.partition("### Laws with bristles")[2].partition("\n##")[0]
-    rows = re.findall(r"^\| `(\w+)` \| ([^|]*) \|", section, re.MULTILINE)
-    parameters = {p["name"]: p["unit"] or "-" for kind in LAWS for p in listed(kind)["parameters"]}
+def test_the_nomenclature_has_every_parameter_of_every_law_with_its_unit() -> None:
+    section = (DOCS / "nomenclature.md").read_text().partition("## Laws")[2].partition("\n##")[0]
+    rows = re.findall(r"^\| `law\.(\w+)` \|(?: [^|]*\|){3} ([^|]*) \|", section, re.MULTILINE)
+    kinds = [*LAWS, "coulomb", "stribeck"]
+    parameters = {p["name"]: p["unit"] or "-" for kind in kinds for p in listed(kind)["parameters"]}
 
     assert dict(rows) == parameters
     assert len(rows) == len(parameters)

@@ -16,8 +16,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from frictionlab.charts.sheet import Heading, write_title
 from frictionlab.charts.style import PAGE, blank_figure
-from frictionlab.charts.words import write_title
 from frictionlab.columns import ATTRACTORS, word
 
 PERIOD_MARKERS: dict[int, tuple[str, str]] = {
@@ -41,14 +41,14 @@ def bifurcations(attractors: pd.DataFrame) -> dict[str, pd.DataFrame]:
     return {f"{number}_bifurcation": rows for number, rows in enumerate(curves, 1)}
 
 
-def bifurcation_figures(attractors: pd.DataFrame, title: str) -> dict[str, Callable[[], Figure]]:
+def bifurcation_figures(attractors: pd.DataFrame, heading: Heading) -> dict[str, Callable[[], Figure]]:
     """What draws each of them, by its name."""
-    return {name: partial(_figure, rows, title) for name, rows in bifurcations(attractors).items()}
+    return {name: partial(_figure, rows, heading) for name, rows in bifurcations(attractors).items()}
 
 
-def _figure(rows: pd.DataFrame, title: str) -> Figure:
+def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
     figure = blank_figure(PAGE, 4.6)
-    write_title(figure, title)
+    write_title(figure, heading.title)
     above, below = figure.subplots(2, 1, sharex=True)
     states = rows[rows["point"] == 1]
     _draw_means(above, states)

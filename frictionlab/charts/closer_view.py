@@ -6,11 +6,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
-from frictionlab.charts.curves import LEAST_VISIBLE
+from frictionlab.charts.curves import LEAST_VISIBLE, Numbers
 
-Points = tuple[NDArray[np.float64], NDArray[np.float64]]
+Points = tuple[Numbers, Numbers]
 LEVEL_SHARE = 0.4
 DIFFER_MOST = 0.3  # of the largest difference: from there on curves are shown closer
 GAP, LABELS = 0.07, 0.04  # to the level part around, and for labels of the view, in shares of the picture

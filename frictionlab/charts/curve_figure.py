@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -20,182 +22,170 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodF
 from numpy.typing import NDArray
 
 from frictionlab.charts.closer_view import draw_closer_view
-from frictionlab.charts.curves import LEAST_VISIBLE, CurveData, Family, SweptValue, drawn_once, is_logarithmic
-from frictionlab.charts.derived import is_along_speed
-from frictionlab.charts.legend import WITHOUT_NUMBER, add_legend
+from frictionlab.charts.curves import LEAST_VISIBLE, CurveData, Family, Numbers, drawn_once
+from frictionlab.charts.legend import WITHOUT_NUMBER, curve_entries, status_entries
 from frictionlab.charts.looks import Looks
-from frictionlab.charts.onsets import draw_onsets, onset_entries, onsets_on
-from frictionlab.charts.speed_marks import draw_speed_marks
-from frictionlab.charts.style import LINE, PANEL_HEIGHT, blank_figure, page_of
-from frictionlab.charts.words import label_once, sentence, write_title
+from frictionlab.charts.marks import OnsetMark, draw_onsets, draw_speed_marks, onset_entries, onsets_on
+from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, scale_alike
+from frictionlab.charts.sweeps import SweptValue, is_logarithmic
 from frictionlab.columns import word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
 DEGREES = [1, 1.5, 3, 4.5, 9, 10]  # between ticks of an angle, times a power of ten
 ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
-SAME_SPEED = 1e-6  # share of a belt speed: an onset and V_lin closer than this are one
 LIKE_RANGES = 2.5  # ranges of pictures of one quantity that differ by less have one scale
-BAND_LOOK: Any = {
-    "linewidth": 6.0,
-    "alpha": 0.3,
-    "solid_capstyle": "butt",
-}  # of a curve where the body sticks
+BAND_LOOK: Any = {"linewidth": 6.0, "alpha": 0.3, "solid_capstyle": "butt"}  # where the body sticks
 
 
 @dataclass(frozen=True)
 class CurveFigure:
     """What a figure of curves shows. words: of a column, where they are not its own; level: whether zero is a line.
 
-    left_out: what is not drawn, in words. onsets: of the whole study, None where none are marked.
+    onsets: of the whole study, None where none are marked. more: entries of the legend.
     """
 
     family: Family
     columns: Sequence[str]
-    title: str = ""
+    heading: Heading = NO_HEADING
     onsets: pd.DataFrame | None = None
     options: FigureOptions = USUAL_FIGURES
     words: Mapping[str, str] = field(default_factory=dict)
     level: bool = False
-    left_out: str = ""
+    more: Sequence[Line2D] = ()
+
+    @cached_property
+    def looks(self) -> Looks:
+        """Those of the curves that are drawn."""
+        return Looks(drawn_once(self.family.curves, self.columns))
 
     def draw(self) -> Figure:
         """The figure, with matplotlib's settings as they are."""
-        looks = Looks(drawn_once(self.family.curves, self.columns))
         pictures = [(panel, column) for panel in self.family.panels for column in self.columns]
-        width, wide = page_of(len(pictures), self.options.width)
-        high = -(-len(pictures) // wide)
-        figure = blank_figure(width, high * PANEL_HEIGHT)
-        above = write_title(figure, self.title if self.options.title else "")
-        below = add_legend(figure, self.family, looks, self.columns, self._more_entries(looks))
-        figure.set_figheight(high * PANEL_HEIGHT + LINE * (above + below))
-        drawn: dict[str, list[Axes]] = {}
-        for place, (panel, column) in enumerate(pictures, start=1):
-            axes = figure.add_subplot(high, wide, place)
-            _Picture(self, looks, panel, column, 72 * 0.8 * width / wide).draw(axes)
-            drawn.setdefault(column, []).append(axes)
-        for of_a_column in drawn.values():
-            _scale_alike(of_a_column)
-        label_once(figure.axes, wide)
-        return figure
+        about = self.family.word(self.family.member) if self.family.member else None
+        sheet = Sheet.blank(len(pictures), self.heading, self._entries(), about)
+        drawn = [
+            _Picture(self, panel, column, sheet.axes(place)).draw(sheet.picture_width)
+            for place, (panel, column) in enumerate(pictures)
+        ]
+        for column in range(len(self.columns)):
+            scale_alike(drawn[column :: len(self.columns)], LIKE_RANGES)
+        sheet.label_once(drawn)
+        return sheet.figure
 
-    def onsets_of(self, curve: CurveData) -> list[Any]:
-        """The marks on the axis under a curve, but for the end of reversal where the mark of V_lin says it."""
-        if not is_along_speed(self.family):
-            return []
-        marks = onsets_on(curve, self.onsets, self.family.abscissa)
-        return [mark for mark in marks if mark.onset != "reversal_ends" or not _is_kink(mark.at, curve)]
+    def onsets_of(self, curve: CurveData) -> list[OnsetMark]:
+        """The marks on the axis under a curve."""
+        return onsets_on(curve, self.onsets, self.family.abscissa) if self.family.along_speed else []
 
-    def _more_entries(self, looks: Looks) -> list[Line2D]:
+    def _entries(self) -> list[Line2D]:
         marks = [mark for curve in self.family.curves for mark in self.onsets_of(curve)]
-        entries: list[Line2D] = list(onset_entries(marks))
-        if self.options.stick and any(sticks(curve.rows).any() for curve in looks.curves):
+        rows = pd.concat([curve.rows[["method", "status"]] for curve in self.family.curves])
+        entries = [*curve_entries(self.looks, self.columns), *status_entries(rows), *onset_entries(marks)]
+        if self.options.stick and any(_sticks(curve).any() for curve in self.looks.curves):
             entries.append(Line2D([], [], color="0.3", label="stick in part of the period", **BAND_LOOK))
-        if self.left_out:
-            entries.append(Line2D([], [], linestyle="none", label=self.left_out))
-        return entries
+        return [*entries, *self.more]
 
 
-def _is_kink(at: float, curve: CurveData) -> bool:
-    return any(abs(at - kink) <= SAME_SPEED * abs(kink) for kink in curve.kinks)
-
-
-def sticks(rows: pd.DataFrame) -> NDArray[np.bool_]:
+def _sticks(curve: CurveData) -> NDArray[np.bool_]:
     """At which points the body sticks for a part of the period."""
-    if "stick_fraction" not in rows:
-        return np.zeros(len(rows), dtype=bool)
-    return np.nan_to_num(rows["stick_fraction"].to_numpy(dtype=float)) > 0.0
+    known = "stick_fraction" in curve.rows
+    return np.nan_to_num(curve.column("stick_fraction")) > 0.0 if known else np.zeros(len(curve.rows), bool)
 
 
 @dataclass(frozen=True)
 class _Picture:
-    """One quantity of the curves of one panel. width: of the picture, about [point]."""
+    """One quantity of the curves of one panel."""
 
     of: CurveFigure
-    looks: Looks
     panel: tuple[SweptValue, ...]
     column: str
-    width: float
+    axes: Axes
 
-    def draw(self, axes: Axes) -> None:
-        abscissa, options = self.of.family.abscissa, self.of.options
-        curves = [curve for curve in self.looks.curves if curve.panel == self.panel]
+    def draw(self, width: float) -> Axes:
+        """The picture. width: about [point]."""
+        axes, abscissa = self.axes, self.of.family.abscissa
+        curves = [curve for curve in self.of.looks.curves if curve.panel == self.panel]
         self.lines(axes, curves)
-        for curve in (curve for curve in self.of.family.curves if curve.panel == self.panel):
-            _mark_missing(axes, curve, abscissa, self.looks)
-        self._name(axes)
+        for curve in self.of.family.curves:
+            if curve.panel == self.panel:
+                self._mark_missing(curve)
+        axes.set_xlabel(self.of.family.word(abscissa))
+        axes.set_ylabel(self.of.words.get(self.column) or word(self.column, 28))
         axes.margins(x=0.02)
         if word(abscissa).endswith("deg]"):
             axes.xaxis.set_major_locator(MaxNLocator(steps=DEGREES))
-        if is_logarithmic(np.concatenate([curve.rows[abscissa].to_numpy(dtype=float) for curve in curves])):
+        if is_logarithmic(np.concatenate([curve.column(abscissa) for curve in curves])):
             axes.set_xscale("log")
             _label_decades(axes.xaxis)
-        _scale_upwards(axes, [curve.rows[self.column] for curve in curves], self.column)
-        if is_along_speed(self.of.family):
-            draw_speed_marks(axes, curves, self.looks, self.width)
+        self._scale_upwards(curves)
+        room = draw_speed_marks(axes, curves, self.of.looks, width) if self.of.family.along_speed else 0.0
+        pad = mpl.rcParams["axes.titlepad"] + room
+        axes.set_title(", ".join(each.sentence for each in self.panel), loc="left", pad=pad)
         for curve in curves:
-            draw_onsets(axes, self.of.onsets_of(curve), self.looks.color(curve))
-        if options.inset and self.column == "mean_friction":
-            known = [(x, y) for x, y in (_points(curve, abscissa, self.column) for curve in curves)]
+            draw_onsets(axes, self.of.onsets_of(curve), self.of.looks.color(curve))
+        if self.of.options.inset and self.column == "mean_friction":
+            known = [self._points(curve) for curve in curves]
             draw_closer_view(axes, known, lambda inside: self.lines(inside, curves))
+        return axes
 
     def lines(self, axes: Axes, curves: Sequence[CurveData]) -> None:
         """The curves alone."""
         if self.of.level and self.column == "mean_friction":
             axes.axhline(0.0, color="0.45", linewidth=0.6, zorder=0)
         for curve in curves:
-            _draw_curve(axes, self.of.family.abscissa, self.looks, curve, self.column)
-            if self.of.options.stick:
-                _shade_stick(axes, self.of.family.abscissa, self.looks, curve, self.column)
+            self._draw_curve(axes, curve)
 
-    def _name(self, axes: Axes) -> None:
-        axes.set_xlabel(self.of.family.word(self.of.family.abscissa))
-        axes.set_ylabel(self.of.words.get(self.column) or word(self.column, 28))
-        if self.panel:
-            axes.set_title(", ".join(sentence(setting) for setting in self.panel), loc="left")
+    def _points(self, curve: CurveData) -> tuple[Numbers, Numbers]:
+        x, y = curve.column(self.of.family.abscissa), curve.column(self.column)
+        known = np.isfinite(x) & np.isfinite(y)
+        return x[known], y[known]
+
+    def _draw_curve(self, axes: Axes, curve: CurveData) -> None:
+        x, y = curve.column(self.of.family.abscissa), curve.column(self.column)
+        look = self.of.looks.line(curve)
+        if np.isnan(x).all():  # a law without the swept parameter: the level that the others are held against
+            across = axes.get_yaxis_transform()
+            axes.plot([0.0, 0.5, 1.0], y[[0, 0, 0]], markevery=[1], transform=across, **look)
+            return
+        axes.plot(x, y, markevery=self.of.looks.marked(y, curve), **look)
+        if self.column == "mean_friction":
+            _draw_errors(axes, curve, x, look["color"])
+        held = _sticks(curve) if self.of.options.stick else np.zeros(len(x), bool)
+        if held.any():  # a pale band along these points
+            at, level = (np.where(held, values, np.nan) for values in (x, y))
+            axes.plot(at, level, color=look["color"], zorder=1, **BAND_LOOK)
+
+    def _mark_missing(self, curve: CurveData) -> None:
+        """A mark on the axis for every point without a number; a curve refused as a whole is only counted."""
+        x = curve.column(self.of.family.abscissa)
+        if curve.having("refused").all() or np.isnan(x).all():
+            return
+        look: Any = {"ms": 4, "clip_on": False, "transform": self.axes.get_xaxis_transform(), "zorder": 5}
+        for status, mark in WITHOUT_NUMBER.items():
+            if len(at := x[curve.having(status)]):
+                self.axes.plot(at, 0.0 * at, mark, color=self.of.looks.color(curve), **look)
+
+    def _scale_upwards(self, curves: Sequence[CurveData]) -> None:
+        """A foot at zero for what is not negative; logarithmic where whole curves lie decades apart."""
+        if self.column != "mean_friction" and _lie_decades_apart(
+            [curve.rows[self.column] for curve in curves]
+        ):
+            self.axes.set_yscale("log")
+            _label_decades(self.axes.yaxis)
+            return
+        low, high = self.axes.get_ylim()
+        if -0.06 * high < low:  # nothing but the margin below zero, so zero itself is the natural foot
+            self.axes.set_ylim(0.0, max(high, 1.05 * self.axes.dataLim.y1))
 
 
-def _points(curve: CurveData, abscissa: str, column: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    x, y = (curve.rows[name].to_numpy(dtype=float) for name in (abscissa, column))
-    known = np.isfinite(x) & np.isfinite(y)
-    return x[known], y[known]
-
-
-def _shade_stick(axes: Axes, abscissa: str, looks: Looks, curve: CurveData, column: str) -> None:
-    """A pale band along the points at which the body sticks."""
-    x, y = (curve.rows[name].to_numpy(dtype=float) for name in (abscissa, column))
-    held = sticks(curve.rows)
-    if held.any():
-        at, level = (np.where(held, values, np.nan) for values in (x, y))
-        axes.plot(at, level, color=looks.color(curve), zorder=1, **BAND_LOOK)
-
-
-class Data(NamedTuple):
-    """One curve of one quantity as arrays: where, how much, and the shape it is drawn in."""
-
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    rows: pd.DataFrame
-    color: Any
-
-
-def _scale_alike(pictures: Sequence[Axes]) -> None:
-    """One scale for pictures of one quantity, that curves may be compared across them, where ranges are alike."""
-    ranges = [axes.get_ylim() for axes in pictures]
-    heights = [high - low for low, high in ranges]
-    if all(axes.get_yscale() == "linear" for axes in pictures) and max(heights) < LIKE_RANGES * min(heights):
-        for axes in pictures:
-            axes.set_ylim(min(low for low, _ in ranges), max(high for _, high in ranges))
-
-
-def _scale_upwards(axes: Axes, curves: Sequence[pd.Series], column: str) -> None:
-    """A foot at zero for what is not negative; logarithmic where whole curves lie decades apart."""
-    if column != "mean_friction" and _lie_decades_apart(curves):
-        axes.set_yscale("log")
-        _label_decades(axes.yaxis)
-        return
-    low, high = axes.get_ylim()
-    if -0.06 * high < low:  # nothing but the margin below zero, so zero itself is the natural foot
-        axes.set_ylim(0.0, max(high, 1.05 * axes.dataLim.y1))
+def _draw_errors(axes: Axes, curve: CurveData, x: Numbers, color: Any) -> None:
+    """A band of the error where it can be seen, a bar from mean_low to mean_high where the state is not unique."""
+    error, mean = curve.column("error"), curve.column("mean_friction")
+    if (np.nan_to_num(error) > LEAST_VISIBLE * np.ptp(axes.get_ylim())).any():
+        axes.fill_between(x, mean - error, mean + error, color=color, alpha=0.25, linewidth=0)
+    if (several := curve.having("not_unique")).any():
+        low, high = (curve.column(name)[several] for name in ("mean_low", "mean_high"))
+        half = 0.5 * (high - low)
+        axes.errorbar(x[several], low + half, yerr=half, fmt="none", color=color, capsize=1.5)
 
 
 def _label_decades(axis: Axis) -> None:
@@ -215,47 +205,3 @@ def _lie_decades_apart(curves: Sequence[pd.Series]) -> bool:
     levels = [float(curve.median()) for curve in known]
     low, high = min(levels), max(levels)
     return high > 30.0 * low > ROUNDING * high and min(float(curve.min()) for curve in known) > 0.2 * low
-
-
-def _draw_curve(axes: Axes, abscissa: str, looks: Looks, curve: CurveData, column: str) -> None:
-    x, y = (curve.rows[name].to_numpy(dtype=float) for name in (abscissa, column))
-    look = looks.line(curve)
-    if np.isnan(x).all():  # a law without the swept parameter: the level that the others are held against
-        ends = [0.0, 0.5, 1.0]
-        axes.plot(ends, y[[0, 0, 0]], markevery=[1], transform=axes.get_yaxis_transform(), **look)
-        return
-    axes.plot(x, y, markevery=looks.marked(y, curve), **look)
-    data = Data(x, y, curve.rows, look["color"])
-    if column == "mean_friction":
-        _draw_error(axes, data)
-        _draw_ranges(axes, data)
-
-
-def _draw_error(axes: Axes, data: Data) -> None:
-    """The error as a band, where it is wide enough to be seen at all."""
-    error = data.rows["error"].to_numpy(dtype=float)
-    seen = np.nan_to_num(error) > LEAST_VISIBLE * np.ptp(axes.get_ylim())
-    if seen.any():
-        axes.fill_between(data.x, data.y - error, data.y + error, color=data.color, alpha=0.25, linewidth=0)
-
-
-def _draw_ranges(axes: Axes, data: Data) -> None:
-    """A bar from mean_low to mean_high where the steady state is not unique."""
-    rows = (data.rows["status"] == "not_unique").to_numpy()
-    if not rows.any():
-        return
-    low, high = (data.rows[name].to_numpy(dtype=float)[rows] for name in ("mean_low", "mean_high"))
-    centre = 0.5 * (low + high)
-    axes.errorbar(data.x[rows], centre, yerr=high - centre, fmt="none", color=data.color, capsize=1.5)
-
-
-def _mark_missing(axes: Axes, curve: CurveData, abscissa: str, looks: Looks) -> None:
-    """A mark on the axis for every point without a number; a curve refused as a whole is only counted."""
-    if (curve.rows["status"] == "refused").all() or curve.rows[abscissa].isna().all():
-        return
-    for status, mark in WITHOUT_NUMBER.items():
-        x = curve.rows[abscissa].to_numpy(dtype=float)[(curve.rows["status"] == status).to_numpy()]
-        where = axes.get_xaxis_transform()
-        if len(x):
-            color = looks.color(curve)
-            axes.plot(x, 0.0 * x, mark, color=color, ms=4, clip_on=False, transform=where, zorder=5)

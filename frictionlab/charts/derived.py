@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 
-from frictionlab.charts.curves import CurveData, Family
-from frictionlab.columns import belt_speed
+from frictionlab.charts.curves import SPEED_RATIO, CurveData, Family
 
-SPEED_RATIO = "velocity_ratio"
 BAND = "mean_friction", "mean_low", "mean_high"
-
-
-def is_along_speed(family: Family) -> bool:
-    """Whether belt speed, as given or over V_lin, runs along the axis."""
-    return family.abscissa in (SPEED_RATIO, belt_speed([family.abscissa]))
 
 
 def normalized(family: Family) -> Family | None:
@@ -25,28 +17,28 @@ def normalized(family: Family) -> Family | None:
 
     None where belt speed is not the axis, or a curve with a number has no V_lin.
     """
-    if family.abscissa == SPEED_RATIO or not is_along_speed(family):
+    if family.abscissa == SPEED_RATIO or not family.along_speed:
         return None
     with_numbers = [curve for curve in family.curves if curve.rows["mean_friction"].notna().any()]
     wanted = [SPEED_RATIO, "normalized_friction"]
     if any(set(wanted) - set(curve.rows) or curve.rows[wanted].isna().all().any() for curve in with_numbers):
         return None
     scaled = [
-        replace(curve, rows=_in_shares(curve, family.abscissa), kinks=_signs(curve)) for curve in with_numbers
+        replace(
+            curve,
+            rows=_in_shares(curve, family.abscissa),
+            kinks=tuple(float(np.sign(kink)) for kink in curve.kinks),
+        )
+        for curve in with_numbers
     ]
     return replace(family, abscissa=SPEED_RATIO, curves=scaled)
 
 
-def _signs(curve: CurveData) -> tuple[float, ...]:
-    return tuple(float(np.sign(kink)) for kink in curve.kinks)
-
-
 def _in_shares(curve: CurveData, abscissa: str) -> pd.DataFrame:
     """Its rows; V_lin and steady sliding friction are carried on to points that have no number of their own."""
-    rows = curve.rows
-    speed = rows[abscissa].to_numpy(dtype=float)
+    rows, speed = curve.rows, curve.column(abscissa)
     ratio = (rows[SPEED_RATIO] / speed).replace([np.inf, -np.inf], np.nan).median()
-    steady = (rows["mean_friction"] / rows["normalized_friction"]).to_numpy(dtype=float)
+    steady = curve.column("mean_friction") / curve.column("normalized_friction")
     known = np.isfinite(steady)
     share = 1.0 / np.interp(speed, speed[known], steady[known])
     columns = {name: rows[name] * share for name in BAND if name in rows}
@@ -59,11 +51,9 @@ def reference_law(family: Family, against: str | None = None) -> str | None:
     That is the one asked for, else that of Coulomb friction, else the first.
     """
     laws = {curve.law: str(curve.rows["kind"].iloc[0]) for curve in family.curves}
-    if len(laws) < 2:
+    if len(laws) < 2 or (against is not None and against not in laws):
         return None
-    if against is not None:
-        return against if against in laws else None
-    return next((law for law, kind in laws.items() if kind == "coulomb"), next(iter(laws)))
+    return against or next((law for law, kind in laws.items() if kind == "coulomb"), next(iter(laws)))
 
 
 def differences(family: Family, law: str) -> Family | None:
@@ -73,31 +63,25 @@ def differences(family: Family, law: str) -> Family | None:
     """
     found = []
     for curve in family.curves:
-        if curve.law == law or (of := _counterpart(curve, family.curves, law)) is None:
+        fit = [
+            other for other in family.curves if other.law == law != curve.law and _comparable(curve, other)
+        ]
+        if not fit:
             continue
-        less = of.rows["mean_friction"].to_numpy(dtype=float)
-        both = curve.rows["error"].to_numpy(dtype=float) + of.rows["error"].to_numpy(dtype=float)
+        of = next((other for other in fit if other.method == curve.method), fit[0])
+        less = of.column("mean_friction")
         columns = {name: curve.rows[name] - less for name in BAND if name in curve.rows}
+        both = curve.column("error") + of.column("error")
         found.append(replace(curve, rows=curve.rows.assign(**columns, error=both)))
     known = any(curve.rows["mean_friction"].notna().any() for curve in found)
     return replace(family, curves=found) if known else None
 
 
-def _counterpart(curve: CurveData, others: Sequence[CurveData], law: str) -> CurveData | None:
-    """The curve of that law in the same picture, at the same points, of the same swept value if it has one."""
-    fit = [
-        other
-        for other in others
-        if other.law == law
-        and other.panel == curve.panel
-        and (other.member == curve.member or other.member is None or other.member[1] is None)
-        and _same_points(curve, other)
-        and other.rows["mean_friction"].notna().any()
-    ]
-    return next((other for other in fit if other.method == curve.method), fit[0] if fit else None)
-
-
-def _same_points(one: CurveData, other: CurveData) -> bool:
+def _comparable(one: CurveData, other: CurveData) -> bool:
+    """Whether the other has numbers at the same points of the same picture, of the same swept value if it has one."""
+    member = other.member is None or other.member.value is None or other.member == one.member
+    if one.panel != other.panel or not member or other.rows["mean_friction"].isna().all():
+        return False
     names = [name for name in one.rows if name.startswith("scene.") and name in other.rows]
     numbers = [each.rows[names].select_dtypes("number").to_numpy(dtype=float) for each in (one, other)]
     return bool(np.array_equal(numbers[0], numbers[1], equal_nan=True))

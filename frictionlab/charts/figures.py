@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,13 +16,14 @@ from matplotlib.figure import Figure
 from frictionlab.charts.bifurcation import bifurcation_figures
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import Family, family_of
-from frictionlab.charts.derived import differences, is_along_speed, normalized, reference_law
+from frictionlab.charts.derived import differences, normalized, reference_law
 from frictionlab.charts.harmonics import harmonic_figures
-from frictionlab.charts.maps import map_of, map_of_curves
+from frictionlab.charts.maps import MapFigure, map_of, map_of_curves
 from frictionlab.charts.orbit_figures import orbit_figures
 from frictionlab.charts.shape_figure import ShapeFigure
+from frictionlab.charts.sheet import Heading
 from frictionlab.charts.style import STYLE, write_figure
-from frictionlab.charts.words import plain
+from frictionlab.charts.sweeps import plain
 from frictionlab.columns import SI
 from frictionlab.printable import printable
 from frictionlab.study.figure_options import FORMATS, USUAL_FIGURES, FigureOptions
@@ -55,7 +57,8 @@ class Kept(NamedTuple):
     harmonics: pd.DataFrame | None
 
 
-class FigureData(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class FigureData:
     """What figures are drawn of: a result table, and of the same run what there is of the rest.
 
     curves: of ``curves.csv``, with the shapes; attractors: of ``attractors.csv``.
@@ -68,6 +71,35 @@ class FigureData(NamedTuple):
     attractors: pd.DataFrame | None = None
     kept: Kept | None = None
     options: FigureOptions = USUAL_FIGURES
+
+    @cached_property
+    def family(self) -> Family | None:
+        """The curves; None where no number is swept."""
+        return family_of(self.table)
+
+    @cached_property
+    def maps(self) -> MapFigure | None:
+        """Maps in place of curves; None where lines can tell them apart."""
+        return map_of(self.table)
+
+    @property
+    def heading(self) -> Heading:
+        """What stands above the pictures."""
+        return Heading(printable(self.title) if self.options.title else "", self.options.width)
+
+    @property
+    def reference(self) -> str | None:
+        """The law that others are held against; None where there is only one."""
+        return reference_law(self.family, self.options.against) if self.family else None
+
+    @cached_property
+    def columns(self) -> dict[str, list[str]]:
+        """Those that each of ``FIGURES`` shows, in SI units where the scene is; one without any is not there."""
+        shown = {}
+        for name, wanted in FIGURES.items() if self.family else ():
+            given = [IN_SI[column] if IN_SI.get(column) in self.table else column for column in wanted]
+            shown[name] = [column for column in given if self.table[column].notna().any()]
+        return {name: columns for name, columns in shown.items() if columns}
 
 
 def draw_figures(
@@ -101,19 +133,15 @@ def _remove_others(folder: Path, files: Sequence[Path]) -> None:
 
 def figures_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
     """What draws each figure of a run, by its name."""
-    title = printable(data.title)
-    several = {} if data.attractors is None else bifurcation_figures(data.attractors, title)
-    family = family_of(data.table)
-    if family is None:
-        return several
-    found = _of_table(family, data._replace(title=title))
-    if data.kept is None:
-        return found | several
-    if (loops := orbit_figures(family, data.kept.orbits, title, data.options)) is not None:
-        found |= loops.figures()
-    if data.kept.harmonics is not None:
-        found |= harmonic_figures(data.kept.harmonics, title, data.options)
-    return found | several
+    found = {} if data.family is None else _of_table(data, data.family)
+    if data.kept is not None and data.family is not None:
+        if (loops := orbit_figures(data.family, data.kept.orbits, data.heading)) is not None:
+            found |= loops.figures()
+        if data.kept.harmonics is not None:
+            found |= harmonic_figures(data.kept.harmonics, data.heading, data.options)
+    if data.attractors is not None:
+        found |= bifurcation_figures(data.attractors, data.heading)
+    return found
 
 
 def figure_of(data: FigureData, name: str = "mean_friction") -> Figure:
@@ -122,7 +150,7 @@ def figure_of(data: FigureData, name: str = "mean_friction") -> Figure:
     Raises ValueError, with the names there are, where the run has no such figure.
     """
     if name == "shape":
-        data = data._replace(options=data.options.model_copy(update={"shape": True}))
+        data = replace(data, options=data.options.model_copy(update={"shape": True}))
     found = figures_of(data)
     if name not in found:
         has = ", ".join(sorted(found)) if found else "none, for no number is swept"
@@ -133,32 +161,31 @@ def figure_of(data: FigureData, name: str = "mean_friction") -> Figure:
     return figure
 
 
-def _of_table(family: Family, data: FigureData) -> dict[str, Callable[[], Figure]]:
-    table, title, curves, options = data.table, data.title, data.curves, data.options
-    of_speed = data.onsets if is_along_speed(family) else None
-    shares = normalized(family) if options.normalized else None
-    one = CurveFigure(shares or family, (), title, of_speed, options, IN_SHARES if shares else {})
-    maps = map_of(table)
+def _of_table(data: FigureData, family: Family) -> dict[str, Callable[[], Figure]]:
+    curves, maps, heading = data.curves, data.maps, data.heading
+    shares = normalized(family) if data.options.normalized else None
+    words = IN_SHARES if shares else {}
+    of_speed = data.onsets if family.along_speed else None
+    one = CurveFigure(shares or family, (), heading, of_speed, data.options, words)
     found: dict[str, Callable[[], Figure]] = {}
-    for name, columns in figure_columns(table).items():
-        of_mean = name == "mean_friction"
+    for name, columns in data.columns.items():
         if maps is not None:
-            shown = [*columns, "error"] if of_mean else columns
-            found[name] = replace(maps, columns=shown, title=title, options=options).draw
+            shown = [*columns, "error"] if name == "mean_friction" else columns
+            found[name] = replace(maps, columns=shown, heading=heading).draw
         else:
-            found[name] = replace(one, columns=columns, words=one.words if of_mean else {}).draw
-    compared = _difference_figure(one) if maps is None else None
-    if compared is not None and "mean_friction" in found:
+            found[name] = replace(one, columns=columns).draw
+    if maps is None and "mean_friction" in found and (compared := _difference_figure(one, data.reference)):
         found["differences"] = compared.draw
-    if options.shape and curves is not None and (shapes := ShapeFigure.of(family, curves, title, options)):
+    if curves is None:
+        return found
+    if data.options.shape and (shapes := ShapeFigure.of(family, curves, heading)):
         found["shape"] = shapes.draw
-    if curves is not None and (measures := map_of_curves(curves)) is not None:
-        found["map"] = replace(measures, title=title, options=options).draw
+    if (measures := map_of_curves(curves)) is not None:
+        found["map"] = replace(measures, heading=heading).draw
     return found
 
 
-def _difference_figure(one: CurveFigure) -> CurveFigure | None:
-    law = reference_law(one.family, one.options.against)
+def _difference_figure(one: CurveFigure, law: str | None) -> CurveFigure | None:
     less = None if law is None else differences(one.family, law)
     if less is None or law is None:
         return None
@@ -166,17 +193,3 @@ def _difference_figure(one: CurveFigure) -> CurveFigure | None:
     words = {"mean_friction": f"{what} less that of\n{plain(law)}"}
     options = one.options.model_copy(update={"inset": False})
     return replace(one, family=less, columns=["mean_friction"], options=options, words=words, level=True)
-
-
-def figure_columns(table: pd.DataFrame) -> dict[str, list[str]]:
-    """The columns that each figure of a table shows; a figure without any is not there."""
-    shown = {
-        name: [column for column in _as_given(wanted, table) if table[column].notna().any()]
-        for name, wanted in FIGURES.items()
-    }
-    return {name: columns for name, columns in shown.items() if columns}
-
-
-def _as_given(columns: Sequence[str], table: pd.DataFrame) -> list[str]:
-    """Velocities and energies in SI units where the scene is."""
-    return [IN_SI[column] if IN_SI.get(column) in table else column for column in columns]

@@ -9,14 +9,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from frictionlab.charts.curve_figure import CurveFigure
-from frictionlab.charts.curves import (
-    MOST_PICTURES,
-    Family,
-    along_the_axis,
-    family_by,
-    swept_by_size,
-    swept_numbers,
-)
+from frictionlab.charts.curves import MOST_PICTURES, Family, family_by
+from frictionlab.charts.sheet import Heading, part_told
+from frictionlab.charts.sweeps import sweep_of
 from frictionlab.columns import BELT_SPEED
 from frictionlab.study.figure_options import FigureOptions
 
@@ -28,7 +23,7 @@ AMPLITUDES = {
 
 
 def harmonic_figures(
-    harmonics: pd.DataFrame, title: str, options: FigureOptions
+    harmonics: pd.DataFrame, heading: Heading, options: FigureOptions
 ) -> dict[str, Callable[[], Figure]]:
     """What draws each, by its name; none where nothing is swept. harmonics: of ``harmonics.csv``, means left out."""
     family = _family(harmonics)
@@ -36,11 +31,10 @@ def harmonic_figures(
         return {}
     orders = list(dict.fromkeys(dict(panel)[HARMONIC] for panel in family.panels))
     most = orders[: max(1, MOST_PICTURES * len(orders) // len(family.panels))]
-    shown = [curve for curve in family.curves if dict(curve.panel)[HARMONIC] in most]
-    told = f"{len(most)} of {len(orders)} harmonics" if len(most) < len(orders) else ""
-    first = replace(family, curves=shown)
+    first = replace(family, curves=[curve for curve in family.curves if dict(curve.panel)[HARMONIC] in most])
+    told = part_told(len(most), len(orders), "harmonics")
     return {
-        name: CurveFigure(first, [column], title, None, options, {column: label}, left_out=told).draw
+        name: CurveFigure(first, [column], heading, None, options, {column: label}, more=told).draw
         for name, (column, label) in AMPLITUDES.items()
     }
 
@@ -48,11 +42,8 @@ def harmonic_figures(
 def _family(harmonics: pd.DataFrame) -> Family | None:
     rows = harmonics[harmonics[HARMONIC] > 0].rename(columns={"belt_speed": BELT_SPEED})
     rows = rows.assign(status="ok", **{HARMONIC: rows[HARMONIC].astype(float)})
-    numbers = swept_numbers(rows)
-    if not numbers:
-        return None
-    abscissa = along_the_axis(rows, numbers)
-    others = [name for name in swept_by_size(rows) if name != abscissa]
+    sweep = sweep_of(rows)
+    others = [name for name in sweep.inputs if name != sweep.along]
     apart = others if rows["law"].nunique() == 1 else [name for name in others if name.startswith("law.")]
     member = apart[-1] if apart else None
-    return family_by(rows, abscissa, [HARMONIC, *(name for name in others if name != member)], member)
+    return family_by(rows, sweep, [HARMONIC, *(name for name in others if name != member)], member)

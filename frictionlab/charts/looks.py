@@ -81,7 +81,7 @@ class Looks:
     @cached_property
     def _words(self) -> bool:
         """Whether the swept values are words, which are no steps of a scale."""
-        return any(curve.member is not None and isinstance(curve.member[1], str) for curve in self.curves)
+        return any(curve.member is not None and isinstance(curve.member.value, str) for curve in self.curves)
 
     def _hue(self, curve: CurveData) -> int:
         law, member, method = curve.place

@@ -13,8 +13,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
-from frictionlab.charts.style import LINE, PAGE, STYLE, blank_figure, write_figure
-from frictionlab.charts.words import plain, write_title
+from frictionlab.charts.sheet import LINE, write_title
+from frictionlab.charts.style import PAGE, STYLE, blank_figure, write_figure
+from frictionlab.charts.sweeps import plain
 from frictionlab.printable import printable
 
 PLUS = " + "

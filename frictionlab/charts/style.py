@@ -15,15 +15,12 @@ from frictionlab.study.figure_options import WIDTHS
 
 COLUMN, PAGE = (millimetres / 25.4 for millimetres in WIDTHS.values())
 """Widths of a journal's column and page [inch]."""
-PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
-LEGEND_FONT = 7  # [point]
 _FILE = mpl.rc_params_from_file(Path(__file__).with_name("frictionlab.mplstyle"), use_default_template=False)
 STYLE: Any = {name: value for name, value in _FILE.items() if name != "axes.prop_cycle"}
 """Of ``plt.style.use("frictionlab.charts.frictionlab")``, too, but for the looks of lines."""
 CYCLE: list[dict[str, Any]] = list(_FILE["axes.prop_cycle"])
 """Colour and dashes of the first curve, the second, ..."""
 _UNDATED = {"svg": {"Date": None}, "png": {"Software": None}, "pdf": {"CreationDate": None}}
-
 NOTEBOOK_DPI = 200
 
 
@@ -45,17 +42,12 @@ def blank_figure(width: float, height: float) -> Figure:
 
 
 def write_figure(figure: Figure, path: Path, formats: Sequence[str] = ("svg", "png")) -> list[Path]:
-    """Write a figure as a drawing and as pixels; the files. Raises OSError."""
+    """Write a figure as a drawing and as pixels, laid out once for all files; the files. Raises OSError."""
+    if layout := figure.get_layout_engine():
+        layout.execute(figure)
     files = [path.with_suffix(f".{each}") for each in formats]
-    for file in files:
-        figure.savefig(file, metadata=_UNDATED[file.suffix[1:]])
-        with mpl.rc_context({"figure.constrained_layout.use": False}):
-            figure.set_layout_engine(None)  # the layout found for the first file serves the others
+    with mpl.rc_context({"figure.constrained_layout.use": False}):
+        figure.set_layout_engine(None)
+        for file in files:
+            figure.savefig(file, metadata=_UNDATED[file.suffix[1:]])
     return files
-
-
-def page_of(pictures: int, width: str | None = None) -> tuple[float, int]:
-    """The width of a figure [inch], as asked for or as it needs, and how many pictures stand side by side."""
-    abreast = min(2, pictures)
-    wide = PAGE if width == "double" or (width is None and abreast == 2) else COLUMN
-    return wide, abreast if wide == PAGE else 1

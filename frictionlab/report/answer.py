@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup, escape
 
-from frictionlab.charts.curves import along_the_axis, swept_numbers
+from frictionlab.charts.sweeps import sweep_of
 from frictionlab.columns import belt_speed
 from frictionlab.printable import with_error
 from frictionlab.report.shapes import shape_sentence
@@ -32,8 +32,7 @@ def sentences(saved: Saved) -> list[Markup]:
 
 def axis_of(table: pd.DataFrame) -> str:
     """The input along the axis of the figures; the belt speed where nothing is swept."""
-    numbers = swept_numbers(table)
-    return along_the_axis(table, numbers) if numbers else belt_speed(table.columns)
+    return sweep_of(table).along or belt_speed(table.columns)
 
 
 def height_sentence(table: pd.DataFrame, along: str) -> Markup:

@@ -11,10 +11,10 @@ from markupsafe import Markup, escape
 from pandas import DataFrame
 
 from frictionlab.charts.bifurcation import bifurcations
-from frictionlab.charts.curves import Family, family_of
+from frictionlab.charts.curves import Family
 from frictionlab.charts.derived import reference_law
-from frictionlab.charts.figures import OTHER_FIGURES, figure_columns
-from frictionlab.charts.maps import MapFigure, map_of
+from frictionlab.charts.figures import OTHER_FIGURES, FigureData
+from frictionlab.charts.maps import MapFigure
 from frictionlab.report.markup import symbol_html, unit_html, word_html
 from frictionlab.report.question import values_listed
 from frictionlab.report.tables import joined_values, setting
@@ -44,9 +44,8 @@ def pictures(saved: Saved) -> list[Picture]:
 
     The first caption says what lines mean and what is held fixed; the others lead to it.
     """
-    family = family_of(saved.table)
-    found = figure_columns(saved.table) if family else {}
-    maps = map_of(saved.table)
+    data = FigureData(saved.table, options=saved.study.figures)
+    family, found, maps = data.family, data.columns, data.maps
     usual = [
         _picture(saved, family, name, columns, maps, not place)
         for place, (name, columns) in enumerate(found.items())

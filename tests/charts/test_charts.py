@@ -7,10 +7,10 @@ from itertools import pairwise
 from pathlib import Path
 
 import matplotlib as mpl
-import matplotlib.style  # else its name is not there
 import numpy as np
 import pandas as pd
 import pytest
+from drawn_figures import curves_of, legend_of, names_above, titles_of
 from matplotlib import style as styles
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -18,10 +18,12 @@ from oracle import table_in_the_plane, table_of_one_degree_of_freedom
 
 from frictionlab.charts import figures
 from frictionlab.charts.curve_figure import CurveFigure
-from frictionlab.charts.curves import family_of, is_logarithmic
+from frictionlab.charts.curves import family_of
 from frictionlab.charts.figures import FIGURES, FigureData, draw_figures
 from frictionlab.charts.looks import MOST_VALUES_IN_LEGEND
+from frictionlab.charts.sheet import Heading
 from frictionlab.charts.style import STYLE
+from frictionlab.charts.sweeps import is_logarithmic
 from frictionlab.columns import RESULTS, symbol
 
 
@@ -45,16 +47,7 @@ def _figure(table: pd.DataFrame, *columns: str) -> Figure:
     family = family_of(table)
     assert family is not None
     with mpl.rc_context(STYLE):
-        return CurveFigure(family, columns or ("mean_friction",), "A title").draw()
-
-
-def _legend(figure: Figure) -> list[str]:
-    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-
-
-def _curves(figure: Figure, panel: int = 0) -> list[tuple[np.ndarray, np.ndarray]]:
-    lines = [line for line in figure.axes[panel].lines if len(line.get_xdata()) > 2]
-    return [(np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in lines]
+        return CurveFigure(family, columns or ("mean_friction",), Heading("A title")).draw()
 
 
 def test_a_single_point_gives_no_figure_and_no_folder(line: pd.DataFrame, tmp_path: Path) -> None:
@@ -74,7 +67,7 @@ def test_a_quantity_that_applies_nowhere_gives_no_figure(resonance: pd.DataFrame
 
 
 def test_every_curve_is_drawn_whole_against_belt_speed(plane: pd.DataFrame) -> None:
-    drawn = _curves(_figure(plane))
+    drawn = curves_of(_figure(plane).axes[0])
 
     expected = [rows for _, rows in plane.groupby("scene.transverse.natural_frequency")]
     assert len(drawn) == len(expected) == 6
@@ -87,10 +80,10 @@ def test_the_legend_names_the_swept_quantity_and_its_values(plane: pd.DataFrame)
     figure = _figure(plane)
 
     assert figure.legends[0].get_title().get_text() == r"transverse natural frequency $\omega_r$"
-    assert _legend(figure) == ["0.5", "1", "2", "3", "4", "10"]
+    assert legend_of(figure) == ["0.5", "1", "2", "3", "4", "10"]
 
 
-def test_one_curve_needs_no_legend(resonance: pd.DataFrame) -> None:
+def test_one_curve_needs_nolegend_of(resonance: pd.DataFrame) -> None:
     assert _figure(resonance).legends == []
 
 
@@ -106,7 +99,7 @@ def test_laws_differ_in_colour_and_dashes_and_methods_in_markers(resonance: pd.D
     figure = _figure(table)
     first, second, third, fourth = figure.axes[0].lines[:4]
 
-    assert _legend(figure) == [
+    assert legend_of(figure) == [
         f"{law}, {method}" for law in ("coulomb", "other") for method in ("auto", "mdsm")
     ]
     assert first.get_color() == second.get_color() != third.get_color() == fourth.get_color()
@@ -132,8 +125,8 @@ def test_methods_whose_curves_are_one_line_are_drawn_once(resonance: pd.DataFram
 
     figure = _figure(table)
 
-    assert len(_curves(figure)) == 2
-    assert _legend(figure) == ["auto = shooting", "mdsm"]
+    assert len(curves_of(figure.axes[0])) == 2
+    assert legend_of(figure) == ["auto = shooting", "mdsm"]
 
 
 def test_methods_that_differ_by_more_than_their_errors_are_both_drawn(resonance: pd.DataFrame) -> None:
@@ -141,14 +134,14 @@ def test_methods_that_differ_by_more_than_their_errors_are_both_drawn(resonance:
 
     figure = _figure(pd.concat([resonance.assign(error=1e-9), wrong], ignore_index=True))
 
-    assert len(_curves(figure)) == 2
-    assert _legend(figure) == ["auto", "march"]
+    assert len(curves_of(figure.axes[0])) == 2
+    assert legend_of(figure) == ["auto", "march"]
 
 
 def test_a_wide_error_does_not_hide_a_curve_that_can_be_seen(resonance: pd.DataFrame) -> None:
     rough = _other(resonance, "mdsm").assign(error=0.2)
 
-    assert len(_curves(_figure(pd.concat([resonance, rough], ignore_index=True)))) == 2
+    assert len(curves_of(_figure(pd.concat([resonance, rough], ignore_index=True)).axes[0])) == 2
 
 
 def _of_ten_methods(table: pd.DataFrame) -> pd.DataFrame:
@@ -184,7 +177,6 @@ def test_labels_of_a_logarithmic_axis_do_not_overlap(resonance: pd.DataFrame) ->
     figure = _figure(resonance.assign(**{"scene.belt_speed": speeds}))
     figure.canvas.draw()
     below = figure.axes[0].xaxis
-    (above,) = (axes.xaxis for axes in figure.axes[0].child_axes)
 
     low, high = figure.axes[0].get_xlim()
     labels = [
@@ -195,7 +187,7 @@ def test_labels_of_a_logarithmic_axis_do_not_overlap(resonance: pd.DataFrame) ->
     shown = [label.get_window_extent() for label in labels if label.get_text()]
     assert [label.get_text() for label in labels if label.get_text()] == ["5", "10", "20", "50", "100"]
     assert not any(one.overlaps(other) for one, other in pairwise(shown))
-    assert [label.get_text() for label in above.get_ticklabels(which="both")] == [r"$V_\mathrm{lin}$"]
+    assert list(names_above(figure.axes[0]).values()) == [r"$V_\mathrm{lin}$"]
 
 
 def test_a_long_family_is_drawn_whole_and_named_from_end_to_end(resonance: pd.DataFrame) -> None:
@@ -204,10 +196,10 @@ def test_a_long_family_is_drawn_whole_and_named_from_end_to_end(resonance: pd.Da
 
     figure = _figure(table)
 
-    assert len(_curves(figure)) == 30
-    assert len(_legend(figure)) == MOST_VALUES_IN_LEGEND
-    assert _legend(figure)[0] == "1"
-    assert _legend(figure)[-1] == "30"
+    assert len(curves_of(figure.axes[0])) == 30
+    assert len(legend_of(figure)) == MOST_VALUES_IN_LEGEND
+    assert legend_of(figure)[0] == "1"
+    assert legend_of(figure)[-1] == "30"
 
 
 def test_two_further_swept_quantities_give_small_multiples(plane: pd.DataFrame) -> None:
@@ -217,9 +209,8 @@ def test_two_further_swept_quantities_give_small_multiples(plane: pd.DataFrame) 
 
     figure = _figure(table)
 
-    titles = [axes.get_title(loc="left") for axes in figure.axes]
-    assert titles == [rf"damping ratio $\beta_1$ = {beta}" for beta in (0.1, 0.2)]
-    assert [len(_curves(figure, panel)) for panel in (0, 1)] == [6, 6]
+    assert titles_of(figure) == [rf"damping ratio $\beta_1$ = {beta}" for beta in (0.1, 0.2)]
+    assert [len(curves_of(axes)) for axes in figure.axes] == [6, 6]
 
 
 def test_without_a_sweep_of_belt_speed_the_longest_sweep_is_the_axis(resonance: pd.DataFrame) -> None:
@@ -246,7 +237,7 @@ def test_a_law_without_the_parameter_along_the_axis_is_a_level_line(resonance: p
     soft = fixed.assign(law="dahl", **{"law.stiffness": np.logspace(0, 3, 10)})
     rigid = fixed.head(1).assign(**{"law.stiffness": np.nan})
 
-    (level, _) = _curves(_figure(pd.concat([rigid, soft], ignore_index=True)))
+    (level, _) = curves_of(_figure(pd.concat([rigid, soft], ignore_index=True)).axes[0])
 
     assert level[1] == pytest.approx(rigid["mean_friction"].to_numpy().repeat(3))
 
@@ -254,9 +245,8 @@ def test_a_law_without_the_parameter_along_the_axis_is_a_level_line(resonance: p
 def test_frequencies_of_several_laws_are_never_in_one_picture(line: pd.DataFrame) -> None:
     figure = _figure(pd.concat([line, line.assign(law="other")], ignore_index=True))
 
-    titles = [axes.get_title(loc="left") for axes in figure.axes]
-    assert titles == [rf"drive frequency $\Omega$ = {value}" for value in ("1", "1.5")]
-    assert _legend(figure) == ["coulomb", "other"]
+    assert titles_of(figure) == [rf"drive frequency $\Omega$ = {value}" for value in ("1", "1.5")]
+    assert legend_of(figure) == ["coulomb", "other"]
 
 
 def test_of_too_many_pictures_for_comparison_each_law_has_one(resonance: pd.DataFrame) -> None:
@@ -265,9 +255,9 @@ def test_of_too_many_pictures_for_comparison_each_law_has_one(resonance: pd.Data
 
     figure = _figure(pd.concat(both, ignore_index=True))
 
-    assert [axes.get_title(loc="left") for axes in figure.axes] == ["soft", "rough"]
-    assert [len(_curves(figure, panel)) for panel in (0, 1)] == [13, 13]
-    assert _legend(figure)[0] == "1"
+    assert titles_of(figure) == ["soft", "rough"]
+    assert [len(curves_of(axes)) for axes in figure.axes] == [13, 13]
+    assert legend_of(figure)[0] == "1"
 
 
 def test_a_parameter_that_differs_between_laws_is_no_sweep(resonance: pd.DataFrame) -> None:
@@ -284,7 +274,7 @@ def test_a_sweep_of_one_law_leaves_the_other_law_one_curve(resonance: pd.DataFra
     soft = [resonance.assign(law="dahl", **{"law.mu": np.nan, "law.stiffness": s}) for s in (4.0, 40.0)]
     table = pd.concat([resonance.assign(**{"law.stiffness": np.nan}), *soft], ignore_index=True)
 
-    assert _legend(_figure(table)) == ["coulomb", "dahl, 4", "dahl, 40"]
+    assert legend_of(_figure(table)) == ["coulomb", "dahl, 4", "dahl, 40"]
 
 
 def test_points_without_a_number_are_marked_on_the_axis_and_counted(resonance: pd.DataFrame) -> None:
@@ -296,7 +286,7 @@ def test_points_without_a_number_are_marked_on_the_axis_and_counted(resonance: p
     marks = {line.get_marker(): np.asarray(line.get_xdata()) for line in figure.axes[0].lines}
     np.testing.assert_array_equal(marks["x"], resonance["scene.belt_speed"][[10, 11, 12]])
     np.testing.assert_array_equal(marks["|"], resonance["scene.belt_speed"][[20]])
-    assert _legend(figure) == ["3 points failed", "1 point refused"]
+    assert legend_of(figure) == ["3 points failed", "1 point refused"]
 
 
 def test_a_method_that_refuses_a_whole_curve_is_counted_by_name(resonance: pd.DataFrame) -> None:
@@ -304,7 +294,7 @@ def test_a_method_that_refuses_a_whole_curve_is_counted_by_name(resonance: pd.Da
 
     figure = _figure(pd.concat([resonance, refused], ignore_index=True))
 
-    assert _legend(figure) == ["auto", "120 points refused (shooting)"]
+    assert legend_of(figure) == ["auto", "120 points refused (shooting)"]
 
 
 def test_a_steady_state_that_is_not_unique_is_drawn_as_its_range(resonance: pd.DataFrame) -> None:
@@ -315,7 +305,7 @@ def test_a_steady_state_that_is_not_unique_is_drawn_as_its_range(resonance: pd.D
 
     (bars,) = figure.axes[0].containers
     np.testing.assert_allclose(bars.lines[2][0].get_segments()[0], [[3.0, -0.1], [3.0, 0.3]])
-    assert _legend(figure) == ["1 point not unique"]
+    assert legend_of(figure) == ["1 point not unique"]
 
 
 @pytest.mark.parametrize(("error", "bands"), [(1e-9, 0), (0.02, 1)])
@@ -330,20 +320,19 @@ def test_v_lin_is_marked_where_friction_has_its_kink(line: pd.DataFrame) -> None
 
     assert family is not None
     assert [list(curve.kinks) for curve in family.curves] == [[pytest.approx(50)], [pytest.approx(26.254457)]]
-    (above,) = [axes for axes in _figure(line).axes[0].child_axes]
-    names = [label.get_text().strip() for label in above.get_xticklabels()]
-    assert names == [rf"$V_\mathrm{{lin}}$, $\Omega$ = {frequency}" for frequency in ("1.5", "1")]
+    names = names_above(_figure(line).axes[0])
+    assert list(names.values()) == [
+        rf"$V_\mathrm{{lin}}$, $\Omega$ = {frequency}" for frequency in ("1.5", "1")
+    ]
 
 
 def test_a_belt_that_also_runs_backward_has_a_kink_on_either_side(resonance: pd.DataFrame) -> None:
     odd = ["scene.belt_speed", "mean_friction", "velocity_ratio"]
     both = pd.concat([resonance.assign(**-resonance[odd]), resonance], ignore_index=True)
 
-    axes = _figure(both).axes[0]
-
-    names = [label.get_text() for label in axes.child_axes[0].get_xticklabels()]
-    assert names == [r"$-V_\mathrm{lin}$", r"$V_\mathrm{lin}$"]
-    assert [tick for tick in axes.child_axes[0].get_xticks()] == pytest.approx([-50, 50])
+    names = names_above(_figure(both).axes[0])
+    assert list(names.values()) == [r"$-V_\mathrm{lin}$", r"$V_\mathrm{lin}$"]
+    assert list(names) == pytest.approx([-50, 50])
 
 
 def test_v_lin_is_not_marked_where_there_is_no_kink(plane: pd.DataFrame, resonance: pd.DataFrame) -> None:
@@ -413,7 +402,7 @@ def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
 
     data = FigureData(table, r"$\bad{ 摩擦 and $3")
     assert len(draw_figures(data, tmp_path)) == 2 * len(figures.figures_of(data))
-    assert _legend(_figure(table)) == [r"\$\nope{\$", r"costs \$5", "L" * 35 + "…"]
+    assert legend_of(_figure(table)) == [r"\$\nope{\$", r"costs \$5", "L" * 35 + "…"]
 
 
 def test_the_legend_names_what_a_picture_shows_and_nothing_else(resonance: pd.DataFrame) -> None:
@@ -421,9 +410,9 @@ def test_the_legend_names_what_a_picture_shows_and_nothing_else(resonance: pd.Da
     falls = falls.assign(mean_friction=np.nan, energy_viscous=np.nan)
     table = pd.concat([resonance.assign(law="flat"), falls], ignore_index=True)
 
-    assert _legend(_figure(table))[:2] == ["flat", "falls"]
-    assert _legend(_figure(table, "energy_viscous"))[0] == "flat"
-    assert "falls" not in _legend(_figure(table, "energy_viscous"))
+    assert legend_of(_figure(table))[:2] == ["flat", "falls"]
+    assert legend_of(_figure(table, "energy_viscous"))[0] == "flat"
+    assert "falls" not in legend_of(_figure(table, "energy_viscous"))
 
 
 def test_the_style_can_be_used_by_its_name() -> None:

@@ -10,12 +10,13 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
+from drawn_figures import curves_of, drawn, legend_of, names_above, titles_of
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from oracle import table_of_one_degree_of_freedom
 
-from frictionlab.charts.figures import FigureData, draw_figures, figure_of, figures_of
+from frictionlab.charts.figures import FigureData, draw_figures, figure_of
 from frictionlab.charts.style import STYLE
 from frictionlab.study import StudyError, parse_study
 from frictionlab.study.figure_options import FigureOptions, figure_options
@@ -43,22 +44,7 @@ SHAPES = pd.DataFrame(
 
 def _drawn(table: pd.DataFrame, name: str = "mean_friction", **options: Any) -> Figure:
     curves = SHAPES if options.get("shape") else None
-    with mpl.rc_context(STYLE):
-        return figures_of(FigureData(table, "A title", curves=curves, options=FigureOptions(**options)))[
-            name
-        ]()
-
-
-def _legend(figure: Figure) -> list[str]:
-    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-
-
-def _lines(axes: Axes) -> list[tuple[np.ndarray, np.ndarray]]:
-    return [
-        (np.asarray(one.get_xdata()), np.asarray(one.get_ydata()))
-        for one in axes.lines
-        if len(one.get_xdata()) > 2
-    ]
+    return drawn(table, name, curves=curves, options=FigureOptions(**options))
 
 
 def test_normalized_axes_are_shares_of_v_lin_and_of_steady_friction(laws: pd.DataFrame) -> None:
@@ -66,11 +52,11 @@ def test_normalized_axes_are_shares_of_v_lin_and_of_steady_friction(laws: pd.Dat
 
     assert "V_" in figure.axes[0].get_xlabel()
     rows = laws[(laws["law"] == "coulomb") & (laws["scene.drive.frequency"] == 1.0)]
-    x, y = _lines(figure.axes[0])[1]
+    x, y = curves_of(figure.axes[0])[1]
     np.testing.assert_allclose(x, rows["velocity_ratio"], rtol=1e-12)
     np.testing.assert_allclose(y, rows["normalized_friction"], rtol=1e-12)
     for axes in figure.axes:
-        assert list(axes.child_axes[0].get_xticks()) == [1.0]
+        assert list(names_above(axes)) == [1.0]
 
 
 @pytest.mark.parametrize(("against", "law", "sign"), [(None, "coulomb", 1.0), ("other", "other", -1.0)])
@@ -82,7 +68,7 @@ def test_differences_are_taken_from_coulomb_or_the_law_asked_for(
     axes = figure.axes[0]
     assert axes.get_ylabel().endswith(law)
     rows = laws[(laws["law"] == "coulomb") & (laws["scene.drive.frequency"] == 1.0)]
-    ((_, y),) = _lines(axes)
+    ((_, y),) = curves_of(axes)
     np.testing.assert_allclose(y, sign * 0.02 * rows["mean_friction"], atol=1e-12)
     (band,) = axes.collections
     heights = np.ptp(band.get_paths()[0].vertices[:, 1])
@@ -94,7 +80,7 @@ def test_a_shape_is_drawn_with_its_chord_its_area_and_the_verdict(laws: pd.DataF
 
     figure = _drawn(one, "shape", shape=True)
 
-    told = [axes.get_title(loc="left").splitlines()[-1] for axes in figure.axes]
+    told = [title.splitlines()[-1] for title in titles_of(figure)]
     assert told == ["concave: area 0.0574 ± 0.0010", "convex: area \N{MINUS SIGN}0.207 ± 0.041"]
     for axes, (_, row) in zip(figure.axes, SHAPES.iterrows(), strict=True):
         (chord,) = [line for line in axes.lines if len(line.get_xdata()) == 2]
@@ -112,8 +98,8 @@ def test_stick_is_a_band_along_the_points_where_it_is(laws: pd.DataFrame) -> Non
     (band, _) = [line for line in figure.axes[0].lines if line.get_alpha()]
     held = np.isfinite(np.asarray(band.get_ydata(), dtype=float))
     np.testing.assert_array_equal(held, laws["scene.belt_speed"][:120].to_numpy() > 40.0)
-    assert _legend(figure)[-1] == "stick in part of the period"
-    assert "stick" not in " ".join(_legend(_drawn(sticky)))
+    assert legend_of(figure)[-1] == "stick in part of the period"
+    assert "stick" not in " ".join(legend_of(_drawn(sticky)))
 
 
 def test_a_closer_view_stands_where_much_of_the_axis_is_level(laws: pd.DataFrame) -> None:

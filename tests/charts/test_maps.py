@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import itertools
 
-import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
+from drawn_figures import NOTHING, drawn, legend_of, titles_of
 from matplotlib.collections import QuadMesh
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 
 from frictionlab.charts.figures import FigureData, figures_of
 from frictionlab.charts.maps import map_of
-from frictionlab.charts.style import STYLE
 
 FREQUENCIES, LOADS = np.linspace(0.5, 2.0, 7), np.geomspace(1.0, 100.0, 5)
-COLUMNS = ("velocity_amplitude", "transverse_velocity_amplitude", "energy_input", "energy_viscous")
 
 
 def grid(law: str = "coulomb", method: str = "auto", **more: object) -> pd.DataFrame:
@@ -26,15 +24,7 @@ def grid(law: str = "coulomb", method: str = "auto", **more: object) -> pd.DataF
     found = {"mean_friction": values, "error": 1e-9, "status": "ok", "normalized_friction": values}
     inputs = {"law": law, "kind": law, "method": method, "scene.belt_speed": 5.0}
     rows = pd.DataFrame(points, columns=["scene.drive.frequency", "scene.normal_load"])
-    empty = dict.fromkeys(
-        (*COLUMNS, "energy_friction", "energy_contact", "velocity_ratio", "mean_low"), np.nan
-    )
-    return rows.assign(**inputs, **found, **empty).assign(**more)
-
-
-def drawn(table: pd.DataFrame, name: str = "mean_friction", curves: pd.DataFrame | None = None) -> Figure:
-    with mpl.rc_context(STYLE):
-        return figures_of(FigureData(table, "A title", curves=curves))[name]()
+    return rows.assign(**NOTHING | inputs | found).assign(**more)
 
 
 def meshes(figure: Figure) -> list[QuadMesh]:
@@ -63,7 +53,7 @@ def test_shades_of_laws_mean_the_same() -> None:
     first, second, *_ = meshes(drawn(table))
 
     assert first.norm.vmax == second.norm.vmax == 0.6
-    assert [axes.get_title(loc="left") for axes in drawn(table).axes[:2]] == ["coulomb", "dahl"]
+    assert titles_of(drawn(table))[:2] == ["coulomb", "dahl"]
 
 
 def test_a_method_whose_map_is_the_same_is_named_and_not_drawn_again() -> None:
@@ -71,10 +61,7 @@ def test_a_method_whose_map_is_the_same_is_named_and_not_drawn_again() -> None:
         [grid(), grid(method="exact"), grid(method="mdsm", mean_friction=0.2)], ignore_index=True
     )
 
-    names = [picture.methods for picture in map_of(table).pictures]
-
-    assert names == [("auto", "exact"), ("mdsm",)]
-    assert drawn(table).axes[0].get_title(loc="left") == "auto = exact"
+    assert titles_of(drawn(table))[:2] == ["auto = exact", "mdsm"]
 
 
 def test_a_point_without_a_number_is_white_marked_and_counted() -> None:
@@ -86,8 +73,7 @@ def test_a_point_without_a_number_is_white_marked_and_counted() -> None:
     assert meshes(figure)[0].get_array().mask.sum() == 2
     (marks,) = figure.axes[0].lines
     assert list(marks.get_ydata()) == pytest.approx(LOADS[[3, 4]])
-    labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-    assert labels == ["2 points failed", "no number"]
+    assert legend_of(figure) == ["2 points failed", "no number"]
 
 
 def test_beside_belt_speed_the_measures_of_curves_are_a_map() -> None:
@@ -99,7 +85,7 @@ def test_beside_belt_speed_the_measures_of_curves_are_a_map() -> None:
         [grid().assign(**{"scene.belt_speed": speed}) for speed in range(1, 10)], ignore_index=True
     )
 
-    figure = drawn(table, "map", curves)
+    figure = drawn(table, "map", curves=curves)
 
     assert map_of(table) is None
     assert "differences" not in figures_of(FigureData(table))
@@ -130,7 +116,7 @@ def test_more_curves_than_lines_can_tell_apart_are_a_map_with_v_lin_in_it() -> N
     ]
     for speed, frequency in line.get_paths()[0].vertices:
         assert speed == pytest.approx(2.0 * frequency)
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == [r"belt speed $V_\mathrm{lin}$"]
+    assert legend_of(figure) == [r"belt speed $V_\mathrm{lin}$"]
     assert len(drawn(along_speed(12)).axes[0].lines) == 12
 
 

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
+from drawn_figures import NOTHING, drawn, legend_of, titles_of
 from matplotlib.figure import Figure
 
 from frictionlab.charts.figures import FigureData, Kept, figures_of
-from frictionlab.charts.style import STYLE
 
 SPEEDS = np.arange(1.0, 13.0)
 OMEGA, SAMPLES = 2.0, 40
-ENERGIES = ("energy_input", "energy_viscous", "energy_friction", "energy_contact")
 
 
 def curve(law: str, reversals: float = 2.0) -> pd.DataFrame:
@@ -27,12 +25,8 @@ def curve(law: str, reversals: float = 2.0) -> pd.DataFrame:
         "scene.drive.frequency": OMEGA,
     }
     found = {"mean_friction": 0.01 * SPEEDS, "error": 1e-9, "status": "ok"}
-    empty = dict.fromkeys(
-        ("velocity_amplitude", "transverse_velocity_amplitude", "velocity_ratio", "mean_low", *ENERGIES),
-        np.nan,
-    )
-    turning = {"reversals": np.where(SPEEDS < 8.0, reversals, 0.0), "normalized_friction": np.nan}
-    return pd.DataFrame(inputs | found | empty | turning)
+    turning = {"reversals": np.where(SPEEDS < 8.0, reversals, 0.0)}
+    return pd.DataFrame(NOTHING | inputs | found | turning)
 
 
 TABLE = pd.concat([curve("coulomb"), curve("dahl")], ignore_index=True)
@@ -58,48 +52,38 @@ def orbits_of(rows: Sequence[int], periods: int = 2) -> pd.DataFrame:
     )
 
 
-def drawn(name: str, harmonics: pd.DataFrame | None = None) -> Figure:
-    with mpl.rc_context(STYLE):
-        return figures_of(FigureData(TABLE, "A title", kept=Kept(orbits_of, harmonics)))[name]()
+def of_orbits(name: str, table: pd.DataFrame = TABLE, harmonics: pd.DataFrame | None = None) -> Figure:
+    return drawn(table, name, kept=Kept(orbits_of, harmonics))
 
 
 def test_orbits_are_of_points_at_which_slip_reverses_each_law_a_line() -> None:
-    figure = drawn("hysteresis")
+    figure = of_orbits("hysteresis")
 
-    assert [axes.get_title(loc="left") for axes in figure.axes] == [
-        f"belt speed $v_b$ = {at}" for at in (3, 4, 5)
-    ]
+    assert titles_of(figure) == [f"belt speed $v_b$ = {at}" for at in (3, 4, 5)]
     for axes, speed in zip(figure.axes, (3.0, 4.0, 5.0), strict=True):
         for line, row in zip(axes.lines, (speed - 1.0, speed + 11.0), strict=True):
             orbit = orbits_of([int(row)])
             np.testing.assert_array_equal(line.get_xdata()[:-1], orbit["x1"])
             assert line.get_xdata()[-1] == line.get_xdata()[0]
-    labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["coulomb", "dahl", "3 of 12 points"]
+    assert legend_of(figure) == ["coulomb", "dahl", "3 of 12 points"]
 
 
 def test_a_point_at_which_the_body_sticks_is_among_them() -> None:
     sticks = TABLE.assign(stick_fraction=np.where(TABLE["scene.belt_speed"] == 7.0, 0.1, 0.0))
 
-    with mpl.rc_context(STYLE):
-        figure = figures_of(FigureData(sticks, kept=Kept(orbits_of, None)))["phase"]()
-
-    assert [axes.get_title(loc="left")[-1] for axes in figure.axes] == ["3", "4", "7"]
+    assert [title[-1] for title in titles_of(of_orbits("phase", sticks))] == ["3", "4", "7"]
 
 
 def test_panels_stand_beside_each_other() -> None:
     higher = TABLE.assign(**{"scene.drive.frequency": 3.0})
     both = pd.concat([TABLE, higher], ignore_index=True)
 
-    with mpl.rc_context(STYLE):
-        figure = figures_of(FigureData(both, kept=Kept(orbits_of, None)))["hysteresis"]()
-
-    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    titles = titles_of(of_orbits("hysteresis", both))
     assert [title.split(",")[0][-1] for title in titles] == ["2", "3", "2", "3", "2", "3"]
 
 
 def test_poincare_points_lie_at_every_start_of_a_drive_period() -> None:
-    figure = drawn("phase")
+    figure = of_orbits("phase")
 
     points = [line for line in figure.axes[0].lines if line.get_linestyle() == "None"]
     assert len(points) == 2
@@ -110,7 +94,7 @@ def test_poincare_points_lie_at_every_start_of_a_drive_period() -> None:
 
 
 def test_time_runs_in_drive_periods_and_constant_friction_is_level() -> None:
-    velocity, friction, *_ = drawn("time_series").axes
+    velocity, friction, *_ = of_orbits("time_series").axes
 
     assert velocity.lines[0].get_xdata()[-1] == pytest.approx(2.0)
     assert np.ptp(friction.lines[0].get_ydata()) == 0.0
@@ -132,17 +116,17 @@ def harmonics_of(most: int) -> pd.DataFrame:
 
 
 def test_every_harmonic_is_a_picture_and_every_law_a_line() -> None:
-    figure = drawn("friction_harmonics", harmonics_of(3))
+    figure = of_orbits("friction_harmonics", harmonics=harmonics_of(3))
 
-    assert [axes.get_title(loc="left") for axes in figure.axes] == [f"harmonic = {k}" for k in (1, 2, 3)]
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["coulomb", "dahl"]
+    assert titles_of(figure) == [f"harmonic = {k}" for k in (1, 2, 3)]
+    assert legend_of(figure) == ["coulomb", "dahl"]
     for k, axes in enumerate(figure.axes, start=1):
         for first, line in zip((0, 12), axes.lines, strict=True):
             np.testing.assert_allclose(line.get_ydata(), 0.1 * k + first + np.arange(12))
 
 
 def test_of_many_harmonics_the_first_are_drawn_and_the_rest_are_told() -> None:
-    figure = drawn("velocity_harmonics", harmonics_of(20))
+    figure = of_orbits("velocity_harmonics", harmonics=harmonics_of(20))
 
     assert len(figure.axes) == 12
-    assert figure.legends[0].get_texts()[-1].get_text() == "12 of 20 harmonics"
+    assert legend_of(figure)[-1] == "12 of 20 harmonics"

@@ -8,15 +8,15 @@ from typing import Annotated, Any
 import numpy as np
 import pandas as pd
 import pytest
+from drawn_figures import drawn
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import Field
 from strategies import LAWS, scenes_in_the_plane, scenes_on_the_line, sizes
 
 import frictionlab as fl
-from frictionlab.charts import figures
-from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import family_of
+from frictionlab.charts.figures import FigureData
 from frictionlab.columns import SI
 from frictionlab.laws.base import Dimension, Positive, Record
 from frictionlab.scene.scene import Scene
@@ -463,13 +463,11 @@ def test_figures_are_in_si_units_where_the_scene_is() -> None:
         "scene.dimensional.belt_speed_m_per_s",
         "scene.dimensional.mass_kg",
     )
-    figure = CurveFigure(family, figures._as_given(["velocity_amplitude", "energy_input"], table)).draw()
-    assert [axes.get_ylabel() for axes in figure.axes] == [
-        r"velocity amplitude $\hat V_1$ [m/s]",
-        r"work of the loads $E_\mathrm{in}$ [J]",
-    ]
-    assert {axes.get_xlabel() for axes in figure.axes} == {"belt speed $V_b$ [m/s]"}
-    assert figures._as_given(["mean_friction"], table) == ["mean_friction"]
+    velocity, energies = (drawn(table, name) for name in ("velocity", "energies"))
+    assert velocity.axes[0].get_ylabel() == r"velocity amplitude $\hat V_1$ [m/s]"
+    assert energies.axes[0].get_ylabel() == r"work of the loads $E_\mathrm{in}$ [J]"
+    assert {axes.get_xlabel() for axes in (*velocity.axes, *energies.axes)} == {"belt speed $V_b$ [m/s]"}
+    assert FigureData(table).columns["mean_friction"] == ["mean_friction"]
     limits = [friction_free_velocity(si_scene(**BODY | {"mass_kg": mass})) for mass in (2, 3)]
     wanted = [limit * math.sqrt(800 / mass) * 1e-3 for limit, mass in zip(limits, (2, 3), strict=True)]
     assert [list(curve.kinks) for curve in family.curves] == [[pytest.approx(speed)] for speed in wanted]

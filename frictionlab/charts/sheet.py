@@ -1,0 +1,122 @@
+"""A sheet of pictures: side by side, a title above them and a legend below."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
+
+from frictionlab.charts.style import COLUMN, PAGE, blank_figure
+from frictionlab.charts.sweeps import plain
+
+PANEL_HEIGHT, LINE = 2.2, 0.16  # of a picture, and of a line of text around it [inch]
+LEGEND_FONT = 7  # [point]
+HANDLE = 3.5  # length of a sample of a line, long enough for its dashes [letter]
+PICTURE_SHARE = 0.8  # of the room of a picture, about, that is inside its axes
+
+
+class Heading(NamedTuple):
+    """What stands above the pictures of a figure, and the width that it is to have, as it needs where left out."""
+
+    title: str = ""
+    width: str | None = None
+
+
+NO_HEADING = Heading()
+
+
+class Sheet(NamedTuple):
+    """A figure and how many pictures it has above each other and side by side."""
+
+    figure: Figure
+    high: int
+    wide: int
+
+    @classmethod
+    def blank(
+        cls, pictures: int, heading: Heading, entries: Sequence[Any] = (), about: str | None = None
+    ) -> Sheet:
+        """With room for so many pictures. entries: of the legend; about: its title."""
+        wide = abreast(pictures, heading)
+        double = heading.width == "double" or (heading.width is None and wide == 2)
+        high = -(-pictures // wide)
+        figure = blank_figure(PAGE if double else COLUMN, high * PANEL_HEIGHT)
+        lines = write_title(figure, heading.title) + _add_legend(figure, entries, about)
+        figure.set_figheight(high * PANEL_HEIGHT + LINE * lines)
+        return cls(figure, high, wide)
+
+    def axes(self, place: int) -> Axes:
+        """Those of the picture at this place, from 0, row by row."""
+        return self.figure.add_subplot(self.high, self.wide, place + 1)
+
+    @property
+    def picture_width(self) -> float:
+        """Of the inside of a picture, about [point]."""
+        return PICTURE_SHARE * 72 * self.figure.get_figwidth() / self.wide
+
+    def label_once(self, pictures: Sequence[Axes]) -> None:
+        """Of equal labels under each other, and side by side, only the lowest and the first are left."""
+        for at, axes in enumerate(pictures):
+            below = at + self.wide
+            if below < len(pictures) and pictures[below].get_xlabel() == axes.get_xlabel():
+                axes.xaxis.label.set_visible(False)
+            if at % self.wide and pictures[at - 1].get_ylabel() == axes.get_ylabel():
+                axes.yaxis.label.set_visible(False)
+
+
+def abreast(pictures: int, heading: Heading) -> int:
+    """How many pictures stand side by side."""
+    return 1 if heading.width == "single" else min(2, pictures)
+
+
+def write_title(figure: Figure, title: str) -> int:
+    """Write it above the pictures; the lines it takes."""
+    lines = textwrap.wrap(plain(title), round(figure.get_figwidth() * 13))
+    if lines:
+        figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8, fontweight="bold")
+    return len(lines)
+
+
+def _add_legend(figure: Figure, entries: Sequence[Any], title: str | None) -> int:
+    """Below the pictures, in as many columns as fit, its entries running down them; the lines it takes."""
+    if not entries:
+        return 0
+    style, room = mpl.rcParams, 72 * figure.get_figwidth()
+    around = LEGEND_FONT * (HANDLE + style["legend.handletextpad"] + style["legend.columnspacing"])
+    widths = [around + text_width(figure, str(entry.get_label()), LEGEND_FONT) for entry in entries]
+    counts = (math.ceil(len(entries) / lines) for lines in range(1, len(entries)))
+    columns = next((n for n in counts if sum(map(max, np.array_split(widths, n))) <= room), 1)
+    figure.legend(
+        handles=entries, loc="outside lower center", ncols=columns, title=title, handlelength=HANDLE
+    )
+    return math.ceil(len(entries) / columns) + (title is not None)
+
+
+def text_width(figure: Figure | SubFigure, text: str, size: float) -> float:
+    """Of a line of text in a font of this size [point]."""
+    drawn = figure.text(0.0, 0.0, text, fontsize=size)
+    pixels = drawn.get_window_extent().width
+    drawn.remove()
+    return float(72.0 * pixels / figure.dpi)
+
+
+def scale_alike(pictures: Sequence[Axes], most: float = math.inf) -> None:
+    """One scale for pictures of one quantity, where no range is so many times another."""
+    ranges = [axes.get_ylim() for axes in pictures]
+    heights = [high - low for low, high in ranges]
+    linear = all(axes.get_yscale() == "linear" for axes in pictures)
+    if ranges and linear and max(heights) < most * min(heights):
+        for axes in pictures:
+            axes.set_ylim(min(low for low, _ in ranges), max(high for _, high in ranges))
+
+
+def part_told(shown: int, total: int, what: str) -> list[Line2D]:
+    """An entry of the legend that says how many of all are drawn; nothing where all are."""
+    return [Line2D([], [], linestyle="none", label=f"{shown} of {total} {what}")] if shown < total else []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,14 +12,12 @@ from pandas import DataFrame
 
 from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.charts.curves import Family
-from frictionlab.charts.derived import reference_law
-from frictionlab.charts.figures import OTHER_FIGURES, FigureData
-from frictionlab.charts.maps import MapFigure
+from frictionlab.charts.figures import OTHER_FIGURES
+from frictionlab.report.facts import Facts
 from frictionlab.report.markup import symbol_html, unit_html, word_html
 from frictionlab.report.question import values_listed
 from frictionlab.report.tables import joined_values, setting
 from frictionlab.results.words import counted
-from frictionlab.runner.saved import Saved
 
 LARGEST_SVG = 400_000
 """Bytes of a drawing above which the pixels of the same figure are put into the page, where they are fewer."""
@@ -39,62 +37,25 @@ class Picture(NamedTuple):
     narrow: bool
 
 
-def pictures(saved: Saved) -> list[Picture]:
+def pictures(run: Facts) -> list[Picture]:
     """The figures of a run, the one that answers its question first; one that is not in its folder has no address.
 
-    The first caption says what lines mean and what is held fixed; the others lead to it.
+    The first caption says what lines mean and what is held fixed; the others lead to it. Those that only some tables
+    have are there where they were drawn.
     """
-    data = FigureData(saved.table, options=saved.study.figures)
-    family, found, maps = data.family, data.columns, data.maps
-    usual = [
-        _picture(saved, family, name, columns, maps, not place)
-        for place, (name, columns) in enumerate(found.items())
-        if family
-    ]
-    several = {} if saved.attractors is None else bifurcations(saved.attractors)
-    return [
-        *usual,
-        *_others(saved, family),
-        *(_bifurcation(saved, name, rows) for name, rows in several.items()),
-    ]
-
-
-def _others(saved: Saved, family: Family | None) -> list[Picture]:
-    """The figures that only some tables have, where they were drawn."""
-    reference = reference_law(family, saved.study.figures.against) if family else None
-    narrow = family is None or len(family.panels) == 1
-    found = []
+    family, attractors = run.figures.family, run.saved.attractors
+    found = [_of_table(run, family, name) for name in run.figures.columns] if family else []
     for name, told in OTHER_FIGURES.items():
-        if data := address(saved.folder / "figures" / name):
-            caption = escape(f"{told.format(reference=reference)}.")
-            found.append(Picture(name, data, Markup(caption), str(caption), narrow))
-    return found
+        caption = escape(f"{told.format(reference=run.figures.reference)}.")
+        one = _picture(run, name, caption, narrow=family is None or len(family.panels) == 1)
+        found += [one] if one.address else []
+    several = {} if attractors is None else bifurcations(attractors)
+    return found + [_picture(run, name, _of_bifurcation(rows)) for name, rows in several.items()]
 
 
-def _bifurcation(saved: Saved, name: str, rows: DataFrame) -> Picture:
-    """Every state that motions end in along one curve."""
-    periods = sorted({int(period) for period in rows["period"]} - {0})
-    told = (
-        f"Of {joined_values(rows['law'])} by {joined_values(rows['method'])}: every state that motions end in"
-    )
-    found = f"periods of the response found: {', '.join(map(str, periods))}" if periods else "nothing repeats"
-    wild = "; grey where the motion does not repeat" if (rows["period"] == 0).any() else ""
-    caption = escape(
-        f"{told}, above the means over a whole period (with the range of means over one drive period), below the "
-        f"position at the start of each drive period. A marker for each period of the response{wild}; {found}."
-    )
-    return Picture(name, address(saved.folder / "figures" / name), Markup(caption), str(caption), False)
-
-
-def _picture(
-    saved: Saved, family: Family, name: str, columns: Sequence[str], maps: MapFigure | None, first: bool
-) -> Picture:
-    drawn = _drawn(family, columns) if maps is None else _mapped(maps, columns)
-    caption = Markup(". ").join([drawn, *(_told(saved, family, maps) if first else _as_before(maps))]) + "."
-    spans = [_span(saved, column) for column in columns]
-    description = f"{caption.striptags()} {' '.join(spans)}"
-    alone = maps is None and len(family.panels) * len(columns) == 1
-    return Picture(name, address(saved.folder / "figures" / name), caption, description, alone)
+def _picture(run: Facts, name: str, caption: Markup, more: str = "", narrow: bool = False) -> Picture:
+    data = address(run.saved.folder / "figures" / name)
+    return Picture(name, data, caption, f"{caption.striptags()}{more}", narrow)
 
 
 def address(path: Path) -> str:
@@ -108,87 +69,72 @@ def address(path: Path) -> str:
     return f"data:{_KINDS[first.suffix]};base64,{base64.b64encode(first.read_bytes()).decode('ascii')}"
 
 
-def _drawn(family: Family, columns: Sequence[str]) -> Markup:
-    """What is drawn against what."""
-    shown = Markup(", ").join(word_html(column) for column in columns)
-    return Markup("{} against {}").format(_capital(shown), word_html(family.abscissa))
+def _of_bifurcation(rows: DataFrame) -> Markup:
+    """Every state that motions end in along one curve."""
+    periods = sorted({int(period) for period in rows["period"]} - {0})
+    found = f"periods of the response found: {', '.join(map(str, periods))}" if periods else "nothing repeats"
+    wild = "; grey where the motion does not repeat" if (rows["period"] == 0).any() else ""
+    return Markup(
+        "Of {} by {}: every state that motions end in, above the means over a whole period (with the range of means "
+        "over one drive period), below the position at the start of each drive period. A marker for each period of "
+        "the response{}; {}."
+    ).format(joined_values(rows["law"]), joined_values(rows["method"]), wild, found)
 
 
-def _mapped(maps: MapFigure, columns: Sequence[str]) -> Markup:
-    """What is drawn over which two numbers."""
-    shown = Markup(", ").join(word_html(column) for column in columns)
-    over = Markup(" and ").join(word_html(name) for name in maps.over)
-    return Markup("{} over {}, in shades with lines of equal value").format(_capital(shown), over)
+def _of_table(run: Facts, family: Family, name: str) -> Picture:
+    columns, maps = run.figures.columns[name], run.figures.maps
+    shown = Markup(", ").join(map(word_html, columns))
+    shown = Markup(shown[:1].upper() + shown[1:])
+    if maps is None:
+        told = [Markup("{} against {}").format(shown, word_html(family.abscissa))]
+        lines = [*_lines(family), *_panels(family)]
+    else:
+        over = Markup(" and ").join(map(word_html, maps.over))
+        told = [Markup("{} over {}, in shades with lines of equal value").format(shown, over)]
+        names = (joined_values(run.table[name]) for name in ("law", "method"))
+        lines = [Markup("Laws: {}; methods: {}").format(*names)]
+    if name == next(iter(run.figures.columns)):
+        told += [*lines, *_fixed(run), *_missing(run)]
+    elif maps is None:
+        told.append(Markup("Lines as in Figure 1"))
+    spans = " ".join(_span(run.table[column].dropna(), column) for column in columns)
+    alone = maps is None and len(family.panels) * len(columns) == 1
+    return _picture(run, name, Markup(". ").join(told) + ".", f" {spans}", alone)
 
 
-def _told(saved: Saved, family: Family, maps: MapFigure | None) -> list[Markup]:
-    """What tells curves apart, what is held fixed, what has no number."""
-    laws, methods = (joined_values(saved.table[name]) for name in ("law", "method"))
-    lines = (
-        [Markup("Laws: {}; methods: {}").format(laws, methods)]
-        if maps
-        else [*_lines(family), *_panels(family)]
-    )
-    return [*lines, *_fixed(saved), *_missing(saved)]
-
-
-def _as_before(maps: MapFigure | None) -> list[Markup]:
-    return [] if maps else [Markup("Lines as in Figure 1")]
-
-
-def _capital(text: Markup) -> Markup:
-    return Markup(text[:1].upper() + text[1:])
-
-
-def _lines(family: Family) -> list[Markup]:
+def _lines(family: Family) -> Iterator[Markup]:
     """Laws, methods and swept values, each named where there are several."""
-    laws = list(dict.fromkeys(curve.law for curve in family.curves))
-    methods = list(dict.fromkeys(curve.method for curve in family.curves))
-    told = [
-        Markup("{} {}").format(
-            "Law" if len(laws) == 1 else "A colour and dashes for each law:", joined_values(laws)
-        )
-    ]
-    told += [
-        Markup("{} {}").format(
-            "method" if len(methods) == 1 else "methods, one line where their curves coincide:",
-            joined_values(methods),
-        )
-    ]
-    sentence = Markup("; ").join(told)
-    if family.member is None:
-        return [sentence]
-    swept = {
-        curve.place[1]: curve.member[1]
-        for curve in family.curves
-        if curve.member is not None and curve.member[1] is not None
-    }
-    members = [swept[place] for place in sorted(swept)]
-    name, unit = symbol_html(family.member), unit_html(family.member)
-    return [sentence, Markup("A curve for each {} = {}{}").format(name, values_listed(members), unit)]
+    laws, methods = ({getattr(curve, name): None for curve in family.curves} for name in ("law", "method"))
+    law = "Law" if len(laws) == 1 else "A colour and dashes for each law:"
+    method = "method" if len(methods) == 1 else "methods, one line where their curves coincide:"
+    yield Markup("{} {}; {} {}").format(law, joined_values(laws), method, joined_values(methods))
+    if family.member is not None:
+        members = {curve.place[1]: curve.member.value for curve in family.curves if curve.member}
+        values = [value for _, value in sorted(members.items()) if value is not None]
+        listed = values_listed(values)
+        names = symbol_html(family.member), listed, unit_html(family.member)
+        yield Markup("A curve for each {} = {}{}").format(*names)
 
 
-def _panels(family: Family) -> list[Markup]:
-    names = list(dict.fromkeys(name for panel in family.panels for name, _ in panel))
-    if not names:
-        return []
-    return [Markup("A picture for each {}").format(Markup(", ").join(symbol_html(name) for name in names))]
+def _panels(family: Family) -> Iterator[Markup]:
+    if names := dict.fromkeys(name for panel in family.panels for name, _ in panel):
+        yield Markup("A picture for each {}").format(Markup(", ").join(map(symbol_html, names)))
 
 
-def _fixed(saved: Saved) -> list[Markup]:
+def _fixed(run: Facts) -> Iterator[Markup]:
     """The values of the scene that are the same in every point."""
-    values = {f"scene.{path}": value for path, value in saved.study.scene.given_values().items()}
-    fixed = [setting(name, value) for name, value in values.items() if name not in saved.study.sweep]
-    return [Markup("Held fixed: {}").format(Markup(", ").join(fixed))] if fixed else []
+    study = run.saved.study
+    values = {f"scene.{path}": value for path, value in study.scene.given_values().items()}
+    if fixed := [setting(name, value) for name, value in values.items() if name not in study.sweep]:
+        yield Markup("Held fixed: {}").format(Markup(", ").join(fixed))
 
 
-def _missing(saved: Saved) -> list[Markup]:
+def _missing(run: Facts) -> Iterator[Markup]:
     """How many points have no number, which the figures show as marks."""
-    without = {status: count for status, count in saved.counts.items() if status != "ok"}
-    told = [f"{counted(count, 'point')} {status.replace('_', ' ')}" for status, count in without.items()]
-    return [Markup("Without a number, and marked as such: {}").format(", ".join(told))] if told else []
+    counts = {status.replace("_", " "): count for status, count in run.saved.counts.items() if status != "ok"}
+    if told := [f"{counted(count, 'point')} {status}" for status, count in counts.items()]:
+        yield Markup("Without a number, and marked as such: {}").format(", ".join(told))
 
 
-def _span(saved: Saved, column: str) -> str:
-    found = saved.table[column].dropna()
-    return f"{word_html(column).striptags()}: from {found.min():.4g} to {found.max():.4g}."
+def _span(found: Sequence[float], column: str) -> str:
+    return f"{word_html(column).striptags()}: from {min(found):.4g} to {max(found):.4g}."

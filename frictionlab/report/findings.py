@@ -1,4 +1,4 @@
-"""What a run found, as tables: every number of a few points, what produced the numbers, what was expected."""
+"""What a run found, as tables: curves, pairs, onsets, points whole, models, verdicts, what is not plainly ok."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import pandas as pd
 from markupsafe import Markup
 
 from frictionlab.columns import RESULTS, SI
-from frictionlab.printable import with_error
-from frictionlab.report.markup import symbol_html
-from frictionlab.report.tables import Cell, Grid, grid, joined_values
-from frictionlab.report.trouble import SAYS_PROVED, SAYS_TESTED, place_of
+from frictionlab.printable import MOST_DIGITS, with_error
+from frictionlab.report.facts import Facts, whose
+from frictionlab.report.markup import symbol_html, unit_html
+from frictionlab.report.tables import Cell, Grid, grid, joined_values, number, setting, settings, size
 from frictionlab.results.expectations import Verdict
-from frictionlab.results.summary import alike, each_once, pattern
-from frictionlab.results.table import swept_inputs
+from frictionlab.results.pairs import Difference, law_pairs
+from frictionlab.results.summary import alike, each_once, mean_span, pattern, statuses
 from frictionlab.results.words import counted
 
 FEW_ROWS = 4
@@ -23,31 +23,100 @@ FEW_ROWS = 4
 TOLD_ELSEWHERE = ("reason", "model")
 MOST_OF_A_POINT = 12
 """Digits of a number that is told with its error."""
+MOST_EXAMPLES = 3
+SAYS_TESTED, SAYS_PROVED = "tested: ", "unique: "
+"""How sentences on uniqueness begin, in ``reason`` and in ``model``."""
+
+VERDICTS = {
+    True: Markup('<span class="good">passed</span>'),
+    False: Markup('<span class="bad">FAILED</span>'),
+}
 
 
-def whole_grid(table: pd.DataFrame) -> Grid | None:
+def curves_grid(run: Facts) -> Grid:
+    """One line per curve: everything equal but belt speed."""
+    head = [
+        *("law", "method", "curve", "points"),
+        Markup("mean friction {}, least … greatest").format(symbol_html("mean_friction")),
+        "mean friction force [N]",
+        *("largest error", "at", "kind of error", "errors above the tolerance"),
+    ]
+    rows = (
+        [*who, statuses(curve.rows).replace("_", " "), *_spans(curve.rows), *_errors(run, curve.rows)]
+        for who, curve in zip(whose(run.curves), run.curves, strict=True)
+    )
+    return grid("Curves: everything equal but belt speed", head, rows, "curves", total=len(run.curves))
+
+
+def _spans(rows: pd.DataFrame) -> list[Cell]:
+    """Where the mean lies, and the mean force in a scene given in SI units."""
+    return [mean_span(rows), mean_span(rows, unit="_N") if "mean_friction_N" in rows else ""]
+
+
+def _errors(run: Facts, rows: pd.DataFrame) -> list[Cell]:
+    """The largest error and where it is, of which kind the errors are, how many are above the tolerance."""
+    known = rows[rows["error"].notna()]
+    if known.empty:
+        return [""] * 4
+    worst = known.loc[known["error"].idxmax()]
+    above = int((known["error"] > run.saved.study.tolerance).sum())
+    kinds = joined_values(known["error_kind"].dropna())
+    at = setting(run.speed, worst[run.speed])
+    return [size(float(worst["error"])), at, kinds, counted(above, "point") if above else ""]
+
+
+def onset_grid(run: Facts, onsets: pd.DataFrame) -> Grid:
+    """The onsets of onsets.csv, each with its error, curve by curve."""
+    curves = run.curves_of(onsets)
+    rows = (
+        [*who, row["onset"].replace("_", " "), run.speed_in_given_units(curve, row, "belt_speed"), row["how"]]
+        for who, curve in zip(whose(curves), curves, strict=True)
+        for _, row in curve.rows.iterrows()
+    )
+    speed = Markup("belt speed{}").format(unit_html(run.speed))
+    head = ["law", "method", "curve", "what", speed, "how it was found"]
+    return grid("Onsets along rising belt speed", head, rows, "onsets", "onsets.csv", len(onsets))
+
+
+def pair_grids(run: Facts) -> list[Grid]:
+    """Every two laws, and every two methods law by law: where their means differ most, and by how much."""
+    caption = "{} in pairs: the largest difference of their mean friction at the same point"
+    head = ["law", "pair", "largest difference", "at", "points that differ by more than their errors"]
+    pairs = {"Laws": law_pairs(run.table), "Methods": run.method_pairs}
+    return [grid(caption.format(who), head, [*map(_pair, found)], "pairs") for who, found in pairs.items()]
+
+
+def _pair(pair: Difference) -> list[Cell]:
+    """Within the errors, which may be wide, what is found is told, too."""
+    same = "" if pair.apart else "the same within errors: "
+    differs = f"{same}{with_error(pair.value, pair.error)}"
+    counts = f"{pair.apart} of {pair.shared}"
+    return [pair.law, f"{pair.one} less {pair.other}", differs, settings(pair.where), counts]
+
+
+def whole_grid(run: Facts) -> Grid | None:
     """Every number of a table of very few rows, a column for each point; None for a longer one.
 
     In SI units where the scene is given so; an error beside the number that it is of.
     """
+    table = run.table
     if len(table) > FEW_ROWS:
         return None
-    names = [*RESULTS, *(name for name in SI if name in table)]
-    left = {*TOLD_ELSEWHERE, *map(_error_of, names), *(SI[name].column for name in SI if name in table)}
-    shown = [name for name in names if name == "mean_friction" or name not in left]
+    in_si = [name for name in SI if name in table]
+    names = [*RESULTS, *in_si]
+    left = {*TOLD_ELSEWHERE, *map(_error_of, names), *(SI[name].column for name in in_si)}
+    points = [row for _, row in table.iterrows()]
     rows = [
-        [_quantity(name), *(_written(row, name) for _, row in table.iterrows())]
-        for name in shown
-        if table[name].notna().any()
+        [_quantity(name), *(_written(row, name) for row in points)]
+        for name in names
+        if (name == "mean_friction" or name not in left) and table[name].notna().any()
     ]
-    swept = swept_inputs(table)
-    head = ["quantity", *(_point(table.iloc[place], swept) for place in range(len(table)))]
-    return grid("Every number found", head, rows)
+    told = [Markup("{} by {}, {}").format(row["law"], row["method"], place_of(run, row)) for row in points]
+    return grid("Every number found", ["quantity", *told], rows)
 
 
 def _quantity(name: str) -> Cell:
-    shown = symbol_html(name)
-    words = name.replace("_", " ")
+    shown, words = symbol_html(name), name.replace("_", " ")
     return words if str(shown) == words else Markup("{} {}").format(words, shown)
 
 
@@ -59,46 +128,40 @@ def _error_of(name: str) -> str:
 
 
 def _written(row: pd.Series, name: str) -> str:
-    value = row[name]
+    value, error = row[name], row.get(_error_of(name))
     if isinstance(value, str):
         return value
-    error = row.get(_error_of(name))
-    return (
-        with_error(value, error)
-        if error is None or pd.isna(error)
-        else with_error(value, error, MOST_OF_A_POINT)
-    )
+    return with_error(value, error, MOST_DIGITS if error is None or pd.isna(error) else MOST_OF_A_POINT)
 
 
-def _point(row: pd.Series, swept: Sequence[str]) -> Markup:
-    """Which point it is."""
-    return Markup("{} by {}, {}").format(row["law"], row["method"], place_of(row, swept))
+def place_of(run: Facts, row: pd.Series) -> Markup:
+    """Where a point is: its belt speed, and what else is swept."""
+    return settings({name: row[name] for name in (run.speed, *run.swept)})
 
 
-def models_grid(table: pd.DataFrame) -> Grid:
+def models_grid(run: Facts) -> Grid:
     """What produced the numbers, in the methods' own sentences, with how many points each produced."""
-    told = table[table["model"].notna()]
-    groups = told.groupby([told["method"], each_once(told["model"], pattern)], sort=False)
-    rows = [
-        [str(method), alike(rows["model"].unique()), counted(len(rows), "point"), joined_values(rows["law"])]
-        for (method, _), rows in groups
-    ]
-    return grid("What produced the numbers", ["method", "model, and why", "points", "laws"], rows, "models")
+    head = ["method", "model, and why", "points", "laws"]
+    rows = _by_sentence(run.table, "method", run.table["model"])
+    return grid("What produced the numbers", head, rows, "models")
 
 
-def uniqueness_grid(table: pd.DataFrame) -> Grid:
+def uniqueness_grid(run: Facts) -> Grid:
     """How it is known of points that no start ends elsewhere, in the methods' own sentences; by how many points."""
-    told = table[table["unique"].notna()]
-    how = told["model"].where(told["unique"] == "proved", told["reason"])
-    how = each_once(how, _how_unique)
-    groups = told.assign(how=how).groupby([told["unique"], each_once(how, pattern)], sort=False)
-    rows = [
-        [str(verdict), alike(rows["how"].unique()), counted(len(rows), "point"), joined_values(rows["law"])]
-        for (verdict, _), rows in groups
+    head = ["unique", "how it is known", "points", "laws"]
+    told = run.table["model"].where(run.table["unique"] == "proved", run.table["reason"])
+    rows = _by_sentence(run.table, "unique", each_once(told, _how_unique))
+    return grid("Whether every start ends there", head, rows, "kinds")
+
+
+def _by_sentence(table: pd.DataFrame, by: str, sentences: pd.Series) -> list[list[Cell]]:
+    """Cells of a column with a sentence that they share but for its numbers, and how many points of which laws."""
+    told = table[["law", by]].assign(said=sentences)[table[by].notna() & sentences.notna()]
+    groups = told.groupby([told[by], each_once(told["said"], pattern)], sort=False)
+    return [
+        [str(cell), alike(rows["said"].unique()), counted(len(rows), "point"), joined_values(rows["law"])]
+        for (cell, _), rows in groups
     ]
-    return grid(
-        "Whether every start ends there", ["unique", "how it is known", "points", "laws"], rows, "kinds"
-    )
 
 
 def _how_unique(sentences: Any) -> str:
@@ -111,12 +174,38 @@ def _how_unique(sentences: Any) -> str:
 
 def verdicts_grid(verdicts: Sequence[Verdict]) -> Grid:
     """What was expected and whether it is so, what failed first."""
-    ordered = sorted(verdicts, key=lambda verdict: verdict.passed)
-    rows = [[_verdict(each), each.sentence] for each in ordered]
+    rows = [[VERDICTS[each.passed], each.sentence] for each in sorted(verdicts, key=lambda each: each.passed)]
     return grid("What the study expects of its table", ["verdict", "expectation: what was found"], rows)
 
 
-def _verdict(verdict: Verdict) -> Markup:
-    return Markup('<span class="{}">{}</span>').format(
-        *(("good", "passed") if verdict.passed else ("bad", "FAILED"))
-    )
+def with_remark(table: pd.DataFrame) -> pd.Series:
+    """Which rows are ok with something to note; that starts were tested is told in a table of its own."""
+    return (table["status"] == "ok") & ~table["reason"].fillna(SAYS_TESTED).str.startswith(SAYS_TESTED)
+
+
+def trouble_grid(run: Facts) -> Grid:
+    """Every point that is not plainly ok, those of like reasons together, with examples."""
+    odd = run.table[(run.table["status"] != "ok") | with_remark(run.table)]
+    groups = odd.groupby([odd["status"], odd["reason"].map(pattern)], sort=False)
+    ordered = sorted(groups, key=lambda group: (group[0][0] == "ok", -len(group[1])))
+    rows = [_trouble(run, str(status), rows) for (status, _), rows in ordered]
+    head = ["status", "points", "reason", "laws", "methods", "for example"]
+    return grid("Points that are not plainly ok", head, rows, "reasons")
+
+
+def _trouble(run: Facts, status: str, rows: pd.DataFrame) -> list[Cell]:
+    told = Markup("; ").join(_example(run, row) for _, row in rows.head(MOST_EXAMPLES).iterrows())
+    left = len(rows) - MOST_EXAMPLES
+    more = f"; and {counted(left, 'point')} more" if left > 0 else ""
+    words = status.replace("_", " ") if status != "ok" else "ok, but"
+    who = joined_values(rows["law"]), joined_values(rows["method"])
+    return [words, str(len(rows)), alike(rows["reason"].fillna("")), *who, told + more]
+
+
+def _example(run: Facts, row: pd.Series) -> Markup:
+    place = place_of(run, row)
+    if pd.isna(row["mean_low"]):
+        return place
+    low, high = number(row["mean_low"]), number(row["mean_high"])
+    window = "" if pd.isna(row["window"]) else f" over {row['window']:.6g} periods"
+    return Markup("{}: means from {} to {}{}").format(place, low, high, window)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 from urllib.parse import quote
 
 from frictionlab.report.figures import address
@@ -17,20 +17,6 @@ from frictionlab.runner.saved import Saved
 
 LARGEST_THUMBNAIL = 200_000
 """Length of a picture's data above which the index goes without it: the report has it."""
-
-
-class Entry(NamedTuple):
-    """A study's row."""
-
-    name: str
-    title: str
-    link: str
-    points: str
-    passed: int
-    failed: int
-    error: str
-    wall: str
-    thumbnail: str
 
 
 def write_index(folder: Path, runs: Sequence[Saved]) -> Path:
@@ -49,25 +35,25 @@ def index(folder: Path, runs: Sequence[Saved]) -> str:
         title=f"Studies in {folder.absolute().name}",
         size=f"{len(runs)} studies, {counted(sum(counts.values()), 'point')}",
         counts=dict(counts.most_common()),
-        passed=sum(entry.passed for entry in entries),
-        failed=sum(entry.failed for entry in entries),
+        passed=sum(entry["passed"] for entry in entries),
+        failed=sum(entry["failed"] for entry in entries),
         wall=wall(sum(run.seconds for run in runs)),
         entries=entries,
     )
 
 
-def _entry(folder: Path, run: Saved) -> Entry:
-    passed = sum(verdict.passed for verdict in run.verdicts)
-    name = run.folder.relative_to(folder).as_posix()
+def _entry(folder: Path, run: Saved) -> dict[str, Any]:
+    """A study's row."""
+    name, passed = run.folder.relative_to(folder).as_posix(), sum(verdict.passed for verdict in run.verdicts)
     picture = address(run.folder / "figures" / "mean_friction")
-    return Entry(
-        name=name,
-        title=run.title,
-        link=f"{quote(name)}/report.html",
-        points=", ".join(f"{count} {status}" for status, count in run.counts.items()),
-        passed=passed,
-        failed=len(run.verdicts) - passed,
-        error=size(float(run.table["error"].max())),
-        wall=wall(run.seconds),
-        thumbnail=picture if len(picture) <= LARGEST_THUMBNAIL else "",
-    )
+    return {
+        "name": name,
+        "title": run.title,
+        "link": f"{quote(name)}/report.html",
+        "points": ", ".join(f"{count} {status}" for status, count in run.counts.items()),
+        "passed": passed,
+        "failed": len(run.verdicts) - passed,
+        "error": size(float(run.table["error"].max())),
+        "wall": wall(run.seconds),
+        "thumbnail": picture if len(picture) <= LARGEST_THUMBNAIL else "",
+    }

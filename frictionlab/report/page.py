@@ -13,14 +13,12 @@ from markupsafe import Markup
 from frictionlab import __version__
 from frictionlab.report import findings, question
 from frictionlab.report.answer import sentences
-from frictionlab.report.compared import laws_compared, methods_compared
-from frictionlab.report.curves import curves_grid, onset_grid
 from frictionlab.report.equation import equations, letters_sentence
+from frictionlab.report.facts import Facts
 from frictionlab.report.figures import pictures
 from frictionlab.report.shapes import shape_grid
-from frictionlab.report.sources import bibtex, published, sources
+from frictionlab.report.sources import entries_of, published
 from frictionlab.report.tables import Grid, grid
-from frictionlab.report.trouble import trouble_grid
 from frictionlab.results.words import counted
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.saved import Saved
@@ -30,6 +28,11 @@ REPORT_TEMPLATES = Path(__file__).parent / "templates"
 GENERATOR = f"frictionlab {__version__}"
 MOST_SHOWN_AT_ONCE = 12
 """Expectations that are shown unasked where all of them hold."""
+GO_ON = "frictionlab run study.yaml -o .       # go on where it was interrupted"
+AGAIN = [
+    "frictionlab run study.yaml -o again --cache again   # compute everything anew, into another folder",
+    "frictionlab report .                  # draw the figures and write this page anew; nothing is computed",
+]
 
 
 def write_report(saved: Saved) -> Path:
@@ -41,9 +44,9 @@ def write_report(saved: Saved) -> Path:
 
 def report(saved: Saved) -> str:
     """The page of a run."""
-    return rendered(
-        "report.html", title=saved.title, **_head(saved), **_asked(saved), **_found(saved), **_last(saved)
-    )
+    run = Facts(saved)
+    parts = _head(run) | _asked(saved) | _found(run) | _last(run)
+    return rendered("report.html", title=saved.title, **parts)
 
 
 def rendered(template: str, **values: Any) -> str:
@@ -67,13 +70,13 @@ def _style() -> Markup:
     return Markup((REPORT_TEMPLATES / "style.css").read_text(encoding="utf-8").strip())
 
 
-def _head(saved: Saved) -> dict[str, Any]:
-    shown = pictures(saved)
+def _head(run: Facts) -> dict[str, Any]:
+    shown, rows = pictures(run), len(run.table)
     return {
-        "sentences": sentences(saved),
+        "sentences": sentences(run),
         "first": shown[:1],
         "pictures": shown[1:],
-        "thinned": counted(len(saved.table), "point") if len(saved.table) < saved.size else "",
+        "thinned": counted(rows, "point") if rows < run.saved.size else "",
     }
 
 
@@ -83,11 +86,6 @@ def wall(seconds: float) -> str:
         return f"{seconds:.2g} s"
     whole = round(seconds)
     return f"{whole // 60} min {whole % 60} s"
-
-
-def _unfinished(saved: Saved) -> str:
-    killed = saved.counts.get("killed", 0)
-    return f"{killed} of {counted(saved.size, 'point')} were not reached" if killed else ""
 
 
 def _asked(saved: Saved) -> dict[str, Any]:
@@ -110,35 +108,36 @@ def _asked(saved: Saved) -> dict[str, Any]:
     }
 
 
-def _found(saved: Saved) -> dict[str, Any]:
-    verdicts = saved.verdicts
+def _found(run: Facts) -> dict[str, Any]:
+    verdicts, onsets = run.saved.verdicts, run.saved.onsets
+    passed = sum(verdict.passed for verdict in verdicts)
     return {
-        "curves": curves_grid(saved.table, saved.study.tolerance),
-        "whole": findings.whole_grid(saved.table),
-        "shape": shape_grid(saved),
-        "pairs": [laws_compared(saved.table), methods_compared(saved.table)],
-        "onsets": None if saved.onsets is None else onset_grid(saved.onsets, saved.table),
+        "curves": findings.curves_grid(run),
+        "whole": findings.whole_grid(run),
+        "shape": shape_grid(run),
+        "pairs": findings.pair_grids(run),
+        "onsets": None if onsets is None else findings.onset_grid(run, onsets),
         "verdicts": findings.verdicts_grid(verdicts),
-        "passed": sum(verdict.passed for verdict in verdicts),
-        "fold": len(verdicts) > MOST_SHOWN_AT_ONCE and all(verdict.passed for verdict in verdicts),
-        "expected": len(saved.study.expect),
-        "odd": trouble_grid(saved.table),
-        "unique": findings.uniqueness_grid(saved.table),
-        "models": findings.models_grid(saved.table),
+        "passed": passed,
+        "fold": MOST_SHOWN_AT_ONCE < len(verdicts) == passed,
+        "expected": len(run.saved.study.expect),
+        "odd": findings.trouble_grid(run),
+        "unique": findings.uniqueness_grid(run),
+        "models": findings.models_grid(run),
     }
 
 
-def _last(saved: Saved) -> dict[str, Any]:
-    cited = sources(saved)
+def _last(run: Facts) -> dict[str, Any]:
+    saved = run.saved
     return {
-        "sources": cited,
-        "references": published(cited),
-        "bibtex": bibtex([saved]),
+        "sources": run.cited,
+        "references": published(run.cited),
+        "bibtex": entries_of([(saved, run.cited)]),
         "versions": _versions(saved),
         "runs": _runs(saved.account["runs"]),
         "wall": wall(saved.seconds),
         "size": counted(saved.size, "point"),
-        "commands": _commands(saved),
+        "commands": [GO_ON, *AGAIN] if "killed" in saved.counts else AGAIN,
     }
 
 
@@ -160,14 +159,3 @@ def _runs(runs: Sequence[dict[str, Any]]) -> Grid:
         for run in runs
     ]
     return grid("When it ran", ["started", "took", "computed", "set on the command line"], rows)
-
-
-def _commands(saved: Saved) -> str:
-    on = "frictionlab run study.yaml -o .       # go on where it was interrupted"
-    return "\n".join(
-        [
-            *([on] if _unfinished(saved) else []),
-            "frictionlab run study.yaml -o again --cache again   # compute everything anew, into another folder",
-            "frictionlab report .                  # draw the figures and write this page anew; nothing is computed",
-        ]
-    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
@@ -16,8 +16,8 @@ from frictionlab.results.words import in_words
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import Signal
 from frictionlab.scene.waveforms import SINE, as_fraction
-from frictionlab.study import GridValue, LawChoice, Study
-from frictionlab.study.axes import FRICTION, Axis
+from frictionlab.study import GridValue, Study
+from frictionlab.study.axes import FRICTION
 from frictionlab.study.ranges import SpeedRange
 
 MOST_LISTED = 8
@@ -30,45 +30,40 @@ def scene_sentences(study: Study) -> str:
 
 
 def _kind(study: Study) -> str:
-    degrees = study.scene.degrees_of_freedom
-    if degrees == 0:
+    scene, drive = study.scene, _Shaking(study, "drive")
+    if scene.degrees_of_freedom == 0:
         return "Prescribed slip: a body whose slip over the belt is given, not computed."
-    kind = "one degree of freedom" if degrees == 1 else "two degrees of freedom, in the plane"
-    return f"A body with {kind}, on a moving belt, {_shaken(study)}."
-
-
-def _shaken(study: Study) -> str:
-    scene = study.scene
     if scene.undriven:
-        return "which nothing shakes"
-    if scene.drive is None:
-        return "without a load"
-    if _turned(study, "drive", scene.drive):
-        return f"shaken {_direction(study, 'drive', scene.drive)}"
-    return "shaken along it" if scene.signals().load[1] == Signal() else "shaken along and across it"
+        shaken = "which nothing shakes"
+    elif scene.drive is None:
+        shaken = "without a load"
+    elif drive.is_turned:
+        shaken = f"shaken {drive.direction}"
+    else:
+        shaken = "shaken along it" if scene.signals().load[1] == Signal() else "shaken along and across it"
+    kind = (
+        "one degree of freedom" if scene.degrees_of_freedom == 1 else "two degrees of freedom, in the plane"
+    )
+    return f"A body with {kind}, on a moving belt, {shaken}."
 
 
 def _shapes(study: Study) -> Iterator[str]:
     """A sentence for every load, slip, belt vibration and normal load that is more than a sine along the belt."""
-    scene = study.scene
-    load = scene.transverse.load if scene.transverse is not None else None
-    if scene.drive is not None and _told(study, "drive", scene.drive):
-        where = "" if _turned(study, "drive", scene.drive) else " along x1"
-        yield f"The load{where} varies {_wave(study, 'drive', scene.drive)}."
-    if load is not None and _told(study, "transverse.load", load):
-        yield f"The load across the belt varies {_wave(study, 'transverse.load', load)}."
-    for name, where in (("slip", "x1"), ("transverse_slip", "x2")):
-        part = getattr(scene, name)
-        if part is not None and (_told(study, name, part) or _turned(study, name, part)):
-            along = _direction(study, name, part) if _turned(study, name, part) else f"along {where}"
-            yield f"The slip velocity {along} varies {_wave(study, name, part)}."
-    if (belt := scene.belt_vibration) is not None:
-        where = _direction(study, "belt_vibration", belt)
-        yield f"The belt vibrates {where}, its velocity {_wave(study, 'belt_vibration', belt)}."
-    if (normal := scene.normal_load_variation) is not None:
-        name = "normal_load_variation"
-        contact = _CONTACTS["" if _is_swept(study, f"{name}.contact") else normal.contact]
-        yield f"The normal load varies {_wave(study, name, normal)}; {contact}."
+    drive, load = _Shaking(study, "drive"), _Shaking(study, "transverse.load")
+    belt, normal = _Shaking(study, "belt_vibration"), _Shaking(study, "normal_load_variation")
+    if drive.part and drive.is_told:
+        yield f"The load{'' if drive.is_turned else ' along x1'} varies {drive.wave}."
+    if load.part and load.is_told:
+        yield f"The load across the belt varies {load.wave}."
+    for slip, where in ((_Shaking(study, "slip"), "x1"), (_Shaking(study, "transverse_slip"), "x2")):
+        if slip.part and (slip.is_told or slip.is_turned):
+            along = slip.direction if slip.is_turned else f"along {where}"
+            yield f"The slip velocity {along} varies {slip.wave}."
+    if belt.part:
+        yield f"The belt vibrates {belt.direction}, its velocity {belt.wave}."
+    if normal.part:
+        contact = _CONTACTS["" if normal.is_swept("contact") else normal.part.contact]
+        yield f"The normal load varies {normal.wave}; {contact}."
 
 
 _CONTACTS = {
@@ -78,35 +73,48 @@ _CONTACTS = {
 }
 
 
-def _is_swept(study: Study, path: str) -> bool:
-    return f"scene.{path}" in study.sweep or f"scene.dimensional.{path}" in study.sweep
+class _Shaking(NamedTuple):
+    """A part of a scene that changes in time, by its path."""
 
+    study: Study
+    path: str
 
-def _told(study: Study, name: str, part: Any) -> bool:
-    """Whether it has a waveform or a frequency of its own."""
-    own = part.waveform not in (None, SINE) or getattr(part, "frequency_ratio", None) is not None
-    return own or _is_swept(study, f"{name}.waveform")
+    @property
+    def part(self) -> Any:
+        """None where the scene has none."""
+        found: Any = self.study.scene
+        for name in self.path.split("."):
+            found = found and getattr(found, name)
+        return found
 
+    def is_swept(self, name: str) -> bool:
+        return any(f"scene.{unit}{self.path}.{name}" in self.study.sweep for unit in ("", "dimensional."))
 
-def _turned(study: Study, name: str, part: Any) -> bool:
-    return bool(getattr(part, "direction", None)) or _is_swept(study, f"{name}.direction")
+    @property
+    def is_told(self) -> bool:
+        """Whether it has a waveform or a frequency of its own."""
+        own = getattr(self.part, "frequency_ratio", None) is not None
+        return own or self.part.waveform not in (None, SINE) or self.is_swept("waveform")
 
+    @property
+    def is_turned(self) -> bool:
+        return bool(getattr(self.part, "direction", None)) or self.is_swept("direction")
 
-def _direction(study: Study, name: str, part: Any) -> str:
-    if _is_swept(study, f"{name}.direction"):
-        return "in several directions"
-    return f"at {number(part.direction)}° to its motion" if part.direction else "along its motion"
+    @property
+    def direction(self) -> str:
+        if self.is_swept("direction"):
+            return "in several directions"
+        at = self.part.direction
+        return f"at {number(at)}° to its motion" if at else "along its motion"
 
-
-def _wave(study: Study, name: str, part: Any) -> str:
-    """As what it varies, and how often where that is not the drive's frequency."""
-    form, ratio = part.waveform or SINE, getattr(part, "frequency_ratio", None)
-    wave = f"as {form.words}"
-    if _is_swept(study, f"{name}.waveform"):
-        wave = "in several waveforms"
-    if _is_swept(study, f"{name}.frequency_ratio"):
-        return f"{wave} at several frequencies"
-    return wave if ratio in (None, 1.0) else f"{wave} at {as_fraction(ratio)} times the drive's frequency"
+    @property
+    def wave(self) -> str:
+        """As what it varies, and how often where that is not the drive's frequency."""
+        form, ratio = self.part.waveform or SINE, getattr(self.part, "frequency_ratio", None)
+        wave = "in several waveforms" if self.is_swept("waveform") else f"as {form.words}"
+        if self.is_swept("frequency_ratio"):
+            return f"{wave} at several frequencies"
+        return wave if ratio in (None, 1.0) else f"{wave} at {as_fraction(ratio)} times the drive's frequency"
 
 
 def units_sentence(scene: Scene) -> str:
@@ -123,26 +131,18 @@ def scene_grid(study: Study) -> Grid:
     """Every value of the scene, but for what swept ones run over."""
     values = {f"scene.{path}": value for path, value in study.scene.given_values().items()}
     rows = [
-        [_words(name), symbol_html(name) if _has_symbol(name) else "", _value(study, name, value)]
+        [*_named(name), "swept" if study.sweep.get(name) is not None else number(value)]
         for name, value in values.items()
     ]
     return grid("The scene", ["quantity", "symbol", "value"], rows)
 
 
-def _words(name: str) -> Cell:
-    """The words of an input without its symbol; its path where it has none."""
-    if not _has_symbol(name):
-        return name.removeprefix("scene.").removeprefix("dimensional.").replace(".", " ").replace("_", " ")
-    return html(" ".join(word(name).replace(symbol(name), "", 1).split()))
-
-
-def _has_symbol(name: str) -> bool:
-    return symbol(name).startswith("$")
-
-
-def _value(study: Study, name: str, value: Any) -> Cell:
-    swept = study.sweep.get(name)
-    return number(value) if swept is None else "swept"
+def _named(name: str) -> list[Cell]:
+    """The words of an input and its symbol; its path where it has none."""
+    if not symbol(name).startswith("$"):
+        inside = name.removeprefix("scene.").removeprefix("dimensional.")
+        return [inside.replace(".", " ").replace("_", " "), ""]
+    return [html(" ".join(word(name).replace(symbol(name), "", 1).split())), symbol_html(name)]
 
 
 def values_listed(values: Sequence[GridValue]) -> str:
@@ -150,24 +150,21 @@ def values_listed(values: Sequence[GridValue]) -> str:
     numbers = [value for value in values if isinstance(value, float | int)]
     if len(values) <= MOST_LISTED or len(numbers) < len(values):
         return ", ".join(number(value) if isinstance(value, float | int) else str(value) for value in values)
-    return f"{number(values[0])} … {number(values[-1])}, {len(values)} values{_spacing(numbers)}"
-
-
-def _spacing(values: Sequence[float]) -> str:
-    steps = [after - before for before, after in pairwise(values)]
-    even = max(steps) - min(steps) <= 1e-9 * max(map(abs, values))
-    return f" in steps of {number((values[-1] - values[0]) / (len(values) - 1))}" if even else ""
+    steps = [after - before for before, after in pairwise(numbers)]
+    even = max(steps) - min(steps) <= 1e-9 * max(map(abs, numbers))
+    told = f" in steps of {number((numbers[-1] - numbers[0]) / (len(values) - 1))}" if even else ""
+    return f"{number(values[0])} … {number(values[-1])}, {len(values)} values{told}"
 
 
 def laws_grid(study: Study) -> Grid:
     """The laws, what each is, and their parameters."""
     rows = [
-        [
+        _choice(
             law.label,
-            _unless(law.kind, law.label),
-            _first_line(law_text(law)),
-            _law_parameters(law, study),
-        ]
+            law.kind,
+            law_text(law),
+            law.parameters | dict.fromkeys(study.swept_parameters(law), "swept"),
+        )
         for law in study.laws
     ]
     return grid("The friction laws", ["label", "law", "what it is", "parameters"], rows)
@@ -175,48 +172,30 @@ def laws_grid(study: Study) -> Grid:
 
 def methods_grid(study: Study) -> Grid:
     """The methods, what each is, and their parameters."""
-    rows = [
-        [
-            each.label,
-            _unless(each.name, each.label),
-            _first_line(method_text(each.name)),
-            _set(each.parameters),
-        ]
-        for each in study.methods
-    ]
+    rows = [_choice(each.label, each.name, method_text(each.name), each.parameters) for each in study.methods]
     return grid("The methods", ["label", "method", "what it is", "parameters"], rows)
 
 
-def _unless(name: str, label: str) -> str:
-    """A name where it says more than the label."""
-    return "" if name == label else name
-
-
-def _first_line(text: str) -> str:
-    return text.partition("\n")[0]
-
-
-def _law_parameters(law: LawChoice, study: Study) -> Cell:
-    told = dict.fromkeys(study.swept_parameters(law), "swept")
-    return _set(law.parameters | told)
-
-
-def _set(parameters: Mapping[str, Any]) -> Cell:
-    """Parameters with their values."""
-    given = {name: value for name, value in parameters.items() if value is not None}
+def _choice(label: str, name: str, text: str, parameters: Mapping[str, Any]) -> list[Cell]:
+    """Its name where that says more than the label, the first line of its text, its parameters with their values."""
     told = [
-        Markup("{} = {}").format(symbol_html(f"law.{name}"), in_words(value)) for name, value in given.items()
+        Markup("{} = {}").format(symbol_html(f"law.{name}"), in_words(value))
+        for name, value in parameters.items()
+        if value is not None
     ]
-    return Markup(", ").join(told)
+    return [label, "" if name == label else name, text.partition("\n")[0], Markup(", ").join(told)]
 
 
 def sweep_grid(study: Study) -> Grid:
-    """What is swept, and over what."""
-    rows = [
-        [_together(study, axis, path), path, _values_of(study, path, values)]
-        for axis in study.axes
-        for path, values in axis.values.items()
-    ]
+    """What is swept, and over what; of several that advance together, with which."""
+    rows: list[list[Cell]] = []
+    for axis in study.axes:
+        first, *_ = axis.values
+        for path, values in axis.values.items():
+            name = _sweep_name(study, path)
+            if path != first:
+                name = Markup("{}, together with {}").format(name, _sweep_name(study, first))
+            rows.append([name, path, _values_of(study, path, values)])
     return grid("The sweep: every combination of these is a point", ["quantity", "key", "values"], rows)
 
 
@@ -228,16 +207,9 @@ def _values_of(study: Study, path: str, values: Sequence[GridValue]) -> str:
     return values_listed(values)
 
 
-def _together(study: Study, axis: Axis, path: str) -> Cell:
-    """What is swept; of several that advance together, with which."""
-    first = next(iter(axis.values))
-    name = _sweep_name(study, path)
-    return name if path == first else Markup("{}, together with {}").format(name, _sweep_name(study, first))
-
-
 def _sweep_name(study: Study, path: str) -> Cell:
     if path == FRICTION:
-        return Markup("friction coefficient of every law")
+        return "friction coefficient of every law"
     if path.startswith("scene."):
         return html(word(path))
     owner, _, name = path.rpartition(".")

@@ -22,12 +22,17 @@ from frictionlab.study import LawChoice
 
 def bibtex(runs: Sequence[Saved]) -> str:
     """One entry for each publication, under a comment that says what used it; keys differ."""
+    return entries_of([(run, sources(run)) for run in runs])
+
+
+def entries_of(runs: Sequence[tuple[Saved, Sequence[Cited]]]) -> str:
+    """The same of runs with what they cite."""
     users: dict[Publication, list[str]] = {}
-    for run in runs:
+    for run, cited in runs:
         users.setdefault(itself(str(run.account.get("frictionlab", ""))), ["the program"])
-        for cited in sources(run):
-            for reference in cited.references:
-                users.setdefault(reference, []).append(cited.what)
+        for each in cited:
+            for reference in each.references:
+                users.setdefault(reference, []).append(each.what)
     whom = [", ".join(dict.fromkeys(each)) for each in users.values()]
     entries = zip(whom, with_keys_of_their_own(users), strict=True)
     return "\n\n".join(f"% {who}\n{entry}" for who, entry in entries)
@@ -71,17 +76,12 @@ def method_text(name: str) -> str:
 
 def method_bibtex(name: str) -> str:
     """The ``bibtex`` of a method; nothing for one that is not installed here."""
-    written = _written(name)
-    given = [node for node in written.body if _sets_bibtex(node)] if written else []
-    if not given:
-        return ""
-    value = getattr(given[0], "value", None)
-    return str(value.value) if isinstance(value, ast.Constant) else registry.method_class(name).bibtex
-
-
-def _sets_bibtex(node: ast.stmt) -> bool:
-    targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
-    return any(isinstance(target, ast.Name) and target.id == "bibtex" for target in targets)
+    for node in written.body if (written := _written(name)) else ():
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        if any(isinstance(target, ast.Name) and target.id == "bibtex" for target in targets):
+            value = getattr(node, "value", None)
+            return str(value.value) if isinstance(value, ast.Constant) else registry.method_class(name).bibtex
+    return ""
 
 
 @cache
@@ -113,14 +113,18 @@ class Cited(NamedTuple):
 
 def sources(saved: Saved) -> list[Cited]:
     """The study's source, then those of its laws, then those of its methods, each where it gave a number."""
-    study, found = saved.study, _with_numbers(saved.table)
+    study, table = saved.study, saved.table
+    found = table[table["mean_friction"].notna() | (table["status"] == "not_unique")]
     laws = {law.kind: law for law in study.laws if law.kind in set(found["kind"])}
-    methods = _each(choice.name for choice in study.methods if choice.label in set(found["method"]))
-    hows = dict.fromkeys(methods, "") | ({} if "auto" not in methods else chosen_by_auto(found))
+    methods = {choice.name: "" for choice in study.methods if choice.label in set(found["method"])}
+    hows = (chosen_by_auto(found) if "auto" in methods else {}) | methods
     cited = [
         _cited("the study", study.source, ""),
         *(_cited(f"law {kind}", _named(law_text(law)), law.law_class.bibtex) for kind, law in laws.items()),
-        *(_of_method(name, "" if name in methods else how) for name, how in hows.items()),
+        *(
+            _cited(f"method {name}{hows[name]}", _named(method_text(name)), method_bibtex(name))
+            for name in (methods | hows)
+        ),
     ]
     return [each for each in cited if each.words or each.references]
 
@@ -130,27 +134,14 @@ def published(cited: Iterable[Cited]) -> list[Publication]:
     return list(dict.fromkeys(each for one in cited for each in one.references if "author" in each.fields))
 
 
-def _with_numbers(table: pd.DataFrame) -> pd.DataFrame:
-    return table[table["mean_friction"].notna() | (table["status"] == "not_unique")]
-
-
-def _each(names: Iterable[str]) -> list[str]:
-    return list(dict.fromkeys(names))
-
-
 def chosen_by_auto(found: pd.DataFrame) -> dict[str, str]:
     """The methods that ``auto`` chose, as ``model`` names them; else those that it says it chooses from."""
     installed = registry.method_names()
-    models = found["model"].dropna().unique()
-    chosen = _each(name for model in models for name in _CHOICE.findall(model) if name in installed)
-    if chosen:
+    said = " ".join(found["model"].dropna().unique())
+    if chosen := [name for name in _CHOICE.findall(said) if name in installed]:
         return dict.fromkeys(chosen, ", which auto chose")
-    ladder = _each(re.findall(r"[\w-]+", method_text("auto").partition("\n")[0]))
+    ladder = re.findall(r"[\w-]+", method_text("auto").partition("\n")[0])
     return {name: ", which auto may choose" for name in ladder if name in installed and name != "auto"}
-
-
-def _of_method(name: str, how: str) -> Cited:
-    return _cited(f"method {name}{how}", _named(method_text(name)), method_bibtex(name))
 
 
 def _cited(what: str, words: str, bibtex: str) -> Cited:

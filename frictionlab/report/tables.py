@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
 from typing import Any, NamedTuple
 
 import pandas as pd
@@ -26,57 +27,25 @@ class Grid(NamedTuple):
     below: str = ""
 
 
-class CurveRows(NamedTuple):
-    """The rows of one law and method that differ in belt speed alone; where: what else was swept, and its value."""
-
-    law: str
-    method: str
-    where: Mapping[str, Any]
-    rows: pd.DataFrame
-
-    @property
-    def name(self) -> Markup:
-        """What tells the curve from the others of its law and method."""
-        return settings(self.where)
-
-    @property
-    def key(self) -> str:
-        """Law, method and values as one word, the same in every table that has the curve."""
-        return f"{self.law}, {self.method}, {self.name}"
-
-
 def grid(
     caption: str,
     head: Sequence[Cell],
-    rows: Sequence[Sequence[Cell]],
+    rows: Iterable[Sequence[Cell]],
     what: str = "rows",
     file: str = "results.csv",
-    left: int = 0,
+    total: int = 0,
 ) -> Grid:
-    """A table without columns that are empty in every row, of at most ``MOST_ROWS`` rows.
+    """A table without columns that are empty in every row, of at most ``MOST_ROWS`` of all its rows.
 
-    file: has all of them. left: how many are left out already.
+    what: they are; file: has all of them. total: how many they are, of an iterator.
     """
-    kept = [place for place in range(len(head)) if any(row[place] for row in rows)]
-    shown = [[row[place] for place in kept] for row in rows[:MOST_ROWS]]
-    left += len(rows) - len(shown)
+    shown = list(islice(rows, MOST_ROWS))
+    left = (len(rows) if isinstance(rows, list) else total) - len(shown)
+    kept = [place for place in range(len(head)) if any(row[place] for row in shown)]
     below = f"... and {left} more {what}, all of them in {file}" if left else ""
-    return Grid(caption, [head[place] for place in kept], shown, below)
-
-
-def curve_rows(table: pd.DataFrame, told: Sequence[str]) -> list[CurveRows]:
-    """The curves of a table, in its order, told apart by these inputs besides law and method."""
-    groups = table.groupby(["law", "method", *told], sort=False, dropna=False)
-    return [
-        CurveRows(str(law), str(method), dict(zip(told, values, strict=True)), rows)
-        for (law, method, *values), rows in groups
-    ]
-
-
-def whose(curves: Sequence[CurveRows]) -> list[list[Cell]]:
-    """Of each curve its law, its method where there are several, and what tells it from the others."""
-    several = len({curve.method for curve in curves}) > 1
-    return [[curve.law, curve.method if several else "", curve.name] for curve in curves]
+    return Grid(
+        caption, [head[place] for place in kept], [[row[place] for place in kept] for row in shown], below
+    )
 
 
 def settings(values: Mapping[str, Any]) -> Markup:
@@ -88,11 +57,8 @@ def settings(values: Mapping[str, Any]) -> Markup:
 def setting(name: str, value: Any) -> Markup:
     """One input with its value and unit, on one line where it is short."""
     told = Markup("{} = {}{}").format(symbol_html(name), number(value), unit_html(name))
-    return (
-        Markup('<span class="short">{}</span>').format(told)
-        if len(told.striptags()) <= SHORT_SETTING
-        else told
-    )
+    short = len(told.striptags()) <= SHORT_SETTING
+    return Markup('<span class="short">{}</span>').format(told) if short else told
 
 
 def number(value: Any) -> str:
@@ -123,9 +89,8 @@ def listed(parts: Sequence[Cell]) -> Markup:
 
 def named(values: Mapping[str, Any], one_law: bool) -> Markup:
     """A curve by its law, left out where there is only one, and the values that tell it apart."""
-    law = escape(str(values["law"]))
     told = [setting(name, value) for name, value in values.items() if name != "law" and not pd.isna(value)]
-    where = Markup(" and ").join(told)
-    if not where:
-        return law
-    return where if one_law else Markup("{} with {}").format(law, where)
+    law, where = escape(str(values["law"])), Markup(" and ").join(told)
+    if not where or one_law:
+        return where or law
+    return Markup("{} with {}").format(law, where)

@@ -11,6 +11,7 @@ from typing import Any, cast
 import pandas as pd
 
 from frictionlab.report.answer import sentences
+from frictionlab.report.facts import Facts
 from frictionlab.results.expectations import Verdict
 from frictionlab.runner.saved import Saved
 from frictionlab.study import Study
@@ -43,7 +44,7 @@ def told(
     study = cast("Study", SimpleNamespace(tolerance=tolerance))
     saved = Saved(Path(), study, table, pd.DataFrame(curves) if curves else None, account)
     assert saved.verdicts == [Verdict(passed, "x") for passed in verdicts]
-    return [" ".join(str(each.striptags()).split()) for each in sentences(saved)]
+    return [" ".join(str(each.striptags()).split()) for each in sentences(Facts(saved))]
 
 
 def shape(law: str, verdict: str | None, reason: str | None = None, **others: Any) -> dict[str, Any]:

@@ -20,7 +20,9 @@ import frictionlab as fl
 from frictionlab import registry
 from frictionlab.columns import _IN_SI, _NAMES
 from frictionlab.registry.bibliography import read_bibtex
-from frictionlab.report import bibtex, figures, tables, write_index, write_report
+from frictionlab.report import bibtex, tables, write_index, write_report
+from frictionlab.report.facts import Facts
+from frictionlab.report.figures import pictures
 from frictionlab.report.markup import html, symbol_html
 from frictionlab.report.page import report, wall
 from frictionlab.report.sources import sources
@@ -483,7 +485,7 @@ def test_symbols_are_letters_with_accents_and_levels_and_other_text_is_escaped()
 
 def test_captions_say_what_is_drawn_what_tells_curves_apart_and_what_is_held_fixed(ran: Runner) -> None:
     sweep = {"scene.drive.frequency": [1.0, 1.5], "scene.belt_speed": [1.0, 13.0]}
-    first = figures.pictures(ran(sweep=sweep))[0]
+    first = pictures(Facts(ran(sweep=sweep)))[0]
 
     assert first.caption.striptags() == (
         "Mean friction coefficient μ̄ against belt speed vb. Law coulomb; method fake. A curve for each Ω = 1, 1.5. "
@@ -499,7 +501,7 @@ def test_a_scene_in_si_units_is_told_in_them_throughout(ran: Runner) -> None:
     sweep = {f"{path}drive.amplitude_N": [5.0, 6.0], f"{path}belt_speed_m_per_s": [0.1, 0.2, 0.3]}
     saved = ran(scene={"dimensional": given}, sweep=sweep)
     page = Page(report(saved))
-    caption = figures.pictures(saved)[0].caption.striptags()
+    caption = pictures(Facts(saved))[0].caption.striptags()
 
     assert complaints(report(saved)) == []
     assert ["mass [kg]", "M", "3"] in page.table("The scene")

@@ -1,0 +1,110 @@
+"""What sentences and tables of a page are made from: a run, and what is read from its tables once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import pandas as pd
+from markupsafe import Markup
+
+from frictionlab.charts.figures import FigureData
+from frictionlab.columns import BELT_SPEED, belt_speed
+from frictionlab.printable import with_error
+from frictionlab.report.sources import Cited, sources
+from frictionlab.report.tables import Cell, settings
+from frictionlab.results.pairs import Difference, method_pairs
+from frictionlab.results.table import swept_inputs
+from frictionlab.runner.saved import Saved
+
+
+class CurveRows(NamedTuple):
+    """The rows of one law and method that differ in belt speed alone; where: what else was swept, and its value."""
+
+    law: str
+    method: str
+    where: Mapping[str, Any]
+    rows: pd.DataFrame
+
+    @property
+    def name(self) -> Markup:
+        """What tells the curve from the others of its law and method."""
+        return settings(self.where)
+
+    @property
+    def key(self) -> str:
+        """Law, method and values as one word, the same in every table that has the curve."""
+        return f"{self.law}, {self.method}, {self.name}"
+
+
+@dataclass(frozen=True, eq=False)
+class Facts:
+    """A run, and what is read from its tables once."""
+
+    saved: Saved
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """The result table."""
+        return self.saved.table
+
+    @property
+    def speed(self) -> str:
+        """The column of the belt speed, in the units given."""
+        return belt_speed(self.table.columns)
+
+    @cached_property
+    def swept(self) -> list[str]:
+        """What is swept besides belt speed."""
+        return swept_inputs(self.table)
+
+    @cached_property
+    def figures(self) -> FigureData:
+        """What its figures of the table are drawn of."""
+        return FigureData(self.table, options=self.saved.study.figures)
+
+    @cached_property
+    def method_pairs(self) -> list[Difference]:
+        """Every two methods, law by law."""
+        return method_pairs(self.table)
+
+    @cached_property
+    def cited(self) -> list[Cited]:
+        """Whom it draws on."""
+        return sources(self.saved)
+
+    @cached_property
+    def curves(self) -> list[CurveRows]:
+        """The curves of the result table, in its order."""
+        return self.curves_of(self.table)
+
+    def curves_of(self, table: pd.DataFrame) -> list[CurveRows]:
+        """Those of a table of this run, told apart by what is swept."""
+        told = [name for name in self.swept if name in table]
+        groups = table.groupby(["law", "method", *told], sort=False, dropna=False)
+        return [
+            CurveRows(str(law), str(method), dict(zip(told, values, strict=True)), rows)
+            for (law, method, *values), rows in groups
+        ]
+
+    @cached_property
+    def _scales(self) -> dict[str, float]:
+        """Of each curve by its key a belt speed in the units given over the nondimensional one."""
+        found = {}
+        for curve in self.curves if self.speed != BELT_SPEED else ():
+            ratios = curve.rows[self.speed] / curve.rows[BELT_SPEED]
+            found[curve.key] = float(ratios[ratios.abs() < float("inf")].median())
+        return {key: scale for key, scale in found.items() if scale == scale}
+
+    def speed_in_given_units(self, curve: CurveRows, row: pd.Series, name: str) -> str:
+        """A belt speed of a row of a curve with its error."""
+        scale = self._scales.get(curve.key, 1.0) if self._scales else 1.0
+        return with_error(scale * float(row[name]), scale * float(row[f"{name}_error"]))
+
+
+def whose(curves: Sequence[CurveRows]) -> list[list[Cell]]:
+    """Of each curve its law, its method where there are several, and what tells it from the others."""
+    several = len({curve.method for curve in curves}) > 1
+    return [[curve.law, curve.method if several else "", curve.name] for curve in curves]

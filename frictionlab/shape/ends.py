@@ -63,9 +63,8 @@ class Rows(NamedTuple):
     def steady(self) -> Floats:
         """Friction coefficient of steady sliding; where vibration leaves no friction, the median of the others."""
         left = self.normalized_friction != 0.0
-        found = np.divide(
-            self.mean_friction, self.normalized_friction, where=left, out=np.full(len(left), np.nan)
-        )
+        size = np.full(len(left), np.nan)
+        found = np.divide(self.mean_friction, self.normalized_friction, where=left, out=size)
         return found if left.all() or not left.any() else np.where(left, found, np.nanmedian(found))
 
     @property
@@ -124,8 +123,7 @@ def start_friction(rows: Rows, loads: Loads) -> Estimate:
         return Estimate(loads.start, _ROUNDING * abs(loads.start))
     if loads.prescribed:
         return Estimate(0.0, 0.0)
-    force = abs(loads.along) or abs(loads.across)
-    if force == 0.0:
+    if loads.along == 0 == loads.across:
         raise UnreadableCurve(
             "no load drives the body: the limit of friction at vanishing belt speed is not known"
         )

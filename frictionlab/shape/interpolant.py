@@ -110,9 +110,8 @@ def interpolant_of(curve: FrictionCurve) -> Interpolant:
     angle = np.concatenate(([0.0], np.arcsin(curve.speed[inside] / curve.end.value), [0.5 * np.pi]))
     path = monotone_cubic(angle, np.concatenate(([low], curve.friction[inside], [high])))
     edge, half, first, second = path(np.arcsin([WINDOW, 0.5, STEP, 2.0 * STEP]))
-    rise = max(
-        float(edge) - low, NO_SHARE * abs(high)
-    )  # a curve that falls again may have no rise within the window
+    # a curve that falls again may have no rise within the window
+    rise = max(float(edge) - low, NO_SHARE * abs(high))
     return Interpolant(
         range=(path(_ANGLE) - low) / (high - low),
         window=(path(np.arcsin(WINDOW * ABSCISSAE)) - low) / rise,

@@ -7,6 +7,7 @@ under any vibration, or where the vibration leaves the range, the mean friction 
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable
 from typing import NamedTuple
@@ -60,37 +61,29 @@ def largest_magnitude(along: complex, across: complex) -> float:
 def shakedown_of_slip(law: BristleLaw, value: Value) -> Shakedown:
     """The shakedown under a prescribed slip; ``law`` is per unit of the scene's normal load."""
     frequency = value("scene.slip.frequency") or value("scene.transverse_slip.frequency")
-    along, across = (value(f"scene.{slip}.velocity_amplitude") for slip in ("slip", "transverse_slip"))
-    turn = [math.radians(value(f"scene.{slip}.phase")) for slip in ("slip", "transverse_slip")]
-    phasors = [
-        size / frequency * complex(math.cos(angle), math.sin(angle))
-        for size, angle in zip((along, across), turn, strict=True)
-    ]
-    return _shakedown(law, phasors[0], phasors[1])
+    along, across = (
+        cmath.rect(value(f"{slip}.velocity_amplitude") / frequency, math.radians(value(f"{slip}.phase")))
+        for slip in ("scene.slip", "scene.transverse_slip")
+    )
+    return Shakedown(law.elastic_deflection(), along, across, law.friction(0.0, 1.0, 0.0), law.planar)
 
 
 def shakedown_of_body(law: BristleLaw, value: Value, along: complex, across: complex) -> Shakedown:
     """The shakedown of a body under two forces: its bristles act in parallel to its springs and dashpots."""
     load, omega = value("scene.normal_load"), value("scene.drive.frequency")
-    stiffness, damping = load * law.friction(0.0, 1.0, 0.0), load * law.friction(1.0, 0.0, 1.0)
+    bristles = law.friction(0.0, 1.0, 0.0)
+    stiffness, damping = load * bristles, load * law.friction(1.0, 0.0, 1.0)
     omega_r = value("scene.transverse.natural_frequency")
-    own = (
-        (1.0, 2.0 * value("scene.damping_ratio")),
-        (omega_r**2, 2.0 * value("scene.transverse.damping_ratio") * omega_r),
+
+    def moved(force: complex, spring: float, dashpot: float) -> complex:
+        """Displacement phasor of a linear oscillator; infinite at undamped resonance."""
+        dynamic = complex(spring + stiffness - omega**2, omega * (dashpot + damping))
+        if force == 0:
+            return 0j
+        return force / dynamic if dynamic != 0 else complex(math.inf)
+
+    phasors = (
+        moved(along, 1.0, 2.0 * value("scene.damping_ratio")),
+        moved(across, omega_r**2, 2.0 * value("scene.transverse.damping_ratio") * omega_r),
     )
-    moved = [
-        _response(force, complex(spring + stiffness - omega**2, omega * (dashpot + damping)))
-        for force, (spring, dashpot) in zip((along, across), own, strict=True)
-    ]
-    return _shakedown(law, moved[0], moved[1])
-
-
-def _response(force: complex, dynamic: complex) -> complex:
-    """Displacement phasor of a linear oscillator; infinite at undamped resonance."""
-    if force == 0:
-        return 0j
-    return force / dynamic if dynamic != 0 else complex(math.inf)
-
-
-def _shakedown(law: BristleLaw, along: complex, across: complex) -> Shakedown:
-    return Shakedown(law.elastic_deflection(), along, across, law.friction(0.0, 1.0, 0.0), law.planar)
+    return Shakedown(law.elastic_deflection(), *phasors, bristles, law.planar)

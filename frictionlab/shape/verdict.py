@@ -8,7 +8,6 @@ spacing, and of both ends.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -66,17 +65,18 @@ def shape_of(curve: FrictionCurve) -> Shape:
     """Every measure of a curve with its error. Raises UnreadableCurve."""
     check_points(curve)
     best = interpolant_of(curve)
-    error = _total([_point_errors(curve, best), _spacing_errors(curve, best), *_end_errors(curve, best)])
+    errors = _point_errors(curve, best), _spacing_errors(curve, best), *_end_errors(curve, best)
+    area, window_area, half, initial = np.sum(errors, axis=0).tolist()
     above, below = (
         2.0 * float(AREA_WEIGHTS @ np.maximum(side * (best.range - ABSCISSAE), 0.0)) for side in (1, -1)
     )
     return Shape(
-        area=Estimate(_area(best.range), error.area),
-        window_area=Estimate(_area(best.window), error.window_area),
-        half=Estimate(best.half, error.half),
-        initial=Estimate(best.initial, error.initial) if _reaches_rest(curve) else None,
-        above=Estimate(above, error.area),
-        below=Estimate(below, error.area),
+        area=Estimate(_area(best.range), area),
+        window_area=Estimate(_area(best.window), window_area),
+        half=Estimate(best.half, half),
+        initial=Estimate(best.initial, initial) if _reaches_rest(curve) else None,
+        above=Estimate(above, area),
+        below=Estimate(below, area),
     )
 
 
@@ -92,26 +92,18 @@ def reduction(normalized: Floats, error: Floats) -> Estimate:
     return Estimate(float(1.0 - normalized[at]), float(error[at]) + dip)
 
 
-class _Error(NamedTuple):
-    """The effect of one uncertainty on each measure."""
-
-    area: float
-    window_area: float
-    half: float
-    initial: float
-
-
-def _total(errors: list[_Error]) -> _Error:
-    return _Error(*(float(sum(parts)) for parts in zip(*errors, strict=True)))
-
-
 def _area(rise: Floats) -> float:
     return 2.0 * float(AREA_WEIGHTS @ rise) - 1.0
 
 
-def _between(one: Floats, other: Floats) -> float:
-    """The area between two interpolants, in the units of the area between a curve and its chord."""
-    return 2.0 * float(AREA_WEIGHTS @ np.abs(one - other))
+def _apart(one: Interpolant, other: Interpolant) -> Floats:
+    """By how much each measure differs: both areas by the area between the interpolants, half and initial."""
+    between = [
+        AREA_WEIGHTS @ np.abs(a - b) for a, b in ((one.range, other.range), (one.window, other.window))
+    ]
+    return np.array(
+        [*(2.0 * np.array(between)), abs(one.half - other.half), abs(one.initial - other.initial)]
+    )
 
 
 def _reaches_rest(curve: FrictionCurve) -> bool:
@@ -119,7 +111,7 @@ def _reaches_rest(curve: FrictionCurve) -> bool:
     return int(np.count_nonzero(curve.speed[curve.inside] <= 2.0 * STEP * curve.end.value)) >= 2
 
 
-def _point_errors(curve: FrictionCurve, best: Interpolant) -> _Error:
+def _point_errors(curve: FrictionCurve, best: Interpolant) -> Floats:
     """The effect of the errors of the points, and of the first interval, in which the curve is only known to rise."""
     low, high = curve.start.value, curve.end_friction
     rise, share = high - low, curve.speed / curve.end.value
@@ -130,15 +122,17 @@ def _point_errors(curve: FrictionCurve, best: Interpolant) -> _Error:
     mean, mean_in_window = (
         float(AREA_WEIGHTS @ np.interp(width * ABSCISSAE, share, curve.error)) for width in (1.0, WINDOW)
     )
-    return _Error(
-        2.0 * (mean + last) / rise + before,
-        2.0 * (mean_in_window + at_edge) / (rise * edge) + before / (WINDOW * edge),
-        (middle + abs(best.half) * last) / high,
-        ((second + 2.0 * first) / STEP**2 + abs(best.initial) * last) / high,
+    return np.array(
+        [
+            2.0 * (mean + last) / rise + before,
+            2.0 * (mean_in_window + at_edge) / (rise * edge) + before / (WINDOW * edge),
+            (middle + abs(best.half) * last) / high,
+            ((second + 2.0 * first) / STEP**2 + abs(best.initial) * last) / high,
+        ]
     )
 
 
-def _spacing_errors(curve: FrictionCurve, best: Interpolant) -> _Error:
+def _spacing_errors(curve: FrictionCurve, best: Interpolant) -> Floats:
     """The distance to the interpolant of every second point; for a local measure the largest distance around it.
 
     Twice the spacing makes the error of the interpolant at least four times as large.
@@ -152,25 +146,13 @@ def _spacing_errors(curve: FrictionCurve, best: Interpolant) -> _Error:
     scale = fine_rise / coarse_rise if rises else 1.0  # compare the beginnings at the same scale
     away = np.abs(coarse.range - best.range)[np.abs(ABSCISSAE - 0.5) < 2.0 * STEP]
     bent = np.abs(scale * coarse.range - best.range)[early]
-    return _Error(
-        _between(coarse.range, best.range),
-        _between(coarse.window, best.window),
-        float(away.max()),
-        4.0 * float(bent.max()) / STEP**2 + abs((scale - 1.0) * best.initial),
-    )
+    local = [float(away.max()), 4.0 * float(bent.max()) / STEP**2 + abs((scale - 1.0) * best.initial)]
+    return np.array([*_apart(coarse, best)[:2], *local])
 
 
-def _end_errors(curve: FrictionCurve, best: Interpolant) -> list[_Error]:
+def _end_errors(curve: FrictionCurve, best: Interpolant) -> list[Floats]:
     """The change of each measure when the start or the end of the curve moves to a bound of its interval."""
     starts = [replace(curve, start=Estimate(place, 0.0)) for place in curve.start.ends]
     ends = [replace(curve, end=Estimate(place, 0.0)) for place in curve.end.ends]
-    return [_largest([interpolant_of(other) for other in alike], best) for alike in (starts, ends) if alike]
-
-
-def _largest(others: list[Interpolant], best: Interpolant) -> _Error:
-    return _Error(
-        max(_between(other.range, best.range) for other in others),
-        max(_between(other.window, best.window) for other in others),
-        max(abs(other.half - best.half) for other in others),
-        max(abs(other.initial - best.initial) for other in others),
-    )
+    moved = [[_apart(interpolant_of(other), best) for other in alike] for alike in (starts, ends)]
+    return [np.max(apart, axis=0) for apart in moved if apart]

@@ -15,7 +15,6 @@ from frictionlab.least_model.answers import Curves
 from frictionlab.least_model.lesser import LesserModel
 from frictionlab.least_model.result import Needs, needs_from
 from frictionlab.least_model.search import LeastSearch, each_reason_once
-from frictionlab.quantities import Floats
 from frictionlab.results.words import in_words
 from frictionlab.runner.arguments import given_law, given_scene, given_speeds, given_tolerance
 from frictionlab.scene.scene import Scene
@@ -97,7 +96,8 @@ def _label(study: Study, curve: StudyCurve) -> str:
 def _of_curve(scenes: Scenes, law: FrictionLaw, within: float | None, asked: _Asked) -> Needs:
     scene, scenes = scenes.scene, Scenes(scenes.scene, np.unique(scenes.given))
     full = LesserModel(scene.model_copy(update={"dimensional": None}), law_in_scene(law, scene))
-    tolerance = _usual(full.law, scenes.belt_speeds) if within is None else within
+    quickest = float(np.abs(scenes.belt_speeds).max())
+    tolerance = USUAL_SHARE * full.law.sliding_friction(quickest) if within is None else within
     curves = Curves(scenes, ANSWERS_FINER * tolerance, asked.kinds, asked.seconds_per_point)
     answers = curves.of(full)
     if not (answers["status"] == "ok").any():
@@ -110,7 +110,3 @@ def _of_curve(scenes: Scenes, law: FrictionLaw, within: float | None, asked: _As
     if smallest is not None and smallest not in rows:
         rows.append(smallest)
     return needs_from(full, answers, rows, smallest, tolerance)
-
-
-def _usual(law: FrictionLaw, speeds: Floats) -> float:
-    return USUAL_SHARE * law.sliding_friction(float(np.abs(speeds).max()))

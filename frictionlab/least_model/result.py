@@ -1,4 +1,4 @@
-"""What one curve needs: the table of everything taken away, in sentences, and the smallest model."""
+"""What one curve needs: the table of everything taken away, the same in sentences, and the smallest model."""
 
 from __future__ import annotations
 
@@ -9,9 +9,18 @@ from typing import Any
 import pandas as pd
 
 from frictionlab.columns import NEEDS
-from frictionlab.least_model.lesser import LesserModel
+from frictionlab.least_model.answers import commonest_reason
+from frictionlab.least_model.lesser import LesserModel, MotionWay
+from frictionlab.least_model.motion import FRICTION_FREE, WithoutRest
 from frictionlab.least_model.search import Without
-from frictionlab.least_model.sentences import missing_means, model_in_words, sentence_of, smallest_in_words
+from frictionlab.printable import with_error
+from frictionlab.results.words import counted, in_words
+
+WHERE_IT_MOVES = {
+    0: "slip prescribed",
+    1: "motion along the belt alone",
+    2: "motion along and across the belt",
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,3 +96,69 @@ def _record(each: Without, within: float, smallest: bool) -> dict[str, Any]:
         "model": "" if each.model is None else model_in_words(each.model),
         "reason": found.reason,
     }
+
+
+def model_in_words(model: LesserModel) -> str:
+    """What a model still has."""
+    values = model.law.model_dump(exclude_none=True, mode="json", exclude_defaults=True)
+    told = ", ".join(f"{name} {in_words(value)}" for name, value in values.items())
+    way = "" if model.way is None else f", {_way_in_words(model.way)}"
+    return (
+        f"{WHERE_IT_MOVES[model.scene.degrees_of_freedom]}, {type(model.law).__name__} friction ({told}){way}"
+    )
+
+
+def _way_in_words(way: MotionWay) -> str:
+    if way.name == FRICTION_FREE:
+        return "friction averaged over the friction-free motion (mdsm)"
+    if isinstance(way, WithoutRest):
+        return "a motion of two reversals a period without rest"
+    return f"{counted(getattr(way, 'harmonics', 1), 'harmonic')} balanced ({way.name})"
+
+
+def sentence_of(each: Without) -> str:
+    """Whether what is gone is needed, and what the mean changes by without it."""
+    names = " and ".join(each.names)
+    plural = len(each.names) > 1 or names.startswith("harmonics")
+    verb, it = ("are", "them") if plural else ("is", "it")
+    if each.change.verdict == "refused":
+        return f"{names} cannot be taken away: {each.change.reason}"
+    changes = f"without {it} {_changes(each)}"
+    if each.change.turns:
+        changes += ", its curve from {} to {}".format(*each.change.shapes)
+    why = f" ({each.change.reason})" if each.change.reason else ""
+    if each.change.verdict == "undecided":
+        return f"whether {names} {verb} needed is undecided: {changes}{why}"
+    return f"{names} {verb} {each.change.verdict}: {changes}{why}"
+
+
+def smallest_in_words(smallest: Without | None, full: LesserModel, within: float) -> str:
+    """The smallest model, what it is without, and what that changes."""
+    if smallest is None or smallest.model is None:
+        return f"the smallest model within {within:.3g} is the full one: {model_in_words(full)}"
+    *names, last = smallest.names
+    listed = f"{', '.join(names)} and {last}" if names else last
+    less = f"the smallest model within {within:.3g} is without {listed}"
+    return f"{less}: {model_in_words(smallest.model)}; {_changes(smallest)}"
+
+
+def _changes(each: Without) -> str:
+    """The change by its magnitude, and its error where that is not small beside it."""
+    mean, at = each.change.mean, f"at belt speed {each.change.belt_speed:.6g}"
+    size = abs(mean.value)
+    at_most = (
+        f"at most {size + mean.error:.2g}" if size <= mean.error else with_error(size, mean.error, 3, " +- ")
+    )
+    return f"the mean changes by {at_most} {at}"
+
+
+def missing_means(answers: pd.DataFrame) -> list[str]:
+    """What is said of belt speeds at which the full scene has no one mean."""
+    rest = answers[answers["status"] != "ok"]
+    if rest.empty:
+        return []
+    why = commonest_reason(rest)
+    if len(rest) == len(answers):
+        return [f"the full scene has no one mean to compare with ({why})"]
+    where = f"{counted(len(rest), 'belt speed')} of {len(answers)}"
+    return [f"left out: {where} at which the full scene has no one mean ({why})"]

@@ -1,17 +1,64 @@
-"""One thing taken away at a time, then two and all of those that may go, and the smallest model that is left."""
+"""Things taken away from a model one at a time, then two and all of those that may go, and the smallest one left."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from frictionlab import registry
-from frictionlab.least_model.answers import Curves
-from frictionlab.least_model.change import Change, change_of_curve, refused_change
-from frictionlab.least_model.lesser import CannotGo, LesserModel
-from frictionlab.least_model.things import Thing, things, without_these
+from frictionlab.least_model.answers import Change, Curves, change_of_curve
+from frictionlab.least_model.lesser import CannotGo, LesserModel, Taken
+from frictionlab.least_model.motion import cut_to, friction_free_of, orders, slipping
+from frictionlab.least_model.parts import (
+    on_a_line,
+    rigid,
+    sines,
+    steady_normal_load,
+    undamped_bristles,
+    without_fall,
+    without_load_across,
+    without_viscosity,
+)
 from frictionlab.mistakes.notes import WrongValues
+
+
+class Thing(NamedTuple):
+    """A part of a model. group: of those of one group one alone is taken away, a later one takes more away.
+
+    weight: by which sets of things are ranked: a heavier one outweighs all lighter ones together.
+    """
+
+    name: str
+    group: str
+    weight: int
+    away: Taken
+
+
+def things(rests: bool) -> tuple[Thing, ...]:
+    """In the order in which several are taken away; of a group the later ones take more away.
+
+    rests: whether the full motion rests at some belt speed.
+    """
+    cuts = [
+        Thing(f"harmonics above {n}", "motion", 20 + 10 * rank, cut_to(n))
+        for rank, n in enumerate(reversed(orders()))
+    ]
+    return (
+        Thing("waveform", "waveform", 1, sines),
+        Thing("load variation", "normal load", 1, steady_normal_load),
+        Thing("load across the belt", "across", 1, without_load_across),
+        Thing("transverse motion", "across", 1000, on_a_line),
+        Thing("bristle damping", "bristles", 1, undamped_bristles),
+        Thing("contact compliance", "bristles", 400, rigid),
+        Thing("fall of friction with speed", "fall", 1, without_fall),
+        Thing("viscosity", "viscosity", 1, without_viscosity),
+        *([Thing("stick", "motion", 10, slipping)] if rests else []),
+        *cuts,
+        Thing("friction's effect on the motion", "motion", 200, friction_free_of),
+    )
+
 
 Chosen = tuple[Thing, ...]
 
@@ -33,6 +80,11 @@ class Without:
     def may_go(self) -> bool:
         """Whether the change is within the tolerance, its error included."""
         return self.change.verdict == "not needed"
+
+    @property
+    def asks_for_others(self) -> bool:
+        """Whether a thing that cannot go alone may go once others have: a way to find the motion asks for those."""
+        return self.model is None and self.gone[0].group == "motion"
 
 
 class LeastSearch:
@@ -65,11 +117,11 @@ class LeastSearch:
         the tolerance are left out.
         """
         against = [set(pair.gone) for pair in pairs if pair.change.verdict == "needed"]
-        options = [each.gone[0] for each in singles if each.may_go or _with_others(each)]
-        for chosen in sorted(_sets(options), key=_taken_away, reverse=True):
-            if any(pair <= set(chosen) for pair in against):
-                continue
-            found = self._one(chosen)
+        options = [each.gone[0] for each in singles if each.may_go or each.asks_for_others]
+        for chosen in sorted(
+            _sets(options), key=lambda each: sum(thing.weight for thing in each), reverse=True
+        ):
+            found = None if any(pair <= set(chosen) for pair in against) else self._one(chosen)
             if found is not None and found.may_go:
                 return found
         return None
@@ -82,46 +134,37 @@ class LeastSearch:
         return [found for each in chosen if (found := self._one(each)) is not None]
 
     def _one(self, chosen: Chosen) -> Without | None:
-        if chosen not in self._known:
-            self._known[chosen] = self._compared(chosen)
-        return self._known[chosen]
-
-    def _compared(self, chosen: Chosen) -> Without | None:
-        model = self._model(chosen)
-        if model is None:
-            return None
+        if chosen in self._known:
+            return self._known[chosen]
+        found, model = None, self._model(chosen)
         if isinstance(model, str):
-            return Without(chosen, None, refused_change(model))
-        tables = self._curves.of(self.full), self._curves.of(model)
-        return Without(chosen, model, change_of_curve(*tables, self._curves.given, self._within, self._laws))
+            found = Without(chosen, None, Change(model))
+        elif model is not None:
+            tables, given = (self._curves.of(self.full), self._curves.of(model)), self._curves.given
+            found = Without(chosen, model, change_of_curve(*tables, given, self._within, self._laws))
+        self._known[chosen] = found
+        return found
 
     def _model(self, chosen: Chosen) -> LesserModel | str | None:
         """The model without these things; why they cannot go; None where it has one of them not."""
+        found: LesserModel | None = self.full
         try:
-            return without_these(self.full, chosen)
+            for thing in chosen:
+                found = found and thing.away(found)
         except (CannotGo, WrongValues) as problem:
             return str(problem)
+        return found
 
 
 def each_reason_once(singles: Sequence[Without]) -> list[Without]:
     """Without those that cannot go for the reason for which a later one of their group cannot."""
-    last = {_why_not(each): each for each in singles}
-    return [each for each in singles if each.model is not None or last[_why_not(each)] is each]
-
-
-def _why_not(single: Without) -> tuple[str, str]:
-    return single.gone[0].group, single.change.reason
+    last = {(each.gone[0].group, each.change.reason): each for each in singles}
+    return [each for each in singles if each.model is not None or each in last.values()]
 
 
 def _most(singles: Sequence[Without]) -> Chosen:
     """Of those that may go the one of each group that takes most away, in the order of the things."""
-    last = {each.gone[0].group: each.gone[0] for each in singles if each.may_go}
-    return tuple(last.values())
-
-
-def _with_others(single: Without) -> bool:
-    """Whether a thing that cannot go alone may go once others are gone: a way to find the motion asks for those."""
-    return single.model is None and single.gone[0].group == "motion"
+    return tuple({each.gone[0].group: each.gone[0] for each in singles if each.may_go}.values())
 
 
 def _sets(options: Sequence[Thing]) -> Iterator[Chosen]:
@@ -129,11 +172,5 @@ def _sets(options: Sequence[Thing]) -> Iterator[Chosen]:
     groups: dict[str, list[Thing | None]] = {}
     for thing in options:
         groups.setdefault(thing.group, [None]).append(thing)
-    for picked in itertools.product(*groups.values()):
-        chosen = tuple(thing for thing in picked if thing is not None)
-        if chosen:
-            yield chosen
-
-
-def _taken_away(chosen: Chosen) -> int:
-    return sum(thing.weight for thing in chosen)
+    chosen = (tuple(filter(None, picked)) for picked in itertools.product(*groups.values()))
+    return filter(None, chosen)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import frictionlab as fl
+from frictionlab.least_model.motion import WithoutRest
 from frictionlab.least_model.result import Needs
-from frictionlab.least_model.without_rest import WithoutRest
 from frictionlab.scene.scenes import Scenes
 
 STRONG = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1))

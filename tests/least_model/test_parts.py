@@ -8,10 +8,18 @@ import pytest
 
 import frictionlab as fl
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.least_model.contact import rigid, undamped_bristles, without_fall, without_viscosity
 from frictionlab.least_model.lesser import CannotGo, LesserModel
 from frictionlab.least_model.motion import friction_free_of
-from frictionlab.least_model.shaking import on_a_line, sines, steady_normal_load, without_load_across
+from frictionlab.least_model.parts import (
+    on_a_line,
+    rigid,
+    sines,
+    steady_normal_load,
+    undamped_bristles,
+    without_fall,
+    without_load_across,
+    without_viscosity,
+)
 
 COULOMB = fl.Coulomb(mu=0.4)
 ACROSS = {"natural_frequency": 2, "damping_ratio": 0.2}

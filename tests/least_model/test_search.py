@@ -11,8 +11,8 @@ import pytest
 import frictionlab as fl
 from frictionlab import registry
 from frictionlab.least_model.lesser import LesserModel
+from frictionlab.least_model.result import sentence_of, smallest_in_words
 from frictionlab.least_model.search import LeastSearch, each_reason_once
-from frictionlab.least_model.sentences import sentence_of, smallest_in_words
 
 SPEEDS = np.array([1.0, 2.0])
 WITHIN = 4e-3

@@ -1,4 +1,4 @@
-"""Parts of the scene that may go: waveforms, the change of the normal load, what moves or acts across the belt."""
+"""Parts of a scene and of its contact that may go, from waveforms to the fall of friction with speed."""
 
 from __future__ import annotations
 
@@ -6,6 +6,10 @@ import cmath
 import math
 from typing import Any
 
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.laws.coulomb import Coulomb
+from frictionlab.laws.stribeck import Stribeck
+from frictionlab.laws.stribeck_bristle import StribeckBristle
 from frictionlab.least_model.lesser import CannotGo, LesserModel
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.signals import FULL_TURN, signal_of
@@ -15,6 +19,8 @@ SHAKING = "drive", "transverse.load", "slip", "transverse_slip", "belt_vibration
 SIZES = "unbalance", "velocity_amplitude", "amplitude"
 NOTHING_ELSE = "nothing else shakes the body: without the change of its normal load nothing moves it"
 TURNED = "{}: its part along the belt points backward, and no waveform says so"
+NO_SUCH_LAW = "no law without memory is known with the steady friction of this law"
+NO_FRICTION = "without its fall this law has no friction: mu_kinetic is 0"
 
 
 def sines(model: LesserModel) -> LesserModel | None:
@@ -28,7 +34,7 @@ def sines(model: LesserModel) -> LesserModel | None:
             changes[f"{path}.waveform"] = SINE
             changes[f"{path}.{name}"] = size * abs(first)
             changes[f"{path}.phase"] = math.degrees(cmath.phase(first))
-    return _changed(model, changes)
+    return model.with_scene(**changes) if changes else None
 
 
 def steady_normal_load(model: LesserModel) -> LesserModel | None:
@@ -43,7 +49,7 @@ def steady_normal_load(model: LesserModel) -> LesserModel | None:
     if part.frequency is not None and belt is not None:
         changes["belt_vibration.frequency"] = part.frequency * (belt.frequency_ratio or 1.0)
         changes["belt_vibration.frequency_ratio"] = None
-    return _changed(model, changes)
+    return model.with_scene(**changes)
 
 
 def without_load_across(model: LesserModel) -> LesserModel | None:
@@ -51,12 +57,9 @@ def without_load_across(model: LesserModel) -> LesserModel | None:
     scene = model.scene
     if scene.transverse is None:
         return None
-    changes: dict[str, Any] = {}
-    if scene.transverse.load is not None:
-        changes["transverse.load"] = None
-    if _aslant(scene, "drive"):
-        changes |= _along(scene, "drive")
-    return _changed(model, changes)
+    changes: dict[str, Any] = {} if scene.transverse.load is None else {"transverse.load": None}
+    changes |= _along(scene, "drive")
+    return model.with_scene(**changes) if changes else None
 
 
 def on_a_line(model: LesserModel) -> LesserModel | None:
@@ -68,16 +71,9 @@ def on_a_line(model: LesserModel) -> LesserModel | None:
     if scene.degrees_of_freedom == 0 and scene.slip is None:
         changes["slip"] = {"velocity_amplitude": 0.0, "frequency": scene.frequency}
     for path in ("drive", "slip", "belt_vibration"):
-        if _aslant(scene, path):
-            changes |= _along(scene, path)
+        changes |= _along(scene, path)
     if scene.initial is not None:
         changes["initial"] = {"x": scene.initial.x, "velocity": scene.initial.velocity}
-    return _changed(model, changes)
-
-
-def _changed(model: LesserModel, changes: dict[str, Any]) -> LesserModel | None:
-    if not changes:
-        return None
     return model.with_scene(**changes)
 
 
@@ -93,14 +89,11 @@ def _size(part: Any) -> tuple[str, float]:
     return next((name, size) for name in SIZES if (size := getattr(part, name, None)) is not None)
 
 
-def _aslant(scene: Scene, path: str) -> bool:
-    part = _part(scene, path)
-    return part is not None and bool(part.direction)
-
-
 def _along(scene: Scene, path: str) -> dict[str, Any]:
-    """Of a part at an angle to the belt that along it. Raises CannotGo."""
+    """Of a part at an angle to the belt that along it; nothing of any other. Raises CannotGo."""
     part = _part(scene, path)
+    if part is None or not part.direction:
+        return {}
     name, size = _size(part)
     share = 0.0 if part.direction % 180.0 == 90.0 else math.cos(math.radians(part.direction))
     if share < 0.0 and not (part.waveform or SINE).antisymmetric:
@@ -110,3 +103,53 @@ def _along(scene: Scene, path: str) -> dict[str, Any]:
         f"{path}.{name}": size * abs(share),
         f"{path}.phase": part.phase + (180.0 if share < 0.0 else 0.0),
     }
+
+
+def rigid(model: LesserModel) -> LesserModel | None:
+    """Without the compliance of the contact: the law without memory of the same friction at steady sliding."""
+    law = model.law
+    if law.memory_kind == "none":
+        return None
+    if law.constant_sliding_friction():
+        return model.with_law(Coulomb(mu=law.sliding_friction(0.0)))
+    if not isinstance(law, StribeckBristle):
+        raise CannotGo(NO_SUCH_LAW)
+    same = {
+        name: getattr(law, name)
+        for name in ("mu_kinetic", "stribeck_speed", "stribeck_exponent", "viscosity")
+    }
+    return model.with_law(Stribeck(mu_static=law.peak, **same))
+
+
+def undamped_bristles(model: LesserModel) -> LesserModel | None:
+    """Without the damping of the bristles."""
+    damped = getattr(model.law, "damping", None)
+    return model.with_law(model.law.model_copy(update={"damping": None})) if damped else None
+
+
+def without_fall(model: LesserModel) -> LesserModel | None:
+    """Friction at rest and in slow sliding no larger than in quick sliding (mu_kinetic, of Coulomb friction mu)."""
+    law = model.law
+    kinetic = law.mu if isinstance(law, Coulomb) else getattr(law, "mu_kinetic", None)
+    static = getattr(law, "mu_static", None)
+    if kinetic is None or static in (None, kinetic):
+        return None
+    if kinetic == 0.0:
+        raise CannotGo(NO_FRICTION)
+    if isinstance(law, Stribeck):
+        return model.with_law(_flat(kinetic, law.viscosity))
+    return model.with_law(law.model_copy(update={"mu_static": None}))
+
+
+def without_viscosity(model: LesserModel) -> LesserModel | None:
+    """Without friction that grows with speed."""
+    law = model.law
+    if not getattr(law, "viscosity", 0.0):
+        return None
+    if isinstance(law, Stribeck) and law.mu_static == law.mu_kinetic:
+        return model.with_law(_flat(law.mu_kinetic, 0.0))
+    return model.with_law(law.model_copy(update={"viscosity": 0.0}))
+
+
+def _flat(mu: float, viscosity: float) -> FrictionLaw:
+    return Stribeck(mu_kinetic=mu, mu_static=mu, viscosity=viscosity) if viscosity else Coulomb(mu=mu)

@@ -14,19 +14,19 @@ from frictionlab.onsets.search import DistanceAt, change_between
 from frictionlab.theory.linear import friction_free_velocity
 from frictionlab.theory.uniqueness import is_convergent
 
-_WITHIN = 1e-6
-"""Width of the bracket that a search ends with, relative to the belt speed."""
-_WITHIN_IF_QUICK = 1e-9
-"""The same for motions that are quick to solve for."""
-_WITHIN_IF_STARTS = 1e-5
-"""The same where no theorem makes motions unique, and starts are compared for each."""
-_SLOW = 3e-3
-"""Seconds a motion; those that take longer are not solved for again."""
-_QUICK = 5e-5
-"""Seconds a motion; so quick ones are all looked at."""
-_MOST_IF_QUICK, _MOST, _MOST_IF_STARTS = 96, 48, 36
-"""How many are solved for along a curve: quick ones, others, and those for which starts are compared (in the plane at
-most one for four points of the curve)."""
+
+class _Effort(NamedTuple):
+    """Width of the bracket that a search ends with, relative to the belt speed, and how many motions it takes."""
+
+    within: float
+    most: int
+
+
+_USUAL, _IF_QUICK, _IF_STARTS = _Effort(1e-6, 48), _Effort(1e-9, 96), _Effort(1e-5, 36)
+"""Along a curve; of motions that are quick to solve for; where no theorem makes motions unique, and starts are
+compared for each (in the plane at most one for four points of the curve)."""
+_SLOW, _QUICK = 3e-3, 5e-5
+"""Seconds a motion: those that take longer are not solved for again, quick ones are all looked at."""
 _NEAR = 0.3
 """DistanceOf from stick below which the motions between two of a kind are looked at, for a window that none shows."""
 _ROUNDING = 1e-12
@@ -35,9 +35,10 @@ _NOISE = 10.0
 """Error of a distance over that of the mean friction coefficient, relative to the static one."""
 
 STICK_BEGINS, STICK_ENDS, REVERSAL_ENDS = "stick_begins", "stick_ends", "reversal_ends"
+_HELD = "the force that would hold the mass is the static limit where slip is least"
 _SOLVED_FOR = {
-    STICK_BEGINS: "the force that would hold the mass is the static limit where slip is least",
-    STICK_ENDS: "the force that would hold the mass is the static limit where slip is least",
+    STICK_BEGINS: _HELD,
+    STICK_ENDS: _HELD,
     REVERSAL_ENDS: "the largest slip velocity along x1 is zero",
 }
 CLOSED_FORM = "closed form: V_lin"
@@ -79,13 +80,10 @@ class _Search:
         self.seen: dict[float, MotionSeen] = {}
         self.slow, self.quick = motions.seconds > _SLOW, motions.seconds <= _QUICK
         self.compares_starts = not is_convergent(motions.scene, motions.law)
-        self.within = (
-            _WITHIN_IF_STARTS if self.compares_starts else _WITHIN_IF_QUICK if self.quick else _WITHIN
-        )
         # where starts are compared a motion costs many times what it does otherwise
-        usual = _MOST_IF_STARTS if self.compares_starts else _MOST_IF_QUICK if self.quick else _MOST
+        effort = _IF_STARTS if self.compares_starts else _IF_QUICK if self.quick else _USUAL
         dear = self.compares_starts and motions.scene.planar
-        self.most = min(most, usual, len(rows) // 4 if dear else usual)
+        self.within, self.most = effort.within, min(most, effort.most, *([len(rows) // 4] if dear else []))
         self.end = self._closed_form_end()
 
     @property
@@ -115,15 +113,11 @@ class _Search:
 
     def _look_at_rows(self) -> None:
         """Some of the rows, none where starts are compared; and the motions just below V_lin."""
-        speeds = [each.belt_speed for each in self.rows]
-        if not self.quick:
-            kept = np.unique(np.linspace(0, len(speeds) - 1, min(len(speeds), self.most // 4)).round())
-            speeds = [speeds[int(place)] for place in kept]
-        else:
-            speeds = [
-                speeds[int(k)] for k in np.unique(np.linspace(0, len(speeds) - 1, self.most // 2).round())
-            ]
-        ends = [] if self.end is None else [self.end * (1.0 - _WITHIN), self.end * (1.0 - 1e-3)]
+        count = self.most // (2 if self.quick else 4)
+        places = np.unique(np.linspace(0, len(self.rows) - 1, min(len(self.rows), count)).round())
+        speeds = [self.rows[int(place)].belt_speed for place in places]
+        near = _USUAL.within, 1e-3
+        ends = [] if self.end is None else [self.end * (1.0 - share) for share in near]
         self._see([*[each for each in ends if each > self.rows[0].belt_speed], *speeds])
 
     def _known(self) -> list[KnownRow]:
@@ -141,9 +135,10 @@ class _Search:
         for _ in range(4):
             seen = [self.seen[speed] for speed in sorted(self.seen) if not self.seen[speed].reason]
             wanted = [
-                speed
+                0.5 * (each.belt_speed + here.belt_speed)
                 for before, here, after in zip(seen, seen[1:], seen[2:], strict=False)
-                for speed in _between(before, here, after)
+                if _comes_near(before, here, after)
+                for each in (before, after)
             ]
             if not wanted or self.left < len(wanted):
                 return
@@ -154,11 +149,11 @@ class _Search:
     def _ends_of_reversal(self) -> list[Onset]:
         if self.end is not None:
             return [Onset(REVERSAL_ENDS, self.end, _ROUNDING * self.end, CLOSED_FORM)]
-        found = []
-        for low, high in pairwise(self._known()):
-            if low.reverses and not high.reverses:
-                found.append(self._located(REVERSAL_ENDS, low, high, lambda each: each.to_reversal))
-        return found
+        return [
+            self._located(REVERSAL_ENDS, low, high, lambda each: each.to_reversal)
+            for low, high in pairwise(self._known())
+            if low.reverses and not high.reverses
+        ]
 
     def _ends_of_stick(self) -> list[Onset]:
         found = []
@@ -166,7 +161,11 @@ class _Search:
             if low.sticks == high.sticks:
                 continue
             name = STICK_BEGINS if high.sticks else STICK_ENDS
-            if self.end is not None and low.sticks and low.belt_speed >= self.end * (1.0 - 1.01 * _WITHIN):
+            if (
+                self.end is not None
+                and low.sticks
+                and low.belt_speed >= self.end * (1.0 - 1.01 * _USUAL.within)
+            ):
                 found.append(Onset(name, self.end, _ROUNDING * self.end, CLOSED_FORM))
             else:
                 found.append(self._located(name, low, high, lambda each: each.to_stick))
@@ -195,9 +194,8 @@ class _Search:
         error = place.error + self._noise(begin, end, max(first.error, last.error))
         how = _SOLVED_FOR[name]
         if place.stopped is not None:
-            how = (
-                f"between motions that differ; none at {place.stopped:.6g}: {self.seen[place.stopped].reason}"
-            )
+            why = self.seen[place.stopped].reason
+            how = f"between motions that differ; none at {place.stopped:.6g}: {why}"
         elif place.error > width:
             how = f"{how}; stopped after {self.motions.looks} motions"
         return Onset(name, place.value, error, how)
@@ -219,13 +217,11 @@ class _Search:
         return "not located: so many curves leave no more motions to solve for"
 
 
-def _between(before: MotionSeen, here: MotionSeen, after: MotionSeen) -> list[float]:
-    """Belt speeds on both sides of a motion that is nearer the other kind than its neighbours of the same kind."""
+def _comes_near(before: MotionSeen, here: MotionSeen, after: MotionSeen) -> bool:
+    """Whether a motion is nearer the other kind than its neighbours of the same kind."""
     sizes = [abs(each.to_stick) for each in (before, here, after)]
     alike = before.sticks == here.sticks == after.sticks and here.reverses
-    if not (alike and sizes[1] <= min(sizes[0], sizes[2]) and sizes[1] < _NEAR):
-        return []
-    return [0.5 * (each.belt_speed + here.belt_speed) for each in (before, after)]
+    return alike and sizes[1] <= min(sizes[0], sizes[2]) and sizes[1] < _NEAR
 
 
 def _between_rows(name: str, low: KnownRow, high: KnownRow, why: str) -> Onset:

@@ -115,11 +115,8 @@ class CurveMotions:
     def _contact(self, belt_speed: float, orbit: Orbit) -> tuple[np.ndarray, Floats, np.ndarray]:
         """Slip, the largest friction coefficient at rest (per mean normal load), acceleration of the belt."""
         if self.scene.is_harmonic:
-            return (
-                orbit.v - belt_speed,
-                np.full(orbit.tau.shape, self.limit),
-                np.zeros(orbit.tau.shape, complex),
-            )
+            limit, still = np.full(orbit.tau.shape, self.limit), np.zeros(orbit.tau.shape, complex)
+            return orbit.v - belt_speed, limit, still
         signals, mass = self.scene.signals(), self.scene.mass()
         edges = signals.edges()
         tau = orbit.tau

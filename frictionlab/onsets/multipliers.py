@@ -92,7 +92,9 @@ class _Followed:
         """The motion from the nearest that is known; None where none is found."""
         near = min(self.motions, key=lambda speed: abs(speed - belt_speed), default=None)
         state = None if near is None else self.motions[near].state
-        curve, _ = self.problem.close([self.scene.at(self._given(belt_speed))], state, wanted=DIFFERENTIATED)
+        si = self.scene.dimensional
+        scene = self.scene.at(belt_speed if si is None else belt_speed * si.scales.velocity)
+        curve, _ = self.problem.close([scene], state, wanted=DIFFERENTIATED)
         if not curve.closed.found[0] or np.isnan(curve.matrices[0]).any():
             return None
         values = np.linalg.eigvals(curve.matrices[0])
@@ -107,10 +109,6 @@ class _Followed:
         (fine,) = sharpened(self.problem, [ClosedMotion(belt_speed, curve.states[0], curve.matrices[0])])
         return (abs(rough) - 1.0, _AT_A_KINK) if fine.reason else (fine.modulus - 1.0, fine.error)
 
-    def _given(self, belt_speed: float) -> float:
-        si = self.scene.dimensional
-        return belt_speed if si is None else belt_speed * si.scales.velocity
-
     def _left_between(self, inside: float, outside: float) -> Onset:
         low, high = sorted((inside, outside))
         ends = [DistanceAt(speed, self.motions[speed].excess) for speed in (low, high)]
@@ -121,13 +119,15 @@ class _Followed:
 
         place = change_between(excess, ends[0], ends[1], _WITHIN_BELT_SPEED * high, MOST_CLOSED)
         beside = sorted(self.motions, key=lambda speed: abs(speed - place.value))
-        last = next(self.motions[speed] for speed in beside if self.motions[speed].excess < 0.0)
-        first = next(self.motions[speed] for speed in beside if self.motions[speed].excess >= 0.0)
+        last, first = (
+            next(motion for speed in beside if ((motion := self.motions[speed]).excess >= 0.0) == left)
+            for left in (False, True)
+        )
         how = how_it_leaves(last.multiplier, first.multiplier)
         slope = abs(ends[1].f - ends[0].f) / (high - low)
         return Onset(MULTIPLIER_LEAVES, place.value, place.error + max(last.error, first.error) / slope, how)
 
-    def _ended_between(self, last: float, gone: float) -> Onset | None:
+    def _ended_between(self, last: float, gone: float) -> Onset:
         """The motion ends on the way, its multiplier at +1 (a fold); None where it is far from that."""
         for _ in range(MOST_CLOSED // 2):
             middle = 0.5 * (last + gone)
@@ -142,12 +142,10 @@ class _Followed:
                 last = middle
         end = self.motions[last].multiplier
         middle, half = 0.5 * (last + gone), 0.5 * abs(gone - last)
+        how = f"+1: the motion ends, its last multiplier is {_text(end)}"
         if abs(end.imag) > 1e-3 or end.real < 0.5:
             how = f"between motions; none of one period is closed at {gone:.6g}, the last multiplier is {_text(end)}"
-            return Onset(MULTIPLIER_LEAVES, middle, half, how)
-        return Onset(
-            MULTIPLIER_LEAVES, middle, half, f"+1: the motion ends, its last multiplier is {_text(end)}"
-        )
+        return Onset(MULTIPLIER_LEAVES, middle, half, how)
 
 
 def how_it_leaves(inside: complex, outside: complex) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -62,26 +63,17 @@ def change_between(
 def _next(below: list[DistanceAt], above: list[DistanceAt], width: float) -> float:
     """The next belt speed to look at, inside the bracket."""
     a, b = below[-1].x, above[-1].x
-    ends = [
-        place
-        for pair in (below[-2:], above[-2:])
-        if len(pair) == 2
-        for place in _zeros(*pair)
-        if a < place < b
-    ]
-    if not ends:
-        ends = _zeros(below[-1], above[-1])
+    pairs = [pair for pair in (below[-2:], above[-2:]) if len(pair) == 2]
+    ends = [place for pair in pairs for place in _zeros(*pair) if a < place < b]
+    ends = ends or _zeros(below[-1], above[-1])
     if not ends:
         return 0.5 * (a + b)
     middle = sum(ends) / len(ends)
     nearer = min(middle - a, b - middle)
     beyond = max(abs(ends[0] - ends[-1]) if len(ends) > 1 else 0.1 * nearer, 0.4 * width)
     # no farther than half way to the end of the bracket on the other side
-    x = (
-        middle + min(beyond, 0.5 * (b - middle))
-        if middle - a < b - middle
-        else middle - min(beyond, 0.5 * (middle - a))
-    )
+    room = b - middle if middle - a < b - middle else a - middle
+    x = middle + math.copysign(min(beyond, 0.5 * abs(room)), room)
     inside = min(0.45 * width, 0.25 * (b - a))
     return min(max(x, a + inside), b - inside)
 

@@ -23,7 +23,6 @@ DERIVATIVE: Floats = _ratios - np.diag(_ratios.sum(axis=1))
 @inner
 def differentiate_panel(values: Any, slope: Any) -> None:
     """Write the derivative of the panel polynomial at the nodes to ``slope`` [per half panel]."""
-    """Write the derivative of the panel polynomial at the nodes to ``slope`` [per half panel]."""
     for row in range(values.size):
         total = 0.0
         for column in range(values.size):

@@ -152,7 +152,7 @@ def read_each(panels: OrbitPanels, ends: Any, mass: Mass, belt_speeds: Any, out:
         end = ends[i]
         if end > first:
             row = read(_cut(panels, first, end), mass, belt_speeds[i])
-            for column in range(row.size):
+            for column in range(len(row)):
                 out[i, column] = row[column]
         first = end
 
@@ -174,7 +174,7 @@ class Sums(NamedTuple):
     pressed: complex  # integral of the friction force
     swing: float  # integral of the squared velocity
     misfit_load: (
-        float  # by what velocities and positions differ in each panel, times its largest load, added up
+        float  # what velocities and positions differ by in each panel, times its largest load, added up
     )
     misfit_speed: float  # the same, times its largest speed
 
@@ -185,54 +185,47 @@ NO_SUMS = Sums(0.0, 0j, 0j, 0j, 0j, 0.0, 0.0, 0.0, 0.0, 0.0, 0j, 0j, 0.0, 0.0, 0
 @inner
 def read(panels: OrbitPanels, mass: Mass, belt_speed: float) -> Any:
     """The columns ``READ`` of one period."""
-    v, stick = panels.v, panels.stick
+    x, v, stick = panels.x, panels.v, panels.stick
     slips = np.empty(v.shape, np.complex128)
     # Means and energies, by the Gauss-Lobatto weights of every panel.
     sums = _integrals(panels, mass, belt_speed, slips)
     period = sums.duration
-    part = np.empty(v.shape)
-    out = np.empty(22)
-    out[0] = mean_friction(sums.friction.real, period)
-    out[1] = sums.position.real / period
-    out[2] = mean_friction(sums.friction.imag, period)
-    out[3] = sums.position.imag / period
-    # First harmonics, their phases against the load along that direction.
-    out[5] = abs(sums.harmonic_1) * 2.0 / period
-    out[6] = _lead(sums.harmonic_1, mass.force)
-    out[8] = abs(sums.harmonic_2) * 2.0 / period
-    out[9] = _lead(sums.harmonic_2, mass.force)
-    out[10] = sums.stick / period
-    out[13] = sums.input
-    out[14] = sums.viscous
     # The mean friction force, in presliding many times the loads, would do work on the little by which the recorded
     # motion is not periodic. A periodic motion has no mean velocity: what there is of it is taken out.
     drift = _power(sums.pressed, sums.moved) / period
-    out[15] = sums.by_friction - drift
-    out[16] = sums.contact - drift
-    out[17] = period
-    out[18] = _open_ends(panels, mass)
-    out[19] = math.sqrt(sums.swing / period)
-    out[20], out[21] = sums.misfit_load, sums.misfit_speed
-    # Reversals of the friction force count in stick too, where the force changes its sign but the slip is zero.
-    _along(panels.friction, part)
-    out[12] = _sign_changes(part, stick, False)
-    # Reversals of slip, not counted in stick; a slip that is rounding of the velocity has no sign.
-    _along(slips, part)
-    _drop_rounding(part, v)
-    out[11] = _sign_changes(part, stick, True)
-    # Amplitudes: half the way between the extremes of the panel polynomials.
-    _along(v, part)
-    out[4] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
-    _across(v, part)
-    out[7] = 0.5 * (_highest(part, 1.0, stick) + _highest(part, -1.0, stick))
-    return out
+    # Reversals of slip are not counted in stick; a slip that is rounding of the velocity has no sign. The friction
+    # force changes its sign in stick, too, where the slip is zero.
+    slip_along = slips.real
+    _drop_rounding(slip_along, v)
+    return (
+        mean_friction(sums.friction.real, period),
+        sums.position.real / period,
+        mean_friction(sums.friction.imag, period),
+        sums.position.imag / period,
+        _amplitude(v.real, stick),
+        abs(sums.harmonic_1) * 2.0 / period,
+        _lead(sums.harmonic_1, mass.force),
+        _amplitude(v.imag, stick),
+        abs(sums.harmonic_2) * 2.0 / period,
+        _lead(sums.harmonic_2, mass.force),
+        sums.stick / period,
+        1.0 * _sign_changes(slip_along, stick, True),
+        1.0 * _sign_changes(panels.friction.real, stick, False),
+        sums.input,
+        sums.viscous,
+        sums.by_friction - drift,
+        sums.contact - drift,
+        period,
+        _open_ends(x[-1, -1] - x[0, 0], v[-1, -1] - v[0, 0], mass),
+        math.sqrt(sums.swing / period),
+        sums.misfit_load,
+        sums.misfit_speed,
+    )
 
 
 @inner
-def _open_ends(panels: OrbitPanels, mass: Mass) -> float:
-    """How far the end of the motion is from its beginning, in the norm of energy."""
-    x = panels.x[-1, -1] - panels.x[0, 0]
-    v = panels.v[-1, -1] - panels.v[0, 0]
+def _open_ends(x: complex, v: complex, mass: Mass) -> float:
+    """How far the end of the motion is from its beginning, by these differences, in the norm of energy."""
     stretched = mass.stiffness * x.real**2 + mass.transverse_stiffness * x.imag**2
     return math.sqrt(stretched + v.real**2 + v.imag**2)
 
@@ -247,20 +240,6 @@ def _drop_rounding(part: Any, v: Any) -> None:
 
 
 @inner
-def _along(values: Any, out: Any) -> None:
-    for panel in range(values.shape[0]):
-        for node in range(values.shape[1]):
-            out[panel, node] = values[panel, node].real
-
-
-@inner
-def _across(values: Any, out: Any) -> None:
-    for panel in range(values.shape[0]):
-        for node in range(values.shape[1]):
-            out[panel, node] = values[panel, node].imag
-
-
-@inner
 def _by_panels(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -> Sums:
     """What is summed up over the period; leaves the slip velocity of every node in ``slips``."""
     body, total, last = bare(planar(mass)), NO_SUMS, NODES.size - 1
@@ -268,7 +247,7 @@ def _by_panels(panels: OrbitPanels, mass: Mass, belt_speed: float, slips: Any) -
         stuck = 1.0 if panels.stick[k] else 0.0
         parts = panels.tau[k], panels.x[k], panels.v[k], panels.friction[k]
         here = body_at(body, 0.5 * (panels.tau[k, 0] + panels.tau[k, last]))
-        total = _added(total, _of_a_panel(here, belt_speed, *parts, stuck, slips[k]))
+        total = _with_a_panel(total, here, belt_speed, parts, stuck, slips[k])
     return total
 
 
@@ -285,7 +264,7 @@ def _integrals_in_python(panels: OrbitPanels, mass: Mass, belt_speed: float, sli
     stuck = panels.stick.astype(float)
     parts = panels.tau.T, panels.x.T, panels.v.T, panels.friction.T
     body = interpreted(planar)(mass)
-    of_panels = interpreted_on_arrays(_of_a_panel)(body, belt_speed, *parts, stuck, slips.T)
+    of_panels = interpreted_on_arrays(_with_a_panel)(NO_SUMS, body, belt_speed, parts, stuck, slips.T)
     return Sums(*(each.sum().item() for each in of_panels))
 
 
@@ -293,31 +272,9 @@ run_as(_integrals, _integrals_in_python)
 
 
 @inner
-def _added(a: Sums, b: Sums) -> Sums:
-    return Sums(
-        a.duration + b.duration,
-        a.position + b.position,
-        a.friction + b.friction,
-        a.harmonic_1 + b.harmonic_1,
-        a.harmonic_2 + b.harmonic_2,
-        a.input + b.input,
-        a.viscous + b.viscous,
-        a.by_friction + b.by_friction,
-        a.contact + b.contact,
-        a.stick + b.stick,
-        a.moved + b.moved,
-        a.pressed + b.pressed,
-        a.swing + b.swing,
-        a.misfit_load + b.misfit_load,
-        a.misfit_speed + b.misfit_speed,
-    )
-
-
-@inner
-def _of_a_panel(
-    body: Any, belt_speed: float, tau: Any, x: Any, v: Any, friction: Any, stuck: float, slips: Any
-) -> Sums:
-    """The part of one panel; of numbers at its nodes, or of arrays of them."""
+def _with_a_panel(a: Sums, body: Any, belt_speed: float, parts: Any, stuck: float, slips: Any) -> Sums:
+    """The sums so far and those of a panel: of numbers at its nodes, or of arrays of them."""
+    tau, x, v, friction = parts
     half = 0.5 * (tau[NODES.size - 1] - tau[0])
     position, friction_impulse, harmonic_1, harmonic_2 = 0j, 0j, 0j, 0j
     put_in, viscous, taken, contact = 0.0, 0.0, 0.0, 0.0
@@ -347,21 +304,21 @@ def _of_a_panel(
         strongest, fastest = max(strongest, abs(pushed)), max(fastest, abs(velocity))
     misfit = abs(way - (x[NODES.size - 1] - x[0]))
     return Sums(
-        2.0 * half,
-        position,
-        friction_impulse,
-        harmonic_1,
-        harmonic_2,
-        put_in,
-        viscous,
-        taken,
-        contact,
-        2.0 * half * stuck,
-        way,
-        force,
-        swing,
-        strongest * misfit,
-        fastest * misfit,
+        a.duration + 2.0 * half,
+        a.position + position,
+        a.friction + friction_impulse,
+        a.harmonic_1 + harmonic_1,
+        a.harmonic_2 + harmonic_2,
+        a.input + put_in,
+        a.viscous + viscous,
+        a.by_friction + taken,
+        a.contact + contact,
+        a.stick + 2.0 * half * stuck,
+        a.moved + way,
+        a.pressed + force,
+        a.swing + swing,
+        a.misfit_load + strongest * misfit,
+        a.misfit_speed + fastest * misfit,
     )
 
 
@@ -381,6 +338,12 @@ def _lead(harmonic: complex, force: complex) -> float:
 
 OVERSHOOT = 0.6
 """(L - 1)/2, rounded up, of the Lebesgue constant L of the nodes."""
+
+
+@inner
+def _amplitude(values: Any, stick: Any) -> float:
+    """Half the way between the extremes of the panel polynomials."""
+    return 0.5 * (_highest(values, 1.0, stick) + _highest(values, -1.0, stick))
 
 
 @inner

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,8 +45,7 @@ class Orbits:
         panels = slice(self.ends[k - 1] if k else 0, self.ends[k])
         if panels.start == panels.stop:
             return None
-        parts = self.tau[panels], self.x[panels], self.v[panels], self.friction[panels]
-        return Orbit(*parts, self.stick[panels])
+        return Orbit(*(part[panels] for part in self._parts))
 
     def and_those_of(self, other: Orbits) -> Orbits:
         """All orbits that either has; of each at most one has panels."""
@@ -54,11 +54,10 @@ class Orbits:
         first, second = np.diff(self.ends, prepend=0), np.diff(other.ends, prepend=0)
         owner = np.repeat(np.arange(len(first)), first), np.repeat(np.arange(len(second)), second)
         order = np.argsort(np.concatenate(owner), kind="stable")
-        return Orbits(
-            np.concatenate((self.tau, other.tau))[order],
-            np.concatenate((self.x, other.x))[order],
-            np.concatenate((self.v, other.v))[order],
-            np.concatenate((self.friction, other.friction))[order],
-            np.concatenate((self.stick, other.stick))[order],
-            np.cumsum(first + second),
-        )
+        pairs = zip(self._parts, other._parts, strict=True)
+        tau, x, v, friction, stick = (np.concatenate(pair)[order] for pair in pairs)
+        return Orbits(tau, x, v, friction, stick, np.cumsum(first + second))
+
+    @property
+    def _parts(self) -> tuple[Any, ...]:
+        return self.tau, self.x, self.v, self.friction, self.stick

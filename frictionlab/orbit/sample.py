@@ -85,24 +85,13 @@ def sample_at(orbit: Orbit, scene: Scene, law: FrictionLaw, times: Floats) -> Sa
     slip = _slip(scene, v, times)
     assert scene.normal_load is not None
     pressed = scene.normal_load + signals.normal_load(times)
-    contact = Contact(slip, rub, pressed / scene.normal_load, _is_along(orbit), scene.constant_contact)
-    return Samples(
-        times,
-        x.real,
-        v.real,
-        x.imag,
-        v.imag,
-        rub.real,
-        rub.imag,
-        along,
-        across,
-        slip.real,
-        slip.imag,
-        pressed,
-        _work(orbit, scene.normal_load, panels, places),
-        _memory(orbit, scene, law, contact, weights, panels),
-        law.memory_kind != "scalars",
-    )
+    along_belt = not orbit.v.imag.any()  # nothing moves across it
+    contact = Contact(slip, rub, pressed / scene.normal_load, along_belt, scene.constant_contact)
+    memory = _memory(orbit, scene, law, contact, (weights, panels))
+    work = _work(orbit, scene.normal_load, panels, places)
+    motion = x.real, v.real, x.imag, v.imag, rub.real, rub.imag
+    around = along, across, slip.real, slip.imag, pressed
+    return Samples(times, *motion, *around, work, memory, law.memory_kind != "scalars")
 
 
 def _slip(scene: Scene, v: NDArray[np.complex128], times: Floats) -> NDArray[np.complex128]:
@@ -129,20 +118,14 @@ def _work(orbit: Orbit, normal_load: float, panels: NDArray[np.int64], places: F
     return np.asarray(before[panels] + half[panels] * within)
 
 
-def _is_along(orbit: Orbit) -> bool:
-    """Whether nothing moves across the belt."""
-    return not orbit.v.imag.any()
-
-
 def _memory(
-    orbit: Orbit,
-    scene: Scene,
-    law: FrictionLaw,
-    contact: Contact,
-    weights: Floats,
-    panels: NDArray[np.int64],
+    orbit: Orbit, scene: Scene, law: FrictionLaw, contact: Contact, at: tuple[Floats, NDArray[np.int64]]
 ) -> NDArray[np.complex128]:
-    """What the law remembers at samples [count, n], NaN where the record does not tell it."""
+    """What the law remembers at samples [count, n], NaN where the record does not tell it.
+
+    at: the weights that interpolate each sample from the nodes of its panel, and the panels.
+    """
+    weights, panels = at
     if law.count() == 0:
         return np.empty((0, len(weights)), np.complex128)
     known = np.full((law.count(), len(weights)), np.nan + 0j)
@@ -152,9 +135,8 @@ def _memory(
         return known
     assert scene.normal_load is not None
     share = 1.0 + scene.signals().normal_load(orbit.tau) / scene.normal_load
-    whole = Contact(
-        _slip(scene, orbit.v, orbit.tau), orbit.friction, share, contact.line, contact.keeps_stiffness
-    )
+    slip = _slip(scene, orbit.v, orbit.tau)
+    whole = contact._replace(slip=slip, friction=orbit.friction, share=share)
     found = followed(law, orbit.tau, whole)
     if found is None:
         return known

@@ -8,7 +8,7 @@ quotients of one period from the fixed point, which no steady state needs to be 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -51,11 +51,8 @@ class _Refused(Exception):
     """Why no derivative of this steady state is given."""
 
 
-class _Corner(NamedTuple):
+class _Corner(Exception):
     """Why the period map has no derivative by the state at this angle, and the periods followed to see it."""
-
-    reason: str
-    maps: int
 
 
 class _AtFixedPoint(NamedTuple):
@@ -104,12 +101,16 @@ def sensitivities(
     try:
         _check(pair.scene, state)
         for turn in _TURNS:
-            left = [path for path in asked if found[path].reason in (CORNER, _BENDS, _NOTHING.reason)]
-            told, more = _at_turn(pair, turn, state, left, numbers, ready)
+            open_ones = [path for path in asked if found[path].reason in (CORNER, _BENDS, _NOTHING.reason)]
+            left = {path: numbers[path] for path in open_ones}
+            told, more = _at_turn(pair, turn, state, left, ready)
             found, maps = found | told, maps + more
     except _Refused as refused:
         found = dict.fromkeys(asked, _NOTHING._replace(reason=str(refused)))
-    return _table([_row(path, numbers[path], state, found[path]) for path in asked], maps)
+    rows = [_row(path, numbers[path], state, found[path]) for path in asked]
+    table = pd.DataFrame(rows, columns=list(_COLUMNS))
+    table.attrs["maps"] = maps
+    return table
 
 
 class _ByNumber(NamedTuple):
@@ -124,38 +125,28 @@ _NOTHING = _ByNumber(np.nan, np.nan, "not looked for")
 
 
 def _at_turn(
-    pair: Pair, turn: float, state: SteadyState, paths: list[str], numbers: dict[str, float], method: Method
+    pair: Pair, turn: float, state: SteadyState, paths: dict[str, float], method: Method
 ) -> tuple[dict[str, _ByNumber], int]:
     """The derivatives by these numbers, the period begun at this angle, and the periods followed. Raises _Refused."""
     if not paths:
         return {}, 0
-    there = _fixed_point(pair, turn, state)
-    if isinstance(there, _Corner):
-        return dict.fromkeys(paths, _NOTHING._replace(reason=there.reason)), there.maps
+    try:
+        there = _fixed_point(pair, turn, state)
+    except _Corner as corner:
+        reason, maps = corner.args
+        return dict.fromkeys(paths, _NOTHING._replace(reason=reason)), maps
     maps, found = there.maps, {}
-    for path in paths:
-        by_number = _by_parameter(there, path, numbers[path], method)
+    for path, number in paths.items():
+        by_number = _by_parameter(there, path, number, method)
         maps += MAPS_PER_TRY * by_number.tries
-        least = abs(state.mean_friction) / _size(path, numbers[path])
-        found[path] = _unless_blunt(_of_the_mean(there, by_number), least)
+        told, least = _of_the_mean(there, by_number), abs(state.mean_friction) / _size(path, number)
+        # an error may be no large part of the derivative, nor of the least derivative that matters
+        blunt = told.error > _BLUNT * max(abs(told.value), least)
+        found[path] = _NOTHING._replace(reason=_BENDS) if blunt and not told.reason else told
     return found, maps
 
 
-def _unless_blunt(found: _ByNumber, least: float) -> _ByNumber:
-    """The derivative where its error is small beside it, or beside the least derivative that matters."""
-    blunt = found.error > _BLUNT * max(abs(found.value), least)
-    return _NOTHING._replace(reason=_BENDS) if blunt and not found.reason else found
-
-
-def _table(rows: list[tuple[str, float, float, float, float, str]], maps: int) -> pd.DataFrame:
-    table = pd.DataFrame(rows, columns=list(_COLUMNS))
-    table.attrs["maps"] = maps
-    return table
-
-
-def _row(
-    path: str, number: float, state: SteadyState, found: _ByNumber
-) -> tuple[str, float, float, float, float, str]:
+def _row(path: str, number: float, state: SteadyState, found: _ByNumber) -> tuple[Any, ...]:
     relative = not path.endswith("phase") and number != 0.0 and state.mean_friction != 0.0
     elasticity = found.value * number / state.mean_friction if relative else np.nan
     return path, number, found.value, found.error, elasticity, found.reason
@@ -175,16 +166,14 @@ def _check(scene: Scene, state: SteadyState) -> None:
         raise _Refused(_RESTS)
 
 
-def _fixed_point(pair: Pair, turn: float, state: SteadyState) -> _AtFixedPoint | _Corner:
-    """The closed orbit of a steady state, the period begun at this angle. Raises _Refused."""
+def _fixed_point(pair: Pair, turn: float, state: SteadyState) -> _AtFixedPoint:
+    """The closed orbit of a steady state, the period begun at this angle. Raises _Refused, _Corner."""
     there = pair.later(turn)
     one = OnePeriod.of(there.scene, there.law)
     z = one.closed()
     if z is None:
         raise _Refused(_OTHER_ORBIT)
     found = _with_derivatives(pair, turn, one, z)
-    if isinstance(found, _Corner):
-        return found
     # Newton's step of the residual that the search left, by the derivative that is known now
     moved = z - np.linalg.solve(found.by_state[:-1], found.image[:-1] - z)
     image = one.from_states(moved[None])[0]
@@ -193,7 +182,7 @@ def _fixed_point(pair: Pair, turn: float, state: SteadyState) -> _AtFixedPoint |
     return found._replace(z=moved, image=image, maps=found.maps + 1)
 
 
-def _with_derivatives(pair: Pair, turn: float, one: OnePeriod, z: Floats) -> _AtFixedPoint | _Corner:
+def _with_derivatives(pair: Pair, turn: float, one: OnePeriod, z: Floats) -> _AtFixedPoint:
     here, size = one.from_states(z[None])[0], z.size
     length, columns, maps = 1.0 + float(np.linalg.norm(z)), [], 1
     for way in np.eye(size):
@@ -204,7 +193,7 @@ def _with_derivatives(pair: Pair, turn: float, one: OnePeriod, z: Floats) -> _At
         found = derivative(along, here, _FEW_PARTS * length, one.noise(z))
         maps += MAPS_PER_TRY * found.tries
         if found.reason:
-            return _Corner(found.reason, maps)
+            raise _Corner(found.reason, maps)
         columns.append(found)
     by_state = np.column_stack([each.value for each in columns])
     error = np.column_stack([each.error + one.drift(z) / length for each in columns])

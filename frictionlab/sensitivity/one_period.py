@@ -35,11 +35,8 @@ class OnePeriod(NamedTuple):
 
     def like(self, other: OnePeriod) -> bool:
         """Whether states of the other are states of this one, followed by the same map."""
-        return (self.problem.size, self.problem.kind, self.law.structure()) == (
-            other.problem.size,
-            other.problem.kind,
-            other.law.structure(),
-        )
+        mine, theirs = ((one.problem.size, one.problem.kind, one.law.structure()) for one in (self, other))
+        return mine == theirs
 
     def noise(self, z: Floats) -> Floats:
         """By how much state and mean friction jump where steps are chosen otherwise."""
@@ -53,12 +50,10 @@ class OnePeriod(NamedTuple):
 
     def closed(self) -> Floats | None:
         """The state of the closed orbit, as well as the search finds it; None where it finds none."""
-        ways = self.problem, self.problem.by_implicit_steps
-        for way in ways:
-            if way is not None:
-                curve, _ = way.close([self.scene])
-                if curve.closed.found[0]:
-                    return np.array(curve.states[0])
+        for way in filter(None, (self.problem, self.problem.by_implicit_steps)):
+            curve, _ = way.close([self.scene])
+            if curve.closed.found[0]:
+                return np.array(curve.states[0])
         return None
 
     def from_states(self, states: Floats) -> Floats:
@@ -68,12 +63,12 @@ class OnePeriod(NamedTuple):
 
     def _yielding(self, states: Floats) -> Floats:
         """The states with deflections cut back to the yield of a slider: on the line no slip leads beyond."""
-        law, most = self.law, np.inf
-        if isinstance(law, BristleLaw) and states.shape[1] == _WITH_ONE_DEFLECTION:
-            reach = law.yield_deflection()
-            # as states have it: a deflection times sqrt(normal_load*stiffness)
-            if np.isfinite(reach):
-                most = np.sqrt(self.problem.body.normal_load * abs(law.friction(0.0, reach, 0.0)) * reach)
-        if np.isinf(most):
+        law = self.law
+        if not isinstance(law, BristleLaw) or states.shape[1] != _WITH_ONE_DEFLECTION:
             return states
+        reach = law.yield_deflection()
+        if not np.isfinite(reach):
+            return states
+        # as states have it: a deflection times sqrt(normal_load*stiffness)
+        most = np.sqrt(self.problem.body.normal_load * abs(law.friction(0.0, reach, 0.0)) * reach)
         return np.column_stack((states[:, :2], np.clip(states[:, 2:], -most, most)))

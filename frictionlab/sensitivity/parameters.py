@@ -23,7 +23,8 @@ class Pair(NamedTuple):
     def numbers(self) -> dict[str, float]:
         """``scene.<path>`` and ``law.<name>`` of every number that may be changed a little."""
         told = {f"scene.{path}": value for path, value in self.scene.given_values().items()}
-        told |= {f"law.{name}": value for name, value in _cells(given_values(self.law) | _defaults(self.law))}
+        left_out = {name: value for name, value in self.law if name not in self.law.model_fields_set}
+        told |= {f"law.{name}": value for name, value in _cells(given_values(self.law) | left_out)}
         return {
             path: float(value)
             for path, value in told.items()
@@ -45,12 +46,12 @@ class Pair(NamedTuple):
         owner, _, name = path.partition(".")
         if owner == "scene":
             return self._replace(scene=self.scene.with_(**{name: value}))
-        given = given_values(self.law)
+        changed: Any = value
         if place := re.fullmatch(r"(.+)\[(\d+)\]", name):
             name, several = place[1], list(getattr(self.law, place[1]))
             several[int(place[2])] = value
-            return self._replace(law=type(self.law)(**(given | {name: tuple(several)})))
-        return self._replace(law=type(self.law)(**(given | {name: value})))
+            changed = tuple(several)
+        return self._replace(law=type(self.law)(**(given_values(self.law) | {name: changed})))
 
 
 def asked_for(numbers: dict[str, float], paths: Any) -> list[str]:
@@ -66,11 +67,6 @@ def asked_for(numbers: dict[str, float], paths: Any) -> list[str]:
                 f"parameters: no number '{path}' of this scene or law{f'; {hint}' if hint else ''}"
             )
     return list(dict.fromkeys(paths))
-
-
-def _defaults(law: FrictionLaw) -> dict[str, Any]:
-    """Numbers that were left out and have a value all the same."""
-    return {name: value for name, value in law if name not in law.model_fields_set and value is not None}
 
 
 def _cells(values: dict[str, Any]) -> list[tuple[str, Any]]:

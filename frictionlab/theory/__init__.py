@@ -13,6 +13,7 @@ from frictionlab.theory.compliant_means import (
     mean_soft_elasto_plastic,
     mean_soft_jenkins,
     mean_soft_transverse,
+    reversal_kick,
     slip_back_and_forth,
     stiff_correction,
 )
@@ -40,7 +41,6 @@ from frictionlab.theory.prescribed import (
     mean_prescribed_pulsating,
     mean_prescribed_transverse,
 )
-from frictionlab.theory.reversal import reversal_kick
 from frictionlab.theory.sliding_stability import SteadySliding
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""Mean friction of compliant contacts under a prescribed slip, in the limits of soft and of stiff bristles.
+"""Compliant contacts in the limits of soft and of stiff bristles: means under a prescribed slip, kicks at reversals.
 
 The slip is the sum of the belt's and a sine of displacement amplitude X; ratio is belt speed over velocity amplitude,
 presliding the presliding length over X. A mean is relative to the friction coefficient of steady sliding.
@@ -131,3 +131,21 @@ def stiff_correction(ratio: ArrayLike, exponent: float = 1.0) -> Floats:
     felt = 2.0 ** (1.0 - exponent) / (2.0 - exponent) if exponent < 2.0 else math.inf
     size = np.asarray(ratio, dtype=np.float64)
     return np.asarray(2.0 / (3.0 * np.pi) * felt * size / ((1.0 - size) * (1.0 + size)))
+
+
+def reversal_kick(friction: float, acceleration: float) -> float:
+    """Velocity after a reversal minus that under Coulomb friction, per square root of the presliding length.
+
+    After a reversal Dahl friction of exponent 1 changes its sign over a path of a presliding length d, and
+    accelerates the body until then: with q = path/d, kick/sqrt(d) = integral over q > 0 of 2 f exp(-q)/sqrt(2 a q +
+    4 f (1 - exp(-q))). So the steady state of a body tends to Coulomb's as the square root of d, under prescribed
+    slip as d.
+
+    friction f > 0: largest friction force per unit mass; acceleration a > 0: of the slip, after friction has
+    reversed. Source: energy of x'' = a + 2 f exp(-x/d) from rest; by the trapezoidal rule in sqrt(q), exact to
+    rounding.
+    """
+    root = 0.05 * np.arange(-140, 141) + 0.025
+    square = root**2
+    speed = np.sqrt(2.0 * acceleration - 4.0 * friction * np.expm1(-square) / square)
+    return float(0.05 * np.sum(2.0 * friction * np.exp(-square) / speed))

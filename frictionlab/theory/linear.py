@@ -30,7 +30,7 @@ def friction_free_velocity(scene: Scene, law: FrictionLaw | None = None) -> floa
     Source: Sulollari, van Dalen & Cabboi, Eq. 6 (there the response where friction is a small perturbation).
     """
     if not scene.is_harmonic:
-        return _largest(friction_free_slip(scene, law), scene.belt_speed)
+        return _largest_slip(scene, _coefficient(scene, law))
     if scene.degrees_of_freedom == 0:
         return abs(scene.motion().velocity)
     mass = scene.mass()
@@ -43,25 +43,16 @@ def velocity_scale(scene: Scene) -> float:
     """V_lin as if the normal load did not vary: a scale of velocities that asks for no law [omega_1 L]."""
     if scene.is_harmonic:
         return friction_free_velocity(scene)
-    return _largest(_free_slip(scene, 0.0), scene.belt_speed)
-
-
-def _largest(slip: Piecewise | None, belt_speed: float) -> float:
-    return math.inf if slip is None else (slip if belt_speed >= 0.0 else slip.negative()).maximum()
-
-
-def friction_free_slip(scene: Scene, law: FrictionLaw | None = None) -> Piecewise | None:
-    """Its x1' minus the belt's vibration along x1, over the period of the scene; None where it has no bound.
-
-    Raises ValueError as ``friction_free_velocity``.
-    """
-    return _free_slip(scene, _coefficient(scene, law))
+    return _largest_slip(scene, 0.0)
 
 
 def friction_free_response(
     scene: Scene, law: FrictionLaw | None, order: int
 ) -> tuple[Piecewise, Piecewise] | None:
-    """The same motion: x1 and x2 themselves, or for order 1 their velocities; None where one has no bound."""
+    """That motion: x1 and x2 themselves, or for order 1 their velocities; None where one has no bound.
+
+    Raises ValueError as ``friction_free_velocity``.
+    """
     found = _response(scene, _coefficient(scene, law), order)
     return None if found[0] is None or found[1] is None else (found[0], found[1])
 
@@ -86,13 +77,16 @@ def _response(scene: Scene, coefficient: float, order: int) -> tuple[Piecewise |
     return along.response(push, edges, order), across.response(signals.load[1], edges, order)
 
 
-def _free_slip(scene: Scene, coefficient: float) -> Piecewise | None:
+def _largest_slip(scene: Scene, coefficient: float) -> float:
+    """Of its x1' minus the belt's vibration along x1, over the period of the scene; infinite without a bound."""
     signals = scene.signals()
-    belt = piecewise(signals.belt[0], signals.edges())
-    if scene.degrees_of_freedom == 0:
-        return belt
-    response, _ = _response(scene, coefficient, 1)
-    return None if response is None else less(response, belt)
+    slip = piecewise(signals.belt[0], signals.edges())
+    if scene.degrees_of_freedom > 0:
+        response, _ = _response(scene, coefficient, 1)
+        if response is None:
+            return math.inf
+        slip = less(response, slip)
+    return (slip if scene.belt_speed >= 0.0 else slip.negative()).maximum()
 
 
 def less(first: Piecewise, second: Piecewise) -> Piecewise:

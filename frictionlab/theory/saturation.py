@@ -44,36 +44,3 @@ def remaining_share(law: Any, path: Any) -> Any:
     """What is left of a small lack of deflection after a path slid [scene length], of what there was before."""
     limit = law.largest_deflection()
     return np.exp(-path * law.rate(1.0, (1.0 - SHORT) * limit) / (SHORT * limit))
-
-
-def follows_the_way(law: Any) -> bool:
-    """Whether a bristle is a linear spring, perhaps with a dashpot, whose deflection hangs on the way slid alone."""
-    if not slides_saturated(law):
-        return False
-    limit, friction = law.largest_deflection(), law.sliding_friction(1.0)
-    damping = law.friction(0.0, 0.0, 1.0)
-    return all(
-        math.isclose(law.rate(2.0, z), 2.0 * law.rate(1.0, z), rel_tol=1e-9, abs_tol=1e-9)
-        and math.isclose(law.rate(-1.0, -z), -law.rate(1.0, z), rel_tol=1e-9, abs_tol=1e-9)
-        and math.isclose(
-            law.friction(3.0, z, 1.0), friction * z / limit + damping, rel_tol=1e-9, abs_tol=1e-12
-        )
-        for z in (limit * _NODES[::8]).tolist()
-    )
-
-
-def lost_on_reversal(law: Any) -> float:
-    """What bristles lose on a reversal from slip at their limit to slip at the other limit [scene length].
-
-    The integral over the way slid of 1 - spring force/friction in sliding: the work that this friction would have
-    done beyond that of the springs. Of bristles that follow the way; infinite where their limit is approached more
-    slowly than exponentially.
-    """
-    limit = law.largest_deflection()
-    if law.rate(1.0, (1.0 - SHORT) * limit) < (1.0 - 1e-3) * SHORT:
-        return math.inf
-    parts = [(1.0 - z / limit) / law.rate(1.0, z) for z in (limit * _NODES).tolist()]
-    return float(limit * (_WEIGHTS @ parts))
-
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -30,6 +29,7 @@ PERIOD_MARKERS: dict[int, tuple[str, str]] = {
 }
 LONGER = ("x", "#525252")
 WILD = "0.72"
+DOTS: Any = {"marker": "o", "markersize": 0.9, "mew": 0.0, "ls": "none", "color": "0.55", "rasterized": True}
 
 
 def bifurcations(attractors: pd.DataFrame) -> dict[str, pd.DataFrame]:
@@ -50,12 +50,17 @@ def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
     figure = blank_figure(PAGE, 4.6)
     write_title(figure, heading.title)
     above, below = figure.subplots(2, 1, sharex=True)
-    states = rows[rows["point"] == 1]
-    _draw_means(above, states)
-    _draw_points(below, rows)
+    states, wild = rows[rows["point"] == 1], rows[rows["period"] == 0]
+    for ranges, color, width in ((states["period"] == 0, WILD, 2.0), (states["period"] > 1, "0.85", 0.8)):
+        some = states[ranges]
+        ends = some["mean_low"], some["mean_high"]
+        above.vlines(some["belt_speed"], *ends, colors=color, linewidth=width, zorder=1)
+    below.plot(wild["belt_speed"], wild["x"], zorder=1, **DOTS)
+    for axes, points, column in ((above, states, "mean_friction"), (below, rows, "x")):
+        for period, own in points[points["period"] > 0].groupby("period"):
+            axes.plot(own["belt_speed"], own[column], zorder=3, **_look(int(period)))
     above.set_ylabel(word("mean_friction", 28))
-    below.set_ylabel("position $x_1$ at the\nstart of a drive period")
-    below.set_xlabel(word("scene.belt_speed"))
+    below.set(xlabel=word("scene.belt_speed"), ylabel="position $x_1$ at the\nstart of a drive period")
     figure.legend(handles=list(_legend(states)), loc="outside lower center", ncols=7, handlelength=1.0)
     return figure
 
@@ -64,23 +69,6 @@ def _look(period: int) -> dict[str, Any]:
     marker, color = PERIOD_MARKERS.get(period, LONGER)
     shape = {"marker": marker, "color": color, "markersize": 2.6, "markeredgewidth": 0.7}
     return {**shape, "linestyle": "none", "markerfacecolor": "none" if period > 1 else color}
-
-
-def _draw_means(axes: Axes, states: pd.DataFrame) -> None:
-    wild, longer = states[states["period"] == 0], states[states["period"] > 1]
-    for rows, color, width in ((wild, WILD, 2.0), (longer, "0.85", 0.8)):
-        ends = rows["mean_low"], rows["mean_high"]
-        axes.vlines(rows["belt_speed"], *ends, colors=color, linewidth=width, zorder=1)
-    for period, rows in states[states["period"] > 0].groupby("period"):
-        axes.plot(rows["belt_speed"], rows["mean_friction"], zorder=3, **_look(int(period)))
-
-
-def _draw_points(axes: Axes, rows: pd.DataFrame) -> None:
-    wild = rows[rows["period"] == 0]
-    dots: Any = {"marker": "o", "markersize": 0.9, "markeredgewidth": 0.0, "linestyle": "none"}
-    axes.plot(wild["belt_speed"], wild["x"], color="0.55", zorder=1, rasterized=True, **dots)
-    for period, points in rows[rows["period"] > 0].groupby("period"):
-        axes.plot(points["belt_speed"], points["x"], zorder=3, **_look(int(period)))
 
 
 def _legend(states: pd.DataFrame) -> Iterator[Line2D]:

@@ -7,31 +7,32 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from frictionlab.charts.curves import LEAST_VISIBLE, Numbers
+from frictionlab.charts.curves import LEAST_VISIBLE, CurveNumbers
 
-Points = tuple[Numbers, Numbers]
+Points = tuple[CurveNumbers, CurveNumbers]
 LEVEL_SHARE = 0.4
 DIFFER_MOST = 0.3  # of the largest difference: from there on curves are shown closer
 GAP, LABELS = 0.07, 0.04  # to the level part around, and for labels of the view, in shares of the picture
 
 
-def draw_closer_view(axes: Axes, curves: Sequence[Points], draw: Callable[[Axes], None]) -> Axes | None:
+def draw_closer_view(axes: Axes, curves: Sequence[Points], draw: Callable[[Axes], None]) -> None:
     """Draw the lines anew where they differ, or where they change, in the room under or over their level part.
 
-    None, and nothing drawn, where less than LEVEL_SHARE of a linear axis, up to its right end, is level.
+    Nothing is drawn where less than LEVEL_SHARE of a linear axis, up to its right end, is level.
     """
+    finite = [np.isfinite(x) & np.isfinite(y) for x, y in curves]
+    curves = [(x[known], y[known]) for (x, y), known in zip(curves, finite, strict=True)]
     window = level_from(curves)
     if window is None or axes.get_xscale() != "linear" or axes.get_yscale() != "linear":
-        return None
+        return
     start, level = window
-    (left, bottom), (right, _) = axes.transAxes.inverted().transform(
-        axes.transData.transform([(start, level), (axes.get_xlim()[1], axes.get_ylim()[1])])
-    )
-    room = (0.1, bottom - GAP) if bottom > 0.5 else (bottom + GAP, 0.95)
-    if room[1] - room[0] < 0.25:
-        return None
+    ends = axes.transData.transform([(start, level), (axes.get_xlim()[1], axes.get_ylim()[1])])
+    (left, bottom), (right, _) = axes.transAxes.inverted().transform(ends)
+    foot, top = (0.1, bottom - GAP) if bottom > 0.5 else (bottom + GAP, 0.95)
+    if top - foot < 0.25:
+        return
     first = left + GAP + LABELS
-    inside = axes.inset_axes((first, room[0] + GAP, right - first - 0.5 * GAP, room[1] - room[0] - GAP))
+    inside = axes.inset_axes((first, foot + GAP, right - first - 0.5 * GAP, top - foot - GAP))
     draw(inside)
     low, high = _of_interest(curves, start)
     heights = np.concatenate([y[(x >= low) & (x <= high)] for x, y in curves])
@@ -40,7 +41,6 @@ def draw_closer_view(axes: Axes, curves: Sequence[Points], draw: Callable[[Axes]
     inside.set_ylim(float(heights.min()) - margin, float(heights.max()) + margin)
     inside.tick_params(labelsize=5.5, length=2)
     axes.indicate_inset_zoom(inside, edgecolor="0.45", linewidth=0.5)
-    return inside
 
 
 def level_from(curves: Sequence[Points]) -> tuple[float, float] | None:
@@ -48,11 +48,9 @@ def level_from(curves: Sequence[Points]) -> tuple[float, float] | None:
     known = [(x, y) for x, y in curves if len(x) > 2]
     if not known:
         return None
-    everything = np.concatenate([y for _, y in known])
-    least = LEAST_VISIBLE * float(np.ptp(everything))
-    start = max(
-        float(x[np.flatnonzero(np.append(True, np.abs(y - y[-1]) > least))[-1] - 1]) for x, y in known
-    )
+    least = LEAST_VISIBLE * float(np.ptp(np.concatenate([y for _, y in known])))
+    changes = [np.append(True, np.abs(y - y[-1]) > least) for _, y in known]
+    start = max(float(x[np.flatnonzero(each)[-1] - 1]) for (x, _), each in zip(known, changes, strict=True))
     low, high = min(float(x[0]) for x, _ in known), max(float(x[-1]) for x, _ in known)
     levels = [float(y[-1]) for _, y in known]
     if np.ptp(levels) > least or not low < start <= high - LEVEL_SHARE * (high - low):

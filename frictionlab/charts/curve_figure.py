@@ -22,7 +22,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodF
 from numpy.typing import NDArray
 
 from frictionlab.charts.closer_view import draw_closer_view
-from frictionlab.charts.curves import LEAST_VISIBLE, CurveData, Family, Numbers, drawn_once
+from frictionlab.charts.curves import LEAST_VISIBLE, CurveData, CurveNumbers, Family, drawn_once
 from frictionlab.charts.legend import WITHOUT_NUMBER, curve_entries, status_entries
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.marks import OnsetMark, draw_onsets, draw_speed_marks, onset_entries, onsets_on
@@ -123,8 +123,8 @@ class _Picture:
         for curve in curves:
             draw_onsets(axes, self.of.onsets_of(curve), self.of.looks.color(curve))
         if self.of.options.inset and self.column == "mean_friction":
-            known = [self._points(curve) for curve in curves]
-            draw_closer_view(axes, known, lambda inside: self.lines(inside, curves))
+            drawn = [(curve.column(abscissa), curve.column(self.column)) for curve in curves]
+            draw_closer_view(axes, drawn, lambda inside: self.lines(inside, curves))
         return axes
 
     def lines(self, axes: Axes, curves: Sequence[CurveData]) -> None:
@@ -133,11 +133,6 @@ class _Picture:
             axes.axhline(0.0, color="0.45", linewidth=0.6, zorder=0)
         for curve in curves:
             self._draw_curve(axes, curve)
-
-    def _points(self, curve: CurveData) -> tuple[Numbers, Numbers]:
-        x, y = curve.column(self.of.family.abscissa), curve.column(self.column)
-        known = np.isfinite(x) & np.isfinite(y)
-        return x[known], y[known]
 
     def _draw_curve(self, axes: Axes, curve: CurveData) -> None:
         x, y = curve.column(self.of.family.abscissa), curve.column(self.column)
@@ -177,7 +172,7 @@ class _Picture:
             self.axes.set_ylim(0.0, max(high, 1.05 * self.axes.dataLim.y1))
 
 
-def _draw_errors(axes: Axes, curve: CurveData, x: Numbers, color: Any) -> None:
+def _draw_errors(axes: Axes, curve: CurveData, x: CurveNumbers, color: Any) -> None:
     """A band of the error where it can be seen, a bar from mean_low to mean_high where the state is not unique."""
     error, mean = curve.column("error"), curve.column("mean_friction")
     if (np.nan_to_num(error) > LEAST_VISIBLE * np.ptp(axes.get_ylim())).any():

@@ -21,7 +21,7 @@ from frictionlab.charts.sweeps import (
 )
 from frictionlab.columns import BELT_SPEED, BELT_SPEEDS, SCALED, belt_speed, word
 
-Numbers = NDArray[np.float64]
+CurveNumbers = NDArray[np.float64]
 MOST_PICTURES = 12  # in which several laws are compared; of more values each law has a picture of its own
 LEAST_VISIBLE = 0.004  # share of an axis: half a line width at the size of a panel
 SPEED_RATIO = "velocity_ratio"
@@ -48,7 +48,7 @@ class CurveData:
     kinks: tuple[float, ...] = ()
     same: tuple[str, ...] = ()
 
-    def column(self, name: str) -> Numbers:
+    def column(self, name: str) -> CurveNumbers:
         """The numbers of a column, NaN where it does not apply."""
         return self.rows[name].to_numpy(dtype=float)
 

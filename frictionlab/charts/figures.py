@@ -17,9 +17,8 @@ from frictionlab.charts.bifurcation import bifurcation_figures
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import Family, family_of
 from frictionlab.charts.derived import differences, normalized, reference_law
-from frictionlab.charts.harmonics import harmonic_figures
+from frictionlab.charts.kept_figures import harmonic_figures, orbit_figures
 from frictionlab.charts.maps import MapFigure, map_of, map_of_curves
-from frictionlab.charts.orbit_figures import orbit_figures
 from frictionlab.charts.shape_figure import ShapeFigure
 from frictionlab.charts.sheet import Heading
 from frictionlab.charts.style import STYLE, write_figure

@@ -38,13 +38,13 @@ def _label(looks: Looks, curve: CurveData, methods: Sequence[str]) -> str:
     room = BESIDE if several_laws and methods else LONGEST_LABEL
     told = [shortened(curve.law, room)] if several_laws else []
     if methods:
-        told.append(joined(methods, room))
+        told.append(joined_methods(methods, room))
     if curve.member is not None and curve.member.value is not None:
         told.append(curve.member.text)
     return ", ".join(told)
 
 
-def joined(methods: Sequence[str], room: int = BESIDE) -> str:
+def joined_methods(methods: Sequence[str], room: int = BESIDE) -> str:
     """The names of methods that share a line."""
     names = [shortened(name, room) for name in methods]
     together = " = ".join(names)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from frictionlab.charts.curves import CurveData
 from frictionlab.charts.style import CYCLE
+from frictionlab.charts.sweeps import some_of
 
 MARKERS = "os^Dvph<>d"
 MOST_VALUES_IN_LEGEND = 8
@@ -37,77 +38,44 @@ class Looks:
 
     def line(self, curve: CurveData) -> dict[str, Any]:
         """Colour, dashes and marker. Of several methods the first is broad, the last lies thin on top."""
-        _, _, method = curve.place
+        _, member, method = curve.place
         _, members, methods = self.sizes
         broader = BROADEST * (methods - 1 - method) / max(1, methods - 1)
+        sign = member + members * method if self._methods_have_markers else member
         return {
             "color": self.color(curve),
-            "linestyle": CYCLE[self._hue(curve) % len(CYCLE)]["linestyle"],
+            "linestyle": self._cycle(curve)["linestyle"],
             "linewidth": (1.1 if members <= MOST_VALUES_IN_LEGEND else 0.6) + broader,
-            "marker": MARKERS[self._sign(curve) % len(MARKERS)],
+            "marker": MARKERS[sign % len(MARKERS)],
             "markeredgecolor": "white",
             "markeredgewidth": 0.4,
         }
 
     def color(self, curve: CurveData) -> tuple[float, float, float]:
         """The colour of what sets it, from dark to light along a swept number."""
-        full = to_rgb(CYCLE[self._hue(curve) % len(CYCLE)]["color"])
-        _, member, _ = curve.place
-        _, members, _ = self.sizes
+        red, green, blue = to_rgb(self._cycle(curve)["color"])
+        members = self.sizes[1]
         if members == 1 or self._words:
-            return full
-        share = member / (members - 1)  # first half as dark as black allows, then towards white
+            return red, green, blue
+        share = curve.place[1] / (members - 1)  # first half as dark as black allows, then towards white
         toward, part = (0.0, 0.5 - share) if share < 0.5 else (1.0, 1.3 * (share - 0.5))
-        red, green, blue = (level + part * (toward - level) for level in full)
+        red, green, blue = (level + part * (toward - level) for level in (red, green, blue))
         return red, green, blue
+
+    def _cycle(self, curve: CurveData) -> dict[str, Any]:
+        law, member, method = curve.place
+        place = law if self.sizes[0] > 1 else member if self._words else method
+        return CYCLE[place % len(CYCLE)]
 
     def marked(self, y: NDArray[np.float64], curve: CurveData) -> list[int]:
         """The points that get a marker: some of a curve with neighbours, and all that no line reaches."""
         known = np.isfinite(y)
-        neighbours = np.concatenate([known[1:], [False]]) | np.concatenate([[False], known[:-1]])
-        marks = known & ~neighbours
-        if self._signs > 1 and curve.place[1] in self.shown:
+        beside = np.pad(known, 1)
+        marks = ~(beside[2:] | beside[:-2])
+        if self._has_signs and curve.place[1] in self.shown:
             first, step = self._stagger(len(y), curve)
             marks[first::step] = True
         return [int(place) for place in np.flatnonzero(marks & known)]
-
-    @cached_property
-    def shown(self) -> set[int]:
-        """The swept values that get markers and a place in the legend: all of a few, else some, first to last."""
-        members = self.sizes[1]
-        places = np.linspace(0, members - 1, min(members, MOST_VALUES_IN_LEGEND)).round()
-        return set(places.astype(int).tolist())
-
-    @cached_property
-    def _words(self) -> bool:
-        """Whether the swept values are words, which are no steps of a scale."""
-        return any(curve.member is not None and isinstance(curve.member.value, str) for curve in self.curves)
-
-    def _hue(self, curve: CurveData) -> int:
-        law, member, method = curve.place
-        if self.sizes[0] > 1:
-            return law
-        return member if self._words else method
-
-    def _sign(self, curve: CurveData) -> int:
-        """The number of its marker."""
-        _, member, method = curve.place
-        return member + self.sizes[1] * method if self._methods_have_markers else member
-
-    def sample(self, curve: CurveData) -> dict[str, Any]:
-        """The look of its line in the legend: without a marker where its curve has none."""
-        return self.line(curve) | ({} if self._signs > 1 else {"marker": ""})
-
-    @property
-    def _signs(self) -> int:
-        _, members, methods = self.sizes
-        return members * methods if self._methods_have_markers else members
-
-    @property
-    def _methods_have_markers(self) -> bool:
-        """Whether neither colour and dashes tell methods apart, or they are many."""
-        laws, _, methods = self.sizes
-        return methods > 2 or (methods > 1 and (laws > 1 or self._words))
 
     def _stagger(self, points: int, curve: CurveData) -> tuple[int, int]:
         """The first marker of a curve and the step to the next: about ten, fewer where many methods coincide."""
@@ -117,3 +85,27 @@ class Looks:
             return step * (member + law) // (laws + members) % step, step
         step = max(step, min(methods, points // 3))
         return (method * step // methods + law + member) % step, step
+
+    @cached_property
+    def shown(self) -> set[int]:
+        """The swept values that get markers and a place in the legend: all of a few, else some, first to last."""
+        return set(some_of(range(self.sizes[1]), MOST_VALUES_IN_LEGEND))
+
+    def sample(self, curve: CurveData) -> dict[str, Any]:
+        """The look of its line in the legend: without a marker where its curve has none."""
+        return self.line(curve) | ({} if self._has_signs else {"marker": ""})
+
+    @cached_property
+    def _words(self) -> bool:
+        """Whether the swept values are words, which are no steps of a scale."""
+        return any(curve.member is not None and isinstance(curve.member.value, str) for curve in self.curves)
+
+    @property
+    def _methods_have_markers(self) -> bool:
+        """Whether neither colour and dashes tell methods apart, or they are many."""
+        laws, _, methods = self.sizes
+        return methods > 2 or (methods > 1 and (laws > 1 or self._words))
+
+    @property
+    def _has_signs(self) -> bool:
+        return self.sizes[1] > 1 or self._methods_have_markers

@@ -27,11 +27,11 @@ from frictionlab.charts.curves import (
     MOST_PICTURES,
     SPEED_RATIO,
     CurveData,
-    Numbers,
+    CurveNumbers,
     curves_of,
     drawn_once,
 )
-from frictionlab.charts.legend import LEGEND_MARKS, joined, status_entries
+from frictionlab.charts.legend import LEGEND_MARKS, joined_methods, status_entries
 from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, abreast, part_told
 from frictionlab.charts.sweeps import BESIDE, is_logarithmic, linked_words, shortened, some_of, sweep_of
 from frictionlab.columns import BELT_SPEEDS, word
@@ -51,12 +51,12 @@ MEASURE_NAMES = {
 }
 
 
-class Grid(NamedTuple):
+class MapValues(NamedTuple):
     """A column over two numbers: their values, and a row of the column for each of the second."""
 
-    x: Numbers
-    y: Numbers
-    known: Numbers
+    x: CurveNumbers
+    y: CurveNumbers
+    known: CurveNumbers
 
 
 @dataclass(frozen=True)
@@ -102,10 +102,10 @@ class MapFigure:
         bar.set_label(MEASURE_NAMES.get(column) or word(column, 28))
         bar.outline.set_linewidth(0.5)
 
-    def _grid(self, picture: CurveData, column: str) -> Grid:
+    def _grid(self, picture: CurveData, column: str) -> MapValues:
         x, y = (np.unique(picture.column(name)) for name in self.over)
         rows = picture.rows.sort_values([self.over[1], self.over[0]])
-        return Grid(x, y, rows[column].to_numpy(dtype=float).reshape(len(y), len(x)))
+        return MapValues(x, y, rows[column].to_numpy(dtype=float).reshape(len(y), len(x)))
 
     def _mark_missing(self, axes: Axes, picture: CurveData) -> None:
         look: Any = {"linestyle": "none", "color": "0.3", "markersize": 3}
@@ -121,7 +121,7 @@ class MapFigure:
         methods = [(each.method, *each.same) for each in self.pictures]
         named = [shortened(picture.law, BESIDE)] if len({each.law for each in self.pictures}) > 1 else []
         if len(set(methods)) > 1 or len(methods[0]) > 1:
-            named.append(joined((picture.method, *picture.same)))
+            named.append(joined_methods((picture.method, *picture.same)))
         return ", ".join(named + [setting.sentence for setting in picture.panel])
 
     def _entries(self) -> list[Artist]:
@@ -159,7 +159,8 @@ def _figure(
     table: pd.DataFrame, swept: Sequence[str], numbers: Sequence[str], along: str | None = None
 ) -> MapFigure | None:
     """Those over the two numbers of most values, one of them the one given. numbers: of the fewest values first."""
-    most = [name for name in numbers if name.startswith("scene.") or _of_every_law(table, name)]
+    within = table.groupby("law")[list(numbers)].nunique()  # a law without a parameter has no map over it
+    most = [name for name in numbers if name.startswith("scene.") or (within[name] > 1).all()]
     most += [along] if along else []
     if len(most) < 2 or table[most[-2]].nunique() < LEAST_VALUES:
         return None
@@ -167,7 +168,8 @@ def _figure(
     pictures = curves_of(table, x, [name for name in swept if name not in (x, y)])
     if "status" in table:
         pictures = [picture for picture in pictures if not picture.having("refused").all()]
-    if not pictures or not all(_is_grid(picture.rows, (x, y)) for picture in pictures):
+    sizes = [(len(each.rows), each.rows[x].nunique() * each.rows[y].nunique()) for each in pictures]
+    if not pictures or any(rows != cells for rows, cells in sizes):  # else a map is full of holes
         return None
     if "error" in table:
         pictures = drawn_once(pictures, ["mean_friction"])
@@ -176,24 +178,14 @@ def _figure(
     return MapFigure((x, y), words, drawn, table, left_out=len(pictures) - len(drawn))
 
 
-def _is_grid(rows: pd.DataFrame, over: tuple[str, str]) -> bool:
-    """Whether every value of one number meets every value of the other: else a map is full of holes."""
-    return len(rows) == rows[over[0]].nunique() * rows[over[1]].nunique()
-
-
-def _of_every_law(table: pd.DataFrame, name: str) -> bool:
-    """Whether a law's parameter varies within every law: one that has no such number has no map."""
-    return bool((table.groupby("law")[name].nunique() > 1).all())
-
-
-def _norm(values: Numbers, column: str) -> Normalize:
+def _norm(values: CurveNumbers, column: str) -> Normalize:
     known = values[np.isfinite(values)]
     if column == "error" and (known > 0.0).any():
         return LogNorm(float(known[known > 0.0].min()), float(known.max()), clip=True)
     return Normalize(float(known.min()), float(known.max()))
 
 
-def _draw_shades(axes: Axes, grid: Grid, norm: Normalize) -> QuadMesh:
+def _draw_shades(axes: Axes, grid: MapValues, norm: Normalize) -> QuadMesh:
     edges = [_edges(values) for values in (grid.x, grid.y)]
     pixels = grid.known.size > RASTERIZED
     mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(grid.known), norm=norm, rasterized=pixels)
@@ -203,7 +195,7 @@ def _draw_shades(axes: Axes, grid: Grid, norm: Normalize) -> QuadMesh:
     return mesh
 
 
-def _draw_contours(axes: Axes, grid: Grid, norm: Normalize) -> None:
+def _draw_contours(axes: Axes, grid: MapValues, norm: Normalize) -> None:
     """Labelled lines of equal value, zero a broad one; none of an error, which jumps from point to point."""
     low, high = float(norm.vmin or 0.0), float(norm.vmax or 0.0)
     few = min(grid.known.shape) < 2 or np.isfinite(grid.known).sum() < 4
@@ -217,7 +209,7 @@ def _draw_contours(axes: Axes, grid: Grid, norm: Normalize) -> None:
     look: Any = {"colors": "0.1", "linewidths": broad, "linestyles": "solid"}
     lines = axes.contour(grid.x, grid.y, np.ma.masked_invalid(grid.known), levels, **look)
     lines.set(path_effects=[OUTLINE])
-    kept: list[Numbers] = []
+    kept: list[CurveNumbers] = []
     for label in axes.clabel(lines, fontsize=6, fmt="%.4g", inline=False):
         at = (axes.transScale + axes.transLimits).transform(label.get_position())
         if any((np.abs(at - other) < LABEL_ROOM).all() for other in kept):
@@ -227,7 +219,7 @@ def _draw_contours(axes: Axes, grid: Grid, norm: Normalize) -> None:
             label.set(path_effects=[OUTLINE])
 
 
-def _draw_v_lin(axes: Axes, ratio: Grid) -> None:
+def _draw_v_lin(axes: Axes, ratio: MapValues) -> None:
     """The line on which the belt runs at V_lin, from the ratio of both speeds; none where no part of it is inside."""
     known = np.abs(ratio.known[np.isfinite(ratio.known)])
     if not known.size or not known.min() < 1.0 < known.max():
@@ -237,7 +229,7 @@ def _draw_v_lin(axes: Axes, ratio: Grid) -> None:
     line.set(linewidth=1.1, path_effects=[DARK_EDGE])
 
 
-def _edges(values: Numbers) -> Numbers:
+def _edges(values: CurveNumbers) -> CurveNumbers:
     """Of cells around these values, half way between neighbours."""
     steps = np.log(values) if is_logarithmic(values) else values
     half = 0.5 * np.diff(steps)

@@ -42,11 +42,8 @@ def onsets_on(curve: CurveData, onsets: pd.DataFrame | None, along: str | None =
     """
     if onsets is None or onsets.empty:
         return []
-    found = curve.rows_in(onsets, ONSETS)
-    scale = curve.speed_scale(along)
-    marks = [
-        OnsetMark(name, scale * at) for name, at in zip(found["onset"], found["belt_speed"], strict=True)
-    ]
+    found, scale = curve.rows_in(onsets, ONSETS), curve.speed_scale(along)
+    marks = map(OnsetMark, found["onset"], scale * found["belt_speed"])
     return [mark for mark in marks if mark.onset != "reversal_ends" or not _is_kink(mark.at, curve)]
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from frictionlab.report.index import write_index
-from frictionlab.report.page import write_report
+from frictionlab.report.page import write_index, write_report
 from frictionlab.report.sources import bibtex
 
 __all__ = ["bibtex", "write_index", "write_report"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,8 +24,17 @@ _SI = {
 
 def equations(study: Study) -> list[Markup]:
     """What is solved: the motion along the belt and across it, slip, and what varies; of a prescribed slip that."""
-    numbers = _numbers(study)
-    return list(_lines(numbers, study.scene.degrees_of_freedom))
+    n, degrees = _Numbers.of(study), study.scene.degrees_of_freedom
+    axes = range(1, degrees + 1)
+    slips = [_slip_of_mass(n, axis) for axis in axes]
+    lines = [*(_motion(n, axis) for axis in axes), *([Markup(", &ensp; ").join(slips)] if slips else [])]
+    if degrees == 0:
+        lines = [_slip_line(n, 1, "slip")]
+        lines += [_slip_line(n, 2, "transverse_slip")] if n.has("transverse_slip") else []
+    if n.has("normal_load_variation"):
+        varying = Markup("(1 + {})").format(_wave(n, "normal_load_variation", "amplitude"))
+        lines.append(Markup("<i>N</i> = {}").format(_times(_load(n), varying)))
+    return lines
 
 
 def letters_sentence(study: Study) -> str:
@@ -40,17 +49,6 @@ def letters_sentence(study: Study) -> str:
     return f"{'; '.join(told)}."
 
 
-def _numbers(study: Study) -> _Numbers:
-    in_si = study.scene.dimensional is not None
-    kept = "dimensional." if in_si else ""
-    values = {path.removeprefix(kept): value for path, value in study.scene.given_values().items()}
-    swept = {path.removeprefix("scene.").removeprefix(kept) for path in study.sweep}
-    owner = next(
-        (name for name in _WITH_FREQUENCY if any(path.startswith(f"{name}.freq") for path in values)), ""
-    )
-    return _Numbers(values, swept, in_si, owner)
-
-
 _WITH_FREQUENCY = "drive", "slip", "transverse_slip", "belt_vibration", "normal_load_variation"
 
 
@@ -62,6 +60,15 @@ class _Numbers:
     swept: set[str]
     in_si: bool
     owner: str
+
+    @classmethod
+    def of(cls, study: Study) -> _Numbers:
+        in_si = study.scene.dimensional is not None
+        kept = "dimensional." if in_si else ""
+        values = {path.removeprefix(kept): value for path, value in study.scene.given_values().items()}
+        swept = {path.removeprefix("scene.").removeprefix(kept) for path in study.sweep}
+        owners = (name for name in _WITH_FREQUENCY if any(path.startswith(f"{name}.freq") for path in values))
+        return cls(values, swept, in_si, next(owners, ""))
 
     def has(self, part: str) -> bool:
         return any(path == part or path.startswith(f"{part}.") for path in (*self.values, *self.swept))
@@ -79,12 +86,9 @@ class _Numbers:
 
     def shown(self, path: str) -> Markup:
         """Its number, or its symbol where it is swept."""
-        value = self.fixed(path)
-        return (
-            symbol_html(f"scene.{'dimensional.' if self.in_si else ''}{path}")
-            if value is None
-            else _signed(value)
-        )
+        if (value := self.fixed(path)) is None:
+            return symbol_html(f"scene.{'dimensional.' if self.in_si else ''}{path}")
+        return _signed(value)
 
     @property
     def letters(self) -> tuple[str, str, str]:
@@ -104,21 +108,6 @@ def _signed(value: float) -> Markup:
     return Markup(number(value).replace("-", _MINUS))
 
 
-def _lines(n: _Numbers, degrees: int) -> Iterator[Markup]:
-    if degrees == 0:
-        yield _slip_line(n, 1, "slip")
-        if n.has("transverse_slip"):
-            yield _slip_line(n, 2, "transverse_slip")
-    else:
-        yield _motion(n, 1)
-        if degrees == 2:
-            yield _motion(n, 2)
-        yield _relative(n, degrees)
-    if n.has("normal_load_variation"):
-        varying = Markup("(1 + {})").format(_wave(n, "normal_load_variation", "amplitude"))
-        yield Markup("<i>N</i> = {}").format(_times(_load(n), varying))
-
-
 def _motion(n: _Numbers, axis: int) -> Markup:
     """Inertia, dashpot, spring and friction against the load."""
     place, first, second = (Markup("<i>{}</i><sub>{}</sub>").format(each, axis) for each in n.letters)
@@ -127,7 +116,7 @@ def _motion(n: _Numbers, axis: int) -> Markup:
     normal = Markup("<i>N</i>") if n.has("normal_load_variation") else _load(n)
     friction = _times(normal, Markup("<i>T</i><sub>{}</sub>").format(axis))
     left = Markup(" + ").join(each for each in [*terms, friction] if each)
-    return Markup("{} = {}").format(left, _sum(_loads(n, axis)))
+    return Markup("{} = {}").format(left, Markup(" + ").join(_loads(n, axis)) or "0")
 
 
 def _coefficients(n: _Numbers, axis: int) -> tuple[Markup, Markup, Markup]:
@@ -144,11 +133,8 @@ def _coefficients(n: _Numbers, axis: int) -> tuple[Markup, Markup, Markup]:
     if natural is None:
         dashpot = Markup("{} {}").format(_doubled(ratio, n.shown("transverse.damping_ratio")), symbol)
         return one, Markup("0") if ratio == 0.0 else dashpot, Markup("{}<sup>2</sup>").format(symbol)
-    dashpot = _doubled(
-        None if ratio is None else ratio * natural,
-        Markup("{} {}").format(_signed(natural), n.shown("transverse.damping_ratio")),
-    )
-    return one, dashpot, _signed(natural**2)
+    shown = Markup("{} {}").format(_signed(natural), n.shown("transverse.damping_ratio"))
+    return one, _doubled(None if ratio is None else ratio * natural, shown), _signed(natural**2)
 
 
 def _doubled(value: float | None, shown: Markup) -> Markup:
@@ -160,10 +146,6 @@ def _times(factor: Markup, what: Markup) -> Markup:
     if factor == "0":
         return Markup("")
     return what if factor == "1" else Markup("{} {}").format(factor, what)
-
-
-def _sum(terms: Sequence[Markup]) -> Markup:
-    return Markup(" + ").join(terms) or Markup("0")
 
 
 def _load(n: _Numbers) -> Markup:
@@ -192,9 +174,8 @@ def _along(n: _Numbers, part: str, axis: int) -> Markup | None:
     direction = n.fixed(path)
     if path not in n.swept and not direction:
         return Markup("") if axis == 1 else None
-    return Markup(" {} {}{}").format(
-        "cos" if axis == 1 else "sin", n.shown(path), "" if path in n.swept else "°"
-    )
+    degrees = "" if path in n.swept else "°"
+    return Markup(" {} {}{}").format("cos" if axis == 1 else "sin", n.shown(path), degrees)
 
 
 def _force(n: _Numbers, part: str) -> Markup:
@@ -240,12 +221,8 @@ def _angle(n: _Numbers, part: str) -> Markup:
     return Markup("{}{}").format(_times(speed, time), sign)
 
 
-def _relative(n: _Numbers, degrees: int) -> Markup:
-    """The slip velocity: that of the mass less that of the belt."""
-    return Markup(", &ensp; ").join(_slip_of_mass(n, axis) for axis in range(1, degrees + 1))
-
-
 def _slip_of_mass(n: _Numbers, axis: int) -> Markup:
+    """The slip velocity: that of the mass less that of the belt."""
     part = "belt_vibration"
     told = Markup("<i>v</i><sub>{0}</sub> = <i>{1}</i><sub>{0}</sub>").format(axis, n.letters[1])
     if axis == 1:
@@ -266,9 +243,8 @@ def _less(n: _Numbers, path: str) -> Markup:
 
 def _slip_line(n: _Numbers, axis: int, part: str) -> Markup:
     """A prescribed slip velocity."""
-    wave = _times(n.shown(f"{part}.velocity_amplitude"), _form(n, part)) if n.has(part) else Markup("")
+    wave = _wave(n, part, "velocity_amplitude") if n.has(part) else Markup("")
     belt = _less(n, "belt_speed") if axis == 1 else Markup("")
     alone = Markup(belt.removeprefix("+ ").replace(f"{_MINUS} ", _MINUS))
-    return Markup("<i>v</i><sub>{}</sub> = {}").format(
-        axis, Markup("{} {}").format(wave, belt) if wave else alone
-    )
+    told = Markup("{} {}").format(wave, belt) if wave else alone
+    return Markup("<i>v</i><sub>{}</sub> = {}").format(axis, told)

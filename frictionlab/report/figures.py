@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -87,23 +87,27 @@ def _of_table(run: Facts, family: Family, name: str) -> Picture:
     shown = Markup(shown[:1].upper() + shown[1:])
     if maps is None:
         told = [Markup("{} against {}").format(shown, word_html(family.abscissa))]
-        lines = [*_lines(family), *_panels(family)]
+        lines = list(_lines(family))
     else:
         over = Markup(" and ").join(map(word_html, maps.over))
         told = [Markup("{} over {}, in shades with lines of equal value").format(shown, over)]
         names = (joined_values(run.table[name]) for name in ("law", "method"))
         lines = [Markup("Laws: {}; methods: {}").format(*names)]
     if name == next(iter(run.figures.columns)):
-        told += [*lines, *_fixed(run), *_missing(run)]
+        told += [*lines, *_held_and_missing(run)]
     elif maps is None:
         told.append(Markup("Lines as in Figure 1"))
-    spans = " ".join(_span(run.table[column].dropna(), column) for column in columns)
+    known = {column: run.table[column].dropna() for column in columns}
+    spans = " ".join(
+        f"{word_html(column).striptags()}: from {found.min():.4g} to {found.max():.4g}."
+        for column, found in known.items()
+    )
     alone = maps is None and len(family.panels) * len(columns) == 1
     return _picture(run, name, Markup(". ").join(told) + ".", f" {spans}", alone)
 
 
 def _lines(family: Family) -> Iterator[Markup]:
-    """Laws, methods and swept values, each named where there are several."""
+    """Laws, methods and swept values, each named where there are several; what each picture is for."""
     laws, methods = ({getattr(curve, name): None for curve in family.curves} for name in ("law", "method"))
     law = "Law" if len(laws) == 1 else "A colour and dashes for each law:"
     method = "method" if len(methods) == 1 else "methods, one line where their curves coincide:"
@@ -111,30 +115,18 @@ def _lines(family: Family) -> Iterator[Markup]:
     if family.member is not None:
         members = {curve.place[1]: curve.member.value for curve in family.curves if curve.member}
         values = [value for _, value in sorted(members.items()) if value is not None]
-        listed = values_listed(values)
-        names = symbol_html(family.member), listed, unit_html(family.member)
+        names = symbol_html(family.member), values_listed(values), unit_html(family.member)
         yield Markup("A curve for each {} = {}{}").format(*names)
+    if panels := dict.fromkeys(name for panel in family.panels for name, _ in panel):
+        yield Markup("A picture for each {}").format(Markup(", ").join(map(symbol_html, panels)))
 
 
-def _panels(family: Family) -> Iterator[Markup]:
-    if names := dict.fromkeys(name for panel in family.panels for name, _ in panel):
-        yield Markup("A picture for each {}").format(Markup(", ").join(map(symbol_html, names)))
-
-
-def _fixed(run: Facts) -> Iterator[Markup]:
-    """The values of the scene that are the same in every point."""
+def _held_and_missing(run: Facts) -> Iterator[Markup]:
+    """The values of the scene that are the same in every point; how many points have no number but a mark."""
     study = run.saved.study
     values = {f"scene.{path}": value for path, value in study.scene.given_values().items()}
     if fixed := [setting(name, value) for name, value in values.items() if name not in study.sweep]:
         yield Markup("Held fixed: {}").format(Markup(", ").join(fixed))
-
-
-def _missing(run: Facts) -> Iterator[Markup]:
-    """How many points have no number, which the figures show as marks."""
     counts = {status.replace("_", " "): count for status, count in run.saved.counts.items() if status != "ok"}
     if told := [f"{counted(count, 'point')} {status}" for status, count in counts.items()]:
         yield Markup("Without a number, and marked as such: {}").format(", ".join(told))
-
-
-def _span(found: Sequence[float], column: str) -> str:
-    return f"{word_html(column).striptags()}: from {min(found):.4g} to {max(found):.4g}."

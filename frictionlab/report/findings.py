@@ -42,27 +42,23 @@ def curves_grid(run: Facts) -> Grid:
         *("largest error", "at", "kind of error", "errors above the tolerance"),
     ]
     rows = (
-        [*who, statuses(curve.rows).replace("_", " "), *_spans(curve.rows), *_errors(run, curve.rows)]
+        [*who, statuses(curve.rows).replace("_", " "), *_numbers(run, curve.rows)]
         for who, curve in zip(whose(run.curves), run.curves, strict=True)
     )
     return grid("Curves: everything equal but belt speed", head, rows, "curves", total=len(run.curves))
 
 
-def _spans(rows: pd.DataFrame) -> list[Cell]:
-    """Where the mean lies, and the mean force in a scene given in SI units."""
-    return [mean_span(rows), mean_span(rows, unit="_N") if "mean_friction_N" in rows else ""]
-
-
-def _errors(run: Facts, rows: pd.DataFrame) -> list[Cell]:
-    """The largest error and where it is, of which kind the errors are, how many are above the tolerance."""
+def _numbers(run: Facts, rows: pd.DataFrame) -> list[Cell]:
+    """Where the mean lies, and the force in SI units; the largest error, where, the kinds, how many too large."""
+    spans = [mean_span(rows), mean_span(rows, unit="_N") if "mean_friction_N" in rows else ""]
     known = rows[rows["error"].notna()]
     if known.empty:
-        return [""] * 4
+        return [*spans, *[""] * 4]
     worst = known.loc[known["error"].idxmax()]
     above = int((known["error"] > run.saved.study.tolerance).sum())
     kinds = joined_values(known["error_kind"].dropna())
     at = setting(run.speed, worst[run.speed])
-    return [size(float(worst["error"])), at, kinds, counted(above, "point") if above else ""]
+    return [*spans, size(float(worst["error"])), at, kinds, counted(above, "point") if above else ""]
 
 
 def onset_grid(run: Facts, onsets: pd.DataFrame) -> Grid:
@@ -106,18 +102,14 @@ def whole_grid(run: Facts) -> Grid | None:
     names = [*RESULTS, *in_si]
     left = {*TOLD_ELSEWHERE, *map(_error_of, names), *(SI[name].column for name in in_si)}
     points = [row for _, row in table.iterrows()]
-    rows = [
-        [_quantity(name), *(_written(row, name) for row in points)]
-        for name in names
-        if (name == "mean_friction" or name not in left) and table[name].notna().any()
-    ]
+    rows: list[list[Cell]] = []
+    for name in names:
+        if (name == "mean_friction" or name not in left) and table[name].notna().any():
+            symbol, words = symbol_html(name), name.replace("_", " ")
+            quantity = words if str(symbol) == words else Markup("{} {}").format(words, symbol)
+            rows.append([quantity, *(_written(row, name) for row in points)])
     told = [Markup("{} by {}, {}").format(row["law"], row["method"], place_of(run, row)) for row in points]
     return grid("Every number found", ["quantity", *told], rows)
-
-
-def _quantity(name: str) -> Cell:
-    shown, words = symbol_html(name), name.replace("_", " ")
-    return words if str(shown) == words else Markup("{} {}").format(words, shown)
 
 
 def _error_of(name: str) -> str:

@@ -1,11 +1,13 @@
-"""The page of a run: one HTML file that needs nothing else, made of what the run's folder holds."""
+"""The page of a run and that of a folder of runs: HTML files that need nothing else, made of what folders hold."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
@@ -15,10 +17,10 @@ from frictionlab.report import findings, question
 from frictionlab.report.answer import sentences
 from frictionlab.report.equation import equations, letters_sentence
 from frictionlab.report.facts import Facts
-from frictionlab.report.figures import pictures
+from frictionlab.report.figures import address, pictures
 from frictionlab.report.shapes import shape_grid
 from frictionlab.report.sources import entries_of, published
-from frictionlab.report.tables import Grid, grid
+from frictionlab.report.tables import Grid, grid, size
 from frictionlab.results.words import counted
 from frictionlab.runner.folder import write_page
 from frictionlab.runner.saved import Saved
@@ -28,6 +30,8 @@ REPORT_TEMPLATES = Path(__file__).parent / "templates"
 GENERATOR = f"frictionlab {__version__}"
 MOST_SHOWN_AT_ONCE = 12
 """Expectations that are shown unasked where all of them hold."""
+LARGEST_THUMBNAIL = 200_000
+"""Length of a picture's data above which the index goes without it: the report has it."""
 GO_ON = "frictionlab run study.yaml -o .       # go on where it was interrupted"
 AGAIN = [
     "frictionlab run study.yaml -o again --cache again   # compute everything anew, into another folder",
@@ -159,3 +163,43 @@ def _runs(runs: Sequence[dict[str, Any]]) -> Grid:
         for run in runs
     ]
     return grid("When it ran", ["started", "took", "computed", "set on the command line"], rows)
+
+
+def write_index(folder: Path, runs: Sequence[Saved]) -> Path:
+    """Write the index.html of runs in folders below this one; where it is. Raises SaveError."""
+    file = folder / "index.html"
+    write_page(file, index(folder, runs))
+    return file
+
+
+def index(folder: Path, runs: Sequence[Saved]) -> str:
+    """The page of a folder of studies."""
+    entries = [_entry(folder, run) for run in runs]
+    counts = sum((Counter(run.counts) for run in runs), Counter())
+    return rendered(
+        "index.html",
+        title=f"Studies in {folder.absolute().name}",
+        size=f"{len(runs)} studies, {counted(sum(counts.values()), 'point')}",
+        counts=dict(counts.most_common()),
+        passed=sum(entry["passed"] for entry in entries),
+        failed=sum(entry["failed"] for entry in entries),
+        wall=wall(sum(run.seconds for run in runs)),
+        entries=entries,
+    )
+
+
+def _entry(folder: Path, run: Saved) -> dict[str, Any]:
+    """A study's row."""
+    name, passed = run.folder.relative_to(folder).as_posix(), sum(verdict.passed for verdict in run.verdicts)
+    picture = address(run.folder / "figures" / "mean_friction")
+    return {
+        "name": name,
+        "title": run.title,
+        "link": f"{quote(name)}/report.html",
+        "points": ", ".join(f"{count} {status}" for status, count in run.counts.items()),
+        "passed": passed,
+        "failed": len(run.verdicts) - passed,
+        "error": size(float(run.table["error"].max())),
+        "wall": wall(run.seconds),
+        "thumbnail": picture if len(picture) <= LARGEST_THUMBNAIL else "",
+    }

@@ -1,12 +1,13 @@
-"""Figures of kept orbits: hysteresis loops, phase portraits with Poincaré points, and time series.
+"""Figures of what a run kept: hysteresis loops, phase portraits with Poincaré points, time series, and harmonics.
 
-Of many points some are drawn, spread over the axis: every picture is one point, with a line for each law.
+Of many points some are drawn, spread over the axis: every picture is one point, with a line for each law. Amplitudes
+of harmonics lie along a sweep, a picture for each harmonic.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import zip_longest
 from typing import Any, NamedTuple
@@ -17,12 +18,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.charts.curves import CurveData, Family, Numbers
+from frictionlab.charts.curve_figure import CurveFigure
+from frictionlab.charts.curves import MOST_PICTURES, CurveData, CurveNumbers, Family, family_by
 from frictionlab.charts.legend import curve_entries
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.sheet import Heading, Sheet, part_told, scale_alike
-from frictionlab.charts.sweeps import SweptValue, some_of
+from frictionlab.charts.sweeps import SweptValue, some_of, sweep_of
 from frictionlab.columns import BELT_SPEED
+from frictionlab.study.figure_options import FigureOptions
 
 MOST_ORBITS, MOST_OF_A_PANEL = 6, 3  # pictures of a figure, and of them along one axis
 MOST_IN_TIME = 4  # points with a picture of velocity and one of friction
@@ -38,6 +41,11 @@ KINDS = {
     "time_series": [("tau", "v1"), ("tau", "friction")],
 }
 """Of each figure what its pictures show of a point, along the axis and upwards."""
+HARMONIC = "harmonic"
+AMPLITUDES = {
+    "velocity_harmonics": ("velocity_amplitude", "amplitude of the harmonic\nof the velocity"),
+    "friction_harmonics": ("friction_amplitude", "amplitude of the harmonic\nof the friction coefficient"),
+}
 POINCARE: Any = {"marker": "o", "markersize": 3.5, "markerfacecolor": "white", "markeredgewidth": 0.9}
 SPEED_LINE: Any = {"color": "0.45", "linewidth": 0.6}
 FREQUENCIES = tuple(
@@ -52,7 +60,7 @@ class DrawnOrbit(NamedTuple):
     row: pd.Series
     samples: pd.DataFrame
 
-    def column(self, name: str) -> Numbers:
+    def column(self, name: str) -> CurveNumbers:
         """A column of the samples."""
         return self.samples[name].to_numpy(dtype=float)
 
@@ -191,8 +199,9 @@ def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: L
             x, label = x / loop.drive_period, "drive periods $\\Omega\\tau/2\\pi$"
         axes.plot(x, y, **looks.line(loop.curve) | {"marker": ""})
         axes.set(xlabel=label, ylabel=AXES[upwards])
-        if kind == PHASE and loop.drive_period is not None:
-            at = _drive_starts(loop.column("tau")[:-1], loop.drive_period)
+        if kind == PHASE and (period := loop.drive_period) is not None:
+            tau = loop.column("tau")[:-1]
+            at = np.searchsorted(tau, np.arange(0.0, tau[-1] + 1e-9, period) - 1e-9 * period)
             axes.plot(x[at], y[at], ls="none", color=looks.color(loop.curve), zorder=4, **POINCARE)
     if kind == PHASE:
         axes.axhline(float(point.loops[0].row[BELT_SPEED]), zorder=0, **SPEED_LINE)
@@ -200,6 +209,28 @@ def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: L
     return axes
 
 
-def _drive_starts(tau: Numbers, period: float) -> Any:
-    """The samples at the starts of drive periods."""
-    return np.searchsorted(tau, np.arange(0.0, tau[-1] + 1e-9, period) - 1e-9 * period)
+def harmonic_figures(
+    harmonics: pd.DataFrame, heading: Heading, options: FigureOptions
+) -> dict[str, Callable[[], Figure]]:
+    """What draws each, by its name; none where nothing is swept. harmonics: of ``harmonics.csv``, means left out."""
+    family = _family(harmonics)
+    if family is None:
+        return {}
+    orders = list(dict.fromkeys(dict(panel)[HARMONIC] for panel in family.panels))
+    most = orders[: max(1, MOST_PICTURES * len(orders) // len(family.panels))]
+    first = replace(family, curves=[curve for curve in family.curves if dict(curve.panel)[HARMONIC] in most])
+    told = part_told(len(most), len(orders), "harmonics")
+    return {
+        name: CurveFigure(first, [column], heading, None, options, {column: label}, more=told).draw
+        for name, (column, label) in AMPLITUDES.items()
+    }
+
+
+def _family(harmonics: pd.DataFrame) -> Family | None:
+    rows = harmonics[harmonics[HARMONIC] > 0].rename(columns={"belt_speed": BELT_SPEED})
+    rows = rows.assign(status="ok", **{HARMONIC: rows[HARMONIC].astype(float)})
+    sweep = sweep_of(rows)
+    others = [name for name in sweep.inputs if name != sweep.along]
+    apart = others if rows["law"].nunique() == 1 else [name for name in others if name.startswith("law.")]
+    member = apart[-1] if apart else None
+    return family_by(rows, sweep, [HARMONIC, *(name for name in others if name != member)], member)

@@ -23,8 +23,7 @@ from numpy.typing import NDArray
 
 from frictionlab.charts.closer_view import draw_closer_view
 from frictionlab.charts.curves import LEAST_VISIBLE, CurveData, CurveNumbers, Family, drawn_once
-from frictionlab.charts.legend import WITHOUT_NUMBER, curve_entries, status_entries
-from frictionlab.charts.looks import Looks
+from frictionlab.charts.looks import WITHOUT_NUMBER, Looks, curve_entries, status_entries
 from frictionlab.charts.marks import OnsetMark, draw_onsets, draw_speed_marks, onset_entries, onsets_on
 from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, scale_alike
 from frictionlab.charts.sweeps import SweptValue, is_logarithmic

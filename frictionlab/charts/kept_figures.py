@@ -20,8 +20,7 @@ from matplotlib.lines import Line2D
 
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import MOST_PICTURES, CurveData, CurveNumbers, Family, family_by
-from frictionlab.charts.legend import curve_entries
-from frictionlab.charts.looks import Looks
+from frictionlab.charts.looks import Looks, curve_entries
 from frictionlab.charts.sheet import Heading, Sheet, part_told, scale_alike
 from frictionlab.charts.sweeps import SweptValue, some_of, sweep_of
 from frictionlab.columns import BELT_SPEED

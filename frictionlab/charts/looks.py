@@ -1,4 +1,4 @@
-"""What tells the curves of a figure apart, in colour and in grey print.
+"""What tells the curves of a figure apart, in colour and in grey print, and what its legend says of them.
 
 Laws differ in colour and in dashes; where there is one law, so do the words of a sweep, else the methods. A swept
 number runs from dark to light within a colour, with a marker for each value. What is left has markers.
@@ -6,21 +6,26 @@ number runs from dark to light within a colour, with a marker for each value. Wh
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from frictionlab.charts.curves import CurveData
 from frictionlab.charts.style import CYCLE
-from frictionlab.charts.sweeps import some_of
+from frictionlab.charts.sweeps import BESIDE, LONGEST_LABEL, shortened, some_of
 
 MARKERS = "os^Dvph<>d"
 MOST_VALUES_IN_LEGEND = 8
+WITHOUT_NUMBER = {"failed": "x", "killed": "x", "refused": "|"}
+LEGEND_MARKS = WITHOUT_NUMBER | {"not_unique": r"$\mathrm{I}$"}
 BROADEST = 0.9  # what the first of several methods is broader than the last, however many [point]
 
 
@@ -109,3 +114,52 @@ class Looks:
     @property
     def _has_signs(self) -> bool:
         return self.sizes[1] > 1 or self._methods_have_markers
+
+
+def curve_entries(looks: Looks, columns: Sequence[str]) -> list[Line2D]:
+    """One entry per look that is drawn; of a long family only values spread over it."""
+    if math.prod(looks.sizes) == 1 and not any(curve.same for curve in looks.curves):
+        return []
+    seen = [*columns, *(["mean_low"] if "mean_friction" in columns else [])]
+    labels: dict[tuple[int, int, int], tuple[CurveData, list[str]]] = {}
+    for curve in looks.curves:
+        if curve.place[1] in looks.shown and curve.rows[seen].notna().any(axis=None):
+            _, methods = labels.setdefault(curve.place, (curve, [curve.method]))
+            methods += [name for name in curve.same if name not in methods]
+    several = looks.sizes[2] > 1 or any(len(methods) > 1 for _, methods in labels.values())
+    return [
+        Line2D([], [], label=_label(looks, curve, methods if several else []), **looks.sample(curve))
+        for _, (curve, methods) in sorted(labels.items())
+    ]
+
+
+def _label(looks: Looks, curve: CurveData, methods: Sequence[str]) -> str:
+    several_laws = looks.sizes[0] > 1
+    room = BESIDE if several_laws and methods else LONGEST_LABEL
+    told = [shortened(curve.law, room)] if several_laws else []
+    if methods:
+        told.append(joined_methods(methods, room))
+    if curve.member is not None and curve.member.value is not None:
+        told.append(curve.member.text)
+    return ", ".join(told)
+
+
+def joined_methods(methods: Sequence[str], room: int = BESIDE) -> str:
+    """The names of methods that share a line."""
+    names = [shortened(name, room) for name in methods]
+    together = " = ".join(names)
+    return together if len(together) <= 2 * room else f"{names[0]} = {len(names) - 1} others"
+
+
+def status_entries(table: pd.DataFrame) -> list[Line2D]:
+    """One entry per method and status that gives no number, with how many points it has."""
+    counts = table.groupby("method", sort=False)["status"].value_counts()
+    entries = []
+    for method in table["method"].unique():
+        of_method = f" ({shortened(str(method), BESIDE)})" if table["method"].nunique() > 1 else ""
+        for status, mark in LEGEND_MARKS.items():
+            if count := counts.get((method, status), 0):
+                points = "1 point" if count == 1 else f"{count} points"
+                label = f"{points} {status.replace('_', ' ')}{of_method}"
+                entries.append(Line2D([], [], color="0.3", linestyle="none", marker=mark, label=label))
+    return entries

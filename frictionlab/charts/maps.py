@@ -31,7 +31,7 @@ from frictionlab.charts.curves import (
     curves_of,
     drawn_once,
 )
-from frictionlab.charts.legend import LEGEND_MARKS, joined_methods, status_entries
+from frictionlab.charts.looks import LEGEND_MARKS, joined_methods, status_entries
 from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, abreast, part_told
 from frictionlab.charts.sweeps import BESIDE, is_logarithmic, linked_words, shortened, some_of, sweep_of
 from frictionlab.columns import BELT_SPEEDS, word

@@ -13,14 +13,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
-from frictionlab.charts.sheet import LINE, write_title
-from frictionlab.charts.style import PAGE, STYLE, blank_figure, write_figure
+from frictionlab.charts.sheet import Heading, Sheet
+from frictionlab.charts.style import STYLE, write_figure
 from frictionlab.charts.sweeps import plain
 from frictionlab.printable import printable
 
 PLUS = " + "
 """Between the things of a set in the column ``without``."""
-BAR, AROUND = 0.19, 0.4  # of a bar and of what stands around a panel [inch]
+BAR, AROUND = 0.19, 0.6  # of a bar and of what stands around a panel [inch]
 BELOW = 5
 """Decades that the axis goes below the tolerance: less is as good as nothing."""
 VERDICT_LOOKS: dict[str, Any] = {
@@ -37,24 +37,22 @@ def needs_figure(table: pd.DataFrame, title: str = "") -> Figure:
     """Bars of the largest change of the mean without each thing, and without all that the smallest model lacks."""
     curves = list(table.groupby("curve", sort=False))
     names = [name for name in dict.fromkeys(table["without"]) if PLUS not in name] + [SMALLEST]
-    wide = min(2, len(curves))
-    high = -(-len(curves) // wide)
-    height = high * (BAR * len(names) + AROUND) + 0.6
+    entries: list[Any] = [
+        Patch(label=name, **look) for name, look in VERDICT_LOOKS.items() if name in set(table["verdict"])
+    ]
+    entries.append(Line2D([], [], color=ERROR, marker="|", linewidth=1.6, label="error"))
+    entries.append(Line2D([], [], label="tolerance", **LINE_OF_TOLERANCE))
     with mpl.rc_context(STYLE):
-        figure = blank_figure(PAGE, height)
-        figure.set_figheight(height + LINE * write_title(figure, title))
+        heading = Heading(title, "double")
+        sheet = Sheet.blank(len(curves), heading, entries, height=BAR * len(names) + AROUND)
         for place, (curve, rows) in enumerate(curves):
-            axes = figure.add_subplot(high, wide, place + 1)
+            axes = sheet.axes(place)
             _draw_panel_of_needs(axes, names, rows, _ends(table))
+            axes.set(xlabel="largest change of the mean friction coefficient")
             axes.set_title(plain(str(curve)), loc="left")
-            if place % wide:
-                axes.set_yticklabels([])
-            if place + wide < len(curves):
-                axes.set_xticklabels([])
-            else:
-                axes.set_xlabel("largest change of the mean friction coefficient")
-        figure.legend(handles=_entries(table), loc="outside lower center", ncols=5)
-    return figure
+            axes.tick_params(labelleft=not place % sheet.wide, labelbottom=place + sheet.wide >= len(curves))
+        sheet.label_once(sheet.figure.axes)
+    return sheet.figure
 
 
 def draw_needs(table: pd.DataFrame, title: str, folder: Path) -> list[Path]:
@@ -111,10 +109,3 @@ def _draw_bar(axes: Axes, place: int, row: Any, least: float) -> None:
 def _say(axes: Axes, place: int, text: str) -> None:
     where = axes.get_yaxis_transform()
     axes.text(0.01, place, text, transform=where, va="center", fontsize=6.5, color="0.3")
-
-
-def _entries(table: pd.DataFrame) -> list[Any]:
-    used = set(table["verdict"])
-    entries: list[Any] = [Patch(label=name, **look) for name, look in VERDICT_LOOKS.items() if name in used]
-    error = Line2D([], [], color=ERROR, marker="|", linewidth=1.6, label="error")
-    return [*entries, error, Line2D([], [], label="tolerance", **LINE_OF_TOLERANCE)]

@@ -41,15 +41,20 @@ class Sheet(NamedTuple):
 
     @classmethod
     def blank(
-        cls, pictures: int, heading: Heading, entries: Sequence[Any] = (), about: str | None = None
+        cls,
+        pictures: int,
+        heading: Heading,
+        entries: Sequence[Any] = (),
+        about: str | None = None,
+        height: float = PANEL_HEIGHT,
     ) -> Sheet:
-        """With room for so many pictures. entries: of the legend; about: its title."""
+        """With room for so many pictures of a height [inch]. entries: of the legend; about: its title."""
         wide = abreast(pictures, heading)
         double = heading.width == "double" or (heading.width is None and wide == 2)
         high = -(-pictures // wide)
-        figure = blank_figure(PAGE if double else COLUMN, high * PANEL_HEIGHT)
+        figure = blank_figure(PAGE if double else COLUMN, high * height)
         lines = write_title(figure, heading.title) + _add_legend(figure, entries, about)
-        figure.set_figheight(high * PANEL_HEIGHT + LINE * lines)
+        figure.set_figheight(high * height + LINE * lines)
         return cls(figure, high, wide)
 
     def axes(self, place: int) -> Axes:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -84,11 +86,14 @@ class _Numbers:
         value = self.values.get(path)
         return None if path in self.swept or isinstance(value, str) or value is None else float(value)
 
-    def shown(self, path: str) -> Markup:
-        """Its number, or its symbol where it is swept."""
-        if (value := self.fixed(path)) is None:
-            return symbol_html(f"scene.{'dimensional.' if self.in_si else ''}{path}")
-        return _signed(value)
+    def product(self, *paths: str, factor: float = 1.0) -> Markup:
+        """Of a factor and the numbers of these paths; a swept one stays a symbol, to the power that it has there."""
+        symbols = Counter(path for path in paths if self.fixed(path) is None)
+        value = factor * math.prod(fixed for path in paths if (fixed := self.fixed(path)) is not None)
+        unit = "scene.dimensional." if self.in_si else "scene."
+        powers = {path: Markup("<sup>{}</sup>").format(power) for path, power in symbols.items() if power > 1}
+        told = Markup(" ").join(symbol_html(f"{unit}{path}") + powers.get(path, "") for path in symbols)
+        return _times(_signed(value), told) if told and value else _signed(value)
 
     @property
     def letters(self) -> tuple[str, str, str]:
@@ -120,25 +125,13 @@ def _motion(n: _Numbers, axis: int) -> Markup:
 
 
 def _coefficients(n: _Numbers, axis: int) -> tuple[Markup, Markup, Markup]:
-    one = Markup("1")
+    """Of acceleration, velocity and place."""
+    part = "" if axis == 1 else "transverse."
     if n.in_si:
-        part = "" if axis == 1 else "transverse."
-        names = f"{part}damping_N_s_per_m", f"{part}stiffness_N_per_m"
-        return n.shown("mass_kg"), n.shown(names[0]), n.shown(names[1])
-    if axis == 1:
-        ratio = n.fixed("damping_ratio")
-        return one, _doubled(ratio, n.shown("damping_ratio")), one
-    ratio, natural = (n.fixed(f"transverse.{name}") for name in ("damping_ratio", "natural_frequency"))
-    symbol = n.shown("transverse.natural_frequency")
-    if natural is None:
-        dashpot = Markup("{} {}").format(_doubled(ratio, n.shown("transverse.damping_ratio")), symbol)
-        return one, Markup("0") if ratio == 0.0 else dashpot, Markup("{}<sup>2</sup>").format(symbol)
-    shown = Markup("{} {}").format(_signed(natural), n.shown("transverse.damping_ratio"))
-    return one, _doubled(None if ratio is None else ratio * natural, shown), _signed(natural**2)
-
-
-def _doubled(value: float | None, shown: Markup) -> Markup:
-    return Markup("2 {}").format(shown) if value is None else _signed(2.0 * value)
+        names = "mass_kg", f"{part}damping_N_s_per_m", f"{part}stiffness_N_per_m"
+        return n.product(names[0]), n.product(names[1]), n.product(names[2])
+    natural = [] if axis == 1 else ["transverse.natural_frequency"]
+    return Markup("1"), n.product(f"{part}damping_ratio", *natural, factor=2.0), n.product(*natural, *natural)
 
 
 def _times(factor: Markup, what: Markup) -> Markup:
@@ -149,14 +142,8 @@ def _times(factor: Markup, what: Markup) -> Markup:
 
 
 def _load(n: _Numbers) -> Markup:
-    if not n.in_si:
-        return n.shown("normal_load") if n.has("normal_load") else Markup("1")
-    if n.has("normal_load_N"):
-        return n.shown("normal_load_N")
-    mass, gravity = n.fixed("mass_kg"), n.fixed("gravity_m_per_s2")
-    if mass is not None and gravity is not None:
-        return _signed(mass * gravity)
-    return Markup("{} {}").format(n.shown("mass_kg"), n.shown("gravity_m_per_s2"))
+    given = [name for name in ("normal_load", "normal_load_N") if n.has(name)]
+    return n.product(*(given or (["mass_kg", "gravity_m_per_s2"] if n.in_si else [])))
 
 
 def _loads(n: _Numbers, axis: int) -> list[Markup]:
@@ -175,23 +162,19 @@ def _along(n: _Numbers, part: str, axis: int) -> Markup | None:
     if path not in n.swept and not direction:
         return Markup("") if axis == 1 else None
     degrees = "" if path in n.swept else "°"
-    return Markup(" {} {}{}").format("cos" if axis == 1 else "sin", n.shown(path), degrees)
+    return Markup(" {} {}{}").format("cos" if axis == 1 else "sin", n.product(path), degrees)
 
 
 def _force(n: _Numbers, part: str) -> Markup:
     """The size of a load times its wave; an unbalance grows with the square of the frequency."""
-    if not n.has(n.path(part, "unbalance")):
+    unbalance = n.path(part, "unbalance")
+    if not n.has(unbalance):
         return _wave(n, part, "amplitude")
-    size, omega = n.fixed(n.path(part, "unbalance")), n.fixed(n.frequency)
-    if size is not None and omega is not None:
-        return _times(_signed(size * omega**2), _form(n, part))
-    squared = Markup("{}<sup>2</sup>").format(n.shown(n.frequency))
-    product = Markup("{} {}").format(n.shown(n.path(part, "unbalance")), squared)
-    return Markup("{} {}").format(squared if size == 1.0 else product, _form(n, part))
+    return _times(n.product(unbalance, n.frequency, n.frequency), _form(n, part))
 
 
 def _wave(n: _Numbers, part: str, size: str) -> Markup:
-    return _times(n.shown(n.path(part, size)), _form(n, part))
+    return _times(n.product(n.path(part, size)), _form(n, part))
 
 
 def _form(n: _Numbers, part: str) -> Markup:
@@ -205,17 +188,11 @@ def _form(n: _Numbers, part: str) -> Markup:
 
 def _angle(n: _Numbers, part: str) -> Markup:
     time = Markup("<i>t</i>") if n.in_si else Markup("<i>τ</i>")
-    omega, ratio = n.fixed(n.frequency), f"{part}.frequency_ratio"
-    times = n.fixed(ratio) if ratio in n.values else 1.0
-    if times is None or ratio in n.swept:
-        speed = Markup("{} {}").format(n.shown(ratio), n.shown(n.frequency))
-    elif omega is None:
-        speed = _times(_signed(times), n.shown(n.frequency))
-    else:
-        speed = _signed(times * omega)
+    ratio = f"{part}.frequency_ratio"
+    speed = n.product(*([ratio] if n.has(ratio) else []), n.frequency)
     phase = f"{part}.phase"
     if phase in n.swept:
-        return Markup("{} + {}").format(_times(speed, time), n.shown(phase))
+        return Markup("{} + {}").format(_times(speed, time), n.product(phase))
     shift = n.fixed(phase) or 0.0
     sign = f" {'+' if shift > 0.0 else _MINUS} {number(abs(shift))}°" if shift else ""
     return Markup("{}{}").format(_times(speed, time), sign)
@@ -237,7 +214,7 @@ def _slip_of_mass(n: _Numbers, axis: int) -> Markup:
 def _less(n: _Numbers, path: str) -> Markup:
     value = n.fixed(path)
     if value is None or value >= 0.0:
-        return Markup("{} {}").format(_MINUS, n.shown(path))
+        return Markup("{} {}").format(_MINUS, n.product(path))
     return Markup("+ {}").format(_signed(-value))
 
 

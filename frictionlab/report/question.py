@@ -22,6 +22,7 @@ from frictionlab.study.ranges import SpeedRange
 
 MOST_LISTED = 8
 """Values of a sweep that are listed one by one; of more, the ends and how many."""
+CHOSEN = "chosen until straight lines between points are within {} of the mean"
 
 
 def scene_sentences(study: Study) -> str:
@@ -158,14 +159,9 @@ def values_listed(values: Sequence[GridValue]) -> str:
 
 def laws_grid(study: Study) -> Grid:
     """The laws, what each is, and their parameters."""
+    swept = {law.label: dict.fromkeys(study.swept_parameters(law), "swept") for law in study.laws}
     rows = [
-        _choice(
-            law.label,
-            law.kind,
-            law_text(law),
-            law.parameters | dict.fromkeys(study.swept_parameters(law), "swept"),
-        )
-        for law in study.laws
+        _choice(law.label, law.kind, law_text(law), law.parameters | swept[law.label]) for law in study.laws
     ]
     return grid("The friction laws", ["label", "law", "what it is", "parameters"], rows)
 
@@ -192,19 +188,13 @@ def sweep_grid(study: Study) -> Grid:
     for axis in study.axes:
         first, *_ = axis.values
         for path, values in axis.values.items():
-            name = _sweep_name(study, path)
+            name, told, along = _sweep_name(study, path), values_listed(values), study.ranges.get(path)
             if path != first:
                 name = Markup("{}, together with {}").format(name, _sweep_name(study, first))
-            rows.append([name, path, _values_of(study, path, values)])
+            if isinstance(along, SpeedRange):
+                told = f"{number(along.start)} … {number(along.stop)}, {CHOSEN.format(number(along.within))}"
+            rows.append([name, path, told])
     return grid("The sweep: every combination of these is a point", ["quantity", "key", "values"], rows)
-
-
-def _values_of(study: Study, path: str, values: Sequence[GridValue]) -> str:
-    along = study.ranges.get(path)
-    if isinstance(along, SpeedRange):
-        ends = f"{number(along.start)} … {number(along.stop)}"
-        return f"{ends}, chosen until straight lines between points are within {number(along.within)} of the mean"
-    return values_listed(values)
 
 
 def _sweep_name(study: Study, path: str) -> Cell:

@@ -134,8 +134,7 @@ def figures_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
     """What draws each figure of a run, by its name."""
     found = {} if data.family is None else _of_table(data, data.family)
     if data.kept is not None and data.family is not None:
-        if (loops := orbit_figures(data.family, data.kept.orbits, data.heading)) is not None:
-            found |= loops.figures()
+        found |= orbit_figures(data.family, data.kept.orbits, data.heading)
         if data.kept.harmonics is not None:
             found |= harmonic_figures(data.kept.harmonics, data.heading, data.options)
     if data.attractors is not None:

@@ -7,7 +7,7 @@ of harmonics lie along a sweep, a picture for each harmonic.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import zip_longest
 from typing import Any, NamedTuple
@@ -77,59 +77,14 @@ class OrbitPicture(NamedTuple):
     loops: list[DrawnOrbit]
 
 
-@dataclass(frozen=True)
-class OrbitFigures:
-    """The orbits of some points of a table, and the figures of them."""
-
-    points: Sequence[OrbitPicture]
-    total: int
-    heading: Heading
-
-    def figures(self) -> dict[str, Callable[[], Figure]]:
-        """What draws each, by its name."""
-        return {name: partial(self._draw, kinds) for name, kinds in KINDS.items()}
-
-    def _draw(self, kinds: Sequence[tuple[str, str]]) -> Figure:
-        points = self._side_by_side() if len(kinds) == 1 else some_of(self.points, MOST_IN_TIME)
-        pictures = [(point, kind) for point in points for kind in kinds]
-        looks = _looks(self.points)
-        sheet = Sheet.blank(len(pictures), self.heading, self._entries(points, PHASE in kinds))
-        drawn = [
-            _draw_point(sheet.axes(place), point, kind, looks) for place, (point, kind) in enumerate(pictures)
-        ]
-        # one scale for friction: that which is constant but for rounding is a level line on it
-        scale_alike([axes for axes, (_, kind) in zip(drawn, pictures, strict=True) if kind[1] == "friction"])
-        sheet.label_once(drawn)
-        return sheet.figure
-
-    def _side_by_side(self) -> list[OrbitPicture]:
-        """The first point of each panel, then the second of each, that panels stand beside each other."""
-        panels: dict[tuple[SweptValue, ...], list[OrbitPicture]] = {}
-        for point in self.points:
-            panels.setdefault(point.settings[:-1], []).append(point)
-        return [point for row in zip_longest(*panels.values()) for point in row if point is not None]
-
-    def _entries(self, points: Sequence[OrbitPicture], of_phases: bool) -> list[Line2D]:
-        entries = curve_entries(_looks(points), ["mean_friction"])
-        if of_phases:
-            look: Any = {"linestyle": "none", "color": "0.2", **POINCARE}
-            entries.append(Line2D([], [], label="start of a drive period", **look))
-            entries.append(Line2D([], [], label="belt speed", **SPEED_LINE))
-        return entries + part_told(len(points), self.total, "points")
-
-
-def _looks(points: Sequence[OrbitPicture]) -> Looks:
-    return Looks([loop.curve for point in points for loop in point.loops])
-
-
 def orbit_figures(
     family: Family, orbits: Callable[[Sequence[int]], pd.DataFrame | None], heading: Heading
-) -> OrbitFigures | None:
-    """Those of some points of a table; None where none of them has an orbit. orbits: those of rows of the table."""
+) -> dict[str, Callable[[], Figure]]:
+    """What draws those of some points of a table, by its name; none where no orbit is kept. orbits: of rows."""
     chosen = list(_chosen(family))
     found = orbits([int(row.name) for _, rows in chosen for _, row in rows])
     if found is None or found.empty:
-        return None
+        return {}
     samples = {row: _closed(rows) for row, rows in found.groupby("row")}
     points = []
     for settings, rows in chosen:
@@ -138,10 +93,41 @@ def orbit_figures(
             for curve, row in reversed(rows)  # of several methods the first has the last word
             if row.name in samples
         }
-        if loops:
-            points.append(OrbitPicture(settings, list(loops.values())[::-1]))
+        points += [OrbitPicture(settings, list(loops.values())[::-1])] if loops else []
     total = sum(len(_values(family, panel)) for panel in family.panels)
-    return OrbitFigures(points, total, heading) if points else None
+    drawn = {name: partial(_draw, points, kinds, total, heading) for name, kinds in KINDS.items()}
+    return dict(drawn) if points else {}
+
+
+def _draw(
+    every: Sequence[OrbitPicture], kinds: Sequence[tuple[str, str]], total: int, heading: Heading
+) -> Figure:
+    points = _side_by_side(every) if len(kinds) == 1 else some_of(every, MOST_IN_TIME)
+    pictures = [(point, kind) for point in points for kind in kinds]
+    entries = curve_entries(_looks(points), ["mean_friction"])
+    if PHASE in kinds:
+        look: Any = {"linestyle": "none", "color": "0.2", **POINCARE}
+        entries.append(Line2D([], [], label="start of a drive period", **look))
+        entries.append(Line2D([], [], label="belt speed", **SPEED_LINE))
+    sheet = Sheet.blank(len(pictures), heading, entries + part_told(len(points), total, "points"))
+    looks = _looks(every)
+    drawn = [_draw_point(sheet.axes(at), *picture, looks) for at, picture in enumerate(pictures)]
+    # one scale for friction: that which is constant but for rounding is a level line on it
+    scale_alike([axes for axes, (_, kind) in zip(drawn, pictures, strict=True) if kind[1] == "friction"])
+    sheet.label_once(drawn)
+    return sheet.figure
+
+
+def _side_by_side(points: Sequence[OrbitPicture]) -> list[OrbitPicture]:
+    """The first point of each panel, then the second of each, that panels stand beside each other."""
+    panels: dict[tuple[SweptValue, ...], list[OrbitPicture]] = {}
+    for point in points:
+        panels.setdefault(point.settings[:-1], []).append(point)
+    return [point for row in zip_longest(*panels.values()) for point in row if point is not None]
+
+
+def _looks(points: Sequence[OrbitPicture]) -> Looks:
+    return Looks([loop.curve for point in points for loop in point.loops])
 
 
 def _worth_drawing(family: Family, panel: tuple[SweptValue, ...], most: int) -> list[float]:

@@ -141,10 +141,11 @@ def map_of(table: pd.DataFrame) -> MapFigure | None:
     Along a sweep of belt speed that is a number of the scene whose values are more than lines can tell apart.
     """
     sweep = sweep_of(table)
-    if sweep.along not in BELT_SPEEDS:
-        return _figure(table, sweep.inputs, sweep.numbers)
-    several = [name for name in sweep.numbers if table[name].nunique() > MOST_SEPARATE]
-    return _figure(table, sweep.inputs, [name for name in several if name != sweep.along], sweep.along)
+    numbers = sweep.numbers
+    if sweep.along in BELT_SPEEDS:
+        others = [name for name in numbers if name != sweep.along]
+        numbers = [*(name for name in others if table[name].nunique() > MOST_SEPARATE), sweep.along]
+    return _figure(table, sweep.inputs, numbers)
 
 
 def map_of_curves(curves: pd.DataFrame) -> MapFigure | None:
@@ -155,13 +156,10 @@ def map_of_curves(curves: pd.DataFrame) -> MapFigure | None:
     return replace(found, columns=known) if found is not None and known else None
 
 
-def _figure(
-    table: pd.DataFrame, swept: Sequence[str], numbers: Sequence[str], along: str | None = None
-) -> MapFigure | None:
-    """Those over the two numbers of most values, one of them the one given. numbers: of the fewest values first."""
+def _figure(table: pd.DataFrame, swept: Sequence[str], numbers: Sequence[str]) -> MapFigure | None:
+    """Those over the last two numbers that every law has; None where they take too few values."""
     within = table.groupby("law")[list(numbers)].nunique()  # a law without a parameter has no map over it
     most = [name for name in numbers if name.startswith("scene.") or (within[name] > 1).all()]
-    most += [along] if along else []
     if len(most) < 2 or table[most[-2]].nunique() < LEAST_VALUES:
         return None
     y, x = most[-2:]

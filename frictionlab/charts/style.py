@@ -22,7 +22,8 @@ CYCLE: list[dict[str, Any]] = list(_FILE["axes.prop_cycle"])
 """Colour and dashes of the first curve, the second, ..."""
 _SAVED: dict[str, Any] = {
     "svg": {"metadata": {"Date": None}},
-    "png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": 2}},  # a third quicker, an eighth larger
+    # level 2 is a third quicker than the usual 6, its files an eighth larger
+    "png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": 2}},
     "pdf": {"metadata": {"CreationDate": None}},
 }
 NOTEBOOK_DPI = 200

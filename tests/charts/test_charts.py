@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from oracle import table_in_the_plane, table_of_one_degree_of_freedom
 
 from frictionlab.charts import figures
 from frictionlab.charts.curve_figure import CurveFigure
-from frictionlab.charts.curves import family_of
+from frictionlab.charts.curves import Family, family_of
 from frictionlab.charts.figures import FIGURES, FigureData, draw_figures
 from frictionlab.charts.looks import MOST_VALUES_IN_LEGEND
 from frictionlab.charts.sheet import Heading
@@ -43,11 +44,19 @@ def resonance(line: pd.DataFrame) -> pd.DataFrame:
     return line[line["scene.drive.frequency"] == 1.0].reset_index(drop=True)
 
 
-def _figure(table: pd.DataFrame, *columns: str) -> Figure:
+def _joined(tables: Iterable[pd.DataFrame]) -> pd.DataFrame:
+    return pd.concat(tables, ignore_index=True)
+
+
+def _family(table: pd.DataFrame) -> Family:
     family = family_of(table)
     assert family is not None
+    return family
+
+
+def _figure(table: pd.DataFrame, *columns: str) -> Figure:
     with mpl.rc_context(STYLE):
-        return CurveFigure(family, columns or ("mean_friction",), Heading("A title")).draw()
+        return CurveFigure(_family(table), columns or ("mean_friction",), Heading("A title")).draw()
 
 
 def test_a_single_point_gives_no_figure_and_no_folder(line: pd.DataFrame, tmp_path: Path) -> None:
@@ -58,12 +67,9 @@ def test_a_single_point_gives_no_figure_and_no_folder(line: pd.DataFrame, tmp_pa
 def test_a_quantity_that_applies_nowhere_gives_no_figure(resonance: pd.DataFrame, tmp_path: Path) -> None:
     resonance[FIGURES["energies"]] = np.nan
 
-    assert [file.name for file in draw_figures(FigureData(resonance, "No energies"), tmp_path)] == [
-        "mean_friction.svg",
-        "mean_friction.png",
-        "velocity.svg",
-        "velocity.png",
-    ]
+    files = draw_figures(FigureData(resonance, "No energies"), tmp_path)
+    assert [file.stem for file in files] == ["mean_friction", "mean_friction", "velocity", "velocity"]
+    assert [file.suffix for file in files] == [".svg", ".png"] * 2
 
 
 def test_every_curve_is_drawn_whole_against_belt_speed(plane: pd.DataFrame) -> None:
@@ -94,14 +100,12 @@ def _other(table: pd.DataFrame, method: str, off: float = 0.05) -> pd.DataFrame:
 
 def test_laws_differ_in_colour_and_dashes_and_methods_in_markers(resonance: pd.DataFrame) -> None:
     both = pd.concat([resonance, _other(resonance, "mdsm")])
-    table = pd.concat([both, both.assign(law="other")], ignore_index=True)
+    table = _joined([both, both.assign(law="other")])
 
     figure = _figure(table)
     first, second, third, fourth = figure.axes[0].lines[:4]
 
-    assert legend_of(figure) == [
-        f"{law}, {method}" for law in ("coulomb", "other") for method in ("auto", "mdsm")
-    ]
+    assert legend_of(figure) == ["coulomb, auto", "coulomb, mdsm", "other, auto", "other, mdsm"]
     assert first.get_color() == second.get_color() != third.get_color() == fourth.get_color()
     dashes = [str(line._unscaled_dash_pattern) for line in (first, second, third, fourth)]
     assert dashes[0] == dashes[1] != dashes[2] == dashes[3]
@@ -110,7 +114,7 @@ def test_laws_differ_in_colour_and_dashes_and_methods_in_markers(resonance: pd.D
 
 
 def test_laws_are_of_different_grey(resonance: pd.DataFrame) -> None:
-    table = pd.concat([resonance.assign(law=law) for law in "abcd"], ignore_index=True)
+    table = _joined([resonance.assign(law=law) for law in "abcd"])
 
     lines = _figure(table).axes[0].lines[:4]
 
@@ -121,7 +125,7 @@ def test_laws_are_of_different_grey(resonance: pd.DataFrame) -> None:
 
 def test_methods_whose_curves_are_one_line_are_drawn_once(resonance: pd.DataFrame) -> None:
     far, near = _other(resonance, "mdsm"), _other(resonance, "shooting", 1e-9)
-    table = pd.concat([resonance, near.assign(error=1e-8), far], ignore_index=True)
+    table = _joined([resonance, near.assign(error=1e-8), far])
 
     figure = _figure(table)
 
@@ -129,23 +133,20 @@ def test_methods_whose_curves_are_one_line_are_drawn_once(resonance: pd.DataFram
     assert legend_of(figure) == ["auto = shooting", "mdsm"]
 
 
-def test_methods_that_differ_by_more_than_their_errors_are_both_drawn(resonance: pd.DataFrame) -> None:
-    wrong = _other(resonance, "march", 1e-5).assign(error=1e-9)
+@pytest.mark.parametrize(("off", "error"), [(1e-5, 1e-9), (0.05, 0.2)])
+def test_methods_that_differ_by_more_than_their_errors_or_can_be_seen_to_are_both_drawn(
+    resonance: pd.DataFrame, off: float, error: float
+) -> None:
+    wrong = _other(resonance, "march", off).assign(error=error)
 
-    figure = _figure(pd.concat([resonance.assign(error=1e-9), wrong], ignore_index=True))
+    figure = _figure(_joined([resonance.assign(error=1e-9), wrong]))
 
     assert len(curves_of(figure.axes[0])) == 2
     assert legend_of(figure) == ["auto", "march"]
 
 
-def test_a_wide_error_does_not_hide_a_curve_that_can_be_seen(resonance: pd.DataFrame) -> None:
-    rough = _other(resonance, "mdsm").assign(error=0.2)
-
-    assert len(curves_of(_figure(pd.concat([resonance, rough], ignore_index=True)).axes[0])) == 2
-
-
 def _of_ten_methods(table: pd.DataFrame) -> pd.DataFrame:
-    return pd.concat([_other(table, f"method{i}", 0.02 * i) for i in range(10)], ignore_index=True)
+    return _joined([_other(table, f"method{i}", 0.02 * i) for i in range(10)])
 
 
 def test_ten_methods_are_told_apart_in_colour_and_in_black_and_white(resonance: pd.DataFrame) -> None:
@@ -163,7 +164,7 @@ def test_the_legend_keeps_within_the_figure(resonance: pd.DataFrame) -> None:
     short = [resonance.assign(method=name) for name in ("a", "b", "c", "d")]
     long = resonance.assign(method="n" * 60)
     refused = long.assign(law="rough", status="refused", mean_friction=np.nan)
-    figure = _figure(pd.concat([*short, long, resonance.assign(law="rough"), refused], ignore_index=True))
+    figure = _figure(_joined([*short, long, resonance.assign(law="rough"), refused]))
 
     figure.canvas.draw()
 
@@ -179,20 +180,17 @@ def test_labels_of_a_logarithmic_axis_do_not_overlap(resonance: pd.DataFrame) ->
     below = figure.axes[0].xaxis
 
     low, high = figure.axes[0].get_xlim()
-    labels = [
-        tick.label1
-        for tick in below.get_major_ticks() + below.get_minor_ticks()
-        if low <= tick.get_loc() <= high
-    ]
-    shown = [label.get_window_extent() for label in labels if label.get_text()]
-    assert [label.get_text() for label in labels if label.get_text()] == ["5", "10", "20", "50", "100"]
-    assert not any(one.overlaps(other) for one, other in pairwise(shown))
+    ticks = [*below.get_major_ticks(), *below.get_minor_ticks()]
+    labels = [tick.label1 for tick in ticks if low <= tick.get_loc() <= high and tick.label1.get_text()]
+    assert [label.get_text() for label in labels] == ["5", "10", "20", "50", "100"]
+    places = [label.get_window_extent() for label in labels]
+    assert not any(one.overlaps(other) for one, other in pairwise(places))
     assert list(names_above(figure.axes[0]).values()) == [r"$V_\mathrm{lin}$"]
 
 
 def test_a_long_family_is_drawn_whole_and_named_from_end_to_end(resonance: pd.DataFrame) -> None:
     loads = np.linspace(1, 30, 30)
-    table = pd.concat([resonance.assign(**{"scene.normal_load": load}) for load in loads], ignore_index=True)
+    table = _joined([resonance.assign(**{"scene.normal_load": load}) for load in loads])
 
     figure = _figure(table)
 
@@ -203,9 +201,7 @@ def test_a_long_family_is_drawn_whole_and_named_from_end_to_end(resonance: pd.Da
 
 
 def test_two_further_swept_quantities_give_small_multiples(plane: pd.DataFrame) -> None:
-    table = pd.concat(
-        [plane.assign(**{"scene.damping_ratio": beta}) for beta in (0.1, 0.2)], ignore_index=True
-    )
+    table = _joined(plane.assign(**{"scene.damping_ratio": beta}) for beta in (0.1, 0.2))
 
     figure = _figure(table)
 
@@ -224,10 +220,9 @@ def test_without_a_sweep_of_belt_speed_the_longest_sweep_is_the_axis(resonance: 
 
 
 def test_a_sweep_of_more_values_than_a_few_belt_speeds_is_the_axis(resonance: pd.DataFrame) -> None:
-    few = [resonance.assign(**{"scene.belt_speed": speed}) for speed in (1.0, 2.0)]
-    loads = {"scene.normal_load": np.logspace(-1, 2, len(resonance))}
+    many = resonance.assign(**{"scene.normal_load": np.logspace(-1, 2, len(resonance))})
 
-    axes = _figure(pd.concat([table.assign(**loads) for table in few], ignore_index=True)).axes[0]
+    axes = _figure(_joined(many.assign(**{"scene.belt_speed": speed}) for speed in (1.0, 2.0))).axes[0]
 
     assert axes.get_xlabel() == r"normal load $\gamma^2$"
 
@@ -237,23 +232,22 @@ def test_a_law_without_the_parameter_along_the_axis_is_a_level_line(resonance: p
     soft = fixed.assign(law="dahl", **{"law.stiffness": np.logspace(0, 3, 10)})
     rigid = fixed.head(1).assign(**{"law.stiffness": np.nan})
 
-    (level, _) = curves_of(_figure(pd.concat([rigid, soft], ignore_index=True)).axes[0])
+    (level, _) = curves_of(_figure(_joined([rigid, soft])).axes[0])
 
     assert level[1] == pytest.approx(rigid["mean_friction"].to_numpy().repeat(3))
 
 
 def test_frequencies_of_several_laws_are_never_in_one_picture(line: pd.DataFrame) -> None:
-    figure = _figure(pd.concat([line, line.assign(law="other")], ignore_index=True))
+    figure = _figure(_joined([line, line.assign(law="other")]))
 
     assert titles_of(figure) == [rf"drive frequency $\Omega$ = {value}" for value in ("1", "1.5")]
     assert legend_of(figure) == ["coulomb", "other"]
 
 
 def test_of_too_many_pictures_for_comparison_each_law_has_one(resonance: pd.DataFrame) -> None:
-    loads = [resonance.assign(**{"scene.normal_load": float(load)}) for load in range(1, 14)]
-    both = [table.assign(law=law) for law in ("soft", "rough") for table in loads]
+    loads = _joined(resonance.assign(**{"scene.normal_load": float(load)}) for load in range(1, 14))
 
-    figure = _figure(pd.concat(both, ignore_index=True))
+    figure = _figure(_joined(loads.assign(law=law) for law in ("soft", "rough")))
 
     assert titles_of(figure) == ["soft", "rough"]
     assert [len(curves_of(axes)) for axes in figure.axes] == [13, 13]
@@ -263,16 +257,15 @@ def test_of_too_many_pictures_for_comparison_each_law_has_one(resonance: pd.Data
 def test_a_parameter_that_differs_between_laws_is_no_sweep(resonance: pd.DataFrame) -> None:
     other = resonance.assign(law="slippery", **{"law.mu": 0.2})
 
-    family = family_of(pd.concat([resonance, other], ignore_index=True))
+    family = _family(_joined([resonance, other]))
 
-    assert family is not None
     assert family.member is None
     assert [curve.law for curve in family.curves] == ["coulomb", "slippery"]
 
 
 def test_a_sweep_of_one_law_leaves_the_other_law_one_curve(resonance: pd.DataFrame) -> None:
     soft = [resonance.assign(law="dahl", **{"law.mu": np.nan, "law.stiffness": s}) for s in (4.0, 40.0)]
-    table = pd.concat([resonance.assign(**{"law.stiffness": np.nan}), *soft], ignore_index=True)
+    table = _joined([resonance.assign(**{"law.stiffness": np.nan}), *soft])
 
     assert legend_of(_figure(table)) == ["coulomb", "dahl, 4", "dahl, 40"]
 
@@ -292,7 +285,7 @@ def test_points_without_a_number_are_marked_on_the_axis_and_counted(resonance: p
 def test_a_method_that_refuses_a_whole_curve_is_counted_by_name(resonance: pd.DataFrame) -> None:
     refused = resonance.assign(method="shooting", status="refused", mean_friction=np.nan)
 
-    figure = _figure(pd.concat([resonance, refused], ignore_index=True))
+    figure = _figure(_joined([resonance, refused]))
 
     assert legend_of(figure) == ["auto", "120 points refused (shooting)"]
 
@@ -316,19 +309,17 @@ def test_the_error_is_a_band_where_it_can_be_seen(resonance: pd.DataFrame, error
 
 
 def test_v_lin_is_marked_where_friction_has_its_kink(line: pd.DataFrame) -> None:
-    family = family_of(line)
-
-    assert family is not None
-    assert [list(curve.kinks) for curve in family.curves] == [[pytest.approx(50)], [pytest.approx(26.254457)]]
-    names = names_above(_figure(line).axes[0])
-    assert list(names.values()) == [
-        rf"$V_\mathrm{{lin}}$, $\Omega$ = {frequency}" for frequency in ("1.5", "1")
+    assert [list(curve.kinks) for curve in _family(line).curves] == [
+        [pytest.approx(50)],
+        [pytest.approx(26.254457)],
     ]
+    names = names_above(_figure(line).axes[0])
+    assert list(names.values()) == [rf"$V_\mathrm{{lin}}$, $\Omega$ = {value}" for value in ("1.5", "1")]
 
 
 def test_a_belt_that_also_runs_backward_has_a_kink_on_either_side(resonance: pd.DataFrame) -> None:
     odd = ["scene.belt_speed", "mean_friction", "velocity_ratio"]
-    both = pd.concat([resonance.assign(**-resonance[odd]), resonance], ignore_index=True)
+    both = _joined([resonance.assign(**-resonance[odd]), resonance])
 
     names = names_above(_figure(both).axes[0])
     assert list(names.values()) == [r"$-V_\mathrm{lin}$", r"$V_\mathrm{lin}$"]
@@ -337,14 +328,11 @@ def test_a_belt_that_also_runs_backward_has_a_kink_on_either_side(resonance: pd.
 
 def test_v_lin_is_not_marked_where_there_is_no_kink(plane: pd.DataFrame, resonance: pd.DataFrame) -> None:
     below = resonance[resonance["scene.belt_speed"] < 40]
-    falling = resonance.assign(
-        normalized_friction=resonance["mean_friction"] * (2 + resonance["scene.belt_speed"])
-    )
+    rise = 2 + resonance["scene.belt_speed"]
+    falling = resonance.assign(normalized_friction=resonance["mean_friction"] * rise)
 
     for table in (plane, below, falling):
-        family = family_of(table)
-        assert family is not None
-        assert [list(curve.kinks) for curve in family.curves if curve.kinks] == []
+        assert [list(curve.kinks) for curve in _family(table).curves if curve.kinks] == []
 
 
 def test_a_point_alone_between_gaps_is_still_seen(resonance: pd.DataFrame) -> None:
@@ -375,9 +363,7 @@ def test_logarithmic_spacing_is_recognised(values: list[float]) -> None:
     assert is_logarithmic(np.asarray(values))
 
 
-CHOSEN = np.concatenate(
-    [np.arange(1, 4, 0.25), np.arange(4, 12, 0.5), np.arange(12, 28, 2), np.arange(28, 61, 4)]
-)
+CHOSEN = np.r_[1:4:0.25, 4:12:0.5, 12:28:2, 28:61:4]
 """As belt speeds are chosen where a curve bends most on slow belts: intervals of an even range, halved."""
 
 
@@ -398,7 +384,7 @@ def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
     resonance: pd.DataFrame, tmp_path: Path
 ) -> None:
     laws = [resonance.assign(law=label) for label in (r"$\nope{$", "costs $5", "L" * 200)]
-    table = pd.concat(laws, ignore_index=True)
+    table = _joined(laws)
 
     data = FigureData(table, r"$\bad{ 摩擦 and $3")
     assert len(draw_figures(data, tmp_path)) == 2 * len(figures.figures_of(data))
@@ -408,7 +394,7 @@ def test_words_of_a_study_are_drawn_as_they_are_whatever_signs_they_hold(
 def test_the_legend_names_what_a_picture_shows_and_nothing_else(resonance: pd.DataFrame) -> None:
     falls = resonance.assign(law="falls", status="not_unique", mean_low=0.1, mean_high=0.3)
     falls = falls.assign(mean_friction=np.nan, energy_viscous=np.nan)
-    table = pd.concat([resonance.assign(law="flat"), falls], ignore_index=True)
+    table = _joined([resonance.assign(law="flat"), falls])
 
     assert legend_of(_figure(table))[:2] == ["flat", "falls"]
     assert legend_of(_figure(table, "energy_viscous"))[0] == "flat"

@@ -35,8 +35,9 @@ def test_a_normal_load_that_sinks_holds_less() -> None:
     pulsating = scene(normal_load_variation=PULSATING)
     assert resting_range(pulsating, LAW) == pytest.approx(0.5 * left, abs=1e-5)
     assert stays_at_rest(pulsating, LAW)
-    assert not stays_at_rest(scene(normal_load_variation={**PULSATING, "amplitude": 0.8}), LAW)
-    assert not can_hold(scene(normal_load_variation={**PULSATING, "amplitude": 0.8}), LAW)
+    lighter = scene(normal_load_variation={**PULSATING, "amplitude": 0.8})
+    assert not stays_at_rest(lighter, LAW)
+    assert not can_hold(lighter, LAW)
 
 
 def test_a_range_of_rest_need_not_be_about_zero() -> None:

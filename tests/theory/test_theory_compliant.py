@@ -194,12 +194,11 @@ def test_a_mass_slides_steadily_where_every_root_of_its_equation_decays(
     assume(abs(roots.real.max()) > 1e-6)
 
     assert contact.stable(damping, stiffness) == (roots.real.max() < 0)
-    for s in roots[
-        abs(1 + lag * roots) > 1e-3
-    ]:  # they are the roots of mass, dashpot, spring and the impedance
-        assert s**2 + damping * s + stiffness + s * contact.impedance(s) == pytest.approx(
-            0, abs=1e-6 * (abs(s) ** 2 + stiffness + abs(s * contact.impedance(s)))
-        )
+    # they are the roots of mass, dashpot, spring and the impedance
+    for s in roots[abs(1 + lag * roots) > 1e-3]:
+        held = s * contact.impedance(s)
+        size = abs(s) ** 2 + stiffness + abs(held)
+        assert s**2 + damping * s + stiffness + held == pytest.approx(0, abs=1e-6 * size)
 
 
 @given(friction=sizes(1e-2, 1e2), acceleration=sizes(1e-2, 1e2))

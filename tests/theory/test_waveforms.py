@@ -149,9 +149,8 @@ def test_v_lin_is_the_largest_velocity_over_the_belts(form: Form, phase: float, 
         tau = (np.arange(n) + 0.5) * signals.period / n
         push = signals.load[0](tau) + side * 0.4 * signals.normal_load(tau)
         rate = 2.0 * math.pi * np.fft.rfftfreq(n, signals.period / n)
-        v = np.fft.irfft(np.fft.rfft(push) * 1j * rate / (1.0 - rate**2 + 0.2j * rate), n) - signals.belt[0](
-            tau
-        )
+        v = np.fft.irfft(np.fft.rfft(push) * 1j * rate / (1.0 - rate**2 + 0.2j * rate), n)
+        v -= signals.belt[0](tau)
 
         found = friction_free_velocity(shaken.at(side), LAW)
         assert found == pytest.approx(float((side * v).max()), rel=2e-3)

@@ -131,12 +131,7 @@ def test_formats_and_title_are_as_asked_for(laws: pd.DataFrame, tmp_path: Path) 
 
 STUDY = {
     "schema": 1,
-    "scene": {
-        "damping_ratio": 0.1,
-        "normal_load": 1,
-        "belt_speed": 1,
-        "drive": {"amplitude": 2, "frequency": 1},
-    },
+    "scene": {"damping_ratio": 0.1, "normal_load": 1, "belt_speed": 1},
     "laws": [{"kind": "coulomb", "mu": 0.4}],
 }
 
@@ -178,9 +173,8 @@ def test_mistakes_in_it_are_told(figures: Any, message: str) -> None:
 def test_one_figure_is_had_without_files_or_pyplot(laws: pd.DataFrame) -> None:
     before = dict(mpl.rcParams)
 
-    figure = figure_of(
-        FigureData(laws, options=FigureOptions(against="other", width="single")), "differences"
-    )
+    options = FigureOptions(against="other", width="single")
+    figure = figure_of(FigureData(laws, options=options), "differences")
 
     assert dict(mpl.rcParams) == before
     assert figure.axes[0].get_ylabel().endswith("other")
@@ -193,19 +187,16 @@ def test_one_figure_is_had_without_files_or_pyplot(laws: pd.DataFrame) -> None:
 
 
 def test_a_figure_that_is_not_there_is_refused_with_those_that_are(laws: pd.DataFrame) -> None:
-    with pytest.raises(
-        ValueError, match="no figure 'shapes'; this table has: differences, energies, mean_fr"
-    ):
+    told = "no figure 'shapes'; this table has: differences, energies, mean_fr"
+    with pytest.raises(ValueError, match=told):
         figure_of(FigureData(laws), "shapes")
     with pytest.raises(ValueError, match="none, for no number is swept"):
         figure_of(FigureData(laws.iloc[:1]))
 
 
 def test_keywords_are_checked_as_the_keys_of_a_study_are() -> None:
-    assert figure_options({"normalized": True, "against": "dahl"}, ("dahl",)) == FigureOptions(
-        normalized=True, against="dahl"
-    )
-    with pytest.raises(
-        ValueError, match=r"width: must be 'single' or 'double'(.|\n)*against: must be one of dahl"
-    ):
+    given = {"normalized": True, "against": "dahl"}
+    assert figure_options(given, ("dahl",)) == FigureOptions(**given)
+    told = r"width: must be 'single' or 'double'(.|\n)*against: must be one of dahl"
+    with pytest.raises(ValueError, match=told):
         figure_options({"against": "dahls", "width": 85}, ("dahl",))

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from drawn_figures import NOTHING, drawn, legend_of, titles_of
+from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
@@ -31,15 +32,18 @@ def meshes(figure: Figure) -> list[QuadMesh]:
     return [one for axes in figure.axes[:-1] for one in axes.collections if isinstance(one, QuadMesh)]
 
 
+def lines_in(axes: Axes) -> list[QuadContourSet]:
+    return [one for one in axes.collections if isinstance(one, QuadContourSet)]
+
+
 def test_the_mean_is_a_map_of_every_point_with_lines_of_equal_value() -> None:
     figure = drawn(grid())
 
     mean = figure.axes[0]
-    (shades,) = [one for one in mean.collections if isinstance(one, QuadMesh)]
-    np.testing.assert_allclose(
-        np.ma.getdata(shades.get_array()), grid()["mean_friction"].to_numpy().reshape(7, 5).T
-    )
-    (lines,) = [one for one in mean.collections if isinstance(one, QuadContourSet)]
+    shades = meshes(figure)[0]
+    means = grid()["mean_friction"].to_numpy().reshape(7, 5).T
+    np.testing.assert_allclose(np.ma.getdata(shades.get_array()), means)
+    (lines,) = lines_in(mean)
     assert all(0.05 < level < 0.3 for level in lines.levels)
     assert len(lines.levels) >= 3
     assert mean.get_xlabel() == r"drive frequency $\Omega$"
@@ -57,11 +61,12 @@ def test_shades_of_laws_mean_the_same() -> None:
 
 
 def test_a_method_whose_map_is_the_same_is_named_and_not_drawn_again() -> None:
-    table = pd.concat(
-        [grid(), grid(method="exact"), grid(method="mdsm", mean_friction=0.2)], ignore_index=True
-    )
+    same, other = grid(method="exact"), grid(method="mdsm", mean_friction=0.2)
 
-    assert titles_of(drawn(table))[:2] == ["auto = exact", "mdsm"]
+    assert titles_of(drawn(pd.concat([grid(), same, other], ignore_index=True)))[:2] == [
+        "auto = exact",
+        "mdsm",
+    ]
 
 
 def test_a_point_without_a_number_is_white_marked_and_counted() -> None:
@@ -78,21 +83,18 @@ def test_a_point_without_a_number_is_white_marked_and_counted() -> None:
 
 def test_beside_belt_speed_the_measures_of_curves_are_a_map() -> None:
     heads = grid().drop(columns=["scene.belt_speed", "status", "error", "mean_friction"])
-    curves = heads.assign(
-        reduction=np.linspace(0.2, 0.9, len(heads)), shape_area=np.linspace(-0.2, 0.3, len(heads))
-    )
-    table = pd.concat(
-        [grid().assign(**{"scene.belt_speed": speed}) for speed in range(1, 10)], ignore_index=True
-    )
+    share = np.linspace(0.0, 1.0, len(heads))
+    curves = heads.assign(reduction=0.2 + 0.7 * share, shape_area=-0.2 + 0.5 * share)
+    speeds = [grid().assign(**{"scene.belt_speed": speed}) for speed in range(1, 10)]
+    table = pd.concat(speeds, ignore_index=True)
 
     figure = drawn(table, "map", curves=curves)
 
     assert map_of(table) is None
     assert "differences" not in figures_of(FigureData(table))
-    areas = [one for one in figure.axes[2].collections if isinstance(one, QuadContourSet)]
-    assert 0.0 in areas[0].levels
-    broadest = areas[0].get_linewidths()[list(areas[0].levels).index(0.0)]
-    assert broadest == max(areas[0].get_linewidths()) > min(areas[0].get_linewidths())
+    (areas,) = lines_in(figure.axes[2])
+    widths = dict(zip(areas.levels, areas.get_linewidths(), strict=True))
+    assert widths[0.0] == max(widths.values()) > min(widths.values())
 
 
 def along_speed(values: int, missing: int = 0) -> pd.DataFrame:
@@ -111,9 +113,7 @@ def test_more_curves_than_lines_can_tell_apart_are_a_map_with_v_lin_in_it() -> N
     mean = figure.axes[0]
     assert mean.get_xlabel() == "belt speed $v_b$"
     assert mean.get_ylabel() == r"drive frequency $\Omega$"
-    (line,) = [
-        one for one in mean.collections if isinstance(one, QuadContourSet) and list(one.levels) == [1.0]
-    ]
+    (line,) = [one for one in lines_in(mean) if list(one.levels) == [1.0]]
     for speed, frequency in line.get_paths()[0].vertices:
         assert speed == pytest.approx(2.0 * frequency)
     assert legend_of(figure) == [r"belt speed $V_\mathrm{lin}$"]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 import pytest
 from drawn_figures import NOTHING, drawn, legend_of
 
-from frictionlab.charts.curves import family_of
+from frictionlab.charts.curves import CurveData, family_of
 from frictionlab.charts.marks import SIGNS, onsets_on
 
 SPEEDS = np.linspace(1.0, 60.0, 12)
@@ -15,15 +17,15 @@ SPEEDS = np.linspace(1.0, 60.0, 12)
 
 def curve(mu: float, si: bool = False) -> pd.DataFrame:
     given = {"scene.dimensional.belt_speed_m_per_s": 0.01 * SPEEDS} if si else {}
-    names = {"law": "coulomb", "kind": "coulomb", "method": "exact"}
-    inputs = names | {"law.mu": mu, "scene.belt_speed": SPEEDS}
-    found = {
-        "mean_friction": mu * np.minimum(SPEEDS / 50.0, 1.0),
-        "error": 1e-12,
-        "status": "ok",
-        "reason": "",
-    }
-    return pd.DataFrame(NOTHING | inputs | given | found)
+    names = {"law": "coulomb", "kind": "coulomb", "method": "exact", "status": "ok", "reason": ""}
+    means = {"mean_friction": mu * np.minimum(SPEEDS / 50.0, 1.0), "error": 1e-12}
+    return pd.DataFrame(NOTHING | names | {"law.mu": mu, "scene.belt_speed": SPEEDS} | given | means)
+
+
+def curves_in(*tables: pd.DataFrame) -> Sequence[CurveData]:
+    family = family_of(pd.concat(tables, ignore_index=True))
+    assert family is not None
+    return family.curves
 
 
 TABLE = pd.concat([curve(0.2), curve(0.4)], ignore_index=True)
@@ -38,21 +40,16 @@ ONSETS = pd.DataFrame(
 
 
 def test_every_curve_has_its_own_onsets() -> None:
-    family = family_of(TABLE)
-    assert family is not None
-
-    marks = {one.rows["law.mu"].iloc[0]: onsets_on(one, ONSETS) for one in family.curves}
+    marks = {one.rows["law.mu"].iloc[0]: onsets_on(one, ONSETS) for one in curves_in(TABLE)}
 
     assert marks[0.2] == [("reversal_ends", 50.0)]
     assert marks[0.4] == [("stick_begins", 44.0), ("stick_ends", 50.0)]
 
 
 def test_marks_lie_in_the_units_of_the_axis() -> None:
-    table = pd.concat([curve(0.2, si=True), curve(0.4, si=True)], ignore_index=True)
-    family = family_of(table)
-    assert family is not None
+    first, _ = curves_in(curve(0.2, si=True), curve(0.4, si=True))
 
-    (mark,) = onsets_on(family.curves[0], ONSETS)
+    (mark,) = onsets_on(first, ONSETS)
     assert mark.at == pytest.approx(0.5)
 
 
@@ -66,15 +63,11 @@ def test_a_figure_draws_them_and_names_each_kind_once() -> None:
 
 
 def test_the_end_of_reversal_is_not_marked_again_where_v_lin_is() -> None:
-    speeds = np.linspace(1.0, 60.0, 12)
-    known = curve(0.2).assign(
-        velocity_ratio=speeds / 50.0, normalized_friction=np.minimum(speeds / 50.0, 1.0)
-    )
-    family = family_of(pd.concat([known, curve(0.4)], ignore_index=True))
-    assert family is not None
+    ratio = SPEEDS / 50.0
+    known = curve(0.2).assign(velocity_ratio=ratio, normalized_friction=np.minimum(ratio, 1.0))
     onsets = pd.concat([ONSETS, ONSETS.assign(onset="reversal_ends", belt_speed=50.0)], ignore_index=True)
 
-    first, other = (onsets_on(one, onsets) for one in family.curves)
+    first, other = (onsets_on(one, onsets) for one in curves_in(known, curve(0.4)))
 
     assert first == []
     assert [mark.onset for mark in other] == ["stick_begins", "stick_ends", "reversal_ends", "reversal_ends"]

@@ -17,13 +17,8 @@ OMEGA, SAMPLES = 2.0, 40
 
 
 def curve(law: str, reversals: float = 2.0) -> pd.DataFrame:
-    inputs = {
-        "law": law,
-        "kind": law,
-        "method": "auto",
-        "scene.belt_speed": SPEEDS,
-        "scene.drive.frequency": OMEGA,
-    }
+    inputs = {"law": law, "kind": law, "method": "auto"}
+    inputs |= {"scene.belt_speed": SPEEDS, "scene.drive.frequency": OMEGA}
     found = {"mean_friction": 0.01 * SPEEDS, "error": 1e-9, "status": "ok"}
     turning = {"reversals": np.where(SPEEDS < 8.0, reversals, 0.0)}
     return pd.DataFrame(NOTHING | inputs | found | turning)
@@ -36,20 +31,8 @@ def orbits_of(rows: Sequence[int], periods: int = 2) -> pd.DataFrame:
     """Circles of so many drive periods, of a size that tells the row."""
     tau = np.linspace(0.0, periods * 2.0 * np.pi / OMEGA, SAMPLES, endpoint=False)
     size = 1.0 + 0.5 * np.sin(0.5 * OMEGA * tau)
-    return pd.concat(
-        [
-            pd.DataFrame(
-                {
-                    "row": row,
-                    "tau": tau,
-                    "x1": (row + 1) * size * np.cos(OMEGA * tau),
-                    "v1": (row + 1) * size * np.sin(OMEGA * tau),
-                    "friction": 0.4,
-                }
-            )
-            for row in rows
-        ]
-    )
+    circle = pd.DataFrame({"tau": tau, "x1": size * np.cos(OMEGA * tau), "v1": size * np.sin(OMEGA * tau)})
+    return pd.concat([circle.mul([1.0, row + 1, row + 1]).assign(row=row, friction=0.4) for row in rows])
 
 
 def of_orbits(name: str, table: pd.DataFrame = TABLE, harmonics: pd.DataFrame | None = None) -> Figure:

@@ -21,7 +21,7 @@ from frictionlab.least_model.parts import (
     without_viscosity,
 )
 
-COULOMB = fl.Coulomb(mu=0.4)
+COULOMB, DAHL = fl.Coulomb(mu=0.4), fl.Dahl(mu=0.4, stiffness=40)
 ACROSS = {"natural_frequency": 2, "damping_ratio": 0.2}
 HARMONICS = {"harmonics": [{"order": 1, "amplitude": 0.5, "phase": 20}, {"order": 3, "amplitude": 1}]}
 
@@ -117,7 +117,7 @@ def test_what_the_friction_of_quick_sliding_leaves() -> None:
 
 def test_bristles_on_the_friction_free_motion_have_their_slip_prescribed() -> None:
     full = model(
-        fl.Dahl(mu=0.4, stiffness=40),
+        DAHL,
         drive={"amplitude": 3, "frequency": 2, "phase": 10},
         transverse=ACROSS | {"load": {"amplitude": 1, "phase": 40}},
         belt_vibration={"velocity_amplitude": 0.5, "phase": 70, "direction": 90},
@@ -136,10 +136,6 @@ def test_what_has_no_friction_free_motion_says_so() -> None:
     with pytest.raises(CannotGo, match="nothing shakes"):
         friction_free_of(model())
     with pytest.raises(CannotGo, match="undamped resonance"):
-        friction_free_of(
-            model(fl.Dahl(mu=0.4, stiffness=40), damping_ratio=0, drive={"amplitude": 1, "frequency": 1})
-        )
+        friction_free_of(model(DAHL, damping_ratio=0, drive={"amplitude": 1, "frequency": 1}))
     with pytest.raises(CannotGo, match="no sum of harmonics"):
-        friction_free_of(
-            model(fl.Dahl(mu=0.4, stiffness=40), drive={"amplitude": 1, "frequency": 2, "waveform": "square"})
-        )
+        friction_free_of(model(DAHL, drive={"amplitude": 1, "frequency": 2, "waveform": "square"}))

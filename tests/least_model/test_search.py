@@ -16,16 +16,15 @@ from frictionlab.least_model.search import LeastSearch, each_reason_once
 
 SPEEDS = np.array([1.0, 2.0])
 WITHIN = 4e-3
-FULL = LesserModel(
-    fl.Scene(
-        damping_ratio=0.1,
-        normal_load=1,
-        belt_speed=1,
-        drive=fl.Drive(amplitude=3, frequency=2),
-        transverse=fl.Transverse(natural_frequency=3, damping_ratio=0.1, load=fl.Load(amplitude=1)),
-    ),
-    fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stiffness=40),
+SCENE = fl.Scene(
+    damping_ratio=0.1,
+    normal_load=1,
+    belt_speed=1,
+    drive=fl.Drive(amplitude=3, frequency=2),
+    transverse=fl.Transverse(natural_frequency=3, damping_ratio=0.1, load=fl.Load(amplitude=1)),
 )
+FULL = LesserModel(SCENE, fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stiffness=40))
+WHOLE = ("transverse motion", "contact compliance", "fall of friction with speed")
 
 
 class MadeUp:
@@ -74,12 +73,7 @@ def test_what_is_worth_nothing_goes_altogether() -> None:
     assert len(pairs) == 6  # of four groups
     assert names(looked.whole(singles)) == [smallest and " + ".join(smallest.names)]
     assert smallest is not None
-    assert set(smallest.names) == {
-        "transverse motion",
-        "contact compliance",
-        "fall of friction with speed",
-        "friction's effect on the motion",
-    }
+    assert set(smallest.names) == {*WHOLE, "friction's effect on the motion"}
     assert smallest.model is not None
     assert smallest.model.law == fl.Coulomb(mu=0.3)
     assert smallest.model.method.name == "mdsm"  # type: ignore[union-attr]
@@ -101,7 +95,7 @@ def test_a_set_above_the_tolerance_is_given_up_for_the_next() -> None:
     smallest = looked.smallest(singles, looked.pairs(singles))
 
     assert smallest is not None
-    assert set(smallest.names) == {"transverse motion", "contact compliance", "fall of friction with speed"}
+    assert set(smallest.names) == set(WHOLE)
     assert smallest.change.mean.value == pytest.approx(3.5e-3)
 
 

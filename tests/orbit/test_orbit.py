@@ -97,14 +97,9 @@ def test_a_harmonic_motion_has_its_own_amplitudes_phases_and_energies(along, acr
         turned = (found[f"{name}_phase"] - lead + 180.0) % 360.0 - 180.0
         assert turned == pytest.approx(0.0, abs=1e-6)
     viscous = 0.5 * period * omega**2 * (0.2 * abs(along) ** 2 + 0.8 * abs(across) ** 2)
-    put_in = (
-        0.5
-        * period
-        * (
-            (MASS.force * (1j * omega * along).conjugate()).real
-            + (MASS.transverse_force * (1j * omega * across).conjugate()).real
-        )
-    )
+    pushed = MASS.force * (1j * omega * along).conjugate()
+    pushed += MASS.transverse_force * (1j * omega * across).conjugate()
+    put_in = 0.5 * period * pushed.real
     assert found["energy_viscous"] == pytest.approx(viscous, rel=1e-9)
     assert found["energy_input"] == pytest.approx(put_in, rel=1e-9, abs=1e-8)
     assert found["mean_position"] == pytest.approx(0.0, abs=1e-9)
@@ -174,13 +169,9 @@ def test_the_amplitude_is_half_of_peak_to_peak_between_nodes_too():
 
 @pytest.mark.parametrize("n", [1, 2, 7, 48, 1000])
 def test_samples_are_the_motion_at_equally_spaced_times(n):
-    scene = Scene(
-        damping_ratio=0.1,
-        normal_load=10.0,
-        belt_speed=5.0,
-        drive=Drive(amplitude=3.0, frequency=1.5, phase=30.0),
-        transverse=Transverse(natural_frequency=2.0, damping_ratio=0.2, load=Load(amplitude=0.5, phase=90.0)),
-    )
+    across = Transverse(natural_frequency=2.0, damping_ratio=0.2, load=Load(amplitude=0.5, phase=90.0))
+    drive = Drive(amplitude=3.0, frequency=1.5, phase=30.0)
+    scene = Scene(damping_ratio=0.1, normal_load=10.0, belt_speed=5.0, drive=drive, transverse=across)
     at = sample(motion(1.5, 12, harmonic(1.5, 2.0 + 0j, 1j)), scene, LAW, n)
     angle = 2.0 * math.pi * np.arange(n) / n
 
@@ -195,29 +186,21 @@ def test_samples_are_the_motion_at_equally_spaced_times(n):
 
 
 def test_the_samples_of_loads_are_their_waveforms_and_at_a_jump_the_value_after_it():
-    scene = Scene(
-        damping_ratio=0.1,
-        normal_load=10.0,
-        belt_speed=5.0,
-        drive=Drive(amplitude=3.0, frequency=1.0, waveform="square"),
-        transverse=Transverse(
-            natural_frequency=2.0,
-            damping_ratio=0.2,
-            load=Load(amplitude=0.5, waveform="triangle", frequency_ratio=2),
-        ),
-    )
-    at = sample(motion(1.0, 12, harmonic(1.0, 2.0 + 0j, 1j)), scene, LAW, 8)
+    load = Load(amplitude=0.5, waveform="triangle", frequency_ratio=2)
+    across = Transverse(natural_frequency=2.0, damping_ratio=0.2, load=load)
+    drive = Drive(amplitude=3.0, frequency=1.0, waveform="square")
+    scene = Scene(damping_ratio=0.1, normal_load=10.0, belt_speed=5.0, drive=drive, transverse=across)
     turned = scene.with_(
         **{"drive.direction": 60, "drive.waveform": None, "transverse.load": None, "drive.phase": 90}
     )
-    aslant = sample(motion(1.0, 12, harmonic(1.0, 2.0 + 0j, 1j)), turned, LAW, 8)
+    orbit = motion(1.0, 12, harmonic(1.0, 2.0 + 0j, 1j))
+    at, aslant = (sample(orbit, shaken, LAW, 8) for shaken in (scene, turned))
 
     np.testing.assert_allclose(at.load, [3, 3, 3, 3, -3, -3, -3, -3], atol=1e-12)
     np.testing.assert_allclose(at.load_transverse, [0, 0.5, 0, -0.5] * 2, atol=1e-12)
     np.testing.assert_allclose(aslant.load, 1.5 * np.cos(at.tau), atol=1e-12)
-    np.testing.assert_allclose(
-        aslant.load_transverse, 3.0 * math.sin(math.pi / 3) * np.cos(at.tau), atol=1e-12
-    )
+    aside = 3.0 * math.sin(math.pi / 3) * np.cos(at.tau)
+    np.testing.assert_allclose(aslant.load_transverse, aside, atol=1e-12)
 
 
 def test_an_orbit_under_a_changing_load_has_the_force_over_the_mean_load():

@@ -39,9 +39,8 @@ def _difference(scene: fl.Scene, law: FrictionLaw, path: str, value: float) -> f
 )
 def test_they_are_the_differences_of_steady_states(scene: fl.Scene, law: FrictionLaw) -> None:
     table = fl.sensitivities(scene, law)
-    assert {"scene.damping_ratio", "scene.belt_speed", "scene.drive.frequency", "law.mu"} <= {
-        *table.parameter
-    }
+    named = {"scene.damping_ratio", "scene.belt_speed", "scene.drive.frequency", "law.mu"}
+    assert named <= {*table.parameter}
     assert (table.reason == "").all()
     assert (table.error < 1e-6).all()
     for row in table.itertuples():
@@ -62,9 +61,8 @@ def test_scales_of_force_and_time_are_arbitrary() -> None:
     # the mean coefficient is one of its own scale times a function of coefficient times load ...
     assert by["law.mu"] + by["law.mu_static"] == pytest.approx(1.0 + by["scene.normal_load"], abs=1e-6)
     # ... and all forces and speeds ten times as large leave it as it is
-    assert by["scene.normal_load"] + by["scene.drive.amplitude"] == pytest.approx(
-        -by["scene.belt_speed"], abs=1e-6
-    )
+    forces = by["scene.normal_load"] + by["scene.drive.amplitude"]
+    assert forces == pytest.approx(-by["scene.belt_speed"], abs=1e-6)
 
 
 def test_a_square_load_is_differentiated_from_an_instant_at_which_it_does_not_jump() -> None:
@@ -76,16 +74,9 @@ def test_a_square_load_is_differentiated_from_an_instant_at_which_it_does_not_ju
 
 
 def test_scenes_in_si_units_are_differentiated_by_their_own_numbers() -> None:
-    si = fl.Scene(
-        dimensional=fl.Dimensional(
-            mass_kg=2.0,
-            stiffness_N_per_m=800.0,
-            damping_N_s_per_m=8.0,
-            length_m=0.01,
-            belt_speed_m_per_s=0.3,
-            drive={"amplitude_N": 60.0, "frequency_rad_per_s": 25.0},
-        )
-    )
+    mass = {"mass_kg": 2.0, "stiffness_N_per_m": 800.0, "damping_N_s_per_m": 8.0, "length_m": 0.01}
+    drive = {"amplitude_N": 60.0, "frequency_rad_per_s": 25.0}
+    si = fl.Scene(dimensional=fl.Dimensional(**mass, belt_speed_m_per_s=0.3, drive=drive))
     path = "scene.dimensional.mass_kg"
     (row,) = fl.sensitivities(si, COULOMB, [path]).itertuples()
     assert abs(row.derivative - _difference(si, COULOMB, path, 2.0)) <= row.error + 1e-8
@@ -140,6 +131,5 @@ def test_the_page_shows_what_happens() -> None:
     with redirect_stdout(printed):
         exec(code, {})
     for line, told in zip(shown.splitlines(), printed.getvalue().splitlines(), strict=True):
-        assert (
-            line.split()[:3] == told.split()[:3] or "phase" in line
-        )  # the derivative of nothing is rounding
+        # the derivative by the phase is nothing but rounding
+        assert line.split()[:3] == told.split()[:3] or "phase" in line

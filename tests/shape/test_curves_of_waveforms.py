@@ -33,17 +33,13 @@ def row(one: Scene, law: Any = LAW, speeds: Any = SPEEDS) -> pd.Series:
     return curve_table(fl.curve(one, law, speeds)).iloc[0]
 
 
-@pytest.mark.parametrize(
-    ("waveform", "area", "shape"), [("triangle", 0.0, "undecided"), ("sawtooth", 0.0, "undecided")]
-)
-def test_curves_of_prescribed_waveforms_have_the_area_of_their_closed_form(
-    waveform: str, area: float, shape: str
-) -> None:
+@pytest.mark.parametrize("waveform", ["triangle", "sawtooth"])
+def test_curves_of_prescribed_waveforms_have_the_area_of_their_closed_form(waveform: str) -> None:
     found = row(slip(waveform))
 
     assert found["reversal_end"] == pytest.approx(1.0, rel=1e-13)
-    assert abs(found["shape_area"] - area) <= found["shape_area_error"]
-    assert found["shape"] == shape
+    assert abs(found["shape_area"]) <= found["shape_area_error"]
+    assert found["shape"] == "undecided"
 
 
 def test_a_curve_that_a_pulsating_load_lifts_starts_where_its_closed_form_says() -> None:
@@ -115,9 +111,8 @@ def test_what_repeats_mirrored() -> None:
     assert not any(repeats_mirrored(shaken(each)) for each in ("sawtooth", even))
     assert not repeats_mirrored(shaken("square", normal_load_variation=pulsating))
     assert repeats_mirrored(shaken("square", normal_load_variation={**pulsating, "frequency_ratio": 2}))
-    assert not repeats_mirrored(
-        shaken("sine", belt_vibration={"velocity_amplitude": 1.0, "frequency_ratio": 0.5})
-    )
+    halved = {"velocity_amplitude": 1.0, "frequency_ratio": 0.5}
+    assert not repeats_mirrored(shaken("sine", belt_vibration=halved))
 
 
 def test_the_scene_of_a_row_is_read_back() -> None:

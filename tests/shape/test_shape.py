@@ -57,17 +57,9 @@ def curve_of(
 ) -> FrictionCurve:
     """A curve that keeps its last value from its end on, which is the end of reversal unless ``changes`` say else."""
     friction = form(np.minimum(speed / end, 1.0))
-    return FrictionCurve(
-        **{
-            "speed": speed,
-            "friction": friction,
-            "error": np.zeros_like(speed),
-            "start": Estimate(0.0, 0.0),
-            "end": Estimate(end, 0.0),
-            "kinked": True,
-        }
-        | changes
-    )
+    exact = np.zeros_like(speed)
+    whole = FrictionCurve(speed, friction, exact, Estimate(0.0, 0.0), Estimate(end, 0.0), kinked=True)
+    return replace(whole, **changes)
 
 
 def covers(measured: Estimate | None, truth: float) -> bool:
@@ -93,14 +85,11 @@ def test_the_interpolant_goes_through_its_points_and_never_beyond_its_neighbours
 
 def test_the_interpolant_is_exact_on_lines_and_third_order_on_what_is_smooth_and_rising() -> None:
     at = np.linspace(0, 1, 301)
-    errors = []
-    for points in (11, 21, 41, 81):
-        x = np.linspace(0, 1, points)
-        errors.append(float(np.abs(monotone_cubic(x, np.exp(x))(at) - np.exp(at)).max()))
+    grids = [np.linspace(0, 1, points) for points in (11, 21, 41, 81)]
+    errors = [float(np.abs(monotone_cubic(x, np.exp(x))(at) - np.exp(at)).max()) for x in grids]
+    line = monotone_cubic(np.array([0.0, 0.3, 1.0]), np.array([1.0, 1.6, 3.0]))
 
-    np.testing.assert_allclose(
-        monotone_cubic(np.array([0.0, 0.3, 1.0]), np.array([1.0, 1.6, 3.0]))(at), 1 + 2 * at
-    )
+    np.testing.assert_allclose(line(at), 1 + 2 * at)
     assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 2.7)
 
 
@@ -203,13 +192,9 @@ def test_whatever_the_points_a_shape_has_finite_numbers_or_a_reason(
     values: list[float], kinked: bool, error: float
 ) -> None:
     speed = np.linspace(0.0, 1.3, len(values) + 1)[1:]
-    end = Estimate(1.0, 0.0 if kinked else error)
+    end, errors = Estimate(1.0, 0.0 if kinked else error), np.full(speed.size, error)
     try:
-        shape = shape_of(
-            FrictionCurve(
-                speed, np.array(values), np.full(speed.size, error), Estimate(0.0, 0.0), end, kinked
-            )
-        )
+        shape = shape_of(FrictionCurve(speed, np.array(values), errors, Estimate(0.0, 0.0), end, kinked))
     except UnreadableCurve:
         return
     found = np.array([measured for measured in vars(shape).values() if measured is not None])
@@ -229,12 +214,13 @@ def test_the_reduction_is_the_largest_fall_and_allows_for_a_dip_between_points()
 
 
 def scene(frequency: float, normal_load: float, across: float | None = None) -> Scene:
-    transverse = None
-    if across is not None:
-        load = fl.Load(unbalance=10)
-        transverse = fl.Transverse(natural_frequency=across, damping_ratio=0.1, load=load)
     drive = fl.Drive(unbalance=10, frequency=frequency)
-    return Scene(damping_ratio=0.1, normal_load=normal_load, belt_speed=1, drive=drive, transverse=transverse)
+    line = Scene(damping_ratio=0.1, normal_load=normal_load, belt_speed=1, drive=drive)
+    if across is None:
+        return line
+    return line.with_(
+        transverse={"natural_frequency": across, "damping_ratio": 0.1, "load": {"unbalance": 10}}
+    )
 
 
 def curves(one: Scene, speed: Floats) -> pd.Series:
@@ -279,33 +265,31 @@ ACROSS = {
 """Omega, gamma^2, omega_r with both loads, Figs. 8 and 9: verdict by area."""
 
 
+def verdicts_on(one: Scene, points: int, wanted: str) -> list[pd.Series]:
+    """The rows of a curve on every choice of points, with and without noise: all of them with this verdict."""
+    rows = []
+    for speed in grids(friction_free_velocity(one), points).values():
+        table = fl.curve(one, LAW, speed)
+        rows.append(curve_table(table).iloc[0])
+        assert rows[-1]["shape"] == curve_table(shaken(table, len(table))).iloc[0]["shape"] == wanted
+    return rows
+
+
 @pytest.mark.parametrize("case", ALONG)
 def test_verdicts_along_the_belt_do_not_change_with_the_points_or_with_noise(
     case: tuple[float, float],
 ) -> None:
-    one, truth = scene(*case), dense_area(*case)
-    for speed in grids(friction_free_velocity(one)).values():
-        table = fl.curve(one, LAW, speed)
-        row = curve_table(table).iloc[0]
-
-        assert row["shape"] == ALONG[case]
-        assert curve_table(shaken(table, len(table))).iloc[0]["shape"] == ALONG[case]
+    truth = dense_area(*case)
+    for row in verdicts_on(scene(*case), 90, ALONG[case]):
         assert abs(row["shape_area"] - truth) <= row["shape_area_error"] < 0.02
-        assert row["reversal_end"] == pytest.approx(friction_free_velocity(one), rel=1e-12)
+        assert row["reversal_end"] == pytest.approx(friction_free_velocity(scene(*case)), rel=1e-12)
 
 
 @pytest.mark.parametrize("case", ACROSS)
 def test_verdicts_in_the_plane_do_not_change_with_the_points_or_with_noise(
     case: tuple[float, float, float],
 ) -> None:
-    one = scene(*case)
-    rows = []
-    for speed in grids(friction_free_velocity(one), 60).values():
-        table = fl.curve(one, LAW, speed)
-        rows.append(curve_table(table).iloc[0])
-
-        assert rows[-1]["shape"] == ACROSS[case]
-        assert curve_table(shaken(table, len(table))).iloc[0]["shape"] == ACROSS[case]
+    rows = verdicts_on(scene(*case), 60, ACROSS[case])
     for measure in ("reversal_end", "shape_area", "shape_half"):
         low = max(row[measure] - row[f"{measure}_error"] for row in rows)
         high = min(row[measure] + row[f"{measure}_error"] for row in rows)
@@ -341,23 +325,12 @@ def test_reference_curves_in_the_plane_have_the_areas_they_are_known_by(
     last = int(np.flatnonzero(highest > speed)[-1])
     fall = highest - speed
     end = speed[last] + fall[last] / (fall[last] - fall[last + 1]) * (speed[last + 1] - speed[last])
-    rows = pd.DataFrame(
-        {
-            "law": "coulomb",
-            "scene.belt_speed": speed,
-            "scene.drive.unbalance": 10.0,
-            "scene.drive.frequency": 4.0,
-            "scene.transverse.load.unbalance": 10.0,
-            "mean_friction": read["mu_bar_dop853"],
-            "error": 1e-8,
-            "normalized_friction": read["mu_bar_dop853"] / 0.4,
-            "velocity_amplitude": read["V1"],
-            "reversals": np.where(highest > speed, 2.0, 0.0),
-            "stick_fraction": 0.0,
-            "scene.normal_load": 1.0,
-            "status": "ok",
-        }
-    )
+    inputs = {"law": "coulomb", "scene.belt_speed": speed, "scene.normal_load": 1.0, "status": "ok"}
+    inputs |= {"scene.drive.unbalance": 10.0, "scene.drive.frequency": 4.0}
+    mean = read["mu_bar_dop853"]
+    told = {"mean_friction": mean, "error": 1e-8, "normalized_friction": mean / 0.4, "stick_fraction": 0.0}
+    told |= {"velocity_amplitude": read["V1"], "reversals": np.where(highest > speed, 2.0, 0.0)}
+    rows = pd.DataFrame(inputs | {"scene.transverse.load.unbalance": 10.0} | told)
     row = curve_table(rows).iloc[0]
 
     assert abs(row["reversal_end"] - end) <= row["reversal_end_error"]
@@ -416,10 +389,8 @@ def test_friction_in_the_plane_above_both_loads_leaves_the_area_empty_and_says_w
 
 def test_a_prescribed_slip_ends_its_reversals_at_its_own_amplitude() -> None:
     slip = fl.Slip(velocity_amplitude=3, frequency=1)
-    along = Scene(belt_speed=1, slip=slip)
-    turning = Scene(
-        belt_speed=1, slip=slip, transverse_slip=fl.TransverseSlip(velocity_amplitude=3, phase=90)
-    )
+    along, across = Scene(belt_speed=1, slip=slip), fl.TransverseSlip(velocity_amplitude=3, phase=90)
+    turning = Scene(belt_speed=1, slip=slip, transverse_slip=across)
     speed = np.linspace(0.05, 4, 80)
     rows = [curves(one, speed) for one in (along, turning)]
 
@@ -459,9 +430,8 @@ def test_there_is_one_row_per_curve_inputs_first(family: pd.DataFrame) -> None:
 
 def test_points_without_a_number_are_left_out(family: pd.DataFrame) -> None:
     lost = family["scene.belt_speed"].isin([10.0, 25.0, 25.5])
-    failed = family.assign(
-        status=family["status"].mask(lost, "failed"), mean_friction=family["mean_friction"].mask(lost)
-    )
+    failed = family.copy()
+    failed.loc[lost, ["status", "mean_friction"]] = ["failed", np.nan]
     whole, rest = curve_table(family), curve_table(failed)
 
     assert rest["shape"].tolist() == whole["shape"].tolist()

@@ -6,7 +6,7 @@ curves are one line are drawn once, and the legend says so.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -21,7 +21,6 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
-from frictionlab.charts.closer_view import draw_closer_view
 from frictionlab.charts.curves import LEAST_VISIBLE, CurveData, CurveNumbers, Family, drawn_once
 from frictionlab.charts.looks import WITHOUT_NUMBER, Looks, curve_entries, status_entries
 from frictionlab.charts.marks import OnsetMark, draw_onsets, draw_speed_marks, onset_entries, onsets_on
@@ -33,6 +32,10 @@ from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 DEGREES = [1, 1.5, 3, 4.5, 9, 10]  # between ticks of an angle, times a power of ten
 ROUNDING = 1e-9  # of the largest level: less is zero, whatever its sign
 LIKE_RANGES = 2.5  # ranges of pictures of one quantity that differ by less have one scale
+LEVEL_SHARE = 0.4  # of a linear axis, up to its right end: with less of it level there is no closer view
+DIFFER_MOST = 0.3  # of the largest difference: from there on curves are shown closer
+GAP, LABELS = 0.07, 0.04  # to the level part around, and for labels of the view, in shares of the picture
+Points = tuple[CurveNumbers, CurveNumbers]
 BAND_LOOK: Any = {"linewidth": 6.0, "alpha": 0.3, "solid_capstyle": "butt"}  # where the body sticks
 
 
@@ -123,7 +126,7 @@ class _Picture:
             draw_onsets(axes, self.of.onsets_of(curve), self.of.looks.color(curve))
         if self.of.options.inset and self.column == "mean_friction":
             drawn = [(curve.column(abscissa), curve.column(self.column)) for curve in curves]
-            draw_closer_view(axes, drawn, lambda inside: self.lines(inside, curves))
+            _draw_closer_view(axes, drawn, lambda inside: self.lines(inside, curves))
         return axes
 
     def lines(self, axes: Axes, curves: Sequence[CurveData]) -> None:
@@ -199,3 +202,59 @@ def _lie_decades_apart(curves: Sequence[pd.Series]) -> bool:
     levels = [float(curve.median()) for curve in known]
     low, high = min(levels), max(levels)
     return high > 30.0 * low > ROUNDING * high and min(float(curve.min()) for curve in known) > 0.2 * low
+
+
+def _draw_closer_view(axes: Axes, curves: Sequence[Points], draw: Callable[[Axes], None]) -> None:
+    """Draw the lines anew where they differ, or where they change, in the room under or over their level part.
+
+    Nothing is drawn where less than LEVEL_SHARE of a linear axis, up to its right end, is level.
+    """
+    finite = [np.isfinite(x) & np.isfinite(y) for x, y in curves]
+    curves = [(x[known], y[known]) for (x, y), known in zip(curves, finite, strict=True)]
+    window = _level_from(curves)
+    if window is None or axes.get_xscale() != "linear" or axes.get_yscale() != "linear":
+        return
+    start, level = window
+    ends = axes.transData.transform([(start, level), (axes.get_xlim()[1], axes.get_ylim()[1])])
+    (left, bottom), (right, _) = axes.transAxes.inverted().transform(ends)
+    foot, top = (0.1, bottom - GAP) if bottom > 0.5 else (bottom + GAP, 0.95)
+    if top - foot < 0.25:
+        return
+    first = left + GAP + LABELS
+    inside = axes.inset_axes((first, foot + GAP, right - first - 0.5 * GAP, top - foot - GAP))
+    draw(inside)
+    low, high = _of_interest(curves, start)
+    heights = np.concatenate([y[(x >= low) & (x <= high)] for x, y in curves])
+    margin = 0.08 * float(np.ptp(heights))
+    inside.set_xlim(low, high)
+    inside.set_ylim(float(heights.min()) - margin, float(heights.max()) + margin)
+    inside.tick_params(labelsize=5.5, length=2)
+    axes.indicate_inset_zoom(inside, edgecolor="0.45", linewidth=0.5)
+
+
+def _level_from(curves: Sequence[Points]) -> tuple[float, float] | None:
+    """From where on, and at which level, all curves stay within what can be seen; None for less than LEVEL_SHARE."""
+    known = [(x, y) for x, y in curves if len(x) > 2]
+    if not known:
+        return None
+    least = LEAST_VISIBLE * float(np.ptp(np.concatenate([y for _, y in known])))
+    changes = [np.append(True, np.abs(y - y[-1]) > least) for _, y in known]
+    start = max(float(x[np.flatnonzero(each)[-1] - 1]) for (x, _), each in zip(known, changes, strict=True))
+    low, high = min(float(x[0]) for x, _ in known), max(float(x[-1]) for x, _ in known)
+    levels = [float(y[-1]) for _, y in known]
+    if np.ptp(levels) > least or not low < start <= high - LEVEL_SHARE * (high - low):
+        return None
+    return start, levels[0]
+
+
+def _of_interest(curves: Sequence[Points], start: float) -> tuple[float, float]:
+    """The part before the level one in which several curves differ most; all of it where they do not, or for one."""
+    first = min(float(x[0]) for x, _ in curves)
+    at = np.linspace(first, start, 400)
+    heights = np.array([np.interp(at, x, y) for x, y in curves])
+    apart = np.ptp(heights, axis=0)
+    if apart.max() <= 2.0 * LEAST_VISIBLE * float(np.ptp(heights)):
+        return first, start
+    apart = apart > DIFFER_MOST * apart.max()
+    margin = 0.1 * (start - first)
+    return max(first, float(at[apart][0]) - margin), min(start, float(at[apart][-1])) + margin

@@ -1,8 +1,12 @@
-"""The body of the paper's Fig. 4b, driven at resonance."""
+"""The body of the paper's Fig. 4b, driven at resonance, and reference curves."""
 
 from __future__ import annotations
 
+import csv
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from frictionlab.scene.scene import Drive, Scene
 
@@ -12,3 +16,10 @@ def at_resonance(belt_speed: float, frequency: float = 1.0, **changes: Any) -> S
     drive = Drive(unbalance=10.0, frequency=frequency)
     given = {"damping_ratio": 0.1, "normal_load": 10.0, "drive": drive}
     return Scene(belt_speed=belt_speed, **(given | changes))
+
+
+def reference_curve(file: str) -> dict[str, Any]:
+    """The columns of a reference file."""
+    with (Path(__file__).parent / "reference" / file).open() as lines:
+        rows = list(csv.DictReader(lines))
+    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}

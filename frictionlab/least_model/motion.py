@@ -13,10 +13,11 @@ import numpy as np
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.least_model.lesser import CannotGo, LesserModel, MotionWay, Taken
-from frictionlab.methods.reduced.common import Harmonic, line_means, line_refusal, steadied, steadied_all
-from frictionlab.methods.reduced.two_reversals import Line, motions_at
+from frictionlab.methods.reduced.common import line_refusal, steadied, steadied_all
+from frictionlab.methods.reduced.reversals import DrivenLine, exact_response, reversals_at
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.waveforms import MOST_TERMS, Form, Term
 from frictionlab.theory.linear import friction_free_response, friction_free_velocity, less
 from frictionlab.theory.piecewise import Piecewise, piecewise
@@ -30,7 +31,6 @@ ON_SAMPLES = (
     "harmonics do"
 )
 NOT_SINES = "the motion without rest is known for one sine along the belt under a constant normal load"
-NO_SUCH_MOTION = "no motion without rest reverses twice a period"
 FRICTION_FREE = "mdsm"
 """The method of the friction-free motion."""
 ORDERS_KEPT = (1, 3, 5, 9)
@@ -130,16 +130,11 @@ class WithoutRest:
         return NOT_SINES if steady is None else line_refusal("the motion without rest", steady, law)
 
     def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats:
-        """Of that motion; NaN where there is none."""
-        return line_means(steadied_all(scenes), law, _two_reversals)
-
-
-def _two_reversals(scene: Scene, friction: float, belt_speeds: Floats) -> Harmonic:
-    """Its mean is one less twice the share of forward slip; from V_lin on slip does not reverse."""
-    mass, free = scene.mass(), friction_free_velocity(scene)
-    reverses = belt_speeds < free
-    line = Line(0.5 * mass.damping, mass.frequency, friction, free)
-    found = motions_at(line, np.where(reverses, belt_speeds, 0.0))
-    mean = np.where(reverses, np.where(np.isnan(found.belt_speed), np.nan, 1.0 - 2.0 * found.share), 1.0)
-    reasons = [NO_SUCH_MOTION if missing else "" for missing in np.isnan(mean)]
-    return Harmonic(mean, np.full(len(mean), np.nan + 0j), reasons)
+        """One less twice the share of forward slip, NaN without such a motion; from V_lin on slip never reverses."""
+        steady = steadied_all(scenes)
+        mu, speeds, mass = law.sliding_friction(1.0), belt_speeds_of(steady), steady[0].mass()
+        line = DrivenLine(exact_response(mass), mu * mass.normal_load, friction_free_velocity(steady[0]))
+        reverses = np.abs(speeds) < line.friction_free
+        found = reversals_at(line, np.where(reverses, np.abs(speeds), 0.0))
+        mean = np.where(np.isnan(found.middle), np.nan, 1.0 - 2.0 / np.pi * found.half)
+        return mu * np.copysign(np.where(reverses, mean, 1.0), speeds)

@@ -25,7 +25,7 @@ from frictionlab.laws.lugre import LuGre
 from frictionlab.methods.march.laps import march_laps
 from frictionlab.methods.periodic.continuation import answer_curve
 from frictionlab.methods.periodic.setting import maps_of
-from frictionlab.methods.reduced.contact import harmonic_friction
+from frictionlab.methods.reduced.loops import harmonics_of_legs
 from frictionlab.methods.shooting.undriven_path import follow_undriven
 
 FILES = {
@@ -201,7 +201,7 @@ def test_words_and_the_place_in_the_file_change_nothing(compiled_once, name, bef
 
 
 @pytest.mark.parametrize(
-    "root", [answer_curve, maps_of, follow_undriven, march_laps, harmonic_friction, LuGre]
+    "root", [answer_curve, maps_of, follow_undriven, march_laps, harmonics_of_legs, LuGre]
 )
 def test_the_name_of_a_kept_kernel_holds_no_address(root):
     assert not [piece for piece in cache._pieces([root], set()) if " at 0x" in piece]

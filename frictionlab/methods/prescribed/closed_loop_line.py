@@ -80,13 +80,17 @@ def line_loop(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
     return _legs(law, along) if along.turn > 0.0 else _one_way(law, along)
 
 
-def _legs(law: BristleLaw, along: Along) -> Closed:
+def legs_of(law: BristleLaw, along: Along, cuts: float) -> Legs:
+    """The legs of a slip that reverses, under a law with an exact path."""
     reach, fastest = law.largest_deflection(), law.largest_rate(1.0)
     length = min(reach, 1.0 / fastest) if 0.0 < fastest < math.inf else reach
+    return Legs(along.turn, along.size / along.frequency, along.size, length, reach, cuts)
+
+
+def _legs(law: BristleLaw, along: Along) -> Closed:
     kernel, loops, seconds = KernelCall(closed_legs, law), [], 0.0
     for cuts in (1.0, 2.0):
-        legs = Legs(along.turn, along.size / along.frequency, along.size, length, reach, cuts)
-        (start, *rest), spent = kernel.timed(legs)
+        (start, *rest), spent = kernel.timed(legs_of(law, along, cuts))
         seconds += spent
         loops.append(_turned(along, (start + along.turn - math.pi, *rest), POINTS, SHARES))
     coarse, fine = loops
@@ -108,7 +112,7 @@ def _one_way(law: BristleLaw, along: Along) -> Closed:
 def _collocated(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
     slip = Oscillation(1j * along.size, 0j, along.frequency, 0.0)
     found = closed_deflection(
-        law, slip, _stretches(law, along), Accuracy.of(law, slip, along.belt_speed, tolerance), 0.0
+        law, slip, stretches(law, along), Accuracy.of(law, slip, along.belt_speed, tolerance), 0.0
     )
     if isinstance(found, Open):
         return found
@@ -125,7 +129,8 @@ def _turned(along: Along, parts: tuple[Any, ...], points: Floats, shares: Floats
     return Loop(start + shift, width, points, shares, side * slip, side.real * deflection, side * friction)
 
 
-def _stretches(law: BristleLaw, along: Along) -> Floats:
+def stretches(law: BristleLaw, along: Along) -> Floats:
+    """The parts of a period of |belt speed| + size*cos(psi) without rest inside, from psi = turn - pi on."""
     speed, turn = abs(along.belt_speed), along.turn
     if turn == 0.0:
         passages = slow_passages(1j * along.size, 0j, -speed)

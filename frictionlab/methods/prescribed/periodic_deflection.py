@@ -90,7 +90,7 @@ def closed_deflection(
     while True:
         means = []
         for exactness in (per_step, per_step / STEP):
-            closing = _Closing(law, slip, stretches, accuracy.scale, exactness)
+            closing = Closing(law, slip, stretches, accuracy.scale, exactness)
             period, z, left = closing.closed(z)
             spent += closing.seconds
             if period is None:
@@ -113,7 +113,7 @@ def closed_deflection(
         per_step = max(per_step / STEP, STEP * FINEST)
 
 
-class _Closing:
+class Closing:
     """The search for a deflection that repeats."""
 
     def __init__(

@@ -1,28 +1,25 @@
-"""Code of all reduced models of Coulomb friction along a line: accepted scenes, model error, results.
-
-A reduced model gives the motion as one harmonic. What it leaves out is told by its distance from the mean friction of
-the full problem.
-"""
+"""What reduced models share: the scenes they refuse, what a model says, and its distance to the full problem."""
 
 from __future__ import annotations
 
 import math
 import time
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frictionlab.compile.law_lanes import takes_lanes
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, Status
-from frictionlab.methods.exact.method import REDUCED
+from frictionlab.methods.base import Answers, ReducedModel, Status
+from frictionlab.methods.exact.method import REDUCED, Exact
 from frictionlab.methods.prescribed.motion import displacement, velocity
 from frictionlab.methods.prescribed.quadrature import orbit_of_slip
-from frictionlab.methods.reduced.full_mean import full_means
 from frictionlab.methods.refusals import suggest_shooting
+from frictionlab.methods.shooting.method import Shooting
+from frictionlab.methods.shooting.saturated import HELD
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Motion
@@ -34,46 +31,137 @@ from frictionlab.theory.uniqueness import falls_slowly
 
 ROUNDING = 1e-10
 """Of models, relative to the friction coefficient: their formulas keep twelve digits or more."""
-
-
-@dataclass(frozen=True)
-class Harmonic:
-    """A model's motion at n belt speeds >= 0: Im(velocity exp(i Omega tau)), and the mean relative to mu.
-
-    reasons: why the model has no answer at a belt speed; empty where it has.
-    """
-
-    mean: Floats
-    velocity: NDArray[np.complex128]
-    reasons: list[str]
-
-
-class LeftOut(NamedTuple):
-    """The error of each point of a model, and why it is not known; empty where it is."""
-
-    error: Floats
-    reasons: list[str]
+TOLERANCE = 1e-9
+"""On the mean of the full problem, relative to the friction coefficient in quick slip."""
+UNBOUNDED_ENERGIES = "; energies are those of this motion, without an error"
+"""Said of every row: what a model leaves out is known in the mean friction alone."""
+EQUIVALENT = "; the belt's vibration as the drive that is equivalent to it"
+NOT_KNOWN = "the model error is not known, for the steady state is not"
+UNSTEADY = "the motion of one drive period may be unstable: the mean may not be unique; use shooting"
+AT_REST = (
+    "on a belt at rest one harmonic gives sliding only if the load exceeds 4/pi of mu*normal_load; use exact"
+)
+DOES_NOT_DECAY = "without damping and without slip reversal the free oscillation does not decay; use exact"
 
 
 class Modelled(NamedTuple):
-    """Mean and error of every point of a model, and the seconds of all."""
+    """What a model says of n scenes.
+
+    mean: friction coefficient, x1 + i x2 where it has two directions; NaN where the model has none. reasons: why a
+    scene has no answer; empty where it has. orbit(i): the motion of scene i. rounding: the error of the mean itself.
+    steadiest: the largest Floquet multiplier of the full motion up to which its mean is the only one. settled: where
+    symmetry says the mean, whatever the model leaves out.
+    """
 
     mean: Floats | NDArray[np.complex128]
-    error: Floats
-    seconds: float
+    reasons: list[str]
+    text: str
+    orbit: Callable[[int], Orbit | None]
+    rounding: Floats
+    steadiest: float = math.inf
+    settled: NDArray[np.bool_] | None = None
 
 
-UNBOUNDED_ENERGIES = "; energies are those of this motion, without an error"
-"""Said of every row: what one harmonic leaves out is known in the mean friction alone."""
+class OfOneModel(ReducedModel):
+    """A reduced model whose answers are those of ``modelled``, their errors the distance to the full means."""
 
-EQUIVALENT = "; the belt's vibration as the drive that is equivalent to it"
+    @abstractmethod
+    def modelled(self, scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
+        """What the model says of scenes that differ in belt speed alone, on ``steadied`` belts where it can be so."""
 
-Model = Callable[[Scene, float, Floats], Harmonic]
-"""(scene, friction = mu*normal_load, belt speeds >= 0) -> the model's motion."""
+    def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
+        """The means of ``modelled``."""
+        return self.modelled(steadied_all(scenes), law).mean
+
+    def solve(self, scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
+        """Answer scenes that differ in belt speed alone; errors above the tolerance are noted."""
+        start = time.perf_counter()
+        steady = steadied_all(scenes)
+        found = self.modelled(steady, law)
+        error, reasons = _left_out(steady, law, found)
+        seconds = (time.perf_counter() - start) / len(scenes)
+        text = found.text + UNBOUNDED_ENERGIES + (EQUIVALENT if steady is not scenes else "")
+        against = np.array([bool(reason) for reason in reasons])
+        status: list[Status] = ["refused" if reason else "ok" for reason in reasons]
+        said = [
+            reason or (f"model error above the tolerance {tolerance:.1e}" if not far <= tolerance else "")
+            for reason, far in zip(reasons, error, strict=True)
+        ]
+        return Answers(
+            status=status,
+            reason=said,
+            model=["" if reason else text for reason in reasons],
+            error_kind=["" if reason else "estimated" for reason in reasons],
+            mean=np.where(against, np.nan, found.mean),
+            error=np.where(against, np.nan, error),
+            period=np.where(against, np.nan, float(scenes[0].periods)),
+            seconds=np.full(len(scenes), seconds),
+            orbit=lambda i: None if reasons[i] else _carried(scenes[i], found.orbit(i)),
+            balanced=False,
+        )
+
+
+def _left_out(scenes: Sequence[Scene], law: FrictionLaw, found: Modelled) -> tuple[Floats, list[str]]:
+    """The error of each mean, and why it is not known; the full problem is asked where nothing speaks against it."""
+    settled = np.zeros(len(scenes), np.bool_) if found.settled is None else found.settled
+    error, reasons = np.where(settled, found.rounding, np.nan), list(found.reasons)
+    asked = [i for i, reason in enumerate(reasons) if not reason and not settled[i]]
+    if not asked:
+        return error, reasons
+    speeds = belt_speeds_of(scenes)[asked]
+    # Half periods of sines mirror each other: a belt that runs the other way has minus the mean.
+    sides = np.copysign(1.0, speeds) if scenes[0].is_harmonic else np.ones(len(asked))
+    speeds, back = np.unique(sides * speeds, return_inverse=True)
+    full = full_means(scenes[0], law.under_load(scenes[0].mass().normal_load), speeds)
+    mean, own = sides * np.real(full.mean)[back], found.mean.real[asked]
+    error[asked] = np.abs(mean - own) + full.error[back] + found.rounding[asked]
+    steady = np.ones(len(speeds), np.bool_)
+    if found.steadiest < math.inf and full.floquet is not None:
+        steady = ~(full.floquet() > found.steadiest)
+    for i, k in zip(asked, back.tolist(), strict=True):
+        if not steady[k]:
+            reasons[i] = UNSTEADY
+        elif full.status[k] != "ok":
+            reasons[i] = f"{NOT_KNOWN} ({full.reason[k]}); use shooting"
+    return error, reasons
+
+
+def full_means(scene: Scene, law: FrictionLaw, belt_speeds: Floats) -> Answers:
+    """Of a scene at other belt speeds: by the exact method where it takes them, else by shooting."""
+    free = [
+        scene.model_copy(update={"initial": None, "dimensional": None, "belt_speed": speed})
+        for speed in belt_speeds.tolist()
+    ]
+    method = Exact() if not any(Exact().refusals(free, law)) else Shooting()
+    return method.solve(free, law, TOLERANCE * law.sliding_friction(1.0))
+
+
+def _carried(scene: Scene, orbit: Orbit | None) -> Orbit | None:
+    """The body's own motion on a belt that vibrates, from that of its equivalent drive."""
+    other = equivalent_drive(scene)
+    if orbit is None or other is None:
+        return orbit
+    carried = Motion(1.0, scene.frequency, other.velocity, other.transverse_velocity)
+    angle = scene.frequency * orbit.tau
+    return replace(orbit, x=orbit.x + displacement(carried, angle), v=orbit.v + velocity(carried, angle))
+
+
+def steadied_all(scenes: Sequence[Scene]) -> Sequence[Scene]:
+    """Scenes that differ in belt speed alone, on a belt that does not vibrate where an equivalent drive does it."""
+    other = equivalent_drive(scenes[0])
+    if other is None:
+        return scenes
+    return [other.scene.model_copy(update={"belt_speed": scene.belt_speed}) for scene in scenes]
+
+
+def steadied(scene: Scene) -> Scene | None:
+    """The same of one scene, None where more than one sine is left."""
+    steady = steadied_all([scene])[0]
+    return steady if steady.is_harmonic else None
 
 
 def line_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
-    """Why a reduced model of motion along the belt cannot do this scene and law at any belt speed."""
+    """Why a reduced model of Coulomb friction along the belt cannot do this scene and law at any belt speed."""
     if scene.undriven:
         return f"{name} needs a drive: it starts from the driven motion"
     if not scene.load_along_belt_only:
@@ -100,148 +188,51 @@ def plane_refusal(name: str, scene: Scene, law: FrictionLaw) -> str | None:
     return None
 
 
-def tailless_refusal(
-    name: str, scene: Scene, law: FrictionLaw, wants: str, no_tail: str | None
-) -> str | None:
-    """Why harmonics of friction that varies with the slip speed cannot do this at any belt speed; None if they can.
-
-    wants: of a law whose friction is no function of the slip speed. no_tail: where a tail is asked for, why there is
-    none.
-    """
-    if scene.undriven:
-        return f"{name} needs a drive: it starts from the driven motion"
-    if not takes_lanes(law):
-        return wants
-    return no_tail or plane_refusal(name, scene, law)
-
-
-def steadied(scene: Scene) -> Scene | None:
-    """The scene that a reduced model answers: the same, or that of the drive equivalent to its belt's vibration."""
-    if scene.is_harmonic:
-        return scene
-    other = equivalent_drive(scene)
-    return None if other is None else other.scene
-
-
-def answer_steadied(scenes: Sequence[Scene], answer: Callable[[Sequence[Scene]], Answers]) -> Answers:
-    """The answers of scenes on belts that vibrate by those of their equivalent drives, with the body's own motion."""
-    other = equivalent_drive(scenes[0])
-    if other is None:
-        return answer(scenes)
-    found = answer(steadied_all(scenes))
-    carried = Motion(1.0, scenes[0].frequency, other.velocity, other.transverse_velocity)
-
-    def orbit(i: int) -> Orbit | None:
-        one = found.orbit(i)
-        if one is None:
-            return None
-        angle = scenes[0].frequency * one.tau
-        return replace(one, x=one.x + displacement(carried, angle), v=one.v + velocity(carried, angle))
-
-    said = [text + EQUIVALENT if text else text for text in found.model]
-    return replace(found, model=said, orbit=orbit, orbits=None)
-
-
-def point_refusal(scene: Scene, friction: float) -> str:
-    """Why the steady state at this belt speed is not unique; empty where it is."""
+def line_reasons(scene: Scene, friction: float, belt_speeds: Floats, mean: Floats, without: str) -> list[str]:
+    """Why there is no one steady state along the belt, or no mean of the model; empty where there are."""
     mass = scene.mass()
-    if scene.belt_speed == 0.0 and abs(mass.force) <= friction:
-        return (
-            "the belt is at rest and static friction balances the load: the mass may rest anywhere in a range"
-        )
-    if mass.damping == 0.0 and abs(scene.belt_speed) >= friction_free_velocity(scene):
-        return "without damping and without slip reversal the free oscillation does not decay; use exact"
-    return ""
+    held = (belt_speeds == 0.0) & (abs(mass.force) <= friction)
+    undamped = (mass.damping == 0.0) & (np.abs(belt_speeds) >= friction_free_velocity(scene))
+    found: list[str] = np.select(
+        [held, undamped, np.isnan(mean)], [HELD, DOES_NOT_DECAY, without], ""
+    ).tolist()
+    return found
 
 
-def steadied_all(scenes: Sequence[Scene]) -> Sequence[Scene]:
-    """Scenes that differ in belt speed alone as a reduced model takes them: on a belt that does not vibrate."""
-    other = equivalent_drive(scenes[0])
-    if other is None:
-        return scenes
-    return [other.scene.model_copy(update={"belt_speed": scene.belt_speed}) for scene in scenes]
+class Sines(NamedTuple):
+    """A model's motion at n belt speeds >= 0: Im(velocity exp(i Omega tau)), and the mean relative to mu, or NaN."""
+
+    mean: Floats
+    velocity: NDArray[np.complex128]
 
 
-def line_means(scenes: Sequence[Scene], law: FrictionLaw, model: Model) -> Floats:
-    """The mean friction of a model along the belt, without its error."""
-    mu, speeds = law.sliding_friction(1.0), belt_speeds_of(scenes)
-    found = model(scenes[0], mu * scenes[0].mass().normal_load, np.abs(speeds))
-    answered = np.array([not reason for reason in found.reasons])
-    return np.where(answered, mu * np.copysign(found.mean, speeds), np.nan)
-
-
-def answer_line(
-    scenes: Sequence[Scene], law: FrictionLaw, tolerance: float, text: str, model: Model
-) -> Answers:
-    """Answers of a model on scenes that differ in belt speed alone."""
-    start = time.perf_counter()
-    mu = law.sliding_friction(1.0)
-    speeds = belt_speeds_of(scenes)
-    friction = mu * scenes[0].mass().normal_load
-    found = model(scenes[0], friction, np.abs(speeds))
-    mean = mu * np.copysign(found.mean, speeds)
-    against = [
-        point_refusal(scene, friction) or own for scene, own in zip(scenes, found.reasons, strict=True)
-    ]
-    left_out = far_from_full(scenes, law, mean, against)
-    seconds = time.perf_counter() - start
-    text += REDUCED if scenes[0].degrees_of_freedom == 2 else ""
+def modelled_along(
+    scenes: Sequence[Scene], law: FrictionLaw, text: str, found: Callable[[Scene, float, Floats], Sines]
+) -> Modelled:
+    """A model of Coulomb friction along the belt; found: of a scene, mu*normal_load and belt speeds >= 0."""
+    mu, speeds, mass = law.sliding_friction(1.0), belt_speeds_of(scenes), scenes[0].mass()
+    friction = mu * mass.normal_load
+    sines = found(scenes[0], friction, np.abs(speeds))
+    mean = mu * np.copysign(sines.mean, speeds)
 
     def orbit(i: int) -> Orbit:
-        return _orbit(scenes[i], law, found, i)
+        sine = Motion(mass.normal_load, mass.frequency, complex(sines.velocity[i]), 0j)
+        return orbit_of_sines(sine, float(speeds[i]), law, complex(mean[i]) * mass.normal_load)
 
-    return judged(Modelled(mean, left_out.error, seconds), left_out.reasons, text, tolerance, orbit)
-
-
-def far_from_full(
-    scenes: Sequence[Scene], law: FrictionLaw, mean: Floats, against: Sequence[str] = ()
-) -> LeftOut:
-    """By the distance of these means from those of the full problem, asked for where nothing speaks against it."""
-    reasons = list(against) or [""] * len(scenes)
-    asked = [i for i, reason in enumerate(reasons) if not reason]
-    error = np.full(len(scenes), np.nan)
-    if asked:
-        full = full_means([scenes[i] for i in asked], law)
-        speeds = np.abs(belt_speeds_of([scenes[i] for i in asked]))
-        size = ROUNDING * np.array([law.sliding_friction(speed) for speed in speeds.tolist()])
-        error[asked] = np.abs(full.mean - mean[asked]) + full.error + size
-        for i, reason in zip(asked, full.reasons, strict=True):
-            reasons[i] = reason
-    return LeftOut(error, reasons)
+    reasons = line_reasons(scenes[0], friction, speeds, mean, AT_REST)
+    return Modelled(mean, reasons, on_the_line(text, scenes[0]), orbit, np.full(len(speeds), ROUNDING * mu))
 
 
-def judged(
-    found: Modelled, reasons: Sequence[str], text: str, tolerance: float, orbit: Callable[[int], Orbit | None]
-) -> Answers:
-    """Results: points with a reason are refused, errors above the tolerance noted."""
-    status: list[Status] = ["refused" if reason else "ok" for reason in reasons]
-    against = np.array([bool(reason) for reason in reasons])
-    said = [
-        reason or (f"model error above the tolerance {tolerance:.1e}" if not error <= tolerance else "")
-        for reason, error in zip(reasons, found.error, strict=True)
-    ]
-    return Answers(
-        status=status,
-        reason=said,
-        model=["" if reason else text + UNBOUNDED_ENERGIES for reason in reasons],
-        error_kind=["" if reason else "estimated" for reason in reasons],
-        mean=np.where(against, np.nan, found.mean),
-        error=np.where(against, np.nan, found.error),
-        period=np.where(against, np.nan, 1.0),
-        seconds=np.full(len(reasons), found.seconds / len(reasons)),
-        orbit=lambda i: None if reasons[i] else orbit(i),
-        balanced=False,
-    )
+def rounding_of(law: FrictionLaw, belt_speeds: Floats) -> Floats:
+    """The error of a model's numbers, relative to steady friction at each belt speed."""
+    return ROUNDING * np.array([law.sliding_friction(speed) for speed in np.abs(belt_speeds).tolist()])
 
 
-def model_orbit(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:
+def on_the_line(text: str, scene: Scene) -> str:
+    """What a model along the belt says of a body that may move across it."""
+    return text + REDUCED if scene.degrees_of_freedom == 2 else text
+
+
+def orbit_of_sines(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:
     """A model's harmonic motion about a position and the friction along it; no model of one harmonic knows rest."""
     return replace(orbit_of_slip(motion, belt_speed, law, position), stick=None)
-
-
-def _orbit(scene: Scene, law: FrictionLaw, found: Harmonic, i: int) -> Orbit:
-    """The model's motion about the position where its mean friction loads the spring."""
-    mass = scene.mass()
-    motion = Motion(mass.normal_load, mass.frequency, complex(found.velocity[i]), 0j)
-    pulled = mass.normal_load * law.sliding_friction(1.0) * math.copysign(found.mean[i], scene.belt_speed)
-    return model_orbit(motion, scene.belt_speed, law, complex(pulled, 0.0))

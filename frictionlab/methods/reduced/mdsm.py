@@ -3,51 +3,50 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, ReducedModel
+from frictionlab.methods.base import Answers
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.prescribed.quadrature import integrals, slip_edges
+from frictionlab.methods.prescribed.varying_slip import VaryingPoint, VaryingSlip, piece_at
 from frictionlab.methods.reduced.common import (
     ROUNDING,
-    Harmonic,
     Modelled,
-    answer_line,
-    answer_steadied,
-    far_from_full,
-    judged,
-    line_means,
+    OfOneModel,
+    Sines,
     line_refusal,
-    model_orbit,
+    modelled_along,
+    orbit_of_sines,
     plane_refusal,
+    rounding_of,
     steadied,
-    steadied_all,
 )
-from frictionlab.methods.reduced.waveforms import answer_waveforms, waveform_means
+from frictionlab.methods.shooting.saturated import HELD
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.body import Motion
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import (
     friction_free_velocity,
     mean_prescribed_circular,
     mean_prescribed_longitudinal,
     mean_prescribed_transverse,
 )
-from frictionlab.theory.rest import friction_at_rest
+from frictionlab.theory.linear import friction_free_response, less
+from frictionlab.theory.rest import friction_at_rest, stays_at_rest
 
 ALONG = "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)"
 PLANE = "direct separation of motion: quadrature over the friction-free motion"
+AVERAGED = "direct separation of motion: friction averaged over the friction-free motion of these waveforms"
 
 
-class Mdsm(ReducedModel):
+class Mdsm(OfOneModel):
     """Direct separation of motion: the fast motion as if there were no friction, friction averaged over it.
 
     Along the belt a closed form, in the plane a quadrature over the friction-free ellipse. A prescribed slip has no
@@ -83,19 +82,15 @@ class Mdsm(ReducedModel):
         """Answer scenes that differ in belt speed alone."""
         if scenes[0].degrees_of_freedom == 0:
             return _answer_prescribed(scenes, law, tolerance)
-        if steadied(scenes[0]) is None:
-            return answer_waveforms(scenes, law, tolerance)
-        return answer_steadied(scenes, lambda others: _answer_sines(others, law, tolerance))
+        return super().solve(scenes, law, tolerance)
 
-    def model_means(self, scenes: Sequence[Scene], law: FrictionLaw) -> Floats | NDArray[np.complex128]:
-        """Of the friction-free motion."""
-        if steadied(scenes[0]) is None:
-            return waveform_means(scenes, law)
-        steady = steadied_all(scenes)
-        if _in_closed_form(steady[0], law):
-            return line_means(steady, law, friction_free)
-        motion = friction_free_motion(steady[0])
-        return np.array([_plane_mean(scene, law, motion)[0] for scene in steady])
+    def modelled(self, scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
+        """The friction-free motion."""
+        if not scenes[0].is_harmonic:
+            return _under_waveforms(scenes, law)
+        if _in_closed_form(scenes[0], law):
+            return modelled_along(scenes, law, ALONG, _friction_free)
+        return _in_the_plane(scenes, law)
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Nearly all of it for the error: the full answer."""
@@ -104,23 +99,17 @@ class Mdsm(ReducedModel):
         return 5e-5 * max(1.0, 1.0 / scene.frequency)
 
 
-def _answer_sines(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
-    if _in_closed_form(scenes[0], law):
-        return answer_line(scenes, law, tolerance, ALONG, friction_free)
-    return _answer_plane(scenes, law, tolerance)
-
-
 def _in_closed_form(scene: Scene, law: FrictionLaw) -> bool:
     return scene.load_along_belt_only and law.constant_sliding_friction()
 
 
-def friction_free(scene: Scene, friction: float, belt_speeds: Floats) -> Harmonic:
+def _friction_free(scene: Scene, friction: float, belt_speeds: Floats) -> Sines:
     """The linear response, whatever the friction."""
-    free, motion = friction_free_velocity(scene), friction_free_motion(scene)
+    free = friction_free_velocity(scene)
     ratio = belt_speeds / free if free else np.where(belt_speeds > 0.0, math.inf, 0.0)
     mean = mean_prescribed_longitudinal(np.minimum(ratio, 1.0))
-    velocity = np.full(len(belt_speeds), motion.velocity)
-    return Harmonic(mean, velocity, [""] * len(belt_speeds))
+    velocity = np.full(len(belt_speeds), friction_free_motion(scene).velocity)
+    return Sines(mean, velocity)
 
 
 def friction_free_motion(scene: Scene) -> Motion:
@@ -132,47 +121,67 @@ def friction_free_motion(scene: Scene) -> Motion:
     return Motion(mass.normal_load, mass.frequency, mass.force / along, sideways)
 
 
-def _answer_plane(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
-    start = time.perf_counter()
-    motion = friction_free_motion(scenes[0])
-    means, rounding = (
-        np.array(values)
-        for values in zip(*(_plane_mean(scene, law, motion) for scene in scenes), strict=True)
-    )
-    at_rest = [scene.belt_speed == 0.0 for scene in scenes]
-    left_out = far_from_full(scenes, law, means.real, ["at rest" if rest else "" for rest in at_rest])
-    reasons = [
-        _at_rest(scene, law) if rest else reason
-        for scene, rest, reason in zip(scenes, at_rest, left_out.reasons, strict=True)
-    ]
-    errors = rounding + np.where(at_rest, 0.0, left_out.error)
-
-    def orbit(i: int) -> Orbit:
-        return model_orbit(motion, scenes[i].belt_speed, law, _position(scenes[i], means[i]))
-
-    return judged(Modelled(means, errors, time.perf_counter() - start), reasons, PLANE, tolerance, orbit)
-
-
-def _plane_mean(scene: Scene, law: FrictionLaw, motion: Motion) -> tuple[complex, float]:
-    """Mean friction over the friction-free motion, and the error of its quadrature."""
-    found = integrals(motion, scene.belt_speed, law, slip_edges(motion, scene.belt_speed))
-    return (0j if scene.belt_speed == 0.0 else -found.mean), ROUNDING * found.largest
-
-
-def _at_rest(scene: Scene, law: FrictionLaw) -> str:
-    """Why the mean over a belt at rest, zero by symmetry, is not the only one; empty where it is."""
-    mass = scene.mass()
-    forward = abs(mass.force + 1j * mass.transverse_force)
-    backward = abs(mass.force.conjugate() + 1j * mass.transverse_force.conjugate())
-    if 0.5 * (forward + backward) > friction_at_rest(law) * mass.normal_load:
-        return ""
-    return "the belt is at rest and static friction balances the loads: the mass may rest anywhere in a range"
-
-
 def _position(scene: Scene, mean: complex) -> complex:
     """The mean position, at which the springs balance mean friction."""
     mass = scene.mass()
     return mass.normal_load * complex(mean.real, mean.imag / mass.transverse_stiffness)
+
+
+def _in_the_plane(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
+    """By quadrature over the friction-free ellipse; on a belt at rest the mean is zero by symmetry."""
+    motion, speeds = friction_free_motion(scenes[0]), belt_speeds_of(scenes)
+    found = [integrals(motion, speed, law, slip_edges(motion, speed)) for speed in speeds.tolist()]
+    at_rest = speeds == 0.0
+    means = np.where(at_rest, 0j, [-each.mean for each in found])
+    error = ROUNDING * np.array([each.largest for each in found])
+    error += np.where(at_rest, 0.0, rounding_of(law, speeds))
+    reasons = [HELD if rest and _can_rest(scenes[0], law) else "" for rest in at_rest]
+
+    def orbit(i: int) -> Orbit:
+        return orbit_of_sines(motion, float(speeds[i]), law, _position(scenes[0], complex(means[i])))
+
+    return Modelled(means, reasons, PLANE, orbit, error, settled=at_rest)
+
+
+def _can_rest(scene: Scene, law: FrictionLaw) -> bool:
+    """Whether the mean over a belt at rest, zero by symmetry, is not the only one."""
+    mass = scene.mass()
+    forward = abs(mass.force + 1j * mass.transverse_force)
+    backward = abs(mass.force.conjugate() + 1j * mass.transverse_force.conjugate())
+    return 0.5 * (forward + backward) <= friction_at_rest(law) * mass.normal_load
+
+
+def _under_waveforms(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
+    """Where more than sines of one frequency changes in time."""
+    points = [VaryingPoint(scene, law, _friction_free_slip(scene, law)) for scene in scenes]
+    means = np.array([point.found.mean for point in points])
+    reasons = [
+        point.reason if point.status != "ok" else HELD if stays_at_rest(scene, law) else ""
+        for scene, point in zip(scenes, points, strict=True)
+    ]
+    error = rounding_of(law, belt_speeds_of(scenes)) + np.array([point.found.error for point in points])
+
+    def orbit(i: int) -> Orbit:
+        velocity, position = (friction_free_response(scenes[i], law, order) for order in (1, 0))
+        assert velocity is not None
+        assert position is not None
+        tau, friction = points[i].friction()
+        k = piece_at(points[i].slip.along.edges, 0.5 * (tau[:, :1] + tau[:, -1:]))
+        x, v = (one.at(tau, k)[0] + 1j * other.at(tau, k)[0] for one, other in (position, velocity))
+        return Orbit(tau, _position(scenes[i], complex(means[i])) + x, v, friction, None)
+
+    return Modelled(means, reasons, AVERAGED, orbit, error)
+
+
+def _friction_free_slip(scene: Scene, law: FrictionLaw) -> VaryingSlip:
+    """Of the friction-free motion over the belt's vibration, about the belt's mean speed."""
+    assert scene.normal_load is not None
+    belt, velocity = VaryingSlip.of(scene.signals(), scene.normal_load), friction_free_response(scene, law, 1)
+    assert velocity is not None
+    along, across = (less(own, other) for own, other in zip(velocity, (belt.along, belt.across), strict=True))
+    waves = (*along.waves, *across.waves, *belt.normal_load.waves)
+    quickest = max([scene.frequency, 1.0, *(wave.frequency for wave in waves)])
+    return VaryingSlip(along, across, belt.normal_load, quickest)
 
 
 def _answer_prescribed(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:
@@ -195,12 +204,10 @@ def _closed_form(motion: Motion, belt_speed: float) -> tuple[float, str] | None:
     """The mean relative to mu, and what slip it is of."""
     along, across = motion.velocity, motion.transverse_velocity
     if along == 0.0 and across != 0.0:
-        return float(
-            mean_prescribed_transverse(belt_speed / abs(across))
-        ), "closed form: slip prescribed across the belt"
+        mean = mean_prescribed_transverse(belt_speed / abs(across))
+        return float(mean), "closed form: slip prescribed across the belt"
     turning = sorted((abs(along + 1j * across), abs(along - 1j * across)))
     if along != 0.0 and turning[0] <= 4.0 * EPSILON * turning[1]:
-        return float(
-            mean_prescribed_circular(belt_speed / abs(along))
-        ), "closed form: slip prescribed on a circle"
+        mean = mean_prescribed_circular(belt_speed / abs(along))
+        return float(mean), "closed form: slip prescribed on a circle"
     return None

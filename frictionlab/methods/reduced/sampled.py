@@ -1,0 +1,362 @@
+"""H harmonics of motion and of friction without memory, balanced on samples of a period, on the line or in the plane.
+
+Friction is taken at equal steps of the angle = frequency*tau, and its harmonics from there by FFT (alternating
+frequency and time). Along the belt it jumps where slip reverses: the part that does, the friction of vanishing slip
+times the sign of slip, has all its harmonics in closed form from the instants of reversal, and only what is left,
+which vanishes there, is sampled. In the plane friction turns, the more steeply the closer slip passes to rest, and
+samples are added until that is resolved. Newton's method uses the derivative of friction by the slip velocity, whose
+harmonics couple every harmonic of motion with every other.
+
+Source: Cameron & Griffin, J. Appl. Mech. 56 (1989), 149-154, of alternating frequency and time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from frictionlab.compile.law_lanes import takes_lanes
+from frictionlab.laws.base import FrictionLaw
+from frictionlab.methods.prescribed.quadrature import nodes, sliding_vectors
+from frictionlab.methods.prescribed.varying_slip import VaryingSlip
+from frictionlab.methods.reduced.common import Modelled, on_the_line, plane_refusal, rounding_of
+from frictionlab.methods.reduced.reversals import Phasors, impedances
+from frictionlab.orbit.record import Orbit
+from frictionlab.quantities import Floats
+from frictionlab.scene.body import Mass
+from frictionlab.scene.scene import Scene
+from frictionlab.scene.scenes import belt_speeds_of
+from frictionlab.scene.signals import Wave
+from frictionlab.theory.piecewise import Piecewise
+
+ON_THE_LINE = (
+    "{harmonics} harmonics of x1' and of friction balanced on samples, its jumps on the exact reversals of slip; "
+    "those beyond left out"
+)
+IN_THE_PLANE = (
+    "{harmonics} harmonics of planar motion and of friction balanced on samples, those beyond left out"
+)
+NO_TAIL = (
+    "{name} has no tail in closed form but for Coulomb friction along the belt, which switches: leave tail out, or "
+    "give tail: false"
+)
+OF_THE_SPEED = (
+    "{name} in two harmonics or more needs friction along the slip, of its speed alone; use shooting"
+)
+NOT_SETTLED = (
+    "Newton's method does not settle on a motion of {harmonics} harmonics: slip passes too near rest for so few, or "
+    "crosses zero there again and again; use shooting"
+)
+_SAMPLES_PER_HARMONIC = 8
+_FEWEST_SAMPLES, _FEWEST_ON_THE_LINE = 128, 1024
+"""Of a period. On the line what is left of friction bends at reversals: its samples leave an error of third order."""
+_MOST_REFINED, _MORE = 6, 4
+"""How often more are taken, and where Newton's method does not settle how many times as many."""
+_DEPTHS, _MOST_SAMPLES = 14.0, 2**13
+_ENOUGH, _MOST_ON_THE_LINE = 1e-8, 2**16
+"""Force that balance may lack on twice as many samples, relative to friction."""
+_CLOSED = 1e-12
+"""Force that balance lacks, relative to load and friction."""
+_ROUNDED = 1e4
+"""How many times that may be left where no step gains anything more."""
+_MOST_STEPS = 40
+_SHORTEST_STEP = 1e-3
+_SLOWEST = 1e-12
+"""Slip speed below which friction is as at this one, relative to the largest; the law gives none at rest."""
+_NUDGE = 1e-6
+"""Relative change of speed for the slope of a law."""
+_MOST_CORRECTIONS = 6
+"""Of a reversal."""
+
+
+class Equations(NamedTuple):
+    """A mass, a law, and the impedance and force of every harmonic (direction, harmonic), of one direction or two.
+
+    A velocity is the real part of the sum of V_k exp(i k angle).
+    """
+
+    mass: Mass
+    law: FrictionLaw
+    impedance: Phasors
+    force: Phasors
+
+    @classmethod
+    def of(cls, scene: Scene, law: FrictionLaw, harmonics: int) -> Equations:
+        """Under loads of one sine."""
+        mass = scene.mass()
+        directions = [(mass.damping, mass.stiffness, mass.force)]
+        if not scene.load_along_belt_only:
+            directions.append((mass.transverse_damping, mass.transverse_stiffness, mass.transverse_force))
+        impedance = np.array([impedances(c, k, mass.frequency, harmonics) for c, k, _ in directions])
+        force = np.zeros_like(impedance)
+        force[:, 0] = [-1j * load for *_, load in directions]  # Im(F e) = Re(-i F e)
+        return cls(mass, law, impedance, force)
+
+    @property
+    def friction(self) -> float:
+        """The force of quick sliding."""
+        return self.mass.normal_load * self.law.sliding_friction(1.0)
+
+
+class SampledMotion(NamedTuple):
+    """Velocities, and the friction coefficient's mean along each direction."""
+
+    velocity: Phasors
+    mean: Floats
+
+
+class _Friction(NamedTuple):
+    """Slip at the samples (direction, sample), friction's mean, and the force that every harmonic lacks.
+
+    jumps: what those at reversals of a slip along the belt add to the harmonics 0 ... 2 H of friction's derivative.
+    """
+
+    slip: Floats
+    mean: Floats
+    missing: Phasors
+    jumps: Phasors
+
+    @property
+    def left(self) -> float:
+        """The largest of the forces."""
+        return float(np.abs(self.missing).max())
+
+
+def sampled_refusal(name: str, scene: Scene, law: FrictionLaw, tail: bool | None) -> str | None:
+    """Why harmonics on samples cannot do this scene and law at any belt speed; None if they can."""
+    if scene.undriven:
+        return f"{name} needs a drive: it starts from the driven motion"
+    if not takes_lanes(law):
+        return OF_THE_SPEED.format(name=name)
+    return NO_TAIL.format(name=name) if tail else plane_refusal(name, scene, law)
+
+
+def sampled(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int) -> Modelled:
+    """The motion of H harmonics of scenes that differ in belt speed alone."""
+    speeds, line = belt_speeds_of(scenes), scenes[0].load_along_belt_only
+    motions = _motions(Equations.of(scenes[0], law, harmonics), speeds)
+    means = np.array([complex(np.nan, np.nan) if each is None else -complex(*each.mean) for each in motions])
+    # On a belt at rest it vanishes by symmetry.
+    means = np.where((speeds == 0.0) & np.isfinite(means), 0j, means)
+    reasons = ["" if each else NOT_SETTLED.format(harmonics=harmonics) for each in motions]
+
+    def orbit(i: int) -> Orbit | None:
+        motion = motions[i]
+        return None if motion is None else _orbit(scenes[i], law, motion.velocity, complex(means[i]))
+
+    text = on_the_line(ON_THE_LINE, scenes[0]) if line else IN_THE_PLANE
+    return Modelled(
+        means.real if line else means,
+        reasons,
+        text.format(harmonics=harmonics),
+        orbit,
+        rounding_of(law, speeds),
+    )
+
+
+def _motions(what: Equations, belt_speeds: Floats) -> list[SampledMotion | None]:
+    """From the fastest belt on, each from the one before; where that leads nowhere from the friction-free motion."""
+    found: list[SampledMotion | None] = [None] * len(belt_speeds)
+    start = free = what.force / what.impedance
+    for i in np.argsort(-np.abs(belt_speeds), kind="stable").tolist():
+        for begin in (start,) if start is free else (start, free):
+            found[i] = found[i] or balanced(what, float(belt_speeds[i]), begin)
+        motion = found[i]
+        start = motion.velocity if motion else free
+    return found
+
+
+def balanced(what: Equations, belt_speed: float, start: Phasors) -> SampledMotion | None:
+    """The motion that Newton's method finds from these velocities; None where it does not settle."""
+    directions, harmonics = start.shape
+    fewest = _FEWEST_ON_THE_LINE if directions == 1 else _FEWEST_SAMPLES
+    count, found = _power_of_two(max(fewest, _SAMPLES_PER_HARMONIC * harmonics)), None
+    for _ in range(_MOST_REFINED):
+        settled = _settled(what, belt_speed, start, count)
+        if settled is None:
+            count *= _MORE
+            continue
+        found, start = settled, settled.velocity
+        wanted = _wanted(what, start, belt_speed, count)
+        if wanted <= count:
+            break
+        count = wanted
+    return found
+
+
+def _wanted(what: Equations, velocity: Phasors, belt_speed: float, count: int) -> int:
+    """Samples that the motion found on so many asks for.
+
+    Where friction turns, their error falls as exp(-samples*depth), the depth being that of the complex angle at which
+    slip is at rest. On the line it falls as a power: what twice as many find lacking says whether they are enough.
+    """
+    if len(velocity) == 1:
+        left = _friction(what, velocity, belt_speed, 2 * count).left
+        return min(_MORE * count, _MOST_ON_THE_LINE) if left > _ENOUGH * what.friction else count
+    slip, rate = (
+        _waves(velocity, count),
+        _waves(1j * np.arange(1.0, velocity.shape[1] + 1.0) * velocity, count),
+    )
+    slip[0] -= belt_speed
+    depth = float((np.hypot(*slip) / np.maximum(np.hypot(*rate), 1e-300)).min())
+    return min(_power_of_two(_DEPTHS / max(depth, 1e-300)), _MOST_SAMPLES)
+
+
+def _power_of_two(least: float) -> int:
+    return int(2 ** math.ceil(math.log2(least)))
+
+
+def _settled(what: Equations, belt_speed: float, start: Phasors, count: int) -> SampledMotion | None:
+    """On so many samples."""
+    velocity, found, closed = (
+        start,
+        _friction(what, start, belt_speed, count),
+        _CLOSED * (float(np.abs(what.force).sum()) + what.friction),
+    )
+    for _ in range(_MOST_STEPS):
+        if found.left <= closed:
+            return SampledMotion(velocity, found.mean)
+        step = _newton_step(what, found)
+        if step is None:
+            return None
+        share = 1.0
+        while share >= _SHORTEST_STEP:
+            tried = _friction(what, velocity + share * step, belt_speed, count)
+            if tried.left < (1.0 - 0.1 * share) * found.left:
+                break
+            share *= 0.5
+        if share < _SHORTEST_STEP:
+            # As far as rounding lets it: a step that gains nothing from near the end.
+            return SampledMotion(velocity, found.mean) if found.left <= _ROUNDED * closed else None
+        velocity, found = velocity + share * step, tried
+    return None
+
+
+def _friction(what: Equations, velocity: Phasors, belt_speed: float, count: int) -> _Friction:
+    slip = _waves(velocity, count)
+    slip[0] -= belt_speed
+    (directions, harmonics), speed = velocity.shape, _speeds(slip)
+    # In the plane friction turns: it jumps nowhere.
+    jump = what.law.sliding_friction(0.0) if directions == 1 else 0.0
+    smooth = (_sizes(what.law, speed) - jump) * slip / speed
+    friction, pulses = np.fft.rfft(smooth, axis=1)[:, : harmonics + 1] / count, np.zeros(1, np.complex128)
+    if jump:
+        signs, pulses = _switches(velocity[0], slip[0], belt_speed)
+        friction[0] += jump * signs
+    missing = what.impedance * velocity + what.mass.normal_load * 2.0 * friction[:, 1:] - what.force
+    return _Friction(slip, friction[:, 0].real, missing, jump * pulses)
+
+
+def _speeds(slip: Floats) -> Floats:
+    speed = np.sqrt((slip**2).sum(axis=0))
+    return np.maximum(speed, _SLOWEST * max(float(speed.max()), 1e-300))
+
+
+def _sizes(law: FrictionLaw, speeds: Floats) -> Floats:
+    return sliding_vectors(law, speeds.astype(np.complex128)).real
+
+
+def _waves(phasors: Phasors, count: int) -> Floats:
+    """The sums of harmonics at equal steps of the angle."""
+    spectrum = np.zeros((len(phasors), count // 2 + 1), np.complex128)
+    spectrum[:, 1 : phasors.shape[1] + 1] = 0.5 * count * phasors
+    return np.asarray(np.fft.irfft(spectrum, count, axis=1))
+
+
+def _switches(velocity: Phasors, slip: Floats, belt_speed: float) -> tuple[Phasors, Phasors]:
+    """Harmonics 0 ... H of the sign of a slip along the belt, and 0 ... 2 H of its derivative by the slip.
+
+    Slip reverses between its samples and its turning points, so that no reversal is passed unseen.
+    """
+    harmonics, step = len(velocity), math.tau / len(slip)
+    orders = np.arange(2.0 * harmonics + 1.0)
+    rising = 1j * orders[1 : harmonics + 1] * velocity
+
+    def at(angle: Floats) -> tuple[Floats, Floats]:
+        turns = np.exp(1j * np.multiply.outer(angle, orders[1 : harmonics + 1]))
+        return (turns @ velocity).real - belt_speed, (turns @ rising).real
+
+    rate = _waves(rising[None, :], len(slip))[0]
+    after = np.roll(rate, -1)
+    turning = np.flatnonzero(rate * after < 0.0)
+    between = step * (turning + rate[turning] / (rate[turning] - after[turning]))
+    angles = np.concatenate([step * np.arange(len(slip)), between, [math.tau]])
+    values = np.concatenate([slip, at(between)[0], slip[:1]])
+    order = np.argsort(angles, kind="stable")
+    angles, values = angles[order], values[order]
+    sides = np.where(np.signbit(values), -1.0, 1.0)
+    crossed = np.flatnonzero(sides[1:] != sides[:-1])
+    low, high, start, end = angles[crossed], angles[crossed + 1], values[crossed], values[crossed + 1]
+    angle = low + (high - low) * (start / (start - end))
+    for _ in range(_MOST_CORRECTIONS):
+        value, rate = at(angle)
+        angle = np.clip(angle - value / np.where(rate == 0.0, 1e-300, rate), low, high)
+    turns = np.exp(-1j * np.multiply.outer(orders, angle)) / math.tau
+    jumps = 2.0 * sides[crossed + 1]
+    signs = turns[: harmonics + 1] @ jumps / (1j * np.maximum(orders[: harmonics + 1], 1.0))
+    signs[0] = sides[0] + (jumps * (1.0 - angle / math.tau)).sum()
+    return signs, turns @ (2.0 / np.maximum(np.abs(at(angle)[1]), 1e-300))
+
+
+def _newton_step(what: Equations, found: _Friction) -> Phasors | None:
+    """The change of the velocities that removes what is missing, real and imaginary parts apart."""
+    directions, harmonics = found.missing.shape
+    derivative = _derivative(what, found)
+    around = np.concatenate([derivative, np.conj(derivative[:, :, :0:-1])], axis=2)
+    orders = np.arange(1, harmonics + 1)
+    # The change of harmonic j by harmonic k, and by its complex conjugate.
+    direct = what.mass.normal_load * around[:, :, orders[:, None] - orders[None, :]]
+    mirrored = what.mass.normal_load * around[:, :, orders[:, None] + orders[None, :]]
+    for direction in range(directions):
+        direct[direction, direction] += np.diag(what.impedance[direction])
+    together, apart = direct + mirrored, direct - mirrored
+    parts = np.array([[together.real, -apart.imag], [together.imag, apart.real]])
+    # (part, part, direction, direction, harmonic, harmonic) -> rows and columns by (part, direction, harmonic)
+    size = 2 * directions * harmonics
+    matrix = parts.transpose(0, 2, 4, 1, 3, 5).reshape(size, size)
+    side = np.stack([found.missing.real, found.missing.imag]).ravel()
+    try:
+        change = np.linalg.solve(matrix, -side).reshape(2, directions, harmonics)
+    except np.linalg.LinAlgError:
+        return None
+    return np.asarray(change[0] + 1j * change[1])
+
+
+def _derivative(what: Equations, found: _Friction) -> Phasors:
+    """Harmonics 0 ... 2 H of that of friction by slip velocity (direction, direction, harmonic).
+
+    Across the slip friction's size over the speed, along it the slope of the law; a jump moves with its reversal.
+    """
+    (directions, harmonics), slip, speed = found.missing.shape, found.slip, _speeds(found.slip)
+    size, way = _sizes(what.law, speed), slip / speed
+    slope = (_sizes(what.law, (1.0 + _NUDGE) * speed) - size) / (_NUDGE * speed)
+    turning, along = size / speed, way[:, None] * way[None, :]
+    changes = turning * (np.eye(directions)[:, :, None] - along) + slope * along
+    spectrum = np.fft.rfft(changes, axis=2)[:, :, : 2 * harmonics + 1] / slip.shape[1]
+    spectrum[0, 0] += found.jumps
+    return np.asarray(spectrum)
+
+
+def _orbit(scene: Scene, law: FrictionLaw, velocity: Phasors, mean: complex) -> Orbit:
+    """The motion about the position where its mean friction loads the springs, on panels that end at reversals."""
+    mass, harmonics = scene.mass(), velocity.shape[1]
+    edges, nothing = np.array([0.0, math.tau / mass.frequency]), np.zeros(1)
+    still = Piecewise(edges, nothing, nothing)
+    moved = [
+        still._replace(
+            waves=tuple(Wave(mass.frequency * (k + 1), 1j * v) for k, v in enumerate(row.tolist()))
+        )
+        for row in velocity  # Re(V e) = Im(i V e)
+    ]
+    quickest = 0.5 * mass.frequency * max(4, harmonics)
+    slip = VaryingSlip(moved[0], (*moved, still)[1], still._replace(middle=np.ones(1)), quickest)
+    cuts = moved[0].minus(scene.belt_speed).crossings().tau if slip.on_the_line else np.empty(0)
+    tau, _ = nodes(slip.panels(scene.belt_speed, cuts)[0])
+    k = np.zeros(1, np.int64)
+    orbit = slip.orbit(tau, sliding_vectors(law, slip.velocity(tau, k) - scene.belt_speed))
+    position = mass.normal_load * complex(mean.real, mean.imag / mass.transverse_stiffness)
+    return replace(orbit, x=orbit.x + position, stick=None)

@@ -17,7 +17,7 @@ import numpy as np
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.prescribed.bristle import BristlePoint
 from frictionlab.methods.reduced.common import ROUNDING, TOLERANCE, Modelled
-from frictionlab.methods.reduced.loops import Friction, Loops
+from frictionlab.methods.reduced.loops import Loops
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -29,6 +29,8 @@ from frictionlab.theory import friction_free_velocity
 BALANCED_LOOP = (
     "one harmonic of x1' and of the bristles' friction balanced, friction averaged over the harmonic slip"
 )
+LOOPS_ROUNDING = 99.0 * ROUNDING
+"""Of friction over a loop, relative to steady friction, beyond that of formulas."""
 STEADY = 0.98
 """Largest Floquet multiplier of a motion of one drive period that counts as stable."""
 NO_DECAY = "without damping and without slip reversal the free oscillation does not decay"
@@ -45,24 +47,14 @@ SHARPENED = 1e-6
 
 
 class OneBalance(NamedTuple):
-    """One harmonic of motion: x1' = amplitude*sin(theta); friction over it, and by how much it lags the load."""
+    """One harmonic of motion, Im(velocity exp(i angle)), and the mean of friction over it."""
 
-    amplitude: float
-    friction: Friction
-    lag: float
-
-
-class _Point(NamedTuple):
-    """One scene's balance where there is one alone, and why the scene has no answer."""
-
-    balance: OneBalance | None
-    reason: str
+    velocity: complex
+    mean: float
 
 
 def bristle_refusal(name: str, scene: Scene, law: BristleLaw) -> str | None:
-    """Why one harmonic does not apply to this scene and law at any belt speed; None if it does."""
-    if scene.undriven:
-        return f"{name} needs a drive: it starts from the driven motion"
+    """Why one harmonic does not apply to this driven scene and law at any belt speed; None if it does."""
     if scene.degrees_of_freedom == 2:
         return suggest_shooting(
             f"{name} follows bristle friction along one line: this scene has two directions", scene, law
@@ -79,33 +71,30 @@ def bristles(scenes: Sequence[Scene], law: BristleLaw) -> Modelled:
     mass, speeds = scenes[0].mass(), belt_speeds_of(scenes)
     law = law.under_load(mass.normal_load)
     points = [_point(mass, speed, law) for speed in np.abs(speeds).tolist()]
-    means = [math.nan if point.balance is None else -point.balance.friction.mean for point in points]
+    means = [math.nan if balance is None else -balance.mean for balance, _ in points]
     mean = np.copysign(1.0, speeds) * means
 
     def orbit(i: int) -> Orbit | None:
-        return _orbit(scenes[i], law, points[i].balance, float(mean[i]))
+        return _orbit(scenes[i], law, points[i][0], float(mean[i]))
 
-    reasons = [point.reason for point in points]
-    rounding = np.full(len(speeds), 100.0 * ROUNDING * law.sliding_friction(0.0))
+    reasons = [reason for _, reason in points]
+    rounding = LOOPS_ROUNDING * law.sliding_friction(0.0)
     decay = math.exp(-math.pi * mass.damping / mass.frequency)
     return Modelled(mean, reasons, BALANCED_LOOP, orbit, rounding, max(STEADY, 0.5 * (1.0 + decay)))
 
 
-def _point(mass: Mass, belt_speed: float, law: BristleLaw) -> _Point:
+def _point(mass: Mass, belt_speed: float, law: BristleLaw) -> tuple[OneBalance | None, str]:
+    """The balance at a belt speed >= 0 where there is one alone, and why it is no answer."""
     reader = _Reader(mass, belt_speed, law)
     found, near = reader.balances()
     if len(found) + len(near) != 1:
-        return _Point(None, _ambiguous([balance.amplitude for balance in found], near))
+        exactly, nearly = (", ".join(f"{amplitude:.4g}" for amplitude in each) for each in (found, near))
+        nearly = f", and nearly at {nearly}" if near else ""
+        return None, AMBIGUOUS.format(exactly=exactly or "none", nearly=nearly)
+    balance = reader.balance(found[0])
     if mass.damping == 0.0 and belt_speed >= abs(mass.force / reader.impedance):
-        return _Point(found[0], NO_DECAY)
-    return _Point(found[0], REMEMBERED if reader.loops.elastic(found[0].amplitude) else "")
-
-
-def _ambiguous(amplitudes: list[float], near: list[float]) -> str:
-    """The reason where one harmonic leaves open which amplitude is the motion's."""
-    exactly = ", ".join(f"{amplitude:.4g}" for amplitude in amplitudes) or "none"
-    nearly = f", and nearly at {', '.join(f'{amplitude:.4g}' for amplitude in near)}" if near else ""
-    return AMBIGUOUS.format(exactly=exactly, nearly=nearly)
+        return balance, NO_DECAY
+    return balance, REMEMBERED if reader.loops.elastic(found[0]) else ""
 
 
 def _orbit(scene: Scene, law: BristleLaw, balance: OneBalance | None, mean: float) -> Orbit | None:
@@ -113,8 +102,8 @@ def _orbit(scene: Scene, law: BristleLaw, balance: OneBalance | None, mean: floa
     if balance is None:
         return None
     mass = scene.mass()
-    lead = math.degrees(cmath.phase(mass.force) - balance.lag)
-    slip = Slip(velocity_amplitude=balance.amplitude, frequency=mass.frequency, phase=lead)
+    size, lead = cmath.polar(balance.velocity)
+    slip = Slip(velocity_amplitude=size, frequency=mass.frequency, phase=math.degrees(lead))
     prescribed = Scene(belt_speed=scene.belt_speed, normal_load=mass.normal_load, slip=slip)
     orbit = BristlePoint(prescribed, law, TOLERANCE).orbit()
     return None if orbit is None else replace(orbit, x=orbit.x + mass.normal_load * mean, stick=None)
@@ -133,39 +122,36 @@ class _Reader:
         self.steady = mass.normal_load * law.sliding_friction(0.0)
         self.unturned = belt_speed if law.constant_sliding_friction() else 0.0
 
-    def balances(self) -> tuple[list[OneBalance], list[float]]:
-        """Every balance by rising amplitude, and amplitudes where the load is nearly balanced, if not by these."""
+    def balances(self) -> tuple[list[float], list[float]]:
+        """All amplitudes that balance, rising, and those at which the load is nearly balanced, if not by these."""
         from scipy.optimize import brentq
 
         amplitudes = self._looked_at()
         excess = np.array([self.excess(v) for v in amplitudes])
         dips = self._dips(amplitudes, excess)
-        missed = [self.excess(dip) for dip in dips]
-        sides = np.sign(np.interp(dips, amplitudes, excess)) * missed / abs(self.mass.force)
-        near = [float(v) for v, lack in zip(dips, sides.tolist(), strict=True) if 0.0 < lack <= NEARLY]
-        order = np.argsort(np.concatenate([amplitudes, dips]), kind="stable")
-        amplitudes, excess = (
-            np.concatenate([amplitudes, dips])[order],
-            np.concatenate([excess, missed])[order],
-        )
-        above = excess > 0.0
-        ends = [amplitudes[i : i + 2].tolist() for i in np.flatnonzero(above[1:] != above[:-1])]
-        roots = [float(brentq(self.excess, low, high, xtol=4e-16 * high)) for low, high in ends]
-        return [self._balance(root) for root in roots], near
+        missed = np.array([self.excess(dip) for dip in dips])
+        lacks = np.sign(np.interp(dips, amplitudes, excess)) * missed / abs(self.mass.force)
+        near = [dip for dip, lack in zip(dips, lacks.tolist(), strict=True) if 0.0 < lack <= NEARLY]
+        amplitudes, excess = np.concatenate([amplitudes, dips]), np.concatenate([excess, missed])
+        order = np.argsort(amplitudes, kind="stable")
+        ends, above = amplitudes[order].tolist(), excess[order] > 0.0
+        changes = np.flatnonzero(above[1:] != above[:-1]).tolist()
+        return [float(brentq(self.excess, *ends[i : i + 2], xtol=4e-16 * ends[i + 1])) for i in changes], near
 
     def excess(self, amplitude: float) -> float:
         """The force this amplitude asks for, less the load's; below ``unturned`` friction is constant."""
-        if amplitude <= self.unturned:
-            return abs(self.impedance) * amplitude - abs(self.mass.force)
-        return abs(self._pull(amplitude, self.loops.friction(amplitude))) - abs(self.mass.force)
+        first = 0j if amplitude <= self.unturned else self.loops.friction(amplitude).first
+        return abs(self._pull(amplitude, first)) - abs(self.mass.force)
 
-    def _pull(self, amplitude: float, friction: Friction) -> complex:
-        """The force that the motion requires."""
-        return self.impedance * amplitude + self.mass.normal_load * friction.first
+    def balance(self, amplitude: float) -> OneBalance:
+        """The motion of an amplitude that balances."""
+        mean, first = self.loops.friction(amplitude)
+        turned = cmath.phase(self.mass.force) - cmath.phase(self._pull(amplitude, first))
+        return OneBalance(cmath.rect(amplitude, turned), mean)
 
-    def _balance(self, amplitude: float) -> OneBalance:
-        friction = self.loops.friction(amplitude)
-        return OneBalance(amplitude, friction, cmath.phase(self._pull(amplitude, friction)))
+    def _pull(self, amplitude: float, first: complex) -> complex:
+        """The force that the motion requires, whose friction has this first harmonic."""
+        return self.impedance * amplitude + self.mass.normal_load * first
 
     def _looked_at(self) -> Floats:
         """Amplitudes that enclose every balance, and where the load is nearly balanced.
@@ -192,11 +178,10 @@ class _Reader:
         size, side = np.abs(excess), np.sign(excess)
         least = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])
         least &= (side[:-2] == side[1:-1]) & (side[1:-1] == side[2:])
-        found = []
-        for i in np.flatnonzero(least).tolist():
+
+        def nearest(i: int) -> float:
             ends, sharp = amplitudes[[i, i + 2]].tolist(), {"xatol": SHARPENED * amplitudes[i + 1]}
-            dip = minimize_scalar(
-                lambda v, s: s * self.excess(v), args=(side[i],), bounds=ends, method="bounded", options=sharp
-            )
-            found.append(float(dip.x))
-        return found
+            found = minimize_scalar(lambda v: side[i] * self.excess(v), bounds=ends, options=sharp)
+            return float(found.x)
+
+        return [nearest(i) for i in np.flatnonzero(least).tolist()]

@@ -48,16 +48,16 @@ class Modelled(NamedTuple):
     """What a model says of n scenes.
 
     mean: friction coefficient, x1 + i x2 where it has two directions; NaN where the model has none. reasons: why a
-    scene has no answer; empty where it has. orbit(i): the motion of scene i. rounding: the error of the mean itself.
-    steadiest: the largest Floquet multiplier of the full motion up to which its mean is the only one. settled: where
-    symmetry says the mean, whatever the model leaves out.
+    scene has no answer; empty where it has. orbit(i): the motion of scene i. error: of the numbers of the model,
+    beyond the rounding of formulas. steadiest: the largest Floquet multiplier of the full motion up to which its mean
+    is the only one. settled: where symmetry says the mean, whatever the model leaves out.
     """
 
     mean: Floats | NDArray[np.complex128]
     reasons: list[str]
     text: str
     orbit: Callable[[int], Orbit | None]
-    rounding: Floats
+    error: Floats | float = 0.0
     steadiest: float = math.inf
     settled: NDArray[np.bool_] | None = None
 
@@ -80,7 +80,9 @@ class OfOneModel(ReducedModel):
         found = self.modelled(steady, law)
         error, reasons = _left_out(steady, law, found)
         seconds = (time.perf_counter() - start) / len(scenes)
-        text = found.text + UNBOUNDED_ENERGIES + (EQUIVALENT if steady is not scenes else "")
+        decays = steady[0].degrees_of_freedom == 2 and steady[0].load_along_belt_only
+        text = found.text + (REDUCED if decays else "") + UNBOUNDED_ENERGIES
+        text += EQUIVALENT if steady is not scenes else ""
         against = np.array([bool(reason) for reason in reasons])
         status: list[Status] = ["refused" if reason else "ok" for reason in reasons]
         said = [
@@ -103,8 +105,9 @@ class OfOneModel(ReducedModel):
 
 def _left_out(scenes: Sequence[Scene], law: FrictionLaw, found: Modelled) -> tuple[Floats, list[str]]:
     """The error of each mean, and why it is not known; the full problem is asked where nothing speaks against it."""
+    own, reasons = found.error + np.zeros(len(scenes)), list(found.reasons)
     settled = np.zeros(len(scenes), np.bool_) if found.settled is None else found.settled
-    error, reasons = np.where(settled, found.rounding, np.nan), list(found.reasons)
+    error = np.where(settled, own, np.nan)
     asked = [i for i, reason in enumerate(reasons) if not reason and not settled[i]]
     if not asked:
         return error, reasons
@@ -113,8 +116,9 @@ def _left_out(scenes: Sequence[Scene], law: FrictionLaw, found: Modelled) -> tup
     sides = np.copysign(1.0, speeds) if scenes[0].is_harmonic else np.ones(len(asked))
     speeds, back = np.unique(sides * speeds, return_inverse=True)
     full = full_means(scenes[0], law.under_load(scenes[0].mass().normal_load), speeds)
-    mean, own = sides * np.real(full.mean)[back], found.mean.real[asked]
-    error[asked] = np.abs(mean - own) + full.error[back] + found.rounding[asked]
+    rounding = ROUNDING * np.array([law.sliding_friction(speed) for speed in np.abs(speeds).tolist()])
+    far = np.abs(sides * np.real(full.mean)[back] - found.mean.real[asked])
+    error[asked] = far + (full.error + rounding)[back] + own[asked]
     steady = np.ones(len(speeds), np.bool_)
     if found.steadiest < math.inf and full.floquet is not None:
         steady = ~(full.floquet() > found.steadiest)
@@ -199,11 +203,8 @@ def line_reasons(scene: Scene, friction: float, belt_speeds: Floats, mean: Float
     return found
 
 
-class Sines(NamedTuple):
-    """A model's motion at n belt speeds >= 0: Im(velocity exp(i Omega tau)), and the mean relative to mu, or NaN."""
-
-    mean: Floats
-    velocity: NDArray[np.complex128]
+Sines = tuple[Floats, NDArray[np.complex128]]
+"""A motion at n belt speeds >= 0: its mean relative to mu, NaN without one, and V of Im(V exp(i Omega tau))."""
 
 
 def modelled_along(
@@ -212,25 +213,21 @@ def modelled_along(
     """A model of Coulomb friction along the belt; found: of a scene, mu*normal_load and belt speeds >= 0."""
     mu, speeds, mass = law.sliding_friction(1.0), belt_speeds_of(scenes), scenes[0].mass()
     friction = mu * mass.normal_load
-    sines = found(scenes[0], friction, np.abs(speeds))
-    mean = mu * np.copysign(sines.mean, speeds)
+    share, velocities = found(scenes[0], friction, np.abs(speeds))
+    mean = mu * np.copysign(share, speeds)
 
     def orbit(i: int) -> Orbit:
-        sine = Motion(mass.normal_load, mass.frequency, complex(sines.velocity[i]), 0j)
+        sine = Motion(mass.normal_load, mass.frequency, complex(velocities[i]), 0j)
         return orbit_of_sines(sine, float(speeds[i]), law, complex(mean[i]) * mass.normal_load)
 
     reasons = line_reasons(scenes[0], friction, speeds, mean, AT_REST)
-    return Modelled(mean, reasons, on_the_line(text, scenes[0]), orbit, np.full(len(speeds), ROUNDING * mu))
+    return Modelled(mean, reasons, text, orbit)
 
 
-def rounding_of(law: FrictionLaw, belt_speeds: Floats) -> Floats:
-    """The error of a model's numbers, relative to steady friction at each belt speed."""
-    return ROUNDING * np.array([law.sliding_friction(speed) for speed in np.abs(belt_speeds).tolist()])
-
-
-def on_the_line(text: str, scene: Scene) -> str:
-    """What a model along the belt says of a body that may move across it."""
-    return text + REDUCED if scene.degrees_of_freedom == 2 else text
+def mean_position(scene: Scene, mean: complex) -> complex:
+    """Where the springs balance mean friction."""
+    mass = scene.mass()
+    return mass.normal_load * complex(mean.real, mean.imag / mass.transverse_stiffness)
 
 
 def orbit_of_sines(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:

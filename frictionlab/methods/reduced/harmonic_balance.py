@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator
@@ -33,7 +33,6 @@ NOT_ONE_SINE = (
     "harmonic_balance takes sines of the drive's frequency, of loads and of the belt's vibration, under a constant "
     "normal load"
 )
-MOST_HARMONICS = 1000
 ONE_HAS_NO_TAIL = "one harmonic has no tail: Eqs. 8 and 9 leave all others out; give harmonics of 2 or more"
 ONE_FOR_BRISTLES = "harmonic_balance balances bristle friction in one harmonic alone; give harmonics: 1"
 
@@ -63,7 +62,7 @@ class HarmonicBalance(OfOneModel):
     """
 
     name: ClassVar[str] = "harmonic_balance"
-    harmonics: int = Field(default=1, ge=1, le=MOST_HARMONICS, strict=True)
+    harmonics: int = Field(default=1, ge=1, le=1000, strict=True)
     tail: bool | None = Field(default=None, strict=True)
 
     @field_validator("tail")
@@ -73,11 +72,10 @@ class HarmonicBalance(OfOneModel):
             raise ValueError(ONE_HAS_NO_TAIL)
         return tail
 
-    def _balanced_on(self, scene: Scene, law: FrictionLaw) -> Literal["one", "samples", "switches"]:
-        if self.harmonics == 1:
-            return "one"
+    def _samples(self, scene: Scene, law: FrictionLaw) -> bool:
+        """Whether friction is sampled: in the plane, or where it varies between its switches."""
         varies = law.memory_kind == "none" and not law.constant_sliding_friction()
-        return "samples" if varies or not scene.load_along_belt_only else "switches"
+        return self.harmonics > 1 and (varies or not scene.load_along_belt_only)
 
     def refusal(self, scene: Scene, law: FrictionLaw) -> str | None:
         """Where the model has no motion to start from, or no friction that it can balance."""
@@ -87,9 +85,11 @@ class HarmonicBalance(OfOneModel):
         steady = steadied(scene)
         if steady is None:
             return suggest_shooting(NOT_ONE_SINE, scene, law)
+        if steady.undriven:
+            return f"{self.name} needs a drive: it starts from the driven motion"
         if isinstance(law, BristleLaw):
             return bristle_refusal(self.name, steady, law) if self.harmonics == 1 else ONE_FOR_BRISTLES
-        if self._balanced_on(steady, law) == "samples":
+        if self._samples(steady, law):
             return sampled_refusal(self.name, steady, law, self.tail)
         if self.harmonics == 1:
             return line_refusal(self.name, steady, law)
@@ -99,13 +99,11 @@ class HarmonicBalance(OfOneModel):
         """The harmonics that balance."""
         if isinstance(law, BristleLaw):
             return bristles(scenes, law)
-        match self._balanced_on(scenes[0], law):
-            case "samples":
-                return sampled(scenes, law, self.harmonics)
-            case "switches":
-                return switched(scenes, law, self.harmonics, self.tail is not False)
-            case "one":
-                return modelled_along(scenes, law, EXPLICIT, one_harmonic)
+        if self._samples(scenes[0], law):
+            return sampled(scenes, law, self.harmonics)
+        if self.harmonics > 1:
+            return switched(scenes, law, self.harmonics, self.tail is not False)
+        return modelled_along(scenes, law, EXPLICIT, one_harmonic)
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Root searches on whole arrays; slow drives need more samples to be sure of the reversals.
@@ -114,17 +112,13 @@ class HarmonicBalance(OfOneModel):
         """
         if isinstance(law, BristleLaw):
             return 4e-2
-        match self._balanced_on(scene, law):
-            case "samples":
-                return 3e-3 + 1e-5 * self.harmonics**1.5
-            case "switches":
-                return 1e-5 + 1e-6 * self.harmonics
-            case "one":
-                return 5e-5 * max(1.0, 1.0 / scene.frequency)
+        if self._samples(scene, law):
+            return 3e-3 + 1e-5 * self.harmonics**1.5
+        return 1e-5 + 1e-6 * self.harmonics if self.harmonics > 1 else 5e-5 * max(1.0, 1.0 / scene.frequency)
 
 
 def one_harmonic(scene: Scene, friction: float, belt_speeds: Floats) -> Sines:
-    """The one-harmonic motion at belt speeds >= 0; from V_lin on, the friction-free one."""
+    """The motion at belt speeds >= 0; from V_lin on, the friction-free one."""
     angle = _reversal(scene, friction, belt_speeds)
     ratio = np.cos(angle)
     free, mass = friction_free_velocity(scene), scene.mass()
@@ -134,12 +128,11 @@ def one_harmonic(scene: Scene, friction: float, belt_speeds: Floats) -> Sines:
     real = mass.damping + held / np.where(size > 0.0, size, 1.0)
     impedance = real + 1j * (mass.frequency - mass.stiffness / mass.frequency)
     velocity = size * np.exp(1j * (np.angle(mass.force) - np.angle(impedance)))
-    mean = np.where(
-        reverses, 1.0 - 2.0 / np.pi * angle, 1.0
-    )  # Eq. 5, without the arcsine's cancellation near 1
+    # Eq. 5, without the arcsine's cancellation near 1.
+    mean = np.where(reverses, 1.0 - 2.0 / np.pi * angle, 1.0)
     # A load below the first harmonic of friction leaves none on a belt at rest.
     stuck = (belt_speeds == 0.0) & (one_harmonic_least_ratio(scene, friction) > 0.0)
-    return Sines(np.where(stuck, np.nan, mean), velocity)
+    return np.where(stuck, np.nan, mean), velocity
 
 
 def _reversal(scene: Scene, friction: float, belt_speeds: Floats) -> Floats:

@@ -26,11 +26,6 @@ from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 
-_MOST_STEPS = 30
-_MOST_LOST = 0.75
-"""Of the length of a leg in a step."""
-_STEP = 1e-7
-"""Of an instant [rad], for its effect."""
 _CLOSED = 1e-11
 """Slip and friction at the ends of legs, relative to V_lin and to sliding friction, at which they are balanced."""
 _NODES_PER_TURN, _FEWEST_NODES = 1.3, 14
@@ -119,7 +114,7 @@ def _rest_nodes(line: SwitchedLine, legs: LegStarts) -> tuple[Floats, Floats]:
     phases, weights = [], []
     for start, length in zip(legs.starts[legs.kinds == 0], legs.lengths[legs.kinds == 0], strict=True):
         turned = length * len(line.compliances) / 2.0
-        gauss, shares = _gauss(_FEWEST_NODES + math.ceil(_NODES_PER_TURN * turned))
+        gauss, shares = _gauss(_FEWEST_NODES + math.ceil(_NODES_PER_TURN * abs(turned)))
         phases.append(start + 0.5 * length * (1.0 + gauss))
         weights.append(0.5 * length * shares)
     return np.concatenate(phases), np.concatenate(weights)
@@ -130,46 +125,31 @@ _gauss = cache(np.polynomial.legendre.leggauss)
 
 def balanced_legs(line: SwitchedLine, legs: LegStarts, belt_speed: float) -> LegStarts | None:
     """Legs like these on a belt of speed >= 0, with the tail; None where Newton's method finds none that hold."""
-    missing = _missing(line, legs, belt_speed)
-    moves = _STEP * np.eye(len(missing))
-    effects = np.column_stack(
-        [
-            (_missing(line, legs._replace(starts=legs.starts + move), belt_speed) - missing) / _STEP
-            for move in moves
-        ]
-    )
-    for _ in range(_MOST_STEPS):
-        if np.abs(missing).max() <= _CLOSED:
-            return legs if holds(line, legs, force_on(line, legs)) else None
-        try:
-            step = np.linalg.solve(effects, -missing).astype(np.float64)
-        except np.linalg.LinAlgError:
-            return None
-        lost = float(np.max((step - np.roll(step, -1)) / legs.lengths))
-        step = step * min(1.0, _MOST_LOST / max(lost, _MOST_LOST))
-        legs = legs._replace(starts=legs.starts + step)
-        found = _missing(line, legs, belt_speed)
-        # What the step did and what it should have done correct the effects (Broyden).
-        effects = effects + np.outer(found - missing - effects @ step, step) / max(float(step @ step), 1e-300)
-        missing = found
-    return None
+    from scipy.optimize import root
+
+    def missing(starts: Floats) -> Floats:
+        return _missing(line, legs._replace(starts=starts), belt_speed)
+
+    found = legs._replace(starts=root(missing, legs.starts, options={"eps": 1e-14, "xtol": 1e-11}).x)
+    if np.abs(missing(found.starts)).max() > _CLOSED or not holds(line, found, force_on(line, found)):
+        return None
+    return found
 
 
 def _missing(line: SwitchedLine, legs: LegStarts, belt_speed: float) -> Floats:
     """What legs lack of balance: slip at the ends of slips, the mean of slip, friction at the ends of rests."""
     starts, lengths, kinds, force = legs.starts, legs.lengths, legs.kinds, force_on(line, legs)
-    ends, slips = starts + lengths, kinds != 0
-    first = [force.at(each, 1) for each in (starts, ends)]
-    second = [force.at(each, 2) for each in (starts, ends)]
-    gained = (first[1] - first[0] - line.friction * kinds * lengths) / line.frequency
-    swept = second[1] - second[0] - first[0] * lengths - 0.5 * line.friction * kinds * lengths**2
+    edges, slips = np.append(starts, starts[0] + math.tau), kinds != 0
+    first, second = force.at(edges, 1), force.at(edges, 2)
+    gained = (np.diff(first) - line.friction * kinds * lengths) / line.frequency
+    swept = np.diff(second) - first[:-1] * lengths - 0.5 * line.friction * kinds * lengths**2
     lacking = gained / line.friction_free
     # The gains of all slips add up to zero by themselves: in place of one of them the mean of slip. What a slip
     # leaves over at the start of the next leg adds to its integral until every slip ends at zero.
     over = np.concatenate([[0.0], np.cumsum(np.where(slips, gained, 0.0))[:-1]])
     mean = (swept[slips].sum() / line.frequency + over @ lengths) / math.tau
     lacking[int(np.flatnonzero(slips)[0])] = (mean + belt_speed) / line.friction_free
-    lacking[~slips] = force.at(ends[~slips]) / line.friction - np.roll(kinds, -1)[~slips]
+    lacking[~slips] = force.at(edges[1:][~slips]) / line.friction - np.roll(kinds, -1)[~slips]
     return np.asarray(lacking)
 
 

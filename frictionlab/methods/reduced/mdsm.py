@@ -20,10 +20,10 @@ from frictionlab.methods.reduced.common import (
     OfOneModel,
     Sines,
     line_refusal,
+    mean_position,
     modelled_along,
     orbit_of_sines,
     plane_refusal,
-    rounding_of,
     steadied,
 )
 from frictionlab.methods.shooting.saturated import HELD
@@ -39,7 +39,7 @@ from frictionlab.theory import (
     mean_prescribed_transverse,
 )
 from frictionlab.theory.linear import friction_free_response, less
-from frictionlab.theory.rest import friction_at_rest, stays_at_rest
+from frictionlab.theory.rest import can_hold, stays_at_rest
 
 ALONG = "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)"
 PLANE = "direct separation of motion: quadrature over the friction-free motion"
@@ -109,7 +109,7 @@ def _friction_free(scene: Scene, friction: float, belt_speeds: Floats) -> Sines:
     ratio = belt_speeds / free if free else np.where(belt_speeds > 0.0, math.inf, 0.0)
     mean = mean_prescribed_longitudinal(np.minimum(ratio, 1.0))
     velocity = np.full(len(belt_speeds), friction_free_motion(scene).velocity)
-    return Sines(mean, velocity)
+    return mean, velocity
 
 
 def friction_free_motion(scene: Scene) -> Motion:
@@ -121,12 +121,6 @@ def friction_free_motion(scene: Scene) -> Motion:
     return Motion(mass.normal_load, mass.frequency, mass.force / along, sideways)
 
 
-def _position(scene: Scene, mean: complex) -> complex:
-    """The mean position, at which the springs balance mean friction."""
-    mass = scene.mass()
-    return mass.normal_load * complex(mean.real, mean.imag / mass.transverse_stiffness)
-
-
 def _in_the_plane(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
     """By quadrature over the friction-free ellipse; on a belt at rest the mean is zero by symmetry."""
     motion, speeds = friction_free_motion(scenes[0]), belt_speeds_of(scenes)
@@ -134,21 +128,12 @@ def _in_the_plane(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
     at_rest = speeds == 0.0
     means = np.where(at_rest, 0j, [-each.mean for each in found])
     error = ROUNDING * np.array([each.largest for each in found])
-    error += np.where(at_rest, 0.0, rounding_of(law, speeds))
-    reasons = [HELD if rest and _can_rest(scenes[0], law) else "" for rest in at_rest]
+    reasons = [HELD if rest and can_hold(scenes[0], law) else "" for rest in at_rest]
 
     def orbit(i: int) -> Orbit:
-        return orbit_of_sines(motion, float(speeds[i]), law, _position(scenes[0], complex(means[i])))
+        return orbit_of_sines(motion, float(speeds[i]), law, mean_position(scenes[0], complex(means[i])))
 
     return Modelled(means, reasons, PLANE, orbit, error, settled=at_rest)
-
-
-def _can_rest(scene: Scene, law: FrictionLaw) -> bool:
-    """Whether the mean over a belt at rest, zero by symmetry, is not the only one."""
-    mass = scene.mass()
-    forward = abs(mass.force + 1j * mass.transverse_force)
-    backward = abs(mass.force.conjugate() + 1j * mass.transverse_force.conjugate())
-    return 0.5 * (forward + backward) <= friction_at_rest(law) * mass.normal_load
 
 
 def _under_waveforms(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
@@ -159,7 +144,7 @@ def _under_waveforms(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
         point.reason if point.status != "ok" else HELD if stays_at_rest(scene, law) else ""
         for scene, point in zip(scenes, points, strict=True)
     ]
-    error = rounding_of(law, belt_speeds_of(scenes)) + np.array([point.found.error for point in points])
+    error = np.array([point.found.error for point in points])
 
     def orbit(i: int) -> Orbit:
         velocity, position = (friction_free_response(scenes[i], law, order) for order in (1, 0))
@@ -168,7 +153,7 @@ def _under_waveforms(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
         tau, friction = points[i].friction()
         k = piece_at(points[i].slip.along.edges, 0.5 * (tau[:, :1] + tau[:, -1:]))
         x, v = (one.at(tau, k)[0] + 1j * other.at(tau, k)[0] for one, other in (position, velocity))
-        return Orbit(tau, _position(scenes[i], complex(means[i])) + x, v, friction, None)
+        return Orbit(tau, mean_position(scenes[i], complex(means[i])) + x, v, friction, None)
 
     return Modelled(means, reasons, AVERAGED, orbit, error)
 

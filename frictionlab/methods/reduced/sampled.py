@@ -23,7 +23,7 @@ from frictionlab.compile.law_lanes import takes_lanes
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.prescribed.quadrature import nodes, sliding_vectors
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
-from frictionlab.methods.reduced.common import Modelled, on_the_line, plane_refusal, rounding_of
+from frictionlab.methods.reduced.common import Modelled, mean_position, plane_refusal
 from frictionlab.methods.reduced.reversals import Phasors, impedances
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats
@@ -33,32 +33,15 @@ from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Wave
 from frictionlab.theory.piecewise import Piecewise
 
-ON_THE_LINE = (
-    "{harmonics} harmonics of x1' and of friction balanced on samples, its jumps on the exact reversals of slip; "
-    "those beyond left out"
-)
-IN_THE_PLANE = (
-    "{harmonics} harmonics of planar motion and of friction balanced on samples, those beyond left out"
-)
-NO_TAIL = (
-    "{name} has no tail in closed form but for Coulomb friction along the belt, which switches: leave tail out, or "
-    "give tail: false"
-)
-OF_THE_SPEED = (
-    "{name} in two harmonics or more needs friction along the slip, of its speed alone; use shooting"
-)
+SAMPLED = "{} harmonics of motion and of friction balanced on samples of a period, those beyond left out"
 NOT_SETTLED = (
-    "Newton's method does not settle on a motion of {harmonics} harmonics: slip passes too near rest for so few, or "
+    "Newton's method does not settle on a motion of {} harmonics: slip passes too near rest for so few, or "
     "crosses zero there again and again; use shooting"
 )
-_SAMPLES_PER_HARMONIC = 8
-_FEWEST_SAMPLES, _FEWEST_ON_THE_LINE = 128, 1024
+_FEWEST, _FEWEST_ON_THE_LINE, _SAMPLES_PER_HARMONIC, _MOST_SAMPLES = 128, 1024, 8, 2**14
 """Of a period. On the line what is left of friction bends at reversals: its samples leave an error of third order."""
-_MOST_REFINED, _MORE = 6, 4
-"""How often more are taken, and where Newton's method does not settle how many times as many."""
-_DEPTHS, _MOST_SAMPLES = 14.0, 2**13
-_ENOUGH, _MOST_ON_THE_LINE = 1e-8, 2**16
-"""Force that balance may lack on twice as many samples, relative to friction."""
+_ENOUGH, _MORE = 1e-8, 4
+"""Force that balance may lack on twice as many samples, relative to friction; how many times more are taken else."""
 _CLOSED = 1e-12
 """Force that balance lacks, relative to load and friction."""
 _ROUNDED = 1e4
@@ -103,18 +86,12 @@ class Equations(NamedTuple):
 
 
 class SampledMotion(NamedTuple):
-    """Velocities, and the friction coefficient's mean along each direction."""
-
-    velocity: Phasors
-    mean: Floats
-
-
-class _Friction(NamedTuple):
-    """Slip at the samples (direction, sample), friction's mean, and the force that every harmonic lacks.
+    """Velocities, the slip at the samples (direction, sample), friction's mean, and the force every harmonic lacks.
 
     jumps: what those at reversals of a slip along the belt add to the harmonics 0 ... 2 H of friction's derivative.
     """
 
+    velocity: Phasors
     slip: Floats
     mean: Floats
     missing: Phasors
@@ -127,12 +104,14 @@ class _Friction(NamedTuple):
 
 
 def sampled_refusal(name: str, scene: Scene, law: FrictionLaw, tail: bool | None) -> str | None:
-    """Why harmonics on samples cannot do this scene and law at any belt speed; None if they can."""
-    if scene.undriven:
-        return f"{name} needs a drive: it starts from the driven motion"
+    """Why harmonics on samples cannot do this driven scene and law at any belt speed; None if they can."""
     if not takes_lanes(law):
-        return OF_THE_SPEED.format(name=name)
-    return NO_TAIL.format(name=name) if tail else plane_refusal(name, scene, law)
+        return (
+            f"{name} in two harmonics or more needs friction along the slip, of its speed alone; use shooting"
+        )
+    if tail:
+        return f"{name} has no tail in closed form but for Coulomb friction along the belt: leave tail out"
+    return plane_refusal(name, scene, law)
 
 
 def sampled(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int) -> Modelled:
@@ -142,20 +121,13 @@ def sampled(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int) -> Modell
     means = np.array([complex(np.nan, np.nan) if each is None else -complex(*each.mean) for each in motions])
     # On a belt at rest it vanishes by symmetry.
     means = np.where((speeds == 0.0) & np.isfinite(means), 0j, means)
-    reasons = ["" if each else NOT_SETTLED.format(harmonics=harmonics) for each in motions]
+    reasons = ["" if each else NOT_SETTLED.format(harmonics) for each in motions]
 
     def orbit(i: int) -> Orbit | None:
         motion = motions[i]
         return None if motion is None else _orbit(scenes[i], law, motion.velocity, complex(means[i]))
 
-    text = on_the_line(ON_THE_LINE, scenes[0]) if line else IN_THE_PLANE
-    return Modelled(
-        means.real if line else means,
-        reasons,
-        text.format(harmonics=harmonics),
-        orbit,
-        rounding_of(law, speeds),
-    )
+    return Modelled(means.real if line else means, reasons, SAMPLED.format(harmonics), orbit)
 
 
 def _motions(what: Equations, belt_speeds: Floats) -> list[SampledMotion | None]:
@@ -173,70 +145,42 @@ def _motions(what: Equations, belt_speeds: Floats) -> list[SampledMotion | None]
 def balanced(what: Equations, belt_speed: float, start: Phasors) -> SampledMotion | None:
     """The motion that Newton's method finds from these velocities; None where it does not settle."""
     directions, harmonics = start.shape
-    fewest = _FEWEST_ON_THE_LINE if directions == 1 else _FEWEST_SAMPLES
-    count, found = _power_of_two(max(fewest, _SAMPLES_PER_HARMONIC * harmonics)), None
-    for _ in range(_MOST_REFINED):
+    least = max(_FEWEST_ON_THE_LINE if directions == 1 else _FEWEST, _SAMPLES_PER_HARMONIC * harmonics)
+    count, found = 2 ** math.ceil(math.log2(least)), None
+    while count <= _MOST_SAMPLES:
         settled = _settled(what, belt_speed, start, count)
-        if settled is None:
-            count *= _MORE
-            continue
-        found, start = settled, settled.velocity
-        wanted = _wanted(what, start, belt_speed, count)
-        if wanted <= count:
-            break
-        count = wanted
+        if settled is not None:
+            found, start = settled, settled.velocity
+            if _friction(what, start, belt_speed, 2 * count).left <= _ENOUGH * what.friction:
+                break
+        count *= _MORE
     return found
-
-
-def _wanted(what: Equations, velocity: Phasors, belt_speed: float, count: int) -> int:
-    """Samples that the motion found on so many asks for.
-
-    Where friction turns, their error falls as exp(-samples*depth), the depth being that of the complex angle at which
-    slip is at rest. On the line it falls as a power: what twice as many find lacking says whether they are enough.
-    """
-    if len(velocity) == 1:
-        left = _friction(what, velocity, belt_speed, 2 * count).left
-        return min(_MORE * count, _MOST_ON_THE_LINE) if left > _ENOUGH * what.friction else count
-    slip, rate = (
-        _waves(velocity, count),
-        _waves(1j * np.arange(1.0, velocity.shape[1] + 1.0) * velocity, count),
-    )
-    slip[0] -= belt_speed
-    depth = float((np.hypot(*slip) / np.maximum(np.hypot(*rate), 1e-300)).min())
-    return min(_power_of_two(_DEPTHS / max(depth, 1e-300)), _MOST_SAMPLES)
-
-
-def _power_of_two(least: float) -> int:
-    return int(2 ** math.ceil(math.log2(least)))
 
 
 def _settled(what: Equations, belt_speed: float, start: Phasors, count: int) -> SampledMotion | None:
     """On so many samples."""
-    velocity, found, closed = (
-        start,
-        _friction(what, start, belt_speed, count),
-        _CLOSED * (float(np.abs(what.force).sum()) + what.friction),
-    )
+    found = _friction(what, start, belt_speed, count)
+    closed = _CLOSED * (float(np.abs(what.force).sum()) + what.friction)
     for _ in range(_MOST_STEPS):
         if found.left <= closed:
-            return SampledMotion(velocity, found.mean)
+            return found
         step = _newton_step(what, found)
         if step is None:
             return None
         share = 1.0
         while share >= _SHORTEST_STEP:
-            tried = _friction(what, velocity + share * step, belt_speed, count)
+            tried = _friction(what, found.velocity + share * step, belt_speed, count)
             if tried.left < (1.0 - 0.1 * share) * found.left:
                 break
             share *= 0.5
         if share < _SHORTEST_STEP:
             # As far as rounding lets it: a step that gains nothing from near the end.
-            return SampledMotion(velocity, found.mean) if found.left <= _ROUNDED * closed else None
-        velocity, found = velocity + share * step, tried
+            return found if found.left <= _ROUNDED * closed else None
+        found = tried
     return None
 
 
-def _friction(what: Equations, velocity: Phasors, belt_speed: float, count: int) -> _Friction:
+def _friction(what: Equations, velocity: Phasors, belt_speed: float, count: int) -> SampledMotion:
     slip = _waves(velocity, count)
     slip[0] -= belt_speed
     (directions, harmonics), speed = velocity.shape, _speeds(slip)
@@ -248,7 +192,7 @@ def _friction(what: Equations, velocity: Phasors, belt_speed: float, count: int)
         signs, pulses = _switches(velocity[0], slip[0], belt_speed)
         friction[0] += jump * signs
     missing = what.impedance * velocity + what.mass.normal_load * 2.0 * friction[:, 1:] - what.force
-    return _Friction(slip, friction[:, 0].real, missing, jump * pulses)
+    return SampledMotion(velocity, slip, friction[:, 0].real, missing, jump * pulses)
 
 
 def _speeds(slip: Floats) -> Floats:
@@ -302,7 +246,7 @@ def _switches(velocity: Phasors, slip: Floats, belt_speed: float) -> tuple[Phaso
     return signs, turns @ (2.0 / np.maximum(np.abs(at(angle)[1]), 1e-300))
 
 
-def _newton_step(what: Equations, found: _Friction) -> Phasors | None:
+def _newton_step(what: Equations, found: SampledMotion) -> Phasors | None:
     """The change of the velocities that removes what is missing, real and imaginary parts apart."""
     directions, harmonics = found.missing.shape
     derivative = _derivative(what, found)
@@ -326,7 +270,7 @@ def _newton_step(what: Equations, found: _Friction) -> Phasors | None:
     return np.asarray(change[0] + 1j * change[1])
 
 
-def _derivative(what: Equations, found: _Friction) -> Phasors:
+def _derivative(what: Equations, found: SampledMotion) -> Phasors:
     """Harmonics 0 ... 2 H of that of friction by slip velocity (direction, direction, harmonic).
 
     Across the slip friction's size over the speed, along it the slope of the law; a jump moves with its reversal.
@@ -343,20 +287,15 @@ def _derivative(what: Equations, found: _Friction) -> Phasors:
 
 def _orbit(scene: Scene, law: FrictionLaw, velocity: Phasors, mean: complex) -> Orbit:
     """The motion about the position where its mean friction loads the springs, on panels that end at reversals."""
-    mass, harmonics = scene.mass(), velocity.shape[1]
-    edges, nothing = np.array([0.0, math.tau / mass.frequency]), np.zeros(1)
-    still = Piecewise(edges, nothing, nothing)
-    moved = [
-        still._replace(
-            waves=tuple(Wave(mass.frequency * (k + 1), 1j * v) for k, v in enumerate(row.tolist()))
-        )
-        for row in velocity  # Re(V e) = Im(i V e)
-    ]
-    quickest = 0.5 * mass.frequency * max(4, harmonics)
-    slip = VaryingSlip(moved[0], (*moved, still)[1], still._replace(middle=np.ones(1)), quickest)
+    frequency, harmonics = scene.frequency, velocity.shape[1]
+    still = Piecewise(np.array([0.0, math.tau / frequency]), np.zeros(1), np.zeros(1))
+    phasors = (1j * velocity).tolist()  # Re(V e) = Im(i V e)
+    waves = [tuple(Wave(frequency * (k + 1), each) for k, each in enumerate(row)) for row in phasors]
+    moved = [still._replace(waves=row) for row in waves] + [still]
+    load = still._replace(middle=np.ones(1))
+    slip = VaryingSlip(moved[0], moved[1], load, 0.5 * frequency * max(4, harmonics))
     cuts = moved[0].minus(scene.belt_speed).crossings().tau if slip.on_the_line else np.empty(0)
     tau, _ = nodes(slip.panels(scene.belt_speed, cuts)[0])
-    k = np.zeros(1, np.int64)
-    orbit = slip.orbit(tau, sliding_vectors(law, slip.velocity(tau, k) - scene.belt_speed))
-    position = mass.normal_load * complex(mean.real, mean.imag / mass.transverse_stiffness)
-    return replace(orbit, x=orbit.x + position, stick=None)
+    speeds = slip.velocity(tau, np.zeros(1, np.int64)) - scene.belt_speed
+    orbit = slip.orbit(tau, sliding_vectors(law, speeds))
+    return replace(orbit, x=orbit.x + mean_position(scene, mean), stick=None)

@@ -17,14 +17,7 @@ import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.exact.method import Exact
-from frictionlab.methods.reduced.common import (
-    TOLERANCE,
-    Modelled,
-    line_reasons,
-    line_refusal,
-    on_the_line,
-    rounding_of,
-)
+from frictionlab.methods.reduced.common import TOLERANCE, Modelled, line_reasons, line_refusal
 from frictionlab.methods.reduced.legs import LegStarts, SwitchedLine, balanced_legs, force_on, holds, orbit_of
 from frictionlab.methods.reduced.reversals import (
     DrivenLine,
@@ -38,9 +31,7 @@ from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.theory import friction_free_velocity
 
-BALANCED = (
-    "{harmonics} harmonics of x1' and of Coulomb friction balanced on its exact switching angles; {beyond}"
-)
+BALANCED = "{} harmonics of x1' and of Coulomb friction balanced on its exact switching angles; {}"
 TAIL = "beyond them the mass as a free one, in closed form"
 PLAIN = "those beyond left out"
 CROSSES_AGAIN = (
@@ -50,7 +41,6 @@ CROSSES_AGAIN = (
 NOT_FOUND = (
     "no motion of {harmonics} harmonics found near the legs of slip and rest that exact finds; use exact"
 )
-DRIVEN_BY_FRICTION = "{name}: without damping, harmonic {order} of friction drives the mass without bound"
 _SAME = 1e-9
 """Distance of the belt speed of a motion from the one asked for, relative to V_lin."""
 
@@ -68,7 +58,11 @@ def switched_refusal(name: str, scene: Scene, law: FrictionLaw, harmonics: int) 
     if reason is not None:
         return reason
     resonant = np.flatnonzero(harmonic_impedances(scene.mass(), harmonics) == 0.0)
-    return DRIVEN_BY_FRICTION.format(name=name, order=resonant[0] + 1) if len(resonant) else None
+    if len(resonant):
+        return (
+            f"{name}: without damping, harmonic {resonant[0] + 1} of friction drives the mass without bound"
+        )
+    return None
 
 
 def switched(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int, tail: bool) -> Modelled:
@@ -91,8 +85,7 @@ def switched(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int, tail: bo
         x = side * one.x + mass.normal_load * mean[i]
         return replace(one, tau=tau, x=x, v=side * one.v, friction=mu * side * one.friction)
 
-    text = on_the_line(BALANCED.format(harmonics=harmonics, beyond=TAIL if tail else PLAIN), scenes[0])
-    return Modelled(mean, reasons, text, orbit, rounding_of(law, speeds))
+    return Modelled(mean, reasons, BALANCED.format(harmonics, TAIL if tail else PLAIN), orbit)
 
 
 def switched_motions(scene: Scene, law: FrictionLaw, line: SwitchedLine, speeds: Floats) -> Switched:

@@ -5,12 +5,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
+import numpy as np
+
+from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.shooting.method import Shooting
 from frictionlab.runner.solve import FROM_METHODS, number_columns
 
 
 def with_columns(method, scenes, law, tolerance):
     """The answers of a method, with ``columns``."""
     return Answered(method.solve(scenes, law, tolerance), scenes)
+
+
+def beside_full_answers(method, scenes, law):
+    """How far above the full means a model's are, which is within its errors, and its answers."""
+    full = Exact() if not any(Exact().refusals(scenes, law)) else Shooting()
+    found, true = with_columns(method, scenes, law, 1e-8), full.solve(scenes, law, 1e-9)
+    apart = found.mean.real - true.mean.real
+    assert found.status == true.status == ["ok"] * len(scenes)
+    assert np.all(np.abs(apart) <= found.error + true.error)
+    return apart, found
 
 
 class Answered:

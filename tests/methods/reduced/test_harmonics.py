@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from resonance import in_the_plane
 
 import frictionlab as fl
 from frictionlab.laws.base import Positive, SlidingLaw
@@ -19,7 +20,7 @@ from frictionlab.methods.reduced.switched import switched_motions
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.mistakes.notes import WrongValues
 from frictionlab.orbit.harmonics import harmonic_parts
-from frictionlab.scene.scene import Drive, Load, Scene, Transverse
+from frictionlab.scene.scene import Drive, Scene
 from frictionlab.theory import friction_free_velocity
 
 LAW = Coulomb(mu=0.4)
@@ -39,11 +40,9 @@ def scene(belt_speed, frequency=1.0, normal_load=10.0, damping=0.1, phase=0.0, *
     )
 
 
-def planar(belt_speed, natural_frequency=0.5, **load):
+def planar(belt_speed, omega_r=0.5, **load):
     """Paper, Fig. 9, but for the changes."""
-    load = Load(unbalance=10.0, **load)
-    across = Transverse(natural_frequency=natural_frequency, damping_ratio=0.1, load=load)
-    return FIG_4B.model_copy(update={"belt_speed": belt_speed, "transverse": across})
+    return in_the_plane(belt_speed, 1.0, 10.0, omega_r, **load)
 
 
 FIG_4B = scene(10.0)
@@ -197,7 +196,7 @@ def test_samples_resolve_friction_that_is_steep_at_rest_and_slip_that_passes_nea
     coulomb = [mean(one, 8, tail=False) for one in scenes]
     assert HarmonicBalance(harmonics=8).model_means(scenes, steep) == pytest.approx(coulomb, abs=2e-6)
 
-    what = Equations.of(planar(3.0, natural_frequency=10.0), LAW, 4)
+    what = Equations.of(planar(3.0, omega_r=10.0), LAW, 4)
     motion = balanced(what, 3.0, what.force / what.impedance)
     angle = np.linspace(0.0, math.tau, 2**18, endpoint=False)
     slip = np.exp(1j * np.multiply.outer(angle, np.arange(1.0, 5.0))) @ motion.velocity.T

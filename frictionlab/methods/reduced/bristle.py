@@ -72,12 +72,11 @@ def bristles(scenes: Sequence[Scene], law: BristleLaw) -> Modelled:
     law = law.under_load(mass.normal_load)
     points = [_point(mass, speed, law) for speed in np.abs(speeds).tolist()]
     means = [math.nan if balance is None else -balance.mean for balance, _ in points]
-    mean = np.copysign(1.0, speeds) * means
+    mean, reasons = np.copysign(1.0, speeds) * means, [reason for _, reason in points]
 
     def orbit(i: int) -> Orbit | None:
         return _orbit(scenes[i], law, points[i][0], float(mean[i]))
 
-    reasons = [reason for _, reason in points]
     rounding = LOOPS_ROUNDING * law.sliding_friction(0.0)
     decay = math.exp(-math.pi * mass.damping / mass.frequency)
     return Modelled(mean, reasons, BALANCED_LOOP, orbit, rounding, max(STEADY, 0.5 * (1.0 + decay)))

@@ -197,9 +197,10 @@ def line_reasons(scene: Scene, friction: float, belt_speeds: Floats, mean: Float
     mass = scene.mass()
     held = (belt_speeds == 0.0) & (abs(mass.force) <= friction)
     undamped = (mass.damping == 0.0) & (np.abs(belt_speeds) >= friction_free_velocity(scene))
-    found: list[str] = np.select(
-        [held, undamped, np.isnan(mean)], [HELD, DOES_NOT_DECAY, without], ""
-    ).tolist()
+    against, texts = [held, undamped, np.isnan(mean)], [HELD, DOES_NOT_DECAY, without]
+    if not np.any(against):
+        return [""] * len(mean)
+    found: list[str] = np.select(against, texts, "").tolist()
     return found
 
 

@@ -78,24 +78,23 @@ class Force(NamedTuple):
     coefficients: Phasors
     friction: Phasors
 
-    def at(self, phase: Floats, integrals: int = 0) -> Floats:
-        """R at phases [..., n], or its integral over the phase once or twice."""
+    def at(self, phase: Floats, *integrals: int) -> list[Floats]:
+        """R at phases [..., n] for 0 among ``integrals``, its integral over the phase once or twice for 1 or 2."""
         orders = np.arange(1.0, self.coefficients.shape[-1])
         turns = np.exp(1j * phase[..., None] * orders)
-        mean = self.coefficients[..., :1].real * phase**integrals / (2.0 if integrals == 2 else 1.0)
-        waves = (turns @ (self.coefficients[..., 1:] / (1j * orders) ** integrals)[..., None])[..., 0]
-        return np.asarray(mean + waves.real)
+        means = [self.coefficients[..., :1].real * phase**n / max(n, 1) for n in integrals]
+        waves = [self.coefficients[..., 1:, None] / (1j * orders[:, None]) ** n for n in integrals]
+        return [mean + (turns @ wave)[..., 0].real for mean, wave in zip(means, waves, strict=True)]
 
 
 def force_on(line: SwitchedLine, legs: LegStarts) -> Force:
     """R and friction's harmonics of legs that need not be balanced yet; many of the same kinds, or one that rests."""
     q = line.compliances
     orders = np.arange(len(q))
-    ends = np.append(legs.starts, legs.starts[..., :1] + math.tau, axis=-1)
-    turns = np.exp(-1j * ends[..., None, :] * orders[1:, None])
+    turns = np.exp(-1j * legs.starts[..., None, :] * orders[1:, None])
     slips = np.empty((*legs.starts.shape[:-1], len(q)), np.complex128)
     slips[..., 0] = legs.lengths @ legs.kinds / math.tau
-    slips[..., 1:] = (turns[..., :-1] - turns[..., 1:]) @ legs.kinds / (1j * math.pi * orders[1:])
+    slips[..., 1:] = (turns - np.roll(turns, -1, axis=-1)) @ legs.kinds / (1j * math.pi * orders[1:])
     base = line.friction * q * slips
     base[..., 1] += line.frequency * line.friction_free
     if legs.kinds.all():
@@ -140,7 +139,7 @@ def _missing(line: SwitchedLine, legs: LegStarts, belt_speed: float) -> Floats:
     """What legs lack of balance: slip at the ends of slips, the mean of slip, friction at the ends of rests."""
     starts, lengths, kinds, force = legs.starts, legs.lengths, legs.kinds, force_on(line, legs)
     edges, slips = np.append(starts, starts[0] + math.tau), kinds != 0
-    first, second = force.at(edges, 1), force.at(edges, 2)
+    held, first, second = force.at(edges, 0, 1, 2)
     gained = (np.diff(first) - line.friction * kinds * lengths) / line.frequency
     swept = np.diff(second) - first[:-1] * lengths - 0.5 * line.friction * kinds * lengths**2
     lacking = gained / line.friction_free
@@ -149,7 +148,7 @@ def _missing(line: SwitchedLine, legs: LegStarts, belt_speed: float) -> Floats:
     over = np.concatenate([[0.0], np.cumsum(np.where(slips, gained, 0.0))[:-1]])
     mean = (swept[slips].sum() / line.frequency + over @ lengths) / math.tau
     lacking[int(np.flatnonzero(slips)[0])] = (mean + belt_speed) / line.friction_free
-    lacking[~slips] = force.at(edges[1:][~slips]) / line.friction - np.roll(kinds, -1)[~slips]
+    lacking[~slips] = held[1:][~slips] / line.friction - np.roll(kinds, -1)[~slips]
     return np.asarray(lacking)
 
 
@@ -179,12 +178,16 @@ def holds(line: SwitchedLine, legs: LegStarts, force: Force) -> NDArray[np.bool_
     offsets = legs.starts - legs.starts[..., :1]
     leg = (since[..., None, :] >= offsets[..., :, None]).sum(axis=-2) - 1
     since, kind = since - np.take_along_axis(offsets, leg, axis=-1), legs.kinds[leg]
-    begun = pulls.at(legs.starts, 1) - mean * legs.starts
-    slip = integral - np.take_along_axis(begun, leg, axis=-1) + (mean - friction * kind) * since
+    pull, begun = pulls.at(legs.starts, 0, 1)
+    slip = (
+        integral
+        - np.take_along_axis(begun - mean * legs.starts, leg, axis=-1)
+        + (mean - friction * kind) * since
+    )
     least = -_LOOSE * line.friction_free * line.frequency
     slips = np.where(kind == 0, 0.0, kind * slip).min(axis=-1) >= least
     rests = np.where(kind == 0, np.abs(value + mean), 0.0).max(axis=-1) <= line.friction * (1.0 + _LOOSE)
-    onset = legs.kinds * (pulls.at(legs.starts) - friction * legs.kinds)
+    onset = legs.kinds * (pull - friction * legs.kinds)
     goes_on = (onset >= -line.friction * _LOOSE).all(axis=-1) & (legs.lengths > 0.0).all(axis=-1)
     return np.asarray(slips & rests & goes_on)
 
@@ -206,7 +209,7 @@ def orbit_of(line: SwitchedLine, legs: LegStarts, belt_speed: float, lead: float
     width, kind = np.diff(edges)[:, None], np.repeat(legs.kinds, counts)[:, None]
     phase = edges[:-1, None] + 0.5 * width * (1.0 + NODES)
     since, fall = phase - phase[:, :1], friction * kind
-    first, second = pulls.at(phase, 1), pulls.at(phase, 2)
+    first, second = pulls.at(phase, 1, 2)
     slips = np.where(kind == 0, 0.0, 1.0) / line.frequency
     gain = slips * (first - first[:, :1] - fall * since)
     # Slip begins at zero; where it never reverses, x1' is zero at phase 0.
@@ -214,7 +217,7 @@ def orbit_of(line: SwitchedLine, legs: LegStarts, belt_speed: float, lead: float
     swept = slips * (second - second[:, :1] - first[:, :1] * since - 0.5 * fall * since**2)
     x = _joined((swept + (slip[:, :1] + belt_speed) * since) / line.frequency)
     x = x - (width * WEIGHTS * x).sum() / (2.0 * math.tau)
-    rub = np.where(kind == 0, force.at(phase) / line.friction, kind)
+    rub = np.where(kind == 0, force.at(phase, 0)[0] / line.friction, kind)
     tau, at_once = (phase - lead) / line.frequency, np.array([x, slip + belt_speed, rub], np.complex128)
     return Orbit(tau, at_once[0], at_once[1], at_once[2], kind[:, 0] == 0)
 

@@ -57,11 +57,9 @@ def switched_refusal(name: str, scene: Scene, law: FrictionLaw, harmonics: int) 
     reason = line_refusal(name, scene, law)
     if reason is not None:
         return reason
-    resonant = np.flatnonzero(harmonic_impedances(scene.mass(), harmonics) == 0.0)
+    resonant = 1 + np.flatnonzero(harmonic_impedances(scene.mass(), harmonics) == 0.0)
     if len(resonant):
-        return (
-            f"{name}: without damping, harmonic {resonant[0] + 1} of friction drives the mass without bound"
-        )
+        return f"{name}: without damping, harmonic {resonant[0]} of friction drives the mass without bound"
     return None
 
 
@@ -90,19 +88,18 @@ def switched(scenes: Sequence[Scene], law: FrictionLaw, harmonics: int, tail: bo
 
 def switched_motions(scene: Scene, law: FrictionLaw, line: SwitchedLine, speeds: Floats) -> Switched:
     """Those of a scene at belt speeds >= 0."""
-    mean, legs = np.ones(len(speeds)), [LegStarts(np.zeros(1), np.array([-1]))] * len(speeds)
-    found = Switched(mean, list(legs))
+    never = LegStarts(np.zeros(1), np.array([-1]))
+    found = Switched(np.ones(len(speeds)), [never for _ in speeds])
     reverses = np.flatnonzero(speeds < line.friction_free)
     if not len(reverses):
         return found
     response = response_of_harmonics(scene.mass(), len(line.compliances) - 1, line.tail)
-    driven = DrivenLine(response, line.friction, line.friction_free)
-    two = reversals_at(driven, speeds[reverses])
+    two = reversals_at(DrivenLine(response, line.friction, line.friction_free), speeds[reverses])
     same = np.abs(two.belt_speed - speeds[reverses]) <= _SAME * line.friction_free
     ends = np.where(same, two.middle, 0.0)[:, None] + two.half[:, None] * np.array([-1.0, 1.0])
     slips = LegStarts(ends, np.array([1, -1]))
     same &= holds(line, slips, force_on(line, slips))
-    mean[reverses] = np.where(same, 1.0 - 2.0 / math.pi * two.half, np.nan)
+    found.mean[reverses] = np.where(same, 1.0 - 2.0 / math.pi * two.half, np.nan)
     for place, settled, row in zip(reverses.tolist(), same, ends, strict=True):
         found.legs[place] = LegStarts(row, slips.kinds) if settled else None
     if line.tail and not same.all():

@@ -38,9 +38,9 @@ NOT_SETTLED = (
     "Newton's method does not settle on a motion of {} harmonics: slip passes too near rest for so few, or "
     "crosses zero there again and again; use shooting"
 )
-_FEWEST, _FEWEST_ON_THE_LINE, _SAMPLES_PER_HARMONIC, _MOST_SAMPLES = 128, 1024, 8, 2**14
-"""Of a period. On the line what is left of friction bends at reversals: its samples leave an error of third order."""
-_ENOUGH, _MORE = 1e-8, 4
+_SAMPLES, _PER_HARMONIC = {1: (2048, 2**16), 2: (128, 2**13)}, 8
+"""Fewest and most of a period by directions: on the line their error falls as a power, in the plane exponentially."""
+_ENOUGH, _MORE = 1e-9, 4
 """Force that balance may lack on twice as many samples, relative to friction; how many times more are taken else."""
 _CLOSED = 1e-12
 """Force that balance lacks, relative to load and friction."""
@@ -145,9 +145,9 @@ def _motions(what: Equations, belt_speeds: Floats) -> list[SampledMotion | None]
 def balanced(what: Equations, belt_speed: float, start: Phasors) -> SampledMotion | None:
     """The motion that Newton's method finds from these velocities; None where it does not settle."""
     directions, harmonics = start.shape
-    least = max(_FEWEST_ON_THE_LINE if directions == 1 else _FEWEST, _SAMPLES_PER_HARMONIC * harmonics)
-    count, found = 2 ** math.ceil(math.log2(least)), None
-    while count <= _MOST_SAMPLES:
+    fewest, most = _SAMPLES[directions]
+    count, found = 2 ** math.ceil(math.log2(max(fewest, _PER_HARMONIC * harmonics))), None
+    while count <= most:
         settled = _settled(what, belt_speed, start, count)
         if settled is not None:
             found, start = settled, settled.velocity

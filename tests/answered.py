@@ -9,6 +9,7 @@ import numpy as np
 
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
+from frictionlab.orbit.panels import WEIGHTS
 from frictionlab.runner.solve import FROM_METHODS, number_columns
 
 
@@ -25,6 +26,12 @@ def beside_full_answers(method, scenes, law):
     assert found.status == true.status == ["ok"] * len(scenes)
     assert np.all(np.abs(apart) <= found.error + true.error)
     return apart, found
+
+
+def moves_as_its_velocity(orbit):
+    """Whether positions of an orbit change by the integral of its velocity."""
+    half = 0.5 * np.ptp(orbit.tau, axis=1)
+    return np.allclose(orbit.x[:, -1] - orbit.x[:, 0], half * (orbit.v @ WEIGHTS), rtol=1e-7, atol=1e-9)
 
 
 class Answered:

@@ -15,7 +15,7 @@ from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.reduced.harmonic_balance import HarmonicBalance
 from frictionlab.methods.reduced.legs import SwitchedLine
-from frictionlab.methods.reduced.sampled import Equations, balanced
+from frictionlab.methods.reduced.sampled import Equations, _switches, balanced
 from frictionlab.methods.reduced.switched import switched_motions
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.mistakes.notes import WrongValues
@@ -112,6 +112,13 @@ def test_a_mass_at_rest_on_the_belt_obeys_them_too() -> None:
     assert np.abs(lacking(STICKS, orbit, 6)[0]).max() < 1e-8
 
 
+def test_a_rest_shorter_than_the_samples_at_which_slip_is_looked_at_is_found() -> None:
+    still = scene(0.0, 1.28714440884, 1.52995094918, 0.0231566951405, amplitude=1.0)
+    one = still.at(0.42960521635 * friction_free_velocity(still))
+
+    assert HarmonicBalance(harmonics=9).solve([one], LAW, 1e-3).orbit(0).stick.any()
+
+
 @pytest.mark.parametrize("law", [LAW, STRIBECK], ids=["coulomb", "stribeck"])
 def test_in_the_plane_and_with_friction_that_varies_with_speed_they_obey_them_too(law) -> None:
     plane = planar(-8.0, phase=70.0)
@@ -179,6 +186,17 @@ def test_samples_balance_coulomb_friction_as_its_switches_do(belt_speed) -> None
         motion = balanced(what, belt_speed, what.force / what.impedance)
         expected = mean(one, harmonics, tail=False if harmonics > 1 else None)
         assert -motion.mean[0] == pytest.approx(expected, abs=1e-11)
+
+
+def test_slip_that_reverses_twice_between_two_samples_is_seen_to() -> None:
+    angle, half = math.tau / 128 * np.arange(128), 0.01
+    slip = np.cos(angle - 0.02) - math.cos(half)
+
+    signs, _ = _switches(np.array([np.exp(-0.02j)]), slip, math.cos(half))
+
+    assert np.all(slip < 0.0)
+    assert signs[0] == pytest.approx(-1.0 + 2.0 * half / math.pi, abs=1e-13)
+    assert abs(signs[1]) == pytest.approx(2.0 / math.pi * math.sin(half), abs=1e-13)
 
 
 class Steep(SlidingLaw):

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from answered import beside_full_answers, with_columns
+from answered import beside_full_answers, moves_as_its_velocity, with_columns
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from resonance import at_resonance, reference_curve
@@ -168,6 +168,7 @@ def test_the_motion_of_a_waveform_is_the_friction_free_one() -> None:
 
     for column in ("velocity_amplitude", "velocity_harmonic", "velocity_phase", "energy_input", "period"):
         assert found.columns[column][0] == pytest.approx(exact.columns[column][0], rel=1e-9), column
+    assert moves_as_its_velocity(found.orbit(0))
     assert MDSM.model_means([shaped(30.0, "square")], LAW)[0] == pytest.approx(found.mean[0], abs=1e-13)
 
 

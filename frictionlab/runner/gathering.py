@@ -78,6 +78,7 @@ class GatheredTable:
 
     def gather(self, solving: Solving, files: TableFiles, laws: registry.Laws, stopped: bool) -> None:
         """Write the table, held in whole or in part. stopped: curves are not read then."""
+        none: pd.DataFrame | None = None
         for piece in pieces(solving):
             for table in [self._whole(piece)] if self._shown is None else piece.tables():
                 files.add_rows(table)
@@ -85,11 +86,16 @@ class GatheredTable:
                 self._counts.update(status_counts(table))
             orbits, harmonics = piece.orbits, piece.harmonics if solving.task.harmonics else None
             files.add_orbits(orbits)
-            files.add_harmonics(harmonics)
+            if harmonics is not None and harmonics.empty:  # columns across the belt are not told of no orbits
+                none = harmonics
+            else:
+                files.add_harmonics(harmonics)
             if self._shown is None:
                 self.orbits, self.harmonics = orbits, harmonics
             read = piece.for_curves()
             self._curves.append(curve_table(read.iloc[:0] if stopped else read, laws))
+        if none is not None and not files.has_harmonics:
+            files.add_harmonics(none)
 
     def _whole(self, piece: TablePiece) -> pd.DataFrame:
         return without_empty(piece.table()) if self._leave_out_empty else piece.table()

@@ -209,9 +209,11 @@ class StudyRun:
         return registry.Laws({law.kind: law.law_class for law in self.study.laws})
 
     def _as_run(self, gathered: GatheredTable, stopped: bool) -> Run:
-        if self._is_long:
-            return self._read_run(gathered.table, gathered.counts, gathered.curves)
         study, table, orbits = self.study, gathered.table, gathered.orbits
+        if self._is_long and self.folder is not None:
+            done = self._read_run(table, gathered.counts, gathered.curves)
+            kept = self.folder.harmonics_file if study.keep_harmonics is not None else None
+            return done if kept is None else replace(done, harmonics=self.folder.read_text(kept))
         read = table.iloc[:0] if stopped else table
         return Run(
             study,

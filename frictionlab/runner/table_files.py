@@ -58,6 +58,11 @@ class TableFiles:
         if self._folder is not None and harmonics is not None:
             self._add(self._folder.harmonics_file, harmonics, self._add_text)
 
+    @property
+    def has_harmonics(self) -> bool:
+        """Whether any were added."""
+        return self._folder is not None and self._folder.harmonics_file in self._open
+
     def _add(self, path: Path, table: pd.DataFrame, write: Callable[[Path, pd.DataFrame], None]) -> None:
         if self._problem is not None:
             return

@@ -17,11 +17,10 @@ LARGEST_CHECK = 20_000
 """Points that are built to check a grid; of a larger one the ends and evenly spaced values of each sweep."""
 LARGEST_KEPT = {
     "orbit": (50_000_000, "{count} samples of {size} points are more than {most}"),
+    "harmonics": (10_000_000, "{count} harmonics of {size} points are more than {most}"),
     "attractors": (100_000, "{count} starts at {size} points are more than {most}"),
 }
 """What is kept of each point: how much in all, and the sentence where it is more."""
-MOST_WITH_HARMONICS = 100_000
-"""Points of a table whose harmonics are held with it."""
 
 
 def note_impossible_points(grid: StudyGrid, told: Mapping[str, Any], notes: Notes) -> None:
@@ -56,9 +55,6 @@ def _note_too_much_kept(size: int, told: Mapping[str, Any], notes: Notes) -> Non
     for key, (most, said) in LARGEST_KEPT.items():
         if (count := told.get(f"keep_{key}") or 0) * size > most:
             notes.add(("keep", key), said.format(count=count, size=size, most=most))
-    if told.get("keep_harmonics") is not None and size > MOST_WITH_HARMONICS:
-        said = f"harmonics are kept of {MOST_WITH_HARMONICS} points at most, not of {size}"
-        notes.add(("keep", "harmonics"), said)
 
 
 def _build_all(grid: StudyGrid, notes: Notes) -> None:

@@ -23,6 +23,7 @@ from frictionlab.study.yaml_text import yaml_text
 
 SCENE: dict[str, Any] = {"damping_ratio": 0.1, "normal_load": 10, "belt_speed": 5}
 SCENE |= {"drive": {"unbalance": 10, "frequency": 1}}
+ACROSS = {"natural_frequency": 0.5, "damping_ratio": 0.1}
 SPEEDS = {"start": 0.5, "stop": 60, "num": 40}
 
 
@@ -80,6 +81,22 @@ def test_its_files_are_those_of_a_short_run(
 
 def _timeless(table: pd.DataFrame) -> pd.DataFrame:
     return table.drop(columns="seconds", errors="ignore")
+
+
+def test_harmonics_of_a_long_run_are_those_of_a_short_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: Any
+) -> None:
+    plan = study(keep={"harmonics": 2}, scene=SCENE | {"transverse": ACROSS}, methods=["exact", "mdsm"])
+    short = fl.run(plan, out=tmp_path / "short" / "run")
+    request.getfixturevalue("short_pieces")
+    long = fl.run(plan, out=tmp_path / "long" / "run")
+
+    assert short.harmonics is not None
+    assert len(short.harmonics) > 0
+    assert_frame_equal(long.harmonics, short.harmonics, check_dtype=False)
+    again = fl.run(plan, out=tmp_path / "long" / "run")
+    assert again.computed == 0
+    assert_frame_equal(again.harmonics, long.harmonics)
 
 
 def test_text_is_written_where_it_is_asked_for(short_pieces: None, tmp_path: Path) -> None:

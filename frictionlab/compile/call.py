@@ -47,16 +47,6 @@ def compiling_at_once() -> Iterator[None]:
         _choice.always_compile = before
 
 
-@contextlib.contextmanager
-def kernels_of_their_own() -> Iterator[None]:
-    """Meanwhile kernels are compiled for each law alone: up to a fifth quicker, and 10 to 20 s more to compile."""
-    before, _choice.own_kernels = _choice.own_kernels, True
-    try:
-        yield
-    finally:
-        _choice.own_kernels = before
-
-
 _ready: set[Any] = set()
 """Calls, by kernel and kinds of arguments, that this process has machine code for: numba takes 2 ms to find out."""
 _spent: dict[Any, float] = {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,21 +32,13 @@ class LaneCalls(NamedTuple):
 
     def close(self, belt_speeds: Floats) -> tuple[LaneCurve, float]:
         """The orbits, and kernel time [s]."""
-        found, seconds = self._timed(answer_lanes, belt_speeds, None, self.goal)
-        return found, seconds
+        return KernelCall(answer_lanes, self.law).timed(self.body, belt_speeds, self.goal)
 
     def differentiate(self, belt_speeds: Floats, states: Floats) -> Floats:
         """The monodromies of orbits [n, 4, 4]; NaN where lanes leave one."""
-        matrices: Floats = self._timed(differentiate_in_lanes, belt_speeds, states)[0]
-        return matrices
+        return KernelCall(differentiate_in_lanes, self.law)(self.body, belt_speeds, states)
 
     def record(self, belt_speeds: Floats, states: Floats) -> tuple[Track, NDArray[np.int64]]:
         """The track of orbits and the panels before which each ends [n]; without panels where lanes leave one."""
         accuracy = interpreted(recorded_accuracy)(self.body.normal_load, self.goal)
-        found: tuple[Track, NDArray[np.int64]]
-        found = self._timed(record_in_lanes, belt_speeds, states, accuracy)[0]
-        return found
-
-    def _timed(self, kernel: Any, belt_speeds: Floats, states: Floats | None, *how: Any) -> tuple[Any, float]:
-        given = (belt_speeds,) if states is None else (belt_speeds, states)
-        return KernelCall(kernel, self.law).timed(self.body, *given, *how)
+        return KernelCall(record_in_lanes, self.law)(self.body, belt_speeds, states, accuracy)

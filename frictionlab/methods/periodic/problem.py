@@ -47,7 +47,7 @@ from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Body, for_kernels, in_the_plane, on_the_line
 from frictionlab.scene.scene import Initial, Scene
-from frictionlab.scene.scenes import Scenes, belt_speeds_of
+from frictionlab.scene.scenes import belt_speeds_of
 from frictionlab.scene.signals import Signal
 from frictionlab.theory.saturation import slides_saturated
 from frictionlab.theory.uniqueness import falls_slowly, is_convergent
@@ -145,7 +145,7 @@ class PeriodicProblem:
             return self._close_in_lanes(self.lanes, scenes, periods)
         guess = np.empty((0, 0)) if state is None else state[None, :]
         goal = self.goal if state is None else self.goal._replace(check_attraction=False)
-        return self._called(scenes, guess, goal, wanted, periods)
+        return self.called(belt_speeds_of(scenes), guess, goal, wanted, periods)
 
     @property
     def lanes(self) -> LaneCalls | None:
@@ -158,23 +158,16 @@ class PeriodicProblem:
         self, lanes: LaneCalls, scenes: Sequence[Scene], periods: float
     ) -> tuple[Curve, float]:
         """The orbits of these scenes; those that lanes leave by the search for one."""
-        found, seconds = lanes._replace(body=self.body._replace(periods=float(periods))).close(
-            belt_speeds_of(scenes)
-        )
+        speeds, body = belt_speeds_of(scenes), self.body._replace(periods=float(periods))
+        found, seconds = lanes._replace(body=body).close(speeds)
         left = np.flatnonzero(found.fate != CLOSED_ORBIT).tolist()
         if left:
-            others = Scenes.of(scenes).taken(left)
-            rest, more = self._called(others, np.empty((0, 0)), self.goal, CLOSED, periods)
+            rest, more = self.called(speeds[left], np.empty((0, 0)), self.goal, CLOSED, periods)
             found.states[left], found.results[left] = rest.states, rest.results
             seconds += more
         n, size = found.states.shape
         nothing = np.zeros(n, np.int64), interpreted(track_of)(0), np.zeros(n, np.int64)
         return Curve(found.states, found.results, np.empty((0, size, size)), *nothing), seconds
-
-    def _called(
-        self, scenes: Sequence[Scene], states: Floats, goal: Goal, wanted: Wanted, periods: float = 1.0
-    ) -> tuple[Curve, float]:
-        return self.called(belt_speeds_of(scenes), states, goal, wanted, periods)
 
     def called(
         self, belt_speeds: Floats, states: Floats, goal: Goal, wanted: Wanted, periods: float = 1.0
@@ -191,7 +184,7 @@ class PeriodicProblem:
         places, known = self._known(states)
         if self.lanes is None or len(places) < FEWEST_IN_LANES:
             return self._recorded(places, scenes, known)
-        track, ends = self.lanes.record(belt_speeds_of(Scenes.of(scenes).taken(places)), known)
+        track, ends = self.lanes.record(belt_speeds_of(scenes)[places], known)
         found = _orbits_at(places, track, ends, len(scenes))
         left = np.diff(ends, prepend=0) == 0
         others = [i for i, is_left in zip(places, left, strict=True) if is_left]
@@ -199,7 +192,7 @@ class PeriodicProblem:
 
     def _recorded(self, places: list[int], scenes: Sequence[Scene], states: Floats) -> Orbits:
         """The orbits of the scenes at these places, one by one."""
-        curve, _ = self._called(Scenes.of(scenes).taken(places), states, self.goal, RECORDED)
+        curve, _ = self.called(belt_speeds_of(scenes)[places], states, self.goal, RECORDED)
         return _orbits_at(places, curve.orbits, curve.ends, len(scenes))
 
     def multipliers(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Floats:
@@ -207,12 +200,12 @@ class PeriodicProblem:
         places, known = self._known(states)
         found = np.full(len(scenes), np.nan)
         if self.lanes is not None and len(places) >= FEWEST_IN_LANES:
-            matrices = self.lanes.differentiate(belt_speeds_of(Scenes.of(scenes).taken(places)), known)
+            matrices = self.lanes.differentiate(belt_speeds_of(scenes)[places], known)
             regular = ~np.isnan(matrices).any(axis=(1, 2))
             found[np.array(places)[regular]] = largest_modulus(matrices[regular])
             places, known = [i for i in places if math.isnan(found[i])], known[~regular]
         if places:
-            curve, _ = self._called(Scenes.of(scenes).taken(places), known, self.goal, MULTIPLIERS)
+            curve, _ = self.called(belt_speeds_of(scenes)[places], known, self.goal, MULTIPLIERS)
             found[places] = largest_modulus(curve.matrices)
         return found
 
@@ -225,17 +218,8 @@ class PeriodicProblem:
         accuracy = 1e-13 * self.mass.normal_load
         return KernelCall(settle)(self.maps, self.common, *self._at(start), accuracy)
 
-    def transient(
-        self, belt_speed: float, start: Initial | None, most: int, known: KnownOrbit | None = None
-    ) -> Transient:
-        """The motion from a start (None: on the friction-free orbit), for so many periods at most.
-
-        known: an orbit that attracts; a motion that is sure to end there is followed no farther.
-        """
-        return self.carried(belt_speed, self.state_at(belt_speed, start), most, known)
-
     def state_at(self, belt_speed: float, start: Initial | None) -> Floats:
-        """The state of a start."""
+        """The state of a start (None: on the friction-free orbit)."""
         at = self._free_start(belt_speed) if start is None else (*self._at(start), 0j)
         state = np.empty(self.size)
         KernelCall(write_start)(self.maps, tuple(map(complex, at)), state)
@@ -244,7 +228,10 @@ class PeriodicProblem:
     def carried(
         self, belt_speed: float, state: Floats, most: int, known: KnownOrbit | None = None
     ) -> Transient:
-        """The motion from a state, that of another belt speed for one; the rest as ``transient``."""
+        """The motion from a state, that of another belt speed for one, for so many periods at most.
+
+        known: an orbit that attracts; a motion that is sure to end there is followed no farther.
+        """
         return self._iterate(belt_speed, state, most, MAP_KINDS[self.kind].rough, known)
 
     def positions(self, states: Floats) -> tuple[Floats, Floats]:
@@ -255,7 +242,7 @@ class PeriodicProblem:
         return x, np.array([complex(u).real for _, u in pairs]) + self.body.frequency * sine.real
 
     def place(self, belt_speed: float, start: Initial | None) -> tuple[complex, complex]:
-        """Position and velocity at which ``transient`` starts."""
+        """Position and velocity of a start."""
         return self._free_orbit(belt_speed)[:2] if start is None else self._at(start)
 
     def repeated(self, belt_speed: float, state: Floats, periods: int) -> Transient:

@@ -1,20 +1,24 @@
 """Every steady state that motions end in along a curve in belt speed: orbits of any period, and what never repeats.
 
 At each belt speed starts far from each other are followed until they repeat. Then every state found is carried on to
-the next belt speed, upwards and downwards: an orbit is followed as far as it attracts, on both sides of a jump.
+the next belt speed, upwards and downwards: an orbit is followed as far as it attracts, on both sides of a jump. One
+motion alone is followed period after period.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+
+import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import FoundState
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.attractors import Attractor, FollowedStarts, all_starts, closed_orbit
+from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import stays_at_rest
 
@@ -82,3 +86,22 @@ def _found_state(problem: PeriodicProblem, place: int, state: Attractor, found_f
     error = math.nan if state.curve is None else float(state.curve.closed.error[0])
     numbers = state.mean, error, state.low, state.high
     return FoundState(place, round(state.period * problem.common), *numbers, x, velocity, found_from)
+
+
+def follow_motion(scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:
+    """A record of each period of all that changes in time, one where the other ends.
+
+    From scene.initial, without one from the friction-free orbit. By the finest maps that this tolerance on the mean
+    asks for, instants of stick and reversal located.
+    """
+    problem = PeriodicProblem(scene, law, tolerance)
+    state = problem.state_at(scene.belt_speed, scene.initial)
+    speeds, found = np.array([scene.belt_speed]), list[Orbit]()
+    for _ in range(periods):
+        orbit = problem.orbits([scene], [state]).one(0)
+        if orbit is None:
+            break
+        start = found[-1].tau[-1, -1] if found else orbit.tau[0, 0]
+        found.append(replace(orbit, tau=orbit.tau + (start - orbit.tau[0, 0])))
+        state = problem.mapped(speeds, state[None, :])[0]
+    return found

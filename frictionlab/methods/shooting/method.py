@@ -12,11 +12,9 @@ from frictionlab.methods.periodic.problem import along_the_belt
 from frictionlab.methods.prescribed.method import solve_prescribed
 from frictionlab.methods.shooting.decoupled import axes_apart, solve_apart
 from frictionlab.methods.shooting.driven import solve_driven
-from frictionlab.methods.shooting.followed_states import follow_states
-from frictionlab.methods.shooting.motion import follow_motion
+from frictionlab.methods.shooting.followed_states import follow_motion, follow_states
 from frictionlab.methods.shooting.saturated import saturates_in_the_plane, solve_saturated
-from frictionlab.methods.shooting.undriven import solve_undriven
-from frictionlab.methods.shooting.undriven_follower import ACROSS
+from frictionlab.methods.shooting.undriven import ACROSS, solve_undriven
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 

@@ -1,16 +1,330 @@
-"""What an undriven mass on a moving belt does in the long run: steady sliding, a cycle, or rest on a belt at rest."""
+"""What an undriven mass does in the long run, followed through time: steady sliding, a cycle, or rest.
+
+The motion is followed from scene.initial until it nears steady sliding as the derivative there says, or until its
+largest deflections come back: from them a cycle is closed, whose period is an unknown. Either counts where small
+disturbances do not leave it and the motion from the start nears it. Without memory rest leaves one motion to go on
+with, from the one deflection at which the spring overcomes friction, and energy may tell steady sliding beforehand.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
+from frictionlab.compile.interpret import interpreted
+from frictionlab.dynamics.motion import mean_friction
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Status
-from frictionlab.methods.shooting.undriven_follower import PeriodicMotion, Undriven
-from frictionlab.methods.shooting.undriven_path import TURN, NotFound
+from frictionlab.methods.periodic.attraction import ENOUGH, KnownOrbit
+from frictionlab.methods.periodic.fixed_point import FINER, ROUNDING, stated_error
+from frictionlab.methods.shooting.undriven_cycle import (
+    MOST_RETURNS,
+    RETURN_DISTANCE,
+    Cycle,
+    close_cycle,
+    is_there,
+    nears,
+    radius,
+)
+from frictionlab.methods.shooting.undriven_path import (
+    FOLLOWED,
+    LEAST,
+    PANELS_AT_FIRST,
+    TURN,
+    Effort,
+    NotFound,
+    Return,
+    Span,
+    UndrivenPath,
+)
+from frictionlab.orbit.record import Orbit
+from frictionlab.orbit.recorder import Track
+from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
+from frictionlab.theory.sliding_stability import loses_energy
+
+COMES_TO_REST = "at rest, where the motion from scene.initial ends"
+SLIDES = "steady sliding, which attracts"
+SLIDES_FREELY = "a free oscillation in slip, which does not decay without damping"
+STICKS = "a cycle of stick and slip"
+SLIPS = "a cycle of slip without rest"
+BETWEEN_LOOKS, PIECE = 2.0, 0.125
+"""Turns between looks at where the motion leads, and between looks for rest."""
+TRIALS = 10, 30, 100, 300, 1000
+"""Counts of largest deflections after which a cycle is looked for however far apart they are."""
+FRICTION_SPREAD = 1e-4
+"""Of sliding friction: how near to it friction must stay where nothing else takes energy from the motion."""
+STICKING = 1e-2
+"""Of the belt speed: slower slip is called stick."""
+ACROSS = "friction of so quick a slip may feed a motion across the belt, which is not followed: leave transverse out"
+MOST_TURNS, RESTING = 5000, 4
+"""Turns after which a mass that still swings on a belt at rest is given up; those by which its decay is judged."""
+
+
+class PeriodicMotion(NamedTuple):
+    """A periodic motion from a state: its period, mean friction, error and largest multiplier, and what it is."""
+
+    state: Floats
+    period: float
+    mean: float
+    error: float
+    multiplier: float
+    kind: str
+
+
+class Reach(NamedTuple):
+    """The deflections between which a motion went, from some turn on."""
+
+    turns: float
+    low: float
+    high: float
+
+
+@dataclass
+class Way:
+    """A motion so far: its largest deflections, where it went of late, and the cycles found beside it."""
+
+    returns: list[Return] = field(default_factory=list)
+    reaches: list[Reach] = field(default_factory=list)
+    cycles: list[Cycle] = field(default_factory=list)
+
+    def note(self, track: Track, turns: float) -> None:
+        """One span more; those before the last two returns, or half of the way, are left out one at a time."""
+        since = self.returns[-3].turns if len(self.returns) > 2 else 0.5 * turns
+        if self.reaches and self.reaches[0].turns <= since - BETWEEN_LOOKS:
+            del self.reaches[0]
+        x = track.x.real[: track.filled[0]]
+        self.reaches.append(Reach(turns, float(x.min()), float(x.max())))
+
+    @property
+    def middle(self) -> float:
+        """Of the deflections it went through of late."""
+        return 0.5 * (min(one.low for one in self.reaches) + max(one.high for one in self.reaches))
+
+
+@dataclass(frozen=True)
+class Undriven:
+    """An undriven scene and a law, followed through time."""
+
+    scene: Scene
+    law: FrictionLaw
+    tolerance: float
+    effort: Effort = field(default_factory=Effort)
+    _tried: dict[int, float] = field(default_factory=dict)
+
+    @cached_property
+    def _path(self) -> UndrivenPath:
+        return UndrivenPath(self.scene, self.law, self.effort)
+
+    @cached_property
+    def _still(self) -> KnownOrbit:
+        """Steady sliding, as an orbit from one look to the next. Raises NotFound."""
+        state = self._path.sliding
+        matrix = self._path.quotients(state, BETWEEN_LOOKS)
+        return KnownOrbit(state, matrix, 1.0 - radius(matrix))
+
+    @property
+    def _accuracy(self) -> float:
+        """Of maps that are to follow the motion no worse than the mean is asked for."""
+        return max(min(0.1 * self.tolerance, FOLLOWED), LEAST)
+
+    @property
+    def _conserves(self) -> bool:
+        """Whether only friction other than that of sliding takes energy."""
+        return self._path.mass.damping == 0.0 and self.law.constant_sliding_friction()
+
+    @property
+    def _forgets(self) -> bool:
+        """Whether at rest nothing is left of the motion before."""
+        return self.law.count() == 0
+
+    def motion(self) -> PeriodicMotion:
+        """The motion reached from the start. Raises NotFound."""
+        path = self._path
+        if path.speed == 0.0:
+            return self._at_rest()
+        state, turns, steady, forgets, way = path.start, 0.0, 0, self._forgets, Way()
+        while True:
+            if self._loses_energy(state):
+                return self._sliding()
+            span = path.follow(state, BETWEEN_LOOKS, room=PANELS_AT_FIRST)
+            if span.stuck > 0.0 and forgets:
+                motion = self._from_release()
+                if motion is not None:
+                    return motion
+                state, forgets = path.release, False  # it does not rest again
+                continue
+            steady = steady + 1 if nears(self._still, state, span.end) else 0
+            if steady >= ENOUGH or is_there(self._still, span.end):
+                return self._sliding()
+            if self._conserves and self._slides_freely(span.track):
+                return self._free(span.end)
+            cycle = self._cycle_neared(way, state, span, turns)
+            if cycle is not None:
+                return self._cycle(cycle)
+            state, turns = span.end, turns + BETWEEN_LOOKS
+            self.effort.turns = turns
+
+    # --- steady sliding ---
+
+    def _sliding(self) -> PeriodicMotion:
+        path = self._path
+        return PeriodicMotion(path.sliding, math.nan, path.sliding_friction, ROUNDING, math.nan, SLIDES)
+
+    def _loses_energy(self, state: Floats) -> bool:
+        """Whether every motion with no more energy than this one loses it, down to steady sliding."""
+        path = self._path
+        return self._forgets and loses_energy(path.mass, self.law, path.speed, path.from_sliding(state))
+
+    def _slides_freely(self, track: Track) -> bool:
+        """Whether friction is that of sliding, to little."""
+        sliding = self._path.sliding_friction
+        friction = -track.friction.real[: track.filled[0]]
+        return bool(np.abs(friction - sliding).max() <= FRICTION_SPREAD * abs(sliding))
+
+    def _free(self, state: Floats) -> PeriodicMotion:
+        """The oscillation that the motion ends on, no faster than the belt: friction stays that of sliding."""
+        path = self._path
+        swing = state[:2] - path.sliding[:2]
+        swing *= min(1.0, abs(path.speed) / math.hypot(*swing))
+        state = path.sliding.copy()
+        state[:2] += swing
+        return PeriodicMotion(state, TURN, path.sliding_friction, ROUNDING, 1.0, SLIDES_FREELY)
+
+    # --- from the end of rest, without memory ---
+
+    def _from_release(self) -> PeriodicMotion | None:
+        """The motion from the end of rest; None where the mass does not come to rest again."""
+        release = self._path.release
+        if self._conserves and self.law.monotone():
+            return self._free(release)
+        if self._loses_energy(release):
+            return self._sliding()
+        accuracy = max(0.1 * self.tolerance, LEAST)
+        # twice, the second time much finer: the difference is the error
+        rough, fine = (self._back_to_rest(part * accuracy) for part in (1.0, 1.0 / FINER))
+        if rough is None or fine is None:
+            return None
+        (_, before), (turns, mean) = rough, fine
+        # two step sizes may agree by chance: what one step of the finer motion may cost
+        error = interpreted(stated_error)(abs(mean - before), 0.0, accuracy / FINER + 1e-12)
+        return PeriodicMotion(release, turns * TURN, mean, error, 0.0, STICKS)
+
+    def _back_to_rest(self, accuracy: float) -> tuple[float, float] | None:
+        """Turns and mean friction from the end of rest to the next; None where the mass does not rest again.
+
+        An orbit that closes one loop without sticking never sticks later.
+        """
+        path, state, turns, peaks = self._path, self._path.release, 0.0, 0
+        patience = 10.0 * (1.0 + path.mass.damping)  # for one damped too heavily to have peaks
+        while peaks < 3 and turns < patience:
+            span = path.follow(state, PIECE, accuracy)
+            if turns > 0.0 and span.stuck > 0.0:
+                # else the belt carries the mass on to where slip began
+                way = (path.release[0] - span.end[0]) / math.sqrt(path.mass.stiffness)
+                left = span.released if span.released >= 0.0 else PIECE * TURN + way / path.speed
+                turns += left / TURN
+                whole = path.follow(path.release, turns, accuracy)
+                return turns, float(interpreted(mean_friction)(whole.impulse, turns * TURN))
+            peaks += 1 if path.side * state[1] > 0.0 >= path.side * span.end[1] else 0
+            state, turns = span.end, turns + PIECE
+        return None
+
+    # --- cycles ---
+
+    def _cycle_neared(self, way: Way, state: Floats, span: Span, turns: float) -> Cycle | None:
+        """The cycle that the motion nears at one of the largest deflections of a span."""
+        way.note(span.track, turns)
+        for peak in self._path.peaks(state, span.track, way.middle) if not self._conserves else ():
+            way.returns.append(Return(peak.state, turns + peak.turns))
+            cycle = self._reached_cycle(way.returns, way.cycles)
+            if cycle is not None:
+                return cycle
+        return None
+
+    def _reached_cycle(self, returns: list[Return], cycles: list[Cycle]) -> Cycle | None:
+        """The cycle that the motion surely nears; cycles: those found so far, one more where it is new."""
+        for cycle in cycles:
+            if cycle.neared(returns):
+                return cycle
+        last = returns[-1]
+        size = self._path.from_sliding(last.state)
+        for back in range(1, min(MOST_RETURNS, len(returns) - 1) + 1):
+            before = returns[-1 - back]
+            apart = float(np.linalg.norm(last.state - before.state))
+            # closing is costly: again only where they have come much nearer to each other
+            near = min(RETURN_DISTANCE * size, 0.25 * self._tried.get(back, math.inf))
+            if apart < near or (back == 1 and len(returns) in TRIALS):
+                self._tried[back] = apart
+                guess = Return(last.state, last.turns - before.turns)
+                found = close_cycle(self._path, guess, self.tolerance)
+                if found is not None and not any(is_there(other.orbit, found.state) for other in cycles):
+                    cycles.append(found)
+                    return found if found.neared(returns) else None
+        return None
+
+    def _cycle(self, cycle: Cycle) -> PeriodicMotion:
+        """Raises NotFound where a motion across the belt might grow."""
+        span, speed = self._path.follow(cycle.state, cycle.turns, room=PANELS_AT_FIRST), self._path.speed
+        fastest = float(np.abs(span.track.v.real[: span.track.filled[0]] - speed).max())
+        if self.scene.degrees_of_freedom == 2 and not self.law.damps_across(fastest):
+            raise NotFound(ACROSS)
+        kind = STICKS if span.slowest < STICKING * abs(speed) else SLIPS
+        return PeriodicMotion(
+            cycle.state, cycle.turns * TURN, cycle.mean, cycle.error, cycle.multiplier, kind
+        )
+
+    # --- rest ---
+
+    def _at_rest(self) -> PeriodicMotion:
+        """On a belt at rest: the spring keeps what friction holds when the motion has died out."""
+        start, mass = self.scene.start, self._path.mass
+        if start.x == start.velocity == 0.0:
+            return PeriodicMotion(self._path.start, math.nan, 0.0, ROUNDING, math.nan, COMES_TO_REST)
+        unit, accuracy = math.sqrt(mass.stiffness) / mass.normal_load, self._accuracy
+        state, left = self._rested(accuracy)
+        while True:
+            # where it ends depends on every step of the way: once more, much finer
+            before, accuracy = state, max(accuracy / FINER, LEAST)
+            state, left = self._rested(accuracy)
+            mean = float(unit * state[0])
+            error = interpreted(stated_error)(unit * float(abs(state[0] - before[0])), 0.5 * unit * left, 0.0)
+            if error <= self.tolerance or accuracy <= LEAST:
+                return PeriodicMotion(state, math.nan, mean, error, math.nan, COMES_TO_REST)
+
+    def _rested(self, accuracy: float) -> tuple[Floats, float]:
+        """The state in which the motion has died out, but for so much of its way. Raises NotFound."""
+        path, ways = self._path, list[float]()
+        state, enough = path.start, 0.1 * self.tolerance * path.mass.normal_load
+        for _ in range(MOST_TURNS):
+            span = path.follow(state, 1.0, accuracy, PANELS_AT_FIRST)
+            state = span.end
+            # in a state, positions are in the norm of energy
+            x = math.sqrt(path.mass.stiffness) * span.track.x.real[: span.track.filled[0]]
+            way = float(np.abs(np.diff(x.ravel())).sum())
+            ways.append(way)
+            self.effort.turns += 1.0
+            # what is left of the way shrinks, turn by turn, as it did over the last ones
+            rate = (way / ways[-1 - RESTING]) ** (1.0 / RESTING) if len(ways) > RESTING and way > 0.0 else 1.0
+            left = way * rate / (1.0 - rate) if rate < 1.0 else math.inf if way > 1e-15 else 0.0
+            if left <= enough:
+                return state, left
+        raise NotFound(f"the mass still swings: {path.whereabouts(state)}")
+
+    def orbit(self, motion: PeriodicMotion) -> Orbit:
+        """The orbit of the motion; of one that stands still, over 2 pi."""
+        turns = motion.period / TURN if math.isfinite(motion.period) else 1.0
+        accuracy = max(0.1 * self.tolerance, LEAST)
+        # steps of order eight, the most accurate, are as long as a swing: sixteen times finer they are shown well
+        accuracy = accuracy / FINER if self._forgets else accuracy
+        track = self._path.follow(motion.state, turns, accuracy, PANELS_AT_FIRST).track
+        parts = track.tau, track.x, track.v, track.friction, track.stick
+        return Orbit(*(part[: track.filled[0]] for part in parts))
 
 
 def solve_undriven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) -> Answers:

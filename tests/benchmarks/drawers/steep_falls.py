@@ -87,7 +87,7 @@ def states(one: Drawn) -> list[State]:
     known = None if candidate is None else candidate.known
     rng = np.random.default_rng([*repr(one).encode()])
     for start in starts(scene, problem.mass.normal_load * 0.4, rng):
-        way = problem.transient(scene.belt_speed, start, LONG, known)
+        way = problem.carried(scene.belt_speed, problem.state_at(scene.belt_speed, start), LONG, known)
         if way.period == ARRIVED:
             continue
         orbit, _ = orbit_at_the_end(problem, scene, way)

@@ -19,7 +19,7 @@ from strategies import sizes
 import frictionlab as fl
 from frictionlab.methods.shooting import undriven_path
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.methods.shooting.undriven_follower import Undriven
+from frictionlab.methods.shooting.undriven import Undriven
 from frictionlab.theory.sliding_stability import SteadySliding
 
 compiling = deep("more kernels to compile")

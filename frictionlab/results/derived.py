@@ -24,7 +24,11 @@ def derived_columns(scenes: Sequence[Scene], law: FrictionLaw, mean_friction: Fl
     """
     scene, speed = scenes[0], belt_speeds_of(scenes)
     free = _friction_free(scenes, law)
-    sliding = np.array([law.sliding_friction(each) for each in np.abs(speed).tolist()])
+    slips = np.abs(speed).tolist()
+    if law.constant_sliding_friction():
+        sliding = np.full(len(slips), law.sliding_friction(slips[0]))
+    else:
+        sliding = np.array([law.sliding_friction(each) for each in slips])
     limit = (scene.normal_load or 0.0) * sliding
     return {
         "normalized_friction": _ratio(mean_friction, sliding * np.sign(speed)),

@@ -20,8 +20,8 @@ from frictionlab.study import Study, StudyCurve
 USUAL_SIZE = 125
 """Points per chunk: pieces of one curve then hold 84 to 187 points. Fewer lose the continuation from the
 neighbour, more leave workers idle. Never made to depend on the number of workers: answers would, too."""
-LONG_CURVE, LONG_SIZE = 4000, 500
-"""Points of a curve long enough to keep workers busy by larger chunks, and the points of these."""
+LONG_STUDY, LONG_SIZE = 20_000, 500
+"""Points of a study long enough to keep workers busy by larger chunks, and the points of these."""
 
 
 @dataclass(frozen=True)
@@ -71,16 +71,17 @@ class Cut(NamedTuple):
         return Chunk(self.rows, curve.scenes.taken(self.places), curve.law, curve.method.method, task)
 
 
-def cuts(curves: Iterable[StudyCurve]) -> Iterator[Cut]:
-    """Where curves are cut, whatever of them is already solved."""
+def chunk_size(curves: Sequence[StudyCurve]) -> int:
+    """Points per chunk of a study of these curves, about."""
+    return LONG_SIZE if sum(len(each.rows) for each in curves) >= LONG_STUDY else USUAL_SIZE
+
+
+def cuts(curves: Iterable[StudyCurve], size: int) -> Iterator[Cut]:
+    """Where curves are cut into chunks of about this size, whatever of them is already solved."""
     for curve in curves:
         rising = np.argsort(curve.scenes.given, kind="stable")
         rows = np.arange(curve.rows.start, curve.rows.stop, curve.rows.step)
-        for places in _cut(rising):
-            yield Cut(curve, places, rows[places])
-
-
-def _cut(curve: Places) -> list[Places]:
-    count = max(1, round(len(curve) / (USUAL_SIZE if len(curve) < LONG_CURVE else LONG_SIZE)))
-    ends = [len(curve) * piece // count for piece in range(count + 1)]
-    return [curve[start:end] for start, end in pairwise(ends)]
+        count = max(1, round(len(rising) / size))
+        ends = [len(rising) * piece // count for piece in range(count + 1)]
+        for start, end in pairwise(ends):
+            yield Cut(curve, rising[start:end], rows[rising[start:end]])

@@ -158,7 +158,7 @@ def kept_beside(
 
 def _is_an_answer(part: Part) -> bool:
     """Whether no point was killed or failed by a defect."""
-    defects = any(reason.startswith((INTERNAL, MARK)) for reason in part.text["reason"])
+    defects = any(reason.startswith((INTERNAL, MARK)) for reason in set(part.text["reason"]))
     return not defects and "killed" not in part.text["status"]
 
 

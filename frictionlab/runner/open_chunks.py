@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.results.part import Part, Places, one_part
-from frictionlab.runner.chunks import Chunk, Task, cuts
+from frictionlab.runner.chunks import Chunk, Task, chunk_size, cuts
 from frictionlab.runner.kept_chunks import Keys
 from frictionlab.study import StudyCurve
 
@@ -41,7 +41,7 @@ class OpenChunk:
 
 
 def open_chunks(
-    curves: Iterable[StudyCurve],
+    curves: Sequence[StudyCurve],
     task: Task,
     finished: NDArray[np.bool_] | None = None,
     keys: Keys | None = None,
@@ -51,7 +51,7 @@ def open_chunks(
     Curves are cut before finished rows are left out: a run stopped and continued then solves the very chunks
     of one that went through.
     """
-    for number, cut in enumerate(cuts(curves)):
+    for number, cut in enumerate(cuts(curves, chunk_size(curves))):
         places = np.arange(len(cut.rows))
         left = places if finished is None else np.flatnonzero(~finished[cut.rows])
         if len(left):

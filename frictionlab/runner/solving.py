@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frictionlab.results.part import Part
-from frictionlab.runner.chunks import Cut, Task, cuts
+from frictionlab.runner.chunks import Cut, Task, chunk_size, cuts
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
 from frictionlab.runner.limit import solve_within
@@ -85,7 +85,11 @@ class Solving:
         """
         number, shares = share
         if shares > 1:
-            own = (cut for at, cut in enumerate(cuts(self.curves)) if at % shares == number - 1)
+            own = (
+                cut
+                for at, cut in enumerate(cuts(self.curves, chunk_size(self.curves)))
+                if at % shares == number - 1
+            )
             self.points = sum(len(cut.rows) for cut in own)
         known = sum(len(part.rows) for part in self.known)
 
@@ -160,9 +164,9 @@ class Solving:
 
     def answers(self) -> Iterator[list[Part]]:
         """Of one curve after another, the answers that are there."""
-        numbers = count()
+        numbers, size = count(), chunk_size(self.curves)
         for curve in self.curves:
-            yield [part for cut in cuts([curve]) for part in self._answer(next(numbers), cut)]
+            yield [part for cut in cuts([curve], size) for part in self._answer(next(numbers), cut)]
 
     def _answer(self, number: int, cut: Cut) -> list[Part]:
         """What was found of a chunk; one that is no longer kept is solved now."""

@@ -28,7 +28,7 @@ from frictionlab.columns import ALWAYS, DEFAULT, RESULTS, TEXT
 from frictionlab.results.summary import summary
 from frictionlab.results.table import inputs, records
 from frictionlab.runner import api, table_files
-from frictionlab.runner.chunks import Task, cuts
+from frictionlab.runner.chunks import Task, chunk_size, cuts
 from frictionlab.runner.errors import FolderError, SaveError
 from frictionlab.runner.open_chunks import open_chunks
 from frictionlab.runner.solve import solve
@@ -212,7 +212,8 @@ def test_a_continued_run_solves_what_is_left_of_the_very_chunks_of_a_whole_one()
 @pytest.mark.parametrize("points", [2, 64, 187, 188, 250, 251, 312, 313, 1000, 3999])
 def test_no_chunk_is_longer_than_250_points_nor_shorter_than_64_but_for_want_of_points(points: int) -> None:
     speeds = {"scene.belt_speed": {"start": 1, "stop": 40, "num": points}}
-    sizes = [len(cut.rows) for cut in cuts(parse_study(study(sweep=speeds)).curves())]
+    curves = list(parse_study(study(sweep=speeds)).curves())
+    sizes = [len(cut.rows) for cut in cuts(curves, chunk_size(curves))]
 
     assert sum(sizes) == points
     assert max(sizes) <= 250
@@ -229,7 +230,8 @@ def test_rows_do_not_depend_on_the_number_of_workers() -> None:
 
 
 def test_chunks_and_answers_can_cross_to_another_process() -> None:
-    piece = next(open_chunks(parse_study(study(keep={"orbit": 4})).curves(), Task(1e-8, 4))).chunk
+    curves = list(parse_study(study(keep={"orbit": 4})).curves())
+    piece = next(open_chunks(curves, Task(1e-8, 4))).chunk
     parts = pickle.loads(pickle.dumps(solve(pickle.loads(pickle.dumps(piece)))))
 
     assert sorted(row for part in parts for row in part.rows) == list(range(6))

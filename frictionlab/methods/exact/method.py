@@ -325,7 +325,7 @@ class _Curve:
         """Of the scenes at these places; without panels where there is none."""
         rows, ends = self.rows[list(places)], np.zeros(len(places), np.int64)
         speeds, legs = self.belt_speeds[list(places)], np.nan_to_num(rows[:, curve.LEGS])
-        shifts = [self._shift(side) for side in self.sides[list(places)]]
+        shifts = np.where(self.sides[list(places)] < 0.0, self._shift(-1.0), self._shift(1.0))
         states = np.column_stack([rows[:, curve.STATE_X], rows[:, curve.STATE_W], legs, shifts])
         track = KernelCall(make_orbits)(self.mass, self.coefficient, speeds, states, ends)
         return Orbits(track.tau, track.x, track.v, track.friction, track.stick, ends)

@@ -1,6 +1,6 @@
 """Every method on scenes of every kind, against the tests' own integration; scenes that are the same one.
 
-``reference/more_scenes.csv`` holds what ``outside_state`` found for each; ``make_more_scenes.py`` wrote it.
+``reference/more_scenes.csv`` holds what ``outside_state`` found for each; ``make_outside.py`` wrote it.
 """
 
 from __future__ import annotations

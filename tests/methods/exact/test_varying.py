@@ -244,7 +244,7 @@ def test_what_it_cannot_do_is_refused_with_the_way_out():
 
 
 def test_random_scenes_are_those_of_an_unrelated_integration():
-    """``reference/random_line.csv``, under one sine and under waveforms; ``make_random_line.py`` wrote it."""
+    """``reference/random_line.csv``, under one sine and under waveforms; ``make_outside.py`` wrote it."""
     with (REFERENCE / "random_line.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     for row in rows:

@@ -19,11 +19,10 @@ import argparse
 import csv
 import json
 import math
-import os
 import random
+import signal
 import subprocess
 import sys
-import threading
 import time
 from collections import Counter
 from pathlib import Path
@@ -31,79 +30,53 @@ from typing import Any
 
 from drawers import every_law
 
-ROOT = Path(__file__).parents[2]
 COLUMNS = (
     *("number", "family", "freedom", "method", "tolerance", "status", "mean_friction", "error"),
     *("mean_low", "mean_high", "energy_gap", "energy_error", "cpu", "reason", "scene", "law"),
 )
-SLOW = 75
-"""The exit code of a process that a scene kept too long."""
-PLUGINS = {"maxwell-slip": "maxwell_slip:MaxwellSlip", "rate-and-state": "rate_and_state:RateAndState"}
-CLASSES = {
-    "coulomb": "Coulomb", "stribeck": "Stribeck", "dahl": "Dahl", "lugre": "LuGre", "elasto-plastic": "ElastoPlastic",
-    "jenkins": "Jenkins",
-}  # fmt: skip
 
 
 # The process that solves, with whichever frictionlab its python has.
 
 
-class Watch(threading.Thread):
-    """Ends this process, with code SLOW, where a scene takes more processor time than it may."""
-
-    def __init__(self) -> None:
-        super().__init__(daemon=True)
-        self.until = math.inf
-
-    def run(self) -> None:
-        """Look now and then."""
-        while time.process_time() < self.until:
-            time.sleep(0.2)
-        os._exit(SLOW)
-
-
 def serve() -> None:
-    """Answer one scene a line, as JSON, until the input ends."""
-    import importlib
-
+    """Answer one scene a line, as JSON, until the input ends; a scene that takes too long ends the process."""
     import frictionlab as fl
 
-    home = Path(fl.__file__).parents[1] / "plugins"
-    sys.path[:0] = [str(folder) for folder in sorted(home.glob("*")) if folder.is_dir()]
-    classes: dict[str, Any] = {kind: getattr(fl, name) for kind, name in CLASSES.items()}
-    for kind, place in PLUGINS.items():
-        module, _, name = place.partition(":")
-        classes[kind] = getattr(importlib.import_module(module), name)
-    watch = Watch()
-    watch.start()
+    sys.path.insert(0, str(Path(fl.__file__).parents[1]))
+    import conftest  # noqa: F401  # plugins of that checkout
+
     print("ready", flush=True)
     for text in sys.stdin:
         start, one = time.process_time(), json.loads(text)
-        watch.until = start + one["limit"]
-        answer = _answered(fl, classes, one)
-        watch.until = math.inf
+        signal.setitimer(signal.ITIMER_PROF, one["limit"])
+        answer = _answered(fl, one)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
         print(json.dumps({**answer, "cpu": round(time.process_time() - start, 4)}), flush=True)
 
 
-def _answered(fl: Any, classes: dict[str, Any], one: dict[str, Any]) -> dict[str, Any]:
+def _answered(fl: Any, one: dict[str, Any]) -> dict[str, Any]:
+    from frictionlab import registry
+
     scene, law, method = dict(one["scene"]), dict(one["law"]), dict(one["method"])
     kind = method.pop("kind")
     solver = fl.March(**method) if kind == "march" else kind
     try:
-        made = classes[law.pop("kind")](**law)
-        table = fl.curve(fl.Scene(**scene), made, [scene["belt_speed"]], solver, one["tolerance"])
+        made = registry.law_class(law.pop("kind"))(**law)
+        speeds, energies = [scene["belt_speed"]], {"columns": ["energies"]}
+        table = fl.curve(fl.Scene(**scene), made, speeds, solver, one["tolerance"], **energies)
     except Exception as problem:  # told as what it is, and compared like a status
         return {"status": f"raised {type(problem).__name__}", "reason": str(problem)}
     row = table.iloc[0].to_dict()
     names = "status", "mean_friction", "error", "mean_low", "mean_high", "reason"
-    told = {name: row[name] for name in names} | _balance(row)
+    told = {name: row.get(name, math.nan) for name in names} | _balance(row)
     return {name: cell for name, cell in told.items() if cell == cell and cell is not None}
 
 
 def _balance(row: dict[str, Any]) -> dict[str, Any]:
     """What is missing from energy_input = energy_viscous + energy_friction, and what their errors allow."""
     put_in, *taken = "energy_input", "energy_viscous", "energy_friction"
-    gap = abs(row[put_in] - sum(row[name] for name in taken))
+    gap = abs(row.get(put_in, math.nan) - sum(row.get(name, math.nan) for name in taken))
     errors = [row.get(f"{name}_error", math.nan) for name in (put_in, *taken)]
     return {"energy_gap": gap, "energy_error": sum(errors)}
 
@@ -112,37 +85,22 @@ class Solver:
     """A process that solves, and is started again where it takes too long."""
 
     def __init__(self, python: str) -> None:
-        self.python = python
-        self.process: subprocess.Popen[str] | None = None
-
-    def _started(self) -> subprocess.Popen[str]:
-        if self.process is None:
-            command = [self.python, str(Path(__file__)), "serve"]
-            self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-            assert self.process.stdout is not None
-            if self.process.stdout.readline().strip() != "ready":
-                raise SystemExit(f"{self.python} cannot import frictionlab and its plugins")
-        return self.process
+        self.command = [python, str(Path(__file__)), "serve"]
+        self.process: Any = None
 
     def solve(self, one: dict[str, Any], limit: float) -> dict[str, Any]:
         """The answer; status slow where it took more than limit seconds, died where the process ended by itself."""
-        process = self._started()
-        assert process.stdin is not None
-        assert process.stdout is not None
-        process.stdin.write(json.dumps({**one, "limit": limit}) + "\n")
-        process.stdin.flush()
-        text = process.stdout.readline()
-        if text:
+        if self.process is None:
+            pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+            self.process = subprocess.Popen(self.command, **pipes)
+            if self.process.stdout.readline().strip() != "ready":
+                raise SystemExit(f"{self.command[0]} cannot import frictionlab and its plugins")
+        self.process.stdin.write(json.dumps({**one, "limit": limit}) + "\n")
+        self.process.stdin.flush()
+        if text := self.process.stdout.readline():
             return json.loads(text)  # type: ignore[no-any-return]
-        self.process = None
-        return {"status": "slow" if process.wait() == SLOW else "died"}
-
-    def end(self) -> None:
-        """End the process."""
-        if self.process is not None:
-            assert self.process.stdin is not None
-            self.process.stdin.close()
-            self.process.wait()
+        code, self.process = self.process.wait(), None
+        return {"status": "slow" if code == -signal.SIGPROF else "died"}
 
 
 def solve(out: Path, given: argparse.Namespace) -> None:
@@ -159,16 +117,13 @@ def solve(out: Path, given: argparse.Namespace) -> None:
             if number in done:
                 continue
             answer = solver.solve(one, given.limit)
-            if (
-                answer["status"] == "slow"
-            ):  # perhaps it was compiling: what it compiled is not lost but for the last
+            if answer["status"] == "slow":  # perhaps it was compiling: only the last kernel is lost
                 solver.solve(one, given.patience)
                 answer = solver.solve(one, given.limit)
             row = {name: one[name] for name in ("family", "freedom", "tolerance")} | answer
             words = {name: json.dumps(one[name]) for name in ("method", "scene", "law")}
             rows.writerow({"number": number, **row, **words})
             file.flush()
-    solver.end()
     _sum_up(read(out))
 
 
@@ -192,46 +147,37 @@ def read(path: Path) -> list[dict[str, str]]:
 
 def compare(first: Path, second: Path) -> int:
     """Print the rows that differ; 1 where there are any."""
-    new, counted = {row["number"]: row for row in read(second)}, Counter[str]()
-    same = "scene", "law", "method", "tolerance"
+    new, counted, identical = {row["number"]: row for row in read(second)}, Counter[str](), 0
     for row in read(first):
         other = new.get(row["number"])
-        if other is None:
-            counted["only in the first"] += 1
-            continue
-        if any(row[name] != other[name] for name in same):
-            raise SystemExit(
-                f"row {row['number']}: not the same scene; solve both with one seed and this script"
-            )
-        verdict = "slow, not compared" if "slow" in (row["status"], other["status"]) else _verdict(row, other)
-        counted[verdict or "agree"] += 1
-        if verdict and "slow" not in verdict:
-            told = [
-                f"{name} {row[name] or '-'} -> {other[name] or '-'}"
-                for name in ("status", "mean_friction", "error")
-            ]
+        verdict = "only in the first" if other is None else _verdict(row, other)
+        counted[verdict] += 1
+        if other is not None and verdict in DIFFERENT:
+            names = "status", "mean_friction", "error"
+            told = [f"{name} {row[name] or '-'} -> {other[name] or '-'}" for name in names]
             print(f"{row['number']}: {verdict}: {'; '.join(told)}; {row['family']}, {row['method']}, "
                   f"{row['scene']}, {row['law']}, tolerance {row['tolerance']}")  # fmt: skip
-    identical = sum(
-        row["mean_friction"] == new[row["number"]]["mean_friction"]
-        for row in read(first)
-        if row["number"] in new
-    )
-    print(
-        *(f"{name}: {count}" for name, count in sorted(counted.items())),
-        f"same to the last bit: {identical}",
-        sep="\n",
-    )
-    return int(any(counted[name] for name in ("another status", "further apart than their errors")))
+        identical += other is not None and row["mean_friction"] == other["mean_friction"]
+    for name, count in sorted(counted.items()):
+        print(f"{name}: {count}")
+    print(f"same to the last bit: {identical}")
+    return int(any(counted[name] for name in DIFFERENT))
+
+
+DIFFERENT = "another status", "further apart than their errors"
 
 
 def _verdict(row: dict[str, str], other: dict[str, str]) -> str:
+    if any(row[name] != other[name] for name in ("scene", "law", "method", "tolerance")):
+        raise SystemExit(f"row {row['number']}: not the same scene; solve both with one seed and this script")
+    if "slow" in (row["status"], other["status"]):
+        return "slow, not compared"
     if row["status"] != other["status"]:
-        return "another status"
+        return DIFFERENT[0]
     if row["status"] != "ok":
-        return ""
+        return "agree"
     apart = abs(float(row["mean_friction"]) - float(other["mean_friction"]))
-    return "" if apart <= float(row["error"]) + float(other["error"]) else "further apart than their errors"
+    return "agree" if apart <= float(row["error"]) + float(other["error"]) else DIFFERENT[1]
 
 
 def main() -> int:

@@ -1,11 +1,31 @@
-"""The tests' own integration of any scene, which shares no code with the package, as a reference."""
+"""Campaigns against the tests' own integration of any scene, which shares no code with the package."""
 
 from __future__ import annotations
 
-from campaign import Drawn, Unknown
+from collections.abc import Callable
+
+import numpy as np
+import random_scenes
+from campaign import WRONG, Campaign, Drawn, Keys, Unknown, Verdicts, covered, law_of, sound
+from draws_of_every_kind import Numpy, convergent_scene, scene_of_every_kind
 from outside_state import Outside, Unsettled, steady
+from varying_scenes import draw_varying
 
 import frictionlab as fl
+from frictionlab.methods.march.steppers import steppers_of
+
+STEPS = 200
+"""Per period, of a marched scene; of rk4 twice as many."""
+
+
+def followed(
+    one: Drawn, start: tuple[float, ...] = (), tolerance: float = 1e-13, periods: int = 4000
+) -> Outside:
+    """The motion from a start until it repeats. Raises Unknown."""
+    try:
+        return steady(one.scene, one.law, start, tolerance, periods)
+    except Unsettled as why:
+        raise Unknown(str(why)) from None
 
 
 def from_the_answer(one: Drawn, state: fl.SteadyState) -> tuple[float, float]:
@@ -21,11 +41,84 @@ def from_the_answer(one: Drawn, state: fl.SteadyState) -> tuple[float, float]:
     return found.mean, found.error
 
 
-def followed(
-    one: Drawn, start: tuple[float, ...] = (), tolerance: float = 1e-13, periods: int = 4000
-) -> Outside:
-    """The motion from a start until it repeats. Raises Unknown."""
+def on_the_line(drawn: Callable[[np.random.Generator], tuple[fl.Scene, fl.Coulomb]]) -> Callable[..., Drawn]:
+    """Draws of Coulomb friction along the belt, answered by exact."""
+
+    def draw(rng: np.random.Generator) -> Drawn:
+        scene, law = drawn(rng)
+        return Drawn("line", scene.given(), {"kind": "coulomb", "mu": law.mu}, method="exact")
+
+    return draw
+
+
+def near_rest(rng: np.random.Generator) -> Drawn:
+    """A scene in the plane that is hard near rest."""
+    scene, mu = random_scenes.draw_near_rest(rng)
+    return Drawn("plane", scene, {"kind": "coulomb", "mu": mu}, method="shooting")
+
+
+def every_kind(rng: np.random.Generator) -> Drawn:
+    """Any scene that the contract names, and any law."""
+    scene, law = scene_of_every_kind(Numpy(rng))
+    return Drawn(law["kind"], scene, law)
+
+
+def marched(rng: np.random.Generator) -> Drawn:
+    """The same with a stepper of its law."""
+    source = Numpy(rng)
+    scene, law = scene_of_every_kind(source)
+    stepper = source.among(steppers_of(law_of(law).memory_kind))
+    method = fl.March(stepper=stepper)
+    if stepper != "smoothed":
+        own = fl.March(stepper=stepper, steps=STEPS * (2 if stepper == "rk4" else 1))
+        stable = "steps per period" not in (own.refusal(fl.Scene(**scene), law_of(law)) or "")
+        method = own if stable else method
+    return Drawn(f"{stepper}, {law['kind']}", scene, law, 1e-3, method)
+
+
+def by_shooting(one: Drawn, state: fl.SteadyState) -> tuple[float, float]:
+    """The mean and its error; what shooting refuses (a contact of constant stiffness) is followed."""
+    other = fl.steady_state(*one.made(), method="shooting", tolerance=1e-7)
+    if other.status == "ok":
+        return other.mean_friction, other.error
+    if other.status != "refused":
+        raise Unknown(f"shooting: {other.status}")
+    found = followed(one)
+    return found.mean, 10.0 * found.error + 1e-9
+
+
+def convergent(rng: np.random.Generator) -> Drawn:
+    """A scene that theorem T1 holds for."""
+    scene, law = convergent_scene(Numpy(rng))
+    return Drawn("plane" if "transverse" in scene else "line", scene, law)
+
+
+def starts(scene: Keys) -> list[tuple[float, ...]]:
+    """On the belt, and far ahead and behind of any motion that lasts."""
+    drive, swing = scene.get("drive", {}), scene.get("belt_vibration", {}).get("velocity_amplitude", 0.0)
+    far = 3.0 * (drive.get("amplitude", 0.0) + scene["normal_load"] + swing + abs(scene["belt_speed"]))
+    size = 4 if "transverse" in scene else 2
+    return [(), (far, -far, -far, far)[:size], (-far, far, 0.5 * far, 0.5 * far)[:size]]
+
+
+def from_three_starts(one: Drawn) -> Verdicts:
+    """One answer from every start, and auto's error covers the difference from it."""
     try:
-        return steady(one.scene, one.law, start, tolerance, periods)
-    except Unsettled as why:
-        raise Unknown(str(why)) from None
+        found = [followed(one, start, 1e-12, 100_000) for start in starts(one.scene)]
+    except Unknown as why:
+        yield f"not compared: {str(why)[-40:]}", ""
+        return
+    means, left = [each.mean for each in found], sum(each.error for each in found)
+    yield ("compared" if np.ptp(means) <= 1e-9 + left else f"{WRONG}: two answers"), (means, left)
+    state = one.answered()
+    if not abs(state.mean_friction - means[0]) <= state.error + found[0].error:
+        yield f"{WRONG}: uncovered", (state.mean_friction, means[0], state.error)
+
+
+COVERED = covered(from_the_answer)
+EXACT = Campaign(on_the_line(random_scenes.draw), sound, COVERED, scenes=100_000, compared=0)
+VARYING = Campaign(on_the_line(draw_varying), sound, COVERED, scenes=10_000, compared=0)
+EVERY_KIND = Campaign(every_kind, sound, COVERED, scenes=3000, compared=100)
+NEAR_REST = Campaign(near_rest, sound, COVERED, scenes=300)
+CONVERGENT = Campaign(convergent, sound, from_three_starts, scenes=1000, compared=1000)
+MARCHED = Campaign(marched, sound, covered(by_shooting), scenes=300, compared=300)

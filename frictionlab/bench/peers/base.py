@@ -39,18 +39,19 @@ class ClosureTest:
 
 def closed_mean(
     one_period: Callable[[Floats], Floats], state: Floats, places: slice, closing: ClosureTest, period: float
-) -> float:
-    """The mean friction of a motion, period by period until it closes.
+) -> Floats:
+    """The mean friction of a motion, or of one a column, period by period until it closes.
 
     state: its last number is the integral of the friction coefficient, from zero in each period; places: those of
     positions and velocities. Raises ArithmeticError for one that does not close.
     """
     for _ in range(LONGEST_TRANSIENT):
         end = one_period(state)
-        gap = float(np.linalg.norm((end - state)[places]))
+        gap = float(np.max(np.linalg.norm((end - state)[places], axis=0)))
         if closing.done(gap):
-            return -float(end[-1]) / period
-        state = np.append(end[:-1], 0.0)
+            return -end[-1] / period
+        state = end.copy()
+        state[-1] = 0.0
     raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
 
 

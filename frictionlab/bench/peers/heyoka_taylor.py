@@ -11,9 +11,9 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest, Peer
+from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
 from frictionlab.bench.peers.equations import start
-from frictionlab.bench.peers.line import MOST_EVENTS, LineMotion, MotionState, first_step, means
+from frictionlab.bench.peers.line import LineMotion, MotionState, first_step, means
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
@@ -63,24 +63,8 @@ class _Line(LineMotion):
         super().__init__(mass, limit)
         self._slip, self._stick = _slip(mass, limit, tolerance), _stick(mass, limit)
 
-    def one_period(self, place: MotionState) -> tuple[MotionState, float]:
-        """Stretches of slip between stretches of stick."""
-        impulse, side = 0.0, self.side(place)
-        for _ in range(MOST_EVENTS):
-            if side == 0.0:
-                end = self._held(place)
-                impulse += self.held_impulse(place, end)
-                side = math.copysign(1.0, self.net(end))  # what ends stick is a force too large for it
-            else:
-                end, more = self._slid(side, place)
-                impulse, side = impulse + more, 0.0
-            place = end
-            if self.up(place):
-                return place, impulse
-        raise ArithmeticError(f"more than {MOST_EVENTS} legs in one period")
-
-    def _slid(self, side: float, start: MotionState) -> tuple[MotionState, float]:
-        """Slip, reversals included, until it ends in stick; the impulse too."""
+    def slide(self, side: float, start: MotionState) -> tuple[MotionState, float]:
+        """Slip, reversals included, until it ends in stick."""
         place = first_step(self, side, start)
         slip = self._slip
         slip.time, slip.state[:], slip.pars[:] = place.t, (place.x, place.v, 0.0), (self.belt_speed, side)
@@ -92,7 +76,7 @@ class _Line(LineMotion):
         end = MotionState(slip.time, x, self.belt_speed if stopped else v)
         return end, self.limit * (friction_impulse + side * (place.t - start.t))
 
-    def _held(self, place: MotionState) -> MotionState:
+    def hold(self, place: MotionState) -> MotionState:
         stick = self._stick
         stick.time, stick.state[0], stick.pars[0] = place.t, place.x, self.belt_speed
         stick.reset_cooldowns()
@@ -149,36 +133,40 @@ def _plane(mass: Mass, friction: float, speeds: Floats, tolerance: float, lanes:
     """Some belt speeds in lockstep until each period closes; lanes left over repeat the last speed."""
     integrator = _batch(mass, friction, tolerance, lanes)
     integrator.pars[0] = np.append(speeds, np.full(lanes - len(speeds), speeds[-1]))
-    integrator.set_time(0.0)
     period = 2.0 * math.pi / mass.frequency
+
+    def one_period(state: Floats) -> Floats:
+        integrator.set_time(0.0)
+        integrator.state[:] = state
+        integrator.propagate_until(period)
+        return integrator.state.copy()
+
     state = np.repeat(np.array([*start(mass), 0.0])[:, None], lanes, axis=1)
-    integrator.state[:] = state
     closing = ClosureTest(tolerance, mass.normal_load, period)
-    for count in range(1, LONGEST_TRANSIENT + 1):
-        integrator.propagate_until(count * period)
-        end = integrator.state.copy()
-        gap = np.sqrt(((end[:4] - state[:4]) ** 2).sum(axis=0)).max()
-        friction_impulse, state = end[4] - state[4], end
-        if closing.done(float(gap)):
-            return (-friction_impulse / period)[: len(speeds)]
-    raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
+    return closed_mean(one_period, state, slice(0, 4), closing, period)[: len(speeds)]
 
 
 @lru_cache(maxsize=16)
 def _batch(mass: Mass, friction: float, tolerance: float, lanes: int) -> Any:
-    """(x1, v1, x2, v2, integral of the friction coefficient along x1), the belt speed a parameter of each lane."""
+    """The belt speed is a parameter of each lane."""
+    import heyoka as hy
+
+    loads = _wave(mass.force, mass.frequency), _wave(mass.transverse_force, mass.frequency)
+    system = plane_system(mass, friction, hy.par[0], loads)
+    zeros = np.zeros((5, lanes))
+    return hy.taylor_adaptive_batch(system, zeros, pars=np.zeros((1, lanes)), tol=tolerance)
+
+
+def plane_system(mass: Mass, friction: float, belt_speed: Any, loads: tuple[Any, Any]) -> Any:
+    """Rates of x1, v1, x2, v2 and the integral of the friction coefficient along x1; numbers may be parameters."""
     import heyoka as hy
 
     x1, v1, x2, v2, friction_impulse = hy.make_vars("x1", "v1", "x2", "v2", "friction_impulse")
-    slip = v1 - hy.par[0]
+    slip, m = v1 - belt_speed, mass
     rub = friction * (slip * slip + v2 * v2) ** -0.5
-    m = mass
-    a1 = _wave(m.force, m.frequency) - m.damping * v1 - x1 - m.normal_load * rub * slip
-    across = m.transverse_damping * v2 + m.transverse_stiffness * x2 + m.normal_load * rub * v2
-    system = [(x1, v1), (v1, a1), (x2, v2), (v2, _wave(m.transverse_force, m.frequency) - across)]
-    system.append((friction_impulse, rub * slip))
-    zeros = np.zeros((5, lanes))
-    return hy.taylor_adaptive_batch(system, zeros, pars=np.zeros((1, lanes)), tol=tolerance)
+    a1 = loads[0] - m.damping * v1 - x1 - m.normal_load * rub * slip
+    a2 = loads[1] - m.transverse_damping * v2 - m.transverse_stiffness * x2 - m.normal_load * rub * v2
+    return [(x1, v1), (v1, a1), (x2, v2), (v2, a2), (friction_impulse, rub * slip)]
 
 
 @lru_cache(maxsize=1)

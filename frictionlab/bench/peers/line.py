@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frictionlab.bench.peers.base import LONGEST_TRANSIENT, ClosureTest
-from frictionlab.bench.peers.equations import free_orbit
+from frictionlab.bench.peers.base import ClosureTest, closed_mean
+from frictionlab.bench.peers.equations import start
 from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
@@ -32,7 +32,7 @@ class MotionState(NamedTuple):
 
 
 class LineMotion(ABC):
-    """One scene but belt speed, and a library that follows its motion over a period."""
+    """One scene but belt speed, and a library that follows its motion leg by leg."""
 
     def __init__(self, mass: Mass, limit: float) -> None:
         self.mass, self.limit = mass, limit
@@ -40,8 +40,29 @@ class LineMotion(ABC):
         self.period = 2.0 * math.pi / mass.frequency
 
     @abstractmethod
-    def one_period(self, place: MotionState) -> tuple[MotionState, float]:
-        """From t = 0 to the end of the period, and the impulse of friction."""
+    def slide(self, side: float, place: MotionState) -> tuple[MotionState, float]:
+        """Slip with its sign, until it ends or the period is over, and the impulse of friction."""
+
+    @abstractmethod
+    def hold(self, place: MotionState) -> MotionState:
+        """Stick, until the force to hold reaches the limit or the period is over."""
+
+    def one_period(self, state: Floats) -> Floats:
+        """Slip and stick in turn: x, v and the integral of the friction coefficient from t = 0 to the end."""
+        place = MotionState(0.0, *state[:2].tolist())
+        impulse, side = 0.0, self.side(place)
+        for _ in range(MOST_EVENTS):
+            if side == 0.0:
+                end = self.hold(place)
+                impulse += self.held_impulse(place, end)
+                side = math.copysign(1.0, self.net(end))  # what ends stick is a force too large for it
+            else:
+                end, more = self.slide(side, place)
+                impulse, side = impulse + more, self.side(end)
+            place = end
+            if self.period - place.t <= 1e-13 * self.period:
+                return np.array([place.x, place.v, impulse / self.mass.normal_load])
+        raise ArithmeticError(f"more than {MOST_EVENTS} legs in one period")
 
     def load(self, t: float) -> float:
         """The load."""
@@ -67,59 +88,16 @@ class LineMotion(ABC):
         net = self.net(place)
         return math.copysign(1.0, net) if abs(net) > self.limit else 0.0
 
-    def up(self, place: MotionState) -> bool:
-        """Whether the period is over."""
-        return self.period - place.t <= 1e-13 * self.period
-
-
-class EventMotion(LineMotion):
-    """A period leg by leg: what an event integrator does is a leg from a place to its event, or to ``until``."""
-
-    @abstractmethod
-    def slide(self, side: float, place: MotionState, until: float) -> MotionState:
-        """Slip with its sign, until it ends or time is up."""
-
-    @abstractmethod
-    def hold(self, place: MotionState, until: float) -> MotionState:
-        """Stick, until the force to hold reaches the limit or time is up."""
-
-    def one_period(self, place: MotionState) -> tuple[MotionState, float]:
-        """Slip and stick in turn."""
-        impulse, side = 0.0, self.side(place)
-        for _ in range(MOST_EVENTS):
-            if self.up(place):
-                return place, impulse
-            if side == 0.0:
-                end = self.hold(place, self.period)
-                impulse += self.held_impulse(place, end)
-                side = math.copysign(1.0, self.net(end))  # what ends stick is a force too large for it
-            else:
-                end = self.slide(side, place, self.period)
-                impulse += side * self.limit * (end.t - place.t)
-                side = self.side(end)
-            place = end
-        raise ArithmeticError(f"more than {MOST_EVENTS} legs in one period")
-
 
 def means(line: LineMotion, scenes: Sequence[Scene], tolerance: float) -> Floats:
     """The mean friction of each scene, from the friction-free orbit until the period closes."""
     found = []
     for scene in scenes:
         line.belt_speed = scene.belt_speed
-        found.append(_steady_mean(line, scene.mass(), tolerance))
+        closing = ClosureTest(tolerance, line.mass.normal_load, line.period)
+        state = np.array([*start(line.mass)[:2], 0.0])
+        found.append(closed_mean(line.one_period, state, slice(0, 2), closing, line.period))
     return np.array(found)
-
-
-def _steady_mean(line: LineMotion, mass: Mass, tolerance: float) -> float:
-    place = MotionState(0.0, *free_orbit(mass.damping, mass.stiffness, mass.frequency, mass.force))
-    closing = ClosureTest(tolerance, mass.normal_load, line.period)
-    for _ in range(LONGEST_TRANSIENT):
-        end, impulse = line.one_period(place)
-        gap = math.hypot(end.x - place.x, end.v - place.v)
-        place = MotionState(0.0, end.x, end.v)
-        if closing.done(gap):
-            return -impulse / (mass.normal_load * line.period)
-    raise ArithmeticError(f"the motion has not closed after {LONGEST_TRANSIENT} periods")
 
 
 def first_step(line: LineMotion, side: float, place: MotionState) -> MotionState:

@@ -11,6 +11,7 @@ import numpy as np
 
 from frictionlab.bench.peers.base import ClosureTest, Peer, closed_mean
 from frictionlab.bench.peers.equations import start
+from frictionlab.bench.peers.scipy_steps import LEAST_RTOL
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
 from frictionlab.compile.dispatch import by_dimension
@@ -50,7 +51,7 @@ class Numbalsoda(Peer):
         return np.array([_settled(system, mass, scene.belt_speed, reach, tolerance) for scene in scenes])
 
 
-def _settled(system: _System, mass: Mass, belt_speed: float, reach: float, tolerance: float) -> float:
+def _settled(system: _System, mass: Mass, belt_speed: float, reach: float, tolerance: float) -> Floats:
     from numbalsoda import lsoda
 
     x1, v1, x2, v2 = start(mass)
@@ -61,7 +62,7 @@ def _settled(system: _System, mass: Mass, belt_speed: float, reach: float, toler
     data = np.array([*_real(mass), belt_speed, reach])
 
     def one_period(start: Floats) -> Floats:
-        limits = max(tolerance, 3e-14), tolerance, MOST_LSODA_STEPS
+        limits = max(tolerance, LEAST_RTOL), tolerance, MOST_LSODA_STEPS
         found, fine = lsoda(system.address, start, times, data, *limits)
         if not fine:
             raise ArithmeticError("numbalsoda gave up")

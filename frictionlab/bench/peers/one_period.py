@@ -5,20 +5,21 @@ from __future__ import annotations
 import math
 import warnings
 from functools import lru_cache
-from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from frictionlab.bench.peers.equations import Creeping, Equations, OnBristles, Sliding
+from frictionlab.bench.peers.heyoka_taylor import plane_system
+from frictionlab.bench.peers.scipy_steps import LEAST_RTOL, by_solve_ivp
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
+from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
 
 SOLVE_IVP_METHODS = "RK23", "RK45", "DOP853", "Radau", "LSODA"
 MOST_CALLS_OF_A_PERIOD = 200_000
 """Of the equations of motion."""
-LEAST_RTOL = 3e-14
 HUGE = 1e300
 """A tolerance at which every step passes."""
 
@@ -40,22 +41,18 @@ def equations_of(scene: Scene, law: FrictionLaw, width: float | None) -> Equatio
     return Creeping(scene, law, MOST_CALLS_OF_A_PERIOD, width)
 
 
-def by_solve_ivp(solver: str, equations: Equations, state: Floats, tolerance: float) -> PeriodByPeer:
+def by_scipy(solver: str, equations: Equations, state: Floats, tolerance: float) -> PeriodByPeer:
     """One period; the last number of the state is the integral of the friction coefficient."""
-    from scipy.integrate import solve_ivp
-
-    settings: dict[str, Any] = {"method": solver, "rtol": max(tolerance, LEAST_RTOL), "atol": tolerance}
+    settings = {"rtol": max(tolerance, LEAST_RTOL), "atol": tolerance}
     try:
         with warnings.catch_warnings(action="ignore"), np.errstate(all="ignore"):
-            found = solve_ivp(equations, (0.0, equations.period), state, **settings)
+            found = by_solve_ivp(equations, state, solver, settings)
     except (ArithmeticError, ValueError) as problem:
         return PeriodByPeer(math.nan, math.nan, str(problem))
-    if found.status < 0:
-        return PeriodByPeer(math.nan, math.nan, f"solve_ivp: {found.message}")
     return PeriodByPeer(-float(found.y[-1, -1]) / equations.period, float(np.median(np.diff(found.t))), "")
 
 
-def growth_by_solve_ivp(solver: str, z: float) -> float:
+def growth_by_scipy(solver: str, z: float) -> float:
     """What one step of this length, forced on the solver, multiplies y of y' = -y with."""
     from scipy import integrate
 
@@ -63,11 +60,6 @@ def growth_by_solve_ivp(solver: str, z: float) -> float:
     one: Any = getattr(integrate, solver)(lambda t, y: -y, 0.0, np.ones(1), 1e9, **settings)
     one.step()
     return abs(float(one.y[0]))
-
-
-def missing_heyoka() -> str | None:
-    """Why heyoka is not there; None when it is."""
-    return None if find_spec("heyoka") else "not installed: pip install frictionlab[peers]"
 
 
 def by_heyoka(
@@ -122,11 +114,8 @@ def _plane(tolerance: float) -> Any:
     """The same of slip in the plane."""
     import heyoka as hy
 
-    x, v, x2, v2, friction_impulse = hy.make_vars("x", "v", "x2", "v2", "friction_impulse")
     force, damping, load, mu, belt, force_2, damping_2, stiffness_2 = (hy.par[i] for i in range(8))
-    slip = v - belt
-    rub = mu * (slip * slip + v2 * v2) ** -0.5
-    along = force * hy.sin(hy.time) - damping * v - x - load * rub * slip
-    across = force_2 * hy.sin(hy.time) - damping_2 * v2 - stiffness_2 * x2 - load * rub * v2
-    system = [(x, v), (v, along), (x2, v2), (v2, across), (friction_impulse, rub * slip)]
+    mass: Any = Mass(damping, 1.0, damping_2, stiffness_2, load, 1.0, force, force_2)
+    loads = force * hy.sin(hy.time), force_2 * hy.sin(hy.time)
+    system = plane_system(mass, mu, belt, loads)
     return hy.taylor_adaptive(system, [0.0] * 5, pars=[0.0] * 8, tol=tolerance)

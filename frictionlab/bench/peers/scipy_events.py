@@ -8,7 +8,8 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from frictionlab.bench.peers.base import Peer
-from frictionlab.bench.peers.line import EventMotion, MotionState, first_step, means
+from frictionlab.bench.peers.line import LineMotion, MotionState, first_step, means
+from frictionlab.bench.peers.scipy_steps import LEAST_RTOL
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
@@ -42,20 +43,20 @@ class ScipyEvents(Peer):
         return means(legs, scenes, tolerance)
 
 
-class _Legs(EventMotion):
+class _Legs(LineMotion):
     """Legs by solve_ivp."""
 
     solver: str
     tolerance: float
 
-    def slide(self, side: float, place: MotionState, until: float) -> MotionState:
+    def slide(self, side: float, place: MotionState) -> tuple[MotionState, float]:
         from scipy.integrate import solve_ivp
 
-        place = first_step(self, side, place)
-        settings = {"method": self.solver, "rtol": max(self.tolerance, 3e-14), "atol": self.tolerance}
+        begun, place = place.t, first_step(self, side, place)
+        settings = {"method": self.solver, "rtol": max(self.tolerance, LEAST_RTOL), "atol": self.tolerance}
         found = solve_ivp(
             self._rates(side),
-            (place.t, until),
+            (place.t, self.period),
             [place.x, place.v],
             events=self._end_of_slip(side),
             **settings,
@@ -63,7 +64,9 @@ class _Legs(EventMotion):
         if found.status < 0:
             raise ArithmeticError(f"solve_ivp: {found.message}")
         x, v = found.y[:, -1]
-        return MotionState(float(found.t[-1]), float(x), self.belt_speed if found.status == 1 else float(v))
+        end = float(found.t[-1])
+        place = MotionState(end, float(x), self.belt_speed if found.status == 1 else float(v))
+        return place, side * self.limit * (end - begun)
 
     def _rates(self, side: float) -> Callable[[float, Floats], list[float]]:
         damping, rub = self.mass.damping, side * self.limit
@@ -76,7 +79,7 @@ class _Legs(EventMotion):
         slip.terminal, slip.direction = True, -side  # type: ignore[attr-defined]  # how solve_ivp is told
         return slip
 
-    def hold(self, place: MotionState, until: float) -> MotionState:
+    def hold(self, place: MotionState) -> MotionState:
         """Stick needs no integrator: the spring is drawn out evenly, and the force to hold it is known."""
         from scipy.optimize import brentq
 
@@ -86,9 +89,9 @@ class _Legs(EventMotion):
         def room(t: float) -> float:
             return self.limit - abs(self.net(at(t)))
 
-        times = np.append(np.arange(place.t, until, self.period / LOOKS), until)
+        times = np.append(np.arange(place.t, self.period, self.period / LOOKS), self.period)
         over = next((k for k in range(1, len(times)) if room(times[k]) < 0.0), None)
         if over is None:
-            return at(until)
+            return at(self.period)
         low = float(times[over - 1])
         return at(low if room(low) <= 0.0 else brentq(room, low, float(times[over]), xtol=1e-15))

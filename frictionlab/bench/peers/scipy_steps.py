@@ -18,6 +18,7 @@ MOST_CALLS, MOST_BRISTLE_CALLS = 500_000, 5_000_000
 """Of the equations of motion per scene: where friction jumps, step control can grind for ever."""
 MOST_ODEINT_STEPS = 1_000_000
 """Per period: odeint's own default of 500 is too few for stiff bristles."""
+LEAST_RTOL = 3e-14
 
 
 class ScipySteps(Peer):
@@ -60,7 +61,7 @@ class ScipyBristle(Peer):
         return np.array([_settled(each, solver, tolerance) for each in equations])
 
 
-def _settled(equations: Equations, solver: str, tolerance: float) -> float:
+def _settled(equations: Equations, solver: str, tolerance: float) -> Floats:
     closing = ClosureTest(tolerance, equations.mass.normal_load, equations.period)
     return closed_mean(
         lambda state: one_period(equations, state, solver, tolerance),
@@ -73,21 +74,12 @@ def _settled(equations: Equations, solver: str, tolerance: float) -> float:
 
 def one_period(equations: Equations, state: Floats, solver: str, tolerance: float) -> Floats:
     """The state at the end, by ``odeint`` or a solver of solve_ivp. Raises ArithmeticError where it gives up."""
-    settings: dict[str, Any] = {"rtol": max(tolerance, 3e-14), "atol": tolerance * equations.scales}
-    if solver == "odeint":
-        return _odeint(equations, state, settings | {"mxstep": MOST_ODEINT_STEPS})
-    from scipy.integrate import solve_ivp
-
-    span, ends = (0.0, equations.period), [equations.period]
-    found = solve_ivp(equations, span, state, method=solver, t_eval=ends, **settings)
-    if found.status < 0:
-        raise ArithmeticError(f"solve_ivp: {found.message}")
-    return found.y[:, -1]
-
-
-def _odeint(equations: Equations, state: Floats, settings: dict[str, Any]) -> Floats:
+    settings: dict[str, Any] = {"rtol": max(tolerance, LEAST_RTOL), "atol": tolerance * equations.scales}
+    if solver != "odeint":
+        return by_solve_ivp(equations, state, solver, settings).y[:, -1]
     from scipy.integrate import odeint
 
+    settings |= {"mxstep": MOST_ODEINT_STEPS}
     with warnings.catch_warnings(action="ignore"):  # its message says the same
         found, told = odeint(
             equations, state, [0.0, equations.period], tfirst=True, full_output=True, **settings
@@ -95,3 +87,13 @@ def _odeint(equations: Equations, state: Floats, settings: dict[str, Any]) -> Fl
     if told["message"] != "Integration successful.":
         raise ArithmeticError(f"odeint: {told['message']}")
     return found[-1]
+
+
+def by_solve_ivp(equations: Equations, state: Floats, solver: str, settings: dict[str, Any]) -> Any:
+    """What solve_ivp finds over a period. Raises ArithmeticError where it gives up."""
+    from scipy.integrate import solve_ivp
+
+    found = solve_ivp(equations, (0.0, equations.period), state, method=solver, **settings)
+    if found.status < 0:
+        raise ArithmeticError(f"solve_ivp: {found.message}")
+    return found

@@ -8,14 +8,14 @@ from functools import cache, partial
 
 import numpy as np
 
+from frictionlab.bench.peers.heyoka_taylor import Heyoka
 from frictionlab.bench.peers.one_period import (
     SOLVE_IVP_METHODS,
     by_heyoka,
-    by_solve_ivp,
+    by_scipy,
     equations_of,
     growth_by_heyoka,
-    growth_by_solve_ivp,
-    missing_heyoka,
+    growth_by_scipy,
 )
 from frictionlab.bench.stability.grid import KnownState, MappedSolver, known_state, local_rate
 from frictionlab.bench.stability.limits import measured_limit, predicted_limit
@@ -32,7 +32,7 @@ class MappedPeer(MappedSolver):
 
     def missing(self) -> str:
         """Only heyoka may be missing."""
-        return missing_heyoka() or "" if self.name == "heyoka" else ""
+        return Heyoka().missing() or "" if self.name == "heyoka" else ""
 
     def limit(self, problem: StabilityProblem) -> StepLimit:
         """By theory, and of one step."""
@@ -47,7 +47,7 @@ class MappedPeer(MappedSolver):
             found = by_heyoka(known.scene, known.law, state, width, at)
         else:
             equations = equations_of(known.scene, known.law, width)
-            found = by_solve_ivp(self.name, equations, state, at)
+            found = by_scipy(self.name, equations, state, at)
         status, error = "failed" if found.reason else "ok", abs(found.mean - known.mean)
         rate = local_rate(problem.name, known, rate)
         allowed = TIMES_ASKED * at + known.error
@@ -67,7 +67,7 @@ def peer_limit(name: str) -> float:
     """The measured limit of a peer's steps; LSODA, which changes its formula as it goes, has none of its own."""
     if name == "LSODA":
         return math.inf
-    return measured_limit(growth_by_heyoka if name == "heyoka" else partial(growth_by_solve_ivp, name))
+    return measured_limit(growth_by_heyoka if name == "heyoka" else partial(growth_by_scipy, name))
 
 
 _ALL_PROBLEMS = ("bristle", "smoothing", "plane")

@@ -161,11 +161,8 @@ class _Reader:
         sections = tree.keys() & {"orders", "stability", "failures", "models"}
         notes.head(tree, ["schema"] if sections else ["schema", "scenes"], BENCH_SCHEMA)
         told = {key: value for key, value in tree.items() if key in names}
-        keys = build_record(ListKeys, told, (), notes)
-        if keys is None:  # what can be read of it may have more mistakes
-            keys = ListKeys.model_construct(
-                **{key: value for key, value in told.items() if not notes.below((key,))}
-            )
+        if (keys := build_record(ListKeys, told, (), notes)) is None:
+            return "", []
         found = [*self._curves(keys), *self._records(keys), *self._maps(keys), *self._models(keys)]
         self._note_equal([section.name for section in found], ("scenes",))
         return keys.title, found
@@ -181,22 +178,11 @@ class _Reader:
 
     # --- blocks: a study each -------------------------------------------------------------------------------------
 
-    def _blocks(self, kind: type[_KeysT], keys: ListKeys, head: str) -> list[tuple[Path, _KeysT]]:
-        """The blocks of a key of the list, with their places."""
-        given = getattr(keys, head)
-        found = [((head, i), self._keys(kind, item, (head, i))) for i, item in enumerate(given)]
-        return [(path, block) for path, block in found if block is not None]
-
-    def _keys(self, kind: type[_KeysT], given: Any, path: Path) -> _KeysT | None:
-        """The record of these keys; of wrong ones what is right, which may have mistakes inside."""
-        made = build_record(kind, given, path, self.notes)
-        if made is not None or not isinstance(given, dict):
-            return made
-        fields = kind.model_fields
-        right = {key: given[key] for key in fields if key in given and not self.notes.below((*path, key))}
-        required = {key: "" for key, field in fields.items() if field.is_required()}
-        rest: Any = kind.model_construct({*right}, **(required | right))
-        return rest
+    def _blocks(self, kind: type[_KeysT], keys: ListKeys, head: str) -> Iterator[tuple[Path, _KeysT]]:
+        """The blocks of a key of the list, with their places; none whose own keys are wrong."""
+        for index, given in enumerate(getattr(keys, head)):
+            if (block := build_record(kind, given, (head, index), self.notes)) is not None:
+                yield (head, index), block
 
     def _curves(self, keys: ListKeys) -> Iterator[Section]:
         """A curve for each law of each scene; what a scene does not say holds for all."""

@@ -14,8 +14,8 @@ import pytest
 from fake_methods import Another, Fake
 
 from frictionlab import bench, cli, registry
-from frictionlab.bench.failures.boundaries import edges, free_velocities
 from frictionlab.bench.failures.measure import MapTruth
+from frictionlab.bench.failures.record import edges, free_velocities
 from frictionlab.bench.failures.section import FailureResult
 from frictionlab.bench.peers.scipy_steps import ScipySteps
 from frictionlab.laws.base import FrictionLaw

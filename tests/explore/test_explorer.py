@@ -18,8 +18,7 @@ import frictionlab as fl
 from frictionlab import cli
 from frictionlab.charts.curves import CurveData, family_of
 from frictionlab.explore.page import explorer
-from frictionlab.explore.page_scene import page_scene
-from frictionlab.explore.run_data import label, run_data
+from frictionlab.explore.run_data import label, page_scene, run_data
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.saved import Saved, saved_as
 from frictionlab.theory.linear import friction_free_velocity

@@ -21,9 +21,8 @@ from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
 from frictionlab.bench.charts.style import new_figure
-from frictionlab.bench.failures.boundaries import edges, free_velocities
 from frictionlab.bench.failures.measure import MapOutcome, MapTruth
-from frictionlab.bench.failures.record import OF_FRICTION_TO_LOAD
+from frictionlab.bench.failures.record import OF_FRICTION_TO_LOAD, edges, free_velocities
 from frictionlab.bench.failures.section import FailureResult
 from frictionlab.columns import word
 from frictionlab.quantities import Floats

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import NamedTuple
 
@@ -152,6 +153,8 @@ class Piecewise(NamedTuple):
 
     def crossings(self) -> Crossings:
         """Where it crosses zero: intervals that cannot hold a zero are dropped, the others cut in two."""
+        if len(self.waves) == 1 and self.free is None and not self.slope.any() and np.ptp(self.middle) == 0.0:
+            return self._crossings_of_a_sine()
         k = np.flatnonzero(~self.at_rest())
         start, stop, curvature = self.edges[k], self.edges[k + 1], self.curvature()
         rounding, found = _ROUNDING * self.size(), Crossings(np.empty(0), np.empty(0))
@@ -166,6 +169,21 @@ class Piecewise(NamedTuple):
             found = found.plus(Crossings(middle[lost], 2.0 * half[lost]))
             start, stop, k = _halves(start, stop, k, near & ~lost & ~monotone)
         return found
+
+    def _crossings_of_a_sine(self) -> Crossings:
+        """Of a constant and one sine, in closed form: near its turning points a rounded zero is half as exact."""
+        (frequency, phasor), level = self.waves[0], float(self.middle[0])
+        size, far = abs(phasor), abs(float(self.middle[0]))
+        if (
+            size - far <= 2.0 * EPSILON * size
+        ):  # where it only touches zero its size is known to rounding alone
+            return Crossings(np.empty(0), np.empty(0))
+        half = 2.0 * math.asin(math.sqrt(0.5 * (size - far) / size))
+        peak = -math.copysign(0.5 * math.pi, level) - cmath.phase(phasor)
+        turns = math.tau * np.arange(round(frequency * self.period / math.tau))
+        angles = np.add.outer(np.array([peak - half, peak + half]), turns).ravel()
+        tau = np.sort(np.mod(angles / frequency, self.period))
+        return Crossings(tau, np.full(len(tau), 4.0 * EPSILON * self.period))
 
     def _roots(self, start: Floats, stop: Floats, k: PieceNumbers, rounding: float) -> Crossings:
         """Where it passes through zero in each of these intervals, on which it rises or falls throughout."""

@@ -4,24 +4,27 @@ from __future__ import annotations
 
 import math
 import time
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from frictionlab.compile.call import KernelCall
+from frictionlab.compile.decorators import njit
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.loop import Vectors
 from frictionlab.methods.prescribed.motion import PrescribedMean
-from frictionlab.methods.prescribed.quadrature import nodes, sliding_vectors
-from frictionlab.orbit.panels import WEIGHTS
+from frictionlab.orbit.panels import NODES, WEIGHTS
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.signals import Signals
+from frictionlab.scene.signals import Signals, Wave
 from frictionlab.theory.piecewise import PieceNumbers, Piecewise, piecewise
 from frictionlab.theory.prescribed import MeanDirection, mean_direction
 from frictionlab.theory.rest import friction_at_rest
 
+ALONG = "closed form: slip prescribed along the belt"
+BY_SYMMETRY = "closed form: friction of the two half periods of slip cancels"
 BETWEEN_REVERSALS = (
     "closed form: slip prescribed along the belt, the normal load integrated between its reversals"
 )
@@ -56,6 +59,17 @@ class VaryingSlip(NamedTuple):
         along, across = (piecewise(each, edges) for each in signals.belt)
         return cls(along, across, piecewise(share, edges, 1.0), quickest)
 
+    @classmethod
+    def of_sines(cls, frequency: float, along: Any, across: Any) -> VaryingSlip:
+        """Of harmonics 1, 2, ... of velocities Im(phasor exp(i k angle)) under a constant normal load."""
+        still = Piecewise(np.array([0.0, math.tau / frequency]), np.zeros(1), np.zeros(1))
+        waves = [
+            tuple(Wave(frequency * (k + 1), each) for k, each in enumerate(row)) for row in (along, across)
+        ]
+        share = 1.0 if len(along) == 1 else max(2.0, 0.5 * len(along))
+        moved = [still._replace(waves=row) for row in waves]
+        return cls(moved[0], moved[1], still._replace(middle=np.ones(1)), share * frequency)
+
     @property
     def on_the_line(self) -> bool:
         """Whether nothing oscillates across the belt."""
@@ -76,10 +90,18 @@ class VaryingSlip(NamedTuple):
         x = x - complex((weights * x).sum()) / self.along.period
         return Orbit(tau, x, self.velocity(tau, k), friction, np.zeros(len(tau), np.bool_))
 
-    def panels(self, belt_speed: float, cuts: Floats) -> tuple[Floats, PieceNumbers]:
+    def friction(self, belt_speed: float, law: FrictionLaw) -> tuple[Floats, Vectors]:
+        """Times at the nodes of panels of a period, and there the friction of a law without memory."""
+        edges, k = self.panels(belt_speed)
+        tau, _ = nodes(edges)
+        slip = self.velocity(tau, k[:, None]) - belt_speed
+        return tau, self.normal_load.at(tau, k[:, None])[0] * sliding_vectors(law, slip)
+
+    def panels(self, belt_speed: float) -> tuple[Floats, PieceNumbers]:
         """Edges of panels, and the pieces they are on: within half the way to the next slow slip of each they are
-        analytic, and they end at the cuts."""
+        analytic, and on the line they end at reversals."""
         along, across = self.along.minus(belt_speed), self.across
+        cuts = along.crossings().tau if self.on_the_line else np.empty(0)
         edges = np.unique(np.concatenate([along.edges, cuts]))
         start, stop = edges[:-1], edges[1:]
         bend, done = along.curvature() + across.curvature(), []
@@ -115,17 +137,43 @@ def piece_at(edges: Floats, tau: Floats) -> PieceNumbers:
     return np.clip(np.searchsorted(edges, tau, side="right") - 1, 0, len(edges) - 2)
 
 
+def nodes(edges: Floats) -> tuple[Floats, Floats]:
+    """Gauss-Lobatto nodes and weights of every panel."""
+    half = 0.5 * np.diff(edges)[:, None]
+    return edges[:-1, None] + half * (1.0 + NODES), half * WEIGHTS
+
+
+def sliding_vectors(law: FrictionLaw, slip: Vectors) -> Vectors:
+    """The friction that resists each slip; zero at rest, which is an instant without duration."""
+    if law.constant_sliding_friction():
+        return law.sliding_friction(1.0) * _directions(slip)
+    friction = np.empty(slip.size, np.complex128)
+    KernelCall(friction_of_slips, law)(slip.ravel(), friction)
+    return friction.reshape(slip.shape)
+
+
+@njit
+def friction_of_slips(law: Any, slip: Any, friction: Any) -> None:
+    """Fill friction with that of a law without memory at each slip velocity."""
+    for i in range(slip.size):
+        friction[i] = law.sliding_vector(slip[i]) if slip[i] != 0.0 else 0j
+
+
+def _directions(slip: Vectors) -> Vectors:
+    speed = np.maximum(np.abs(slip), 1e-300)  # slower than that is at rest, and its inverse overflows
+    return slip / speed
+
+
 class VaryingPoint:
     """One scene of such a slip, a law without memory, and the answer; slip: another than the prescribed one."""
 
     def __init__(self, scene: Scene, law: FrictionLaw, slip: VaryingSlip | None = None) -> None:
         assert scene.normal_load is not None
         self.slip = slip or VaryingSlip.of(scene.signals(), scene.normal_load)
-        self.belt_speed, self.law, self.periods = scene.belt_speed, law, float(scene.periods)
+        self.belt_speed, self.law, self.sines = scene.belt_speed, law, scene.is_harmonic
         self.status: Status = "ok"
         self.reason, self.model, self.error_kind = "", "", "guaranteed"
         start = time.perf_counter()
-        self.cuts = self.slip.along.minus(self.belt_speed).crossings().tau if self.slip.on_the_line else None
         self.found = self._answer()
         self.seconds = time.perf_counter() - start
 
@@ -133,7 +181,10 @@ class VaryingPoint:
         turns = self._turns()
         if turns is not None and self.law.constant_sliding_friction():
             most = self.law.sliding_friction(1.0)
-            mean, error, self.model = complex(most * turns.mean, 0.0), most * turns.error, BETWEEN_REVERSALS
+            mean, error = complex(most * turns.mean, 0.0), most * turns.error
+            self.model = ALONG if self.sines else BETWEEN_REVERSALS
+        elif self.sines and self.belt_speed == 0.0:
+            mean, error, self.model = 0j, 8.0 * EPSILON * self.law.sliding_friction(1.0), BY_SYMMETRY
         else:
             mean, error, self.model = *self._by_quadrature(turns), BETWEEN_CORNERS
             self.error_kind = "estimated"
@@ -160,7 +211,7 @@ class VaryingPoint:
         What is left to quadrature then vanishes where slip does, and near V_lin nothing hangs on its sign there.
         """
         first = self.law.sliding_friction(0.0) if turns is not None else 0.0
-        edges, k = self._panels()
+        edges, k = self.slip.panels(self.belt_speed)
         coarse, _ = self._mean(edges, k, first)
         for _ in range(HALVINGS):
             edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])]))
@@ -174,9 +225,6 @@ class VaryingPoint:
             return fine, error
         return fine + first * turns.mean, error + first * turns.error
 
-    def _panels(self) -> tuple[Floats, PieceNumbers]:
-        return self.slip.panels(self.belt_speed, np.empty(0) if self.cuts is None else self.cuts)
-
     def _mean(self, edges: Floats, k: PieceNumbers, less: float) -> tuple[complex, float]:
         """Of friction less a constant coefficient, and the largest friction met."""
         tau, weights = nodes(edges)
@@ -185,8 +233,9 @@ class VaryingPoint:
         friction = load * sliding_vectors(self.law, slip)
         largest = float(np.abs(friction).max())
         if less:
-            friction = friction - load * less * slip / np.maximum(np.abs(slip), 1e-300)
-        return -complex((weights * friction).sum()) / self.slip.along.period, largest
+            friction = friction - load * less * _directions(slip)
+        with np.errstate(invalid="ignore"):  # where a law gives no number, neither is the mean
+            return -complex((weights * friction).sum()) / self.slip.along.period, largest
 
     def _left_open(self, mean: float, spread: float) -> PrescribedMean:
         self.status, self.error_kind, self.reason = "not_unique", "", NO_SLIP
@@ -194,12 +243,6 @@ class VaryingPoint:
 
     def orbit(self) -> Orbit | None:
         """The prescribed motion and the friction along it."""
-        return self.slip.orbit(*self.friction()) if self.status == "ok" else None
-
-    def friction(self) -> tuple[Floats, Vectors]:
-        """Times, at the nodes of panels, and the friction there."""
-        edges, k = self._panels()
-        tau, _ = nodes(edges)
-        slip = self.slip.velocity(tau, k[:, None]) - self.belt_speed
-        load = self.slip.normal_load.at(tau, k[:, None])[0]
-        return tau, load * sliding_vectors(self.law, slip)
+        return (
+            self.slip.orbit(*self.slip.friction(self.belt_speed, self.law)) if self.status == "ok" else None
+        )

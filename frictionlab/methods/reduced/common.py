@@ -16,7 +16,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, ReducedModel, Status
 from frictionlab.methods.exact.method import REDUCED, Exact
 from frictionlab.methods.prescribed.motion import displacement, velocity
-from frictionlab.methods.prescribed.quadrature import orbit_of_slip
+from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.methods.shooting.saturated import HELD
@@ -233,4 +233,6 @@ def mean_position(scene: Scene, mean: complex) -> complex:
 
 def orbit_of_sines(motion: Motion, belt_speed: float, law: FrictionLaw, position: complex) -> Orbit:
     """A model's harmonic motion about a position and the friction along it; no model of one harmonic knows rest."""
-    return replace(orbit_of_slip(motion, belt_speed, law, position), stick=None)
+    slip = VaryingSlip.of_sines(motion.frequency, [motion.velocity], [motion.transverse_velocity])
+    orbit = slip.orbit(*slip.friction(belt_speed, law))
+    return replace(orbit, x=orbit.x + position, stick=None)

@@ -12,17 +12,14 @@ import numpy as np
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers
 from frictionlab.methods.prescribed.method import solve_prescribed
-from frictionlab.methods.prescribed.quadrature import integrals, slip_edges
 from frictionlab.methods.prescribed.varying_slip import VaryingPoint, VaryingSlip, piece_at
 from frictionlab.methods.reduced.common import (
-    ROUNDING,
     Modelled,
     OfOneModel,
     Sines,
     line_refusal,
     mean_position,
     modelled_along,
-    orbit_of_sines,
     plane_refusal,
     steadied,
 )
@@ -39,7 +36,7 @@ from frictionlab.theory import (
     mean_prescribed_transverse,
 )
 from frictionlab.theory.linear import friction_free_response, less
-from frictionlab.theory.rest import can_hold, stays_at_rest
+from frictionlab.theory.rest import stays_at_rest
 
 ALONG = "direct separation of motion: closed-form mean over the friction-free motion (Eqs. 5, 6)"
 PLANE = "direct separation of motion: quadrature over the friction-free motion"
@@ -86,11 +83,9 @@ class Mdsm(OfOneModel):
 
     def modelled(self, scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
         """The friction-free motion."""
-        if not scenes[0].is_harmonic:
-            return _under_waveforms(scenes, law)
-        if _in_closed_form(scenes[0], law):
+        if scenes[0].is_harmonic and _in_closed_form(scenes[0], law):
             return modelled_along(scenes, law, ALONG, _friction_free)
-        return _in_the_plane(scenes, law)
+        return _averaged(scenes, law)
 
     def cost(self, scene: Scene, law: FrictionLaw, tolerance: float) -> float:
         """Nearly all of it for the error: the full answer."""
@@ -121,23 +116,8 @@ def friction_free_motion(scene: Scene) -> Motion:
     return Motion(mass.normal_load, mass.frequency, mass.force / along, sideways)
 
 
-def _in_the_plane(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
-    """By quadrature over the friction-free ellipse; on a belt at rest the mean is zero by symmetry."""
-    motion, speeds = friction_free_motion(scenes[0]), belt_speeds_of(scenes)
-    found = [integrals(motion, speed, law, slip_edges(motion, speed)) for speed in speeds.tolist()]
-    at_rest = speeds == 0.0
-    means = np.where(at_rest, 0j, [-each.mean for each in found])
-    error = ROUNDING * np.array([each.largest for each in found])
-    reasons = [HELD if rest and can_hold(scenes[0], law) else "" for rest in at_rest]
-
-    def orbit(i: int) -> Orbit:
-        return orbit_of_sines(motion, float(speeds[i]), law, mean_position(scenes[0], complex(means[i])))
-
-    return Modelled(means, reasons, PLANE, orbit, error, settled=at_rest)
-
-
-def _under_waveforms(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
-    """Where more than sines of one frequency changes in time."""
+def _averaged(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
+    """By quadrature over the friction-free motion; of sines on a belt at rest the mean is zero by symmetry."""
     points = [VaryingPoint(scene, law, _friction_free_slip(scene, law)) for scene in scenes]
     means = np.array([point.found.mean for point in points])
     reasons = [
@@ -150,12 +130,14 @@ def _under_waveforms(scenes: Sequence[Scene], law: FrictionLaw) -> Modelled:
         velocity, position = (friction_free_response(scenes[i], law, order) for order in (1, 0))
         assert velocity is not None
         assert position is not None
-        tau, friction = points[i].friction()
+        tau, friction = points[i].slip.friction(scenes[i].belt_speed, law)
         k = piece_at(points[i].slip.along.edges, 0.5 * (tau[:, :1] + tau[:, -1:]))
         x, v = (one.at(tau, k)[0] + 1j * other.at(tau, k)[0] for one, other in (position, velocity))
         return Orbit(tau, mean_position(scenes[i], complex(means[i])) + x, v, friction, None)
 
-    return Modelled(means, reasons, AVERAGED, orbit, error)
+    sines = scenes[0].is_harmonic
+    settled = belt_speeds_of(scenes) == 0.0 if sines else None
+    return Modelled(means, reasons, PLANE if sines else AVERAGED, orbit, error, settled=settled)
 
 
 def _friction_free_slip(scene: Scene, law: FrictionLaw) -> VaryingSlip:
@@ -165,7 +147,8 @@ def _friction_free_slip(scene: Scene, law: FrictionLaw) -> VaryingSlip:
     assert velocity is not None
     along, across = (less(own, other) for own, other in zip(velocity, (belt.along, belt.across), strict=True))
     waves = (*along.waves, *across.waves, *belt.normal_load.waves)
-    quickest = max([scene.frequency, 1.0, *(wave.frequency for wave in waves)])
+    free = 1.0 if along.free or across.free else 0.0
+    quickest = max([scene.frequency, free, *(wave.frequency for wave in waves)])
     return VaryingSlip(along, across, belt.normal_load, quickest)
 
 

@@ -21,8 +21,7 @@ import numpy as np
 
 from frictionlab.compile.law_lanes import takes_lanes
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.prescribed.quadrature import nodes, sliding_vectors
-from frictionlab.methods.prescribed.varying_slip import VaryingSlip
+from frictionlab.methods.prescribed.varying_slip import VaryingSlip, sliding_vectors
 from frictionlab.methods.reduced.common import Modelled, mean_position, plane_refusal
 from frictionlab.methods.reduced.reversals import Phasors, impedances
 from frictionlab.orbit.record import Orbit
@@ -30,8 +29,6 @@ from frictionlab.quantities import Floats
 from frictionlab.scene.body import Mass
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import belt_speeds_of
-from frictionlab.scene.signals import Wave
-from frictionlab.theory.piecewise import Piecewise
 
 SAMPLED = "{} harmonics of motion and of friction balanced on samples of a period, those beyond left out"
 NOT_SETTLED = (
@@ -287,15 +284,7 @@ def _derivative(what: Equations, found: SampledMotion) -> Phasors:
 
 def _orbit(scene: Scene, law: FrictionLaw, velocity: Phasors, mean: complex) -> Orbit:
     """The motion about the position where its mean friction loads the springs, on panels that end at reversals."""
-    frequency, harmonics = scene.frequency, velocity.shape[1]
-    still = Piecewise(np.array([0.0, math.tau / frequency]), np.zeros(1), np.zeros(1))
-    phasors = (1j * velocity).tolist()  # Re(V e) = Im(i V e)
-    waves = [tuple(Wave(frequency * (k + 1), each) for k, each in enumerate(row)) for row in phasors]
-    moved = [still._replace(waves=row) for row in waves] + [still]
-    load = still._replace(middle=np.ones(1))
-    slip = VaryingSlip(moved[0], moved[1], load, 0.5 * frequency * max(4, harmonics))
-    cuts = moved[0].minus(scene.belt_speed).crossings().tau if slip.on_the_line else np.empty(0)
-    tau, _ = nodes(slip.panels(scene.belt_speed, cuts)[0])
-    speeds = slip.velocity(tau, np.zeros(1, np.int64)) - scene.belt_speed
-    orbit = slip.orbit(tau, sliding_vectors(law, speeds))
+    phasors = [*(1j * velocity).tolist(), [0j] * velocity.shape[1]]  # Re(V e) = Im(i V e)
+    slip = VaryingSlip.of_sines(scene.frequency, phasors[0], phasors[1])
+    orbit = slip.orbit(*slip.friction(scene.belt_speed, law))
     return replace(orbit, x=orbit.x + mean_position(scene, mean), stick=None)

@@ -33,6 +33,7 @@ class Note:
     """A mistake by its path, not yet located.
 
     on_key: the mistake is the key itself, not its value. place: its position, where the path does not determine it.
+    origin: the ``--set`` that is the mistake, if not a value.
     """
 
     path: Path
@@ -40,6 +41,12 @@ class Note:
     hint: str = ""
     on_key: bool = False
     place: TextPosition | None = None
+    origin: str = ""
+
+    @property
+    def settles_its_path(self) -> bool:
+        """Whether no other mistake at the same path needs to be told."""
+        return self.place is None and not self.origin
 
 
 @dataclass(frozen=True)
@@ -202,12 +209,11 @@ class Notes:
     def __init__(self, notes: Iterable[Note] = (), notation: Notation | None = None) -> None:
         self.all: list[Note] = list(notes)
         self.notation = notation or YAML
-        self._settled: set[Path] = {note.path for note in self.all if note.place is None}
+        self._settled: set[Path] = {note.path for note in self.all if note.settles_its_path}
         self._misspelt: set[Path] = set()
         self._above: set[Path] = set()
-        for note in self.all:
-            if note.place is None:
-                self._mark(note.path)
+        for path in self._settled:
+            self._mark(path)
 
     def _mark(self, path: Path) -> None:
         """Remember that this path and those above it have a mistake."""

@@ -93,11 +93,6 @@ def _field(record: type[BaseModel], key: str) -> TypeAdapter[Any]:
     return TypeAdapter(Annotated[(kind, *field.metadata)] if field.metadata else kind)
 
 
-def valid_number(record: type[BaseModel], key: str) -> float:
-    """A number that this field accepts: 1, or 0.5 for shares."""
-    return 1.0 if wrong_value(record, key, 1.0) is None else 0.5
-
-
 def record_at(record: type[BaseModel], path: Path) -> type[BaseModel] | None:
     """The record at the end of a path through nested records; None if there is none."""
     found: type[BaseModel] | None = record

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
 
 from frictionlab import registry
 from frictionlab.mistakes.notes import Notes, Path, unknown_name, value_text
@@ -28,39 +28,52 @@ def law_choice(given: Any, path: Path, laws: registry.Laws, notes: Notes) -> Law
     if not isinstance(given, dict):
         notes.add(path, f"must be a mapping such as {{kind: coulomb, mu: 0.4}}, got {value_text(given)}")
         return None
-    if _named_by_its_key(given, laws.names(), path, notes):
-        return None
-    if given.get("kind") not in laws.names() and notes.below(("plugins",)):
+    if "kind" in given and given["kind"] not in laws.names() and notes.below(("plugins",)):
         return None  # an unreadable law file may define it
-    kind = _kind(given, path, _name_reader("law", laws.names(), notes), notes)
-    label = _label(given, kind, path, notes)
-    if kind is None or notes.mapping(given, path) is None:
+    if (item := _item(given, "law", laws.names(), path, notes)) is None:
         return None
-    parameters = {key: value for key, value in given.items() if key not in ("kind", "label")}
-    law = build_record(laws.named(kind), parameters, path, notes)
+    law = build_record(laws.named(item.kind), item.parameters, path, notes)
     if law is None:
         return None
-    laws.check(kind, law)
-    return LawChoice(label, kind, law.model_dump(exclude_none=True, mode="json"), type(law))
+    laws.check(item.kind, law)
+    return LawChoice(item.label, item.kind, law.model_dump(exclude_none=True, mode="json"), type(law))
 
 
 def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:
     """One method, by its name or with parameters; None, noted, where there is a mistake."""
-    named = _name_reader("method", registry.method_names(), notes)
+    names = registry.method_names()
     if not isinstance(given, dict):
-        name = named(given, path)
+        name = _name(given, "method", names, path, notes)
         return None if name is None else MethodChoice(name, name, {})
-    if _named_by_its_key(given, registry.method_names(), path, notes):
+    item = _item(given, "method", names, path, notes)
+    if item is None or not item.parameters:
+        return item and MethodChoice(item.label, item.kind, {})
+    method = build_record(registry.method_class(item.kind), item.parameters, path, notes)
+    return method and MethodChoice(item.label, item.kind, method.model_dump(exclude_unset=True))
+
+
+class _Item(NamedTuple):
+    """A law or method as it is given."""
+
+    label: str
+    kind: str
+    parameters: dict[str, Any]
+
+
+def _item(
+    given: dict[str, Any], what: str, installed: Sequence[str], path: Path, notes: Notes
+) -> _Item | None:
+    """A law or method of one of these names; None, noted, where its name is wrong."""
+    if _named_by_its_key(given, installed, path, notes):
         return None
-    name = _kind(given, path, named, notes)
-    label = _label(given, name, path, notes)
+    kind = None
+    if "kind" in given:
+        kind = _name(given["kind"], what, installed, (*path, "kind"), notes)
+    else:
+        notes.add((*path, "kind"), "required key is missing")
+    label = _label(given["label"], (*path, "label"), notes) if "label" in given else kind or ""
     parameters = {key: value for key, value in given.items() if key not in ("kind", "label")}
-    if name is None:
-        return None
-    if not parameters:
-        return MethodChoice(label, name, {})
-    method = build_record(registry.method_class(name), parameters, path, notes)
-    return None if method is None else MethodChoice(label, name, method.model_dump(exclude_unset=True))
+    return None if kind is None else _Item(label, kind, parameters)
 
 
 def label_of(given: Any) -> str | None:
@@ -80,21 +93,16 @@ def note_equal_labels(given: Sequence[Any], head: str, notes: Notes) -> None:
             notes.add(path, f"{head}[{first[label]}] has the label '{label}' too; give each its own label")
 
 
-def _name_reader(what: str, installed: Iterable[str], notes: Notes) -> Callable[[Any, Path], str | None]:
-    """A reader of a registered name."""
-    names = list(installed)
-
-    def name(given: Any, path: Path) -> str | None:
-        if isinstance(given, str) and given in names:
-            return given
-        if isinstance(given, str):
-            said, hint = unknown_name(what, given, names)
-            notes.add(path, f"{said}{REMEDIES.get(what, '')}", hint)
-        else:
-            notes.add(path, f"must be the name of a {what}, got {value_text(given)}")
-        return None
-
-    return name
+def _name(given: Any, what: str, installed: Sequence[str], path: Path, notes: Notes) -> str | None:
+    """A registered name."""
+    if isinstance(given, str) and given in installed:
+        return given
+    if isinstance(given, str):
+        said, hint = unknown_name(what, given, installed)
+        notes.add(path, f"{said}{REMEDIES.get(what, '')}", hint)
+    else:
+        notes.add(path, f"must be the name of a {what}, got {value_text(given)}")
+    return None
 
 
 def _named_by_its_key(given: dict[str, Any], installed: Iterable[str], path: Path, notes: Notes) -> bool:
@@ -110,19 +118,8 @@ def _named_by_its_key(given: dict[str, Any], installed: Iterable[str], path: Pat
     return True
 
 
-def _kind(
-    given: dict[str, Any], path: Path, named: Callable[[Any, Path], str | None], notes: Notes
-) -> str | None:
-    if "kind" not in given:
-        notes.add((*path, "kind"), "required key is missing")
-        return None
-    return named(given["kind"], (*path, "kind"))
-
-
-def _label(given: dict[str, Any], kind: str | None, path: Path, notes: Notes) -> str:
-    if "label" not in given:
-        return kind or ""
-    label = notes.text(given["label"], (*path, "label"))
-    if isinstance(given["label"], str) and (not label.strip() or not label.isprintable()):
-        notes.add((*path, "label"), "must be one line of visible text")
+def _label(given: Any, path: Path, notes: Notes) -> str:
+    label = notes.text(given, path)
+    if isinstance(given, str) and (not label.strip() or not label.isprintable()):
+        notes.add(path, "must be one line of visible text")
     return label

@@ -180,11 +180,6 @@ def _column(given: Any, path: Path, table: Table, notes: Notes) -> str | None:
     return name
 
 
-def column_or_group(given: Any, path: Path, known: Sequence[str], notes: Notes) -> str | None:
-    """The name of one of these result columns or groups of them; None, noted, where it is none."""
-    return result_column(given, path, known, notes, "result column or a group of them")
-
-
 def result_column(
     given: Any, path: Path, results: Sequence[str], notes: Notes, what: str = "result column"
 ) -> str | None:

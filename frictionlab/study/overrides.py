@@ -40,11 +40,7 @@ class _Override:
         return None if path is None else self._put(path, value)
 
     def _refuse(self, path: Path, what: str, hint: str = "") -> None:
-        # A path of its own keeps this note apart from notes on the value of the study.
-        key: Path = ("", self._origin)
-        self._source.origins[key] = self._origin
-        self._source.refused[key] = path
-        self._source.notes.append(Note(key, what, hint))
+        self._source.notes.append(Note(path, what, hint, origin=self._origin))
 
     def _path(self, target: str) -> Path | None:
         head, _, rest = target.partition(".")
@@ -111,7 +107,7 @@ class _Override:
         for places in (source.keys, source.values):
             for known in [known for known in places if known[: len(path)] == path]:
                 del places[known]
-        source.notes[:] = [note for note in source.notes if note.path[: len(path)] != path]
+        source.notes[:] = [note for note in source.notes if note.origin or note.path[: len(path)] != path]
 
 
 def _label(item: Any) -> str:

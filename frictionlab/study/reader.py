@@ -19,7 +19,7 @@ from frictionlab.study.choices import (
     method_choice,
     note_equal_labels,
 )
-from frictionlab.study.expectations import Table, column_or_group, expectations
+from frictionlab.study.expectations import Table, expectations, result_column
 from frictionlab.study.figure_options import read_figure_options
 from frictionlab.study.grid import StudyGrid
 from frictionlab.study.law_files import (
@@ -30,6 +30,7 @@ from frictionlab.study.law_files import (
 from frictionlab.study.overrides import apply_overrides
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA, LawChoice, MethodChoice, coefficient_of
 from frictionlab.study.possible import note_impossible_points
+from frictionlab.study.sweep_targets import swept_paths
 from frictionlab.study.sweeps import Sweeps, read_sweeps
 from frictionlab.study.yaml_source import Source
 
@@ -89,7 +90,7 @@ class _StudyReader:
             for head, choices in (("laws", laws), ("methods", methods))
         }
         told = self._plain_values()
-        told["expect"] = self._expect(scene, sweep)
+        told["expect"] = expectations(self._tree.get("expect", []), self._table(scene, sweep), self._notes)
         told["columns"] = self._columns(scene)
         if self._notes.all or scene is None:
             return None
@@ -172,12 +173,9 @@ class _StudyReader:
             return (columns.ALL,)
         given = items(self._tree["columns"], ("columns",), "[floquet, energies], or all", self._notes)
         known = (*self._table(scene, Sweeps()).results, *columns.GROUPS)
-        read = [column_or_group(name, ("columns", i), known, self._notes) for i, name in enumerate(given)]
+        what = "result column or a group of them"
+        read = [result_column(name, ("columns", i), known, self._notes, what) for i, name in enumerate(given)]
         return tuple(dict.fromkeys(name for name in read if name is not None))
-
-    def _expect(self, scene: Scene | None, sweep: Sweeps) -> Any:
-        given = self._tree.get("expect", [])
-        return expectations(given, self._table(scene, sweep), self._notes)
 
     def _table(self, scene: Scene | None, sweep: Sweeps) -> Table:
         """The columns that ``where`` may name; all possible ones where the scene or a law has mistakes."""
@@ -193,20 +191,11 @@ class _StudyReader:
         texts = dict(zip(columns.INPUTS, (laws, kinds, methods), strict=True))
         words = _words(values, sweep.sweep)
         numbers = tuple(name for name in inputs if name not in words)
-        swept = _swept_paths(self._tree.get("sweep"))
+        swept = swept_paths(self._tree)
         given = self._tree.get("scene")
         in_si = isinstance(given, Mapping) and "dimensional" in given
         speed = columns.belt_speed(inputs) if in_si else columns.BELT_SPEED
         return Table(texts, numbers, tuple(columns.results(inputs)), words, swept, speed)
-
-
-def _swept_paths(sweep: Any) -> tuple[str, ...]:
-    """The paths of sweeps, those of linked entries included."""
-    if not isinstance(sweep, Mapping):
-        return ()
-    entries = sweep[LINKED] if isinstance(sweep.get(LINKED), list) else []
-    lists = [sweep, *(entry for entry in entries if isinstance(entry, Mapping))]
-    return tuple(key for each in lists for key in each if key != LINKED)
 
 
 def _words(

@@ -65,7 +65,6 @@ _POSITIVE: dict[str, Any] = {"type": "number", "exclusiveMinimum": 0}
 _SPEEDS = (
     "belt speeds: a list, a range, or start, stop and within, between which they are chosen as the run goes"
 )
-_TIME = {"type": "number", "exclusiveMinimum": 0, "default": SECONDS_PER_POINT}
 # Behind a validator defined here a bound keeps pydantic's name.
 _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
 
@@ -86,7 +85,7 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
             "items": {"oneOf": _methods(definitions)},
             "default": list(reader.DEFAULT_METHODS),
         },
-        "tolerance": {"type": "number", "exclusiveMinimum": 0, "default": reader.DEFAULT_TOLERANCE},
+        "tolerance": _POSITIVE | {"default": reader.DEFAULT_TOLERANCE},
         "sweep": _sweep(),
         "expect": {"type": "array", "items": {"oneOf": _expectations()}},
         "columns": {
@@ -99,7 +98,7 @@ def schema(laws: registry.Laws = registry.INSTALLED_LAWS) -> dict[str, Any]:
                 },
             ]
         },
-        "limit": _closed_object({LIMIT_KEY: _TIME}, []),
+        "limit": _closed_object({LIMIT_KEY: _POSITIVE | {"default": SECONDS_PER_POINT}}, []),
         "figures": _record(FigureOptions, definitions) | {"description": _KEYS["figures"]},
         "keep": _closed_object(
             {name: {"type": "integer", "minimum": least} for name, least in reader.KEPT.items()}, []
@@ -217,8 +216,7 @@ def _expectations() -> list[dict[str, Any]]:
     where = {"type": "object", "additionalProperties": _WORD_OR_NUMBER}
     shared: dict[str, Any] = {"where": where, "because": _TEXT}
     numeric = [name for name in (*columns.RESULTS, *columns.SI) if name not in columns.TEXT]
-    positive = {"type": "number", "exclusiveMinimum": 0}
-    column = {"column": {"enum": numeric}, "within": positive}
+    column = {"column": {"enum": numeric}, "within": _POSITIVE}
     statuses = [status for status in columns.STATUSES if status != "killed"]
     pair = {"type": "array", "minItems": 2, "maxItems": 2, "uniqueItems": True, "items": _TEXT}
     return [
@@ -226,7 +224,7 @@ def _expectations() -> list[dict[str, Any]]:
         _closed_object({**shared, **column, "below": _NUMBER}, ["column", "below"]),
         _closed_object({**shared, **column, "above": _NUMBER}, ["column", "above"]),
         _closed_object({**shared, "status": {"enum": statuses}}, ["status"]),
-        _closed_object({**shared, "max_difference": pair, "below": positive}, ["max_difference", "below"]),
+        _closed_object({**shared, "max_difference": pair, "below": _POSITIVE}, ["max_difference", "below"]),
         *(_shape(shared, measure) for measure in columns.SHAPES),
     ]
 

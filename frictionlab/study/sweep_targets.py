@@ -101,9 +101,7 @@ class Targets:
     @cached_property
     def _with_friction(self) -> bool:
         """Whether the study sweeps the friction coefficient of every law."""
-        given = self._tree["sweep"]
-        entries = given[LINKED] if isinstance(given.get(LINKED), list) else []
-        return any(FRICTION in lists for lists in (given, *entries) if isinstance(lists, dict))
+        return FRICTION in swept_paths(self._tree)
 
     def _of_every_law(self, path: Path) -> list[Target]:
         """The friction coefficient of sliding of every law of a known kind."""
@@ -185,6 +183,14 @@ def _alias_given(within: dict[str, Any], key: str) -> str | None:
     """An alternative to ``key``, such as amplitude for unbalance, if the study gives that one."""
     group = next((names for names in _GROUPS if key in names), ())
     return None if key in within else next((name for name in group if name in within), None)
+
+
+def swept_paths(tree: dict[str, Any]) -> tuple[str, ...]:
+    """The paths that a study sweeps, those of linked entries included, right or wrong."""
+    given = tree.get("sweep")
+    entries = given.get(LINKED) if isinstance(given, dict) else None
+    lists = [given, *(entries if isinstance(entries, list) else ())]
+    return tuple(key for each in lists if isinstance(each, dict) for key in each if key != LINKED)
 
 
 def value_at(tree: Any, path: Path) -> Any:

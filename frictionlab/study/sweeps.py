@@ -14,7 +14,6 @@ from frictionlab.mistakes.validation import (
     build_record,
     checked_value,
     placed,
-    valid_number,
     wrong_value,
 )
 from frictionlab.study.axes import LINKED, GridValue
@@ -142,9 +141,10 @@ def _stand_in(
     within = value_at(tree, target.parent)
     if not isinstance(within, dict) or target.key in within:
         return
-    good = [value for value in values if wrong_value(target.record, target.key, value) is None]
-    if good or target.is_number:
-        within[target.key] = good[0] if good else valid_number(target.record, target.key)
+    likely = [*values, *((1.0, 0.5) if target.is_number else ())]  # shares are below one
+    good = [value for value in likely if wrong_value(target.record, target.key, value) is None]
+    if good:
+        within[target.key] = good[0]
         stand_ins[(*target.parent, target.key)] = path
 
 

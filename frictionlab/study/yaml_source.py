@@ -39,8 +39,7 @@ class UnsupportedValue:
 class Source:
     """The values of a study with their positions; notes: the mistakes of the YAML itself.
 
-    keys, values: path -> position. origins: path -> the ``--set`` that set the value. refused: substitute path of a
-    ``--set`` that could not be carried out -> the path it refers to.
+    keys, values: path -> position. origins: path -> the ``--set`` that set the value.
     """
 
     name: str
@@ -49,7 +48,6 @@ class Source:
     keys: dict[Path, TextPosition] = field(default_factory=dict)
     values: dict[Path, TextPosition] = field(default_factory=dict)
     origins: dict[Path, str] = field(default_factory=dict)
-    refused: dict[Path, Path] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
 
     @cached_property
@@ -63,13 +61,14 @@ class Source:
         return sorted(found, key=lambda mistake: mistake.place or (float("inf"), 0))
 
     def _located(self, note: Note) -> Mistake:
-        origin, place = (self.name, note.place) if note.place else self._where(note)
+        origin, place = self._where(note)
         line = self.lines[place.line - 1] if place and place.line <= len(self.lines) else ""
-        path = dotted(self.refused.get(note.path, note.path))
-        return Mistake(origin, place, path, note.what, note.hint, line)
+        return Mistake(origin, place, dotted(note.path), note.what, note.hint, line)
 
     def _where(self, note: Note) -> tuple[str, TextPosition | None]:
         """The position of the path, or of the innermost part around it that the study has."""
+        if note.origin or note.place:
+            return note.origin or self.name, note.place
         for length in range(len(note.path), -1, -1):
             path = note.path[:length]
             if path in self.origins:

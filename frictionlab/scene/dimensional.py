@@ -84,14 +84,9 @@ def _documented(part: type[ScenePart], name: str, example: str) -> str:
     paragraphs = [each for each in (part.__doc__ or "").split("\n\n") if not each.lstrip().startswith(">>> ")]
     text = "\n\n".join(paragraphs).rstrip().replace(".", ", in SI units.", 1)
     for field, dimension in dimensions(part).items():
-        key, unit = key_in_si(part, field), _unit_text(SUFFIXES[dimension])
+        key, unit = key_in_si(part, field), SUFFIXES[dimension].replace("_per_", "/").replace("_", " ")
         text = re.sub(rf"(?m)^( *){field} \[[^]]*\]", rf"\1{key} [{unit}]", text)
     return f"{text}\n\n    >>> import frictionlab as fl\n    >>> fl.{name}({example})\n    {name}({example})\n    "
-
-
-def _unit_text(suffix: str) -> str:
-    """Such as m/s for m_per_s."""
-    return suffix.replace("_per_", "/").replace("_", " ")
 
 
 if TYPE_CHECKING:
@@ -177,15 +172,12 @@ class Dimensional(Record):
 
     @model_validator(mode="after")
     def _one_scene(self) -> Dimensional:
-        problems = [*self._parts_that_do_not_go_together(), *self._out_of_range()]
+        both = self.gravity_m_per_s2 is not None and self.normal_load_N is not None
+        twice = ["gravity_m_per_s2: leave it out where normal_load_N is given"] if both else []
+        problems = [*twice, *problems_of_parts(self), *self._out_of_range()]
         if problems:
             raise ValueError("; ".join(problems))
         return self
-
-    def _parts_that_do_not_go_together(self) -> Iterator[str]:
-        if self.gravity_m_per_s2 is not None and self.normal_load_N is not None:
-            yield "gravity_m_per_s2: leave it out where normal_load_N is given"
-        yield from problems_of_parts(self)
 
     def _out_of_range(self) -> Iterator[str]:
         """Values in wrong units whose nondimensional numbers overflow or vanish."""

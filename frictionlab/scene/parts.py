@@ -124,7 +124,20 @@ class Transverse(ScenePart):
     load: Load | None = None
 
 
-class Slip(ScenePart):
+class _Vibration(ScenePart):
+    """A velocity that follows a waveform.
+
+    velocity_amplitude [omega_1 L], >= 0: of the velocity that the waveform is of.
+    """
+
+    velocity_amplitude: Annotated[NonNegative, VELOCITY]
+
+    def size(self, _frequency: float) -> float:
+        """What the waveform is multiplied by."""
+        return self.velocity_amplitude
+
+
+class Slip(_Vibration):
     """Prescribed slip along the belt: -belt_speed + velocity_amplitude*waveform(frequency*tau + phase).
 
     velocity_amplitude [omega_1 L], >= 0: of the slip velocity beside the belt's.
@@ -139,18 +152,13 @@ class Slip(ScenePart):
     0.1333
     """
 
-    velocity_amplitude: Annotated[NonNegative, VELOCITY]
     frequency: Annotated[Positive, FREQUENCY]
     phase: Finite = 0.0
     waveform: Waveform | None = None
     direction: Finite | None = None
 
-    def size(self, _frequency: float) -> float:
-        """What the waveform is multiplied by."""
-        return self.velocity_amplitude
 
-
-class TransverseSlip(ScenePart):
+class TransverseSlip(_Vibration):
     """Prescribed oscillation along x2, across the belt.
 
     velocity_amplitude [omega_1 L], >= 0: of the slip velocity along x2.
@@ -164,17 +172,12 @@ class TransverseSlip(ScenePart):
     0.2571
     """
 
-    velocity_amplitude: Annotated[NonNegative, VELOCITY]
     phase: Finite = 0.0
     frequency: Annotated[Positive, FREQUENCY] | None = None
     waveform: Waveform | None = None
 
-    def size(self, _frequency: float) -> float:
-        """What the waveform is multiplied by."""
-        return self.velocity_amplitude
 
-
-class BeltVibration(ScenePart):
+class BeltVibration(_Vibration):
     """The belt's velocity beside belt_speed: velocity_amplitude*waveform(ratio*frequency*tau + phase).
 
     velocity_amplitude [omega_1 L], >= 0: of the belt's vibration.
@@ -194,16 +197,11 @@ class BeltVibration(ScenePart):
     0.0548
     """
 
-    velocity_amplitude: Annotated[NonNegative, VELOCITY]
     phase: Finite = 0.0
     waveform: Waveform = SINE
     direction: Finite = 0.0
     frequency_ratio: Ratio | None = None
     frequency: Annotated[Positive, FREQUENCY] | None = None
-
-    def size(self, _frequency: float) -> float:
-        """What the waveform is multiplied by."""
-        return self.velocity_amplitude
 
 
 class NormalLoadVariation(ScenePart):

@@ -46,10 +46,14 @@ def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:
         name = _name(given, "method", names, path, notes)
         return None if name is None else MethodChoice(name, name, {})
     item = _item(given, "method", names, path, notes)
-    if item is None or not item.parameters:
-        return item and MethodChoice(item.label, item.kind, {})
+    if item is None:
+        return None
+    if not item.parameters:
+        return MethodChoice(item.label, item.kind, {})
     method = build_record(registry.method_class(item.kind), item.parameters, path, notes)
-    return method and MethodChoice(item.label, item.kind, method.model_dump(exclude_unset=True))
+    return (
+        None if method is None else MethodChoice(item.label, item.kind, method.model_dump(exclude_unset=True))
+    )
 
 
 class _Item(NamedTuple):

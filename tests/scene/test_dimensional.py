@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 import pytest
 from drawn_figures import drawn
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field
-from strategies import LAWS, scenes_in_the_plane, scenes_on_the_line, sizes
+from strategies import scenes_in_the_plane, scenes_on_the_line, sizes
 
 import frictionlab as fl
 from frictionlab.charts.curves import family_of
@@ -85,19 +85,6 @@ def si_scene(**body: Any) -> Scene:
 
 
 bodies = st.tuples(sizes(1e-3, 1e4), sizes(1e-1, 1e9), sizes(1e-9, 1.0))
-
-
-@given(scenes_on_the_line(), bodies)
-@settings(max_examples=60)
-def test_a_body_in_si_units_moves_as_its_nondimensional_scene(scene: Scene, body: Any) -> None:
-    plain = fl.steady_state(scene, LAW, method="exact")
-    told = fl.steady_state(si_scene(**in_si(scene, *body)), LAW, method="exact")
-
-    assert told.status == plain.status == "ok"
-    assert told.mean_friction == pytest.approx(
-        plain.mean_friction, rel=0.0, abs=1e-10 + plain.error + told.error
-    )
-    assert told.velocity_amplitude == pytest.approx(plain.velocity_amplitude, rel=1e-8)
 
 
 @given(scenes_on_the_line() | scenes_in_the_plane(), bodies)
@@ -219,21 +206,6 @@ def test_forces_and_energies_in_si_units_balance(body: dict[str, Any]) -> None:
 
 
 # Laws
-
-
-@pytest.mark.parametrize("name", LAWS)
-@given(st.data(), sizes(1e-6, 1e2), bodies)
-@settings(max_examples=40)
-def test_every_law_in_si_units_gives_the_friction_it_gives_in_the_scales_of_a_scene(
-    name: str, data: st.DataObject, speed: float, body: Any
-) -> None:
-    law = data.draw(LAWS[name])
-    mass, stiffness, length = body
-    scales = Units(length, math.sqrt(mass / stiffness), stiffness * length)
-
-    scaled = scaled_law(law, scales)
-    wanted = law.sliding_friction(speed)
-    assert scaled.sliding_friction(speed / scales.velocity) == pytest.approx(wanted, rel=1e-9)
 
 
 def test_a_law_without_a_parameter_of_speed_or_length_stays_the_very_same() -> None:

@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
 from study_mistakes import EDITS, GOOD, HINTS
 
 from frictionlab import registry
@@ -469,49 +467,11 @@ def test_a_mapping_has_no_lines_but_the_same_messages() -> None:
     ]
 
 
-# Any study
-
-
-@st.composite
-def studies(draw: st.DrawFn) -> dict[str, Any]:
-    """Studies without mistakes."""
-    positive = st.floats(1e-3, 1e3)
-    size = draw(st.sampled_from(["unbalance", "amplitude"]))
-    tree = good()
-    tree["scene"] = {
-        "damping_ratio": draw(st.floats(0, 3)),
-        "normal_load": draw(positive),
-        "belt_speed": draw(st.floats(-50, 50)),
-        "drive": {size: draw(positive), "frequency": draw(positive)},
-    }
-    if draw(st.booleans()):
-        tree["scene"]["transverse"] = {"natural_frequency": draw(positive), "damping_ratio": draw(positive)}
-    labels = draw(st.lists(st.sampled_from(["a", "b.c", "soft one", "coulomb"]), min_size=1, unique=True))
-    tree["laws"] = [{"kind": "coulomb", "mu": draw(positive), "label": label} for label in labels]
-    tree["tolerance"] = draw(st.floats(1e-12, 1))
-    values = st.lists(positive, min_size=1, max_size=4, unique=True)
-    paths = [
-        "scene.belt_speed",
-        f"scene.drive.{size}",
-        "scene.drive.phase",
-        *(f"laws.{label}.mu" for label in labels),
-    ]
-    chosen = draw(st.lists(st.sampled_from(paths), unique=True, max_size=3))
-    tree["sweep"] = {path: draw(values) for path in chosen}
-    tree["methods"] = draw(st.lists(st.sampled_from(["auto", "exact", "shooting"]), min_size=1, unique=True))
-    tree["title"] = draw(st.text(max_size=9))
-    return tree
-
-
-@given(studies())
-@example(good() | {"scene": good()["scene"] | {"belt_speed": -0.0}})
-@settings(max_examples=60)
-def test_any_study_survives_being_resolved_and_read_again(tree: dict[str, Any]) -> None:
-    study = parse_study(tree)
+def test_minus_zero_is_the_same_study_when_it_was_resolved_and_read_again() -> None:
+    study = parse_study(good() | {"scene": good()["scene"] | {"belt_speed": -0.0}})
 
     again = parse_study(study.resolved())
     assert (again, again.digest()) == (study, study.digest())
-    assert [case.scene for case in again.cases()] == [case.scene for case in study.cases()]
 
 
 # Schema and columns
@@ -536,26 +496,11 @@ def _allowed(tree: dict[str, Any], path: str) -> list[str]:
 
 
 def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene() -> None:
-    made = schema()
-    probe = good() | {"zzz": 1}
-    probe["scene"] = probe["scene"] | {
-        "zzz": 1,
-        "drive": {"zzz": 1},
-        "transverse": {"zzz": 1, "load": {"zzz": 1}},
-        "slip": {"zzz": 1},
-        "transverse_slip": {"zzz": 1},
-        "belt_vibration": {"zzz": 1},
-        "normal_load_variation": {"zzz": 1},
-        "initial": {"zzz": 1},
-    }
-    parts = {
-        "zzz": 1,
-        "drive": {"zzz": 1},
-        "transverse": {"zzz": 1, "load": {"zzz": 1}},
-        "belt_vibration": {"zzz": 1},
-        "normal_load_variation": {"zzz": 1},
-        "initial": {"zzz": 1},
-    }
+    made, nonsense = schema(), {"zzz": 1}
+    shared = "drive", "belt_vibration", "normal_load_variation", "initial"
+    parts = nonsense | dict.fromkeys(shared, nonsense) | {"transverse": nonsense | {"load": nonsense}}
+    slips = dict.fromkeys(("slip", "transverse_slip"), nonsense)
+    probe = good() | nonsense | {"scene": good()["scene"] | parts | slips}
     si = good() | {"scene": {"dimensional": parts}}
 
     assert set(_allowed(probe, "zzz")) == set(made["properties"])

@@ -5,83 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from broken_laws.case import Case
+from broken_laws.case import Case, bug
 from broken_laws.twins import BreakingAway, Bristles, Falling, curve
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
-
-
-class SaysConstant(Falling):
-    """Calls a falling curve constant."""
-
-    def constant_sliding_friction(self) -> bool:
-        """Viscosity forgotten."""
-        return self.drop == 0.0
-
-
-class ExponentOffByOne(Falling):
-    """The slope of the fall, of an exponent one less."""
-
-    def steepest_fall(self) -> float:
-        """That of exp(-u)."""
-        return max(0.0, 0.5 * self.drop / self.speed - self.viscosity)
-
-
-class SaysMonotone(Falling):
-    """Calls a falling curve monotone."""
-
-    def monotone(self) -> bool:
-        """Always."""
-        return True
-
-
-class MonotoneWithAJump(Coulomb):
-    """Forgets that rest holds more."""
-
-    def monotone(self) -> bool:
-        """Always."""
-        return True
-
-
-class HoldsTooLittle(Falling):
-    """At rest the friction of quick slip."""
-
-    def static_friction(self) -> float:
-        """mu."""
-        return self.mu
-
-
-class SmoothedSliding(Falling):
-    """The width of a method in the law."""
-
-    def sliding_friction(self, speed: float) -> float:
-        """tanh over a millionth."""
-        return super().sliding_friction(speed) * math.tanh(speed / 1e-6)
-
-
-class SaysVanishing(Falling):
-    """Dry friction that calls itself a film of fluid."""
-
-    def vanishes_at_rest(self) -> bool:
-        """Always."""
-        return True
-
-
-class SmoothedBristles(Bristles):
-    """The width of a method in the law."""
-
-    def rate(self, v: Any, z: Any) -> Any:
-        """|v| as the root of v^2 + width^2."""
-        speed = math.sqrt((v * v.conjugate()).real + 1e-12)
-        return v - (self.stiffness * speed / curve(self, speed)) * z
-
-
-class BoundLost(Dahl):
-    """Bristles that slip however far bends further."""
-
-    def rate(self, v: Any, z: Any) -> Any:
-        """Only half of what goes is taken back."""
-        return v - 0.5 * (abs(v) / self.saturation) * z
 
 
 class UnsignedPower(Dahl):
@@ -90,86 +17,77 @@ class UnsignedPower(Dahl):
     exponent: float = 2.0
 
     def rate(self, v: Any, z: Any) -> Any:
-        """|u|^exponent."""
         return v * abs(1.0 - math.copysign(1.0, v.real) * z.real / self.saturation) ** self.exponent
 
     def no_vector_form(self) -> str:
-        """None."""
         return "a power"
 
 
-class FeedingDamping(Bristles):
-    """Damping of the wrong sign."""
-
-    def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """Minus damping."""
-        return self.stiffness * z - self.damping * dz + self.viscosity * v
-
-
-class BoundUpsideDown(Bristles):
-    """The bound of passivity with its ratio upside down."""
-
-    def passive(self) -> bool:
-        """Less than is needed."""
-        return self.viscosity >= self.damping * self.drop / (self.mu + self.drop)
-
-
-class SaysNotPassive(Bristles):
-    """Denies what it has."""
-
-    def passive(self) -> bool:
-        """Never."""
-        return False
-
-
-class SaysDampsAcross(Bristles):
-    """Damping at any speed across."""
-
-    def damps_across(self, speed: float) -> bool:
-        """Always."""
-        return self.planar != "rotated"
-
-
-class SaysRateIndependent(Bristles):
-    """Forgets that damping knows speed."""
-
-    def rate_independent(self) -> bool:
-        """Where friction is constant."""
-        return self.constant_sliding_friction()
-
-
-class RateTooSmall(Bristles):
-    """The rate of slow slip, at every speed."""
-
-    def largest_rate(self, speed: float) -> float:
-        """Of the peak in place of the curve."""
-        return self.stiffness * speed / (self.mu + self.drop)
-
-
-class RateOfBreakaway(BreakingAway):
-    """Forgets how steeply bristles break away."""
-
-    def largest_rate(self, speed: float) -> float:
-        """That of LuGre bristles."""
-        return self.stiffness * speed / curve(self, speed)
+def smoothed_rate(law: Any, v: Any, z: Any) -> Any:
+    """|v| as the root of v^2 + width^2: the width of a method in the law."""
+    speed = math.sqrt((v * v.conjugate()).real + 1e-12)
+    return v - (law.stiffness * speed / curve(law, speed)) * z
 
 
 CASES = (
-    Case(SaysConstant, Falling, "constant_sliding_friction"),
-    Case(ExponentOffByOne, Falling, "steepest_fall"),
-    Case(SaysMonotone, Falling, "monotone"),
-    Case(MonotoneWithAJump, Coulomb, "monotone", examples=100),
-    Case(HoldsTooLittle, Falling, "static_friction"),
-    Case(SmoothedSliding, Falling, "not_smoothed"),
-    Case(SaysVanishing, Falling, "not_smoothed"),
-    Case(SmoothedBristles, Bristles, "held_at_rest"),
-    Case(BoundLost, Dahl, "invariant_set"),
+    bug(  # viscosity forgotten
+        "SaysConstant",
+        Falling,
+        "constant_sliding_friction",
+        constant_sliding_friction=lambda law: law.drop == 0.0,
+    ),
+    bug(  # that of exp(-u)
+        "ExponentOffByOne",
+        Falling,
+        "steepest_fall",
+        steepest_fall=lambda law: max(0.0, 0.5 * law.drop / law.speed - law.viscosity),
+    ),
+    bug("SaysMonotone", Falling, "monotone", monotone=lambda law: True),
+    bug("MonotoneWithAJump", Coulomb, "monotone", examples=100, monotone=lambda law: True),
+    bug("HoldsTooLittle", Falling, "static_friction", static_friction=lambda law: law.mu),
+    bug(  # the width of a method in the law
+        "SmoothedSliding",
+        Falling,
+        "not_smoothed",
+        sliding_friction=lambda law, speed: Falling.sliding_friction(law, speed) * math.tanh(speed / 1e-6),
+    ),
+    bug("SaysVanishing", Falling, "not_smoothed", vanishes_at_rest=lambda law: True),
+    bug("SmoothedBristles", Bristles, "held_at_rest", rate=smoothed_rate),
+    bug(  # bristles slip however far bends further: only half of what goes is taken back
+        "BoundLost", Dahl, "invariant_set", rate=lambda law, v, z: v - 0.5 * (abs(v) / law.saturation) * z
+    ),
     Case(UnsignedPower, Dahl, "invariant_set"),
-    Case(FeedingDamping, Bristles, "passivity"),
-    Case(BoundUpsideDown, Bristles, "passivity", examples=100),
-    Case(SaysNotPassive, Bristles, "not_passive"),
-    Case(SaysDampsAcross, Bristles, "damps_across"),
-    Case(SaysRateIndependent, Bristles, "rate_independence"),
-    Case(RateTooSmall, Bristles, "largest_rate"),
-    Case(RateOfBreakaway, BreakingAway, "largest_rate"),
+    bug(
+        "FeedingDamping",
+        Bristles,
+        "passivity",
+        friction=lambda law, v, z, dz: law.stiffness * z - law.damping * dz + law.viscosity * v,
+    ),
+    bug(  # the bound with its ratio upside down
+        "BoundUpsideDown",
+        Bristles,
+        "passivity",
+        examples=100,
+        passive=lambda law: law.viscosity >= law.damping * law.drop / (law.mu + law.drop),
+    ),
+    bug("SaysNotPassive", Bristles, "not_passive", passive=lambda law: False),
+    bug("SaysDampsAcross", Bristles, "damps_across", damps_across=lambda law, speed: law.planar != "rotated"),
+    bug(  # forgets that damping knows speed
+        "SaysRateIndependent",
+        Bristles,
+        "rate_independence",
+        rate_independent=lambda law: law.constant_sliding_friction(),
+    ),
+    bug(  # of the peak in place of the curve
+        "RateTooSmall",
+        Bristles,
+        "largest_rate",
+        largest_rate=lambda law, speed: law.stiffness * speed / (law.mu + law.drop),
+    ),
+    bug(  # forgets how steeply bristles break away
+        "RateOfBreakaway",
+        BreakingAway,
+        "largest_rate",
+        largest_rate=lambda law, speed: law.stiffness * speed / curve(law, speed),
+    ),
 )

@@ -6,7 +6,7 @@ import math
 import random
 from typing import Any, ClassVar
 
-from broken_laws.case import Case
+from broken_laws.case import Case, bug
 from broken_laws.twins import Bristles, Falling, curve
 from frictionlab.laws.base import NonNegative, PerSpeed
 from frictionlab.laws.coulomb import Coulomb
@@ -49,61 +49,12 @@ class DefaultBeyondLimits(Coulomb):
     wear: NonNegative = -1.0
 
 
-class WholeNumber(Falling):
-    """Answers with a whole number."""
-
-    def sliding_vector(self, v: complex) -> complex:
-        """One way or the other."""
-        return 1 if v.real > 0.0 else -1
-
-
-class NotANumber(Falling):
-    """Fast slip has no answer."""
-
-    def sliding_friction(self, speed: float) -> float:
-        """0 times infinity."""
-        return super().sliding_friction(speed) * (1.0 if speed < 1e3 * self.speed else float("nan"))
-
-
-class ComplexOnTheLine(Bristles):
-    """Forgets that the line has no second direction."""
-
-    def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """Complex everywhere."""
-        return super().friction(v, z, dz) + 0j
-
-
-class DividesAtRest(Bristles):
-    """Takes the direction of slip by dividing."""
-
-    def rate(self, v: Any, z: Any) -> Any:
-        """v/|v| of nothing."""
-        return abs(v) * (v / abs(v) - self.stiffness / curve(self, abs(v)) * z)
-
-
-class Overflows(Falling):
-    """Writes the fall as one over a growing exponential."""
-
-    def sliding_friction(self, speed: float) -> float:
-        """exp(u^2) overflows."""
-        return self.mu + self.drop / math.exp((speed / self.speed) ** 2) + self.viscosity * speed
-
-
-class Random(Bristles):
-    """Rough by chance."""
-
-    def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """Scattered by a thousandth."""
-        return super().friction(v, z, dz) * random.uniform(0.999, 1.001)
-
-
 class Shares(Falling):
     """Keeps the curve of the first law that was asked, for all of them."""
 
     curve: ClassVar[dict[float, float]] = {}
 
     def sliding_friction(self, speed: float) -> float:
-        """By speed alone, whatever the parameters."""
         return self.curve.setdefault(speed, super().sliding_friction(speed))
 
 
@@ -113,51 +64,43 @@ class LeavesBehind(Bristles):
     left: ClassVar[list[float]] = [0.0]
 
     def rate(self, v: Any, z: Any) -> Any:
-        """Kept on the side."""
         self.left[0] = super().rate(v, z)
         return self.left[0]
 
     def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """Of the rate kept."""
         return super().friction(v, z, self.left[0])
 
 
 class CountsInstances(Falling):
-    """State that every law made shares."""
+    """Friction less for each law that was made: state that all of them share."""
 
     made: ClassVar[list[int]] = [0]
 
     def model_post_init(self, _: Any) -> None:
-        """One more."""
         self.made[0] += 1
 
     def sliding_friction(self, speed: float) -> float:
-        """Less for each law that was made."""
         return super().sliding_friction(speed) * (1.0 + 1e-6 * self.made[0])
 
 
-class IgnoresViscosity(Falling):
-    """A parameter that does nothing."""
-
-    def sliding_friction(self, speed: float) -> float:
-        """The fall alone."""
-        return self.mu + self.drop * math.exp(-((speed / self.speed) ** 2))
+def falls_short(law: Any, speed: float) -> float:
+    """Fast slip has no answer."""
+    return Falling.sliding_friction(law, speed) * (1.0 if speed < 1e3 * law.speed else float("nan"))
 
 
-class IgnoresExponent(Dahl):
-    """A power that is never used."""
+def of_a_direction(law: Any, v: Any, z: Any) -> Any:
+    """v/|v| of nothing at rest."""
+    return abs(v) * (v / abs(v) - law.stiffness / curve(law, abs(v)) * z)
 
-    def rate(self, v: Any, z: Any) -> Any:
-        """That of exponent 1."""
-        return v - (abs(v) / self.saturation) * z
 
-    def deflected(self, z: Any, path: Any) -> Any:
-        """Not asked."""
-        return z
+def overflowing(law: Any, speed: float) -> float:
+    """One over exp(u^2), which overflows."""
+    return law.mu + law.drop / math.exp((speed / law.speed) ** 2) + law.viscosity * speed
 
-    def no_vector_form(self) -> str:
-        """It has one."""
-        return ""
+
+def scattered(law: Any, v: Any, z: Any, dz: Any) -> Any:
+    """By chance."""
+    return Bristles.friction(law, v, z, dz) * random.uniform(0.999, 1.001)
 
 
 CASES = (
@@ -168,15 +111,32 @@ CASES = (
     Case(Lenient, Falling, "unknown_parameters_refused"),
     Case(Converts, Falling, "limits_kept"),
     Case(DefaultBeyondLimits, Coulomb, "defaults_valid"),
-    Case(WholeNumber, Falling, "answers"),
-    Case(NotANumber, Falling, "answers"),
-    Case(ComplexOnTheLine, Bristles, "answers"),
-    Case(DividesAtRest, Bristles, "extremes"),
-    Case(Overflows, Falling, "extremes"),
-    Case(Random, Bristles, "repeatable"),
+    bug("WholeNumber", Falling, "answers", sliding_vector=lambda law, v: 1 if v.real > 0.0 else -1),
+    bug("NotANumber", Falling, "answers", sliding_friction=falls_short),
+    bug(
+        "ComplexOnTheLine",
+        Bristles,
+        "answers",
+        friction=lambda law, v, z, dz: Bristles.friction(law, v, z, dz) + 0j,
+    ),
+    bug("DividesAtRest", Bristles, "extremes", rate=of_a_direction),
+    bug("Overflows", Falling, "extremes", sliding_friction=overflowing),
+    bug("Random", Bristles, "repeatable", friction=scattered),
     Case(LeavesBehind, Bristles, "repeatable"),
     Case(Shares, Falling, "parameters_matter"),
     Case(CountsInstances, Falling, "instances_apart"),
-    Case(IgnoresViscosity, Falling, "parameters_matter"),
-    Case(IgnoresExponent, Dahl, "parameters_matter"),
+    bug(
+        "IgnoresViscosity",
+        Falling,
+        "parameters_matter",
+        sliding_friction=lambda law, speed: law.mu + law.drop * math.exp(-((speed / law.speed) ** 2)),
+    ),
+    bug(  # the exponent is never used
+        "IgnoresExponent",
+        Dahl,
+        "parameters_matter",
+        rate=lambda law, v, z: v - (abs(v) / law.saturation) * z,
+        deflected=lambda law, z, path: z,
+        no_vector_form=lambda law: "",
+    ),
 )

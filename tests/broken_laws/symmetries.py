@@ -4,62 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from broken_laws.case import Case
+from broken_laws.case import Case, bug
 from broken_laws.twins import BreakingAway, Bristles, Falling, curve
 from frictionlab.laws.base import Positive
 from frictionlab.laws.compliant import Stiffness
-
-
-class MissingAbs(Bristles):
-    """Slip where speed should stand."""
-
-    def rate(self, v: Any, z: Any) -> Any:
-        """v z in place of |v| z."""
-        return v - (self.stiffness * v.real / curve(self, abs(v))) * z
-
-
-class SignedBreakaway(BreakingAway):
-    """Dupont's alpha of z in place of |z|: bristles bent backwards never break away."""
-
-    def rate(self, v: Any, z: Any) -> Any:
-        """Elastic while z < 0."""
-        return v if z.real < 0.0 else super().rate(v, z)
-
-
-class PerAxis(Bristles):
-    """Each axis for itself, called vectorial."""
-
-    def rate(self, v: Any, z: Any) -> Any:
-        """In the plane two laws of one direction."""
-        if isinstance(v, complex):
-            return complex(super().rate(v.real, z.real), super().rate(v.imag, z.imag))
-        return super().rate(v, z)
-
-
-class SquareOfFriction(Falling):
-    """In the plane friction is limited on each axis."""
-
-    def sliding_vector(self, v: complex) -> complex:
-        """A square in place of a circle."""
-        size = self.sliding_friction(abs(v))
-        return size * v / max(abs(v.real), abs(v.imag))
-
-
-class Handed(Falling):
-    """Friction turned aside, to the left."""
-
-    def sliding_vector(self, v: complex) -> complex:
-        """By a hundredth."""
-        along = super().sliding_vector(v)
-        return along * (1.0 + 0.01j) if isinstance(v, complex) else along
-
-
-class WeakerInThePlane(Falling):
-    """Another coefficient in the plane."""
-
-    def sliding_vector(self, v: complex) -> complex:
-        """That of both axes, by mistake."""
-        return super().sliding_vector(v) * (0.7071 if isinstance(v, complex) else 1.0)
 
 
 class SpeedWithoutUnits(Falling):
@@ -74,13 +22,45 @@ class DampingInUnitsOfStiffness(Bristles):
     damping: Stiffness
 
 
+def by_axis(law: Any, v: Any, z: Any) -> Any:
+    """In the plane two laws of one direction, called vectorial."""
+    if isinstance(v, complex):
+        return complex(Bristles.rate(law, v.real, z.real), Bristles.rate(law, v.imag, z.imag))
+    return Bristles.rate(law, v, z)
+
+
+def within_a_square(law: Any, v: complex) -> complex:
+    """A square in place of a circle limits friction in the plane."""
+    return law.sliding_friction(abs(v)) * v / max(abs(v.real), abs(v.imag))
+
+
+def turned_aside(law: Any, v: complex) -> complex:
+    """By a hundredth, to the left."""
+    return Falling.sliding_vector(law, v) * (1.0 + 0.01j if isinstance(v, complex) else 1.0)
+
+
+def weaker_in_the_plane(law: Any, v: complex) -> complex:
+    """That of both axes, by mistake."""
+    return Falling.sliding_vector(law, v) * (0.7071 if isinstance(v, complex) else 1.0)
+
+
 CASES = (
-    Case(MissingAbs, Bristles, "oddness"),
-    Case(SignedBreakaway, BreakingAway, "oddness"),
-    Case(PerAxis, Bristles, "rotation"),
-    Case(SquareOfFriction, Falling, "rotation"),
-    Case(Handed, Falling, "reflection"),
-    Case(WeakerInThePlane, Falling, "straight_planar_slide"),
+    bug(  # slip where speed should stand
+        "MissingAbs",
+        Bristles,
+        "oddness",
+        rate=lambda law, v, z: v - (law.stiffness * v.real / curve(law, abs(v))) * z,
+    ),
+    bug(  # Dupont's alpha of z in place of |z|: bristles bent backwards never break away
+        "SignedBreakaway",
+        BreakingAway,
+        "oddness",
+        rate=lambda law, v, z: v if z.real < 0.0 else BreakingAway.rate(law, v, z),
+    ),
+    bug("PerAxis", Bristles, "rotation", rate=by_axis),
+    bug("SquareOfFriction", Falling, "rotation", sliding_vector=within_a_square),
+    bug("Handed", Falling, "reflection", sliding_vector=turned_aside),
+    bug("WeakerInThePlane", Falling, "straight_planar_slide", sliding_vector=weaker_in_the_plane),
     Case(SpeedWithoutUnits, Falling, "unit_scaling"),
     Case(DampingInUnitsOfStiffness, Bristles, "unit_scaling"),
 )

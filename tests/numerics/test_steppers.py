@@ -19,7 +19,7 @@ from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.march.adapters import Moreau, Rk4, Smoothed, _restoring_force
 from frictionlab.methods.march.lap import NOTHING, MarchSettings
-from frictionlab.methods.march.laps import TIRED, MarchStart, march_laps
+from frictionlab.methods.march.laps import TIRED, MarchState, march_laps
 from frictionlab.numerics.steppers.moreau import moreau_step
 from frictionlab.numerics.steppers.step import StepStart
 from frictionlab.scene.body import Body, Mass, in_the_plane, on_the_line
@@ -76,7 +76,7 @@ def marched(stepper: Any, push: Push, steps: int, **changes: Any) -> Any:
     """The march once to the end, from rest."""
     start = 0j if push.planar else 0.0
     settings = settings_of(push, steps, **changes)
-    return KernelCall(march_laps, LAW)(body_of(push), stepper, settings, MarchStart(start, start, NOTHING))
+    return KernelCall(march_laps, LAW)(body_of(push), stepper, settings, MarchState(start, start, NOTHING))
 
 
 def end_of(stepper: Any, push: Push, steps: int, **changes: Any) -> np.ndarray:

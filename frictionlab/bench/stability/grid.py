@@ -13,7 +13,8 @@ from frictionlab.bench.solvers import solve_points
 from frictionlab.bench.stability.problems import PROBLEMS, StabilityProblem, width_at
 from frictionlab.bench.stability.record import MapPoint, StabilityMap, StepLimit
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.march.run import MarchRun, MarchState
+from frictionlab.methods.march.laps import MarchState
+from frictionlab.methods.march.run import MarchRun
 from frictionlab.methods.march.steppers import Resolution, StepperName
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Scene

@@ -15,7 +15,8 @@ from frictionlab.compile.interpret import interpreted
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.laws.dahl import Dahl
-from frictionlab.methods.march.run import MarchRun, MarchState
+from frictionlab.methods.march.laps import MarchState
+from frictionlab.methods.march.run import MarchRun
 from frictionlab.methods.march.steppers import Resolution, StepperName
 from frictionlab.numerics.steppers import dop853, rk4
 from frictionlab.scene.scene import Drive, Load, Scene, Transverse

@@ -68,27 +68,16 @@ oscillator_at = by_variation(_body_of_one_sine, _body_of_pieces)
 """(mass, coefficient, belt_speed): the canonical scene at this belt speed."""
 
 
-def _above_kink(mass: Mass, belt_speed: float) -> bool:
-    return belt_speed >= friction_free_speed(mass)
-
-
-def _unknown(mass: Mass, belt_speed: float) -> bool:
-    return False
-
-
-exceeds_friction_free_speed = by_variation(_above_kink, _unknown)
+exceeds_friction_free_speed = by_variation(
+    lambda mass, belt_speed: belt_speed >= friction_free_speed(mass), lambda mass, belt_speed: False
+)
 """(mass, belt_speed): whether the belt is known to be so fast that slip never reverses."""
 
 
-def _reverses(body: Any, fixed: Fixed) -> bool:
-    return False
-
-
-def _found_alike(body: Any, fixed: Fixed) -> bool:
-    return fixed.map.alike != 0.0 and fixed.residual <= 16.0 * rounding(body, fixed.x, fixed.w)
-
-
-slips_one_way = by_variation(_reverses, _found_alike)
+slips_one_way = by_variation(
+    lambda body, fixed: False,
+    lambda body, fixed: fixed.map.alike != 0.0 and fixed.residual <= 16.0 * rounding(body, fixed.x, fixed.w),
+)
 """(body, fixed): whether this fixed point turns out to have slip of one sign, which no step can have passed."""
 
 

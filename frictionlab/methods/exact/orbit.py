@@ -142,15 +142,9 @@ def note_orbit(body: Any, table: LegTable, normal_load: float, side: float, trac
     track.filled[0] = panel
 
 
-def _mirrored(mass: Mass, belt_speed: float) -> float:
-    return -1.0 if belt_speed < 0.0 else 1.0
-
-
-def _as_given(mass: Mass, belt_speed: float) -> float:
-    return 1.0
-
-
-side_solved = by_variation(_mirrored, _as_given)
+side_solved = by_variation(
+    lambda mass, belt_speed: -1.0 if belt_speed < 0.0 else 1.0, lambda mass, belt_speed: 1.0
+)
 """(mass, belt_speed): -1.0 where the mirror image of the scene was solved."""
 
 

@@ -217,27 +217,11 @@ holding_at = by_variation(_holding_under_one_sine, _holding_in_pieces)
 """(body, tau): the load, its rate and the rate of that; the limit of friction, its rate and the rate of that."""
 
 
-def _push_of_one_sine(body: Any) -> float:
-    return body.load * body.frequency**3
-
-
-def _push_in_pieces(body: Any) -> float:
-    return body.varying.push
-
-
-largest_push = by_variation(_push_of_one_sine, _push_in_pieces)
+largest_push = by_variation(lambda body: body.load * body.frequency**3, lambda body: body.varying.push)
 """(body): a bound on the third derivative of load + press and load - press."""
 
 
-def _swing_of_one_sine(body: Any) -> float:
-    return body.frequency * body.size
-
-
-def _swing_in_pieces(body: Any) -> float:
-    return body.varying.swing
-
-
-largest_swing = by_variation(_swing_of_one_sine, _swing_in_pieces)
+largest_swing = by_variation(lambda body: body.frequency * body.size, lambda body: body.varying.swing)
 """(body): a bound on the velocity of the response."""
 
 
@@ -306,39 +290,15 @@ vibration_at = by_variation(_belt_steady, _belt_in_pieces)
 """(body, tau): path and velocity of the belt's vibration."""
 
 
-def _no_corner(body: Any, end: float) -> float:
-    return end
-
-
-def _next_corner(body: Any, end: float) -> float:
-    return body.varying.pieces[body.piece, STOP]
-
-
-next_corner = by_variation(_no_corner, _next_corner)
+next_corner = by_variation(lambda body, end: end, lambda body, end: body.varying.pieces[body.piece, STOP])
 """(body, end): when the piece ends; ``end`` where there are none."""
 
 
-def _same(body: Any, piece: int) -> Any:
-    return body
-
-
-def _in_piece(body: Any, piece: int) -> Any:
-    return _forced(body, body.belt_speed, piece)
-
-
-with_piece = by_variation(_same, _in_piece)
+with_piece = by_variation(lambda body, piece: body, lambda body, piece: _forced(body, body.belt_speed, piece))
 """(body, piece): the body where this piece holds."""
 
 
-def _no_piece(body: Any) -> int:
-    return 0
-
-
-def _piece(body: Any) -> int:
-    return body.piece
-
-
-piece_of = by_variation(_no_piece, _piece)
+piece_of = by_variation(lambda body: 0, lambda body: body.piece)
 """(body): the piece that holds."""
 
 
@@ -355,25 +315,9 @@ def _forced(body: ForcedOscillator, belt_speed: float, piece: int) -> ForcedOsci
     return ForcedOscillator(*numbers, belt_speed, *bounds, piece, body.varying)
 
 
-def _only_piece(body: Any) -> int:
-    return 1
-
-
-def _count_pieces(body: Any) -> int:
-    return body.varying.pieces.shape[0]
-
-
-count_pieces = by_variation(_only_piece, _count_pieces)
+count_pieces = by_variation(lambda body: 1, lambda body: body.varying.pieces.shape[0])
 """(body): in a period."""
 
 
-def _whole_period(body: Any) -> float:
-    return body.period
-
-
-def _shortest(body: Any) -> float:
-    return body.varying.shortest
-
-
-shortest_period = by_variation(_whole_period, _shortest)
+shortest_period = by_variation(lambda body: body.period, lambda body: body.varying.shortest)
 """(body): in which a force may turn round."""

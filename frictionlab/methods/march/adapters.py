@@ -110,15 +110,9 @@ class SmoothedFriction(NamedTuple):
 # --- a normal load that changes -----------------------------------------------------------------------------------
 
 
-def _constant_share(body: Any, pressed: float) -> float:
-    return load_share(body, START)
-
-
-def _share_of_mean(body: Any, pressed: float) -> float:
-    return pressed / body.normal_load
-
-
-_share = by_variation(_constant_share, _share_of_mean)
+_share = by_variation(
+    lambda body, pressed: load_share(body, START), lambda body, pressed: pressed / body.normal_load
+)
 """_share(body, pressed): a normal load in shares of its mean."""
 
 
@@ -128,27 +122,17 @@ def in_shares(body: Body, pressed: float, mu: Any) -> Any:
     return _share(body, pressed) * mu
 
 
-def _resists_per_load(body: Any, law: Any, w: Any, z: Any, pressed: float) -> Any:
-    return resistance(law, w, z)
-
-
-def _resists_at_share(body: Any, law: Any, w: Any, z: Any, pressed: float) -> Any:
-    return resistance_at_share(law, w, z, _share(body, pressed))
-
-
-bristle_resistance = by_contact(_resists_per_load, _resists_at_share)
+bristle_resistance = by_contact(
+    lambda body, law, w, z, pressed: resistance(law, w, z),
+    lambda body, law, w, z, pressed: resistance_at_share(law, w, z, _share(body, pressed)),
+)
 """bristle_resistance(body, law, w, z, pressed): rate of one bristle, and friction coefficient."""
 
 
-def _advances_per_load(body: Any, law: Any, h: float, w: Any, z: Any, pressed: float) -> Any:
-    return advance_bristle(law, h, w, z)
-
-
-def _advances_at_share(body: Any, law: Any, h: float, w: Any, z: Any, pressed: float) -> Any:
-    return advance_at_share(law, h, w, z, _share(body, pressed))
-
-
-bristle_advance = by_contact(_advances_per_load, _advances_at_share)
+bristle_advance = by_contact(
+    lambda body, law, h, w, z, pressed: advance_bristle(law, h, w, z),
+    lambda body, law, h, w, z, pressed: advance_at_share(law, h, w, z, _share(body, pressed)),
+)
 """bristle_advance(body, law, h, w, z, pressed): the deflection after slip w that lasts h, under a normal load."""
 
 

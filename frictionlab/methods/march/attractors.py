@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frictionlab.methods.march.error import WORK, MarchMean, crossing, steps_needed, why_not
-from frictionlab.methods.march.laps import CLOSED, STALLED, TOO_FAST
-from frictionlab.methods.march.run import MarchResult, MarchRun, MarchState
+from frictionlab.methods.march.laps import CLOSED, STALLED, TOO_FAST, MarchState
+from frictionlab.methods.march.run import MarchResult, MarchRun
 from frictionlab.methods.shooting.attractors import starts
 
 NOISE = 1e-3

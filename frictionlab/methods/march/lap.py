@@ -201,15 +201,9 @@ def steps_in(settings: MarchSettings, lasts: float) -> int:
     return settings.refined * max(1, math.ceil(lasts / coarsest - 1e-9))
 
 
-def _end_of_lap(body: Any, settings: MarchSettings, k: int) -> float:
-    return settings.span
-
-
-def _end_at_corner(body: Any, settings: MarchSettings, k: int) -> float:
-    return piece_ends(body, k)[1]
-
-
-piece_end = by_variation(_end_of_lap, _end_at_corner)
+piece_end = by_variation(
+    lambda body, settings, k: settings.span, lambda body, settings, k: piece_ends(body, k)[1]
+)
 """piece_end(body, settings, k): when the k-th piece of a lap ends."""
 
 

@@ -22,7 +22,15 @@ from frictionlab.dynamics.motion import (
 )
 from frictionlab.dynamics.step_size import squared
 from frictionlab.methods.march.adapters import MarchProblem
-from frictionlab.methods.march.lap import Lap, MarchSettings, SlipTrace, first_trace, march_lap, steps_in
+from frictionlab.methods.march.lap import (
+    NOTHING,
+    Lap,
+    MarchSettings,
+    SlipTrace,
+    first_trace,
+    march_lap,
+    steps_in,
+)
 from frictionlab.numerics.steppers.step import BELT, COLUMNS, LOAD, NORMAL_LOAD, StepStart
 from frictionlab.orbit.recorder import Track, track_of
 from frictionlab.scene.body import Body
@@ -33,12 +41,12 @@ has used up its steps; slips faster than the steps bear; is too stiff for them w
 """
 
 
-class MarchStart(NamedTuple):
-    """Position, velocity and memory [numbers] to begin with."""
+class MarchState(NamedTuple):
+    """Position and velocity, real along the belt and else x1 + i x2, and what the law remembers [numbers]."""
 
     x: Any
     v: Any
-    z: Any
+    z: Any = NOTHING
 
 
 class LapsMarched(NamedTuple):
@@ -115,15 +123,7 @@ grid_of = by_variation(_grid_of_half_steps, _grid_of_pieces)
 # --- laps until the motion repeats --------------------------------------------------------------------------------
 
 
-def _held_by_a_jump(law: Any) -> float:
-    return law.static_friction()
-
-
-def _held_by_nothing(law: Any) -> float:
-    return 0.0
-
-
-largest_hold = by_law(_held_by_a_jump, _held_by_nothing, None, _held_by_nothing)
+largest_hold = by_law(lambda law: law.static_friction(), lambda law: 0.0, None, lambda law: 0.0)
 """largest_hold(law): the coefficient up to which friction holds a mass at rest; with memory the contact gives."""
 
 
@@ -266,7 +266,7 @@ def path_stuck(law: Any, body: Body, settings: MarchSettings, lap: Lap) -> float
 
 @inner
 def march_laps(
-    law: Any, body: Body, stepper: Any, settings: MarchSettings, start: MarchStart
+    law: Any, body: Body, stepper: Any, settings: MarchSettings, start: MarchState
 ) -> MarchHistory:
     """From a state lap by lap, until it repeats, stalls, or the laps are used up."""
     # What acts and what is remembered are bare pointers to steppers: the first to an array kept until the end, the

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,14 +11,14 @@ from frictionlab.compile.call import KernelCall
 from frictionlab.compile.interpret import interpreted
 from frictionlab.dynamics.motion import mean_friction, quickest_of, span
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.march.lap import NOTHING, MarchSettings
+from frictionlab.methods.march.lap import MarchSettings
 from frictionlab.methods.march.laps import (
     CLOSED,
     RESTING,
     STALLED,
     TOO_STIFF,
     MarchHistory,
-    MarchStart,
+    MarchState,
     march_laps,
 )
 from frictionlab.methods.march.prescribed import unmoved_mass, unseen_share
@@ -45,14 +44,6 @@ UNMOVED = 2.0**100
 """Of friction in the norm of energy, where it moves no mass: rounding of a mass at rest is nothing beside it."""
 LONGEST_PERIOD = 8
 """Of a response that repeats only after several laps."""
-
-
-class MarchState(NamedTuple):
-    """A state of the motion: x1 + i x2 and its rate, and what the law remembers, if anything, one by one."""
-
-    x: complex
-    v: complex
-    z: Floats = NOTHING
 
 
 @dataclass(frozen=True)
@@ -221,7 +212,7 @@ class MarchRun:
         x, v = (place.x.real, place.v.real) if self.straight else (place.x, place.v)
         z = np.array(place.z.real) if real else place.z.astype(complex)
         call = KernelCall(march_laps, self.law)
-        history, seconds = call.timed(self.body, self.facts.record(pace), way, MarchStart(x, v, z))
+        history, seconds = call.timed(self.body, self.facts.record(pace), way, MarchState(x, v, z))
         self.seconds += seconds
         return history
 

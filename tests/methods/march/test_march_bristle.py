@@ -25,7 +25,7 @@ from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.methods.march.adapters import Exponential, Rk4, Sdirk2
 from frictionlab.methods.march.lap import MarchSettings
-from frictionlab.methods.march.laps import MarchStart, march_laps
+from frictionlab.methods.march.laps import MarchState, march_laps
 from frictionlab.methods.march.method import March
 from frictionlab.mistakes.notes import WrongValues
 from frictionlab.numerics.steppers.rk4 import DECAY
@@ -170,7 +170,7 @@ def stepped(stepper, mass, steps, h, law=STEADY, **start):
         belt_speed=values["belt_speed"], driven=True, steps=steps, span=h * steps, first=h, slack=0.5, reach=h,
         enough=0.0, most=1, stride=2, rate=0.0, near=0.0, work=10**9, window=50, room=0,
     )  # fmt: skip
-    begin = MarchStart(0.0, values["v"], np.array([values["z"]]))
+    begin = MarchState(0.0, values["v"], np.array([values["z"]]))
     laps = KernelCall(march_laps, law)(on_the_line(mass), STEPPERS[stepper], settings, begin).laps
     return np.array([laps.x[-1].real, laps.v[-1].real, laps.z[-1, 0].real])
 

@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 import frictionlab as fl
-from frictionlab import registry
 from frictionlab.charts.figures import FIGURES
 from frictionlab.columns import CURVES, ONSETS, RESULTS, SI
 from frictionlab.mistakes.validation import number_paths, value_paths
@@ -138,22 +137,13 @@ def test_the_page_on_results_lists_the_columns_of_the_tables_in_their_order() ->
 
 NOMENCLATURE = (PROJECT / "docs" / "nomenclature.md").read_text()
 KEYS = re.findall(r"`([\w.*]+)`", NOMENCLATURE)
-PARAMETERS = {
-    f"law.{key}"
-    for name in ("coulomb", "stribeck", "dahl", "lugre", "elasto-plastic", "jenkins")
-    for key in registry.law_class(name).model_fields
-}
 VALUES = [f"scene.{path}" for path in value_paths(Scene) if not path.startswith("dimensional.")]
 VALUES += number_paths(Dimensional)
 
 
-@pytest.mark.parametrize("key", [*VALUES, *sorted(PARAMETERS)])
-def test_the_nomenclature_has_every_number_of_a_scene_and_every_parameter(key: str) -> None:
+@pytest.mark.parametrize("key", VALUES)
+def test_the_nomenclature_has_every_number_of_a_scene(key: str) -> None:
     assert any(fnmatchcase(key, listed) for listed in KEYS)
-
-
-def test_the_nomenclature_has_no_parameter_that_no_law_has() -> None:
-    assert {key for key in KEYS if key.startswith("law.")} == PARAMETERS
 
 
 def test_every_column_of_a_figure_is_in_the_nomenclature_or_on_the_page_on_results() -> None:

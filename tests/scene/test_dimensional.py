@@ -6,7 +6,6 @@ import math
 from typing import Annotated, Any
 
 import numpy as np
-import pandas as pd
 import pytest
 from drawn_figures import drawn
 from hypothesis import given
@@ -288,11 +287,6 @@ def test_belt_speeds_in_python_are_in_the_units_of_the_scene() -> None:
 # Studies
 
 
-def swept(**sweep: Any) -> pd.DataFrame:
-    swept = {f"scene.dimensional.{path}": values for path, values in sweep.items()}
-    return fl.run(study(sweep=swept), columns="all").table
-
-
 def test_sweeps_over_si_values_move_the_nondimensional_ones_with_them() -> None:
     table = fl.run(
         study(
@@ -427,14 +421,13 @@ def test_a_column_in_si_units_needs_a_scene_in_si_units() -> None:
 
 
 def test_figures_are_in_si_units_where_the_scene_is() -> None:
-    table = swept(belt_speed_m_per_s=[0.05 * i for i in range(1, 41)], mass_kg=[2, 3])
+    speeds, masses = (f"scene.dimensional.{key}" for key in ("belt_speed_m_per_s", "mass_kg"))
+    over = {speeds: [0.05 * i for i in range(1, 41)], masses: [2, 3]}
+    table = fl.run(study(sweep=over), columns="all").table
     family = family_of(table)
     assert family is not None
 
-    assert (family.abscissa, family.member) == (
-        "scene.dimensional.belt_speed_m_per_s",
-        "scene.dimensional.mass_kg",
-    )
+    assert (family.abscissa, family.member) == (speeds, masses)
     velocity, energies = (drawn(table, name) for name in ("velocity", "energies"))
     assert velocity.axes[0].get_ylabel() == r"velocity amplitude $\hat V_1$ [m/s]"
     assert energies.axes[0].get_ylabel() == r"work of the loads $E_\mathrm{in}$ [J]"

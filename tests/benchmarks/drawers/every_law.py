@@ -7,18 +7,8 @@ import random
 from typing import Any
 
 FAMILIES = (
-    *(
-        "coulomb",
-        "coulomb",
-        "coulomb",
-        "more at rest",
-        "stribeck",
-        "dahl",
-        "exponent",
-        "lugre",
-        "falling lugre",
-    ),
-    *("elasto-plastic", "jenkins", "maxwell-slip", "rate-and-state"),
+    *("coulomb", "coulomb", "coulomb", "more at rest", "stribeck", "dahl", "exponent", "lugre"),
+    *("falling lugre", "elasto-plastic", "jenkins", "maxwell-slip", "rate-and-state"),
 )
 NO_MEMORY = "coulomb", "more at rest", "stribeck"
 PLUGINS = "maxwell-slip", "rate-and-state"
@@ -30,12 +20,13 @@ def draw(rng: random.Random) -> dict[str, Any]:
     if family in PLUGINS and freedom == 2:  # seconds a scene
         freedom = 1
     scene, speed = _prescribed(rng) if freedom == 0 else _free(rng, freedom)
-    one = {
-        "family": family,
-        "freedom": freedom,
-        "scene": scene,
-        "law": _law(rng, family, freedom, scene, speed),
-    }
+    frequency = (scene.get("drive") or scene.get("slip") or scene.get("transverse_slip") or {}).get(
+        "frequency", 1.0
+    )
+    made = law(rng, family, _log(rng, 1e-4, 1e2) * speed / frequency, speed)
+    if freedom != 1 and "presliding_length" in made and rng.random() < 0.2:
+        made["planar"] = rng.choice(("rotated", "per-axis"))
+    one = {"family": family, "freedom": freedom, "scene": scene, "law": made}
     return one | {"method": _method(rng, family, freedom), "tolerance": rng.choice((1e-4, 1e-6, 1e-8))}
 
 
@@ -44,11 +35,8 @@ def _log(rng: random.Random, low: float, high: float) -> float:
 
 
 def _prescribed(rng: random.Random) -> tuple[dict[str, Any], float]:
-    size, frequency, which = (
-        _log(rng, 0.1, 30.0),
-        _log(rng, 0.2, 5.0),
-        rng.choice(("along", "along", "across", "both")),
-    )
+    size, frequency = _log(rng, 0.1, 30.0), _log(rng, 0.2, 5.0)
+    which = rng.choice(("along", "along", "across", "both"))
     scene: dict[str, Any] = {"belt_speed": _belt_speed(rng, size)}
     if which != "across":
         phase = rng.uniform(0.0, 360.0)
@@ -97,34 +85,22 @@ def _belt_speed(rng: random.Random, speed: float) -> float:
     return side * speed * (grazing if kind < 0.15 else _log(rng, 0.01, 1.5))
 
 
-def _law(
-    rng: random.Random, family: str, freedom: int, scene: dict[str, Any], speed: float
-) -> dict[str, Any]:
-    """mu about 0.4; speeds and lengths in shares of those of the motion."""
-    mu, part = (
-        rng.uniform(0.2, 0.6),
-        scene.get("drive") or scene.get("slip") or scene.get("transverse_slip") or {},
-    )
-    length = _log(rng, 1e-4, 1e2) * speed / part.get("frequency", 1.0)
-    higher = {"mu_static": mu * rng.uniform(1.0, 1.6), "stribeck_speed": _log(rng, 0.05, 2.0) * speed}
+def law(rng: random.Random, family: str, length: float, speed: float) -> dict[str, Any]:
+    """mu about 0.4; length: of presliding, or of slip that renews the contact; speed: of the motion."""
+    mu = rng.uniform(0.2, 0.6)
     bristles: dict[str, Any] = {"presliding_length": length}
-    if freedom != 1 and rng.random() < 0.2:
-        bristles["planar"] = rng.choice(("rotated", "per-axis"))
     damped = bristles | ({"damping": _log(rng, 1e-4, 0.3) * mu / speed} if rng.random() < 0.7 else {})
+    higher = {"mu_static": mu * rng.uniform(1.0, 1.6), "stribeck_speed": _log(rng, 0.05, 2.0) * speed}
+    higher["viscosity"] = rng.choice((0.0, _log(rng, 1e-3, 0.3) * mu / speed))
     if family == "stribeck":
         curve = rng.choice(("exponential", "hyperbolic", "hess-soom", "cubic"))
-        viscosity = rng.choice((0.0, _log(rng, 1e-3, 0.3) * mu / speed))
-        return {"kind": "stribeck", "mu_kinetic": mu, "curve": curve, "viscosity": viscosity, **higher}
+        return {"kind": "stribeck", "mu_kinetic": mu, "curve": curve, **higher}
     if family == "maxwell-slip":
-        shares, stiff = [0.5, 0.3, 0.2], [1.0, 0.4, 0.1]
-        return {
-            "kind": family,
-            "mu": [mu * share for share in shares],
-            "stiffness": [mu * k / length for k in stiff],
-        }
+        parts = [mu * share for share in (0.5, 0.3, 0.2)]
+        return {"kind": family, "mu": parts, "stiffness": [mu / length * k for k in (1.0, 0.4, 0.1)]}
     if family == "rate-and-state":
-        law = {"kind": family, "mu": mu, "a": 0.01, "b": rng.choice((0.008, 0.015)), "slip_length": length}
-        return law | {"reference_speed": speed}
+        ages = {"a": 0.01, "b": rng.choice((0.008, 0.015)), "slip_length": length}
+        return {"kind": family, "mu": mu, "reference_speed": speed, **ages}
     return {
         "coulomb": {"kind": "coulomb", "mu": mu},
         "more at rest": {"kind": "coulomb", "mu": mu, "mu_static": mu * rng.uniform(1.0, 1.6)},

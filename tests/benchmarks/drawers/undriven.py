@@ -9,16 +9,27 @@ scene's own start until the mean from one largest deflection to the next repeats
 from __future__ import annotations
 
 import math
+import random
 
 import numpy as np
 from campaign import Campaign, Drawn, Keys, Unknown, covered, law_of, log_uniform, sound
 from scipy.integrate import solve_ivp
 
 import frictionlab as fl
+from drawers import every_law
 from frictionlab.quantities import Floats
 from frictionlab.theory.sliding_stability import steady_deflection
 
-KINDS = "dahl", "lugre", "lugre constant", "elasto-plastic", "jenkins", "maxwell-slip", "rate-and-state"
+KINDS = (
+    "dahl",
+    "exponent",
+    "lugre",
+    "falling lugre",
+    "elasto-plastic",
+    "jenkins",
+    "maxwell-slip",
+    "rate-and-state",
+)
 CALLS = 400_000
 TURN = 2.0 * math.pi
 REPEATS = 1e-9
@@ -42,30 +53,17 @@ def draw(rng: np.random.Generator) -> Drawn:
 
 
 def _law(rng: np.random.Generator, kind: str, load: float, speed: float) -> Keys:
-    mu = log_uniform(rng, 0.1, 1)
     if kind == "rate-and-state":
+        mu = log_uniform(rng, 0.1, 1)
         a = mu * log_uniform(rng, 0.01, 0.1)
         told = {"a": a, "b": a * float(rng.uniform(0.5, 3)), "state_law": str(rng.choice(["ageing", "slip"]))}
         length = load * a * log_uniform(rng, 0.03, 3)
         return {"kind": kind, "mu": mu, "slip_length": length, "reference_speed": speed, **told}
-    length = load * mu * log_uniform(rng, 1e-5, 1)
-    if kind == "maxwell-slip":
-        share = rng.uniform(0.1, 1, 3)
-        stiffness = [mu / length * 3.0**k for k in range(3)]
-        return {"kind": kind, "mu": (mu * share / share.sum()).tolist(), "stiffness": stiffness}
-    if kind == "dahl":
-        exponent = float(rng.choice([1.0, 0.5]))
-        return {"kind": kind, "mu": mu, "presliding_length": length, "exponent": exponent}
-    if kind == "jenkins":
-        return {"kind": kind, "mu": mu, "presliding_length": length}
-    law: Keys = {"kind": kind.partition(" ")[0], "mu_kinetic": mu, "presliding_length": length}
-    if rng.random() < 0.6:  # up to that which is critical for the mass on its bristles
-        law["damping"] = log_uniform(rng, 1e-2, 2) * math.sqrt(mu / length / load)
-    if kind != "lugre constant":
-        law["mu_static"] = mu * float(rng.uniform(1, 2))
-        law["stribeck_speed"] = log_uniform(rng, 0.03, 3) * speed
-        law["viscosity"] = log_uniform(rng, 1e-3, 0.3) * mu / speed if rng.random() < 0.5 else 0.0
-    return law | ({"breakaway_ratio": float(rng.uniform(0.1, 0.95))} if kind == "elasto-plastic" else {})
+    length = 0.4 * load * log_uniform(rng, 1e-5, 1)
+    law = every_law.law(random.Random(int(rng.integers(2**32))), kind, length, speed)
+    if "damping" in law:  # up to that which is critical for the mass on its bristles
+        law["damping"] = log_uniform(rng, 1e-2, 2) * math.sqrt(law["mu_kinetic"] / length / load)
+    return law
 
 
 class Motion:

@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
+import pytest
 
+from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, Method
 from frictionlab.orbit.record import Orbit
@@ -77,6 +79,13 @@ class Another(Fake):
     """The same under another name."""
 
     name: ClassVar[str] = "another"
+
+
+def register(monkeypatch: pytest.MonkeyPatch, **fakes: type[Method]) -> None:
+    """Let studies name these methods, too."""
+    known, names = registry.method_class, registry.method_names()
+    monkeypatch.setattr(registry, "method_class", lambda name: fakes.get(name) or known(name))
+    monkeypatch.setattr(registry, "method_names", lambda: sorted([*names, *fakes]))
 
 
 def _orbit(belt_speed: float) -> Orbit | None:

@@ -13,10 +13,9 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 from answered import with_columns
-from fake_methods import Another, Fake, breaks_down
-from matplotlib.figure import Figure
+from fake_methods import Another, Fake, breaks_down, register
 
-from frictionlab import bench, cli, registry
+from frictionlab import bench, cli
 from frictionlab.bench import pictures
 from frictionlab.bench.curve import CurveResult
 from frictionlab.bench.measure import chosen, time_task
@@ -67,10 +66,7 @@ class Off(Fake):
 
 @pytest.fixture(autouse=True)
 def _fakes_and_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    fakes: dict[str, Any] = {"fake": Fake, "another": Another, "off": Off}
-    known, names = registry.method_class, registry.method_names()
-    monkeypatch.setattr(registry, "method_class", lambda name: fakes.get(name) or known(name))
-    monkeypatch.setattr(registry, "method_names", lambda: sorted([*names, *fakes]))
+    register(monkeypatch, fake=Fake, another=Another, off=Off)
     monkeypatch.chdir(tmp_path)
     means = [f"{speed},{0.4 * math.tanh(speed) / 3.0!r}" for speed in SPEEDS]
     Path("known.csv").write_text("\n".join(["belt_speed,mean_friction", *means]))
@@ -279,14 +275,8 @@ def test_the_command_writes_a_chart_and_tables_per_curve(capsys: pytest.CaptureF
     out, err = capsys.readouterr()
     assert out.startswith("A: us per point")
     assert "A: off, by 0.001" in err
-    assert sorted(path.name for path in Path("runs/bench-list").iterdir()) == [
-        "A.csv",
-        "A.md",
-        "A.png",
-        "A.svg",
-        "bench.json",
-        "index.html",
-    ]
+    written = sorted(path.name for path in Path("runs/bench-list").iterdir())
+    assert written == ["A.csv", "A.md", "A.png", "A.svg", "bench.json", "index.html"]
 
 
 def test_an_interrupted_bench_keeps_the_curves_that_are_done(
@@ -309,72 +299,53 @@ def test_an_interrupted_bench_keeps_the_curves_that_are_done(
 # --- sections -----------------------------------------------------------------------------------------------------
 
 
-class Told(bench.SectionResult):
-    """What the fake section came to."""
+def test_a_list_may_have_sections_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    stability = "{steppers: [exponential, rk4], problems: [bristle], grid: 3}"
+    orders = "{motions: [smooth], steppers: [moreau_1]}"
+    Path("list.yaml").write_text(f"schema: 1\norders: {orders}\nstability: {stability}\n")
 
-    caption = "how to read it"
+    assert cli.main(["bench", "list.yaml", "-o", "out", "--only", "orders", "--only", "stability_rk4"]) == 0
 
-    def __init__(self, name: str) -> None:
-        self.name, self.title = name, "a fake"
-
-    def records(self) -> list[dict[str, Any]]:
-        return [{"a": 1}]
-
-    def summary(self) -> str:
-        return f"{self.name}: told"
-
-
-class Part:
-    """A fake section; trouble is called when it is measured."""
-
-    def __init__(self, name: str, trouble: Any = lambda: None) -> None:
-        self.name, self._trouble = name, trouble
-
-    def measure(self, tell: Any) -> Told:
-        self._trouble()
-        return Told(self.name)
+    told = capsys.readouterr().out
+    assert told.startswith("orders: 1 of 1 asymptotic, 1 of them within 0.1 of theory\n")
+    assert "\n\nstability_rk4, bristle: 9 points" in told
+    written = [f"{name}.{kind}" for name in ("orders", "stability_rk4") for kind in ("csv", "png", "svg")]
+    assert sorted(path.name for path in Path("out").iterdir()) == ["bench.json", "index.html", *written]
 
 
-def sections(monkeypatch: pytest.MonkeyPatch, *parts: Part) -> None:
-    """A bench list has these sections, too."""
-    read = bench.load_bench
-    monkeypatch.setitem(pictures.FIGURES_OF_SECTIONS, Told, lambda result: Figure())
-    monkeypatch.setattr(
-        bench, "load_bench", lambda path: replace(found := read(path), sections=(*found.sections, *parts))
+@pytest.mark.parametrize(
+    ("section", "told"),
+    [
+        ("orders: {motions: [smoth]}", "did you mean 'smooth'"),
+        ("orders: {steppers: []}", "a list of at least 1"),
+        ("orders: {samples: 0}", "must be >= 1"),
+        ("orders: {solvers: [rk4]}", "unknown key"),
+        ("orders: false", "must be a mapping"),
+        ("stability: {steppers: [rk5]}", "did you mean 'rk4'"),
+        ("stability: {problems: [bristles]}", "did you mean 'bristle'"),
+        ("stability: {grid: 1}", "must be >= 2"),
+        ("stability: {method: []}", "unknown key"),
+    ],
+)
+def test_a_wrong_request_of_a_section_is_told(section: str, told: str) -> None:
+    Path("list.yaml").write_text(f"schema: 1\n{section}\n")
+
+    with pytest.raises(StudyError, match=told):
+        bench.load_bench(Path("list.yaml"))
+
+
+def test_a_section_is_chosen_by_name_beside_curves(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("list.yaml").write_text(
+        f"{LIST}stability: {{steppers: [exponential], problems: [bristle], grid: 2}}\n"
     )
 
-
-def test_a_list_may_have_sections_alone(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    sections(monkeypatch, Part("one"), Part("two"))
-    Path("list.yaml").write_text("schema: 1\nstability: {steppers: [rk4]}\n")
-
-    assert cli.main(["bench", "list.yaml", "-o", "out", "--only", "one", "--only", "two"]) == 0
-
-    assert capsys.readouterr().out == "one: told\n\ntwo: told\n"
-    assert sorted(path.name for path in Path("out").iterdir()) == [
-        "bench.json",
-        "index.html",
-        "one.csv",
-        "one.png",
-        "one.svg",
-        "two.csv",
-        "two.png",
-        "two.svg",
-    ]
-
-
-def test_a_section_is_chosen_by_name_beside_curves(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    sections(monkeypatch, Part("one"), Part("two"))
-    Path("list.yaml").write_text(LIST)
-
-    assert cli.main(["bench", "list.yaml", "--only", "two", "-o", "out"]) == 0
-    assert capsys.readouterr().out == "two: told\n"
+    assert cli.main(["bench", "list.yaml", "--only", "stability_exponential", "-o", "out"]) == 0
+    assert capsys.readouterr().out.startswith("stability_exponential, bristle: 4 points")
     assert cli.main(["bench", "list.yaml", "--only", "three"]) == 2
-    assert "no curve or section 'three' in the list; there are A, one, two" in capsys.readouterr().err
+    assert (
+        "no curve or section 'three' in the list; there are A, stability_exponential"
+        in capsys.readouterr().err
+    )
 
 
 MISTAKES = [

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from profiles import deep
 
-from frictionlab import bench, cli
 from frictionlab.bench.orders.fit import fit_order
 from frictionlab.bench.orders.motions import MOTIONS
 from frictionlab.bench.orders.section import OrdersResult, OrdersSection
@@ -18,7 +17,6 @@ from frictionlab.bench.orders.solvers import ORDER_SOLVERS
 from frictionlab.bench.orders.theory import theory_of
 from frictionlab.methods.march.run import MarchRun
 from frictionlab.methods.march.steppers import Resolution
-from frictionlab.study import StudyError
 
 SIZES = 0.5 ** np.arange(8)
 
@@ -99,36 +97,6 @@ def test_the_table_says_what_was_fitted_and_why_theory_expects_it(tmp_path: Path
     assert by_width["theory"] == ""
     assert "faster than any power" in by_width["reason"]
     assert "moreau_1" in result.summary()
-
-
-def test_the_command_measures_the_orders_of_a_list(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("list.yaml").write_text("schema: 1\norders: {motions: [smooth], steppers: [moreau_1]}\n")
-
-    assert cli.main(["bench", "list.yaml", "-o", "out"]) == 0
-
-    assert "1 of 1 asymptotic, 1 of them within 0.1 of theory" in capsys.readouterr().out
-    assert Path("out/orders.csv").exists()
-
-
-@pytest.mark.parametrize(
-    ("given", "told"),
-    [
-        ("{motions: [smoth]}", "did you mean 'smooth'"),
-        ("{steppers: []}", "a list of at least 1"),
-        ("{samples: 0}", "must be >= 1"),
-        ("{solvers: [rk4]}", "unknown key"),
-        ("false", "must be a mapping"),
-    ],
-)
-def test_a_wrong_request_is_told(given: str, told: str, tmp_path: Path) -> None:
-    (tmp_path / "list.yaml").write_text(f"schema: 1\norders: {given}\n")
-
-    with pytest.raises(StudyError) as caught:
-        bench.load_bench(tmp_path / "list.yaml")
-    assert told in str(caught.value)
 
 
 @deep("minutes")

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from profiles import deep
 
-from frictionlab import bench, cli
+from frictionlab import bench
 from frictionlab.bench.pictures import draw
 from frictionlab.bench.stability import steppers
 from frictionlab.bench.stability.limits import measured_limit, predicted_limit, stepper_limit
@@ -21,7 +21,6 @@ from frictionlab.bench.stability.problems import PROBLEMS
 from frictionlab.bench.stability.record import MapPoint
 from frictionlab.bench.stability.section import StabilityResult, StabilitySection
 from frictionlab.bench.stability.steppers import MAPPED_STEPPERS
-from frictionlab.study import StudyError
 
 
 def mapped(name: str, problem: str, grid: int) -> StabilityResult:
@@ -129,12 +128,6 @@ def test_the_step_of_a_peer_may_be_as_long_as_theory_says(peer: str, limit: floa
     assert predicted_limit(peer) == limit
 
 
-def test_heyoka_chooses_steps_too_short_to_be_unstable() -> None:
-    pytest.importorskip("heyoka")
-
-    assert peer_limit("heyoka") == math.inf
-
-
 @pytest.mark.parametrize("problem", ["bristle", "smoothing", "plane"])
 def test_a_peer_finds_the_mean_over_one_period_of_a_known_orbit(problem: str) -> None:
     section = StabilitySection(MAPPED_PEERS["LSODA"], (PROBLEMS[problem],), 3)
@@ -178,38 +171,6 @@ def test_the_picture_is_drawn_and_says_how_to_read_it(tmp_path: Path) -> None:
     assert picture.file_stem == "stability_exponential"
     assert "Colour is the true error" in picture.caption
     assert (tmp_path / "stability_exponential.svg").stat().st_size < 250_000
-
-
-def test_the_command_maps_the_steppers_of_a_list(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("list.yaml").write_text(
-        "schema: 1\nstability: {steppers: [exponential, rk4], problems: [bristle], grid: 3}\n"
-    )
-
-    assert cli.main(["bench", "list.yaml", "-o", "out", "--only", "stability_rk4"]) == 0
-
-    assert capsys.readouterr().out.startswith("stability_rk4, bristle: 9 points")
-    written = [f"stability_rk4.{kind}" for kind in ("csv", "png", "svg")]
-    assert sorted(path.name for path in Path("out").iterdir()) == ["bench.json", "index.html", *written]
-
-
-@pytest.mark.parametrize(
-    ("given", "told"),
-    [
-        ("{steppers: [rk5]}", "did you mean 'rk4'"),
-        ("{problems: [bristles]}", "did you mean 'bristle'"),
-        ("{grid: 1}", "must be >= 2"),
-        ("{method: []}", "unknown key"),
-    ],
-)
-def test_a_wrong_request_is_told(given: str, told: str, tmp_path: Path) -> None:
-    (tmp_path / "list.yaml").write_text(f"schema: 1\nstability: {given}\n")
-
-    with pytest.raises(StudyError) as caught:
-        bench.load_bench(tmp_path / "list.yaml")
-    assert told in str(caught.value)
 
 
 @deep("minutes")

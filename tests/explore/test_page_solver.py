@@ -6,7 +6,6 @@ import json
 import math
 import shutil
 import subprocess
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -198,13 +197,3 @@ def test_a_curve_of_120_points_takes_less_than_a_tenth_of_a_second() -> None:
     told(Math.min(...spent));
     """
     assert in_node(script, SHAPES[0]) < 100.0
-
-
-def test_the_solver_is_a_part_of_the_package() -> None:
-    assert {path.name for path in page.PAGE_PARTS.iterdir()} >= {
-        "solver.js",
-        "page.html",
-        "page.css",
-        "run.js",
-    }
-    assert Path(page.__file__).parent in page.PAGE_PARTS.parents

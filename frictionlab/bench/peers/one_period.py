@@ -80,22 +80,6 @@ def by_heyoka(
     return PeriodByPeer(mean, period / max(1, steps), "")
 
 
-def growth_by_heyoka(z: float) -> float:
-    """What one step, at most this long, multiplies y of y' = -y with: it chooses shorter ones."""
-    integrator = _decay_of_heyoka()
-    integrator.state[0] = 1.0
-    integrator.step(max_delta_t=z)
-    return abs(float(integrator.state[0]))
-
-
-@lru_cache(maxsize=1)
-def _decay_of_heyoka() -> Any:
-    import heyoka as hy
-
-    y = hy.make_vars("y")
-    return hy.taylor_adaptive([(y, -y)], [1.0], tol=1e-3)
-
-
 @lru_cache(maxsize=128)
 def _creep(tolerance: float) -> Any:
     """(x1, v1, x2, v2, integral of the friction coefficient), drive at frequency 1."""

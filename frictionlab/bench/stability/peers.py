@@ -14,7 +14,6 @@ from frictionlab.bench.peers.one_period import (
     by_heyoka,
     by_scipy,
     equations_of,
-    growth_by_heyoka,
     growth_by_scipy,
 )
 from frictionlab.bench.stability.grid import KnownState, MappedSolver, known_state, local_rate
@@ -64,10 +63,8 @@ def start_of_period(known: KnownState) -> Floats:
 
 @cache
 def peer_limit(name: str) -> float:
-    """The measured limit of a peer's steps; LSODA, which changes its formula as it goes, has none of its own."""
-    if name == "LSODA":
-        return math.inf
-    return measured_limit(growth_by_heyoka if name == "heyoka" else partial(growth_by_scipy, name))
+    """The measured limit of a peer's steps; LSODA changes its formula as it goes, heyoka its order and its steps."""
+    return math.inf if name in ("LSODA", "heyoka") else measured_limit(partial(growth_by_scipy, name))
 
 
 _ALL_PROBLEMS = ("bristle", "smoothing", "plane")

@@ -30,7 +30,7 @@ class StabilityProblem:
     rate_text: str
     memory: str
     at: Callable[[float], tuple[Scene, FrictionLaw]]
-    steps: tuple[float, float]
+    steps: tuple[float, float] = (8.0, 4096.0)
     tolerances: tuple[float, float] = (1e-1, 1e-9)
     rates: tuple[float, float] = (1.0, 1e3)
 
@@ -68,15 +68,9 @@ def _in_the_plane(rate: float) -> tuple[Scene, FrictionLaw]:
 
 
 _ALL = (
-    StabilityProblem(
-        "bristle", "bristles of Dahl's law", "largest |slip| k/mu", "bristle", _bristles, (8.0, 4096.0)
-    ),
-    StabilityProblem(
-        "smoothing", "friction smoothed by tanh", "friction limit / width", "none", _smoothing, (8.0, 4096.0)
-    ),
-    StabilityProblem(
-        "plane", "slow slip in the plane", "friction limit / |slip|", "none", _in_the_plane, (8.0, 4096.0)
-    ),
+    StabilityProblem("bristle", "bristles of Dahl's law", "largest |slip| k/mu", "bristle", _bristles),
+    StabilityProblem("smoothing", "friction smoothed by tanh", "friction limit / width", "none", _smoothing),
+    StabilityProblem("plane", "slow slip in the plane", "friction limit / |slip|", "none", _in_the_plane),
 )
 PROBLEMS: dict[str, StabilityProblem] = {problem.name: problem for problem in _ALL}
 """By name, in the order of tables and pictures."""

@@ -36,20 +36,13 @@ POINTS: dict[str, Callable[[Scene, Any, float], Point]] = {
 
 
 def _bristle_point(scene: Scene, law: Any, tolerance: float) -> Point:
-    if scene.is_harmonic:
-        return BristlePoint(scene, law, tolerance)
-    if not along_one_line(scene, law) and law.planar_form() == "per-axis":
-        return AxesPoint(scene, lambda axis: _bristle_on_a_line(axis, law, tolerance))
-    if along_one_line(scene, law):
-        return _bristle_on_a_line(scene, law, tolerance)
-    return MemoryPoint(scene, law, tolerance)
-
-
-def _bristle_on_a_line(scene: Scene, law: Any, tolerance: float) -> LegsPoint | BristlePoint | MemoryPoint:
+    line = along_one_line(scene, law)
+    if not line and law.planar_form() == "per-axis":
+        return AxesPoint(scene, lambda axis: _bristle_point(axis, law, tolerance))
     if scene.is_harmonic:
         return BristlePoint(scene, law, tolerance)
     # in a contact that keeps its stiffness, deflections change with the normal load, too
-    known = law.exact_path() and not scene.constant_contact
+    known = line and law.exact_path() and not scene.constant_contact
     return LegsPoint(scene, law) if known else MemoryPoint(scene, law, tolerance)
 
 

@@ -22,7 +22,7 @@ class AxesPoint:
 
     def __init__(self, scene: Scene, solve: Callable[[Scene], Any]) -> None:
         self.along, self.across = (solve(each) for each in _axes(scene))
-        self.slip = VaryingSlip.of(scene.signals(), scene.motion().normal_load)
+        self.scene = scene
         first, second = self.along.found, self.across.found
         self.status: Status = self.along.status
         self.reason, self.model = self.along.reason, self.along.model
@@ -35,14 +35,15 @@ class AxesPoint:
         one, other = self.along.orbit(), self.across.orbit()
         if one is None:
             return None
+        slip = VaryingSlip.of(self.scene.signals(), self.scene.motion().normal_load)
         if other is None:
-            return self.slip.orbit(one.tau, one.friction.real + complex(0.0, math.nan))
+            return slip.orbit(one.tau, one.friction.real + complex(0.0, math.nan))
         end = one.tau[-1, -1]
         edges = np.unique(np.concatenate([one.tau[:, 0], other.tau[:, 0]]))
         edges = edges[np.diff(edges, append=end) > 1e-12 * end]
         half = 0.5 * np.diff(edges, append=end)[:, None]
         tau: Floats = edges[:, None] + half * (1.0 + NODES)
-        return self.slip.orbit(tau, _friction_on(one, tau) + 1j * _friction_on(other, tau))
+        return slip.orbit(tau, _friction_on(one, tau) + 1j * _friction_on(other, tau))
 
 
 def _axes(scene: Scene) -> tuple[Scene, Scene]:

@@ -22,8 +22,10 @@ from frictionlab.results.run import Run
 from frictionlab.results.summary import summary
 from frictionlab.results.table import swept_inputs, whole
 from frictionlab.runner.api import run as run_study
+from frictionlab.runner.api import with_onsets
 from frictionlab.runner.arguments import given_scene, given_speeds
 from frictionlab.runner.save import save_run
+from frictionlab.runner.saved import saved_as
 from frictionlab.scene.scene import Scene
 from frictionlab.study import Study
 from frictionlab.study.axes import FRICTION
@@ -172,9 +174,17 @@ class Comparison:
 
         Raises FolderError where the folder holds results of another study, SaveError.
         """
-        from frictionlab.notebook.pages import draw_and_report  # with matplotlib, which takes a second
+        from frictionlab.charts.figures import (
+            FigureData,
+            draw_figures,
+        )  # with matplotlib, which takes a second
+        from frictionlab.report.page import write_report
 
-        return draw_and_report(save_run(self.run, Path(folder), self.seconds))
+        saved = saved_as(with_onsets(save_run(self.run, Path(folder), self.seconds)))
+        data = FigureData(saved.table, saved.title, saved.onsets, saved.curves, options=saved.study.figures)
+        draw_figures(data, saved.folder / "figures")
+        write_report(saved)
+        return saved.folder
 
     def report(self, path: str | PathLike[str]) -> Path:
         """Write the report alone, one HTML file that needs nothing else; where it is.
@@ -230,7 +240,7 @@ def compare(
     """
     ready = given_scene(scene)
     listed = belt_speed if belt_speed is None or isinstance(belt_speed, Mapping) else given_speeds(belt_speed)
-    over = {} if listed is None else {_speed_path(ready): listed}
+    over = {} if listed is None else {BELT_SPEEDS[ready.dimensional is not None]: listed}
     return sweep(scene, laws, over, methods, tolerance, columns, executor)
 
 
@@ -265,7 +275,3 @@ def sweep(
 
 
 _COEFFICIENTS = "law.mu", "law.mu_kinetic", "law.mu_static"
-
-
-def _speed_path(scene: Scene) -> str:
-    return BELT_SPEEDS[scene.dimensional is not None]

@@ -115,18 +115,12 @@ def _known_text(value: Any, path: Path, known: tuple[str, ...] | None, notes: No
 def _claim(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:
     """The claim about the rows: a number, a status, a difference of two methods, or the shape of a curve."""
     if "status" in given:
-        return _status(given, path, notes)
+        _only(given, ("status",), path, notes)
+        statuses = tuple(status for status in columns.STATUSES if status != "killed")
+        return {"status": notes.one_of(given["status"], (*path, "status"), statuses)}
     if "max_difference" in given:
         return _difference(given, path, table, notes)
-    if "shape" in given:
-        return _shape(given, path, table, notes)
-    return _comparison(given, path, table, notes)
-
-
-def _status(given: dict[str, Any], path: Path, notes: Notes) -> dict[str, Any]:
-    _only(given, ("status",), path, notes)
-    statuses = tuple(status for status in columns.STATUSES if status != "killed")
-    return {"status": notes.one_of(given["status"], (*path, "status"), statuses)}
+    return _shape(given, path, table, notes) if "shape" in given else _comparison(given, path, table, notes)
 
 
 def _difference(given: dict[str, Any], path: Path, table: Table, notes: Notes) -> dict[str, Any]:

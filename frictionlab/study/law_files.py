@@ -16,12 +16,7 @@ from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.mistakes.notes import Mistake, Notes, Path, StudyError, did_you_mean, value_text
 from frictionlab.mistakes.text_file import Unreadable, text_of
-from frictionlab.registry.law_file import (
-    LawFile,
-    code_of,
-    law_name,
-    read_law_file,
-)
+from frictionlab.registry.law_file import LawFile, code_of, law_name, read_law_file
 from frictionlab.study.yaml_source import Source
 
 KEY = "plugins"
@@ -120,13 +115,6 @@ def laws_of_files(paths: Iterable[FilePath]) -> registry.Laws:
     return laws_of(list(dict.fromkeys(files)))
 
 
-class LawText(NamedTuple):
-    """The docstring and the BibTeX entries of a law."""
-
-    docstring: str
-    bibtex: str
-
-
 class SavedLaw(FrictionLaw):
     """The name and parameters of a law of a saved run: enough for a report, not for computing."""
 
@@ -142,7 +130,7 @@ def saved_law_reader(codes: Mapping[str, str]) -> LawReader:
         laws = tree.get("laws")
         given = [law for law in laws if isinstance(law, dict)] if isinstance(laws, list) else []
         kinds = {str(law.get("kind")): law for law in given if law.get("kind") in codes}
-        own = {kind: _stand_in(kind, given, _law_text(kind, files)) for kind in kinds}
+        own = {kind: _stand_in(kind, given, files) for kind in kinds}
         return StudyLaws(files, registry.Laws(own), codes)
 
     return bring
@@ -155,7 +143,7 @@ def _saved_file(path: FilePath) -> LawFile:
         return LawFile(path, "", {})
 
 
-def _stand_in(kind: str, given: list[dict[str, Any]], told: LawText) -> type[FrictionLaw]:
+def _stand_in(kind: str, given: list[dict[str, Any]], files: tuple[LawFile, ...]) -> type[FrictionLaw]:
     """A law class with every parameter that a law of this kind has in the study."""
     values = {key: value for law in given if law["kind"] == kind for key, value in law.items()}
     fields: dict[str, Any] = {
@@ -163,20 +151,21 @@ def _stand_in(kind: str, given: list[dict[str, Any]], told: LawText) -> type[Fri
         for key, value in values.items()
         if str(key).isidentifier() and key not in ("kind", "label")
     }
-    made = create_model(kind, __base__=SavedLaw, __doc__=told.docstring, **fields)
-    made.bibtex = told.bibtex
+    docstring, bibtex = _told_of_law(kind, files)
+    made = create_model(kind, __base__=SavedLaw, __doc__=docstring, **fields)
+    made.bibtex = bibtex
     return made
 
 
-def _law_text(kind: str, files: tuple[LawFile, ...]) -> LawText:
+def _told_of_law(kind: str, files: tuple[LawFile, ...]) -> tuple[str, str]:
     """Docstring and BibTeX of a law, from the copy of its file, else from an installed law of the same name."""
     own = [node for file in files for node in _classes(file) if law_name(node.name) == kind]
     if own:
-        return LawText(ast.get_docstring(own[0]) or "", _bibtex(own[0]))
+        return ast.get_docstring(own[0]) or "", _bibtex(own[0])
     with suppress(KeyError, registry.BrokenPlugin):
         law = registry.law_class(kind)
-        return LawText(inspect.getdoc(law) or "", law.bibtex)
-    return LawText("", "")
+        return inspect.getdoc(law) or "", law.bibtex
+    return "", ""
 
 
 def _bibtex(law: ast.ClassDef) -> str:

@@ -12,21 +12,11 @@ from frictionlab.mistakes.validation import build_record, number_paths, value_pa
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.units import dimensions
 from frictionlab.study.axes import FRICTION, LINKED, STATIC, GridValue
-from frictionlab.study.choices import (
-    items,
-    label_of,
-    law_choice,
-    method_choice,
-    note_equal_labels,
-)
+from frictionlab.study.choices import items, label_of, law_choice, method_choice, note_equal_labels
 from frictionlab.study.expectations import Table, expectations, result_column
 from frictionlab.study.figure_options import read_figure_options
 from frictionlab.study.grid import StudyGrid
-from frictionlab.study.law_files import (
-    LawReader,
-    StudyLaws,
-    read_laws,
-)
+from frictionlab.study.law_files import LawReader, StudyLaws, read_laws
 from frictionlab.study.overrides import apply_overrides
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA, LawChoice, MethodChoice, coefficient_of
 from frictionlab.study.possible import note_impossible_points

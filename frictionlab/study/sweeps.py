@@ -10,12 +10,7 @@ from typing import Any
 from frictionlab import registry
 from frictionlab.columns import BELT_SPEEDS
 from frictionlab.mistakes.notes import Notes, Path, number_text, value_text
-from frictionlab.mistakes.validation import (
-    build_record,
-    checked_value,
-    placed,
-    wrong_value,
-)
+from frictionlab.mistakes.validation import build_record, checked_value, placed, wrong_value
 from frictionlab.study.axes import LINKED, GridValue
 from frictionlab.study.ranges import WITHIN, SpeedRange, SweepRange
 from frictionlab.study.sweep_targets import Target, Targets, value_at

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from strategies import (
     BRISTLE_LAWS,
@@ -272,6 +272,7 @@ def test_the_describing_function_of_dahl_is_the_first_harmonic_of_its_loop(ampli
 
 
 @given(amplitude=sizes(0.1, 1e3), stiffness=sizes(1e-3, 1e3))
+@example(amplitude=1.0 + 1e-9, stiffness=1.0)
 def test_the_describing_function_of_jenkins_is_the_first_harmonic_of_its_loop(amplitude, stiffness):
     law = Jenkins(mu=0.4, stiffness=stiffness)
     size = amplitude * law.reach

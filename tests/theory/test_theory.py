@@ -65,24 +65,6 @@ def test_v_lin_of_a_prescribed_slip_is_its_amplitude_along_the_belt() -> None:
     assert friction_free_velocity(across) == 0.0
 
 
-def test_longitudinal_means_are_those_of_the_reference_file() -> None:
-    with (REFERENCE / "rigid_kinematics.csv").open() as lines:
-        rows = [(float(row["kappa"]), float(row["coulomb"])) for row in csv.DictReader(lines)]
-    ratio, expected = np.array(rows).T
-
-    np.testing.assert_allclose(mean_prescribed_longitudinal(ratio), expected, rtol=0, atol=1e-12)
-
-
-def test_means_in_the_plane_are_those_computed_by_quadrature_elsewhere() -> None:
-    across, around = (
-        mean_prescribed_transverse([0.05, 0.3, 1.0, 3.0]),
-        mean_prescribed_circular([0.3, 0.9, 1.5]),
-    )
-
-    assert across == pytest.approx([0.13941705, 0.48816332, 0.83462684, 0.97383483], abs=5e-9)
-    assert around == pytest.approx([0.15174728, 0.52230600, 0.87732822], abs=5e-9)
-
-
 @given(slow_or_fast)
 def test_transverse_means_are_the_elliptic_integral(ratio: float) -> None:
     m = 1 / (1 + ratio**2)
@@ -179,13 +161,6 @@ def test_the_one_harmonic_velocity_solves_its_balance(damping, frequency, fricti
         assert math.hypot(spring, damped) == pytest.approx(1, rel=1e-10)
     else:
         assert velocity == 0
-
-
-def test_the_one_harmonic_velocity_ends_at_v_lin_and_is_the_closed_form_at_resonance() -> None:
-    scene = _scene(1.0)
-
-    assert one_harmonic_velocity(scene, 4.0, 1.0) == pytest.approx(friction_free_velocity(scene), rel=1e-15)
-    assert one_harmonic_velocity(scene, 4.0, 0.0) == pytest.approx((10 - 16 / math.pi) / 0.2, rel=1e-14)
 
 
 def test_the_one_harmonic_velocity_loses_no_digits_where_friction_just_holds_the_load() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import solve_ivp
 from scipy.special import i1e
 from strategies import sizes
 
@@ -204,19 +204,6 @@ def test_the_kick_of_a_reversal_is_what_dahl_friction_adds_to_the_velocity(
     gained = found.y[1, -1] - acceleration * 40 * fast
 
     assert gained == pytest.approx(theory.reversal_kick(friction, acceleration) * math.sqrt(length), rel=1e-6)
-
-
-@pytest.mark.parametrize("a", [1.0 + 1e-9, 1.05, 1.3, 2.5, 15.0, 20.0])
-def test_jenkins_friction_over_a_sine_has_the_fundamental_of_its_loop(a: float) -> None:
-    def unloading(angle: float) -> float:  # from the end of a stroke: the spring first, then the slider
-        return max(1.0 - a * (1.0 - math.cos(angle)), -1.0)
-
-    corner = [2.0 * math.asin(1.0 / math.sqrt(a))]
-    cosine = quad(lambda angle: unloading(angle) * math.cos(angle), 0, math.pi, points=corner)[0]
-    sine = quad(lambda angle: unloading(angle) * math.sin(angle), 0, math.pi, points=corner)[0]
-
-    expected = 2.0 / (math.pi * a) * complex(cosine, -sine)
-    assert abs(complex(theory.jenkins_describing_function(a)) - expected) <= 1e-10
 
 
 @given(st.floats(0.9, 1.0))

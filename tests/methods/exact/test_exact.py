@@ -14,7 +14,6 @@ from resonance import at_resonance as scene
 
 from frictionlab.compile.cache import compiled
 from frictionlab.compile.decorators import njit
-from frictionlab.laws.base import SlidingLaw
 from frictionlab.laws.coulomb import Coulomb
 from frictionlab.methods.exact import continuation as curve
 from frictionlab.methods.exact.continuation import oscillator_at
@@ -22,7 +21,7 @@ from frictionlab.methods.exact.legs import first_zero
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.exact.return_map import Fixed, impulse_error, passage
 from frictionlab.orbit.panels import WEIGHTS
-from frictionlab.scene.scene import Drive, Initial, Load, Scene, Slip, Transverse, TransverseSlip
+from frictionlab.scene.scene import Drive, Initial, Scene, Slip, TransverseSlip
 from frictionlab.theory import (
     friction_free_velocity,
     mean_prescribed_circular,
@@ -120,16 +119,6 @@ def test_stops_begin_at_den_hartogs_limit(frequency, limit):
     below, above = (solve(driven(1.0, frequency, 0.0, limit * part)) for part in (0.999, 1.001))
     assert below.columns["stick_fraction"][0] == 0.0
     assert above.columns["stick_fraction"][0] > 0.0
-
-
-def test_a_slow_belt_under_friction_above_the_load_sees_one_minus_the_ratio():
-    speeds = [1e-5, 1e-4, 1e-3]
-    answers = solve([driven(2.5, 0.5, 0.1, 4.0, v) for v in speeds])
-    mean = answers.columns["mean_friction"] / 0.4
-    gap = mean - (1.0 - 2.5 / 4.0)
-    assert np.all(gap > 0.0)
-    assert gap[0] < 2e-3
-    assert np.all(np.diff(gap) > 0.0)
 
 
 @given(
@@ -279,18 +268,6 @@ def test_near_undamped_resonance_no_digits_are_lost():
     at, near = (solve(driven(1.0, w, 0.0, 1.2, 0.3)).columns for w in (1.0, 1.0 + 1e-12))
     assert at["mean_friction"][0] == pytest.approx(near["mean_friction"][0], abs=1e-10)
     assert near["error"][0] <= 1e-11
-
-
-def test_what_it_cannot_do_is_refused_with_the_way_out():
-    class Falling(SlidingLaw):
-        def sliding_friction(self, speed):
-            return 0.4 / (1.0 + speed)
-
-    pushed = scene(
-        5.0, transverse=Transverse(natural_frequency=2.0, damping_ratio=0.1, load=Load(unbalance=1.0))
-    )
-    assert "use shooting" in Exact().refusal(pushed, LAW)
-    assert "vary with speed" in Exact().refusal(scene(5.0), Falling())
 
 
 def slip(belt_speed, along, across=None, turn=0.0):

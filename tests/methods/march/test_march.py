@@ -12,6 +12,7 @@ from answered import with_columns
 from collocation import REFERENCE
 from hypothesis import given
 from hypothesis import strategies as st
+from resonance import at_resonance as scene
 from strategies import scenes_in_the_plane, scenes_on_the_line
 
 from frictionlab.laws.coulomb import Coulomb
@@ -41,17 +42,6 @@ BLOCK = Scene(damping_ratio=0.0, normal_load=1.0, belt_speed=0.2)
 FALLING = Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_speed=1.0, stribeck_exponent=1.0)
 PERIOD = 12.001031294830
 """Of Leine's block [time]; ``period`` holds it over 2 pi."""
-
-
-def scene(belt_speed, **changes):
-    """One degree of freedom at resonance, gamma^2 = 10, but for the changes."""
-    values = {
-        "damping_ratio": 0.1,
-        "normal_load": 10.0,
-        "drive": Drive(unbalance=10.0, frequency=1.0),
-        **changes,
-    }
-    return Scene(belt_speed=belt_speed, **values)
 
 
 def solve(scenes, law=LAW, tolerance=1e-4, **keys):
@@ -175,13 +165,6 @@ def test_the_share_of_stick_is_that_of_the_exact_method_and_empty_for_steppers_t
     expected = with_columns(Exact(), [one], LAW, 1e-10).columns["stick_fraction"]
     assert solve(one).columns["stick_fraction"] == pytest.approx(expected, abs=2e-3)
     assert np.isnan(solve(one, stepper="smoothed").columns["stick_fraction"][0])
-
-
-def test_an_orbit_holds_the_mean_and_one_period():
-    answers = solve(scene(20.0), steps=1000)
-    orbit = answers.orbit(0)
-    assert orbit.tau[-1, -1] - orbit.tau[0, 0] == pytest.approx(2.0 * math.pi)
-    assert orbit.friction[:, 0].mean().real == pytest.approx(-answers.columns["mean_friction"][0], abs=1e-4)
 
 
 def test_a_load_along_the_belt_alone_leaves_one_degree_of_freedom():
@@ -436,6 +419,7 @@ def test_a_mass_released_between_two_steps_is_covered_by_the_error():
             {"stepper": "smoothed", "steps": 100},
             r"steps: leave it out, stepper smoothed knows width, smoothing and periods",
         ),
+        ({"stepper": "exponential", "width": 0.1}, "stepper exponential knows steps and periods"),
         ({"theta": 0.7}, "must be 0.5 or 1"),
         ({"steps": 10.5}, "must be a whole number"),
         ({"steps": True}, "must be a whole number"),

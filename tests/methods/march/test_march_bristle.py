@@ -12,6 +12,7 @@ from answered import with_columns
 from hypothesis import given
 from hypothesis import strategies as st
 from profiles import deep
+from resonance import at_resonance as scene
 from strategies import sizes
 
 from frictionlab.compile.cache import compiled
@@ -27,7 +28,6 @@ from frictionlab.methods.march.adapters import Exponential, Rk4, Sdirk2
 from frictionlab.methods.march.lap import MarchSettings
 from frictionlab.methods.march.laps import MarchState, march_laps
 from frictionlab.methods.march.method import March
-from frictionlab.mistakes.notes import WrongValues
 from frictionlab.numerics.steppers.rk4 import DECAY
 from frictionlab.scene.body import Mass, on_the_line
 from frictionlab.scene.scene import Drive, Load, Scene, Slip, Transverse, TransverseSlip
@@ -39,17 +39,6 @@ KNOWN = 2e-7
 """Accuracy of the reference rows of a mass; of prescribed slip 5e-9."""
 STEADY = LuGre(mu_kinetic=0.4, presliding_length=1.0, damping=0.05)
 FALLING = LuGre(mu_kinetic=0.25, mu_static=0.4, stribeck_speed=10.0, presliding_length=1.0, damping=0.05)
-
-
-def scene(belt_speed, **changes):
-    """One degree of freedom at resonance, gamma^2 = 10, but for the changes."""
-    values = {
-        "damping_ratio": 0.1,
-        "normal_load": 10.0,
-        "drive": Drive(unbalance=10.0, frequency=1.0),
-        **changes,
-    }
-    return Scene(belt_speed=belt_speed, **values)
 
 
 def rows_of(kind, planar):
@@ -140,17 +129,6 @@ def test_bristles_as_stiff_as_may_be_rub_like_coulomb_friction_under_a_prescribe
     one = Scene(belt_speed=0.5, slip=Slip(velocity_amplitude=1.0, frequency=1.0))
     answers = solve(one, Dahl(mu=0.4, presliding_length=1e-9), 1e-6)
     assert answers.columns["mean_friction"][0] == pytest.approx(0.4 / 3.0, abs=1e-6)
-
-
-def test_columns_besides_the_mean_balance():
-    found = solve(scene(20.0), STEADY).columns
-    assert found["energy_input"] == pytest.approx(
-        found["energy_viscous"] + found["energy_friction"], rel=1e-4
-    )
-    assert found["energy_contact"][0] > 0.0
-    assert found["reversals"] == pytest.approx(2.0, abs=0.1)
-    assert found["period"] == 1.0
-    assert np.isnan(found["stick_fraction"][0])
 
 
 # --- orders -------------------------------------------------------------------------------------------------------
@@ -458,8 +436,3 @@ def test_a_law_without_a_vector_form_is_refused_in_the_plane_alone():
         assert law.no_vector_form() in March().refusal(one, law)
         assert March().refusal(one, law.model_copy(update={"planar": "per-axis"})) is None
     assert March().refusal(scene(5.0), law) is None
-
-
-def test_a_key_of_another_stepper_is_refused_by_name():
-    with pytest.raises(WrongValues, match="stepper exponential knows steps and periods"):
-        March(stepper="exponential", width=0.1)

@@ -13,7 +13,7 @@ from frictionlab.methods.march.method import March
 from frictionlab.methods.march.stability import fewest_steps
 from frictionlab.methods.march.steppers import STEPPERS
 from frictionlab.methods.shooting.method import Shooting
-from frictionlab.scene.scene import Drive, Scene, Slip, Transverse
+from frictionlab.scene.scene import Drive, Scene, Slip
 
 compiling = deep("more kernels to compile")
 ONE = elements(stiffness=(4.0,), reach=(0.1,))
@@ -107,13 +107,6 @@ def test_errors_of_given_steps_hold_what_finer_steps_change():
 
     for steps in (4096, 8192):
         assert agree(solve(March(steps=steps), scene, THREE, 1e-2), fine)
-
-
-def test_in_the_plane_without_a_load_across_march_answers_as_along_the_belt():
-    across = Transverse(natural_frequency=1.0, damping_ratio=0.4)
-    planar = driven(5.0, transverse=across)
-
-    assert solve(March(), planar, ONE, 1e-3)[0] == pytest.approx(solve(March(), driven(5.0), ONE, 1e-3)[0])
 
 
 @pytest.mark.parametrize(

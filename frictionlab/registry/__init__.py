@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from importlib import metadata
 from importlib.metadata import EntryPoint
@@ -13,11 +13,11 @@ from frictionlab.faults import BrokenPlugin, from_outside
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.registry.entry_points import (
-    OWN_PACKAGE,
     Home,
     check_class,
     describe_clash,
     home_of,
+    is_own,
     open_entry_point,
 )
 from frictionlab.registry.law_file import code_around
@@ -93,7 +93,11 @@ class Laws:
         wrong = [self._wrong(name) for name in self.names()]
         return [
             *filter(None, wrong),
-            *(_clash_message(doors) for doors in _entry_points(LAWS).values() if _has_clash(doors)),
+            *(
+                f"{describe_clash(doors)}\nthat of frictionlab is used; rename the others"
+                for doors in _entry_points(LAWS).values()
+                if len(doors) > 1 and any(is_own(door) for door in doors)
+            ),
         ]
 
     def _wrong(self, name: str) -> str:
@@ -128,15 +132,6 @@ def _entry_points(group: str) -> dict[str, tuple[EntryPoint, ...]]:
     for door in metadata.entry_points(group=group):
         found.setdefault(door.name, {}).setdefault(door.value, door)
     return {name: tuple(doors.values()) for name, doors in found.items()}
-
-
-def _has_clash(doors: Sequence[EntryPoint]) -> bool:
-    """Whether a plugin has the name of a law of frictionlab."""
-    return len(doors) > 1 and any(door.dist is not None and door.dist.name == OWN_PACKAGE for door in doors)
-
-
-def _clash_message(doors: Sequence[EntryPoint]) -> str:
-    return f"{describe_clash(doors)}\nthat of frictionlab is used; rename the others"
 
 
 @cache

@@ -24,8 +24,6 @@ from frictionlab.methods.base import Method
 from frictionlab.registry.bibliography import read_bibtex
 from frictionlab.registry.smoke_test import faults_of_samples, overridden_methods
 
-OWN_PACKAGE = "frictionlab"
-
 
 class Home(NamedTuple):
     """The origin of a law or method, and the remedy if it is broken, as sentences."""
@@ -38,6 +36,11 @@ class Home(NamedTuple):
         problem = BrokenPlugin(f"{self.name}: {what}\n{self.remedy}")
         problem.__cause__ = why
         return problem
+
+
+def is_own(door: EntryPoint) -> bool:
+    """Whether frictionlab itself brings it."""
+    return door.dist is not None and door.dist.name == "frictionlab"
 
 
 def package(door: EntryPoint) -> str:
@@ -55,8 +58,8 @@ def home_of(door: EntryPoint) -> Home:
 
 def open_entry_point(doors: Sequence[EntryPoint], kind: type[FrictionLaw] | type[Method]) -> Any:
     """The law or method behind the entry points of one name. Raises BrokenPlugin."""
-    own = [door for door in doors if door.dist is not None and door.dist.name == OWN_PACKAGE]
-    door, *others = own or doors  # a plugin never replaces a law or method of frictionlab
+    # a plugin never replaces a law or method of frictionlab
+    door, *others = [door for door in doors if is_own(door)] or doors
     if others:
         raise BrokenPlugin(f"{describe_clash(doors)}\nrename one of them, or uninstall it")
     home = home_of(door)
@@ -64,12 +67,9 @@ def open_entry_point(doors: Sequence[EntryPoint], kind: type[FrictionLaw] | type
     if not isinstance(loaded, type):
         raise home.broken(f"is not a class but {shown(loaded)}; its entry point must name the class itself")
     if not issubclass(loaded, kind):
-        raise home.broken(f"class {loaded.__name__} is not derived from frictionlab.{_bases(kind)}")
+        bases = "SlidingLaw, BristleLaw or MemoryLaw" if kind is FrictionLaw else kind.__name__
+        raise home.broken(f"class {loaded.__name__} is not derived from frictionlab.{bases}")
     return check_class(loaded, home)
-
-
-def _bases(kind: type) -> str:
-    return "SlidingLaw, BristleLaw or MemoryLaw" if kind is FrictionLaw else kind.__name__
 
 
 def describe_clash(doors: Sequence[EntryPoint]) -> str:
@@ -154,7 +154,8 @@ def _mutable(law: type[FrictionLaw]) -> Iterator[str]:
     """Attributes that may change between calls and so change results."""
     for name, field in law.model_fields.items():
         if field.default_factory is not None or isinstance(field.default, list | dict | set):
-            yield f"parameter '{name}' has a mutable default, a {_kind_of_default(field)}; {_FIXED}"
+            default = type(field.default).__name__ if field.default_factory is None else "factory"
+            yield f"parameter '{name}' has a mutable default, a {default}; {_FIXED}"
     own = [kind for kind in law.__mro__ if issubclass(kind, FrictionLaw) and from_outside(kind)]
     for kind in own:
         held = [name for name, value in vars(kind).items() if isinstance(value, list | dict | set)]
@@ -162,10 +163,6 @@ def _mutable(law: type[FrictionLaw]) -> Iterator[str]:
             yield f"its attribute {name} = {shown(vars(kind)[name])} is mutable; {_FIXED}"
         for name in kind.__private_attributes__:
             yield f"it has a private state, {name}; {_FIXED}"
-
-
-def _kind_of_default(field: Any) -> str:
-    return type(field.default).__name__ if field.default_factory is None else "factory"
 
 
 _FIXED = "a law consists of its parameters only: use numbers, or a tuple of them"

@@ -104,8 +104,8 @@ def _module(name: str, path: Path, text: str) -> ModuleType:
 
 def _laws(module: ModuleType, path: Path) -> dict[str, type[FrictionLaw]]:
     """The laws defined in the module itself, without the base classes of others among them."""
-    found = {kind: None for kind in vars(module).values() if _is_law(kind)}
-    own = [kind for kind in found if kind.__module__ == module.__name__]
+    classes = dict.fromkeys(kind for kind in vars(module).values() if isinstance(kind, type))
+    own = [kind for kind in classes if issubclass(kind, FrictionLaw) and kind.__module__ == module.__name__]
     bases = {base for kind in own for base in kind.__mro__[1:]}
     laws: dict[str, type[FrictionLaw]] = {}
     for kind in (kind for kind in own if kind not in bases):
@@ -139,7 +139,3 @@ def _blank(name: str, file: str, text: str, kind: str) -> FrictionLaw:
     path = Path(file)
     laws = {law.__name__: law for law in _laws(_module(name, path, text), path).values()}
     return laws[kind].__new__(laws[kind])
-
-
-def _is_law(kind: object) -> bool:
-    return isinstance(kind, type) and issubclass(kind, FrictionLaw)

@@ -106,11 +106,13 @@ def _parameter(name: str, field: Any, meant: str) -> dict[str, Any]:
         for key, sign in _LIMITS.items()
         if (bound := getattr(rule, key, None)) is not None
     ]
+    each = "a list, each " if get_origin(field.annotation) is tuple else ""
+    words = get_args(field.annotation) if get_origin(field.annotation) is Literal else ()
     return {
         "name": name,
         "required": field.is_required(),
         "default": None if field.is_required() else field.default,
-        "limits": _each(field) + " and ".join(limits) or " | ".join(_choices(field)),
+        "limits": each + " and ".join(limits) or " | ".join(map(str, words)),
         "unit": _unit(field),
         "meaning": meant,
     }
@@ -121,18 +123,6 @@ def _rules(field: Any) -> list[Any]:
     inside = [kind.__metadata__ for kind in get_args(field.annotation) if get_origin(kind) is Annotated]
     rules = [rule for metadata in [field.metadata, *inside] for rule in metadata]
     return [each for rule in rules for each in (rule, *getattr(rule, "metadata", ()))]
-
-
-def _each(field: Any) -> str:
-    """The prefix for a field that holds several numbers, to each of which its limits apply."""
-    return "a list, each " if get_origin(field.annotation) is tuple else ""
-
-
-def _choices(field: Any) -> list[str]:
-    """The words that a text field accepts."""
-    return (
-        [str(word) for word in get_args(field.annotation)] if get_origin(field.annotation) is Literal else []
-    )
 
 
 def meaning(record: type[BaseModel], name: str) -> str:

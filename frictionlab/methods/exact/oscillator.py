@@ -94,27 +94,13 @@ def canonical(
     period = 2.0 * math.pi / frequency
     # Near undamped resonance the periodic response is the small difference of large numbers: the growing response
     # from rest is used instead, bounded over one period by the force times the time.
-    if square < RESONANT * RESONANT:
-        return Oscillator(
-            damping,
-            rate,
-            frequency,
-            period,
-            load,
-            friction,
-            belt_speed,
-            0.0,
-            0.0,
-            4.0 * load,
-            8.0 * load,
-            1.0,
-        )
-    size = load / math.sqrt(square)
-    in_phase, quadrature = load * stiffness / square, -load * viscous / square
-    jolt = size * frequency**4
-    return Oscillator(
-        damping, rate, frequency, period, load, friction, belt_speed, in_phase, quadrature, size, jolt, 0.0
-    )
+    in_phase, quadrature, size, jolt, resonant = 0.0, 0.0, 4.0 * load, 8.0 * load, 1.0
+    if square >= RESONANT * RESONANT:
+        size, resonant = load / math.sqrt(square), 0.0
+        in_phase, quadrature = load * stiffness / square, -load * viscous / square
+        jolt = size * frequency**4
+    given = damping, rate, frequency, period, load, friction, belt_speed
+    return Oscillator(*given, in_phase, quadrature, size, jolt, resonant)
 
 
 def _response_to_one_sine(body: Any, tau: float, sign: float) -> tuple[float, float, float, float, float]:

@@ -331,13 +331,7 @@ def _by_another_step(problem: MarchProblem, part: float, start: StepStart, end: 
 
 
 state_within = by_stepper(
-    {
-        Moreau: _on_a_parabola,
-        Rk4: _on_a_parabola,
-        Smoothed: _by_another_step,
-        Exponential: _on_a_parabola,
-        Sdirk2: _on_a_parabola,
-    }
+    dict.fromkeys((Moreau, Rk4, Exponential, Sdirk2), _on_a_parabola) | {Smoothed: _by_another_step}
 )
 
 

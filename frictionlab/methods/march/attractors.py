@@ -82,12 +82,9 @@ class OtherStarts:
             return Arrival(1, mean, mean, mean, run.laps)
         if run.verdict == STALLED:
             return Arrival(0, math.nan, run.low, run.high, run.laps)
-        if (run.verdict, run.stride) == (
-            like.verdict,
-            like.stride,
-        ):  # repeats as the first does, or as its steps do
-            return Arrival(self.first.period, mean, run.low, run.high, run.laps)
-        return Arrival(run.stride, mean, run.low, run.high, run.laps)
+        # repeats as the first does, or as its steps do
+        alike = (run.verdict, run.stride) == (like.verdict, like.stride)
+        return Arrival(self.first.period if alike else run.stride, mean, run.low, run.high, run.laps)
 
     @property
     def _steps(self) -> float:

@@ -81,7 +81,8 @@ def _by_given_steps(march: MarchRun, plan: Plan, tolerance: float) -> MarchMean:
 
 def _by_halving(march: MarchRun, plan: Plan, tolerance: float) -> MarchMean:
     """Steps are doubled until the error is below the tolerance or the work is done."""
-    steps, work = _coarsest(march), 0
+    # what the motion asks for, and what the stepper needs not to explode
+    steps, work = max(COARSEST * _slowness(march), march.fewest()), 0
     runs: list[MarchResult] = []
     best: MarchMean | None = None
     while best is None or best.error > tolerance:
@@ -240,11 +241,6 @@ def _unseen(march: MarchRun, runs: Sequence[MarchResult]) -> float:
         return 0.0
     lasts = min(2.0 * math.sqrt(2.0 * depth / bend), fine.period)
     return 2.0 * march.slipping * lasts / fine.period
-
-
-def _coarsest(march: MarchRun) -> int:
-    """Steps to begin with: what the motion asks for, and what the stepper needs not to explode."""
-    return max(COARSEST * _slowness(march), march.fewest())
 
 
 def _slowness(march: MarchRun) -> int:

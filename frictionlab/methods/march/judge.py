@@ -90,7 +90,8 @@ class MarchedPoint:
 
     def _judge(self, mean: MarchMean, tolerance: float) -> None:
         last = mean.runs[-1]
-        self.model = f"march, {self.plan.stepper}{self._theta()}: {mean.how or 'no steady state'}"
+        theta = f" with theta {self.plan.theta:g}" if "theta" in self.march.facts.keys else ""
+        self.model = f"march, {self.plan.stepper}{theta}: {mean.how or 'no steady state'}"
         if not last.settled:
             self._give_up(last)
             return
@@ -147,12 +148,10 @@ class MarchedPoint:
         elastic = law.memory_kind == "deflections" or law.elastic_deflection() > 0.0
         return scene.belt_speed == 0.0 and elastic
 
-    def _falls(self) -> bool:
-        return self.law.memory_kind == "none" or friction_falls(self.law)
-
     def _leave_range(self, arrivals: Sequence[Arrival]) -> None:
         self._range(min(one.low for one in arrivals), max(one.high for one in arrivals))
-        why = "friction falls with speed: " if self._may_depend_on_start() and self._falls() else ""
+        falls = self.law.memory_kind == "none" or friction_falls(self.law)
+        why = "friction falls with speed: " if self._may_depend_on_start() and falls else ""
         if not why and arrivals[0].period == 0:
             why = "the motion is not periodic at any step: "
         self.reason = why + describe(arrivals, 6)
@@ -169,9 +168,6 @@ class MarchedPoint:
 
     def _remark(self, said: str) -> None:
         self.reason = "; ".join(filter(None, (self.reason, said)))
-
-    def _theta(self) -> str:
-        return f" with theta {self.plan.theta:g}" if "theta" in self.march.facts.keys else ""
 
     def _accept(self, mean: MarchMean, readable: MarchResult, tolerance: float) -> None:
         last = mean.runs[-1]

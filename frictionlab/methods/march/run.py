@@ -92,8 +92,9 @@ class MarchRun:
         self.unmoved = scene.degrees_of_freedom == 0
         self.mass: Mass = unmoved_mass(scene) if self.unmoved else scene.mass()
         self.through_rest = steps_through_rest(scene, law)
-        straight = along_the_belt(scene, law) and not _starts_across(scene)
-        self.straight = straight
+        start = scene.initial
+        starts_across = start is not None and (start.x2 != 0.0 or start.velocity2 != 0.0)
+        self.straight = straight = along_the_belt(scene, law) and not starts_across
         # a lap is a period of everything that changes in time: so many of the drive
         self.periods = 1.0 if scene.is_harmonic else float(scene.periods)
         planar = in_the_plane(for_kernels(self.mass), self.periods)
@@ -350,11 +351,6 @@ class MarchRun:
             across = self.mass.transverse_stiffness * dx.imag**2
             bent = float(np.dot(self._spring, np.abs(dz) ** 2))
             return float(np.sqrt(dx.real**2 + across + abs(dv) ** 2 + bent))
-
-
-def _starts_across(scene: Scene) -> bool:
-    initial = scene.initial
-    return initial is not None and (initial.x2 != 0.0 or initial.velocity2 != 0.0)
 
 
 def _stride(march: MarchHistory) -> int:

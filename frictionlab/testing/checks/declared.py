@@ -106,7 +106,7 @@ def static_friction(one: Given) -> None:
 )
 def invariant_set(one: Given) -> None:
     """No slip leads a memory out of its set, and from just outside every slip leads back or leaves it."""
-    law = one.law(_bounded)
+    law = one.law(lambda law: isinstance(law, MemoryLaw) or law.largest_deflection() < math.inf)
     v = one.slip()
     if isinstance(law, MemoryLaw):
         _stays_within(one, law, v)
@@ -121,10 +121,6 @@ def invariant_set(one: Given) -> None:
         turn, slip = one.draw("turn", directions), one.planar_slip()
         out = dot(law.rate(slip, radius * turn), turn)
         one.require(out <= 1e-11 * abs(slip), "the deflection grows beyond its largest", rate=out)
-
-
-def _bounded(law: BristleLaw | MemoryLaw) -> bool:
-    return isinstance(law, MemoryLaw) or law.largest_deflection() < math.inf
 
 
 def _stays_within(one: Given, law: MemoryLaw, v: float) -> None:

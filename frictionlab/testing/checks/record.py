@@ -172,20 +172,12 @@ def extremes(one: Given) -> None:
     memory = one.memory(law)
     for speed in (0.0, *EXTREMES):
         _number(one, float, law.sliding_friction(speed), f"sliding_friction at speed {speed:g}")
-    for v in (*_at_rest(law), *EXTREMES):
+    # Without memory friction at rest is set-valued: nobody asks for it.
+    for v in EXTREMES if isinstance(law, SlidingLaw) else (0.0, *EXTREMES):
         _numbers(one, float, response(law, v, memory))
         if not no_plane(law) and memory:
-            _numbers_in_the_plane(one, law, complex(v), memory)
-
-
-def _at_rest(law: FrictionLaw) -> tuple[float, ...]:
-    """Without memory friction at rest is set-valued: nobody asks for it."""
-    return () if isinstance(law, SlidingLaw) else (0.0,)
-
-
-def _numbers_in_the_plane(one: Given, law: FrictionLaw, v: complex, memory: ContactMemory) -> None:
-    got = response(law, v, memory if _scalars(law) else tuple(map(complex, memory)))
-    _numbers(one, complex, got, float if _scalars(law) else complex)
+            across = memory if _scalars(law) else tuple(map(complex, memory))
+            _numbers(one, complex, response(law, complex(v), across), float if _scalars(law) else complex)
 
 
 @law_check(change="let the method depend on its arguments and the parameters alone", share=0.2)
@@ -248,7 +240,9 @@ def parameters_matter(one: Given) -> None:
         for changed in _with_another(name, law):
             one.notes.add(f"{name} changed")
             there = changed.under_load(2.0)
-            if _differ(here, there, v, memory) or _differ_in_the_plane(here, there, planar, memory):
+            slips = [times * v for times in DECADES_OF_SPEED]
+            differ = any(_apart(asked(here, w, memory), asked(there, w, memory)) for w in slips)
+            if differ or _differ_in_the_plane(here, there, planar, memory):
                 one.notes.add(name)
 
 
@@ -271,12 +265,6 @@ def _changes(value: Any, words: Sequence[str]) -> Sequence[Any]:
         first_alone = (1.4 * value[0], *value[1:]) if value else value  # where shares alone matter
         return tuple(0.7 * each for each in value), tuple(1.4 * each for each in value), first_alone
     return words if value is not None else ()
-
-
-def _differ(law: FrictionLaw, other: FrictionLaw, v: float, memory: ContactMemory) -> bool:
-    return any(
-        _apart(asked(law, times * v, memory), asked(other, times * v, memory)) for times in DECADES_OF_SPEED
-    )
 
 
 def _apart(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:

@@ -34,7 +34,7 @@ def oddness(one: Given) -> None:
 )
 def rotation(one: Given) -> None:
     """In the plane everything turned by an angle gives friction turned by that angle (but for per-axis forms)."""
-    law = one.planar_law(_isotropic)
+    law = one.planar_law(lambda law: getattr(law, "planar", "vectorial") != "per-axis")
     v = one.planar_slip()
     turn = one.draw("turn", directions)
     memories = [one.memory(law, planar=True)]
@@ -131,7 +131,3 @@ def _paces(law: MemoryLaw, v: float, before: float) -> list[float]:
     ]
     rates = response(law, v, tuple(steady)).rates
     return [rate / slope if slope else 0.0 for rate, slope in zip(rates, slopes, strict=True)]
-
-
-def _isotropic(law: object) -> bool:
-    return getattr(law, "planar", "vectorial") != "per-axis"

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 import math
+from collections.abc import Sequence
 from functools import cache
 from types import FunctionType
 from typing import Any, NamedTuple
@@ -182,6 +183,14 @@ for _interface, _name in dict.fromkeys((each.interface, each.name) for each in K
     _open_door(_interface, _name)
 
 
+def _overloaded(chosen: Any, resolve: Any, bodies: Sequence[Any], **options: Any) -> Any:
+    """``chosen``, which kernels may call: numba compiles the body that resolve gives for the types of arguments."""
+    chosen.bodies = tuple(bodies)  # for the fingerprint to find
+    resolve.__signature__ = inspect.signature(bodies[0])  # numba compares them
+    _extending.overload(chosen, jit_options=options or INNER, strict=False)(resolve)
+    return chosen
+
+
 def by_dimension(on_the_line: Any, in_the_plane: Any, in_lanes: Any = None) -> Any:
     """A kernel function with two bodies, chosen by the type of its last argument: ``float`` or ``complex``.
 
@@ -199,12 +208,9 @@ def by_dimension(on_the_line: Any, in_the_plane: Any, in_lanes: Any = None) -> A
             return of_lanes
         return in_the_plane if isinstance(types[-1], numba.types.Complex) else on_the_line
 
-    bodies = (on_the_line, in_the_plane) if in_lanes is None else (on_the_line, in_the_plane, in_lanes)
-    chosen.bodies = bodies  # type: ignore[attr-defined]  # for the fingerprint to find
     chosen.of_lanes = of_lanes  # type: ignore[attr-defined]  # for Python to run on arrays
-    resolve.__signature__ = inspect.signature(on_the_line)  # type: ignore[attr-defined]  # numba compares them
-    _extending.overload(chosen, jit_options=INNER | {"fastmath": True}, strict=False)(resolve)
-    return chosen
+    bodies = [each for each in (on_the_line, in_the_plane, in_lanes) if each is not None]
+    return _overloaded(chosen, resolve, bodies, **INNER, fastmath=True)
 
 
 def by_variation(of_one_sine: Any, of_varying: Any) -> Any:
@@ -233,10 +239,7 @@ def _by_field(name: str, of_empty: Any, of_filled: Any) -> Any:
         return of_filled if _is_filled(types[0], name) else of_empty
 
     of_empty, of_filled = (getattr(body, "py_func", body) for body in (of_empty, of_filled))
-    chosen.bodies = of_empty, of_filled  # type: ignore[attr-defined]  # for the fingerprint to find
-    resolve.__signature__ = inspect.signature(of_empty)  # type: ignore[attr-defined]  # numba compares them
-    _extending.overload(chosen, jit_options=INNER, strict=False)(resolve)
-    return chosen
+    return _overloaded(chosen, resolve, (of_empty, of_filled))
 
 
 def _held(record: Any, name: str) -> Any:
@@ -267,11 +270,7 @@ def as_argument(function: Any) -> Any:
     def resolve(*types: Any) -> Any:
         return body
 
-    handed.bodies = (body,)  # type: ignore[attr-defined]  # for the fingerprint to find
-    resolve.__signature__ = inspect.signature(body)  # type: ignore[attr-defined]  # numba compares them
-    options = getattr(function, "targetoptions", INNER)
-    _extending.overload(handed, jit_options=options, strict=False)(resolve)
-    return handed
+    return _overloaded(handed, resolve, (body,), **getattr(function, "targetoptions", INNER))
 
 
 def by_stepper(bodies: dict[type, Any]) -> Any:
@@ -284,10 +283,7 @@ def by_stepper(bodies: dict[type, Any]) -> Any:
     def resolve(*types: Any) -> Any:
         return plain[types[0].types[types[0].fields.index("stepper")].instance_class]
 
-    chosen.bodies = tuple(plain.values())  # type: ignore[attr-defined]  # for the fingerprint to find
-    resolve.__signature__ = inspect.signature(chosen.bodies[0])  # type: ignore[attr-defined]  # numba compares them
-    _extending.overload(chosen, jit_options=INNER, strict=False)(resolve)
-    return chosen
+    return _overloaded(chosen, resolve, list(plain.values()))
 
 
 def by_law(
@@ -323,10 +319,12 @@ def by_law(
             _which(law, structure, planar or any(_is_filled(kind, "keeps_stiffness") for kind in types))
         ]
 
-    chosen.bodies = tuple(bodies)  # type: ignore[attr-defined]  # for the fingerprint to find
-    resolve.__signature__ = inspect.signature(bodies[0])  # type: ignore[attr-defined]  # numba compares them
-    _extending.overload(chosen, jit_options=INNER, strict=False)(resolve)
-    return chosen
+    return _overloaded(chosen, resolve, bodies)
+
+
+def by_scalars(of_others: Any, of_scalars: Any) -> Any:
+    """The same, chosen by whether what the law remembers has no direction."""
+    return by_law(of_others, of_others, None, of_others, of_scalars)
 
 
 def _numbers_in(first: Any) -> Any:
@@ -344,15 +342,7 @@ def _which(law: type[FrictionLaw], structure: tuple[str, ...], pathless: bool) -
     return 2 if "exact path" in structure and not pathless else 1
 
 
-def _length_on_the_line(v: float) -> float:
-    return math.fabs(v)
-
-
-def _length_in_the_plane(v: complex) -> float:
-    return math.sqrt(v.real * v.real + v.imag * v.imag)
-
-
-length = by_dimension(_length_on_the_line, _length_in_the_plane)
+length = by_dimension(lambda v: math.fabs(v), lambda v: math.sqrt(v.real * v.real + v.imag * v.imag))
 """``abs`` for kernels: no kernel meets slip near 1e-150, and without that guard it takes a third of the time."""
 
 

@@ -166,57 +166,46 @@ def _is_planar(kind: Any) -> bool:
     return kind.planar if isinstance(kind, LaneType) else isinstance(kind, _types.Complex)
 
 
-def _pairs(register: Any, code: Any) -> None:
-    """Register code for two numbers of which one at least is in lanes."""
+def _define(function: Any, result_of: Callable[[Any], Any], code: Any) -> None:
+    """A function of two numbers of which one at least is in lanes; result_of: its type, None where there is none."""
+
+    @_templates.infer_global(function)
+    class _Defined(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
+        def generic(self, kinds: Any, _keywords: Any) -> Any:
+            result = result_of(kinds) if len(kinds) == 2 and _in_lanes(kinds) else None
+            return None if result is None else _templates.signature(result, *kinds)
+
     for kinds in ((LaneType, LaneType), (LaneType, _types.Number), (_types.Number, LaneType)):
-        register(*kinds)(code)
+        _extending.lower_builtin(function, *kinds)(code)
 
 
 def _define_operator(function: Any, rule: Rule) -> None:
-    @_templates.infer_global(function)
-    class _Operator(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
-        def generic(self, kinds: Any, _keywords: Any) -> Any:
-            if len(kinds) != 2 or not _in_lanes(kinds):
-                return None
-            result = PLANAR_LANES if any(map(_is_planar, kinds)) else LANES
-            return _templates.signature(result, *kinds)
-
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         parts = [taken_apart(context, builder, *each) for each in zip(signature.args, values, strict=True)]
         return put_together(builder, rule(builder, *parts))
 
-    _pairs(lambda *kinds: _extending.lower_builtin(function, *kinds), code)
+    _define(function, lambda kinds: PLANAR_LANES if any(map(_is_planar, kinds)) else LANES, code)
+
+
+def _real_parts(context: Any, builder: Any, signature: Any, values: Any) -> list[Any]:
+    return [taken_apart(context, builder, *each).re for each in zip(signature.args, values, strict=True)]
 
 
 def _define_comparison(function: Any, sign: str) -> None:
-    @_templates.infer_global(function)
-    class _Comparison(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
-        def generic(self, kinds: Any, _keywords: Any) -> Any:
-            if len(kinds) != 2 or not _in_lanes(kinds) or any(map(_is_planar, kinds)):
-                return None
-            return _templates.signature(MASK, *kinds)
-
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        a, b = (taken_apart(context, builder, *each).re for each in zip(signature.args, values, strict=True))
         # as of floats: nothing compares with what is not a number, but that it differs from all
-        return (builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered)(sign, a, b)
+        compare = builder.fcmp_unordered if sign == "!=" else builder.fcmp_ordered
+        return compare(sign, *_real_parts(context, builder, signature, values))
 
-    _pairs(lambda *kinds: _extending.lower_builtin(function, *kinds), code)
+    _define(function, lambda kinds: None if any(map(_is_planar, kinds)) else MASK, code)
 
 
 def _define_extreme(function: Any, sign: str) -> None:
-    @_templates.infer_global(function)
-    class _Extreme(_templates.AbstractTemplate):  # type: ignore[misc]  # the same
-        def generic(self, kinds: Any, _keywords: Any) -> Any:
-            if len(kinds) != 2 or not _in_lanes(kinds) or any(map(_is_planar, kinds)):
-                return None
-            return _templates.signature(LANES, *kinds)
-
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        a, b = (taken_apart(context, builder, *each).re for each in zip(signature.args, values, strict=True))
+        a, b = _real_parts(context, builder, signature, values)
         return builder.select(builder.fcmp_ordered(sign, b, a), b, a)  # as Python's: the first unless beaten
 
-    _pairs(lambda *kinds: _extending.lower_builtin(function, *kinds), code)
+    _define(function, lambda kinds: None if any(map(_is_planar, kinds)) else LANES, code)
 
 
 def _define_connective(function: Any, method: str) -> None:

@@ -13,10 +13,6 @@ resistance = by_dimension(bristle_on_the_line, bristle_in_the_plane)
 """(law, slip velocity, deflection) -> (rate of deflection, friction coefficient), interpreted and compiled."""
 
 
-def _rate_of_a_bristle_on_the_line(law: Any, memory: Any, k: int, w: float) -> float:
-    return law.rate(w, memory[0])
-
-
 def _rate_of_a_bristle_in_the_plane(law: Any, memory: Any, k: int, w: complex) -> complex:
     z = memory[0]
     if law.form == VECTORIAL:
@@ -26,23 +22,17 @@ def _rate_of_a_bristle_in_the_plane(law: Any, memory: Any, k: int, w: complex) -
     return complex(law.rate(abs(w), z.real), 0.0)
 
 
-_rate_of_a_bristle = by_dimension(_rate_of_a_bristle_on_the_line, _rate_of_a_bristle_in_the_plane)
+_rate_of_a_bristle = by_dimension(
+    lambda law, memory, k, w: law.rate(w, memory[0]), _rate_of_a_bristle_in_the_plane
+)
 
 
 def _bristle_rate(law: Any, memory: Any, k: int, w: Any) -> Any:
     return _rate_of_a_bristle(law, memory, k, w)
 
 
-def _memory_rate(law: Any, memory: Any, k: int, w: Any) -> Any:
-    return law.rate(w, memory, k)
-
-
-rate_of = by_law(_bristle_rate, _bristle_rate, None, _memory_rate)
+rate_of = by_law(_bristle_rate, _bristle_rate, None, lambda law, memory, k, w: law.rate(w, memory, k))
 """rate_of(law, memory, k, w): the rate of the k-th memory at slip velocity w; a bristle law remembers one."""
-
-
-def _friction_of_a_bristle_on_the_line(law: Any, memory: Any, moving: Any, w: float) -> float:
-    return law.friction(w, memory[0], moving[0])
 
 
 def _friction_of_a_bristle_in_the_plane(law: Any, memory: Any, moving: Any, w: complex) -> complex:
@@ -58,18 +48,18 @@ def _friction_of_a_bristle_in_the_plane(law: Any, memory: Any, moving: Any, w: c
     return (law.friction(speed, z.real, dz.real) / speed) * w
 
 
-_friction_of_a_bristle = by_dimension(_friction_of_a_bristle_on_the_line, _friction_of_a_bristle_in_the_plane)
+_friction_of_a_bristle = by_dimension(
+    lambda law, memory, moving, w: law.friction(w, memory[0], moving[0]), _friction_of_a_bristle_in_the_plane
+)
 
 
 def _bristle_friction(law: Any, memory: Any, moving: Any, w: Any) -> Any:
     return _friction_of_a_bristle(law, memory, moving, w)
 
 
-def _memory_friction(law: Any, memory: Any, moving: Any, w: Any) -> Any:
-    return law.friction(w, memory, moving)
-
-
-friction_of = by_law(_bristle_friction, _bristle_friction, None, _memory_friction)
+friction_of = by_law(
+    _bristle_friction, _bristle_friction, None, lambda law, memory, moving, w: law.friction(w, memory, moving)
+)
 """friction_of(law, memory, moving, w): the friction coefficient at a memory that changes at these rates."""
 
 
@@ -118,10 +108,6 @@ def _moved(law: Any, h: float, v: Any, z: Any) -> Any:
     return _within(largest, _after(law, h, v, middle, z))
 
 
-def _carried_on_the_line(law: Any, h: float, v: float, z: float) -> float:
-    return _moved(law, h, v, z)
-
-
 def _carried_in_the_plane(law: Any, h: float, v: complex, z: complex) -> complex:
     if law.form == VECTORIAL:
         return _moved(law, h, v, z)
@@ -130,7 +116,7 @@ def _carried_in_the_plane(law: Any, h: float, v: complex, z: complex) -> complex
     return complex(_moved(law, h, abs(v), z.real), 0.0)
 
 
-advance_bristle = by_dimension(_carried_on_the_line, _carried_in_the_plane)
+advance_bristle = by_dimension(lambda law, h, v, z: _moved(law, h, v, z), _carried_in_the_plane)
 """advance_bristle(law, h, v, z): the deflection after slip velocity v for the time h, in the law's planar form."""
 
 
@@ -140,17 +126,13 @@ def _yielded(law: Any, z: Any) -> Any:
     return _within((1.0 + 2e-15) * law.yield_deflection(), z)
 
 
-def _caught_on_the_line(law: Any, z: float) -> float:
-    return _yielded(law, z)
-
-
 def _caught_in_the_plane(law: Any, z: complex) -> complex:
     if law.form == PER_AXIS:
         return complex(_yielded(law, z.real), _yielded(law, z.imag))
     return _yielded(law, z)
 
 
-project_to_yield = by_dimension(_caught_on_the_line, _caught_in_the_plane)
+project_to_yield = by_dimension(lambda law, z: _yielded(law, z), _caught_in_the_plane)
 """project_to_yield(law, z): the deflection, projected onto the yield surface if a step has left it outside."""
 
 

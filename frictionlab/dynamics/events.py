@@ -9,8 +9,8 @@ from frictionlab.scene.body import Body
 
 
 @inner
-def dips(w0: complex, rate0: complex, w1: complex, rate1: complex, h: float) -> bool:
-    """Whether the slip comes much closer to rest between two nodes than at either (cubic Hermite, in the plane)."""
+def dips(w0: Any, rate0: Any, w1: Any, rate1: Any, h: float) -> bool:
+    """Whether the slip comes much closer to rest between two nodes than at either (cubic Hermite)."""
     close = 0.0625 * min(w0.real * w0.real + w0.imag * w0.imag, w1.real * w1.real + w1.imag * w1.imag)
     closest = close
     for s in (0.25, 0.5, 0.75):

@@ -56,16 +56,10 @@ START = Instant(0.0, 0.0, 1.0)
 
 # --- the load -----------------------------------------------------------------------------------------------------
 
-
-def _load_of_one_sine(body: Any, now: Instant) -> Any:
-    return body.load_sine * now.sine + body.load_cosine * now.cosine
-
-
-def _load_of_waves(body: Any, now: Instant) -> Any:
-    return wave_at(body.varying.table, body.varying.load, body.varying.begins, now.tau)
-
-
-load = by_variation(_load_of_one_sine, _load_of_waves)
+load = by_variation(
+    lambda body, now: body.load_sine * now.sine + body.load_cosine * now.cosine,
+    lambda body, now: wave_at(body.varying.table, body.varying.load, body.varying.begins, now.tau),
+)
 """load(body, now): what drives the mass; on the line a number, in the plane x1 + i x2.
 
 Not ``fast``: less what the reference balances it is zero to the last bit where that is all of it."""
@@ -92,11 +86,9 @@ def _curvature_of_one_sine(body: Any) -> float:
     return body.frequency**2 * (abs(load(body, quarter)) + abs(load(body, START)))
 
 
-def _curvature_of_waves(body: Any) -> float:
-    return wave_bound(body.varying.table, body.varying.load, 2)
-
-
-load_curvature = by_variation(_curvature_of_one_sine, _curvature_of_waves)
+load_curvature = by_variation(
+    _curvature_of_one_sine, lambda body: wave_bound(body.varying.table, body.varying.load, 2)
+)
 """load_curvature(body): a bound on the second derivative of the load, at any time."""
 
 
@@ -118,22 +110,14 @@ load_impulse = by_variation(_impulse_of_one_sine, _impulse_of_waves)
 # --- the normal load ----------------------------------------------------------------------------------------------
 
 
-def _mean_load(body: Any, now: Instant) -> float:
-    return body.normal_load
-
-
 def _varying_load(body: Any, now: Instant) -> float:
     return body.normal_load + wave_at(
         body.varying.table, body.varying.normal_load, body.varying.begins, now.tau
     )
 
 
-normal_load = by_variation(_mean_load, _varying_load)
+normal_load = by_variation(lambda body, now: body.normal_load, _varying_load)
 """normal_load(body, now): what presses the mass on the belt: friction is this times its coefficient."""
-
-
-def _one(body: Any, now: Instant) -> float:
-    return 1.0
 
 
 def _varying_share(body: Any, now: Instant) -> float:
@@ -144,85 +128,54 @@ def _varying_share(body: Any, now: Instant) -> float:
     )
 
 
-load_share = by_variation(_one, _varying_share)
+load_share = by_variation(lambda body, now: 1.0, _varying_share)
 """load_share(body, now): the normal load over its mean."""
 
-
-def _no_rate(body: Any, now: Instant) -> float:
-    return 0.0
-
-
-def _rate_of_load(body: Any, now: Instant) -> float:
-    return wave_rate(body.varying.table, body.varying.normal_load, now.tau, 1)
-
-
-normal_load_rate = by_variation(_no_rate, _rate_of_load)
+normal_load_rate = by_variation(
+    lambda body, now: 0.0,
+    lambda body, now: wave_rate(body.varying.table, body.varying.normal_load, now.tau, 1),
+)
 """normal_load_rate(body, now): its derivative."""
 
-
-def _bend_of_load(body: Any, now: Instant) -> float:
-    return wave_rate(body.varying.table, body.varying.normal_load, now.tau, 2)
-
-
-normal_load_bend = by_variation(_no_rate, _bend_of_load)
+normal_load_bend = by_variation(
+    lambda body, now: 0.0,
+    lambda body, now: wave_rate(body.varying.table, body.varying.normal_load, now.tau, 2),
+)
 """normal_load_bend(body, now): its second derivative."""
 
-
-def _no_bound(body: Any) -> float:
-    return 0.0
-
-
-def _curvature_of_load(body: Any) -> float:
-    return wave_bound(body.varying.table, body.varying.normal_load, 2)
-
-
-normal_load_curvature = by_variation(_no_bound, _curvature_of_load)
+normal_load_curvature = by_variation(
+    lambda body: 0.0, lambda body: wave_bound(body.varying.table, body.varying.normal_load, 2)
+)
 """normal_load_curvature(body): a bound on its second derivative, at any time."""
 
 
 # --- the belt -----------------------------------------------------------------------------------------------------
 
 
-def _steady_speed(body: Any, belt_speed: float, now: Instant) -> float:
-    return belt_speed
-
-
 def _vibrating_speed(body: Any, belt_speed: float, now: Instant) -> Any:
     return belt_speed + wave_at(body.varying.table, body.varying.belt, body.varying.begins, now.tau)
 
 
-belt_velocity = by_variation(_steady_speed, _vibrating_speed)
+belt_velocity = by_variation(lambda body, belt_speed, now: belt_speed, _vibrating_speed)
 """belt_velocity(body, belt_speed, now): of the belt; belt_speed: its mean, along x1."""
 
-
-def _steady_belt(body: Any, belt_speed: float, now: Instant) -> float:
-    return 0.0
-
-
-def _belt_acceleration(body: Any, belt_speed: float, now: Instant) -> Any:
-    return wave_rate(body.varying.table, body.varying.belt, now.tau, 1)
-
-
-def _belt_jerk(body: Any, belt_speed: float, now: Instant) -> Any:
-    return wave_rate(body.varying.table, body.varying.belt, now.tau, 2)
-
-
-def _belt_snap(body: Any, belt_speed: float, now: Instant) -> Any:
-    return wave_rate(body.varying.table, body.varying.belt, now.tau, 3)
-
-
-belt_acceleration = by_variation(_steady_belt, _belt_acceleration)
+belt_acceleration = by_variation(
+    lambda body, belt_speed, now: 0.0,
+    lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 1),
+)
 """belt_acceleration(body, belt_speed, now): derivative of its velocity."""
 
-belt_jerk = by_variation(_steady_belt, _belt_jerk)
+belt_jerk = by_variation(
+    lambda body, belt_speed, now: 0.0,
+    lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 2),
+)
 """belt_jerk(body, belt_speed, now): derivative of its acceleration."""
 
-belt_snap = by_variation(_steady_belt, _belt_snap)
+belt_snap = by_variation(
+    lambda body, belt_speed, now: 0.0,
+    lambda body, belt_speed, now: wave_rate(body.varying.table, body.varying.belt, now.tau, 3),
+)
 """belt_snap(body, belt_speed, now): derivative of its jerk."""
-
-
-def _even_path(body: Any, belt_speed: float, start: float, end: float) -> float:
-    return (end - start) * belt_velocity(body, belt_speed, START)
 
 
 def _vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
@@ -231,12 +184,11 @@ def _vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> A
     )
 
 
-belt_path = by_variation(_even_path, _vibrating_path)
+belt_path = by_variation(
+    lambda body, belt_speed, start, end: (end - start) * belt_velocity(body, belt_speed, START),
+    _vibrating_path,
+)
 """belt_path(body, belt_speed, start, end): how far the belt goes between two times of one piece."""
-
-
-def _integral_of_even_path(body: Any, belt_speed: float, start: float, end: float) -> float:
-    return 0.5 * (end - start) * belt_path(body, belt_speed, start, end)
 
 
 def _integral_of_vibrating_path(body: Any, belt_speed: float, start: float, end: float) -> Any:
@@ -244,39 +196,23 @@ def _integral_of_vibrating_path(body: Any, belt_speed: float, start: float, end:
     return 0.5 * (end - start) * ((end - start) * belt_speed) + swung
 
 
-belt_path_integral = by_variation(_integral_of_even_path, _integral_of_vibrating_path)
+belt_path_integral = by_variation(
+    lambda body, belt_speed, start, end: 0.5 * (end - start) * belt_path(body, belt_speed, start, end),
+    _integral_of_vibrating_path,
+)
 """belt_path_integral(body, belt_speed, start, end): the integral of the way it has gone since the start."""
 
-
-def _even_advance(body: Any, belt_speed: float) -> float:
-    return belt_path(body, belt_speed, 0.0, span(body))
-
-
-def _mean_advance(body: Any, belt_speed: float) -> float:
-    return span(body) * belt_speed
-
-
-belt_advance = by_variation(_even_advance, _mean_advance)
+belt_advance = by_variation(
+    lambda body, belt_speed: belt_path(body, belt_speed, 0.0, span(body)),
+    lambda body, belt_speed: span(body) * belt_speed,
+)
 """belt_advance(body, belt_speed): how far the belt goes in a span; a vibration leads nowhere."""
 
-
-def _no_swing(body: Any) -> float:
-    return 0.0
-
-
-def _belt_swing(body: Any) -> float:
-    return body.varying.whole.belt_swing
-
-
-belt_swing = by_variation(_no_swing, _belt_swing)
+belt_swing = by_variation(lambda body: 0.0, lambda body: body.varying.whole.belt_swing)
 """belt_swing(body): how much faster or slower than its mean the belt goes at most."""
 
 
 # --- pieces between corners ---------------------------------------------------------------------------------------
-
-
-def _one_piece(body: Any) -> int:
-    return 1
 
 
 def _pieces_of_a_span(body: Any) -> int:
@@ -285,12 +221,8 @@ def _pieces_of_a_span(body: Any) -> int:
     return laps * whole.pieces
 
 
-pieces_of = by_variation(_one_piece, _pieces_of_a_span)
+pieces_of = by_variation(lambda body: 1, _pieces_of_a_span)
 """pieces_of(body): how many pieces one span of the body has; within a piece everything is smooth in time."""
-
-
-def _whole_span(body: Any, k: int) -> Any:
-    return 0.0, span(body)
 
 
 @inner
@@ -305,12 +237,8 @@ def _piece_between_corners(body: Any, k: int) -> Any:
     return _edge(body.varying, k), span(body) if last else _edge(body.varying, k + 1)
 
 
-piece_ends = by_variation(_whole_span, _piece_between_corners)
+piece_ends = by_variation(lambda body, k: (0.0, span(body)), _piece_between_corners)
 """piece_ends(body, k): when the k-th piece of a span begins, and when it ends."""
-
-
-def _itself(body: Any, k: int) -> Any:
-    return body
 
 
 @inner
@@ -322,24 +250,13 @@ def _course_on_line(varying: Any, course: Course, place: int) -> Course:
 
 
 @inner
-def _with_varying(body: Body, varying: Any) -> Body:
+def changed(body: Body, periods: float, varying: Any) -> Body:
+    """The body with another span, and other functions of time."""
     return Body(
-        body.damping_mean,
-        body.damping_split,
-        body.stiffness_mean,
-        body.stiffness_split,
-        body.normal_load,
-        body.frequency,
-        body.load_sine,
-        body.load_cosine,
-        body.balanced_sine,
-        body.balanced_cosine,
-        body.reference_sine,
-        body.reference_cosine,
-        body.periods,
-        body.prescribed,
-        varying,
-    )
+        body.damping_mean, body.damping_split, body.stiffness_mean, body.stiffness_split, body.normal_load,
+        body.frequency, body.load_sine, body.load_cosine, body.balanced_sine, body.balanced_cosine,
+        body.reference_sine, body.reference_cosine, periods, body.prescribed, varying,
+    )  # fmt: skip
 
 
 def _body_of_piece(body: Body, k: int) -> Body:
@@ -355,15 +272,11 @@ def _body_of_piece(body: Body, k: int) -> Body:
         normal,
         old.keeps_stiffness,
     )
-    return _with_varying(body, varying)
+    return changed(body, body.periods, varying)
 
 
-in_piece = by_variation(_itself, _body_of_piece)
+in_piece = by_variation(lambda body, k: body, _body_of_piece)
 """in_piece(body, k): the body as the k-th piece of its span has it."""
-
-
-def _still_itself(body: Any, tau: float) -> Any:
-    return body
 
 
 def _body_at(body: Body, tau: float) -> Body:
@@ -374,12 +287,8 @@ def _body_at(body: Body, tau: float) -> Body:
     return in_piece(body, k)
 
 
-body_at = by_variation(_still_itself, _body_at)
+body_at = by_variation(lambda body, tau: body, _body_at)
 """body_at(body, tau): the body as the piece at this time has it."""
-
-
-def _as_it_is(body: Any) -> Any:
-    return body
 
 
 def _with_bare_table(body: Any) -> Any:
@@ -393,22 +302,13 @@ def _with_bare_table(body: Any) -> Any:
         old.normal_load,
         old.keeps_stiffness,
     )
-    return _with_varying(body, varying)
+    return changed(body, body.periods, varying)
 
 
-bare = by_variation(_as_it_is, _with_bare_table)
+bare = by_variation(lambda body: body, _with_bare_table)
 """bare(body): the body with a bare pointer in the place of the table, which lives as long as what Python holds."""
 
-
-def _drive_frequency(body: Any) -> float:
-    return body.frequency
-
-
-def _quickest_wave(body: Any) -> float:
-    return body.varying.whole.quickest
-
-
-quickest_of = by_variation(_drive_frequency, _quickest_wave)
+quickest_of = by_variation(lambda body: body.frequency, lambda body: body.varying.whole.quickest)
 """quickest_of(body): the highest circular frequency of all that changes in time."""
 
 
@@ -460,10 +360,6 @@ def holding_force(body: Body, belt_speed: float, now: Instant, x: Any) -> Any:
     )
 
 
-def _bound_on_a_steady_belt(body: Body, belt_speed: float) -> float:
-    return load_curvature(body)
-
-
 def _bound_on_a_vibrating_belt(body: Body, belt_speed: float) -> float:
     first, second, third = (
         wave_bound(body.varying.table, body.varying.belt, 1),
@@ -474,7 +370,7 @@ def _bound_on_a_vibrating_belt(body: Body, belt_speed: float) -> float:
     return load_curvature(body) + springs + (body.damping_mean + abs(body.damping_split)) * second + third
 
 
-holding_curvature = by_variation(_bound_on_a_steady_belt, _bound_on_a_vibrating_belt)
+holding_curvature = by_variation(lambda body, belt_speed: load_curvature(body), _bound_on_a_vibrating_belt)
 """holding_curvature(body, belt_speed): a bound on the second derivative of that force."""
 
 
@@ -603,21 +499,17 @@ def deviation_slip_rate(problem: Any, now: Instant, a: Any) -> Any:
     return rate - belt_acceleration(problem.body, problem.belt_speed, now)
 
 
-def _friction_on_the_line(problem: Flow, w: float) -> Any:
-    return problem.side * problem.law.sliding_friction(max(problem.side * w, 0.0))
-
-
-def _friction_in_the_plane(problem: Flow, w: complex) -> Any:
-    return problem.law.sliding_vector(w)
-
-
 def _friction_in_lanes(problem: Flow, w: Any) -> Any:
     """Of a law whose vector is that of ``FrictionLaw``: along the slip."""
     speed = length(w)
     return (friction_by_lane(problem.law, speed) / speed) * w
 
 
-_friction = by_dimension(_friction_on_the_line, _friction_in_the_plane, _friction_in_lanes)
+_friction = by_dimension(
+    lambda problem, w: problem.side * problem.law.sliding_friction(max(problem.side * w, 0.0)),
+    lambda problem, w: problem.law.sliding_vector(w),
+    _friction_in_lanes,
+)
 
 
 @fast_embedded

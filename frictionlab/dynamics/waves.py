@@ -9,16 +9,10 @@ from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension
 from frictionlab.scene.varying import PER_WAVE, Course
 
-
-def _on_the_line(table: Any, place: int, like: float) -> float:
-    return table[place]
-
-
-def _in_the_plane(table: Any, place: int, like: complex) -> complex:
-    return complex(table[place], table[place + 1])
-
-
-number_at = by_dimension(_on_the_line, _in_the_plane)
+number_at = by_dimension(
+    lambda table, place, like: table[place],
+    lambda table, place, like: complex(table[place], table[place + 1]),
+)
 """number_at(table, place, like): the number there, of the kind of like."""
 
 

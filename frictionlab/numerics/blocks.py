@@ -14,15 +14,10 @@ from frictionlab.compile.dispatch import by_dimension
 Block = tuple[complex, complex]
 
 
-def _block_on_the_line(blocks: Any, place: int, like: float) -> float:
-    return blocks[2 * place]
-
-
-def _block_in_the_plane(blocks: Any, place: int, like: complex) -> Block:
-    return blocks[2 * place], blocks[2 * place + 1]
-
-
-block = by_dimension(_block_on_the_line, _block_in_the_plane)
+block = by_dimension(
+    lambda blocks, place, like: blocks[2 * place],
+    lambda blocks, place, like: (blocks[2 * place], blocks[2 * place + 1]),
+)
 """block(blocks, place, like): the map kept at a place of an array."""
 
 
@@ -38,21 +33,13 @@ keep = by_dimension(_keep_on_the_line, _keep_in_the_plane)
 """keep(blocks, place, matrix, like): put a map into an array."""
 
 
-def _applied_on_the_line(matrix: float, x: float) -> float:
-    return matrix * x
-
-
 def _applied_in_the_plane(matrix: Block, x: complex) -> complex:
     a, b = matrix
     return a * x + b * x.conjugate()
 
 
-apply = by_dimension(_applied_on_the_line, _applied_in_the_plane)
+apply = by_dimension(lambda matrix, x: matrix * x, _applied_in_the_plane)
 """apply(matrix, x): the image of a vector."""
-
-
-def _product_on_the_line(left: float, right: float, like: float) -> float:
-    return left * right
 
 
 def _product_in_the_plane(left: Block, right: Block, like: complex) -> Block:
@@ -61,36 +48,19 @@ def _product_in_the_plane(left: Block, right: Block, like: complex) -> Block:
     return a * c + b * d.conjugate(), a * d + b * c.conjugate()
 
 
-product = by_dimension(_product_on_the_line, _product_in_the_plane)
+product = by_dimension(lambda left, right, like: left * right, _product_in_the_plane)
 """product(left, right, like): the map that applies the right one first."""
 
-
-def _sum_on_the_line(left: float, right: float, like: float) -> float:
-    return left + right
-
-
-def _sum_in_the_plane(left: Block, right: Block, like: complex) -> Block:
-    return left[0] + right[0], left[1] + right[1]
-
-
-add = by_dimension(_sum_on_the_line, _sum_in_the_plane)
+add = by_dimension(
+    lambda left, right, like: left + right, lambda left, right, like: (left[0] + right[0], left[1] + right[1])
+)
 """add(left, right, like): the sum of two maps."""
 
-
-def _scaled_on_the_line(factor: float, matrix: float, like: float) -> float:
-    return factor * matrix
-
-
-def _scaled_in_the_plane(factor: float, matrix: Block, like: complex) -> Block:
-    return factor * matrix[0], factor * matrix[1]
-
-
-scale = by_dimension(_scaled_on_the_line, _scaled_in_the_plane)
+scale = by_dimension(
+    lambda factor, matrix, like: factor * matrix,
+    lambda factor, matrix, like: (factor * matrix[0], factor * matrix[1]),
+)
 """scale(factor, matrix, like): a multiple of a map."""
-
-
-def _inverse_on_the_line(matrix: float, like: float) -> float:
-    return 1.0 / matrix
 
 
 def _inverse_in_the_plane(matrix: Block, like: complex) -> Block:
@@ -100,36 +70,17 @@ def _inverse_in_the_plane(matrix: Block, like: complex) -> Block:
     return share * a.conjugate(), -share * b
 
 
-inverse = by_dimension(_inverse_on_the_line, _inverse_in_the_plane)
+inverse = by_dimension(lambda matrix, like: 1.0 / matrix, _inverse_in_the_plane)
 """inverse(matrix, like): not finite where the map is singular."""
 
-
-def _diagonal_on_the_line(mean: float, split: float, like: float) -> float:
-    return mean + split
-
-
-def _diagonal_in_the_plane(mean: float, split: float, like: complex) -> Block:
-    return complex(mean, 0.0), complex(split, 0.0)
-
-
-diagonal = by_dimension(_diagonal_on_the_line, _diagonal_in_the_plane)
+diagonal = by_dimension(
+    lambda mean, split, like: mean + split,
+    lambda mean, split, like: (complex(mean, 0.0), complex(split, 0.0)),
+)
 """diagonal(mean, split, like): x1 times mean + split, x2 times mean - split."""
 
-
-def _multiple_on_the_line(x: float, like: float) -> float:
-    return x
-
-
-def _multiple_in_the_plane(x: Any, like: complex) -> Block:
-    return complex(x.real, x.imag), complex(0.0, 0.0)
-
-
-multiple = by_dimension(_multiple_on_the_line, _multiple_in_the_plane)
+multiple = by_dimension(lambda x, like: x, lambda x, like: (complex(x.real, x.imag), complex(0.0, 0.0)))
 """multiple(x, like): the map that multiplies by a number."""
-
-
-def _from_columns_on_the_line(first: float, second: float) -> float:
-    return first
 
 
 def _from_columns_in_the_plane(first: complex, second: complex) -> Block:
@@ -137,5 +88,5 @@ def _from_columns_in_the_plane(first: complex, second: complex) -> Block:
     return 0.5 * (first - turned), 0.5 * (first + turned)
 
 
-from_columns = by_dimension(_from_columns_on_the_line, _from_columns_in_the_plane)
+from_columns = by_dimension(lambda first, second: first, _from_columns_in_the_plane)
 """from_columns(first, second): the map that takes 1 to the first and i to the second, which the line leaves out."""

@@ -9,27 +9,12 @@ from typing import Any
 
 from frictionlab.compile.dispatch import by_dimension
 
+dimension = by_dimension(lambda like: 1, lambda like: 2)
 
-def _dimension_of_the_line(like: float) -> int:
-    return 1
-
-
-def _dimension_of_the_plane(like: complex) -> int:
-    return 2
-
-
-dimension = by_dimension(_dimension_of_the_line, _dimension_of_the_plane)
-
-
-def _taken_on_the_line(values: Any, place: int, like: float) -> float:
-    return values[place]
-
-
-def _taken_in_the_plane(values: Any, place: int, like: complex) -> complex:
-    return complex(values[2 * place], values[2 * place + 1])
-
-
-taken = by_dimension(_taken_on_the_line, _taken_in_the_plane)
+taken = by_dimension(
+    lambda values, place, like: values[place],
+    lambda values, place, like: complex(values[2 * place], values[2 * place + 1]),
+)
 
 
 def _put_on_the_line(values: Any, place: int, number: float) -> None:
@@ -42,13 +27,6 @@ def _put_in_the_plane(values: Any, place: int, number: complex) -> None:
 
 put = by_dimension(_put_on_the_line, _put_in_the_plane)
 
-
-def _unit_on_the_line(column: int, like: float) -> float:
-    return 1.0
-
-
-def _unit_in_the_plane(column: int, like: complex) -> complex:
-    return complex(1.0, 0.0) if column == 0 else complex(0.0, 1.0)
-
-
-unit = by_dimension(_unit_on_the_line, _unit_in_the_plane)
+unit = by_dimension(
+    lambda column, like: 1.0, lambda column, like: complex(1.0, 0.0) if column == 0 else complex(0.0, 1.0)
+)

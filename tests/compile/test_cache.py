@@ -240,14 +240,6 @@ def test_two_processes_on_a_cold_cache_are_both_right(tmp_path):
     assert folder.number() == 104.25
 
 
-def test_without_a_folder_to_write_to_kernels_are_compiled_all_the_same(tmp_path):
-    folder = Folder(tmp_path)
-    (tmp_path / "a file").write_text("not a folder")
-    folder.cache = tmp_path / "a file" / "below"
-
-    assert folder.number() == 104.25
-
-
 class Interpreted(SlidingLaw):
     """A law whose arithmetic numba does not know."""
 

@@ -20,7 +20,6 @@ from frictionlab.methods.periodic.setting import (
     period_map,
     recorded_map,
     scales_of,
-    sliding_friction,
     slip_keeps_its_side,
     write_sliding_state,
 )
@@ -71,7 +70,7 @@ def solve_curve(maps: Maps, periods: float, belt_speeds: Any, guess: Any, goal: 
     for i in range(n):
         setting = Setting(maps, belt_speeds[i], periods)
         if goal.constant and _slides_on(setting, guess if i == 0 else guess[:0], states[i]):
-            _write_results(setting, _sliding(setting), results[i])
+            _write_results(setting, _sliding(setting, states[i]), results[i])
             known = 0
             continue
         # From the states before it by extrapolation, with the last inverse; the first one from a harmonic motion.
@@ -114,12 +113,12 @@ def _slides_on(setting: Setting, guess: Any, state: Any) -> bool:
 
 
 @inner
-def _sliding(setting: Setting) -> FixedPoint:
-    """The constant friction of slip that never reverses; it takes no map."""
-    friction = sliding_friction(setting.maps, abs(setting.belt_speed))
-    impulse = complex(-math.copysign(friction, setting.belt_speed) * scales_of(setting).period, 0.0)
+def _sliding(setting: Setting, state: Any) -> FixedPoint:
+    """The constant friction of slip that never reverses, from its state; it takes no map."""
+    friction = write_sliding_state(setting, state)
+    impulse = complex(-friction * scales_of(setting).period, 0.0)
     slowest = max(0.0, abs(setting.belt_speed) - setting.maps.swing)
-    return FixedPoint(impulse, ROUNDING * max(1.0, friction), 0, 0.0, slowest, 0.0)
+    return FixedPoint(impulse, ROUNDING * max(1.0, abs(friction)), 0, 0.0, slowest, 0.0)
 
 
 @inner

@@ -243,26 +243,17 @@ def quasi_newton_step(setting: Setting, search: Iterate, now: Progress) -> Progr
 
 
 @inner
-def _recover_without_memory(
-    setting: Setting, search: Iterate, now: Progress, length: float, floor: float
-) -> Progress:
-    """Ask for finer maps where what is left is their own error, else take a Newton step."""
-    finest, newtons = now.finest, now.newtons
-    if now.accuracy <= finest and length <= 30.0 * now.accuracy and finest > floor:
+def _recovered(setting: Setting, search: Iterate, now: Progress, length: float, floor: float) -> Progress:
+    """Where quasi-Newton steps have stalled: finer maps if what is left is their own error, else a Newton step."""
+    remembers, finest, newtons = setting.maps.remembers, now.finest, now.newtons
+    if not remembers and now.accuracy <= finest and length <= 30.0 * now.accuracy and finest > floor:
         finest = max(floor, finest / FINER)
         return Progress(now.image, now.accuracy, finest, now.maps, 1, now.checks, newtons, -1.0)
-    image, took = newton_step(setting, search, now.accuracy, finest)
-    return Progress(image, now.accuracy, finest, now.maps + took, 1, now.checks, newtons + 1, -1.0)
-
-
-@inner
-def _recover_with_memory(
-    setting: Setting, search: Iterate, now: Progress, length: float, floor: float
-) -> Progress:
-    """Take a Newton step; after some of them what is open is no more than what the steps of a map jump about by."""
-    image, took = newton_step(setting, search, now.accuracy, now.accuracy)
-    newtons = now.newtons + 1
-    finest = max(now.finest / FINER, floor) if newtons % PATIENCE == 0 else now.finest
+    image, took = newton_step(setting, search, now.accuracy, now.accuracy if remembers else finest)
+    newtons += 1
+    # with memory, after some of them, what is open is no more than what the steps of a map jump about by
+    if remembers and newtons % PATIENCE == 0:
+        finest = max(finest / FINER, floor)
     return Progress(image, now.accuracy, finest, now.maps + took, 1, now.checks, newtons, -1.0)
 
 
@@ -390,22 +381,6 @@ def _check_with_memory(
 
 
 @inner
-def _is_checked(setting: Setting, search: Iterate, goal: Goal, now: Progress, floor: float) -> Progress:
-    """Try to end the search."""
-    if setting.maps.remembers:
-        return _check_with_memory(setting, search, goal, now, floor)
-    return _check_without_memory(setting, search, goal, now, floor)
-
-
-@inner
-def _recovered(setting: Setting, search: Iterate, now: Progress, length: float, floor: float) -> Progress:
-    """Go on where quasi-Newton steps have stalled."""
-    if setting.maps.remembers:
-        return _recover_with_memory(setting, search, now, length, floor)
-    return _recover_without_memory(setting, search, now, length, floor)
-
-
-@inner
 def first_accuracy_without_memory(asked: float) -> float:
     """Of maps, for an error of the force of friction that is asked for."""
     return 0.5 * asked
@@ -478,7 +453,10 @@ def fixed_point(
         multiply(inverse, search.residual, search.step)
         bound = mean_error(scales, search.residual, norm(search.step))
         if now.accuracy <= now.finest and bound <= near * goal.tolerance:
-            now = _is_checked(setting, search, goal, now, floor)
+            if setting.maps.remembers:
+                now = _check_with_memory(setting, search, goal, now, floor)
+            else:
+                now = _check_without_memory(setting, search, goal, now, floor)
             continue
         now = quasi_newton_step(setting, search, now)
         if now.stalls > 1:

@@ -87,12 +87,10 @@ class SearchState(NamedTuple):
 @inner
 def _map(case: Case, search: Search, z: Any, residual: Any, origin: float, accuracy: float) -> Image:
     """One period from a state; leaves the rest in the residual and the room."""
-    body, w = case.body, complex(z[1], z[3])
-    x = complex(z[0] / root_along(body), z[2] / root_across(body))
+    x, w = unpack(case.body, z, case.like)
     start = SlipPlace(origin, x, abs(w), math.atan2(w.imag, w.real))
-    image = polar_map(case, start, origin + span(body), accuracy, search.room, track_of(0))
-    residual[0], residual[1] = root_along(body) * (image.x.real - x.real), image.w.real - w.real
-    residual[2], residual[3] = root_across(body) * (image.x.imag - x.imag), image.w.imag - w.imag
+    image = polar_map(case, start, origin + span(case.body), accuracy, search.room, track_of(0))
+    pack(case.body, residual, image.x - x, image.w - w)
     return image
 
 
@@ -195,7 +193,7 @@ def _begin(case: Case, search: Search, from_plateau: bool) -> SearchState:
     far = plateau(case)
     slower = abs(case.belt_speed) < swing_of(body)
     if from_plateau and far.found and slower:
-        z[0], z[1], z[2], z[3] = root_along(body) * far.x.real, 0.0, root_across(body) * far.x.imag, 0.0
+        pack(body, z, far.x, 0j)
         return _remap(case, search, SearchState(far.tau, FIRST_ACCURACY, none, 0, 0, 0, 0, -1.0))
     first_guess(case.law, body, case.belt_speed, z)
     _as_slip(case, z)
@@ -219,9 +217,9 @@ def _as_slip(case: Case, z: Any) -> None:
 @inner
 def _move_origin(case: Case, search: Search, now: SearchState) -> SearchState:
     """Begin the maps in the middle of the longest rest: their unknowns are then positions alone."""
-    times, x, z, period = search.room.times, search.room.totals[MIDWAY], search.z, span(case.body)
+    times, period = search.room.times, span(case.body)
     origin = times[MIDDLE] - period if times[MIDDLE] >= period else times[MIDDLE]
-    z[0], z[1], z[2], z[3] = root_along(case.body) * x.real, 0.0, root_across(case.body) * x.imag, 0.0
+    pack(case.body, search.z, search.room.totals[MIDWAY], 0j)
     moved = SearchState(origin, now.accuracy, now.image, now.maps, now.work, now.moves + 1, now.stalls, -1.0)
     return _remap(case, search, moved)
 
@@ -230,7 +228,7 @@ def _move_origin(case: Case, search: Search, now: SearchState) -> SearchState:
 def _carried(case: Case, search: Search, now: SearchState) -> SearchState:
     """Rest for all of a period: go on by as many as it surely lasts."""
     body = case.body
-    x = complex(search.z[0] / root_along(body), search.z[2] / root_across(body))
+    x, _w = unpack(body, search.z, case.like)
     x += belt_path(body, case.belt_speed, now.origin, 2.0 * span(body))
     many = periods_at_rest(case.law, body, case.belt_speed, x - body.reference_cosine)
     return _repeat(case, search, now, many)
@@ -296,17 +294,11 @@ def _judge(case: Case, search: Search, now: SearchState, goal: Goal) -> SearchSt
     steps = steep * (norm(before) + 4e-15 * norm(search.z))
     error = stated_error(abs(mean - coarse), abs(open_), steps)
     ended = now.accuracy < FIRST_ACCURACY and (error <= goal.tolerance or accuracy <= FINEST_ACCURACY)
-    if ended:
-        search.sums[0] = mean
+    if not ended:
+        return finer
+    search.sums[0] = mean
     return SearchState(
-        now.origin,
-        accuracy,
-        finer.image,
-        finer.maps,
-        finer.work,
-        now.moves,
-        now.stalls,
-        error if ended else -1.0,
+        now.origin, accuracy, finer.image, finer.maps, finer.work, now.moves, now.stalls, error
     )
 
 
@@ -361,8 +353,7 @@ def _solve(case: Case, search: Search, goal: Goal, state: Any, row: Any) -> None
     if now.error < 0.0:
         now = _search(case, search, goal, _begin(case, search, False))
     stuck = search.room.times[RESTED] / period
-    w = complex(search.z[1], search.z[3])
-    x = complex(search.z[0] / root_along(body), search.z[2] / root_across(body))
+    x, w = unpack(body, search.z, case.like)
     start = SlipPlace(now.origin, x, abs(w), math.atan2(w.imag, w.real))
     if now.origin > 0.0 and now.error >= 0.0:
         image = polar_map(case, start, period, now.accuracy, search.room, track_of(0))

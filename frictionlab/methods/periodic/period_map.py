@@ -24,7 +24,7 @@ from frictionlab.methods.periodic.maps.memory_state import (
     unpack_memory,
 )
 from frictionlab.methods.periodic.maps.pace import Stepping, noting
-from frictionlab.methods.periodic.maps.path import path_map, repeated_path
+from frictionlab.methods.periodic.maps.path import path_map
 from frictionlab.methods.periodic.maps.rates import MEMORY, contact_kind, workspace
 from frictionlab.methods.periodic.maps.sliding import Mapped, sliding_map
 from frictionlab.methods.periodic.maps.stick import periods_at_rest
@@ -51,10 +51,6 @@ def _pack_plane(body: Body, state: Any, y: complex, u: complex) -> None:
 pack = by_dimension(_pack_line, _pack_plane)
 
 
-def _unpack_line(body: Body, state: Any, like: float) -> Any:
-    return state[0] / math.sqrt(body.stiffness_mean), state[1]
-
-
 def _unpack_plane(body: Body, state: Any, like: complex) -> Any:
     y = complex(
         state[0] / math.sqrt(body.stiffness_mean + body.stiffness_split),
@@ -63,18 +59,16 @@ def _unpack_plane(body: Body, state: Any, like: complex) -> Any:
     return y, complex(state[1], state[3])
 
 
-unpack = by_dimension(_unpack_line, _unpack_plane)
-
-
-def _size_without_memory(law: Any, like: Any) -> int:
-    return 2 * dimension(like)
+unpack = by_dimension(
+    lambda body, state, like: (state[0] / math.sqrt(body.stiffness_mean), state[1]), _unpack_plane
+)
 
 
 def _size_with_memory(law: Any, like: Any) -> int:
     return 2 * dimension(like) + coordinates(law, like)
 
 
-size_of = by_law(_size_without_memory, _size_with_memory, None, _size_with_memory)
+size_of = by_law(lambda law, like: 2 * dimension(like), _size_with_memory, None, _size_with_memory)
 """size_of(law, like): how many numbers a state is."""
 
 coarsest_of = coarsest
@@ -133,7 +127,7 @@ def _image_by_path(case: Case, state: Any, residual: Any, how: Stepping) -> Mapp
     measure_scales(law, body, work, like)
     unpack_memory(law, body, work, state, like)
     z = work.start[MEMORY]
-    image = repeated_path(case, y, u, z, how.pace) if how.repeats else path_map(case, y, u, z, how)
+    image = path_map(case, y, u, z, how)
     pack(body, residual, image.y - y, image.u - u)
     residual[2] = work.unit[0] * (image.z - z)
     return Mapped(image.y, image.u, image.friction_impulse, 0.0, image.closest, -1.0, image.steps)
@@ -152,21 +146,18 @@ def image_of(case: Case, state: Any, residual: Any, accuracy: float) -> Mapped:
     return paced_image(case, state, residual, noting(accuracy, track_of(0)))
 
 
-def _rest_without_memory(law: Any, body: Body, belt_speed: float, y: Any) -> float:
-    return periods_at_rest(law, body, belt_speed, y)
-
-
 def _rest_with_a_bristle(law: Any, body: Body, belt_speed: float, y: Any) -> float:
     """A bristle is never quite at rest."""
     return 1.0
 
 
-rest_of = by_law(_rest_without_memory, _rest_with_a_bristle, None, _rest_with_a_bristle)
+rest_of = by_law(
+    lambda law, body, belt_speed, y: periods_at_rest(law, body, belt_speed, y),
+    _rest_with_a_bristle,
+    None,
+    _rest_with_a_bristle,
+)
 """How many whole periods, at least one, a mass at rest at tau = 0 is sure to be carried on without slip."""
-
-
-def _remember_nothing(law: Any, body: Body, state: Any, z: Any) -> None:
-    """A law without memory."""
 
 
 def _remember_a_deflection(law: Any, body: Body, state: Any, z: Any) -> None:
@@ -184,7 +175,13 @@ def _remember_sliding(law: Any, body: Body, state: Any, z: Any) -> None:
     pack_memory(law, body, work, state, z)
 
 
-remember = by_law(_remember_nothing, _remember_a_deflection, None, _remember_sliding)
+remember = by_law(
+    # a law without memory
+    lambda law, body, state, z: None,
+    _remember_a_deflection,
+    None,
+    _remember_sliding,
+)
 
 
 @inner

@@ -32,10 +32,12 @@ from frictionlab.methods.periodic.continuation import (
     Curve,
     Wanted,
     answer_curve,
+    recorded_accuracy,
 )
 from frictionlab.methods.periodic.fixed_point import Goal
-from frictionlab.methods.periodic.lane_calls import FEWEST_IN_LANES, LaneCalls
-from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT
+from frictionlab.methods.periodic.lane_curve import CLOSED_ORBIT, answer_lanes
+from frictionlab.methods.periodic.lane_monodromy import differentiate_in_lanes
+from frictionlab.methods.periodic.lane_record import record_in_lanes
 from frictionlab.methods.periodic.map_kinds import MAP_KINDS, map_kind
 from frictionlab.methods.periodic.near_rest import answer_near_rest
 from frictionlab.methods.periodic.period_map import size_of, unpack
@@ -86,6 +88,8 @@ class Transient(NamedTuple):
     seconds: float
 
 
+FEWEST_IN_LANES = 4
+"""Points of a curve; fewer are answered one by one."""
 FINEST = 1e-15
 """No orbit is asked to be closed to less: rounding moves the mean more, and steps would go on for ever."""
 
@@ -141,25 +145,22 @@ class PeriodicProblem:
 
         periods: of everything that changes in time, in one orbit.
         """
-        if state is None and wanted == CLOSED and self.lanes is not None and len(scenes) >= FEWEST_IN_LANES:
-            return self._close_in_lanes(self.lanes, scenes, periods)
+        if state is None and wanted == CLOSED and self.in_lanes(len(scenes)):
+            return self._close_in_lanes(belt_speeds_of(scenes), periods)
         guess = np.empty((0, 0)) if state is None else state[None, :]
         goal = self.goal if state is None else self.goal._replace(check_attraction=False)
         return self.called(belt_speeds_of(scenes), guess, goal, wanted, periods)
 
-    @property
-    def lanes(self) -> LaneCalls | None:
-        """For motions in the plane that converge, without memory, under loads of one sine."""
+    def in_lanes(self, points: int) -> bool:
+        """Whether eight are answered at once: motions in the plane that converge, without memory, under loads of one
+        sine, of a curve that has more than a few points."""
         planar = isinstance(self.like, complex) and self.kernel is answer_curve and not self.body.varying
-        served = planar and self.goal.contracts and takes_lanes(self.law)
-        return LaneCalls(self.law, self.body, self.goal) if served else None
+        return points >= FEWEST_IN_LANES and planar and self.goal.contracts and takes_lanes(self.law)
 
-    def _close_in_lanes(
-        self, lanes: LaneCalls, scenes: Sequence[Scene], periods: float
-    ) -> tuple[Curve, float]:
-        """The orbits of these scenes; those that lanes leave by the search for one."""
-        speeds, body = belt_speeds_of(scenes), self.body._replace(periods=float(periods))
-        found, seconds = lanes._replace(body=body).close(speeds)
+    def _close_in_lanes(self, speeds: Floats, periods: float) -> tuple[Curve, float]:
+        """The orbits at these belt speeds; those that lanes leave by the search for one."""
+        body = self.body._replace(periods=float(periods))
+        found, seconds = KernelCall(answer_lanes, self.law).timed(body, speeds, self.goal)
         left = np.flatnonzero(found.fate != CLOSED_ORBIT).tolist()
         if left:
             rest, more = self.called(speeds[left], np.empty((0, 0)), self.goal, CLOSED, periods)
@@ -182,9 +183,11 @@ class PeriodicProblem:
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
         """The closed orbits from these states, one for each scene; without panels where there is no state."""
         places, known = self._known(states)
-        if self.lanes is None or len(places) < FEWEST_IN_LANES:
+        if not self.in_lanes(len(places)):
             return self._recorded(places, scenes, known)
-        track, ends = self.lanes.record(belt_speeds_of(scenes)[places], known)
+        accuracy = interpreted(recorded_accuracy)(self.body.normal_load, self.goal)
+        call = KernelCall(record_in_lanes, self.law)
+        track, ends = call(self.body, belt_speeds_of(scenes)[places], known, accuracy)
         found = _orbits_at(places, track, ends, len(scenes))
         left = np.diff(ends, prepend=0) == 0
         others = [i for i, is_left in zip(places, left, strict=True) if is_left]
@@ -199,8 +202,9 @@ class PeriodicProblem:
         """The largest modulus of the Floquet multipliers of these orbits; NaN where there is no state."""
         places, known = self._known(states)
         found = np.full(len(scenes), np.nan)
-        if self.lanes is not None and len(places) >= FEWEST_IN_LANES:
-            matrices = self.lanes.differentiate(belt_speeds_of(scenes)[places], known)
+        if self.in_lanes(len(places)):
+            call = KernelCall(differentiate_in_lanes, self.law)
+            matrices = call(self.body, belt_speeds_of(scenes)[places], known)
             regular = ~np.isnan(matrices).any(axis=(1, 2))
             found[np.array(places)[regular]] = largest_modulus(matrices[regular])
             places, known = [i for i in places if math.isnan(found[i])], known[~regular]
@@ -216,13 +220,14 @@ class PeriodicProblem:
     def settle(self, start: Initial) -> tuple[Floats, int]:
         """The state at which the mass stays put on a belt at rest, and in how many periods; negative for never."""
         accuracy = 1e-13 * self.mass.normal_load
-        return KernelCall(settle)(self.maps, self.common, *self._at(start), accuracy)
+        return KernelCall(settle)(self.maps, self.common, *self.place(0.0, start), accuracy)
 
     def state_at(self, belt_speed: float, start: Initial | None) -> Floats:
         """The state of a start (None: on the friction-free orbit)."""
-        at = self._free_start(belt_speed) if start is None else (*self._at(start), 0j)
+        # on the friction-free orbit it remembers as in sliding that never reverses
+        z = -memory_of_sliding(self.law, belt_speed) if start is None else 0.0
         state = np.empty(self.size)
-        KernelCall(write_start)(self.maps, tuple(map(complex, at)), state)
+        KernelCall(write_start)(self.maps, (*self.place(belt_speed, start), complex(z)), state)
         return state
 
     def carried(
@@ -242,8 +247,12 @@ class PeriodicProblem:
         return x, np.array([complex(u).real for _, u in pairs]) + self.body.frequency * sine.real
 
     def place(self, belt_speed: float, start: Initial | None) -> tuple[complex, complex]:
-        """Position and velocity of a start."""
-        return self._free_orbit(belt_speed)[:2] if start is None else self._at(start)
+        """Position and velocity of a start; on the friction-free orbit, with memory, shifted as in sliding on."""
+        if start is not None:
+            return complex(start.x, start.x2), complex(start.velocity, start.velocity2)
+        friction = self.law.sliding_friction(abs(belt_speed)) if self.law.count() > 0 else 0.0
+        x, v, _z = interpreted(state_of_sliding)(self.body, math.copysign(friction, belt_speed), self.like)
+        return complex(x), complex(v)
 
     def repeated(self, belt_speed: float, state: Floats, periods: int) -> Transient:
         """An orbit of so many periods, from its state."""
@@ -290,22 +299,6 @@ class PeriodicProblem:
         )
         (period, count), seconds = KernelCall(iterate_until_periodic).timed(self.maps, *arguments)
         return Transient(period, means[:count], states[1 : count + 1], states[count], seconds)
-
-    def _free_start(self, belt_speed: float) -> tuple[complex, complex, complex]:
-        """On the friction-free orbit; with memory, remembering as in sliding that never reverses."""
-        x, v, z = self._free_orbit(belt_speed)
-        return x, v, z - memory_of_sliding(self.law, belt_speed)
-
-    def _free_orbit(self, belt_speed: float) -> tuple[complex, complex, complex]:
-        """A place on the friction-free orbit and no deflection; with memory, shifted as in sliding on."""
-        remembers = self.law.count() > 0
-        friction = self.law.sliding_friction(abs(belt_speed)) if remembers else 0.0
-        friction = math.copysign(friction, belt_speed)
-        x, v, z = interpreted(state_of_sliding)(self.body, friction, self.like)
-        return x, v, z
-
-    def _at(self, start: Initial) -> tuple[complex, complex]:
-        return complex(start.x, start.x2), complex(start.velocity, start.velocity2)
 
 
 def largest_modulus(matrices: Floats) -> Floats:

@@ -25,7 +25,7 @@ from frictionlab.compile.addresses import (
 from frictionlab.compile.decorators import inner
 from frictionlab.compile.dispatch import by_dimension, by_law
 from frictionlab.compile.interpret import interpreted
-from frictionlab.dynamics.motion import bare, belt_advance, span, swing_of
+from frictionlab.dynamics.motion import bare, belt_advance, changed, span, swing_of
 from frictionlab.methods.periodic.case import case_of
 from frictionlab.methods.periodic.first_guess import first_guess, free_inverse
 from frictionlab.methods.periodic.maps.pace import Pace, Stepping, keeping, noting, pace_of, repeating
@@ -92,7 +92,6 @@ class Maps(NamedTuple):
     ends: Any
     guess: Any
     free: Any
-    friction: Any
     size: int  # of a state
     remembers: bool
     planar: bool
@@ -130,26 +129,14 @@ class LawOnBody(NamedTuple):
     body: Body
 
 
-def _real_part(value: complex, like: float) -> float:
-    return value.real
-
-
-def _itself(value: complex, like: complex) -> complex:
-    return value
-
-
-_of_kind = by_dimension(_real_part, _itself)
+_of_kind = by_dimension(lambda value, like: value.real, lambda value, like: value)
 """_of_kind(value, like): a vector as the kind of number that motions are told by."""
 
 
 @inner
 def _over(body: Body, periods: float) -> Body:
     """The body, its map spanning so many periods."""
-    return Body(
-        body.damping_mean, body.damping_split, body.stiffness_mean, body.stiffness_split, body.normal_load,
-        body.frequency, body.load_sine, body.load_cosine, body.balanced_sine, body.balanced_cosine,
-        body.reference_sine, body.reference_cosine, periods, body.prescribed, body.varying,
-    )  # fmt: skip
+    return changed(body, periods, body.varying)
 
 
 @inner
@@ -180,8 +167,7 @@ def _start(on: LawOnBody, state: Any, x: complex, v: complex, z: complex) -> flo
 
 @inner
 def _slide(on: LawOnBody, belt_speed: float, state: Any) -> float:
-    write_sliding(case_of(on.law, on.body, belt_speed), state)
-    return 0.0
+    return write_sliding(case_of(on.law, on.body, belt_speed), state)
 
 
 @inner
@@ -200,11 +186,6 @@ def _free(on: LawOnBody, periods: float, rubbing: float, inverse: Any) -> float:
     return 0.0
 
 
-@inner
-def _friction(on: LawOnBody, speed: float) -> float:
-    return on.law.sliding_friction(speed)
-
-
 _ROW, _TABLE = machine_type(np.empty(0)), machine_type(np.empty((0, 0)))
 _IMAGE = machine_type(SpanImage(0j, 0.0, 0.0, 0.0, 0))
 _STEPPING = machine_type(Stepping(0.0, interpreted(track_of)(0), interpreted(pace_of)(0), False))
@@ -214,7 +195,6 @@ _START = Interface((_ROW, VECTOR, VECTOR, VECTOR), NUMBER)
 _SLIDE = Interface((NUMBER, _ROW), NUMBER)
 _ENDS = Interface((NUMBER, NUMBER, _ROW), TRUTH)
 _FREE = Interface((NUMBER, NUMBER, _TABLE), NUMBER)
-_FRICTION = Interface((NUMBER,), NUMBER)
 _addresses = addresses_of(
     [
         Addressed(_follow, _FOLLOW),
@@ -224,25 +204,10 @@ _addresses = addresses_of(
         Addressed(_ends, _ENDS),
         Addressed(_guess, _SLIDE),
         Addressed(_free, _FREE),
-        Addressed(_friction, _FRICTION),
     ]
 )
 _follow_at, _rest_at, _start_at = call_at(_FOLLOW), call_at(_REST), call_at(_START)
-_slide_at, _ends_at, _free_at, _friction_at = (
-    call_at(_SLIDE),
-    call_at(_ENDS),
-    call_at(_FREE),
-    call_at(_FRICTION),
-)
-
-
-def _orders_without_memory(law: Any, like: Any) -> Orders:
-    return Orders(16.0, 0.035, 1e-5, 1e-6, 1e-8)
-
-
-def _orders_on_a_path(law: Any, like: Any) -> Orders:
-    """Bristles never stick: their maps bend less, and cost more."""
-    return Orders(16.0, 0.035, 1e-4, 1e-6, 1e-8)
+_slide_at, _ends_at, _free_at = call_at(_SLIDE), call_at(_ENDS), call_at(_FREE)
 
 
 def _orders_with_memory(law: Any, like: Any) -> Orders:
@@ -251,18 +216,20 @@ def _orders_with_memory(law: Any, like: Any) -> Orders:
     return Orders(5.7, 0.15, 1e-4, 3e-6, 3e-8)
 
 
-_orders = by_law(_orders_without_memory, _orders_with_memory, _orders_on_a_path, _orders_with_memory)
-
-
-def _forgets(law: Any) -> bool:
-    return False
+_orders = by_law(
+    lambda law, like: Orders(16.0, 0.035, 1e-5, 1e-6, 1e-8),
+    _orders_with_memory,
+    # bristles never stick: their maps bend less, and cost more
+    lambda law, like: Orders(16.0, 0.035, 1e-4, 1e-6, 1e-8),
+    _orders_with_memory,
+)
 
 
 def _remembers(law: Any) -> bool:
     return True
 
 
-_has_memory = by_law(_forgets, _remembers, None, _remembers)
+_has_memory = by_law(lambda law: False, _remembers, None, _remembers)
 
 
 @inner
@@ -275,7 +242,7 @@ def maps_of(law: Any, body: Body) -> Any:
     grain, per_time = grain_of(law, on.body, like)
     scales = scales_on(_over(body, 1.0))
     return room, Maps(
-        written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6], at[7], size_of(law, like),
+        written_to(on, room), at[0], at[1], at[2], at[3], at[4], at[5], at[6], size_of(law, like),
         _has_memory(law), dimension(like) == 2, scales, swing_of(on.body), _orders(law, like),
         coarsest_of(law, on.body), grain, per_time,
     )  # fmt: skip
@@ -340,9 +307,12 @@ def write_state(maps: Maps, state: Any, x: complex, v: complex, z: complex) -> N
 
 
 @inner
-def write_sliding_state(setting: Setting, state: Any) -> None:
-    """The state at tau = 0 of a mass that slides as if slip never reversed, under friction at the belt's speed."""
-    _slide_at(setting.maps.slide, setting.maps.place, (setting.belt_speed, state))
+def write_sliding_state(setting: Setting, state: Any) -> float:
+    """The state at tau = 0 of a mass that slides as if slip never reversed, under friction at the belt's speed.
+
+    Returns the coefficient of that, with the sign of the belt.
+    """
+    return _slide_at(setting.maps.slide, setting.maps.place, (setting.belt_speed, state))
 
 
 @inner
@@ -370,12 +340,6 @@ def guess_state(setting: Setting, state: Any, inverse: Any) -> None:
 def guess_inverse(setting: Setting, rubbing: float, inverse: Any) -> None:
     """The inverse of (monodromy - identity) with friction as a dashpot of this coefficient."""
     _free_at(setting.maps.free, setting.maps.place, (setting.periods, rubbing, inverse))
-
-
-@inner
-def sliding_friction(maps: Maps, speed: float) -> float:
-    """The coefficient in steady sliding."""
-    return _friction_at(maps.friction, maps.place, (speed,))
 
 
 @inner

@@ -36,36 +36,26 @@ def state_of_sliding(body: Body, friction: float, like: Any) -> Any:
     return body.reference_cosine + shift + 0.0 * like, body.frequency * body.reference_sine, 0.0 * like
 
 
-def _no_memory(law: Any, belt_speed: float) -> float:
-    return 0.0
-
-
-def _deflection_of_sliding(law: Any, belt_speed: float) -> float:
-    return math.copysign(1.0, belt_speed) * law.largest_deflection()
-
-
-def _velocity_of_sliding(law: Any, belt_speed: float) -> float:
-    return belt_speed
-
-
-memory_of_sliding = by_law(_no_memory, _deflection_of_sliding, None, _velocity_of_sliding)
+memory_of_sliding = by_law(
+    lambda law, belt_speed: 0.0,
+    lambda law, belt_speed: math.copysign(1.0, belt_speed) * law.largest_deflection(),
+    None,
+    lambda law, belt_speed: belt_speed,
+)
 """memory_of_sliding(law, belt_speed): what ``start_of`` is given, with the other sign, for a mass that slides on."""
 
 
 @inner
-def write_sliding(case: Case, state: Any) -> None:
-    """The state at tau = 0 of a mass that slides as if slip never reversed, under friction at the belt's speed."""
+def write_sliding(case: Case, state: Any) -> float:
+    """The state at tau = 0 of a mass that slides as if slip never reversed, under friction at the belt's speed.
+
+    Returns the coefficient of that, with the sign of the belt.
+    """
     law, body, belt_speed, like = case
     friction = math.copysign(1.0, belt_speed) * law.sliding_friction(abs(belt_speed))
     x, v, z = state_of_sliding(body, friction, like)
     start_of(law, body, state, x, v, z - memory_of_sliding(law, belt_speed))
-
-
-@inner
-def never_reverses(body: Body, belt_speed: float) -> bool:
-    """Whether the belt is, to rounding, as fast as the vibration without friction or faster, and dashpots act."""
-    damped = body.damping_mean + body.damping_split > 0.0
-    return damped and abs(belt_speed) >= (1.0 - 1e-14) * swing_of(body)
+    return friction
 
 
 @inner
@@ -101,11 +91,7 @@ def _creep_on_the_line(case: Case, state: Any, like: float) -> float:
     return left + _impulse_response(body) * body.normal_load * slope * abs(rate)
 
 
-def _creep_in_the_plane(case: Case, state: Any, like: complex) -> float:
-    return math.inf
-
-
-_creep = by_dimension(_creep_on_the_line, _creep_in_the_plane)
+_creep = by_dimension(_creep_on_the_line, lambda case, state, like: math.inf)
 """A bound on the speed of the deviation from the vibration, from now on; none for bristles that are damped."""
 
 
@@ -134,4 +120,4 @@ def _ends_with_a_bristle(case: Case, state: Any) -> bool:
 
 
 ends_sliding = by_law(_ends_without_bristle, _ends_with_a_bristle, None, _ends_without_bristle)
-"""ends_sliding(case, state): for bristles on a belt where ``never_reverses``."""
+"""ends_sliding(case, state): for bristles on a belt where slip need not reverse."""

@@ -281,8 +281,11 @@ def _arrived(way: Transient, orbit: Attractor) -> bool:
     """Whether a motion ended near an attractive orbit of one period."""
     if orbit.curve is None or not way.period == orbit.period == 1:
         return False
-    state: Floats = orbit.curve.states[0]
-    return bool(np.abs(way.state - state).max() <= 1e-5 * max(1.0, float(np.abs(state).max())))
+    return _beside(way.state, orbit.curve.states[0])
+
+
+def _beside(one: Floats, other: Floats) -> bool:
+    return bool(np.abs(one - other).max() <= 1e-5 * max(1.0, float(np.abs(other).max())))
 
 
 def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Attractor, float]:
@@ -309,14 +312,10 @@ def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[C
     for period in [each for each in range(1, way.period) if way.period % each == 0]:
         shorter, more = problem.close([scene], curve.states[0], period)
         seconds += more
-        if curve.closed.found[0] and shorter.closed.found[0] and _same(shorter, curve):
+        both = curve.closed.found[0] and shorter.closed.found[0]
+        if both and _beside(shorter.states[0], curve.states[0]):
             return shorter, period, seconds
     return curve, way.period, seconds
-
-
-def _same(one: Curve, other: Curve) -> bool:
-    a, b = one.states[0], other.states[0]
-    return bool(np.abs(a - b).max() <= 1e-5 * max(1.0, float(np.abs(b).max())))
 
 
 class Destination(Protocol):

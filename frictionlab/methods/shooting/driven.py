@@ -128,7 +128,7 @@ class SteadyStates:
             if not found[row]:
                 steps = "" if problem is self.problem else " of implicit steps"
                 said = f"no closed orbit found in {-closed.maps[row]:.0f} period maps{steps}"
-                self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
+                self._add(i, said)
             elif undamped and self._repeats(curve, row, multipliers[row], problem):
                 self._leave_open(i, UNDAMPED, closed.mean[row], closed.mean[row])
             else:
@@ -187,8 +187,7 @@ class SteadyStates:
         for i, error in enumerate(self.error):
             if self.status[i] == "ok" and not error <= tolerance:
                 said = f"the error is above the tolerance {tolerance:.1e}"
-                said = said if self.solved_by[i] is self.problem else f"{said}: {BY_ROUNDING}"
-                self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
+                self._add(i, said if self.solved_by[i] is self.problem else f"{said}: {BY_ROUNDING}")
 
     def tell_uniqueness(self) -> None:
         """Say of answers that no other start was found to leave how that is known."""
@@ -197,8 +196,7 @@ class SteadyStates:
                 continue
             if i in self.tried:
                 self.unique[i] = TESTED
-                said = self.tried[i].sentence(self._known(i))
-                self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
+                self._add(i, self.tried[i].sentence(self._known(i)))
             elif self.proof or (self.problem.goal.contracts and self.multipliers[i] < 1.0):
                 self.unique[i] = PROVED
 
@@ -342,6 +340,10 @@ class SteadyStates:
         if unique and first.curve is not None:
             self.period[i] = first.period * problem.common
             self.multipliers[i] = multiplier(first.curve)
+
+    def _add(self, i: int, said: str) -> None:
+        """To the reason."""
+        self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
 
     def _known(self, i: int) -> float:
         """The largest multiplier, where those of every degree of freedom are known."""

@@ -51,27 +51,13 @@ class ContactEnd(NamedTuple):
     impulse: Any
 
 
-def _over_on_the_line(a: float, b: float, q: float) -> float:
-    return q / a
-
-
-def _over_in_the_plane(a: float, b: float, q: complex) -> complex:
-    return complex(q.real / a, q.imag / b)
-
-
-over = by_dimension(_over_on_the_line, _over_in_the_plane)
+over = by_dimension(lambda a, b, q: q / a, lambda a, b, q: complex(q.real / a, q.imag / b))
 """q with its components along x1 and x2 divided by a and b."""
 
-
-def _moved_on_the_line(mass_1: float, mass_2: float, velocity: float) -> float:
-    return mass_1 * velocity
-
-
-def _moved_in_the_plane(mass_1: float, mass_2: float, velocity: complex) -> complex:
-    return complex(mass_1 * velocity.real, mass_2 * velocity.imag)
-
-
-momentum = by_dimension(_moved_on_the_line, _moved_in_the_plane)
+momentum = by_dimension(
+    lambda mass_1, mass_2, velocity: mass_1 * velocity,
+    lambda mass_1, mass_2, velocity: complex(mass_1 * velocity.real, mass_2 * velocity.imag),
+)
 """momentum(mass_1, mass_2, velocity): a velocity with its components times the masses along x1 and x2."""
 
 

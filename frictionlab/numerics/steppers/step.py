@@ -15,29 +15,11 @@ Complex in the plane. A bare pointer: kernels count the references to every arra
 FIRST, MIDDLE, LAST = 0, 1, 2
 """The nodes of a step, half a step apart."""
 
-
-def _shared_with_neighbours(body: Any, k: int, part: int) -> int:
-    return 2 * k + part
-
-
-def _of_the_step_alone(body: Any, k: int, part: int) -> int:
-    return 3 * k + part
-
-
-node = by_variation(_shared_with_neighbours, _of_the_step_alone)
+node = by_variation(lambda body, k, part: 2 * k + part, lambda body, k, part: 3 * k + part)
 """node(body, k, part): which node of the lap is that of the k-th step. Where something may jump at a corner, a step
 that ends there and the one that begins there have a node each."""
 
-
-def _along_x1(body: Any, velocity: Any) -> float:
-    return velocity.real
-
-
-def _in_any_direction(body: Any, velocity: Any) -> Any:
-    return velocity
-
-
-_belt = by_variation(_along_x1, _in_any_direction)
+_belt = by_variation(lambda body, velocity: velocity.real, lambda body, velocity: velocity)
 
 
 @embedded

@@ -242,8 +242,9 @@ def test_lanes_are_for_friction_along_the_slip_without_memory():
     assert takes_lanes(FALLING)
     assert not takes_lanes(Squeezed(mu=0.3))
     assert not takes_lanes(fl.Dahl(mu=0.3, stiffness=10.0))
-    assert problem_of(scene_of(), FALLING).lanes is not None
-    assert not problem_of(scene_of(), fl.Stribeck(mu_kinetic=0.1, mu_static=0.9)).lanes
+    assert problem_of(scene_of(), FALLING).in_lanes(points=4)
+    assert not problem_of(scene_of(), FALLING).in_lanes(points=3)
+    assert not problem_of(scene_of(), fl.Stribeck(mu_kinetic=0.1, mu_static=0.9)).in_lanes(points=4)
 
 
 @pytest.mark.parametrize("curve", ["exponential", "hyperbolic", "cubic"])

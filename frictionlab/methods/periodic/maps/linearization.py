@@ -7,10 +7,10 @@ creeps: there a quotient by slip is taken on the scale of the slip itself, as fa
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, length
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.contact import friction_of
 from frictionlab.dynamics.events import reference_acceleration
@@ -55,11 +55,6 @@ LOST = 1e-9
 """Of friction: a smaller difference is lost to rounding; of the motion's speed: a slip too slow to matter."""
 
 
-def _away_on_the_line(flow: Flow, least: float, work: Work, w: float) -> float:
-    """Slip far enough from its reversal for a quotient on its own side."""
-    return flow.side * max(flow.side * w, least)
-
-
 def _away_in_the_plane(flow: Flow, least: float, work: Work, w: complex) -> complex:
     """Slip far enough from where what gives way is unloaded."""
     for k in range(count_of(flow.law)):
@@ -71,7 +66,11 @@ def _away_in_the_plane(flow: Flow, least: float, work: Work, w: complex) -> comp
     return w
 
 
-_away = by_dimension(_away_on_the_line, _away_in_the_plane)
+_away = by_dimension(
+    # slip far enough from its reversal for a quotient on its own side
+    lambda flow, least, work, w: flow.side * max(flow.side * w, least),
+    _away_in_the_plane,
+)
 
 
 @inner
@@ -107,15 +106,9 @@ def _least(flow: Flow, w: Any) -> float:
     return NUDGE * length(w) + LOST * (swing_of(flow.body) + abs(flow.belt_speed))
 
 
-def _beside_rest_on_the_line(least: float, w: float) -> float:
-    return max(w, least) if w >= 0.0 else min(w, -least)
-
-
-def _beside_rest_in_the_plane(least: float, w: complex) -> complex:
-    return w
-
-
-_beside_rest = by_dimension(_beside_rest_on_the_line, _beside_rest_in_the_plane)
+_beside_rest = by_dimension(
+    lambda least, w: max(w, least) if w >= 0.0 else min(w, -least), lambda least, w: w
+)
 """_beside_rest(least, w): a slip on the line at least so fast, on its own side."""
 
 
@@ -153,30 +146,51 @@ def _scalars_by_slip(flow: Flow, w: Any, work: Work, like: Any) -> Any:
     return w
 
 
-_by_slip = by_law(_deflections_by_slip, _deflections_by_slip, None, _deflections_by_slip, _scalars_by_slip)
+_by_slip = by_scalars(_deflections_by_slip, _scalars_by_slip)
 """_by_slip(flow, w, work, like): B of every number, and G; returns the slip at which to ask for the other blocks."""
+
+
+class Sides(NamedTuple):
+    """Rate and friction on either side of a number that a law remembers."""
+
+    ahead: Any
+    friction_ahead: Any
+    behind: Any
+    friction_behind: Any
+
+
+@fast
+def _sides(flow: Flow, w: Any, k: int, shift: Any, work: Work) -> Sides:
+    """Of the k-th number, moved by a shift there and back."""
+    law, here, moving = flow.law, work.memory[k], work.moving[k]
+    work.memory[k] = here + shift
+    ahead = rate_in_mode(law, work, k, w)
+    work.moving[k] = ahead
+    friction_ahead = friction_of(law, work.memory, work.moving, w)
+    work.memory[k] = here - shift
+    behind = rate_in_mode(law, work, k, w)
+    work.moving[k] = behind
+    friction_behind = friction_of(law, work.memory, work.moving, w)
+    work.memory[k], work.moving[k] = here, moving
+    return Sides(ahead, friction_ahead, behind, friction_behind)
+
+
+@inner
+def _keep_by_number(work: Work, k: int, like: Any) -> None:
+    """Make A and F of the columns: by each direction of a number its rate, then friction."""
+    keep(work.jacobian, 3 * k + 1, from_columns(work.columns[0], work.columns[2]), like)
+    keep(work.jacobian, 3 * k + 2, from_columns(work.columns[1], work.columns[3]), like)
 
 
 @fast
 def _centrally(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
-    law, z, moving = flow.law, work.memory[k], work.moving[k]
     nudge = NUDGE * work.size[k]
     share = 0.5 / nudge
     for column in range(dimension(like)):
-        shift = nudge * unit(column, like)
-        work.memory[k] = z + shift
-        ahead = rate_in_mode(law, work, k, w)
-        work.moving[k] = ahead
-        friction_ahead = friction_of(law, work.memory, work.moving, w)
-        work.memory[k] = z - shift
-        behind = rate_in_mode(law, work, k, w)
-        work.moving[k] = behind
-        friction_behind = friction_of(law, work.memory, work.moving, w)
-        work.columns[2 * column] = share * (ahead - behind)
-        work.columns[2 * column + 1] = share * (friction_ahead - friction_behind)
-        work.memory[k], work.moving[k] = z, moving
-    keep(work.jacobian, 3 * k + 1, from_columns(work.columns[0], work.columns[2]), like)
-    keep(work.jacobian, 3 * k + 2, from_columns(work.columns[1], work.columns[3]), like)
+        at = _sides(flow, w, k, nudge * unit(column, like), work)
+        work.columns[2 * column] = share * (at.ahead - at.behind)
+        work.columns[2 * column + 1] = share * (at.friction_ahead - at.friction_behind)
+    _keep_by_number(work, k, like)
 
 
 @inner
@@ -191,24 +205,13 @@ def _flatter(ahead: Any, here: Any, behind: Any, h: float) -> Any:
 @inner
 def _flatly(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
     """Of a deflection by its own rate, which may have a corner that the law does not declare."""
-    law, z, moving = flow.law, work.memory[k], work.moving[k]
     nudge = FINE * work.size[k]
-    friction = friction_of(law, work.memory, work.moving, w)
+    friction = friction_of(flow.law, work.memory, work.moving, w)
     for column in range(dimension(like)):
-        shift = nudge * unit(column, like)
-        work.memory[k] = z + shift
-        ahead = rate_in_mode(law, work, k, w)
-        work.moving[k] = ahead
-        friction_ahead = friction_of(law, work.memory, work.moving, w)
-        work.memory[k] = z - shift
-        behind = rate_in_mode(law, work, k, w)
-        work.moving[k] = behind
-        friction_behind = friction_of(law, work.memory, work.moving, w)
-        work.memory[k], work.moving[k] = z, moving
-        work.columns[2 * column] = _flatter(ahead, moving, behind, nudge)
-        work.columns[2 * column + 1] = _flatter(friction_ahead, friction, friction_behind, nudge)
-    keep(work.jacobian, 3 * k + 1, from_columns(work.columns[0], work.columns[2]), like)
-    keep(work.jacobian, 3 * k + 2, from_columns(work.columns[1], work.columns[3]), like)
+        at = _sides(flow, w, k, nudge * unit(column, like), work)
+        work.columns[2 * column] = _flatter(at.ahead, work.moving[k], at.behind, nudge)
+        work.columns[2 * column + 1] = _flatter(at.friction_ahead, friction, at.friction_behind, nudge)
+    _keep_by_number(work, k, like)
 
 
 @inner
@@ -227,21 +230,13 @@ def _deflection(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
 @inner
 def _scalar(flow: Flow, w: Any, k: int, work: Work, like: Any) -> None:
     """Of a number without direction, on the scale of what it is: it may range over decades."""
-    law, here, moving = flow.law, work.memory[k], work.moving[k]
     least = 0.0 if work.positive[k] > 0.0 else LOST * work.size[k]
-    shift = max(NUDGE * abs(here), least)
-    friction = friction_of(law, work.memory, work.moving, w)
-    work.memory[k] = here + shift
-    ahead = rate_in_mode(law, work, k, w)
-    work.moving[k] = ahead
-    friction_ahead = friction_of(law, work.memory, work.moving, w)
-    work.memory[k] = here - shift
-    behind = rate_in_mode(law, work, k, w)
-    work.moving[k] = behind
-    friction_behind = friction_of(law, work.memory, work.moving, w)
-    work.memory[k], work.moving[k] = here, moving
-    keep(work.jacobian, 3 * k + 1, multiple(_flatter(ahead, moving, behind, shift), like), like)
-    by_scalar = _flatter(friction_ahead, friction, friction_behind, shift)
+    shift = max(NUDGE * abs(work.memory[k]), least)
+    friction = friction_of(flow.law, work.memory, work.moving, w)
+    at = _sides(flow, w, k, shift, work)
+    by_itself = _flatter(at.ahead, work.moving[k], at.behind, shift)
+    keep(work.jacobian, 3 * k + 1, multiple(by_itself, like), like)
+    by_scalar = _flatter(at.friction_ahead, friction, at.friction_behind, shift)
     keep(work.jacobian, 3 * k + 2, multiple(by_scalar, like), like)
 
 
@@ -285,12 +280,8 @@ def _slope_of_slip(flow: Flow, now: Instant, rub: Any, work: Work, like: Any) ->
         work.slope[MEMORY + k] = 0.0 * like
 
 
-_slope = by_law(_slope_of_deviation, _slope_of_deviation, None, _slope_of_deviation, _slope_of_slip)
+_slope = by_scalars(_slope_of_deviation, _slope_of_slip)
 """_slope(flow, now, rub, work, like): fill ``work.slope`` by the state that is held fixed."""
-
-
-def _no_share(work: Work, flow: Flow, now: Instant, w: Any, like: Any) -> None:
-    """The contact follows the load."""
 
 
 @inner
@@ -318,7 +309,11 @@ def _by_share(work: Work, flow: Flow, now: Instant, w: Any, like: Any) -> None:
     work.slope[IMPULSE] = work.slope[IMPULSE] + load_share(body, now) * more
 
 
-_slope_of_share = by_contact(_no_share, _by_share)
+_slope_of_share = by_contact(
+    # the contact follows the load
+    lambda work, flow, now, w, like: None,
+    _by_share,
+)
 
 
 @inner

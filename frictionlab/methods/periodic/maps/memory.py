@@ -12,7 +12,7 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, length
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.events import dips
 from frictionlab.dynamics.motion import (
@@ -67,11 +67,7 @@ def _at_rest(law: Any, body: Body) -> float:
     return law.sliding_friction(0.0)
 
 
-def _in_motion(law: Any, body: Body) -> float:
-    return law.sliding_friction(swing_of(body))
-
-
-usual_friction = by_law(_at_rest, _at_rest, None, _in_motion)
+usual_friction = by_law(_at_rest, _at_rest, None, lambda law, body: law.sliding_friction(swing_of(body)))
 """usual_friction(law, body): the coefficient of steady sliding that accuracies are measured by."""
 
 
@@ -103,46 +99,26 @@ def _while_into(part: float, flow: Flow, h: float, work: Work, like: Any) -> Any
 
 _note = panel_writer(_while_into)
 
+_side = by_dimension(
+    # the direction in which slip goes on
+    lambda w, a: 1.0 if w > 0.0 or (w == 0.0 and a >= 0.0) else -1.0,
+    lambda w, a: 1.0,
+)
 
-def _side_on_the_line(w: float, a: float) -> float:
-    """The direction in which slip goes on."""
-    return 1.0 if w > 0.0 or (w == 0.0 and a >= 0.0) else -1.0
+_guarded = by_dimension(
+    # on the line the guard of slip sees to it
+    lambda node, w, a, h, like: False,
+    lambda node, w, a, h, like: dips(node.w, node.a, w, a, h),
+)
+_unguarded = by_dimension(
+    lambda node, w, a, h, like: node.w * w > 0.0 and dips(node.w, node.a, w, a, h),
+    lambda node, w, a, h, like: dips(node.w, node.a, w, a, h),
+)
 
-
-def _side_in_the_plane(w: complex, a: complex) -> float:
-    return 1.0
-
-
-_side = by_dimension(_side_on_the_line, _side_in_the_plane)
-
-
-def _guarded_on_the_line(node: Any, w: float, a: float, h: float, like: float) -> bool:
-    """On the line the guard of slip sees to it."""
-    return False
-
-
-def _dips_on_the_line(node: Any, w: float, a: float, h: float, like: float) -> bool:
-    ends = complex(node.w, 0.0), complex(node.a, 0.0), complex(w, 0.0), complex(a, 0.0)
-    return node.w * w > 0.0 and dips(ends[0], ends[1], ends[2], ends[3], h)
-
-
-def _dips_in_the_plane(node: Any, w: complex, a: complex, h: float, like: complex) -> bool:
-    return dips(node.w, node.a, w, a, h)
-
-
-_guarded = by_dimension(_guarded_on_the_line, _dips_in_the_plane)
-_unguarded = by_dimension(_dips_on_the_line, _dips_in_the_plane)
-
-
-def _deflections_dip(law: Any, node: Any, w: Any, a: Any, h: float, like: Any) -> bool:
-    return _guarded(node, w, a, h, like)
-
-
-def _scalars_dip(law: Any, node: Any, w: Any, a: Any, h: float, like: Any) -> bool:
-    return _unguarded(node, w, a, h, like)
-
-
-_dip = by_law(_deflections_dip, _deflections_dip, None, _deflections_dip, _scalars_dip)
+_dip = by_scalars(
+    lambda law, node, w, a, h, like: _guarded(node, w, a, h, like),
+    lambda law, node, w, a, h, like: _unguarded(node, w, a, h, like),
+)
 """Whether slip comes much closer to rest within a step from a node than at its ends."""
 
 
@@ -153,12 +129,11 @@ def _position_on_the_line(flow: Flow, y: float) -> float:
     return y + swung - belt_path(body, flow.belt_speed, 0.0, flow.anchor)
 
 
-def _position_in_the_plane(flow: Flow, y: complex) -> float:
-    """Only on the line does a reversal begin a layer."""
-    return 0.0
-
-
-_position = by_dimension(_position_on_the_line, _position_in_the_plane)
+_position = by_dimension(
+    _position_on_the_line,
+    # only on the line does a reversal begin a layer
+    lambda flow, y: 0.0,
+)
 
 
 def _layer_on_the_line(work: Work, covered: float, share: float, a: float, w: float) -> float:
@@ -173,11 +148,7 @@ def _layer_on_the_line(work: Work, covered: float, share: float, a: float, w: fl
     return 2.0 * ahead / (abs(w) + math.sqrt(w * w + 2.0 * abs(a) * ahead) + 1e-300)
 
 
-def _layer_in_the_plane(work: Work, covered: float, share: float, a: complex, w: complex) -> float:
-    return OPEN
-
-
-_layer = by_dimension(_layer_on_the_line, _layer_in_the_plane)
+_layer = by_dimension(_layer_on_the_line, lambda work, covered, share, a, w: OPEN)
 
 
 @inner
@@ -343,10 +314,6 @@ def repeat(flow: Flow, end: float, first: int, how: Stepping, work: Work, like: 
     return -1
 
 
-def _as_it_was(work: Work, law: Any, before: float, after: float) -> None:
-    """A deflection is what it is under any load."""
-
-
 @inner
 def _per_new_share(work: Work, law: Any, before: float, after: float) -> None:
     """The deflection stays, and its part of the new load changes; beyond yield it springs back at once."""
@@ -357,7 +324,11 @@ def _per_new_share(work: Work, law: Any, before: float, after: float) -> None:
         work.start[MEMORY + k] = (work.radius[k] / far) * z if beyond else z
 
 
-_over_jump = by_contact(_as_it_was, _per_new_share)
+_over_jump = by_contact(
+    # a deflection is what it is under any load
+    lambda work, law, before, after: None,
+    _per_new_share,
+)
 """_over_jump(work, law, before, after): carry the memory over a corner at which the normal load, over its mean, goes
 from one value to another."""
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from frictionlab.compile.decorators import inner
-from frictionlab.compile.dispatch import by_dimension, by_law, length
+from frictionlab.compile.dispatch import by_dimension, by_law, by_scalars, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import swing_of
 from frictionlab.methods.periodic.maps.rates import FOLLOWS, MEMORY, YIELDS, Work, as_memory, remembers_stick
@@ -22,27 +22,11 @@ from frictionlab.methods.periodic.maps.yield_surface import measure_yield
 from frictionlab.numerics.vectors import dimension, put, taken
 from frictionlab.scene.body import Body
 
+_by_direction = by_dimension(
+    lambda law, like: np.zeros(law.count()), lambda law, like: np.zeros(law.count(), np.complex128)
+)
 
-def _numbers(law: Any, like: Any) -> Any:
-    return np.zeros(law.count())
-
-
-def _floats(law: Any, like: float) -> Any:
-    return np.zeros(law.count())
-
-
-def _vectors(law: Any, like: complex) -> Any:
-    return np.zeros(law.count(), np.complex128)
-
-
-_by_direction = by_dimension(_floats, _vectors)
-
-
-def _deflections(law: Any, like: Any) -> Any:
-    return _by_direction(law, like)
-
-
-memory_of = by_law(_deflections, _deflections, None, _deflections, _numbers)
+memory_of = by_scalars(lambda law, like: _by_direction(law, like), lambda law, like: np.zeros(law.count()))
 """memory_of(law, like): an array for the memory of a law, at zero."""
 
 
@@ -108,21 +92,9 @@ def measure_scales(law: Any, body: Body, work: Work, like: Any) -> None:
 
 # --- into a state and out of it -------------------------------------------------------------------------------------
 
-
-def _coordinates_of_deflections(law: Any, like: Any) -> int:
-    return count_of(law) * (dimension(like) + (1 if remembers_stick(law) else 0))
-
-
-def _coordinates_of_scalars(law: Any, like: Any) -> int:
-    return count_of(law)
-
-
-coordinates = by_law(
-    _coordinates_of_deflections,
-    _coordinates_of_deflections,
-    None,
-    _coordinates_of_deflections,
-    _coordinates_of_scalars,
+coordinates = by_scalars(
+    lambda law, like: count_of(law) * (dimension(like) + (1 if remembers_stick(law) else 0)),
+    lambda law, like: count_of(law),
 )
 """coordinates(law, like): how many numbers of a state hold the memory."""
 
@@ -149,7 +121,7 @@ def _pack_scalars(law: Any, body: Body, work: Work, state: Any, like: Any) -> No
         state[first + k] = work.unit[k] * scalar_coordinate(value / work.size[k], work.positive[k])
 
 
-pack_memory = by_law(_pack_deflections, _pack_deflections, None, _pack_deflections, _pack_scalars)
+pack_memory = by_scalars(_pack_deflections, _pack_scalars)
 """pack_memory(law, body, work, state, like): write the memory at ``work.start`` into a state."""
 
 
@@ -185,7 +157,7 @@ def _unpack_scalars(law: Any, body: Body, work: Work, state: Any, like: Any) -> 
         work.start[MEMORY + k] = work.size[k] * share + 0.0 * like
 
 
-unpack_memory = by_law(_unpack_deflections, _unpack_deflections, None, _unpack_deflections, _unpack_scalars)
+unpack_memory = by_scalars(_unpack_deflections, _unpack_scalars)
 """unpack_memory(law, body, work, state, like): read the memory of a state into ``work.start``."""
 
 

@@ -13,7 +13,7 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.compile.dispatch import by_contact, by_dimension, by_law
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import Flow, instant_near, swing_of
 from frictionlab.methods.periodic.maps.rates import (
@@ -37,28 +37,8 @@ SLACK = 1e-12
 CLOSE = 1e-3
 """Of the accuracy: how far beyond its zero a guard may be where a step ends at it."""
 
-
-def _along_on_the_line(z: float, w: float) -> float:
-    return z * w
-
-
-def _along_in_the_plane(z: complex, w: complex) -> float:
-    return z.real * w.real + z.imag * w.imag
-
-
-along = by_dimension(_along_on_the_line, _along_in_the_plane)
+along = by_dimension(lambda z, w: z * w, lambda z, w: z.real * w.real + z.imag * w.imag)
 """along(z, w): the inner product."""
-
-
-def _size_on_the_line(z: float) -> float:
-    return math.fabs(z)
-
-
-def _size_in_the_plane(z: complex) -> float:
-    return math.sqrt(z.real * z.real + z.imag * z.imag)
-
-
-size = by_dimension(_size_on_the_line, _size_in_the_plane)
 
 
 class Guard(NamedTuple):
@@ -69,16 +49,11 @@ class Guard(NamedTuple):
     rate: float
 
 
-def _reversal_on_the_line(flow: Flow, a: float, w: float) -> Guard:
-    return Guard(-1, flow.side * w, flow.side * a)
-
-
-def _reversal_in_the_plane(flow: Flow, a: complex, w: complex) -> Guard:
-    """In the plane slip turns round without coming to rest."""
-    return Guard(-1, OPEN, 0.0)
-
-
-_reversal = by_dimension(_reversal_on_the_line, _reversal_in_the_plane)
+_reversal = by_dimension(
+    lambda flow, a, w: Guard(-1, flow.side * w, flow.side * a),
+    # in the plane slip turns round without coming to rest
+    lambda flow, a, w: Guard(-1, OPEN, 0.0),
+)
 
 
 @inner
@@ -88,28 +63,17 @@ def _unloaded(k: int, a: Any, work: Work, w: Any) -> Guard:
     return Guard(k, share * along(z, w), share * (along(z, a) + along(work.moving[k], w)))
 
 
-def _by_reversal(work: Work, k: int, a: Any, w: Any) -> Guard:
-    return Guard(k, OPEN, 0.0)
+_unloaded_on_the_line = by_contact(
+    lambda work, k, a, w: Guard(k, OPEN, 0.0),
+    # a growing load may unload what yields before slip reverses
+    lambda work, k, a, w: _unloaded(k, a, work, w),
+)
 
-
-def _by_load(work: Work, k: int, a: Any, w: Any) -> Guard:
-    """A growing load may unload what yields before slip reverses."""
-    return _unloaded(k, a, work, w)
-
-
-_unloaded_on_the_line = by_contact(_by_reversal, _by_load)
-
-
-def _unloading_on_the_line(k: int, a: float, work: Work, w: float) -> Guard:
-    """On the line it is the slip's reversal that unloads, where the contact follows the load."""
-    return _unloaded_on_the_line(work, k, a, w)
-
-
-def _unloading_in_the_plane(k: int, a: complex, work: Work, w: complex) -> Guard:
-    return _unloaded(k, a, work, w)
-
-
-_unloading = by_dimension(_unloading_on_the_line, _unloading_in_the_plane)
+_unloading = by_dimension(
+    # on the line it is the slip's reversal that unloads, where the contact follows the load
+    lambda k, a, work, w: _unloaded_on_the_line(work, k, a, w),
+    lambda k, a, work, w: _unloaded(k, a, work, w),
+)
 
 
 def _no_breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
@@ -119,12 +83,12 @@ def _no_breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
 def _breakaway(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
     """Positive until a loaded deflection that sticks reaches where it begins to slip: it may depend on slip."""
     z = work.memory[number]
-    far, loading = size(z), along(z, w)
+    far, loading = length(z), along(z, w)
     if loading <= 0.0:
         return Guard(number, OPEN, 0.0)
     limit = flow.law.breakaway(w, number)
     # the limit's own rate by a quotient in time, over a small part of the slip
-    ahead = 1e-6 * (size(w) + 1e-3 * swing_of(flow.body)) / (size(a) + 1e-300)
+    ahead = 1e-6 * (length(w) + 1e-3 * swing_of(flow.body)) / (length(a) + 1e-300)
     falls = (limit - flow.law.breakaway(w + ahead * a, number)) / ahead
     unit = work.unit[number]
     return Guard(number, unit * (limit * (1.0 + SLACK) - far), -unit * (loading / far + falls))
@@ -147,23 +111,18 @@ def _guard_of_deflections(flow: Flow, number: int, w: Any, a: Any, work: Work) -
     if work.mode[number] == YIELDS or (work.mode[number] == FOLLOWS and radius == 0.0):
         return _unloading(number, a, work, w)
     if work.mode[number] == FOLLOWS and radius > 0.0:
-        far = size(z)
-        outward = along(z, w) / far if far > 0.0 else size(w)
+        far = length(z)
+        outward = along(z, w) / far if far > 0.0 else length(w)
         unit = work.unit[number]
         return Guard(number, unit * (radius * (1.0 + SLACK) - far), -unit * outward)
     return Guard(number, OPEN, 0.0)
 
 
-def _guard_of_a_contact(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
-    return _guard_of_deflections(flow, number, w, a, work)
-
-
-def _no_guard(flow: Flow, number: int, w: Any, a: Any, work: Work) -> Guard:
-    """Friction by scalars is steepest where slip reverses, however far: no step should end just there."""
-    return Guard(number, OPEN, 0.0)
-
-
-guard_of = by_law(_guard_of_a_contact, _guard_of_a_contact, None, _guard_of_a_contact, _no_guard)
+guard_of = by_scalars(
+    lambda flow, number, w, a, work: _guard_of_deflections(flow, number, w, a, work),
+    # friction by scalars is steepest where slip reverses, however far: no step should end just there
+    lambda flow, number, w, a, work: Guard(number, OPEN, 0.0),
+)
 """guard_of(flow, number, w, a, work): one guard at ``work.memory``, which moves at ``work.moving``, slip w at a."""
 
 
@@ -200,7 +159,7 @@ def _begin_by_state(flow: Flow, a: Any, w: Any, work: Work) -> None:
             work.memory[k] = z
             against = slip_to_yield(work, k, w) if radius > 0.0 else w
             loaded = along(z, against) > 0.0 or (along(z, against) == 0.0 and along(z, a) >= 0.0)
-            work.mode[k] = YIELDS if loaded and size(z) >= radius * (1.0 - 1e-13) else FOLLOWS
+            work.mode[k] = YIELDS if loaded and length(z) >= radius * (1.0 - 1e-13) else FOLLOWS
 
 
 @inner
@@ -223,7 +182,7 @@ def _begin_deflections(flow: Flow, a: Any, w: Any, work: Work) -> None:
         _begin_by_state(flow, a, w, work)
 
 
-begin = by_law(_begin_deflections, _begin_deflections, None, _begin_deflections, _begin_smoothly)
+begin = by_scalars(_begin_deflections, _begin_smoothly)
 """begin(flow, a, w, work): set the modes at ``work.start``; slip w moves at the rate a."""
 
 
@@ -264,16 +223,11 @@ def locate(flow: Flow, tau: float, high: float, accuracy: float, work: Work, lik
     return high
 
 
-def _surely(work: Work) -> bool:
-    return True
-
-
-def _not_surely(work: Work) -> bool:
-    """A falling load may drag on what yields although slip reverses."""
-    return False
-
-
-_unloads_by_reversal = by_contact(_surely, _not_surely)
+_unloads_by_reversal = by_contact(
+    lambda work: True,
+    # a falling load may drag on what yields although slip reverses
+    lambda work: False,
+)
 
 
 @inner

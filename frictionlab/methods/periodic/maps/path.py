@@ -36,6 +36,15 @@ from frictionlab.orbit.recorder import panel_writer
 from frictionlab.scene.body import Body
 
 
+class LegStart(NamedTuple):
+    """What a leg began with: deflection, position of the deviation and of the reference, and time."""
+
+    z: float
+    y: float
+    tau: float
+    reference: float
+
+
 class Leg(NamedTuple):
     """Slip in one direction: what it began with, and sine and cosine at the anchor time."""
 
@@ -46,10 +55,7 @@ class Leg(NamedTuple):
     anchor: float
     sine: float
     cosine: float
-    z: float  # at the beginning, as what follows
-    y: float
-    tau: float
-    reference: float
+    start: LegStart
 
 
 class Carried(NamedTuple):
@@ -66,47 +72,24 @@ class Carried(NamedTuple):
 @inner
 def _anchored(leg: Leg, tau: float) -> Leg:
     angle = leg.body.frequency * tau
-    return Leg(
-        leg.law,
-        leg.body,
-        leg.belt_speed,
-        leg.side,
-        tau,
-        math.sin(angle),
-        math.cos(angle),
-        leg.z,
-        leg.y,
-        leg.tau,
-        leg.reference,
-    )
+    sine, cosine = math.sin(angle), math.cos(angle)
+    return Leg(leg.law, leg.body, leg.belt_speed, leg.side, tau, sine, cosine, leg.start)
 
 
 @inner
 def _leg(case: Case, side: float, tau: float, y: float, z: float) -> Leg:
-    body = case.body
-    angle = body.frequency * tau
-    return Leg(
-        case.law,
-        body,
-        case.belt_speed,
-        side,
-        tau,
-        math.sin(angle),
-        math.cos(angle),
-        z,
-        y,
-        tau,
-        reference_position(body, tau),
-    )
+    start, angle = LegStart(z, y, tau, reference_position(case.body, tau)), case.body.frequency * tau
+    sine, cosine = math.sin(angle), math.cos(angle)
+    return Leg(case.law, case.body, case.belt_speed, side, tau, sine, cosine, start)
 
 
 @fast
 def _way(leg: Leg, now: Instant, y: float) -> float:
     """How far the leg has slid, in its direction."""
     body = leg.body
-    swung = body.reference_sine * now.sine + body.reference_cosine * now.cosine - leg.reference
-    carried = belt_path(body, leg.belt_speed, leg.tau, now.tau)
-    return max(leg.side * ((y - leg.y) + swung - carried), 0.0)
+    swung = body.reference_sine * now.sine + body.reference_cosine * now.cosine - leg.start.reference
+    carried = belt_path(body, leg.belt_speed, leg.start.tau, now.tau)
+    return max(leg.side * ((y - leg.start.y) + swung - carried), 0.0)
 
 
 @fast_embedded
@@ -115,7 +98,7 @@ def path_rates(leg: Leg, tau: float, y: float, u: float) -> Any:
     side, law, now = leg.side, leg.law, instant_near(leg, tau)
     # Trial steps go beyond the end of the leg: there its law is continued as at rest, so that it stays smooth.
     w = side * max(side * deviation_slip(leg, now, u), 0.0)
-    z = law.deflected(leg.z, side * _way(leg, now, y))
+    z = law.deflected(leg.start.z, side * _way(leg, now, y))
     rub = law.friction(w, z, law.rate(w, z))
     return deviation_acceleration(leg.body, now, y, u, rub), load_share(leg.body, now) * rub
 
@@ -141,7 +124,10 @@ def _longest(leg: Leg, way: float, share: float, w: float, rate: float) -> float
     """The longest step that adds no more than this share of the way, or of the bristle's own length."""
     law = leg.law
     length = law.largest_deflection()
-    here, next_ = law.deflected(leg.z, leg.side * way), law.deflected(leg.z, leg.side * (way + length))
+    here, next_ = (
+        law.deflected(leg.start.z, leg.side * way),
+        law.deflected(leg.start.z, leg.side * (way + length)),
+    )
     if abs(next_ - here) <= 1e-13 * length:
         return 1e300
     ahead = share * max(length, way)
@@ -220,7 +206,7 @@ class PathNode(NamedTuple):
 def _node_of(leg: Leg, tau: float, y: float, u: float) -> PathNode:
     """The start of a leg."""
     a, rub = path_rates(leg, tau, y, u)
-    return PathNode(leg, tau, State(y, u, a, rub), 0.0, leg.law.saturation_path(leg.z, leg.side), True)
+    return PathNode(leg, tau, State(y, u, a, rub), 0.0, leg.law.saturation_path(leg.start.z, leg.side), True)
 
 
 @inner
@@ -279,7 +265,7 @@ def _next_node(case: Case, node: PathNode, ending: PathStep, tau: float) -> Path
     way = max(node.way, _slid(leg, node.tau + ending.h, taken.x))
     way = node.corner if ending.verdict == SATURATE else way
     if ending.verdict == TURN:
-        z = leg.law.deflected(leg.z, leg.side * way)
+        z = leg.law.deflected(leg.start.z, leg.side * way)
         return _node_of(_leg(case, -leg.side, tau, taken.x, z), tau, taken.x, taken.v)
     leg = _anchored(leg, tau)
     a, rub = path_rates(leg, tau, taken.x, taken.v)
@@ -294,22 +280,7 @@ def _first_node(case: Case, tau: float, y: float, u: float, z: float) -> PathNod
 @inner
 def _deflection_at(node: PathNode) -> float:
     leg = node.leg
-    return leg.law.deflected(leg.z, leg.side * _slid(leg, node.tau, node.state.x))
-
-
-@inner
-def repeated_path(case: Case, y: float, u: float, z: float, pace: Pace) -> Carried:
-    """``path_map`` by the steps of another motion close by; it gives up where the events are not those of that one.
-
-    Steps end at the events of their own motion: the end is then a smooth function of the start.
-    """
-    image = Carried(y, u, z, 0.0, 0.0, 0)
-    for k in range(pieces_of(case.body)):
-        tau, end = piece_ends(case.body, k)
-        image = _repeated_piece(case_in_piece(case, k), tau, end, image, pace)
-        if image.steps < 0:
-            break
-    return image
+    return leg.law.deflected(leg.start.z, leg.side * _slid(leg, node.tau, node.state.x))
 
 
 @inner
@@ -333,11 +304,18 @@ def _repeated_piece(case: Case, tau: float, end: float, image: Carried, pace: Pa
 
 @inner
 def path_map(case: Case, y: float, u: float, z: float, how: Stepping) -> Carried:
-    """One span from the deviation (y, u) and deflection z at tau = 0."""
+    """One span from the deviation (y, u) and deflection z at tau = 0.
+
+    By the steps of another motion close by it gives up where the events are not those of that one. Steps end at the
+    events of their own motion: the end is then a smooth function of the start.
+    """
     image = Carried(y, u, z, 0.0, 1e300, 0)
     for k in range(pieces_of(case.body)):
-        tau, end = piece_ends(case.body, k)
-        image = _path_piece(case_in_piece(case, k), tau, end, image, how)
+        here, (tau, end) = case_in_piece(case, k), piece_ends(case.body, k)
+        if how.repeats:
+            image = _repeated_piece(here, tau, end, image, how.pace)
+        else:
+            image = _path_piece(here, tau, end, image, how)
         if image.steps < 0:
             break
     return image

@@ -13,7 +13,7 @@ import math
 from typing import Any, NamedTuple
 
 from frictionlab.compile.decorators import fast, inlined
-from frictionlab.compile.dispatch import by_contact, by_dimension, by_law
+from frictionlab.compile.dispatch import by_contact, by_dimension, by_law, by_scalars
 from frictionlab.compile.stack import count_of, room
 from frictionlab.dynamics.contact import friction_of, rate_of
 from frictionlab.dynamics.motion import (
@@ -68,39 +68,13 @@ class Work(NamedTuple):
     share: Any  # [3] there: the normal load over its mean, and its first and second derivative
 
 
-def _like_slip(law: Any, like: Any) -> Any:
-    return like
-
-
-def _a_number(law: Any, like: Any) -> float:
-    return 0.0
-
-
-kind_of_memory = by_law(_like_slip, _like_slip, None, _like_slip, _a_number)
+kind_of_memory = by_scalars(lambda law, like: like, lambda law, like: 0.0)
 """kind_of_memory(law, like): a number of the kind that the law remembers; like: of the kind of a slip."""
 
-
-def _itself(law: Any, value: Any) -> Any:
-    return value
-
-
-def _real_part(law: Any, value: Any) -> float:
-    return value.real
-
-
-as_memory = by_law(_itself, _itself, None, _itself, _real_part)
+as_memory = by_scalars(lambda law, value: value, lambda law, value: value.real)
 """as_memory(law, value): a number of a state as the law sees it."""
 
-
-def _follows_load(body: Any) -> Any:
-    return ()
-
-
-def _keeps_stiffness(body: Any) -> Any:
-    return (1.0,)
-
-
-contact_kind = by_contact(_follows_load, _keeps_stiffness)
+contact_kind = by_contact(lambda body: (), lambda body: (1.0,))
 """contact_kind(body): what ``workspace`` is told of the contact."""
 
 
@@ -134,21 +108,8 @@ def workspace(law: Any, like: Any, contact: Any) -> Work:
 
 # --- the velocity that a state holds --------------------------------------------------------------------------------
 
-
-def _slip_of_deviation(flow: Flow, now: Instant, u: Any) -> Any:
-    return deviation_slip(flow, now, u)
-
-
-def _slip_itself(flow: Flow, now: Instant, w: Any) -> Any:
-    return w
-
-
-slip_held = by_law(_slip_of_deviation, _slip_of_deviation, None, _slip_of_deviation, _slip_itself)
+slip_held = by_scalars(lambda flow, now, u: deviation_slip(flow, now, u), lambda flow, now, w: w)
 """slip_held(flow, now, u): slip, from the velocity that a state holds."""
-
-
-def _deviation_itself(flow: Flow, now: Instant, u: Any) -> Any:
-    return u
 
 
 def _deviation_of_slip(flow: Flow, now: Instant, w: Any) -> Any:
@@ -156,37 +117,19 @@ def _deviation_of_slip(flow: Flow, now: Instant, w: Any) -> Any:
     return v - reference_velocity(flow.body, now.sine, now.cosine)
 
 
-deviation_held = by_law(_deviation_itself, _deviation_itself, None, _deviation_itself, _deviation_of_slip)
+deviation_held = by_scalars(lambda flow, now, u: u, _deviation_of_slip)
 """deviation_held(flow, now, u): the velocity of the deviation, from the one that a state holds."""
 
-
-held_velocity = by_law(_deviation_itself, _deviation_itself, None, _deviation_itself, _slip_of_deviation)
+held_velocity = by_scalars(lambda flow, now, u: u, lambda flow, now, u: deviation_slip(flow, now, u))
 """held_velocity(flow, now, u): the velocity that a state holds, from that of the deviation."""
 
-
-def _velocity_of_deviation(flow: Flow, now: Instant, u: Any) -> Any:
-    return u + reference_velocity(flow.body, now.sine, now.cosine)
-
-
-def _velocity_of_slip(flow: Flow, now: Instant, w: Any) -> Any:
-    return w + belt_velocity(flow.body, flow.belt_speed, now)
-
-
-velocity_held = by_law(
-    _velocity_of_deviation, _velocity_of_deviation, None, _velocity_of_deviation, _velocity_of_slip
+velocity_held = by_scalars(
+    lambda flow, now, u: u + reference_velocity(flow.body, now.sine, now.cosine),
+    lambda flow, now, w: w + belt_velocity(flow.body, flow.belt_speed, now),
 )
 """velocity_held(flow, now, u): the velocity of the mass, from the one that a state holds."""
 
-
-def _rate_of_deviation(flow: Flow, now: Instant, a: Any) -> Any:
-    return a
-
-
-def _rate_of_slip(flow: Flow, now: Instant, a: Any) -> Any:
-    return deviation_slip_rate(flow, now, a)
-
-
-rate_held = by_law(_rate_of_deviation, _rate_of_deviation, None, _rate_of_deviation, _rate_of_slip)
+rate_held = by_scalars(lambda flow, now, a: a, lambda flow, now, a: deviation_slip_rate(flow, now, a))
 """rate_held(flow, now, a): the rate of the velocity that a state holds, from the deviation's acceleration."""
 
 
@@ -197,11 +140,7 @@ def _never(law: Any) -> bool:
     return False
 
 
-def _remembers_stick(law: Any) -> bool:
-    return law.remembers_stick()
-
-
-remembers_stick = by_law(_never, _never, None, _remembers_stick, _never)
+remembers_stick = by_law(_never, _never, None, lambda law: law.remembers_stick(), _never)
 """remembers_stick(law): whether the modes of its deflections, to follow the slip or to give way, are a memory."""
 
 
@@ -211,58 +150,27 @@ remembers_stick = by_law(_never, _never, None, _remembers_stick, _never)
 # state remembers, and what moves at z'/n - (n'/n) (z/n). The law is asked for z' and gives it n times too large.
 
 
-def _no_share(work: Work, body: Body, now: Instant) -> None:
-    """The contact follows the load."""
-
-
 def _share_at(work: Work, body: Body, now: Instant) -> None:
     mean = body.normal_load
     work.share[0] = load_share(body, now)
     work.share[1], work.share[2] = normal_load_rate(body, now) / mean, normal_load_bend(body, now) / mean
 
 
-note_share = by_contact(_no_share, _share_at)
+note_share = by_contact(
+    # the contact follows the load
+    lambda work, body, now: None,
+    _share_at,
+)
 """note_share(work, body, now): keep the normal load of this instant where the contact hangs on it."""
 
-
-def _as_told(work: Work, rate: Any) -> Any:
-    return rate
-
-
-def _per_share(work: Work, rate: Any) -> Any:
-    return rate / work.share[0]
-
-
-_of_contact = by_contact(_as_told, _per_share)
+_of_contact = by_contact(lambda work, rate: rate, lambda work, rate: rate / work.share[0])
 """_of_contact(work, rate): z'/n from the rate that a law tells."""
 
-
-def _still(work: Work, z: Any) -> Any:
-    return 0.0 * z
-
-
-def _stretched(work: Work, z: Any) -> Any:
-    return (work.share[1] / work.share[0]) * z
-
-
-stretching = by_contact(_still, _stretched)
+stretching = by_contact(lambda work, z: 0.0 * z, lambda work, z: (work.share[1] / work.share[0]) * z)
 """stretching(work, z): by how much z'/n of a deflection that stays at z/n exceeds zero."""
 
-
-def _as_slip(work: Work, k: int, w: Any) -> Any:
-    return w
-
-
-def _slip_of_yield(work: Work, k: int, w: Any) -> Any:
-    return w - work.share[1] * work.memory[k]
-
-
-slip_to_yield = by_contact(_as_slip, _slip_of_yield)
+slip_to_yield = by_contact(lambda work, k, w: w, lambda work, k, w: w - work.share[1] * work.memory[k])
 """slip_to_yield(work, k, w): the slip against the yield surface of a deflection, which a growing load takes away."""
-
-
-def _as_slip_rate(work: Work, k: int, a: Any) -> Any:
-    return a
 
 
 def _slip_rate_of_yield(work: Work, k: int, a: Any) -> Any:
@@ -270,37 +178,25 @@ def _slip_rate_of_yield(work: Work, k: int, a: Any) -> Any:
     return a - work.share[1] * moves - work.share[2] * work.memory[k]
 
 
-slip_rate_to_yield = by_contact(_as_slip_rate, _slip_rate_of_yield)
+slip_rate_to_yield = by_contact(lambda work, k, a: a, _slip_rate_of_yield)
 """slip_rate_to_yield(work, k, a): its rate."""
 
 
 # --- rates --------------------------------------------------------------------------------------------------------
 
-
-def _on_circle_on_the_line(radius: float, z: float) -> float:
-    return math.copysign(radius, z)
-
-
-def _on_circle_in_the_plane(radius: float, z: complex) -> complex:
-    """Not a rounding error inside it, where the law would let it follow the slip."""
-    return (radius * (1.0 + 1e-15) / math.sqrt(z.real * z.real + z.imag * z.imag)) * z
-
-
-on_circle = by_dimension(_on_circle_on_the_line, _on_circle_in_the_plane)
+on_circle = by_dimension(
+    lambda radius, z: math.copysign(radius, z),
+    # not a rounding error inside it, where the law would let it follow the slip
+    lambda radius, z: (radius * (1.0 + 1e-15) / math.sqrt(z.real * z.real + z.imag * z.imag)) * z,
+)
 """on_circle(radius, z): a deflection put on its yield surface."""
 
-
-def _yielding_on_the_line(law: Any, memory: Any, k: int, w: float) -> float:
-    """What yields on a line stays where it is: no rounding of the law's own rate."""
-    return 0.0
-
-
-def _yielding_in_the_plane(law: Any, memory: Any, k: int, w: complex) -> complex:
-    """It turns on its circle, as the law says."""
-    return rate_of(law, memory, k, w)
-
-
-_yielding = by_dimension(_yielding_on_the_line, _yielding_in_the_plane)
+_yielding = by_dimension(
+    # what yields on a line stays where it is: no rounding of the law's own rate
+    lambda law, memory, k, w: 0.0,
+    # it turns on its circle, as the law says
+    lambda law, memory, k, w: rate_of(law, memory, k, w),
+)
 
 
 @fast
@@ -314,16 +210,9 @@ def _deflection_rate(law: Any, work: Work, k: int, w: Any) -> Any:
     return _of_contact(work, rate_of(law, work.memory, k, w))
 
 
-def _rate_of_a_deflection(law: Any, work: Work, k: int, w: Any) -> Any:
-    return _deflection_rate(law, work, k, w)
-
-
-def _rate_of_a_scalar(law: Any, work: Work, k: int, w: Any) -> float:
-    return law.rate(w, work.memory, k)
-
-
-rate_in_mode = by_law(
-    _rate_of_a_deflection, _rate_of_a_deflection, None, _rate_of_a_deflection, _rate_of_a_scalar
+rate_in_mode = by_scalars(
+    lambda law, work, k, w: _deflection_rate(law, work, k, w),
+    lambda law, work, k, w: law.rate(w, work.memory, k),
 )
 """rate_in_mode(law, work, k, w): of one of ``work.memory``; what yields is put on its yield surface first."""
 

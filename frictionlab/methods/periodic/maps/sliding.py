@@ -116,10 +116,6 @@ def step_towards_rest(node: Node, limit: float, h: float) -> float:
     return select(closing > 0.0, min(h, 0.9 * node.speed / max(closing, 1e-300)), h)
 
 
-def _before_on_the_line(problem: Flow, node: Node, accuracy: float, h: float, y: float) -> Landing:
-    return Landing(ACCEPT, h, node.state, y)
-
-
 def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y: complex) -> Landing:
     """How far the step may go towards rest; where rest is nearer than the accuracy, go there."""
     body, belt_speed, w = problem.body, problem.belt_speed, node.w
@@ -141,7 +137,9 @@ def _before_in_the_plane(problem: Flow, node: Node, accuracy: float, h: float, y
     return Landing(ACCEPT, step_towards_rest(node, limit, h), node.state, y)
 
 
-_before = by_dimension(_before_on_the_line, _before_in_the_plane)
+_before = by_dimension(
+    lambda problem, node, accuracy, h, y: Landing(ACCEPT, h, node.state, y), _before_in_the_plane
+)
 
 
 def _after_on_the_line(problem: Flow, node: Node, leaving: bool, taken: Any, h: float, y: float) -> Landing:

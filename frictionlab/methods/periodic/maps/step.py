@@ -15,7 +15,7 @@ import math
 from typing import Any
 
 from frictionlab.compile.decorators import fast, inner
-from frictionlab.compile.dispatch import by_dimension, by_law, length
+from frictionlab.compile.dispatch import by_dimension, by_scalars, length
 from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.motion import Flow, instant_near, load_share
 from frictionlab.methods.periodic.maps.rates import (
@@ -64,15 +64,10 @@ def factor(flow: Flow, h: float, work: Work, like: Any) -> None:
     keep(work.factors, 2 * n + 1, by_slip, like)
 
 
-def _stretched_on_the_line(body: Body, x: float) -> float:
-    return (body.stiffness_mean + body.stiffness_split) * x
-
-
-def _stretched_in_the_plane(body: Body, x: complex) -> complex:
-    return body.stiffness_mean * x + body.stiffness_split * x.conjugate()
-
-
-_stretched = by_dimension(_stretched_on_the_line, _stretched_in_the_plane)
+_stretched = by_dimension(
+    lambda body, x: (body.stiffness_mean + body.stiffness_split) * x,
+    lambda body, x: body.stiffness_mean * x + body.stiffness_split * x.conjugate(),
+)
 """The force of the springs."""
 
 
@@ -127,19 +122,7 @@ def _solve(i: int, flow: Flow, h: float, work: Work, like: Any) -> None:
         work.increments[first + MEMORY + k] = work.increments[first + MEMORY + k] + moved
 
 
-def _square_on_the_line(x: float) -> float:
-    return x * x
-
-
-def _square_in_the_plane(x: complex) -> float:
-    return x.real * x.real + x.imag * x.imag
-
-
-square = by_dimension(_square_on_the_line, _square_in_the_plane)
-
-
-def _elastic_on_the_line(body: Body, x: float) -> float:
-    return (body.stiffness_mean + body.stiffness_split) * x * x
+square = by_dimension(lambda x: x * x, lambda x: x.real * x.real + x.imag * x.imag)
 
 
 def _elastic_in_the_plane(body: Body, x: complex) -> float:
@@ -147,12 +130,10 @@ def _elastic_in_the_plane(body: Body, x: complex) -> float:
     return along * x.real * x.real + across * x.imag * x.imag
 
 
-_elastic = by_dimension(_elastic_on_the_line, _elastic_in_the_plane)
+_elastic = by_dimension(
+    lambda body, x: (body.stiffness_mean + body.stiffness_split) * x * x, _elastic_in_the_plane
+)
 """Twice the energy of the springs."""
-
-
-def _always(flow: Flow, work: Work) -> bool:
-    return True
 
 
 def _scalars_within(flow: Flow, work: Work) -> bool:
@@ -161,12 +142,8 @@ def _scalars_within(flow: Flow, work: Work) -> bool:
     return flow.law.within(work.memory)
 
 
-_within = by_law(_always, _always, None, _always, _scalars_within)
+_within = by_scalars(lambda flow, work: True, _scalars_within)
 """_within(flow, work): whether the law has a rate at ``work.stage``; the age of a contact is never negative."""
-
-
-def _unit_of_energy(flow: Flow, k: int, work: Work, like: Any) -> float:
-    return work.unit[k]
 
 
 def _unit_of_impulse(flow: Flow, k: int, work: Work, like: Any) -> float:
@@ -175,7 +152,7 @@ def _unit_of_impulse(flow: Flow, k: int, work: Work, like: Any) -> float:
     return effect * flow.body.normal_load / flow.body.frequency
 
 
-_unit = by_law(_unit_of_energy, _unit_of_energy, None, _unit_of_energy, _unit_of_impulse)
+_unit = by_scalars(lambda flow, k, work, like: work.unit[k], _unit_of_impulse)
 """_unit(flow, k, work, like): what the error of a number is multiplied by."""
 
 

@@ -105,13 +105,6 @@ class Start(NamedTuple):
     path: Any
 
 
-def _start_on_the_line(
-    case: Case, now: Instant, accuracy: float, rate: float, bend: float, held: float
-) -> Start:
-    """Nothing is singular on the line: the leg starts from rest."""
-    return Start(0.0, 0.0, 0.0)
-
-
 def _start_in_the_plane(
     case: Case, now: Instant, accuracy: float, rate: complex, bend: complex, held: complex
 ) -> Start:
@@ -152,7 +145,11 @@ def _start_in_the_plane(
     return Start(t, w, along * (t * t * (excess / 2.0 + t * (b2 / 3.0 + t * (b3 / 4.0 + t * b4 / 5.0)))))
 
 
-_start = by_dimension(_start_on_the_line, _start_in_the_plane)
+_start = by_dimension(
+    # nothing is singular on the line: the leg starts from rest
+    lambda case, now, accuracy, rate, bend, held: Start(0.0, 0.0, 0.0),
+    _start_in_the_plane,
+)
 
 
 class StickPhase(NamedTuple):

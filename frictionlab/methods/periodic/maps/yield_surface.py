@@ -79,11 +79,6 @@ def _found_radius(law: Any, work: Work, k: int, like: Any) -> float:
     return radius
 
 
-def _never_unloaded_on_the_line(law: Any, work: Work, k: int, like: float) -> bool:
-    """On the line the corner is where slip reverses: the law's own rate is kept up to there."""
-    return False
-
-
 def _found_unloaded_in_the_plane(law: Any, work: Work, k: int, like: complex) -> bool:
     """Whether rates follow a slip that makes a deflection smaller or turns it, and not one that stretches it."""
     if law.elastic_unloading():
@@ -98,7 +93,11 @@ def _found_unloaded_in_the_plane(law: Any, work: Work, k: int, like: complex) ->
     return not stretched
 
 
-_found_unloaded = by_dimension(_never_unloaded_on_the_line, _found_unloaded_in_the_plane)
+_found_unloaded = by_dimension(
+    # on the line the corner is where slip reverses: the law's own rate is kept up to there
+    lambda law, work, k, like: False,
+    _found_unloaded_in_the_plane,
+)
 
 
 def _bristle_on_the_line(law: Any, work: Work, like: float) -> None:
@@ -133,10 +132,13 @@ def _deflections(law: Any, work: Work, like: Any) -> None:
         work.memory[k] = 0.0 * like
 
 
-def _scalars(law: Any, work: Work, like: Any) -> None:
-    """A scalar has no direction in which to yield."""
-
-
-measure_yield = by_law(_bristle, _bristle, None, _deflections, _scalars)
+measure_yield = by_law(
+    _bristle,
+    _bristle,
+    None,
+    _deflections,
+    # a scalar has no direction in which to yield
+    lambda law, work, like: None,
+)
 """measure_yield(law, work, like): fill the radius of each yield surface, 0 for none, and ``unloads``: 1 for what has
 none and follows the slip wherever that makes it smaller. On the line a reversal of slip serves for that."""

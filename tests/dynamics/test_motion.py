@@ -82,8 +82,7 @@ def uses_of(names: tuple[str, ...]) -> set[str]:
 
 
 def test_the_numbers_of_the_load_are_read_at_one_address():
-    packed = {"methods/periodic/setting.py"}  # as they are, for maps at addresses
-    assert uses_of(MECHANICS[1:]) <= ADDRESSES | packed
+    assert uses_of(MECHANICS[1:]) <= ADDRESSES
 
 
 def test_the_springs_are_asked_by_few_beside_the_equation_of_motion():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,10 +24,8 @@ from frictionlab.bench.models import ModelsResult
 from frictionlab.bench.orders.section import OrdersResult
 from frictionlab.bench.sections import SectionResult, file_stem
 from frictionlab.bench.stability.section import StabilityResult
-from frictionlab.charts.style import STYLE
+from frictionlab.charts.style import STYLE, write_figure
 
-UNSTAMPED: dict[str, Mapping[str, Any]] = {"svg": {"Date": None}, "png": {"Software": None}}
-"""The kinds of file of a chart, and what is left out of each so that the same chart is the same file."""
 _DIGITS = re.compile(r"(?<=[ -])(\d+\.\d\d)\d+")
 """A coordinate: a hundredth of a point is kept of it, which takes a third off the file."""
 FIGURES_OF_SECTIONS: dict[type, Callable[[Any], Figure | None]] = {
@@ -48,22 +46,15 @@ class BenchPicture(NamedTuple):
 
 
 def draw(result: SectionResult, folder: Path) -> list[BenchPicture]:
-    """Write the chart of a result as SVG and PNG. Raises OSError."""
+    """Write the chart of a result, with machine, date and versions in small print. Raises OSError."""
     stem, look = file_stem(result.name), dict[Any, Any](STYLE | result.style)
     with mpl.rc_context(look):
         if (figure := FIGURES_OF_SECTIONS[type(result)](result)) is None:
             return []
-        save_figure(figure, folder, stem)
-    return [BenchPicture(stem, result.caption)]
-
-
-def save_figure(figure: Figure, folder: Path, stem: str) -> None:
-    """Write a figure as SVG and PNG, with machine, date and versions in small print. Raises OSError."""
-    _print_below(figure, textwrap.fill(small_print(), 175))
-    for kind, unstamped in UNSTAMPED.items():
-        figure.savefig(folder / f"{stem}.{kind}", metadata=unstamped)
-    drawn = folder / f"{stem}.svg"
+        _print_below(figure, textwrap.fill(small_print(), 175))
+        drawn, _ = write_figure(figure, folder / f"{stem}.svg")
     drawn.write_text(_DIGITS.sub(r"\1", drawn.read_text(encoding="utf-8")), encoding="utf-8")
+    return [BenchPicture(stem, result.caption)]
 
 
 def _print_below(figure: Figure, text: str) -> None:

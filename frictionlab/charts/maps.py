@@ -184,7 +184,7 @@ def _norm(values: CurveNumbers, column: str) -> Normalize:
 
 
 def _draw_shades(axes: Axes, grid: MapValues, norm: Normalize) -> QuadMesh:
-    edges = [_edges(values) for values in (grid.x, grid.y)]
+    edges = [cell_edges(values) for values in (grid.x, grid.y)]
     pixels = grid.known.size > RASTERIZED
     mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(grid.known), norm=norm, rasterized=pixels)
     for values, scale in ((grid.x, axes.set_xscale), (grid.y, axes.set_yscale)):
@@ -227,7 +227,7 @@ def _draw_v_lin(axes: Axes, ratio: MapValues) -> None:
     line.set(linewidth=1.1, path_effects=[DARK_EDGE])
 
 
-def _edges(values: CurveNumbers) -> CurveNumbers:
+def cell_edges(values: CurveNumbers) -> CurveNumbers:
     """Of cells around these values, half way between neighbours."""
     steps = np.log(values) if is_logarithmic(values) else values
     half = 0.5 * np.diff(steps)

@@ -11,10 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.bench.charts.style import LINE_STYLES, OURS, THEIRS, dress, new_figure
+from frictionlab.bench.charts.style import LINE_STYLES, OURS, THEIRS, dress
 from frictionlab.bench.curve import CurveResult
 from frictionlab.bench.record import Contender, ReferenceMeans, Row
 from frictionlab.bench.report import largest, point_remark
+from frictionlab.charts.style import PAGE, blank_figure
 
 MARKERS, HOLLOW = "osD^v<>", "oshdPX"
 LEAST = 1e-17
@@ -26,7 +27,7 @@ LETTERS = 36
 
 def curve_figure(result: CurveResult) -> Figure:
     """Times and errors of every contender."""
-    figure = new_figure(HEIGHT)
+    figure = blank_figure(PAGE, HEIGHT)
     axes = figure.add_subplot()
     entries = [_draw(axes, contender, look, own) for contender, look, own in _looks(result.rows)]
     lines = sum(str(entry.get_label()).count("\n") + 1.4 for entry in entries)

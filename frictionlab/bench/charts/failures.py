@@ -20,10 +20,12 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
-from frictionlab.bench.charts.style import new_figure
 from frictionlab.bench.failures.measure import MapOutcome, MapTruth
 from frictionlab.bench.failures.record import OF_FRICTION_TO_LOAD, edges, free_velocities
 from frictionlab.bench.failures.section import FailureResult
+from frictionlab.charts.maps import cell_edges
+from frictionlab.charts.style import PAGE, blank_figure
+from frictionlab.charts.sweeps import is_logarithmic
 from frictionlab.columns import word
 from frictionlab.quantities import Floats
 
@@ -57,7 +59,7 @@ def failures_figure(result: FailureResult) -> Figure | None:
         return None
     kinds = ["true"] if result.side == "peer" else ["stated", "true"]
     refused = _refused_everywhere([outcome for outcome, _ in maps if not outcome.has_panel])
-    figure = new_figure(_PANEL * len(shown) + _LEGEND + 0.12 * refused.count("\n"))
+    figure = blank_figure(PAGE, _PANEL * len(shown) + _LEGEND + 0.12 * refused.count("\n"))
     grid = figure.subplots(len(shown), len(kinds), squeeze=False)
     colors = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 0.97, len(_LEVELS) - 1)))
     mesh: Any = None
@@ -107,7 +109,8 @@ def _draw(axes: Axes, outcome: MapOutcome, truth: MapTruth, kind: str, colors: L
     drawn = outcome.drawn
     ordinates = np.array([drawn.ordinate(row) for row in drawn.rows])
     rising = np.argsort(ordinates)
-    mesh = Mesh(_edges(drawn.speeds), _edges(ordinates[rising]), (_is_log(drawn.speeds), _is_log(ordinates)))
+    x, y = drawn.speeds, ordinates[rising]
+    mesh = Mesh(cell_edges(x), cell_edges(y), (is_logarithmic(x), is_logarithmic(y)))
     grid = [outcome.grid[i] for i in rising]
     told = np.array([[point.outcome for point in row] for row in grid])
     errors = np.array([[getattr(point, kind) for point in row] for row in grid])
@@ -132,22 +135,6 @@ def _draw(axes: Axes, outcome: MapOutcome, truth: MapTruth, kind: str, colors: L
     _cross_out(axes, drawn.speeds, ordinates[rising], told == "silent")
     _name_points(axes, outcome)
     return drawn_mesh
-
-
-def _is_log(values: Floats) -> bool:
-    """Whether values > 0 are spaced by a ratio rather than by a difference."""
-    if values.min() <= 0.0 or len(values) < 3:
-        return False
-    logs, plain = np.diff(np.log(np.sort(values))), np.diff(np.sort(values))
-    return bool(np.ptp(logs) / logs.mean() < np.ptp(plain) / plain.mean())
-
-
-def _edges(values: Floats) -> Floats:
-    """Half-way between neighbours, on the scale they are spaced on, and as far beyond the ends."""
-    scaled = np.log(values) if _is_log(values) else values
-    middle = 0.5 * (scaled[1:] + scaled[:-1])
-    edges = np.concatenate([[2.0 * scaled[0] - middle[0]], middle, [2.0 * scaled[-1] - middle[-1]]])
-    return np.exp(edges) if _is_log(values) else edges
 
 
 def _hatch(axes: Axes, mesh: Mesh, where: NDArray[np.bool_], look: dict[str, Any]) -> None:

@@ -11,9 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.bench.charts.style import OURS, dress, new_figure
+from frictionlab.bench.charts.style import OURS, dress
 from frictionlab.bench.models import ModelRow, ModelsResult, front
 from frictionlab.bench.report import largest
+from frictionlab.charts.style import PAGE, blank_figure
 
 MARKS_OF_METHODS = "osD^v<>phPX*"
 CHART_HEIGHT = 3.4
@@ -31,7 +32,7 @@ FRONT: dict[str, Any] = {
 def models_figure(result: ModelsResult) -> Figure:
     """One panel; models told apart by colour and by filling, methods by marks."""
     rows, title = result.rows, result.title or result.name
-    figure = new_figure(CHART_HEIGHT)
+    figure = blank_figure(PAGE, CHART_HEIGHT)
     axes = figure.add_subplot()
     axes.set_xscale("log")
     axes.set_yscale("log")

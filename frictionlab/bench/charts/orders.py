@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from frictionlab.bench.charts.style import LINE_STYLES, OURS, THEIRS, dress, new_figure
+from frictionlab.bench.charts.style import LINE_STYLES, OURS, THEIRS, dress
 from frictionlab.bench.orders.section import OrderRow, OrdersResult
+from frictionlab.charts.style import PAGE, blank_figure
 
 COLUMNS, PANEL = 3, 1.95
 LOWEST = 1e-16
@@ -30,7 +31,7 @@ def orders_figure(result: OrdersResult) -> Figure:
     motions = list({row.motion.name: row.motion for row in rows}.values())
     solvers = list(dict.fromkeys(row.solver for row in rows))
     lines = math.ceil(len(motions) / COLUMNS)
-    figure = new_figure(PANEL * lines + 0.6)
+    figure = blank_figure(PAGE, PANEL * lines + 0.6)
     panels = figure.subplots(lines, COLUMNS, squeeze=False, sharex=True, sharey=True)
     handles: dict[str, Any] = {}
     for axes, motion in zip(panels.flat, motions, strict=False):

@@ -13,10 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from frictionlab.bench.charts.style import new_figure
 from frictionlab.bench.stability.record import StabilityMap, StepLimit
 from frictionlab.bench.stability.section import StabilityResult
-from frictionlab.charts.style import PAGE
+from frictionlab.charts.style import PAGE, blank_figure
 
 MAP_HEIGHT, WIDEST_MAP = 2.9, 2.6
 BEST, WORST = 1e-9, 1.0
@@ -32,7 +31,7 @@ def stability_figure(result: StabilityResult) -> Figure | None:
     """A panel a problem."""
     if not (maps := result.maps):
         return None
-    figure = new_figure(MAP_HEIGHT, min(PAGE, WIDEST_MAP * len(maps) + 1.2))
+    figure = blank_figure(min(PAGE, WIDEST_MAP * len(maps) + 1.2), MAP_HEIGHT)
     panels = figure.subplots(1, len(maps), squeeze=False)[0]
     for axes, drawn in zip(panels, maps, strict=True):
         colors = _draw_map(axes, drawn)

@@ -5,21 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-
-from frictionlab.charts.style import PAGE
 
 OURS = ("#08306b", "#7f0000", "#00441b", "#4a1486", "#662506", "#252525")
 THEIRS = ("#e6550d", "#31a354", "#756bb1", "#969696")
 LINE_STYLES = ("solid", (0, (5, 1.5)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)))
-
-
-def new_figure(height: float, width: float = PAGE) -> Figure:
-    """An empty figure of this size [inch]."""
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
 
 
 def dress(axes: Axes, title: str, **look: Any) -> None:

@@ -22,181 +22,101 @@ PROJECT = HOUSE.parent
 # The rooms are the folders of the package, and those of its methods, from the ground up; a file beside the folders is
 # one too. room -> the rooms it may import. Modules of one room may import each other, but no law another law.
 ARROWS = {
-    "printable": [],
-    "mistakes": ["printable"],
-    "quantities": ["mistakes"],
-    "columns": [],
-    "laws": ["quantities"],
-    "faults": ["laws"],
-    "compile": ["faults", "laws"],
-    "scene": ["quantities"],
-    "dynamics": ["compile", "laws", "quantities", "scene"],
-    "orbit": ["columns", "compile", "dynamics", "laws", "quantities", "scene"],
-    "numerics": ["compile", "quantities"],
-    "theory": ["laws", "quantities", "scene"],
-    "shape": ["laws", "quantities"],
-    "methods.base": ["laws", "orbit", "quantities", "scene"],
-    "methods.periodic": ["compile", "dynamics", "laws", "numerics", "orbit", "quantities", "scene", "theory"],
-    "methods.prescribed": [
-        *("compile", "dynamics", "laws", "orbit", "quantities", "scene", "theory"),
-        *("methods.base", "methods.periodic"),
-    ],
-    "methods.shooting": [
-        *("compile", "dynamics", "laws", "orbit", "quantities", "scene", "theory"),
-        *("methods.base", "methods.periodic", "methods.prescribed"),
-    ],
-    "methods.refusals": ["laws", "methods.shooting", "scene"],
-    "methods.exact": [
-        *("compile", "laws", "orbit", "quantities", "scene", "theory"),
-        *("methods.base", "methods.prescribed", "methods.refusals"),
-    ],
-    "methods.march": [
-        *("compile", "dynamics", "laws", "numerics", "orbit", "quantities", "scene", "theory"),
-        *("methods.base", "methods.periodic", "methods.prescribed", "methods.refusals", "methods.shooting"),
-    ],
-    "methods.reduced": [
-        *("compile", "dynamics", "laws", "numerics", "orbit", "quantities", "scene", "theory"),
-        *("methods.base", "methods.exact", "methods.prescribed", "methods.refusals", "methods.shooting"),
-    ],
-    "methods.auto": [
-        "laws",
-        "methods.base",
-        "methods.exact",
-        "methods.shooting",
-        "orbit",
-        "scene",
-    ],
-    "onsets": ["laws", "methods.base", "methods.periodic", "orbit", "quantities", "scene", "theory"],
-    "registry": ["faults", "laws", "methods.base", "mistakes"],
-    "study": ["columns", "laws", "methods.base", "mistakes", "printable", "registry", "scene"],
-    "results": [
-        *("columns", "laws", "methods.base", "orbit", "quantities", "registry", "scene", "shape", "study"),
-        *("printable", "theory"),
-    ],
-    "runner": [
-        *(
-            "columns",
-            "compile",
-            "faults",
-            "laws",
-            "methods.base",
-            "mistakes",
-            "onsets",
-            "orbit",
-            "printable",
-            "quantities",
+    room: below.split()
+    for room, below in {
+        "printable": "",
+        "mistakes": "printable",
+        "quantities": "mistakes",
+        "columns": "",
+        "laws": "quantities",
+        "faults": "laws",
+        "compile": "faults laws",
+        "scene": "quantities",
+        "dynamics": "compile laws quantities scene",
+        "orbit": "columns compile dynamics laws quantities scene",
+        "numerics": "compile quantities",
+        "theory": "laws quantities scene",
+        "shape": "laws quantities",
+        "methods.base": "laws orbit quantities scene",
+        "methods.periodic": "compile dynamics laws numerics orbit quantities scene theory",
+        "methods.prescribed": (
+            "compile dynamics laws orbit quantities scene theory methods.base methods.periodic"
         ),
-        *("registry", "results", "scene", "study", "theory"),
-    ],
-    "sensitivity": [
-        *("laws", "methods.base", "methods.periodic", "mistakes", "quantities", "results", "runner", "scene"),
-        "study",
-    ],
-    "charts": ["columns", "printable", "study"],
-    "report": ["charts", "columns", "printable", "registry", "results", "runner", "scene", "study"],
-    "notebook": ["charts", "columns", "report", "results", "runner", "scene", "study"],
-    "explore": ["charts", "columns", "report", "results", "runner"],
-    "scaffold": ["registry", "runner"],
-    "bench": [
-        *("charts", "columns", "compile", "laws", "mistakes", "quantities", "runner", "scene", "study"),
-        *("methods.base", "methods.exact", "methods.march", "methods.shooting", "numerics"),
-        *("report", "results", "theory"),
-    ],
-    "testing": [
-        *("compile", "dynamics", "faults", "laws", "registry", "scene"),
-        *("methods.march", "methods.shooting"),
-    ],
-    "least_model": [
-        "charts",
-        *(
-            "columns",
-            "laws",
-            "mistakes",
-            "printable",
-            "quantities",
-            "registry",
-            "results",
-            "runner",
-            "scene",
-            "shape",
-            "study",
+        "methods.shooting": (
+            "compile dynamics laws orbit quantities scene theory methods.base methods.periodic "
+            "methods.prescribed"
         ),
-        *("methods.reduced", "theory"),
-    ],
-    "cli": [
-        "bench",
-        "charts",
-        "columns",
-        "explore",
-        "faults",
-        "least_model",
-        "mistakes",
-        "printable",
-        "registry",
-        "report",
-        "results",
-        "runner",
-        "scaffold",
-        "study",
-        "testing",
-    ],
+        "methods.refusals": "laws methods.shooting scene",
+        "methods.exact": (
+            "compile laws orbit quantities scene theory methods.base methods.prescribed methods.refusals"
+        ),
+        "methods.march": (
+            "compile dynamics laws numerics orbit quantities scene theory methods.base methods.periodic "
+            "methods.prescribed methods.refusals methods.shooting"
+        ),
+        "methods.reduced": (
+            "compile dynamics laws numerics orbit quantities scene theory methods.base methods.exact "
+            "methods.prescribed methods.refusals methods.shooting"
+        ),
+        "methods.auto": "laws methods.base methods.exact methods.shooting orbit scene",
+        "onsets": "laws methods.base methods.periodic orbit quantities scene theory",
+        "registry": "faults laws methods.base mistakes",
+        "study": "columns laws methods.base mistakes printable registry scene",
+        "results": "columns laws methods.base orbit quantities registry scene shape study printable theory",
+        "runner": (
+            "columns compile faults laws methods.base mistakes onsets orbit printable quantities registry "
+            "results scene study theory"
+        ),
+        "sensitivity": "laws methods.base methods.periodic mistakes quantities results runner scene study",
+        "charts": "columns printable study",
+        "report": "charts columns printable registry results runner scene study",
+        "notebook": "charts columns report results runner scene study",
+        "explore": "charts columns report results runner",
+        "scaffold": "registry runner",
+        "bench": (
+            "charts columns compile laws mistakes quantities runner scene study methods.base "
+            "methods.exact methods.march methods.shooting numerics report results theory"
+        ),
+        "testing": "compile dynamics faults laws registry scene methods.march methods.shooting",
+        "least_model": (
+            "charts columns laws mistakes printable quantities registry results runner scene shape study "
+            "methods.reduced theory"
+        ),
+        "cli": (
+            "bench charts columns explore faults least_model mistakes printable registry report results "
+            "runner scaffold study testing"
+        ),
+    }.items()
 }
 ROOMS = list(ARROWS)
 
 # what is not Python's own -> the rooms that may bring it in
 OUTSIDE = {
-    "pydantic": [
-        "mistakes",
-        "quantities",
-        "laws",
-        "scene",
-        "methods",
-        "registry",
-        "study",
-        "bench",
-        "testing",
-    ],
-    "numpy": [
-        *("quantities", "compile", "theory", "shape", "orbit", "numerics", "dynamics", "methods", "study"),
-        *("onsets", "results", "runner", "scene", "charts", "notebook", "bench", "testing", "least_model"),
-        *("sensitivity", "laws.arrays"),
-    ],
-    "hypothesis": ["testing"],
-    "numba": ["compile", "bench.peers"],  # the peers' integrators are called with numba's C functions
-    "llvmlite": ["compile"],
-    "flint": ["methods.exact.proof"],
-    "ruamel": ["study", "runner"],
-    "pandas": [
-        *(
-            "results",
-            "runner",
-            "charts",
-            "report",
-            "notebook",
-            "explore",
-            "cli",
-            "least_model",
-            "sensitivity",
+    package: rooms.split()
+    for package, rooms in {
+        "pydantic": "mistakes quantities laws scene methods registry study bench testing",
+        "numpy": (
+            "quantities compile theory shape orbit numerics dynamics methods study onsets results runner "
+            "scene charts notebook bench testing least_model sensitivity laws.arrays"
         ),
-    ],
-    "xarray": ["notebook"],
-    "pyarrow": ["results", "runner"],
-    "matplotlib": [
-        *(
-            "charts",
-            "notebook.comparison",  # the type of a figure alone
-            "bench.charts",
-            "bench.pictures",
-        ),
-    ],
-    # inside functions alone: nothing imports it before it is needed
-    "distributed": ["runner"],
-    "scipy": ["theory", "numerics", "methods.reduced", "bench.peers"],
-    "heyoka": ["bench.peers"],
-    "numbalsoda": ["bench.peers"],
-    "jinja2": ["report"],
-    "markupsafe": ["report"],
-    "click": ["cli"],
+        "hypothesis": "testing",
+        "numba": "compile bench.peers",  # the peers' integrators are called with numba's C functions
+        "llvmlite": "compile",
+        "flint": "methods.exact.proof",
+        "ruamel": "study runner",
+        "pandas": "results runner charts report notebook explore cli least_model sensitivity",
+        "xarray": "notebook",
+        "pyarrow": "results runner",
+        "matplotlib": "charts notebook.comparison bench.charts bench.pictures",  # of comparison the type of a figure
+        # inside functions alone: nothing imports it before it is needed
+        "distributed": "runner",
+        "scipy": "theory numerics methods.reduced bench.peers",
+        "heyoka": "bench.peers",
+        "numbalsoda": "bench.peers",
+        "jinja2": "report",
+        "markupsafe": "report",
+        "click": "cli",
+    }.items()
 }
 
 LAWS_MAY_USE = {"__future__", "math", "cmath", "typing", "pydantic"}

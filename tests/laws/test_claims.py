@@ -33,11 +33,9 @@ class SilentBristles(Silent, BristleLaw):
     """With a bristle."""
 
     def rate(self, v: Any, z: Any) -> Any:
-        """Follows."""
         return v - abs(v) * z
 
     def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """A spring."""
         return 3.0 * z
 
 
@@ -51,11 +49,9 @@ class SilentAge(Silent, MemoryLaw):
     memory_kind = "scalars"
 
     def rate(self, v: Any, memory: Any, k: int) -> Any:
-        """Ages."""
         return 1.0
 
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
-        """Of its age."""
         return v * memory[0]
 
 
@@ -63,11 +59,9 @@ class SilentMemory(Silent, MemoryLaw):
     """With a memory."""
 
     def rate(self, v: Any, memory: Any, k: int) -> Any:
-        """Follows."""
         return v
 
     def friction(self, v: Any, memory: Any, rates: Any) -> Any:
-        """Of one."""
         return memory[0]
 
 
@@ -131,7 +125,6 @@ class Even(Silent):
     """The same friction at every speed, and says no more."""
 
     def constant_sliding_friction(self) -> bool:
-        """Always."""
         return True
 
 
@@ -139,7 +132,6 @@ class Rising(SilentSliding):
     """Never falls, and says no more."""
 
     def monotone(self) -> bool:
-        """Always."""
         return True
 
 
@@ -196,12 +188,10 @@ class Counting(SilentSliding):
 
     @property
     def elements(self) -> int:
-        """A whole number."""
         return 3
 
     @property
     def hardens(self) -> bool:
-        """A truth value."""
         return True
 
     @property

@@ -40,7 +40,6 @@ class Lopsided(SlidingLaw):
     mu: Positive
 
     def sliding_friction(self, speed: float) -> float:
-        """mu."""
         return self.mu
 
     def sliding_vector(self, v: Any) -> Any:
@@ -88,7 +87,6 @@ class Endless(Coulomb):
     """Coulomb friction that never answers."""
 
     def sliding_friction(self, speed: float) -> float:
-        """Never."""
         while True:
             time.sleep(0.01)
 
@@ -159,7 +157,6 @@ class Plain(SlidingLaw):
     mu: Positive
 
     def sliding_friction(self, speed: float) -> float:
-        """mu."""
         return self.mu
 
 
@@ -175,15 +172,12 @@ class Spring(BristleLaw):
     limit: Length
 
     def sliding_friction(self, speed: float) -> float:
-        """mu."""
         return self.mu
 
     def rate(self, v: Any, z: Any) -> Any:
-        """Dahl's."""
         return v - abs(v) * z / self.limit
 
     def friction(self, v: Any, z: Any, dz: Any) -> Any:
-        """A spring."""
         return self.mu * z / self.limit
 
 
@@ -222,7 +216,6 @@ class Film(Plain):
     """
 
     def sliding_friction(self, speed: float) -> float:
-        """Viscous."""
         return self.mu * speed
 
 
@@ -230,7 +223,6 @@ class ToldFilm(Film):
     """A film of fluid that says so."""
 
     def vanishes_at_rest(self) -> bool:
-        """Always."""
         return True
 
 
@@ -253,7 +245,6 @@ class NotForNumba(Plain):
         return self.half()
 
     def half(self) -> float:
-        """mu/2."""
         return 0.5 * self.mu
 
 

@@ -12,7 +12,6 @@ import pytest
 from outside_forcing import BELT1, LOAD1, NORMAL, forcing
 
 from frictionlab.laws.coulomb import Coulomb
-from frictionlab.laws.dahl import Dahl
 from frictionlab.methods.exact.method import Exact
 from frictionlab.orbit.panels import DERIVATIVE, WEIGHTS
 from frictionlab.scene.scene import Scene
@@ -235,12 +234,6 @@ def test_what_it_cannot_do_is_refused_with_the_way_out():
         refusal = Exact().refusal(scene(3.0, **changes), LAW)
         assert reason in refusal
         assert "use shooting" in refusal
-    kept = Scene(
-        belt_speed=1.0, slip={"velocity_amplitude": 2.0, "frequency": 3.0}, normal_load_variation=SAW
-    )
-    constant = kept.with_(**{"normal_load_variation.contact": "constant"})
-    assert Exact().refusal(kept, Dahl(mu=0.4, stiffness=4.0)) is None
-    assert "stiffness of bristles" in Exact().refusal(constant, Dahl(mu=0.4, stiffness=4.0))
 
 
 def test_random_scenes_are_those_of_an_unrelated_integration():

@@ -206,6 +206,16 @@ HINTS = [
     ("kind: coulomb, mu: 0.4", "kind: coulomb, mu: 0.4, mu_kinetic: 0.4", "did you mean 'mu_static'?"),
     ("  scene.belt_speed: {", "  frequency: {", "did you mean 'scene.drive.frequency'?"),
     ("  scene.belt_speed: {", "  mu: {", "did you mean 'laws.coulomb.mu'?"),
+    ("  scene.belt_speed: {", "  belt_speed: {", "did you mean 'scene.belt_speed'?"),
+    ("title", "titel", "did you mean 'title'?"),
+    ("kind: coulomb, mu: 0.4", "kind: colomb, mu: 0.4", "did you mean 'coulomb'?"),
+    ("mu: 0.4", "mu: 0.4, mus: 1", "did you mean 'mu'?"),
+    ("methods: [auto", "methods: [autoo", "did you mean 'auto'?"),
+    ("laws.soft.mu: [", "laws.sofd.mu: [", "did you mean 'laws.soft.mu'?"),
+    ("column: error", "column: Error", "did you mean 'error'?"),
+    ("scene.belt_speed: 5}", "scene.belt_sped: 5}", "did you mean 'scene.belt_speed'?"),
+    ("law: coulomb, scene", "law: sofft, scene", "did you mean 'soft'?"),
+    ("num: 120", "num: 120, spacing: logg", "did you mean 'log'?"),
 ]
 """Mistakes with a remedy: the last line of the message."""
 # fmt: on

@@ -24,6 +24,11 @@ class _Ends(Record):
     start: Finite
     stop: Finite
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Both."""
+        return self.start, self.stop
+
     @model_validator(mode="after")
     def _check_ends(self) -> Self:
         start, stop = map(number_text, (self.start, self.stop))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -61,11 +62,13 @@ class _SweepReader:
             what = "belt speeds alone are chosen so, where no others are linked to them; give num"
             self._notes.on_key((*path, WITHIN), what)
             return
-        is_range = isinstance(read, SweepRange | SpeedRange)
-        if isinstance(read, SweepRange | SpeedRange):
+        checked, others = read, targets[1:]  # the first target has read each value of a list
+        if not isinstance(read, tuple):
             self.found.ranges[key] = read
-        for target in targets if is_range else targets[1:]:
-            _check_values(read if isinstance(read, tuple) else _ends(read), target, path, self._notes)
+            checked, others = read.ends, targets  # ends decide whether all values between are allowed
+        for target, (index, value) in itertools.product(others, enumerate(checked)):
+            if wrong := wrong_value(target.record, target.key, value):
+                self._notes.add((*path, index), wrong)
         built = _built(read, path, self._notes)
         for target in targets:
             _stand_in(self._tree, target, built, self.found.stand_ins, path)
@@ -102,27 +105,15 @@ class _SweepReader:
                 what = f"has {size} values, {first} {sizes[first]}: lists of one entry advance together"
                 self._notes.add((*path, key), what)
                 return
-        points = list(zip(*lists.values(), strict=True))
-        twice = next((at for at, point in enumerate(points) if points.index(point) < at), None)
-        if twice is not None:
-            self._notes.add(path, f"its places {points.index(points[twice])} and {twice} are the same point")
+        seen: dict[tuple[GridValue, ...], int] = {}
+        for at, point in enumerate(zip(*lists.values(), strict=True)):
+            if (before := seen.setdefault(point, at)) != at:
+                self._notes.add(path, f"its places {before} and {at} are the same point")
         self.found.links += (tuple(lists),)
 
 
 Read = tuple[GridValue, ...] | SweepRange | SpeedRange
 """A list of values, or a range of them not yet built."""
-
-
-def _ends(read: Read) -> tuple[GridValue, ...]:
-    """The ends of a range, which decide whether its values are allowed; of a list the first value."""
-    return read[:1] if isinstance(read, tuple) else (read.start, read.stop)
-
-
-def _check_values(values: Sequence[GridValue], target: Target, path: Path, notes: Notes) -> None:
-    """Check values, such as the ends of a range, which decide whether all of them are allowed."""
-    for index, value in enumerate(values):
-        if what := wrong_value(target.record, target.key, value):
-            notes.add((*path, index), what)
 
 
 def _stand_in(
@@ -190,7 +181,7 @@ def _list_value(item: Any, target: Target | None, path: Path, notes: Notes) -> G
 def _built(read: Read, path: Path, notes: Notes) -> tuple[GridValue, ...]:
     """The values; of belt speeds that are chosen as a run goes the ends."""
     if not isinstance(read, SweepRange):
-        return _ends(read) if isinstance(read, SpeedRange) else read
+        return read.ends if isinstance(read, SpeedRange) else read
     values = read.values()
     if not all(map(operator.lt, values, values[1:])):
         notes.add(path, f"there are no {read.num} different numbers between start and stop")

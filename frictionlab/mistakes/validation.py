@@ -252,6 +252,9 @@ def _meant(error: Any) -> str:
 
 _BOUNDS = {"greater_than": (">", "gt"), "greater_than_equal": (">=", "ge")}
 _BOUNDS |= {"less_than": ("<", "lt"), "less_than_equal": ("<=", "le")}
+_WANTED = {"string": "text", "tuple": "a list such as [1, 2]", "int": "a whole number", "float": "a number"}
+_WANTED |= {"bool": "true or false"}
+"""By what the name of an error begins with."""
 
 
 def _value_mistake(error: Any, text_of: Callable[[Any], str]) -> str:
@@ -264,19 +267,10 @@ def _value_mistake(error: Any, text_of: Callable[[Any], str]) -> str:
         return f"must be {sign} {number_text(error['ctx'][name])}, got {given}"
     if error["type"] == "literal_error":
         return f"must be {error['ctx']['expected']}; got {given}"
-    if error["type"] == "string_type":
-        return f"must be text, got {given}"
-    if error["type"] == "tuple_type":
-        return f"must be a list such as [1, 2], got {given}"
     if error["type"] == "too_short":
         return f"must be a list of at least {error['ctx']['min_length']}, got {error['ctx']['actual_length']}"
-    message = _message(error)
-    if error["type"].startswith("int"):
-        return f"must be a whole number, got {given}"
-    if error["type"].startswith("float"):
-        return f"must be a number, got {given}"
-    if error["type"].startswith("bool"):
-        return f"must be true or false, got {given}"
+    wanted = next((what for start, what in _WANTED.items() if error["type"].startswith(start)), None)
+    message = _message(error) if wanted is None else f"must be {wanted}"
     if message.startswith("must be "):
         return f"{message}, got {given}"
     return message[:1].lower() + message[1:]

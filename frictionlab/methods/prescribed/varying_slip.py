@@ -149,6 +149,7 @@ def sliding_vectors(law: FrictionLaw, slip: Vectors) -> Vectors:
         return law.sliding_friction(1.0) * _directions(slip)
     friction = np.empty(slip.size, np.complex128)
     KernelCall(friction_of_slips, law)(slip.ravel(), friction)
+    friction[~np.isfinite(friction)] = np.nan  # where a law gives no number, neither is the mean
     return friction.reshape(slip.shape)
 
 
@@ -234,8 +235,7 @@ class VaryingPoint:
         largest = float(np.abs(friction).max())
         if less:
             friction = friction - load * less * _directions(slip)
-        with np.errstate(invalid="ignore"):  # where a law gives no number, neither is the mean
-            return -complex((weights * friction).sum()) / self.slip.along.period, largest
+        return -complex((weights * friction).sum()) / self.slip.along.period, largest
 
     def _left_open(self, mean: float, spread: float) -> PrescribedMean:
         self.status, self.error_kind, self.reason = "not_unique", "", NO_SLIP

@@ -44,34 +44,28 @@ PLANAR = BODY | {"transverse": ACROSS}
 
 def in_si(scene: Scene, mass: float, stiffness: float, length: float) -> dict[str, Any]:
     """The body of this mass, stiffness and length scale that a nondimensional scene speaks of (Eq. 2)."""
-    omega = math.sqrt(stiffness / mass)
-    assert scene.drive is not None
-    assert scene.damping_ratio is not None
-    assert scene.normal_load is not None
+    omega, force, told = math.sqrt(stiffness / mass), stiffness * length, dict[str, Any](scene.values())
     body: dict[str, Any] = {
         "mass_kg": mass,
         "stiffness_N_per_m": stiffness,
-        "damping_N_s_per_m": 2.0 * scene.damping_ratio * mass * omega,
+        "damping_N_s_per_m": 2.0 * told["damping_ratio"] * mass * omega,
         "length_m": length,
-        "gravity_m_per_s2": scene.normal_load * stiffness * length / mass,
-        "belt_speed_m_per_s": scene.belt_speed * omega * length,
-        "drive": {"frequency_rad_per_s": scene.drive.frequency * omega, "phase": scene.drive.phase},
+        "gravity_m_per_s2": told["normal_load"] * force / mass,
+        "belt_speed_m_per_s": told["belt_speed"] * omega * length,
+        "drive": {
+            "amplitude_N": told["drive.amplitude"] * force,
+            "frequency_rad_per_s": told["drive.frequency"] * omega,
+            "phase": told["drive.phase"],
+        },
     }
-    assert scene.drive.amplitude is not None
-    body["drive"]["amplitude_N"] = scene.drive.amplitude * stiffness * length
     if scene.transverse is not None:
-        omega_2 = scene.transverse.natural_frequency * omega
-        load = scene.transverse.load
-        assert load is not None
-        assert load.amplitude is not None
+        omega_2 = told["transverse.natural_frequency"] * omega
+        # an unbalance whose force has this amplitude: m r omega^2
+        unbalance = told["transverse.load.amplitude"] * force / (told["drive.frequency"] * omega) ** 2
         body["transverse"] = {
             "stiffness_N_per_m": mass * omega_2**2,
-            "damping_N_s_per_m": 2.0 * scene.transverse.damping_ratio * mass * omega_2,
-            # an unbalance whose force has this amplitude: m r omega^2
-            "load": {
-                "unbalance_kg_m": load.amplitude * stiffness * length / (scene.drive.frequency * omega) ** 2,
-                "phase": load.phase,
-            },
+            "damping_N_s_per_m": 2.0 * told["transverse.damping_ratio"] * mass * omega_2,
+            "load": {"unbalance_kg_m": unbalance, "phase": told["transverse.load.phase"]},
         }
     return body
 

@@ -14,7 +14,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.closed_loop_line import ONE_WAY, Along, line_loop
-from frictionlab.methods.prescribed.closed_loop_plane import plane_loop
+from frictionlab.methods.prescribed.collocation import plane_loop
 from frictionlab.methods.prescribed.loop import Closed, Open, Vectors
 from frictionlab.methods.prescribed.motion import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import BY_SYMMETRY, VaryingSlip, nodes
@@ -67,7 +67,7 @@ class BristlePoint:
         # no panel of the orbit reaches over the edge of one of the loop's
         edges = np.unique(np.concatenate(([0.0, 2.0 * math.pi], loop.start % (2.0 * math.pi))))
         angle, _ = nodes(edges)
-        tau, deflection = angle / self.motion.frequency, loop.deflection_at(angle)
+        tau, deflection = angle / self.motion.frequency, loop.at(angle, loop.deflection)
         v = slip.velocity(tau, np.zeros(1, np.int64)) - self.belt_speed
         moved = (v.real, deflection) if self.line else (v, deflection.astype(complex))
         return slip.orbit(tau, _resisted(self.law, *moved))

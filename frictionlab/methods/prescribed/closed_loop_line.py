@@ -1,12 +1,4 @@
-"""The closed loop of a bristle law under slip along one line: by two exact legs, or by collocation.
-
-Both use the slip velocity amplitude*(kappa + cos(psi)), kappa = |belt speed|/amplitude, which is minus the slip on a
-belt that runs forward.
-
-Licence: on 15 scenes without an exact path collocation of one number is 4 times
-faster in the median than of two, as in the plane (0.6 to 15 times), and 11 times faster than the period map of a
-memory of any size (5 to 251). That map misses means of friction by axis by up to 1e-2 on 8 scenes of both axes.
-"""
+"""The closed loop of a bristle law under slip along one line: by two exact legs, or by collocation."""
 
 from __future__ import annotations
 
@@ -19,29 +11,14 @@ import numpy as np
 from frictionlab.compile.call import KernelCall
 from frictionlab.dynamics.radau_panel import Oscillation
 from frictionlab.laws.memory import BristleLaw
+from frictionlab.methods.prescribed.collocation import collocated
 from frictionlab.methods.prescribed.exact_legs import POINTS, SHARES, Legs, closed_legs
-from frictionlab.methods.prescribed.loop import Closed, Loop, Open
-from frictionlab.methods.prescribed.motion import slow_passages
-from frictionlab.methods.prescribed.periodic_deflection import (
-    Accuracy,
-    closed_deflection,
-    layer,
-    natural_reach,
-)
+from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES, Closed, Loop, Open
+from frictionlab.methods.prescribed.periodic_deflection import natural_reach
 from frictionlab.quantities import EPSILON, Floats
 
 TWO_LEGS = "prescribed slip along a line: deflection exact along both legs, Gauss-Lobatto quadrature"
 ONE_WAY = "closed form: slip that never reverses saturates the deflection"
-COLLOCATED = (
-    "prescribed slip: deflection over one period by Radau IIA collocation, fixed point by Newton's method"
-)
-SMOOTH = 1e-3
-"""Angle [rad] above which slip that only touches zero needs no finer panels: friction has no kink there."""
-NOTHING_MOVES = "no slip: friction is that of the initial deflection, any value up to the limit"
-ELASTIC = (
-    "the belt is at rest and the slip stays within the elastic range of the contact: the mean deflection is that of "
-    "the start"
-)
 
 
 class Along(NamedTuple):
@@ -76,7 +53,8 @@ def line_loop(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
     if along.belt_speed == 0.0 and room > 0.0:
         return Open.up_to(law, room, ELASTIC)
     if not law.exact_path():
-        return _collocated(law, along, tolerance)
+        slip = Oscillation(along.phasor, 0j, along.frequency, 0.0)
+        return collocated(law, slip, along.belt_speed, tolerance, 0.0)
     return _legs(law, along) if along.turn > 0.0 else _one_way(law, along)
 
 
@@ -109,36 +87,9 @@ def _one_way(law: BristleLaw, along: Along) -> Closed:
     return Closed(loop, 16.0 * EPSILON * loop.largest, ONE_WAY, 0.0)
 
 
-def _collocated(law: BristleLaw, along: Along, tolerance: float) -> Closed | Open:
-    slip = Oscillation(1j * along.size, 0j, along.frequency, 0.0)
-    found = closed_deflection(
-        law, slip, stretches(law, along), Accuracy.of(law, slip, along.belt_speed, tolerance), 0.0
-    )
-    if isinstance(found, Open):
-        return found
-    loop = found.loop
-    parts = loop.start, loop.width, loop.slip, loop.deflection, loop.friction
-    return found._replace(loop=_turned(along, parts, loop.points, loop.shares), model=COLLOCATED)
-
-
 def _turned(along: Along, parts: tuple[Any, ...], points: Floats, shares: Floats) -> Loop:
     """The loop at the phase and with the signs of the given slip."""
     start, width, slip, deflection, friction = parts
     shift = -0.5 * math.pi * along.side - cmath.phase(along.phasor)
     side = complex(-along.side, 0.0)
     return Loop(start + shift, width, points, shares, side * slip, side.real * deflection, side * friction)
-
-
-def stretches(law: BristleLaw, along: Along) -> Floats:
-    """The parts of a period of |belt speed| + size*cos(psi) without rest inside, from psi = turn - pi on."""
-    speed, turn = abs(along.belt_speed), along.turn
-    if turn == 0.0:
-        passages = slow_passages(1j * along.size, 0j, -speed)
-        depth = max(min((depth for _, depth in passages), default=10.0), SMOOTH)
-        return np.array([[-math.pi, speed - along.size, 0.0, 0.0, 2.0 * math.pi, depth, depth]])
-    near = layer(
-        law, along.frequency, lambda h: 2.0 * along.size * math.sin(turn + 0.5 * h) * math.sin(0.5 * h)
-    )
-    forward = [turn - math.pi, 0.0, 0.0, 0.0, 2.0 * (math.pi - turn), near, 10.0]
-    back = [math.pi - turn, 0.0, 0.0, 0.0, 2.0 * turn, near, 10.0]
-    return np.array([forward, back])

@@ -13,6 +13,12 @@ from frictionlab.quantities import Floats
 
 Vectors = NDArray[np.complex128]
 
+NOTHING_MOVES = "no slip: friction is that of the initial deflection, any value up to the limit"
+ELASTIC = (
+    "the belt is at rest and the slip stays within the elastic range of the contact: the mean deflection is that of "
+    "the start"
+)
+
 
 class Loop(NamedTuple):
     """Panels of a period in order of angle: start, width [n]; slip, deflection, friction [n, k], x1 + i x2.
@@ -43,8 +49,8 @@ class Loop(NamedTuple):
         """The largest coefficient met."""
         return float(np.abs(self.friction).max())
 
-    def deflection_at(self, angle: Floats) -> Any:
-        """The deflection at angles of the period, by each panel's polynomial."""
+    def at(self, angle: Floats, values: Any) -> Any:
+        """What has these values at the points of panels, at angles of the period, by each panel's polynomial."""
         begin = self.start[0]
         turned = begin + np.mod(angle - begin, 2.0 * math.pi)
         panel = np.clip(np.searchsorted(self.start, turned, side="right") - 1, 0, len(self.start) - 1)
@@ -53,7 +59,7 @@ class Loop(NamedTuple):
         for k, point in enumerate(self.points):
             others = np.delete(self.points, k)
             basis = np.prod((at[..., None] - others) / (point - others), axis=-1)
-            value = value + basis * self.deflection[panel, k]
+            value = value + basis * values[panel, k]
         return value
 
 

@@ -18,8 +18,8 @@ from frictionlab.compile.decorators import njit
 from frictionlab.dynamics.contact import resistance
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.prescribed.closed_loop_line import ELASTIC, NOTHING_MOVES
 from frictionlab.methods.prescribed.exact_legs import gained
+from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES
 from frictionlab.methods.prescribed.motion import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import WIDEST_PANEL, VaryingSlip, piece_at
 from frictionlab.orbit.panels import NODES, WEIGHTS

@@ -14,7 +14,8 @@ from frictionlab.dynamics.radau_panel import Oscillation
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.prescribed import exact_legs
 from frictionlab.methods.prescribed.bristle import friction_of_each
-from frictionlab.methods.prescribed.closed_loop_line import Along, legs_of, stretches
+from frictionlab.methods.prescribed.closed_loop_line import Along, legs_of
+from frictionlab.methods.prescribed.collocation import stretches
 from frictionlab.methods.prescribed.periodic_deflection import POINTS, SHARES, Accuracy, Closing
 
 _PER_STEP = 1e-7
@@ -53,7 +54,7 @@ class Loops:
             mean, first = self._of_legs(legs_of(self.law, along, 1.0))
             first *= cmath.exp(-1j * (along.turn - math.pi))
         else:
-            mean, first = self._collocated(along)
+            return self._collocated(amplitude)
         # Of the slip belt_speed + amplitude*cos(psi), which is minus this one at psi = theta + pi/2.
         return Friction(-mean / math.tau, first / math.pi)
 
@@ -67,15 +68,17 @@ class Loops:
         KernelCall(friction_of_each, self.law)(self.belt_speed + amplitude * np.cos(psi), z, rub)
         return _summed(psi, rub * (math.tau / _SAMPLES))
 
-    def _collocated(self, along: Along) -> tuple[float, complex]:
-        slip = Oscillation(1j * along.size, 0j, along.frequency, 0.0)
-        scale = Accuracy.of(self.law, slip, along.belt_speed, 1.0).scale
-        closing = Closing(self.law, slip, stretches(self.law, along), scale, _PER_STEP)
+    def _collocated(self, amplitude: float) -> Friction:
+        slip = Oscillation(complex(amplitude), 0j, self.frequency, 0.0)
+        scale = Accuracy.of(self.law, slip, self.belt_speed, 1.0).scale
+        parts = stretches(self.law, slip, self.belt_speed)
+        closing = Closing(self.law, slip, parts, scale, _PER_STEP)
         period, self._last, _ = closing.closed(self._last)
         if period is None:
-            return math.nan, complex(math.nan)
+            return Friction(math.nan, complex(math.nan))
         width = period.width[:, None]
-        return _summed(period.start[:, None] + width * POINTS, width * SHARES * period.friction)
+        mean, first = _summed(period.start[:, None] + width * POINTS, width * SHARES * period.friction)
+        return Friction(mean / math.tau, 1j * first / math.pi)
 
 
 def _summed(psi: Any, shares: Any) -> tuple[float, complex]:

@@ -18,7 +18,7 @@ from frictionlab.methods.prescribed.closed_loop_line import Along, legs_of
 from frictionlab.methods.prescribed.collocation import stretches
 from frictionlab.methods.prescribed.periodic_deflection import POINTS, SHARES, Accuracy, Closing
 
-_PER_STEP = 1e-7
+_PER_STEP = 3e-8
 """Error per step of collocation, of order nine: over a period it is below 1e-9 of the friction."""
 _SAMPLES = 64
 

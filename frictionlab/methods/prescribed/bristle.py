@@ -15,8 +15,7 @@ from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.closed_loop_line import ONE_WAY, Along, line_loop
 from frictionlab.methods.prescribed.collocation import plane_loop
-from frictionlab.methods.prescribed.loop import Closed, Open, Vectors
-from frictionlab.methods.prescribed.motion import PrescribedMean
+from frictionlab.methods.prescribed.loop import Closed, Open, PrescribedMean, Vectors
 from frictionlab.methods.prescribed.varying_slip import BY_SYMMETRY, VaryingSlip, nodes
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene

@@ -7,7 +7,9 @@ what this answers: rotated forms, and contacts that the slip bends by less than 
 
 from __future__ import annotations
 
+import cmath
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,7 +17,6 @@ import numpy as np
 from frictionlab.dynamics.radau_panel import Oscillation
 from frictionlab.laws.memory import ROTATED, BristleLaw
 from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES, Closed, Loop, Open, Vectors
-from frictionlab.methods.prescribed.motion import SlowPassage, between_passages, slow_passages
 from frictionlab.methods.prescribed.periodic_deflection import (
     Accuracy,
     closed_deflection,
@@ -34,6 +35,9 @@ CLOSEST = 1e-12
 SMOOTH = 1e-3
 """Angle [rad] above which slip along a line that only touches zero needs no finer panels: friction has no kink there.
 """
+
+_SlowPassage = tuple[float, float]
+"""Where slip is slow: the angle, and how far from the real axis it vanishes."""
 
 
 def plane_loop(law: BristleLaw, motion: Motion, belt_speed: float, tolerance: float) -> Closed | Open:
@@ -116,8 +120,8 @@ def _room(slip: Oscillation, radius: float) -> float:
 
 def stretches(law: BristleLaw, slip: Oscillation, belt_speed: float) -> Floats:
     """The parts of a period without rest inside, from one slow passage to the next."""
-    passages, rows = slow_passages(slip.along, slip.across, belt_speed), []
-    for (here, depth), (there, next_depth) in between_passages(passages, FAR):
+    passages, rows = _slow_passages(slip.along, slip.across, belt_speed), []
+    for (here, depth), (there, next_depth) in _between_passages(passages, FAR):
         if there > here:
             half = 0.5 * (there - here)
             near, end = _near_ends(law, slip, belt_speed, (here, depth), next_depth)
@@ -130,8 +134,31 @@ def stretches(law: BristleLaw, slip: Oscillation, belt_speed: float) -> Floats:
     return np.array(rows)
 
 
+def _slow_passages(along: complex, across: complex, belt_speed: float) -> list[_SlowPassage]:
+    """Where in the complex plane of the angle the slip speed vanishes: (angle, distance from the real axis).
+
+    |slip|^2 is the product of slip_1 + i slip_2 and slip_1 - i slip_2; each is p z - belt_speed + q/z in
+    z = exp(i angle), and their zeros mirror each other in the real axis.
+    """
+    p, q = -0.5j * along + 0.5 * across, 0.5j * along.conjugate() - 0.5 * across.conjugate()
+    root = cmath.sqrt(belt_speed * belt_speed - 4.0 * p * q)
+    larger = max(belt_speed + root, belt_speed - root, key=abs)
+    zeros = [
+        top / bottom for top, bottom in ((larger, 2.0 * p), (2.0 * q, larger)) if top != 0 and bottom != 0
+    ]
+    return [(cmath.phase(z), abs(math.log(abs(z)))) for z in zeros]
+
+
+def _between_passages(
+    passages: list[_SlowPassage], none: float
+) -> Iterator[tuple[_SlowPassage, _SlowPassage]]:
+    """Every passage of a period and the one after it, once around; else one at 0, ``none`` deep."""
+    places = sorted((angle % (2.0 * math.pi), depth) for angle, depth in passages) or [(0.0, none)]
+    yield from zip(places, [*places[1:], (places[0][0] + 2.0 * math.pi, places[0][1])], strict=True)
+
+
 def _near_ends(
-    law: BristleLaw, slip: Oscillation, belt_speed: float, passage: SlowPassage, next_depth: float
+    law: BristleLaw, slip: Oscillation, belt_speed: float, passage: _SlowPassage, next_depth: float
 ) -> tuple[float, float]:
     """The angles after a passage and before the next within which steps need not shorten further."""
     here, depth = passage

@@ -1,8 +1,9 @@
-"""One period of a closed deflection under a prescribed slip, on panels, and what is read from it."""
+"""What is found of a prescribed slip: its mean friction, and one period of a closed deflection on panels."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,19 @@ ELASTIC = (
     "the belt is at rest and the slip stays within the elastic range of the contact: the mean deflection is that of "
     "the start"
 )
+
+
+@dataclass(frozen=True)
+class PrescribedMean:
+    """What a law makes of a prescribed slip: mean friction (x1 + i x2), and the error of its x1.
+
+    low, high: of a slip that leaves the mean open between two numbers. Whatever is not known is NaN.
+    """
+
+    mean: complex = complex(math.nan, math.nan)
+    error: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
 
 
 class Loop(NamedTuple):

@@ -22,7 +22,7 @@ from frictionlab.methods.periodic.continuation import DIFFERENTIATED, RECORDED, 
 from frictionlab.methods.periodic.fixed_point import Goal
 from frictionlab.methods.periodic.period_map import size_of
 from frictionlab.methods.periodic.setting import maps_of
-from frictionlab.methods.prescribed.motion import PrescribedMean
+from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import Floats

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from frictionlab.methods.base import Status
-from frictionlab.methods.prescribed.motion import PrescribedMean
+from frictionlab.methods.prescribed.loop import PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.orbit.panels import NODES, interpolation_weights
 from frictionlab.orbit.record import Orbit

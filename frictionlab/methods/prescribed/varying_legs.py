@@ -19,8 +19,7 @@ from frictionlab.dynamics.contact import resistance
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.methods.base import Status
 from frictionlab.methods.prescribed.exact_legs import gained
-from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES
-from frictionlab.methods.prescribed.motion import PrescribedMean
+from frictionlab.methods.prescribed.loop import ELASTIC, NOTHING_MOVES, PrescribedMean
 from frictionlab.methods.prescribed.varying_slip import WIDEST_PANEL, VaryingSlip, piece_at
 from frictionlab.orbit.panels import NODES, WEIGHTS
 from frictionlab.orbit.record import Orbit

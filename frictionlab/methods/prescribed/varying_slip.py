@@ -12,8 +12,7 @@ from frictionlab.compile.call import KernelCall
 from frictionlab.compile.decorators import njit
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Status
-from frictionlab.methods.prescribed.loop import Vectors
-from frictionlab.methods.prescribed.motion import PrescribedMean
+from frictionlab.methods.prescribed.loop import PrescribedMean, Vectors
 from frictionlab.orbit.panels import NODES, WEIGHTS
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import EPSILON, Floats

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Answers, ReducedModel, Status
 from frictionlab.methods.exact.method import REDUCED, Exact
-from frictionlab.methods.prescribed.motion import displacement, velocity
 from frictionlab.methods.prescribed.varying_slip import VaryingSlip
 from frictionlab.methods.refusals import suggest_shooting
 from frictionlab.methods.shooting.method import Shooting
@@ -145,9 +144,10 @@ def _carried(scene: Scene, orbit: Orbit | None) -> Orbit | None:
     other = equivalent_drive(scene)
     if orbit is None or other is None:
         return orbit
-    carried = Motion(1.0, scene.frequency, other.velocity, other.transverse_velocity)
-    angle = scene.frequency * orbit.tau
-    return replace(orbit, x=orbit.x + displacement(carried, angle), v=orbit.v + velocity(carried, angle))
+    turn = np.exp(1j * scene.frequency * orbit.tau)
+    along, across = other.velocity * turn, other.transverse_velocity * turn
+    x = orbit.x - (along.real + 1j * across.real) / scene.frequency
+    return replace(orbit, x=x, v=orbit.v + along.imag + 1j * across.imag)
 
 
 def steadied_all(scenes: Sequence[Scene]) -> Sequence[Scene]:

@@ -21,6 +21,7 @@ from frictionlab.laws.jenkins import Jenkins
 from frictionlab.laws.lugre import LuGre
 from frictionlab.laws.stribeck import Stribeck
 from frictionlab.methods.exact.method import Exact
+from frictionlab.methods.prescribed.varying_slip import VaryingPoint, VaryingSlip
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.scene.scene import Scene
 from frictionlab.theory import mean_prescribed_longitudinal, mean_prescribed_pulsating
@@ -226,6 +227,16 @@ def test_slip_that_comes_to_rest_at_the_end_of_a_long_period_ends_its_panels() -
     straight = scene(0.0, A_SINE, slip={"frequency": 2 * math.pi / 8.76, "direction": 40.0})
 
     assert abs(mean(straight, LAW)) <= 1e-13
+
+
+@pytest.mark.parametrize("frequency", [1.0, 0.3, 7.0])
+def test_a_slip_that_touches_rest_takes_few_panels(frequency: float) -> None:
+    load = {"amplitude": 0.6, "phase": 20.0}
+    one = scene(1.0, slip={"frequency": frequency}, normal_load_variation=load)
+
+    assert len(VaryingSlip.of(one.signals(), 2.0).panels(1.0)[1]) < 2000
+    point = VaryingPoint(one, Coulomb(mu=1.0))
+    assert abs(point.found.mean - 1.0) <= point.found.error < 1e-5
 
 
 def test_columns_keep_their_meaning() -> None:

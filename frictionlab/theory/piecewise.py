@@ -183,7 +183,8 @@ class Piecewise(NamedTuple):
         turns = math.tau * np.arange(round(frequency * self.period / math.tau))
         angles = np.add.outer(np.array([peak - half, peak + half]), turns).ravel()
         tau = np.sort(np.mod(angles / frequency, self.period))
-        return Crossings(tau, np.full(len(tau), 4.0 * EPSILON * self.period))
+        unsure = 2.0 * EPSILON / (frequency * math.sin(half)) + 4.0 * EPSILON * self.period
+        return Crossings(tau, np.full(len(tau), unsure))
 
     def _roots(self, start: Floats, stop: Floats, k: PieceNumbers, rounding: float) -> Crossings:
         """Where it passes through zero in each of these intervals, on which it rises or falls throughout."""

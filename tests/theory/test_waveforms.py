@@ -53,6 +53,16 @@ def test_the_mean_is_that_of_the_instants_at_which_slip_turns(
     assert direction(waveform, phase, ratio).mean == pytest.approx(closed, abs=1e-13)
 
 
+@given(gap=st.floats(-12.0, -1.0), phase=angles)
+def test_the_error_covers_the_mean_of_a_sine_that_hardly_reverses(gap: float, phase: float) -> None:
+    ratio = 1.0 - 10.0**gap
+    closed = 1.0 - 4.0 / math.pi * math.asin(math.sqrt(0.5 * (1.0 - ratio)))
+
+    found = direction("sine", phase, ratio)
+
+    assert abs(found.mean - closed) <= found.error
+
+
 @given(form=forms)
 def test_jumps_and_opposites_are_those_of_its_values(form: Form) -> None:
     signal, tau = signal_of(form, FULL_TURN, 0.0), (np.arange(240) + 1e-9) / 240

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import gc
 import io
 import os
 import threading
@@ -44,6 +45,8 @@ MOMENT = 0.2
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; its exit code. Only our own bugs show a traceback."""
+    if arguments is None:  # the process is the command's own: its many modules stay, and hold no garbage
+        gc.set_threshold(50_000, 20, 100)
     open_streams()
     earlier = threading.enumerate()
     try:
@@ -54,6 +57,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     code = flush_stdout(code)
     if code == INTERRUPTED and _works_on(earlier):
         os._exit(code)  # a worker deep in a kernel cannot be stopped, and would be waited for
+    if arguments is None:
+        gc.freeze()  # nor is garbage looked for among them at the end
     return code
 
 

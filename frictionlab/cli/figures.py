@@ -5,10 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from frictionlab.cli.output import metered
-
 if TYPE_CHECKING:
-    from frictionlab.charts.figures import FigureData, Kept
+    from frictionlab.charts.figures import FigureData
     from frictionlab.runner.progress import Meter
     from frictionlab.runner.saved import Saved
 
@@ -24,18 +22,10 @@ def draw_into(folder: Path, data: FigureData, meter: Meter) -> list[Path]:
         raise SaveError(f"cannot write the figures in {folder}: {problem.strerror or problem}") from problem
 
 
-def draw_saved(saved: Saved, folder: Path) -> list[Path]:
-    """Draw the figures of a saved run anew, as its study wants them; the files. Raises SaveError."""
-    from frictionlab.charts.figures import FigureData
+def figure_data(saved: Saved) -> FigureData:
+    """What the figures of a saved run are drawn of; of a long table, whose rows are not all there, no orbits."""
+    from frictionlab.charts.figures import FigureData, Kept
 
-    more = saved.onsets, saved.curves, saved.attractors, kept_of(saved), saved.study.figures
-    with metered() as meter:
-        meter.begins("drawing", "figures")
-        return draw_into(folder, FigureData(saved.table, saved.title, *more), meter)
-
-
-def kept_of(saved: Saved) -> Kept:
-    """The orbits and harmonics of a saved run; of a long table, whose rows are not all there, no orbits."""
-    from frictionlab.charts.figures import Kept
-
-    return Kept(saved.orbits_of if saved.rows is None else lambda rows: None, saved.harmonics)
+    kept = Kept(saved.orbits_of if saved.rows is None else lambda rows: None, saved.harmonics)
+    more = saved.onsets, saved.curves, saved.attractors, kept, saved.study.figures
+    return FigureData(saved.table, saved.title, *more)

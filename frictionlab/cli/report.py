@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 
 from frictionlab.cli import options
-from frictionlab.cli.figures import draw_saved
-from frictionlab.cli.output import print_message, print_result
+from frictionlab.cli.figures import draw_into, figure_data
+from frictionlab.cli.output import metered, print_message, print_result
 
 
 @click.command("report")
@@ -31,11 +31,14 @@ def drawn_anew(run: Path, figures: bool) -> None:
         saved = read_saved(run)
         for line in saved.damaged:
             print_message(line)
-        files = draw_saved(saved, run)
+        data = figure_data(saved)
+        with metered() as meter:
+            meter.begins("drawing", "figures")
+            files = draw_into(run, data, meter)
         if not figures:
             from frictionlab.report import write_report
 
-            files = [write_report(saved)]
+            files = [write_report(saved, data)]
     if files:
         print_result("\n".join(map(str, files)))
     else:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import click
 
 from frictionlab.cli import options
-from frictionlab.cli.figures import draw_into, kept_of
+from frictionlab.cli.figures import draw_into, figure_data
 from frictionlab.cli.output import (
     BROKEN_PLUGIN,
     FAILED,
@@ -28,9 +29,11 @@ from frictionlab.columns import ONSETS_GROUP
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
+    from frictionlab.charts.figures import FigureData
     from frictionlab.results.run import Run
     from frictionlab.runner.batch import Job
     from frictionlab.runner.progress import Meter
+    from frictionlab.runner.saved import Saved
     from frictionlab.runner.workforce import Workforce
     from frictionlab.study import Plugins
 
@@ -211,6 +214,7 @@ def _run(job: Job, asked: RunOptions, meter: Meter) -> Run:
 def _shown(job: Job, result: Run, asked: RunOptions, meter: Meter) -> Run:
     """The run drawn, its report written, its onsets found where asked for; nothing is made again that is there."""
     from frictionlab.runner import api, pages
+    from frictionlab.runner.saved import saved_as
 
     if job.study.asks_for(ONSETS_GROUP):
         meter.begins("finding onsets")
@@ -221,9 +225,10 @@ def _shown(job: Job, result: Run, asked: RunOptions, meter: Meter) -> Run:
                 print_message(f"{what} in {there}")
         return result
     meter.begins("drawing", "figures")
-    _draw(job, result, asked, meter)
+    saved = saved_as(result)
+    drawn = _draw(saved, result if asked.figures else None, meter)
     meter.begins("writing the report")
-    _report(result)
+    _report(saved, drawn)
     pages.know_pages(result, asked.figures)
     return result
 
@@ -273,30 +278,20 @@ def _show_failed(result: Run) -> None:
         print_message(line)
 
 
-def _draw(job: Job, result: Run, asked: RunOptions, meter: Meter) -> None:
-    from frictionlab.charts.figures import FigureData
+def _draw(saved: Saved, every: Run | None, meter: Meter) -> FigureData:
+    """Draw the figures of a run, every point of it where that is given; what they are drawn of but for that."""
     from frictionlab.results.table import whole
-    from frictionlab.runner.saved import saved_as
 
-    with_onsets = job.study.asks_for(ONSETS_GROUP) and not result.curves.empty
-    data = FigureData(
-        table=whole(result.table if asked.figures else result.to_show),
-        title=job.study.title or job.name,
-        onsets=result.onsets if with_onsets else None,
-        curves=None if result.curves.empty else result.curves,
-        attractors=result.attractors,
-        kept=kept_of(saved_as(result)),
-        options=job.study.figures,
-    )
-    if draw_into(job.out, data, meter):
-        print_message(f"figures in {job.out / 'figures'}")
+    data = figure_data(saved)
+    if draw_into(saved.folder, data if every is None else replace(data, table=whole(every.table)), meter):
+        print_message(f"figures in {saved.folder / 'figures'}")
+    return data
 
 
-def _report(result: Run) -> None:
+def _report(saved: Saved, drawn: FigureData) -> None:
     from frictionlab.report import write_report
-    from frictionlab.runner.saved import saved_as
 
-    print_message(f"report in {write_report(saved_as(result))}")
+    print_message(f"report in {write_report(saved, drawn)}")
 
 
 def _write_index(folder: Path, done: Sequence[Run]) -> None:

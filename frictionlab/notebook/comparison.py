@@ -183,7 +183,7 @@ class Comparison:
         saved = saved_as(with_onsets(save_run(self.run, Path(folder), self.seconds)))
         data = FigureData(saved.table, saved.title, saved.onsets, saved.curves, options=saved.study.figures)
         draw_figures(data, saved.folder / "figures")
-        write_report(saved)
+        write_report(saved, data)
         return saved.folder
 
     def report(self, path: str | PathLike[str]) -> Path:

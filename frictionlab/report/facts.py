@@ -41,9 +41,10 @@ class CurveRows(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Facts:
-    """A run, and what is read from its tables once."""
+    """A run, and what is read from its tables once. drawn: what its figures were drawn of."""
 
     saved: Saved
+    drawn: FigureData | None = None
 
     @property
     def table(self) -> pd.DataFrame:
@@ -63,7 +64,7 @@ class Facts:
     @cached_property
     def figures(self) -> FigureData:
         """What its figures of the table are drawn of."""
-        return FigureData(self.table, options=self.saved.study.figures)
+        return self.drawn or FigureData(self.table, options=self.saved.study.figures)
 
     @cached_property
     def method_pairs(self) -> list[Difference]:

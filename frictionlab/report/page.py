@@ -13,6 +13,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from frictionlab import __version__
+from frictionlab.charts.figures import FigureData
 from frictionlab.report import findings, question
 from frictionlab.report.answer import sentences
 from frictionlab.report.equation import equations, letters_sentence
@@ -39,16 +40,19 @@ AGAIN = [
 ]
 
 
-def write_report(saved: Saved) -> Path:
-    """Write report.html into the folder of a run; where it is. Raises SaveError."""
+def write_report(saved: Saved, drawn: FigureData | None = None) -> Path:
+    """Write report.html into the folder of a run; where it is. drawn: what its figures were drawn of, if they were.
+
+    Raises SaveError.
+    """
     file = saved.folder / "report.html"
-    write_page(file, report(saved))
+    write_page(file, report(saved, drawn))
     return file
 
 
-def report(saved: Saved) -> str:
+def report(saved: Saved, drawn: FigureData | None = None) -> str:
     """The page of a run."""
-    run = Facts(saved)
+    run = Facts(saved, drawn)
     parts = _head(run) | _asked(saved) | _found(run) | _last(run)
     return rendered("report.html", title=saved.title, **parts)
 

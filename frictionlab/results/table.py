@@ -183,7 +183,8 @@ class Results:
         found = {name: self._words.get(name, self._numbers.get(name)) for name in told}
         in_si = si_columns(self._numbers, given.scales) if given.scales is not None and names is None else {}
         columns = given.columns | found | in_si
-        frame = pd.DataFrame({name: column[rows] for name, column in columns.items() if column is not None})
+        shown = {name: column[rows] for name, column in columns.items() if column is not None}
+        frame = pd.DataFrame(shown, copy=False)
         for name in frame.columns[[kind.kind == "O" for kind in frame.dtypes]]:
             if name in given.columns and frame[name].isna().all():
                 continue  # words of other rows
@@ -206,8 +207,15 @@ def whole(table: pd.DataFrame) -> pd.DataFrame:
     if all(name in table for name in RESULTS):
         return table
     given = [name for name in table.columns if name not in RESULTS and name not in SI]
-    found = table.reindex(columns=[*given, *RESULTS, *(name for name in SI if name in table)])
-    return found.astype({name: _WORDS for name in TEXT if name not in table})
+    names = [*given, *RESULTS, *(name for name in SI if name in table)]
+    columns = {name: table[name] if name in table else _nothing(name, table.index) for name in names}
+    found = pd.DataFrame(columns, copy=False)
+    found.attrs = table.attrs
+    return found
+
+
+def _nothing(name: str, index: pd.Index) -> pd.Series:
+    return pd.Series(np.nan, index, _WORDS if name in TEXT else float)
 
 
 _WORDS = pd.StringDtype(na_value=np.nan)

@@ -250,6 +250,7 @@ def _run_part(job: Job, asked: RunOptions, part: tuple[int, int]) -> None:
     from frictionlab.runner.share import run_share
 
     kept = kept_beside(job.out, asked.cache, asked.cache_size)
+    assert kept is not None
     with metered() as meter, _force(asked) as force:
         done = run_share(job.study, part, kept, force, meter)
     print_result(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain, islice
+from typing import NamedTuple
 
 import pandas as pd
 
@@ -26,8 +26,7 @@ ROWS_AT_ONCE = 10_000
 """Rows of it that are made a table at once."""
 
 
-@dataclass(frozen=True)
-class TablePiece:
+class TablePiece(NamedTuple):
     """Rows of the table that make whole curves. kept: their orbits and harmonics; memories: columns of all orbits."""
 
     inputs: Inputs
@@ -36,25 +35,6 @@ class TablePiece:
     kept: dict[str, KeptRows]
     memories: Sequence[str]
 
-    def table(self) -> pd.DataFrame:
-        """The rows."""
-        return self.results.frame(self.inputs)
-
-    def tables(self) -> Iterator[pd.DataFrame]:
-        """The rows, so many at a time."""
-        for first in range(0, self.inputs.size, ROWS_AT_ONCE):
-            yield self.results.frame(self.inputs, slice(first, first + ROWS_AT_ONCE))
-
-    def for_curves(self) -> pd.DataFrame:
-        """What the shape of curves is read from."""
-        return self.results.frame(self.inputs, names={*OF_SHAPE, *ALWAYS})
-
-    @property
-    def orbits(self) -> pd.DataFrame | None:
-        """The kept orbits; None without any."""
-        return orbit_rows(self.kept.get("orbits", {}), self.memories)
-
-    @property
     def harmonics(self) -> pd.DataFrame:
         """The kept harmonics."""
         own = {row - self.first: found for row, found in self.kept.get("harmonics", {}).items()}
@@ -70,7 +50,7 @@ class GatheredTable:
     def __init__(self, shown: Places | None, leave_out_empty: bool = False) -> None:
         self._leave_out_empty = leave_out_empty
         self._shown = None if shown is None else Thinned(shown)
-        self._tables: list[pd.DataFrame] = []
+        self._held = pd.DataFrame()
         self._curves: list[pd.DataFrame] = []
         self._counts = Counter[str]()
         self.orbits: pd.DataFrame | None = None
@@ -80,11 +60,11 @@ class GatheredTable:
         """Write the table, held in whole or in part. stopped: curves are not read then."""
         none: pd.DataFrame | None = None
         for piece in pieces(solving):
-            for table in [self._whole(piece)] if self._shown is None else piece.tables():
+            for table in self._tables(piece):
                 files.add_rows(table)
-                self._tables.append(table) if self._shown is None else self._shown.add(table)
                 self._counts.update(status_counts(table))
-            orbits, harmonics = piece.orbits, piece.harmonics if solving.task.harmonics else None
+            orbits = orbit_rows(piece.kept.get("orbits", {}), piece.memories)
+            harmonics = piece.harmonics() if solving.task.harmonics else None
             files.add_orbits(orbits)
             if harmonics is not None and harmonics.empty:  # columns across the belt are not told of no orbits
                 none = harmonics
@@ -92,18 +72,27 @@ class GatheredTable:
                 files.add_harmonics(harmonics)
             if self._shown is None:
                 self.orbits, self.harmonics = orbits, harmonics
-            read = piece.for_curves()
+            read = piece.results.frame(piece.inputs, names={*OF_SHAPE, *ALWAYS})
             self._curves.append(curve_table(read.iloc[:0] if stopped else read, laws))
         if none is not None and not files.has_harmonics:
             files.add_harmonics(none)
 
-    def _whole(self, piece: TablePiece) -> pd.DataFrame:
-        return without_empty(piece.table()) if self._leave_out_empty else piece.table()
+    def _tables(self, piece: TablePiece) -> Iterator[pd.DataFrame]:
+        """Its rows, so many at a time where not all are held."""
+        if self._shown is None:
+            table = piece.results.frame(piece.inputs)
+            self._held = without_empty(table) if self._leave_out_empty else table
+            yield self._held
+            return
+        for first in range(0, piece.inputs.size, ROWS_AT_ONCE):
+            table = piece.results.frame(piece.inputs, slice(first, first + ROWS_AT_ONCE))
+            self._shown.add(table)
+            yield table
 
     @property
     def table(self) -> pd.DataFrame:
         """The rows that are held."""
-        return self._tables[0] if self._shown is None else self._shown.table
+        return self._held if self._shown is None else self._shown.table
 
     @property
     def counts(self) -> dict[str, int]:
@@ -135,7 +124,7 @@ def pieces(solving: Solving) -> Iterator[TablePiece]:
 def whole_table(solving: Solving) -> pd.DataFrame:
     """The table of answers that are held."""
     (piece,) = pieces(solving)
-    return piece.table()
+    return piece.results.frame(piece.inputs)
 
 
 def _memories(solving: Solving) -> list[str]:

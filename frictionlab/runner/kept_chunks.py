@@ -13,7 +13,7 @@ from contextlib import suppress
 from functools import cache
 from os import PathLike
 from pathlib import Path
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 
@@ -135,16 +135,6 @@ class KeptChunks:
 
     def _path(self, key: str) -> Path:
         return self.folder / key[:2] / f"{key[2:]}.chunk"
-
-
-@overload
-def kept_beside(out: FolderName, cache: FolderName | None, gigabytes: float = ...) -> KeptChunks: ...
-
-
-@overload
-def kept_beside(
-    out: FolderName | None, cache: FolderName | None, gigabytes: float = ...
-) -> KeptChunks | None: ...
 
 
 def kept_beside(

@@ -143,16 +143,6 @@ def test_a_whole_table_needs_no_chunks_and_a_damaged_one_is_made_again(
     assert_frame_equal(mended.table, fewer.table, check_exact=True)
 
 
-def test_a_kept_chunk_that_is_damaged_is_solved_again(short_pieces: None, tmp_path: Path) -> None:
-    first = fl.run(study(), out=tmp_path / "one")
-    for damaged in list((tmp_path / ".cache").rglob("*.chunk"))[:3]:
-        damaged.write_bytes(damaged.read_bytes()[:-1])
-    again = fl.run(study(), out=tmp_path / "other")
-
-    assert again.counts == first.counts
-    assert_frame_equal(_timeless(again.table), _timeless(first.table), check_exact=True)
-
-
 def test_a_long_run_that_is_interrupted_goes_on(short_pieces: None, tmp_path: Path) -> None:
     def stop(done: int, total: int) -> None:
         if done:

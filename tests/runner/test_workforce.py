@@ -35,10 +35,6 @@ SCRIPT = Path(__file__).parents[1] / "killed_workers.py"
 DOCS = Path(__file__).parents[2] / "docs"
 
 
-def timeless(run: Any) -> Any:
-    return run.table
-
-
 @pytest.mark.parametrize("way", ["processes", "cluster", pytest.param("parts", marks=deep("six processes"))])
 def test_workers_that_are_killed_change_nothing(way: str) -> None:
     if way == "cluster":
@@ -129,7 +125,7 @@ def test_parts_share_all_chunks_between_them(tmp_path: Path) -> None:
     assert [share.computed for share in shares] == [share.points for share in shares]
     assert (again.computed, again.found) == (0, shares[1].points)
     assert gathered.computed == 0
-    assert_frame_equal(timeless(gathered), timeless(fl.run(plan)), check_exact=True)
+    assert_frame_equal(gathered.table, fl.run(plan).table, check_exact=True)
 
 
 @pytest.mark.parametrize("part", ["0/3", "4/3", "3", "a/b", "1/0", "-1/2", "1.5/2"])

@@ -9,7 +9,6 @@ import pandas as pd
 
 from frictionlab.columns import INPUTS, belt_speed
 from frictionlab.printable import with_error
-from frictionlab.results.curve_table import curve_table
 from frictionlab.results.words import counted, in_words
 from frictionlab.study import Expectation
 
@@ -28,15 +27,12 @@ class Verdict:
     sentence: str
 
 
-def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame | None = None) -> Verdict:
-    """The verdict on one expectation, which must hold for every row it speaks of; no row at all fails.
+def judge(expectation: Expectation, table: pd.DataFrame, curves: pd.DataFrame) -> Verdict:
+    """The verdict on one expectation, which must hold for every row or curve it speaks of; none at all fails.
 
-    curves: the table of curves that goes with the table; made from it where it is not given.
+    curves: the table of curves that goes with the table.
     """
-    whole = table
-    if expectation.shape is not None:
-        whole = curve_table(table) if curves is None else curves
-    rows = _matching(expectation.where, whole)
+    rows = _matching(expectation.where, table if expectation.shape is None else curves)
     if rows.empty:
         found = Verdict(False, "no row of the table matches")
     elif expectation.shape is not None:

@@ -39,6 +39,10 @@ class OpenChunk:
         answered = part.moved(self.whole)
         return answered if self.is_whole else answered.only(self.left)
 
+    def one_answer(self, parts: list[Part]) -> Part:
+        """The answers of a chunk that was solved as a whole, by their places in it."""
+        return one_part(parts, self.whole).moved(np.arange(len(self.whole)))
+
 
 def open_chunks(
     curves: Sequence[StudyCurve],
@@ -60,10 +64,3 @@ def open_chunks(
             yield OpenChunk(
                 chunk if len(left) == len(places) else chunk.of(left), number, cut.rows, left, key
             )
-
-
-def answered(work: OpenChunk, parts: list[Part]) -> Part | None:
-    """The answers of a chunk that was solved as a whole, by their places in it; None for one solved in part."""
-    if not work.is_whole:
-        return None
-    return one_part(parts, work.whole).moved(np.arange(len(work.whole)))

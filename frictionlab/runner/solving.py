@@ -14,7 +14,7 @@ from frictionlab.runner.chunks import Cut, Task, chunk_size, cuts
 from frictionlab.runner.errors import SaveError
 from frictionlab.runner.kept_chunks import KeptChunks, Keys
 from frictionlab.runner.limit import solve_within
-from frictionlab.runner.open_chunks import OpenChunk, answered, open_chunks
+from frictionlab.runner.open_chunks import OpenChunk, open_chunks
 from frictionlab.runner.progress import Progress, silent
 from frictionlab.runner.workforce import Workforce
 from frictionlab.study import StudyCurve
@@ -139,10 +139,10 @@ class Solving:
     def _take(self, work: OpenChunk, parts: list[Part]) -> None:
         self.computed += len(work.left)
         self._sent.pop(work.key or "", None)
-        part = answered(work, parts)
-        if part is None:
+        if not work.is_whole:
             self._answers[work.number] = parts
             return
+        part = work.one_answer(parts)
         is_kept = self._keeping.keep(work.key, part)
         for each in (work, *work.same):
             self._enter(each, part, is_kept)

@@ -56,7 +56,7 @@ FAST = {"scene.belt_speed": 2.0}
 def test_an_expectation_holds_or_fails_for_all_its_rows(
     where: dict[str, Any], claim: dict[str, Any], passed: bool
 ) -> None:
-    assert judge(Expectation(where=where, **claim), TABLE).passed is passed
+    assert judge(Expectation(where=where, **claim), TABLE, CURVES).passed is passed
 
 
 @pytest.mark.parametrize(
@@ -79,7 +79,7 @@ def test_an_expectation_holds_or_fails_for_all_its_rows(
 def test_an_expectation_of_rows_that_are_not_there_fails_and_says_so(
     claim: dict[str, Any], where: dict[str, Any]
 ) -> None:
-    verdict = judge(Expectation(where=where, **claim), TABLE)
+    verdict = judge(Expectation(where=where, **claim), TABLE, CURVES)
 
     assert not verdict.passed
     assert "no row of the table matches" in verdict.sentence
@@ -90,20 +90,20 @@ def test_the_sentence_says_what_was_claimed_where_why_and_what_was_found() -> No
         where=SLOW, column="mean_friction", equals=0.25, within=1e-3, because="Fig. 9b", below=None
     )
 
-    assert judge(claim, TABLE).sentence == (
+    assert judge(claim, TABLE, CURVES).sentence == (
         "mean_friction equals 0.25 within 0.001 where scene.belt_speed 0.3 (Fig. 9b): "
         "0.1 in the worst of 2 rows"
     )
 
 
 def test_the_verdict_on_one_row_gives_its_number_alone() -> None:
-    found = judge(Expectation(where={}, column="mean_friction", below=1.0), TABLE.iloc[:1]).sentence
+    found = judge(Expectation(where={}, column="mean_friction", below=1.0), TABLE.iloc[:1], CURVES).sentence
 
     assert found == "mean_friction below 1 everywhere: 0.1"
 
 
 def test_an_empty_cell_is_told_with_the_reason_of_its_row() -> None:
-    verdict = judge(Expectation(where=FAST, column="mean_friction", above=0.0), TABLE)
+    verdict = judge(Expectation(where=FAST, column="mean_friction", above=0.0), TABLE, CURVES)
 
     assert verdict.sentence.endswith(
         "mean_friction is empty in the row of coulomb by shooting at belt speed 2, refused: needs damping"
@@ -147,16 +147,9 @@ def test_a_shape_holds_or_fails_for_all_its_curves_and_says_by_how_much(
     assert verdict.sentence.endswith(f"(Fig. 4): {found}")
 
 
-def test_without_a_table_of_curves_it_is_made_from_the_table() -> None:
-    verdict = judge(Expectation(where={"method": "exact"}, shape="convex"), TABLE)
-
-    assert not verdict.passed
-    assert "the table lacks columns that curves are read from" in verdict.sentence
-
-
 @pytest.mark.parametrize("table", [TABLE, TABLE.iloc[:3]])
 def test_a_missing_partner_fails_and_is_told(table: pd.DataFrame) -> None:
-    verdict = judge(Expectation(where={}, max_difference=("exact", "shooting"), below=1.0), table)
+    verdict = judge(Expectation(where={}, max_difference=("exact", "shooting"), below=1.0), table, CURVES)
 
     assert not verdict.passed
     assert "a mean is missing in 1 of 2 pairs" in verdict.sentence

@@ -242,7 +242,16 @@ SMUGGLED: list[tuple[dict[str, Any], str]] = [
         "or a method such as fl.March(), got the class March; did you mean March()?",
     ),
     ({"method": fl.March().model_copy(update={"stepper": "rk5"})}, "March: stepper: must be 'moreau', 'rk4'"),
-    ({"tolerance": True}, "tolerance must be a positive number, got True"),
+    *(
+        ({"tolerance": wrong}, f"tolerance must be a positive number, got {told}")
+        for wrong, told in [
+            (True, "True"),
+            (0.0, "0"),
+            (-1e-8, "-1e-08"),
+            (math.nan, "nan"),
+            (math.inf, "inf"),
+        ]
+    ),
 ]
 
 

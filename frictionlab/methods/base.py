@@ -73,9 +73,10 @@ class Answers:
 class FoundState(NamedTuple):
     """A state that a motion ended in: the scene's place on its curve, its period in drive periods (0: never repeats).
 
-    mean, error: of the friction coefficient over the whole period, NaN where it never repeats; low, high: of means
-    over one drive period each. x, velocity: along the belt, at the start of each of its drive periods, or of the last
-    ones. found_from: from where it was found.
+    mean, error: of the friction coefficient over the whole period; where it never repeats over a long time, with two
+    standard errors, NaN where that is not known. low, high: of means over one drive period each. x, velocity: along the
+    belt, at the start of each of its drive periods, or of the last ones. found_from: from where it was found. share:
+    that of the starts that ended in it.
     """
 
     place: int
@@ -87,6 +88,7 @@ class FoundState(NamedTuple):
     x: Floats
     velocity: Floats
     found_from: str
+    share: float
 
 
 class Method(Record, ABC):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -45,6 +46,8 @@ def _row(state: FoundState, point: int, speed: float, number: int) -> dict[str, 
         "period": state.period,
         "mean_friction": state.mean,
         "error": state.error,
+        "error_kind": "" if math.isnan(state.error) else "estimated" if state.period else "statistical",
+        "share": state.share,
         "mean_low": state.low,
         "mean_high": state.high,
         "point": point + 1,

@@ -98,10 +98,10 @@ class MarchedPoint:
         readable = self._readable(mean.runs)
         arrivals, problem = self._arrivals(mean, readable)
         unique = not problem and one_motion(arrivals)
-        if arrivals[0].period == 1 and (unique or self.scene.initial is not None):
+        if (own := arrivals[0].period) > 0 and (unique or self.scene.initial is not None):
             # Which lap's mean is meant makes so much of a difference.
-            spread = arrivals[0].high - arrivals[0].low
-            self._accept(replace(mean, error=mean.error + spread), readable, tolerance)
+            spread = arrivals[0].high - arrivals[0].low if own == 1 else 0.0
+            self._accept(replace(mean, error=mean.error + spread), readable, tolerance, own)
         elif problem:
             self.reason = f"{describe(arrivals, 6)}; {problem}"
         else:
@@ -155,8 +155,6 @@ class MarchedPoint:
         if not why and arrivals[0].period == 0:
             why = "the motion is not periodic at any step: "
         self.reason = why + describe(arrivals, 6)
-        if one_motion(arrivals):
-            self.answer = replace(self.answer, period=self.march.periods * arrivals[0].period)
 
     def _lost_in_chatter(self, mean: MarchMean) -> float:
         """All that the mean may be off by, where the belt is slower than the jumps that rk4 makes about rest."""
@@ -169,12 +167,13 @@ class MarchedPoint:
     def _remark(self, said: str) -> None:
         self.reason = "; ".join(filter(None, (self.reason, said)))
 
-    def _accept(self, mean: MarchMean, readable: MarchResult, tolerance: float) -> None:
+    def _accept(self, mean: MarchMean, readable: MarchResult, tolerance: float, own: int) -> None:
+        """Answer by this mean, of a motion that takes so many laps; undriven, as many as the last run says."""
         last = mean.runs[-1]
         self.status = "ok"
-        self.orbit = partial(self._orbit, readable, last.stride if self.scene.undriven else 1)
+        self.orbit = partial(self._orbit, readable, last.stride if self.scene.undriven else own)
         error = max(mean.error, self._lost_in_chatter(mean))
-        self.answer = PointAnswer(mean.mean, error, self._period(mean, last))
+        self.answer = PointAnswer(mean.mean, error, self._period(mean, last, own))
         if last.verdict == STALLED:
             averaged = self.march.window * self.march.periods
             self._remark(
@@ -191,9 +190,9 @@ class MarchedPoint:
         moves = self.scene.belt_speed != 0.0 and not self.scene.undriven
         return self.march.unmoved or (self.law.count() > 0 and moves)
 
-    def _period(self, mean: MarchMean, last: MarchResult) -> float:
+    def _period(self, mean: MarchMean, last: MarchResult, own: int) -> float:
         if not self.scene.undriven:
-            return self.march.periods
+            return self.march.periods * own
         swing = read_columns([self.scene], lambda i: self.orbit())["velocity_amplitude"][0]
         still = swing <= 2.0 * last.pace.enough
         return math.nan if last.verdict == RESTING or still else mean.period / (2.0 * math.pi)

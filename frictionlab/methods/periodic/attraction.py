@@ -33,10 +33,14 @@ AGREED, ENOUGH = 0.1, 3
 
 
 class Follow(NamedTuple):
-    """How a motion is followed: the accuracy of its maps, and whether friction is the same at every speed of slip."""
+    """How a motion is followed: the accuracy of its maps, and whether friction is the same at every speed of slip.
+
+    whole: all of its periods, each by itself, whether they repeat or not.
+    """
 
     accuracy: float
     constant: bool
+    whole: bool = False
 
 
 class Trail(NamedTuple):
@@ -211,6 +215,7 @@ def iterate_until_periodic(
     residual, slides_on = np.empty(states.shape[1]), how.constant and slip_keeps_its_side(setting)
     # A bristle that nears its limit as a power of the way slid comes to move less than that long before it is there.
     alike *= 0.1 if slides_on else 1.0
+    alike = 0.0 if how.whole else alike
     before, after, predicted = np.empty(residual.size), np.empty(residual.size), np.empty(residual.size)
     subtract(states[0], orbit.state, before)
     near, obeyed, far = VERY_NEAR * norm(orbit.state), 0, 0.0
@@ -218,7 +223,7 @@ def iterate_until_periodic(
         image = period_map(setting, states[n], residual, how.accuracy)
         means[n] = mean_friction(image.friction_impulse.real, scales.period)
         steps += image.steps
-        many = _periods_alike(setting, states[n], image)
+        many = 1.0 if how.whole else _periods_alike(setting, states[n], image)
         for row in range(residual.size):
             states[n + 1, row] = states[n, row] + many * residual[row]
         if slides_on and ends_in_sliding(setting, states[n + 1]):

@@ -180,6 +180,11 @@ class PeriodicProblem:
         body = self.body._replace(periods=span)
         return KernelCall(self.kernel, self.law).timed(body, belt_speeds, states, goal, wanted)
 
+    def long_orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None], periods: int) -> Orbits:
+        """The motions from these states over so many periods of all that changes, one for each scene."""
+        places, known = self._known(states)
+        return self._recorded(places, scenes, known, periods)
+
     def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
         """The closed orbits from these states, one for each scene; without panels where there is no state."""
         places, known = self._known(states)
@@ -193,9 +198,11 @@ class PeriodicProblem:
         others = [i for i, is_left in zip(places, left, strict=True) if is_left]
         return found.and_those_of(self._recorded(others, scenes, known[left])) if others else found
 
-    def _recorded(self, places: list[int], scenes: Sequence[Scene], states: Floats) -> Orbits:
+    def _recorded(
+        self, places: list[int], scenes: Sequence[Scene], states: Floats, periods: int = 1
+    ) -> Orbits:
         """The orbits of the scenes at these places, one by one."""
-        curve, _ = self.called(belt_speeds_of(scenes)[places], states, self.goal, RECORDED)
+        curve, _ = self.called(belt_speeds_of(scenes)[places], states, self.goal, RECORDED, periods)
         return _orbits_at(places, curve.orbits, curve.ends, len(scenes))
 
     def multipliers(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Floats:
@@ -258,6 +265,11 @@ class PeriodicProblem:
         """An orbit of so many periods, from its state."""
         return self._iterate(belt_speed, state, periods, 1e-9)
 
+    def followed_on(self, belt_speed: float, state: Floats, periods: int) -> Transient:
+        """The motion from a state for so many periods, each by itself; fewer where they take too many steps."""
+        how = Follow(1e-7 * self.mass.normal_load, False, True)
+        return self._follow(belt_speed, state, periods, how, unknown_orbit(self.size))
+
     def mapped(self, belt_speeds: Floats, states: Floats) -> Floats:
         """These states [n, size], each at its belt speed, after all that changes in time has repeated once.
 
@@ -287,16 +299,15 @@ class PeriodicProblem:
         relative: float,
         known: KnownOrbit | None = None,
     ) -> Transient:
+        how = Follow(relative * self.mass.normal_load, self.goal.constant)
+        return self._follow(belt_speed, state, most, how, known or unknown_orbit(self.size))
+
+    def _follow(
+        self, belt_speed: float, state: Floats, most: int, how: Follow, known: KnownOrbit
+    ) -> Transient:
         means, states = np.empty(most), np.empty((most + 1, self.size))
         states[0] = state
-        how = Follow(relative * self.mass.normal_load, self.goal.constant)
-        arguments = (
-            float(belt_speed),
-            self.common,
-            how,
-            known or unknown_orbit(self.size),
-            Trail(means, states),
-        )
+        arguments = float(belt_speed), self.common, how, known, Trail(means, states)
         (period, count), seconds = KernelCall(iterate_until_periodic).timed(self.maps, *arguments)
         return Transient(period, means[:count], states[1 : count + 1], states[count], seconds)
 

@@ -15,6 +15,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.periodic.attraction import ARRIVED, KnownOrbit
 from frictionlab.methods.periodic.continuation import Curve
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient, largest_modulus
+from frictionlab.methods.shooting.long_mean import LongMean
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Initial, Scene
 from frictionlab.theory.linear import velocity_scale
@@ -39,7 +40,8 @@ class Attractor:
     """Where a start led: an orbit closed after some drive periods, or (0) a motion that never repeats.
 
     low, high: the smallest and the largest mean over one drive period. followed: for how many periods. points: states
-    at the starts of the periods of a closed orbit, or at the last ones of another motion [n, size].
+    at the starts of the periods of a closed orbit, or at the last ones of another motion [n, size]. average: over a
+    long time, of all motions on one attractor that never repeat; None where nothing has asked for it.
     """
 
     followed: int
@@ -48,11 +50,12 @@ class Attractor:
     high: float
     curve: Curve | None
     points: Floats
+    average: LongMean | None = None
 
     def agrees(self, other: Attractor) -> bool:
         """Whether both have the same mean friction, for the same reason."""
         if self.curve is None or other.curve is None or self.period != other.period:
-            return False
+            return self.average is not None and self.average is other.average
         doubt = float(self.curve.closed.error[0] + other.curve.closed.error[0])
         return abs(self.mean - other.mean) <= doubt + 1e-12
 
@@ -64,8 +67,22 @@ class Attractor:
 
     @property
     def mean(self) -> float:
-        """The mean friction over all periods of a closed orbit; NaN for a motion that never repeats."""
-        return math.nan if self.curve is None else float(self.curve.closed.mean[0])
+        """The mean friction over all periods of a closed orbit, or over a long time; NaN where that is not known."""
+        if self.curve is not None:
+            return float(self.curve.closed.mean[0])
+        return math.nan if self.average is None else self.average.mean
+
+    @property
+    def averaged_over(self) -> int:
+        """Periods that the mean is taken over; 1 where only the range of one-period means is known."""
+        return self.period or (1 if self.average is None else self.followed)
+
+    @property
+    def error(self) -> float:
+        """That of the mean; of one over a long time two standard errors."""
+        if self.curve is not None:
+            return float(self.curve.closed.error[0])
+        return math.nan if self.average is None else self.average.error
 
 
 @dataclass(frozen=True)
@@ -174,7 +191,7 @@ def quick_starts(problem: PeriodicProblem, belt_speed: float) -> list[tuple[comp
 def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | None) -> FollowedStarts:
     """Starts followed to where they lead. The candidate is an orbit already known.
 
-    More starts follow the first ones for as long as all of them reach one orbit of one period.
+    More starts follow the first ones for as long as all of them reach one closed orbit.
     """
     followed = FollowedStarts(problem, scene, candidate)
     first, more = all_starts(problem, scene)
@@ -212,9 +229,9 @@ class FollowedStarts:
         self._fewest = MOST
 
     def one_orbit(self) -> bool:
-        """Whether all of them ended on one orbit of one period."""
+        """Whether all of them ended on one closed orbit."""
         first = self.reached[0]
-        return first.period == 1 and all(first.agrees(other) for other in self.reached)
+        return first.curve is not None and all(first.agrees(other) for other in self.reached)
 
     @property
     def trial(self) -> Trial:
@@ -246,6 +263,15 @@ class FollowedStarts:
                 self.known = [*self.known, found]
         self.reached.append(found)
         return len(way.means)
+
+    def lead_to(self, ends: dict[int, Attractor]) -> None:
+        """Enter where the motions at these places of ``reached`` lead, as longer following has shown."""
+        self.reached = [ends.get(place, one) for place, one in enumerate(self.reached)]
+        left = [one for one in self.known if one.curve is not None]
+        for one in ends.values():
+            if not any(one.agrees(each) for each in left):
+                left.append(one)
+        self.known = left
 
     def carry_on(self, one: Attractor) -> bool:
         """Follow a state of another belt speed, unless it is an orbit known here, moved; whether it was followed."""
@@ -319,7 +345,10 @@ def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[C
 
 
 class Destination(Protocol):
-    """Where a start led: after how many drive periods the motion repeats (0: never), and its mean over them."""
+    """Where a start led: after how many drive periods the motion repeats (0: never), and its mean over them.
+
+    mean: NaN of a motion that never repeats and was not followed for long.
+    """
 
     @property
     def period(self) -> int: ...
@@ -335,15 +364,17 @@ class Destination(Protocol):
 
 def describe(reached: Sequence[Destination], digits: int = 9) -> str:
     """A sentence on the steady states that several starts reached, with so many digits of their means."""
-    orbits = {(one.period, f"{one.mean:.6g}"): one for one in reached if one.period > 0}
-    parts = [_describe_orbit(one, digits) for one in orbits.values()]
-    wild = [one.followed for one in reached if one.period == 0]
+    known = {(one.period, f"{one.mean:.6g}"): one for one in reached if not math.isnan(one.mean)}
+    parts = [_describe_state(one, digits) for one in known.values()]
+    wild = [one.followed for one in reached if math.isnan(one.mean)]
     if wild:
         parts.append(f"{len(wild)} of {len(reached)} starts do not repeat within {max(wild)} drive periods")
     return "; ".join(parts)
 
 
-def _describe_orbit(orbit: Destination, digits: int) -> str:
+def _describe_state(orbit: Destination, digits: int) -> str:
+    if orbit.period == 0:
+        return f"a motion that does not repeat has a mean of {orbit.mean:.6g} over {orbit.followed} drive periods"
     if orbit.period == 1:
         return f"an orbit of one drive period has a mean of {orbit.mean:.{digits}g}"
     return (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property, reduce
 from itertools import pairwise
 from typing import Any
@@ -19,6 +20,7 @@ from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulu
 from frictionlab.methods.periodic.sharpened import ClosedMotion, sharpened
 from frictionlab.methods.shooting.attractors import (
     FEWEST,
+    Attractor,
     FollowedStarts,
     Trial,
     closed_orbit,
@@ -27,7 +29,8 @@ from frictionlab.methods.shooting.attractors import (
     multiplier,
     quick_starts,
 )
-from frictionlab.orbit.record import Orbits
+from frictionlab.methods.shooting.long_motions import average_unrepeated
+from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
@@ -37,6 +40,9 @@ from frictionlab.theory.uniqueness import ALONE, why_unique
 Complexes = NDArray[np.complex128]
 
 UNKNOWN = complex(math.nan, math.nan)
+STATISTICAL = "statistical"
+READ_OVER = 512
+"""Periods of a motion that does not repeat over which columns other than the mean are read."""
 SURELY = 1e-6
 """By how much a multiplier above one is no rounding error."""
 CENTRAL = 1e-6
@@ -76,10 +82,11 @@ def solve_driven(scenes: Sequence[Scene], law: FrictionLaw, tolerance: float) ->
 class SteadyStates:
     """The steady states of a curve, as far as they are known.
 
-    multipliers: NaN where nothing has asked for them. reached: for how many periods the two cheap starts were
-    followed until they ended here, 0 where they do not. tried: starts that all ended here. followed:
-    starts where the answer hangs on all of them. repelling: where an orbit of one period is known that motions leave.
-    whole: states have every degree of freedom; along the line multipliers across the belt are left out.
+    spans: of all that changes in time, in the orbit of each. multipliers: NaN where nothing has asked for them.
+    reached: for how many periods the two cheap starts were followed until they ended here, 0 where they do not. tried:
+    starts that all ended here. followed: starts where the answer hangs on all of them. repelling: where an orbit of
+    one period is known that motions leave. whole: states have every degree of freedom; along the line multipliers
+    across the belt are left out.
     """
 
     def __init__(self, scenes: Sequence[Scene], problem: PeriodicProblem) -> None:
@@ -95,7 +102,10 @@ class SteadyStates:
         self.followed: dict[int, FollowedStarts] = {}
         self.repelling: set[int] = set()
         self.mean: Complexes = np.full(n, UNKNOWN)
-        self.error, self.low, self.high, self.period, self.multipliers, self.seconds = np.full((6, n), np.nan)
+        self.error, self.low, self.high, self.window = np.full((4, n), np.nan)
+        self.period, self.multipliers, self.seconds = np.full((3, n), np.nan)
+        self.error_kind = ["estimated"] * n
+        self.spans = np.ones(n, np.int64)
         self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.like, complex)
         judged_by_multipliers = not problem.goal.contracts or _undamped(scenes[0])
         self.matrices: list[Floats | None] = [None] * n
@@ -185,7 +195,7 @@ class SteadyStates:
     def judge(self, tolerance: float) -> None:
         """Say where the error is above the tolerance."""
         for i, error in enumerate(self.error):
-            if self.status[i] == "ok" and not error <= tolerance:
+            if self.status[i] == "ok" and not error <= tolerance and self.error_kind[i] != STATISTICAL:
                 said = f"the error is above the tolerance {tolerance:.1e}"
                 self._add(i, said if self.solved_by[i] is self.problem else f"{said}: {BY_ROUNDING}")
 
@@ -210,7 +220,10 @@ class SteadyStates:
             status=self.status,
             reason=self.reason,
             model=[models[each] for each in zip(self.solved_by, proved, strict=True)],
-            error_kind=["estimated" if status == "ok" else "" for status in self.status],
+            error_kind=[
+                kind if status == "ok" else ""
+                for kind, status in zip(self.error_kind, self.status, strict=True)
+            ],
             mean=self.mean,
             error=self.error,
             period=self.period,
@@ -218,23 +231,35 @@ class SteadyStates:
             multipliers=lambda: self._multipliers,
             mean_low=self.low,
             mean_high=self.high,
-            window=np.where(np.isnan(self.low), np.nan, 1.0),
+            window=self.window,
             unique=self.unique,
             seconds=self.seconds,
-            orbit=lambda i: self.solved_by[i].orbits([self.scenes[i]], [self.states[i]]).one(0),
-            orbits=self._orbits,
+            orbit=self._orbit,
+            orbits=None if STATISTICAL in self.error_kind else self._orbits,
         )
 
-    def _states_by(self, problem: PeriodicProblem) -> list[Floats | None]:
-        """The states of the orbits that one way of solving has found."""
-        return [
-            state if by is problem else None for state, by in zip(self.states, self.solved_by, strict=True)
-        ]
+    def _states_by(self, problem: PeriodicProblem, spans: int = 1) -> list[Floats | None]:
+        """The states of the orbits of so many spans that one way of solving has found."""
+        each = zip(self.states, self.solved_by, self.spans, strict=True)
+        return [state if by is problem and length == spans else None for state, by, length in each]
 
     def _orbits(self) -> Orbits:
         ways = list(dict.fromkeys(self.solved_by))
         found = [way.orbits(self.scenes, self._states_by(way)) for way in ways]
+        longer = sorted({int(spans) for spans in self.spans if spans > 1})
+        found += [
+            self.problem.long_orbits(self.scenes, self._states_by(self.problem, spans), spans)
+            for spans in longer
+        ]
         return reduce(Orbits.and_those_of, found)
+
+    def _orbit(self, i: int) -> Orbit | None:
+        scenes, states = [self.scenes[i]], [self.states[i]]
+        if self.spans[i] == 1:
+            return self.solved_by[i].orbits(scenes, states).one(0)
+        found = self.problem.long_orbits(scenes, states, int(self.spans[i])).one(0)
+        many = self.error_kind[i] == STATISTICAL and found is not None
+        return replace(found, periods=READ_OVER) if many else found
 
     def _floquet(self) -> Floats:
         """The largest multipliers, where those of every degree of freedom are known; computed where not known yet."""
@@ -265,7 +290,8 @@ class SteadyStates:
         motions = {
             i: ClosedMotion(float(self.belt_speeds[i]), state, matrix)
             for i, (state, matrix) in enumerate(zip(self.states, self.matrices, strict=True))
-            if self.status[i] == "ok" and state is not None and matrix is not None and matrix.any()
+            if self.status[i] == "ok" and self.spans[i] == 1
+            if state is not None and matrix is not None and matrix.any()
         }
         for i, one in zip(motions, sharpened(self.problem, list(motions.values())), strict=True):
             modulus[i], error[i], reason[i] = one
@@ -290,6 +316,7 @@ class SteadyStates:
             if curve.closed.found[0] and multiplier(curve) > 1.0 + SURELY:
                 self.repelling.add(i)
         self.followed[i] = followed = follow_all(problem, scene, known)
+        average_unrepeated(problem, scene, followed)
         self.seconds[i] += followed.seconds
         self._judge_starts(i)
 
@@ -307,6 +334,7 @@ class SteadyStates:
             for one in list(self.followed[here].known):
                 if one.curve is not None:
                     followed.carry_on(one)
+            average_unrepeated(self.problem, self.scenes[there], followed)
             self.seconds[there] += followed.seconds - before
             self._judge_starts(there)
 
@@ -316,18 +344,21 @@ class SteadyStates:
         reached = followed.reached
         first, unique = reached[0], all(reached[0].agrees(other) for other in reached)
         self._clear(i)
-        if first.period == 1 and first.curve is not None and (unique or scene.initial is not None):
-            self._put(i, first.curve, 0)
-            self.status[i], self.states[i] = "ok", first.curve.states[0]
-            self.multipliers[i], self.matrices[i] = multiplier(first.curve), first.curve.matrices[0]
+        if not math.isnan(first.mean) and (unique or scene.initial is not None):
+            self._accept(i, first)
             if unique:
                 self.tried[i] = followed.trial
             else:
-                self.reason[i] = f"reached from scene.initial; {describe(reached)}"
+                said = f"reached from scene.initial; {describe(reached)}"
+                self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
                 self.unique[i] = NOT_UNIQUE
             return
         # Where the orbit of one period is known to repel, motions that never repeat are what they seem.
-        if problem.falls_slowly and i not in self.repelling and all(one.curve is None for one in reached):
+        if (
+            problem.falls_slowly
+            and i not in self.repelling
+            and all(one.curve is None and one.average is None for one in reached)
+        ):
             stopped = STOPPED if max(one.followed for one in reached) < FEWEST else ""
             self.reason[i] = f"no steady state found: {describe(reached)}{stopped}"
             return
@@ -335,11 +366,29 @@ class SteadyStates:
             f"the {'deflection' if problem.law.memory_kind == 'bristle' else 'memory'} lags behind the slip"
         )
         why = lags if problem.falls_slowly else "friction falls with speed"
-        low, high = min(one.low for one in reached), max(one.high for one in reached)
-        self._leave_open(i, f"{why}: {describe(reached)}", low, high)
-        if unique and first.curve is not None:
-            self.period[i] = first.period * problem.common
-            self.multipliers[i] = multiplier(first.curve)
+        ranges = [(one.low, one.high) if math.isnan(one.mean) else (one.mean, one.mean) for one in reached]
+        self._leave_open(i, f"{why}: {describe(reached)}", min(ranges)[0], max(high for _, high in ranges))
+        self.window[i] = max(one.averaged_over for one in reached) * problem.common
+
+    def _accept(self, i: int, found: Attractor) -> None:
+        """Answer by where the starts lead."""
+        self.status[i] = "ok"
+        if found.curve is not None:
+            self._put(i, found.curve, 0)
+            self.spans[i], self.period[i] = found.period, found.period * self.problem.common
+            self.states[i] = found.curve.states[0]
+            self.multipliers[i], self.matrices[i] = multiplier(found.curve), found.curve.matrices[0]
+            self.reason[i] = describe([found]) if found.period > 1 else ""
+            return
+        assert found.average is not None
+        mean, error, quasi_periodic = found.average
+        self.mean[i], self.error[i], self.error_kind[i] = complex(mean, math.nan), error, STATISTICAL
+        self.states[i], self.spans[i] = found.points[-1], READ_OVER
+        self.window[i] = found.followed * self.problem.common
+        named = "quasi-periodic" if quasi_periodic else "chaotic"
+        self.reason[i] = (
+            f"the motion does not repeat ({named}): its mean over {self.window[i]:.0f} drive periods"
+        )
 
     def _add(self, i: int, said: str) -> None:
         """To the reason."""
@@ -352,13 +401,14 @@ class SteadyStates:
     def _clear(self, i: int) -> None:
         self.status[i], self.reason[i], self.states[i] = "failed", "", None
         self.mean[i] = UNKNOWN
-        for numbers in (self.error, self.low, self.high, self.period, self.multipliers):
+        self.spans[i], self.error_kind[i] = 1, "estimated"
+        for numbers in (self.error, self.low, self.high, self.window, self.period, self.multipliers):
             numbers[i] = np.nan
 
     def _leave_open(self, i: int, reason: str, low: float, high: float) -> None:
         """No one mean, but a range of them."""
         self.status[i], self.reason[i] = "not_unique", reason
-        self.low[i], self.high[i] = low, high
+        self.low[i], self.high[i], self.window[i] = low, high, self.problem.common
 
     def _put(self, places: Any, curve: Curve, rows: Any) -> None:
         """Enter the numbers of these rows at these places."""

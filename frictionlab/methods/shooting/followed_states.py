@@ -18,6 +18,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import FoundState
 from frictionlab.methods.periodic.problem import PeriodicProblem
 from frictionlab.methods.shooting.attractors import Attractor, FollowedStarts, all_starts, closed_orbit
+from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.orbit.record import Orbit
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.rest import stays_at_rest
@@ -28,22 +29,28 @@ BY_CLOSING, FROM_BELOW, FROM_ABOVE = "closed orbit", "the next lower belt speed"
 
 @dataclass
 class _Point:
-    """The states at one belt speed, each with where it was found from."""
+    """The states at one belt speed, each with where it was found from; ended: where its starts ended."""
 
     place: int
     followed: FollowedStarts
     states: list[tuple[Attractor, str]]
+    ended: list[Attractor]
 
-    def note(self, found_from: str) -> None:
-        """Enter the state that the last motion ended in, if it is a new one."""
-        last = self.followed.reached[-1]
-        if not any(_same(last, one) for one, _ in self.states):
-            self.states.append((last, found_from))
+    def note(self, reached: Attractor, found_from: str) -> None:
+        """Enter the state that a motion ended in, if it is a new one."""
+        if not any(_same(reached, one) for one, _ in self.states):
+            self.states.append((reached, found_from))
+
+    def share(self, state: Attractor) -> float:
+        """That of the starts that ended in a state."""
+        ended = [_same(state, one) for one in self.ended]
+        return sum(ended) / len(ended)
 
 
 def _same(one: Attractor, other: Attractor) -> bool:
-    """Motions that never repeat are not told apart."""
-    return one is other or one.agrees(other) or one.period == other.period == 0
+    """Motions that never repeat are not told apart where the mean of one is not known."""
+    unknown = one.period == other.period == 0 and math.isnan(one.mean + other.mean)
+    return one is other or one.agrees(other) or unknown
 
 
 def follow_states(
@@ -58,18 +65,21 @@ def follow_states(
     points = [_from_starts(problem, i, scene, count) for i, scene in moving]
     _carry(pairwise(points), FROM_BELOW)
     _carry(pairwise(reversed(points)), FROM_ABOVE)
-    return [_found_state(problem, point.place, state, way) for point in points for state, way in point.states]
+    return [_found_state(problem, point, state, way) for point in points for state, way in point.states]
 
 
 def _from_starts(problem: PeriodicProblem, place: int, scene: Scene, count: int) -> _Point:
     curve, _ = problem.close([scene])
     candidate = closed_orbit(curve, curve.closed.mean)
     followed = FollowedStarts(problem, scene, candidate)
-    point = _Point(place, followed, [] if candidate is None else [(candidate, BY_CLOSING)])
     first, more = all_starts(problem, scene, count)
-    for number, start in enumerate([*first, *more][:count], 1):
+    for start in [*first, *more][:count]:
         followed.follow(start)
-        point.note(f"start {number}")
+    average_unrepeated(problem, scene, followed)
+    found = [] if candidate is None else [(candidate, BY_CLOSING)]
+    point = _Point(place, followed, found, followed.reached)
+    for number, reached in enumerate(followed.reached, 1):
+        point.note(reached, f"start {number}")
     return point
 
 
@@ -78,14 +88,14 @@ def _carry(neighbours: Iterable[tuple[_Point, _Point]], found_from: str) -> None
     for here, there in neighbours:
         for state, _ in here.states:
             if there.followed.carry_on(state):
-                there.note(found_from)
+                there.note(there.followed.reached[-1], found_from)
 
 
-def _found_state(problem: PeriodicProblem, place: int, state: Attractor, found_from: str) -> FoundState:
+def _found_state(problem: PeriodicProblem, point: _Point, state: Attractor, found_from: str) -> FoundState:
     x, velocity = problem.positions(state.points)
-    error = math.nan if state.curve is None else float(state.curve.closed.error[0])
-    numbers = state.mean, error, state.low, state.high
-    return FoundState(place, round(state.period * problem.common), *numbers, x, velocity, found_from)
+    numbers = state.mean, state.error, state.low, state.high
+    period, share = round(state.period * problem.common), point.share(state)
+    return FoundState(point.place, period, *numbers, x, velocity, found_from, share)
 
 
 def follow_motion(scene: Scene, law: FrictionLaw, periods: int, tolerance: float) -> list[Orbit]:

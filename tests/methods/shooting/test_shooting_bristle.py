@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -108,7 +108,7 @@ def test_a_bristle_that_never_yields_on_a_belt_at_rest_has_no_mean_of_its_own() 
 
 
 def test_a_steep_fall_on_stiff_bristles_responds_as_without_them() -> None:
-    """S11: four drive periods; the mean over one of them is not unique."""
+    """S11: four drive periods."""
     scene = fl.Scene(
         damping_ratio=0.01,
         normal_load=10.0,
@@ -117,10 +117,10 @@ def test_a_steep_fall_on_stiff_bristles_responds_as_without_them() -> None:
     )
     law = fl.LuGre(mu_kinetic=0.2, mu_static=0.4, stribeck_exponent=1.0, presliding_length=1e-3, damping=0.01)
     answers = with_columns(Shooting(), [scene], law, 1e-7)
-    assert answers.status == ["not_unique"]
-    assert math.isnan(answers.columns["mean_friction"][0])
+    assert answers.status == ["ok"]
     assert answers.columns["period"][0] == 4.0
-    low, high = answers.columns["mean_low"][0], answers.columns["mean_high"][0]
+    found = re.search(r"has means over one from (\S+) to (\S+),", answers.reason[0])
+    low, high = float(found[1]), float(found[2])
     assert abs(low - 0.0727) < 2e-3  # the law without bristles: 0.0727 to 0.3165
     assert abs(high - 0.3165) < 3e-3
 
@@ -137,7 +137,7 @@ def test_soft_damped_bristles_can_double_the_period() -> None:
     answers = with_columns(
         Shooting(), [scene], fl.LuGre(mu_kinetic=0.4, presliding_length=1.37, damping=0.074), 1e-7
     )
-    assert answers.status == ["not_unique"]
+    assert answers.status == ["ok"]
     assert answers.columns["period"][0] == 2.0
     assert answers.columns["floquet"][0] < 1.0
 

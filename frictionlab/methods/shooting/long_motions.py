@@ -1,0 +1,114 @@
+"""Motions that do not repeat, followed on until their long mean is known, or until they repeat after all."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
+from frictionlab.methods.shooting.attractors import POINTS_KEPT, Attractor, FollowedStarts, orbit_at_the_end
+from frictionlab.methods.shooting.long_mean import LongMean, long_mean
+from frictionlab.quantities import Floats
+from frictionlab.scene.scene import Scene
+
+LENGTHS = 512, 1024, 2048
+"""Periods after which motions are averaged: the next length where the error is not small enough yet."""
+FEWEST_AVERAGED = 256
+"""Periods below which nothing is averaged: motions whose steps are too many are not followed as far."""
+SMALL = 1e-4
+"""Error of the mean friction that is small enough, where the tolerance is smaller."""
+REPEATED = 1e-6
+"""How near to an earlier one, over its size, a state is where the motion repeats."""
+ALIKE = 1.5
+"""Difference of two means, over what their errors together allow at two standard errors, that keeps them one."""
+
+
+class LongMotion:
+    """One motion that has not repeated, and the means of its periods since it was followed on.
+
+    end: where it leads, once it is known to repeat.
+    """
+
+    def __init__(self, problem: PeriodicProblem, scene: Scene, start: Attractor) -> None:
+        self._problem, self._scene, self.start = problem, scene, start
+        self.means: Floats = np.empty(0)
+        self.states: Floats = start.points[-1:]
+        self.end: Attractor | None = None
+        self.seconds = 0.0
+
+    def follow(self, length: int) -> None:
+        """On to so many periods in all, and to its end where it turns out to repeat."""
+        way = self._problem.followed_on(self._scene.belt_speed, self.states[-1], length - len(self.means))
+        self.seconds += way.seconds
+        self.means, self.states = np.concatenate([self.means, way.means]), way.states
+        period = late_period(self.states)
+        if period:
+            found = Transient(period, way.means, way.states, way.state, 0.0)
+            end, more = orbit_at_the_end(self._problem, self._scene, found)
+            self.end = end if end.curve is not None else None
+            self.seconds += more
+
+    def averaged(self, mean: LongMean | None) -> Attractor:
+        """Where it leads: a closed orbit, or a motion with this mean over all of its attractor."""
+        if self.end is not None or mean is None:
+            return self.end or self.start
+        low, high = float(self.means.min()), float(self.means.max())
+        kept = self.states[-POINTS_KEPT:]
+        return replace(self.start, followed=len(self.means), low=low, high=high, points=kept, average=mean)
+
+
+def late_period(states: Floats) -> int:
+    """After how many of the states [n, size] at the starts of periods the last two repeat; 0 where they do not."""
+    size = max(1.0, float(np.abs(states[-1]).max()))
+    for lag in range(1, len(states) // 4):
+        last = np.abs(states[-1] - states[-1 - lag]).max(), np.abs(states[-2] - states[-2 - lag]).max()
+        if max(last) <= REPEATED * size:
+            return lag
+    return 0
+
+
+def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: FollowedStarts) -> None:
+    """Say of every start whose motion did not repeat where it leads over a long time."""
+    if not any(one.curve is None and one.average is None for one in followed.reached):
+        return
+    places = [place for place, one in enumerate(followed.reached) if one.curve is None]
+    motions = {place: LongMotion(problem, scene, followed.reached[place]) for place in places}
+    means: dict[int, LongMean] = {}
+    for length in LENGTHS:
+        for motion in motions.values():
+            if motion.end is None and len(motion.means) >= FEWEST_AVERAGED * (length > LENGTHS[0]):
+                motion.follow(length)
+        means = _means(motions)
+        if all(mean.error <= max(problem.goal.tolerance, SMALL) for mean in means.values()):
+            break
+    followed.lead_to({place: motion.averaged(means.get(place)) for place, motion in motions.items()})
+    followed.seconds += sum(motion.seconds for motion in motions.values())
+
+
+def _means(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
+    """The long means of motions that go on without repeating, one for all that are on one attractor."""
+    alone = {
+        place: long_mean([motion.means])
+        for place, motion in motions.items()
+        if motion.end is None and len(motion.means) >= FEWEST_AVERAGED
+    }
+    groups: list[list[int]] = []
+    rising = sorted(alone, key=lambda place: alone[place].mean)
+    for before, place in pairwise([None, *rising]):
+        if before is not None and _alike(alone[before], alone[place]):
+            groups[-1].append(place)
+        else:
+            groups.append([place])
+    return {
+        place: mean
+        for group in groups
+        for mean in [long_mean([motions[each].means for each in group])]
+        for place in group
+    }
+
+
+def _alike(one: LongMean, other: LongMean) -> bool:
+    return abs(one.mean - other.mean) <= ALIKE * math.hypot(one.error, other.error) + REPEATED

@@ -1,0 +1,78 @@
+"""The long mean of motions that do not repeat: it covers chaos, and converges fast where it is quasi-periodic."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from frictionlab.methods.shooting.long_mean import birkhoff_mean, long_mean
+from frictionlab.methods.shooting.long_motions import late_period
+
+RANDOM = np.random.default_rng(20261126)
+
+
+def logistic(n: int, start: float) -> np.ndarray:
+    """x -> 4 x (1 - x), chaotic for almost every start, with a mean of 1/2 (Ulam & von Neumann 1947)."""
+    values = np.empty(n + 50)
+    for k in range(n + 50):
+        # rounding ends every motion of this map at 0: a little noise keeps it going
+        start = min(max(4.0 * start * (1.0 - start) + 1e-12 * RANDOM.standard_normal(), 0.0), 1.0)
+        values[k] = start
+    return values[50:]
+
+
+def forgetting(n: int, keeps: float) -> np.ndarray:
+    """Gaussian noise that keeps so much of itself from value to value, with a mean of 0."""
+    noise, values = RANDOM.standard_normal(n + 1000), np.zeros(n + 1000)
+    for k in range(1, n + 1000):
+        values[k] = keeps * values[k - 1] + noise[k]
+    return values[1000:]
+
+
+@pytest.mark.parametrize("name", ["logistic", "forgets at once", "forgets in 10", "forgets in 100"])
+def test_two_standard_errors_cover_the_mean_of_chaos(name):
+    keeps = {"forgets at once": 0.0, "forgets in 10": 0.9, "forgets in 100": 0.99}
+
+    def motion() -> np.ndarray:
+        return logistic(512, RANDOM.uniform(0.1, 0.9)) if name == "logistic" else forgetting(512, keeps[name])
+
+    true = 0.5 if name == "logistic" else 0.0
+    found = [long_mean([motion() for _ in range(4)]) for _ in range(150)]
+    off = np.array([abs(one.mean - true) / one.error for one in found])
+
+    assert not any(one.quasi_periodic for one in found)
+    assert (off <= 1.0).mean() >= 0.92  # 95.4 % are meant; 150 draws leave 2 % of doubt
+    assert (off > 2.5).mean() == 0.0
+    assert (off > 0.3).mean() > 0.2  # not by errors that are far too large
+
+
+def test_quasi_periodic_means_converge_faster_than_any_power():
+    turns = (math.sqrt(5.0) - 1.0) / 2.0
+    errors = []
+    for n in (128, 512, 2048):
+        phases = 2.0 * math.pi * turns * np.arange(n)
+        motions = [np.exp(np.sin(phases + start)) for start in (0.0, 1.0, 2.5)]
+        found = long_mean(motions)
+        errors.append(abs(found.mean - 1.2660658777520084))  # I_0(1)
+        assert errors[-1] <= found.error + 1e-15
+    assert found.quasi_periodic
+    assert errors[1] < 1e-4 * errors[0]
+    assert errors[2] < 1e-13
+    assert abs(motions[0].mean() - 1.2660658777520084) > 1e-5  # a plain mean
+
+
+def test_weighted_means_keep_constants():
+    assert birkhoff_mean(np.full(100, 0.3)) == pytest.approx(0.3, abs=1e-15)
+    assert long_mean([np.full(512, 0.3)] * 2).mean == pytest.approx(0.3, abs=1e-15)
+
+
+def test_a_period_longer_than_any_that_is_looked_for_before_is_found_late():
+    angles = 2.0 * math.pi * 5.0 / 13.0 * np.arange(200)
+    locked = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    angles = 2.0 * math.pi * (math.sqrt(5.0) - 1.0) / 2.0 * np.arange(200)
+    unlocked = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+    assert late_period(locked) == 13
+    assert late_period(unlocked) == 0

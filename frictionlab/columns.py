@@ -44,7 +44,7 @@ COLUMNS: tuple[Column, ...] = (
            in_si="mean friction force along x1"),
     Column("error", "bound on the absolute error of mean_friction against the scene as stated", "always",
            scale="load", in_si="bound on the absolute error of mean_friction_N"),
-    Column("error_kind", "guaranteed (proved), estimated or statistical (of a long-time mean)", "answer", is_text=True),
+    Column("error_kind", "guaranteed (proved), estimated, or statistical (of a long time)", "answer", is_text=True),
     Column("status", "ok, refused, failed, not_unique or killed", "always", is_text=True),
     Column("reason", "why the status is not ok, or what to note about an ok point", "always", is_text=True),
     Column("unique", "proved, tested or no: whether every start ends in this state; empty where nothing was asked",

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import Answers, FoundState, Method
+from frictionlab.methods.base import STATISTICAL, Answers, FoundState, Method
 from frictionlab.methods.exact.method import Exact
 from frictionlab.methods.shooting.method import Shooting
 from frictionlab.orbit.record import Orbit
@@ -90,7 +90,7 @@ class Auto(Method):
         answers = method.solve(scenes, law, tolerance)
         status, reason = list(answers.status), list(answers.reason)
         for i in np.flatnonzero(answers.error > tolerance).tolist():
-            if status[i] == "ok":
+            if status[i] == "ok" and answers.error_kind[i] != STATISTICAL:
                 status[i] = "failed"
                 reason[i] = (
                     f"{method.name} reaches an error of {answers.error[i]:.1e}, above the tolerance {tolerance:.1e}"

@@ -19,6 +19,8 @@ from frictionlab.scene.scene import Scene
 Status = Literal["ok", "refused", "failed", "not_unique", "killed"]
 PROVED, TESTED, NOT_UNIQUE = "proved", "tested", "no"
 """Of the only steady state: a theorem says so, starts far apart ended in it, others end elsewhere."""
+STATISTICAL = "statistical"
+"""Kind of the error of a long-time mean: two standard errors, of which no tolerance is asked."""
 
 
 def no_orbit(i: int) -> None:
@@ -74,9 +76,9 @@ class FoundState(NamedTuple):
     """A state that a motion ended in: the scene's place on its curve, its period in drive periods (0: never repeats).
 
     mean, error: of the friction coefficient over the whole period; where it never repeats over a long time, with two
-    standard errors, NaN where that is not known. low, high: of means over one drive period each. x, velocity: along the
-    belt, at the start of each of its drive periods, or of the last ones. found_from: from where it was found. share:
-    that of the starts that ended in it.
+    standard errors, NaN where that is not known. low, high: of means over one drive period each. x, velocity: along
+    the belt, at the start of each of its drive periods, or of the last ones. found_from: from where it was found.
+    share: that of the starts that ended in it.
     """
 
     place: int

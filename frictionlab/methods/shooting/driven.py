@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictionlab.laws.base import FrictionLaw
-from frictionlab.methods.base import NOT_UNIQUE, PROVED, TESTED, Answers, Multipliers, Status
+from frictionlab.methods.base import NOT_UNIQUE, PROVED, STATISTICAL, TESTED, Answers, Multipliers, Status
 from frictionlab.methods.periodic.continuation import CLOSED, DIFFERENTIATED, Curve
 from frictionlab.methods.periodic.map_kinds import MAP_KINDS
 from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulus
@@ -40,7 +40,6 @@ from frictionlab.theory.uniqueness import ALONE, why_unique
 Complexes = NDArray[np.complex128]
 
 UNKNOWN = complex(math.nan, math.nan)
-STATISTICAL = "statistical"
 READ_OVER = 512
 """Periods of a motion that does not repeat over which columns other than the mean are read."""
 SURELY = 1e-6
@@ -83,10 +82,10 @@ class SteadyStates:
     """The steady states of a curve, as far as they are known.
 
     spans: of all that changes in time, in the orbit of each. multipliers: NaN where nothing has asked for them.
-    reached: for how many periods the two cheap starts were followed until they ended here, 0 where they do not. tried:
-    starts that all ended here. followed: starts where the answer hangs on all of them. repelling: where an orbit of
-    one period is known that motions leave. whole: states have every degree of freedom; along the line multipliers
-    across the belt are left out.
+    reached: for how many periods the two cheap starts were followed until they ended here, 0 where they do not.
+    tried: starts that all ended here. followed: starts where the answer hangs on all of them. repelling: where an
+    orbit of one period is known that motions leave. whole: states have every degree of freedom; along the line
+    multipliers across the belt are left out.
     """
 
     def __init__(self, scenes: Sequence[Scene], problem: PeriodicProblem) -> None:

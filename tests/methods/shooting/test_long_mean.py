@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+import frictionlab as fl
 from frictionlab.methods.shooting.long_mean import birkhoff_mean, long_mean
 from frictionlab.methods.shooting.long_motions import late_period
 
@@ -76,3 +77,48 @@ def test_a_period_longer_than_any_that_is_looked_for_before_is_found_late():
 
     assert late_period(locked) == 13
     assert late_period(unlocked) == 0
+
+
+STRIBECK = fl.Stribeck(
+    mu_kinetic=0.24630620996112812, mu_static=0.30306001625726875, stribeck_speed=0.12000071295366288
+)
+
+
+def test_an_orbit_of_two_periods_in_the_plane_has_its_mean_over_both():
+    load = fl.Load(amplitude=0.45332303221953935)
+    across = fl.Transverse(natural_frequency=4.608654382995214, damping_ratio=0.06650182431994722, load=load)
+    scene = fl.Scene(
+        damping_ratio=0.2453399435517815,
+        normal_load=9.1634368838386,
+        belt_speed=0.7729852114126671,
+        drive=fl.Drive(amplitude=0.7892411231480799, frequency=1.7081279324320404),
+        transverse=across,
+    )
+    state = fl.steady_state(scene, STRIBECK)
+
+    assert (state.status, state.period, state.unique) == ("ok", 2.0, "tested")
+    assert state.mean_friction == pytest.approx(0.250443136, abs=1e-9)  # march, 2,000 steps of rk4: .25040
+    assert "an orbit of 2 drive periods" in state.reason
+
+
+def test_a_slider_shaken_in_si_units_has_its_long_mean():
+    """LuGre at 60 Hz and 2 mm/s: 20 N on 0.5 kg, 5,000 N/m and 5 N s/m, a belt shaken by 5 um."""
+    shaken = 2.0 * math.pi * 60.0
+    scene = fl.Scene(
+        dimensional={
+            "mass_kg": 0.5,
+            "stiffness_N_per_m": 5000.0,
+            "damping_N_s_per_m": 5.0,
+            "length_m": 1e-6,
+            "normal_load_N": 20.0,
+            "belt_speed_m_per_s": 2e-3,
+            "belt_vibration": {"velocity_amplitude_m_per_s": 5e-6 * shaken, "frequency_rad_per_s": shaken},
+        }
+    )
+    law = fl.LuGre(mu_kinetic=0.3, mu_static=0.4, stribeck_speed=1e-3, presliding_length=1e-6, damping=0.0)
+    state = fl.steady_state(scene, law)
+
+    assert (state.status, state.error_kind, state.unique) == ("ok", "statistical", "tested")
+    assert "does not repeat (chaotic)" in state.reason
+    assert state.error < 5e-4
+    assert abs(state.mean_friction - 0.30565) < 1e-4 + state.error  # .3056 to .3057 by another integration

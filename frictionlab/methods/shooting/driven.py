@@ -257,8 +257,9 @@ class SteadyStates:
         if self.spans[i] == 1:
             return self.solved_by[i].orbits(scenes, states).one(0)
         found = self.problem.long_orbits(scenes, states, int(self.spans[i])).one(0)
-        many = self.error_kind[i] == STATISTICAL and found is not None
-        return replace(found, periods=READ_OVER) if many else found
+        if found is None or self.error_kind[i] != STATISTICAL:
+            return found
+        return replace(found, periods=READ_OVER)
 
     def _floquet(self) -> Floats:
         """The largest multipliers, where those of every degree of freedom are known; computed where not known yet."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -97,8 +96,8 @@ def _means(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
     }
     groups: list[list[int]] = []
     rising = sorted(alone, key=lambda place: alone[place].mean)
-    for before, place in pairwise([None, *rising]):
-        if before is not None and _alike(alone[before], alone[place]):
+    for place in rising:
+        if groups and _alike(alone[groups[-1][-1]], alone[place]):
             groups[-1].append(place)
         else:
             groups.append([place])

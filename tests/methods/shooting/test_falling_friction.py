@@ -198,7 +198,7 @@ def test_an_orbit_of_several_periods_that_every_start_reaches_has_its_mean_over_
 def test_a_motion_that_never_repeats_has_a_mean_over_a_long_time():
     one, law = chaotic(0.1)
     answers, row = solve(one, law)
-    means = Line(one, law).means(1200)[200:]
+    means = Line(one, law).means(600)[100:]
 
     assert answers.status == ["ok"]
     assert answers.error_kind == ["statistical"]
@@ -207,7 +207,8 @@ def test_a_motion_that_never_repeats_has_a_mean_over_a_long_time():
     assert "does not repeat (chaotic)" in answers.reason[0]
     doubt = 4.0 * np.std(means) / math.sqrt(len(means)) + row["error"]
     assert abs(row["mean_friction"] - means.mean()) < doubt
-    assert row["energy_input"] == pytest.approx(row["energy_viscous"] + row["energy_friction"], rel=2e-2)
+    held = 1.0 / 512  # what the spring holds at either end of the periods that columns are read over, at most
+    assert row["energy_input"] == pytest.approx(row["energy_viscous"] + row["energy_friction"], abs=held)
 
 
 def test_a_belt_that_takes_thousands_of_periods_to_carry_the_mass_to_its_mean_leaves_one_mean():

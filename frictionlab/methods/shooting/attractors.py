@@ -176,10 +176,14 @@ def thrown_starts(problem: PeriodicProblem, scene: Scene) -> list[Initial]:
 
 
 def force_swing(scene: Scene) -> float:
-    """The deflection that the load along the belt would hold, or shakes a free mass through, if that is larger."""
+    """The deflection that the load along the belt would hold, or shakes a free mass through, if that is larger.
+
+    At undamped resonance, where nothing bounds a free mass, the first.
+    """
     signals, frequency = scene.signals(), scene.frequency
     largest = max(map(abs, signals.load[0].extremes(signals.period)))
-    return max(largest, velocity_scale(scene) / frequency)
+    shaken = velocity_scale(scene) / frequency
+    return max(largest, shaken) if math.isfinite(shaken) else largest
 
 
 def quick_starts(problem: PeriodicProblem, belt_speed: float) -> list[tuple[complex, complex]]:

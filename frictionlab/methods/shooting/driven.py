@@ -34,6 +34,7 @@ from frictionlab.orbit.record import Orbit, Orbits
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
+from frictionlab.theory.linear import velocity_scale
 from frictionlab.theory.rest import can_hold, resting_range, stays_at_rest
 from frictionlab.theory.uniqueness import ALONE, why_unique
 
@@ -137,6 +138,7 @@ class SteadyStates:
             if not found[row]:
                 steps = "" if problem is self.problem else " of implicit steps"
                 said = f"no closed orbit found in {-closed.maps[row]:.0f} period maps{steps}"
+                said += _grows(self.scenes.scene)
                 self._add(i, said)
             elif undamped and self._repeats(curve, row, multipliers[row], problem):
                 self._leave_open(i, UNDAMPED, closed.mean[row], closed.mean[row])
@@ -355,12 +357,12 @@ class SteadyStates:
             return
         # Where the orbit of one period is known to repel, motions that never repeat are what they seem.
         if (
-            problem.falls_slowly
+            (problem.falls_slowly or _undamped(scene))
             and i not in self.repelling
             and all(one.curve is None and one.average is None for one in reached)
         ):
             stopped = STOPPED if max(one.followed for one in reached) < FEWEST else ""
-            self.reason[i] = f"no steady state found: {describe(reached)}{stopped}"
+            self.reason[i] = f"no steady state found: {describe(reached)}{stopped}{_grows(scene)}"
             return
         lags = (
             f"the {'deflection' if problem.law.memory_kind == 'bristle' else 'memory'} lags behind the slip"
@@ -420,6 +422,12 @@ class SteadyStates:
 def _undamped(scene: Scene) -> bool:
     mass = scene.mass()
     return mass.damping == 0.0 or (scene.transverse is not None and mass.transverse_damping == 0.0)
+
+
+def _grows(scene: Scene) -> str:
+    """What to add where no steady state is found at undamped resonance."""
+    unbounded = math.isinf(velocity_scale(scene))
+    return "; at undamped resonance the amplitude may grow without bound" if unbounded else ""
 
 
 def _at_rest(curve: Curve, row: int) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
 from frictionlab.methods.shooting.attractors import POINTS_KEPT, Attractor, FollowedStarts, orbit_at_the_end
-from frictionlab.methods.shooting.long_mean import LongMean, long_mean
+from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, long_mean
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
@@ -28,12 +28,13 @@ ALIKE = 1.5
 class LongMotion:
     """One motion that has not repeated, and the means of its periods since it was followed on.
 
-    end: where it leads, once it is known to repeat.
+    sizes: of its states. end: where it leads, once it is known to repeat.
     """
 
     def __init__(self, problem: PeriodicProblem, scene: Scene, start: Attractor) -> None:
         self._problem, self._scene, self.start = problem, scene, start
         self.means: Floats = np.empty(0)
+        self.sizes: Floats = np.empty(0)
         self.states: Floats = start.points[-1:]
         self.end: Attractor | None = None
         self.seconds = 0.0
@@ -43,12 +44,18 @@ class LongMotion:
         way = self._problem.followed_on(self._scene.belt_speed, self.states[-1], length - len(self.means))
         self.seconds += way.seconds
         self.means, self.states = np.concatenate([self.means, way.means]), way.states
+        self.sizes = np.concatenate([self.sizes, np.linalg.norm(way.states, axis=1)])
         period = late_period(self.states)
         if period:
             found = Transient(period, way.means, way.states, way.state, 0.0)
             end, more = orbit_at_the_end(self._problem, self._scene, found)
             self.end = end if end.curve is not None else None
             self.seconds += more
+
+    @property
+    def stays(self) -> bool:
+        """Whether it is not on its way elsewhere: growing, or dying out, in every part of the time."""
+        return len(self.means) >= FEWEST_AVERAGED and not drifts(self.sizes)
 
     def averaged(self, mean: LongMean | None) -> Attractor:
         """Where it leads: a closed orbit, or a motion with this mean over all of its attractor."""
@@ -69,6 +76,12 @@ def late_period(states: Floats) -> int:
     return 0
 
 
+def drifts(sizes: Floats) -> bool:
+    """Whether the mean of these grows from each part to the next, or falls: by chance once in 20,000 times."""
+    steps = np.diff([part.mean() for part in np.array_split(sizes, BLOCKS)])
+    return bool((steps > 0.0).all() or (steps < 0.0).all())
+
+
 def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: FollowedStarts) -> None:
     """Say of every start whose motion did not repeat where it leads over a long time."""
     if not any(one.curve is None and one.average is None for one in followed.reached):
@@ -81,7 +94,9 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
             if motion.end is None and len(motion.means) >= FEWEST_AVERAGED * (length > LENGTHS[0]):
                 motion.follow(length)
         means = _means(motions)
-        if all(mean.error <= max(problem.goal.tolerance, SMALL) for mean in means.values()):
+        open_ = [place for place, motion in motions.items() if motion.end is None]
+        enough = max(problem.goal.tolerance, SMALL)
+        if all(place in means and means[place].error <= enough for place in open_):
             break
     followed.lead_to({place: motion.averaged(means.get(place)) for place, motion in motions.items()})
     followed.seconds += sum(motion.seconds for motion in motions.values())
@@ -92,7 +107,7 @@ def _means(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
     alone = {
         place: long_mean([motion.means])
         for place, motion in motions.items()
-        if motion.end is None and len(motion.means) >= FEWEST_AVERAGED
+        if motion.end is None and motion.stays
     }
     groups: list[list[int]] = []
     rising = sorted(alone, key=lambda place: alone[place].mean)

@@ -9,7 +9,7 @@ import pytest
 
 import frictionlab as fl
 from frictionlab.methods.shooting.long_mean import birkhoff_mean, long_mean
-from frictionlab.methods.shooting.long_motions import late_period
+from frictionlab.methods.shooting.long_motions import drifts, late_period
 
 RANDOM = np.random.default_rng(20261126)
 
@@ -122,3 +122,26 @@ def test_a_slider_shaken_in_si_units_has_its_long_mean():
     assert "does not repeat (chaotic)" in state.reason
     assert state.error < 5e-4
     assert abs(state.mean_friction - 0.30565) < 1e-4 + state.error  # .3056 to .3057 by another integration
+
+
+@pytest.mark.parametrize(
+    "law", [fl.Stribeck(mu_kinetic=0.3, mu_static=0.4), fl.Dahl(mu=0.4, presliding_length=0.01)]
+)
+def test_a_motion_that_grows_for_ever_has_no_mean(law):
+    """Undamped resonance under a load of 10 against friction of at most 4: below pi/4 of the load nothing bounds it."""
+    scene = fl.Scene(
+        damping_ratio=0.0, normal_load=10.0, belt_speed=5.0, drive=fl.Drive(amplitude=10.0, frequency=1.0)
+    )
+    state = fl.steady_state(scene, law, tolerance=1e-6)
+
+    assert state.status == "failed"
+    assert "at undamped resonance the amplitude may grow without bound" in state.reason
+
+
+def test_what_grows_or_dies_out_in_every_part_drifts():
+    rising = np.linspace(100.0, 101.0, 512)
+    wobble = np.sin(np.arange(512.0))
+
+    assert drifts(rising + wobble)
+    assert drifts(-rising + wobble)
+    assert not drifts(wobble)

@@ -128,7 +128,7 @@ def test_a_slider_shaken_in_si_units_has_its_long_mean():
     "law", [fl.Stribeck(mu_kinetic=0.3, mu_static=0.4), fl.Dahl(mu=0.4, presliding_length=0.01)]
 )
 def test_a_motion_that_grows_for_ever_has_no_mean(law):
-    """Undamped resonance under a load of 10 against friction of at most 4: below pi/4 of the load nothing bounds it."""
+    """Undamped resonance: friction below pi/4 of the load does not bound the amplitude."""
     scene = fl.Scene(
         damping_ratio=0.0, normal_load=10.0, belt_speed=5.0, drive=fl.Drive(amplitude=10.0, frequency=1.0)
     )

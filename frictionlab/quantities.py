@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from frictionlab.mistakes.as_typed import keywords, typed
-from frictionlab.mistakes.notes import python_text
+from frictionlab.mistakes.notes import Unfit, python_text
 from frictionlab.mistakes.validation import unnamed, wrong_values
 
 if TYPE_CHECKING:
@@ -25,6 +25,8 @@ def _a_number(value: object) -> object:
     """Accept real numbers, those of numpy included; refuse values that could only be converted to one."""
     if type(value) is float:  # by far the most, and asking for a Real takes as long as all the rest
         return value
+    if isinstance(value, Unfit):
+        raise ValueError(value.what)
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError("must be a number")
     return float(value)

@@ -31,7 +31,7 @@ ARROWS = {
         "laws": "quantities",
         "faults": "laws",
         "compile": "faults laws",
-        "scene": "quantities",
+        "scene": "mistakes quantities",
         "dynamics": "compile laws quantities scene",
         "orbit": "columns compile dynamics laws quantities scene",
         "numerics": "compile quantities",
@@ -102,6 +102,7 @@ OUTSIDE = {
         "hypothesis": "testing",
         "numba": "compile bench.peers",  # the peers' integrators are called with numba's C functions
         "llvmlite": "compile",
+        "pint": "scene.unit_text",
         "flint": "methods.exact.proof",
         "ruamel": "study runner",
         "pandas": "results runner charts report notebook explore cli least_model sensitivity",
@@ -258,7 +259,7 @@ def test_importing_the_package_brings_in_nothing_heavy() -> None:
     assert {"importlib.metadata", "numpy", "scipy", "pydantic"}.isdisjoint(loaded.split())
 
 
-HEAVY = "hypothesis", "matplotlib", "pandas", "pyarrow"
+HEAVY = "hypothesis", "matplotlib", "pandas", "pint", "pyarrow"
 
 
 def test_tables_figures_and_drawn_examples_are_imported_where_they_are_needed() -> None:

@@ -148,8 +148,18 @@ def number_text(value: float) -> str:
     return repr(value)
 
 
+@dataclass(frozen=True)
+class Unfit:
+    """A value of which no number can be made, and why."""
+
+    given: Any
+    what: str
+
+
 def value_text(value: Any) -> str:
     """The text for a value in ``got ...``; with advice where a text is almost a number."""
+    if isinstance(value, Unfit):
+        return value_text(value.given)
     if value is None:
         return "null"
     if isinstance(value, bool):
@@ -175,6 +185,8 @@ YAML = Notation(value_text, "a mapping (key: value)")
 
 def python_text(value: Any) -> str:
     """The text for a value given in Python."""
+    if isinstance(value, Unfit):
+        return python_text(value.given)
     if isinstance(value, type):
         return f"the class {value.__name__}"
     shape = getattr(value, "shape", None)

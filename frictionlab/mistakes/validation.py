@@ -37,6 +37,24 @@ def nested(record: type[BaseModel], key: str) -> type[BaseModel] | None:
     return None
 
 
+def field_name(record: type[BaseModel], key: str) -> str:
+    """The field that a key gives: that of its own name, or one that the record has it for."""
+    other: Mapping[str, str] = getattr(record, "other_names", {})
+    return other.get(key, key)
+
+
+def field_path(record: type[BaseModel], path: str) -> str:
+    """A dotted path of keys as that of the fields they give, as far as there are any."""
+    found, owner, steps = list[str](), record, path.split(".")
+    for at, key in enumerate(steps):
+        found.append(field_name(owner, key))
+        inside = nested(owner, found[-1]) if found[-1] in owner.model_fields else None
+        if inside is None:
+            return ".".join([*found, *steps[at + 1 :]])
+        owner = inside
+    return ".".join(found)
+
+
 def number_paths(record: type[BaseModel], prefix: str = "") -> list[str]:
     """The dotted paths of every number a record and those inside it can hold."""
     paths: list[str] = []
@@ -118,10 +136,11 @@ def build_record(record: type[_RecordT], tree: Any, path: Path, notes: Notes) ->
 
 def _nulls(record: type[BaseModel], tree: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:
     """The keys that a study leaves without a value, and what each should have."""
-    for key in (key for key in tree if key in record.model_fields):
-        part = nested(record, key)
+    for key in (key for key in tree if field_name(record, key) in record.model_fields):
+        field = field_name(record, key)
+        part = nested(record, field)
         if tree[key] is None:
-            number = float in _alternatives(record.model_fields[key].annotation)
+            number = float in _alternatives(record.model_fields[field].annotation)
             yield (key,), "a mapping" if part else "a number" if number else "a value"
         elif part is not None and isinstance(tree[key], Mapping):
             yield from (((key, *below), wanted) for below, wanted in _nulls(part, tree[key]))
@@ -190,7 +209,21 @@ class _Told:
             else:
                 told = "" if error["loc"] in unknown else self._mistake(error)
             if told:
-                self._notes.add((*self._path, *error["loc"]), told)
+                self._notes.add(self._at(error["loc"]), told)
+
+    def _at(self, loc: Path) -> Path:
+        """Where the value of a field was given: under a key of its own name, or one that the record has for it."""
+        owner: type[BaseModel] | None = self._record
+        given: Any = self._given
+        found = list(self._path)
+        for step in loc:
+            held = given if isinstance(given, Mapping) else {}
+            others = (key for key in held if owner is not None and field_name(owner, str(key)) == step)
+            key = step if step in held else next(others, step)
+            found.append(key)
+            given = held.get(key)
+            owner = nested(owner, str(step)) if owner is not None and step in owner.model_fields else None
+        return tuple(found)
 
     def _is_rule(self, error: Any) -> bool:
         return "error" in error.get("ctx", {}) and record_at(self._record, error["loc"]) is not None
@@ -202,7 +235,8 @@ class _Told:
             owner, given = nested(owner, str(step)) or owner, given[str(step)]
         key, fields = str(loc[-1]), owner.model_fields
         required = [name for name, field in fields.items() if field.is_required()]
-        self._notes.unknown_key((*self._path, *loc), fields, given, required)
+        names = [*fields, *getattr(owner, "other_names", {})]
+        self._notes.unknown_key((*self._path, *loc), names, given, required)
         left = [name for name in fields if name not in given]
         return (*loc[:-1], closest(key, left, [name for name in required if name in left]) or key)
 
@@ -214,7 +248,7 @@ class _Told:
             return self._rules(part, loc, _message(error))
         if part is not None:
             return f"must be {self._notes.notation.part.format(part.__name__)}, got {text_of(error['input'])}"
-        path, what = placed((*self._path, *loc), _value_mistake(error, text_of), error["input"])
+        path, what = placed(self._at(loc), _value_mistake(error, text_of), error["input"])
         self._notes.add(path, what, _meant(error))
         return ""
 
@@ -234,7 +268,7 @@ class _Told:
                 if what.startswith("required")
                 else what
             )
-            self._notes.add((*self._path, *loc, *path), told)
+            self._notes.add(self._at((*loc, *path)), told)
         return ""
 
 

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, get_type_hints
 
 from pydantic import create_model, model_validator
 
-from frictionlab.quantities import Finite, NonNegative, Positive, Record
+from frictionlab.quantities import Finite, NonNegative, Positive
+from frictionlab.scene.as_written import AsWritten
 from frictionlab.scene.parts import (
     BeltVibration,
     Drive,
@@ -31,14 +32,10 @@ from frictionlab.scene.units import SUFFIXES, Units, dimensions
 STANDARD_GRAVITY = 9.81
 
 
-class PartInSI(ScenePart):
+class PartInSI(AsWritten):
     """A part of a scene in SI units; nondimensional: what it becomes."""
 
     nondimensional: ClassVar[type[ScenePart]]
-
-    if TYPE_CHECKING:  # its fields are those of the nondimensional part
-
-        def __init__(self, **values: Any) -> None: ...
 
     @classmethod
     def key(cls, name: str) -> str:
@@ -124,7 +121,7 @@ class DimensionalTransverse(PartInSI):
     load: DimensionalLoad | None = None
 
 
-class Dimensional(Record):
+class Dimensional(AsWritten):
     """A body on a moving belt, shaken, in SI units.
 
     mass_kg [kg], > 0: M.
@@ -135,13 +132,14 @@ class Dimensional(Record):
     normal_load_N [N], > 0: the normal load, instead of gravity_m_per_s2.
     belt_speed_m_per_s [m/s]: V_b.
 
+    Every number may be text with a unit, its key without one: ``belt_speed="2 mm/s"``, ``frequency="60 Hz"``.
     Leave ``transverse`` out for one degree of freedom.
     Raises WrongValues with every mistake in the values.
 
     >>> import frictionlab as fl
-    >>> body = {"mass_kg": 1, "stiffness_N_per_m": 400, "damping_N_s_per_m": 4, "length_m": 0.001}
-    >>> drive = fl.DimensionalDrive(amplitude_N=20, frequency_rad_per_s=20)
-    >>> scene = fl.Scene(dimensional=fl.Dimensional(**body, belt_speed_m_per_s=0.05, drive=drive))
+    >>> body = {"mass": "1 kg", "stiffness": "400 N/m", "damping": "4 N s/m", "length": "1 mm"}
+    >>> drive = fl.DimensionalDrive(amplitude="20 N", frequency_rad_per_s=20)
+    >>> scene = fl.Scene(dimensional=fl.Dimensional(**body, belt_speed="50 mm/s", drive=drive))
     >>> scene.damping_ratio, scene.normal_load, scene.belt_speed
     (0.1, 24.525, 2.5)
     >>> round(fl.steady_state(scene, fl.Coulomb(mu=0.4)).si["mean_friction_N"], 4)
@@ -166,7 +164,7 @@ class Dimensional(Record):
     @model_validator(mode="before")
     @classmethod
     def _weight_unless_a_load_is_given(cls, data: Any) -> Any:
-        if isinstance(data, dict) and "normal_load_N" not in data:
+        if isinstance(data, dict) and not {"normal_load_N", "normal_load", "gravity"} & data.keys():
             return {"gravity_m_per_s2": STANDARD_GRAVITY, **data}
         return data
 

@@ -12,12 +12,14 @@ and under a normal load that changes where the scene says so.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pydantic import ValidationError, model_validator
 
+from frictionlab.mistakes.validation import field_path
 from frictionlab.quantities import Finite, NonNegative, Positive, Record, given_values
+from frictionlab.scene.as_written import in_si
 from frictionlab.scene.body import Mass, Motion
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.parts import (
@@ -252,7 +254,7 @@ class Scene(ScenePart):
     def with_(self, changes: Mapping[str, Any] | None = None, /, **others: Any) -> Scene:
         """The same scene with other values: ``with_({"drive.frequency": 2}, normal_load=3)``; None leaves one out.
 
-        A scene in SI units is changed in them: ``with_({"dimensional.mass_kg": 2})``.
+        A scene in SI units is changed in them: ``with_({"dimensional.mass": "2 kg"})``.
 
         >>> import frictionlab as fl
         >>> scene = fl.Scene(damping_ratio=0.1, normal_load=10, belt_speed=5)
@@ -265,7 +267,8 @@ class Scene(ScenePart):
             raise TypeError("with_ takes values by name, belt_speed=2, or by path, {'drive.frequency': 2}")
         given = given_values(self)
         tree = given if self.dimensional is None else {"dimensional": given["dimensional"]}
-        return type(self)(**with_values(tree, {**(changes or {}), **others}))
+        changes = {**(changes or {}), **others}
+        return type(self)(**with_values(tree, dict(_as_fields(type(self), changes))))
 
     def checked(self) -> Scene:
         """The same scene, made again from what it was given: raises WrongValues where its values make no scene."""
@@ -285,6 +288,13 @@ class Scene(ScenePart):
         there = self.dimensional.model_copy(update={"belt_speed_m_per_s": belt_speed})
         speed = belt_speed / there.scales.velocity
         return self.model_copy(update={"belt_speed": speed, "dimensional": there})
+
+
+def _as_fields(record: type[Record], changes: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Values by the paths of the fields they are for."""
+    for path, value in changes.items():
+        field = field_path(record, path)
+        yield field, value if field == path else in_si(path, field, value)
 
 
 def with_values(tree: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,7 +10,9 @@ from pydantic import BaseModel, TypeAdapter
 from frictionlab import columns, registry
 from frictionlab.mistakes.validation import nested
 from frictionlab.registry.records import description, meaning
+from frictionlab.scene.as_written import AsWritten, unit_of
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.unit_text import kind_of
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
 from frictionlab.study.axes import FRICTION, LINKED
@@ -137,12 +139,26 @@ def _record(record: type[BaseModel], definitions: dict[str, Any]) -> dict[str, A
 def _describe(record: type[BaseModel], made: dict[str, Any], inside: dict[str, Any]) -> None:
     """Put into the schema of a record, and of those inside it, what docstrings say of it and of every field."""
     made["description"] = description(record)
+    _allow_texts(record, made.get("properties", {}))
     for key, field in made.get("properties", {}).items():
+        if key in getattr(record, "other_names", {}):
+            continue
         part = nested(record, key)
         if told := meaning(record, key) or (part and _first_paragraph(part)):
             field.setdefault("description", told)
         if part is not None:
             _describe(part, inside[part.__name__], inside)
+
+
+def _allow_texts(record: type[BaseModel], fields: dict[str, Any]) -> None:
+    """Let the numbers of a part in SI units be texts with units, under keys without a unit, too."""
+    if not issubclass(record, AsWritten):
+        return
+    for name in [name for name in fields if unit_of(name) is not None]:
+        fields[name] = {"anyOf": [fields[name], _TEXT]}
+    for key, name in record.other_names.items():
+        example = kind_of(unit_of(name) or "").example
+        fields[key] = _TEXT | {"description": f"{meaning(record, name)}; text with a unit such as {example}"}
 
 
 def _first_paragraph(record: type[BaseModel]) -> str:

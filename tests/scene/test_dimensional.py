@@ -369,7 +369,7 @@ def test_a_mistake_in_an_si_value_is_told_at_its_path(body: Any, said: str) -> N
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [
-        ("mass_kg", "mass"),
+        ("mass_kg", "mass_g"),
         ("length_m", "length_mm"),
     ],
 )

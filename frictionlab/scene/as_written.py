@@ -1,0 +1,90 @@
+"""Keys and numbers of a part in SI units as people write them.
+
+``belt_speed: 2 mm/s`` and ``belt_speed_m_per_s: 2 mm/s`` are ``belt_speed_m_per_s: 0.002``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from numbers import Real
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pydantic import model_validator
+
+from frictionlab.mistakes.notes import Unfit
+from frictionlab.scene.parts import ScenePart
+from frictionlab.scene.unit_text import in_units, kind_of
+
+_SUFFIX = re.compile(r"_(N_s_per_m|m_per_s2|rad_per_s|N_per_m|m_per_s|kg_m|kg|N|m)$")
+"""What the key of a number ends in: its unit."""
+_WITHOUT_SUFFIX = {"phase": "deg", "direction": "deg", "amplitude": "", "damping_ratio": ""}
+"""The units of the other numbers."""
+
+
+class AsWritten(ScenePart):
+    """A part in SI units; other_names: the keys without a unit behind them, and the fields they give."""
+
+    other_names: ClassVar[Mapping[str, str]] = {}
+
+    if TYPE_CHECKING:  # every number may be text, and its key without a unit
+
+        def __init__(self, **values: Any) -> None: ...
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        super().__pydantic_init_subclass__(**options)
+        cls.other_names = {without_unit(name): name for name in cls.model_fields if _SUFFIX.search(name)}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _numbers_in_si(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping) or all(_is_plain(key, value, cls) for key, value in data.items()):
+            return data
+        return dict(_fields(data, cls))
+
+
+def without_unit(name: str) -> str:
+    """The name of a number in SI units without its unit."""
+    return _SUFFIX.sub("", name)
+
+
+def unit_of(name: str) -> str | None:
+    """The unit of the number of this name, None where it may be no number."""
+    found = _SUFFIX.search(name)
+    if not found:
+        return _WITHOUT_SUFFIX.get(name)
+    return re.sub(r"(?<=[a-z])(\d)", r"^\1", found[1].replace("_per_", "/").replace("_", " "))
+
+
+def in_si(key: str, name: str, value: Any) -> Any:
+    """The value of a field, given under a key: a text with a unit as a number, what is no number as why."""
+    unit = unit_of(name)
+    if unit is None:
+        return value
+    if isinstance(value, str):
+        return in_units(value, unit)
+    if key != name and isinstance(value, Real) and not isinstance(value, bool):
+        kind = kind_of(unit)
+        return Unfit(
+            value, f"{value:.6g} has no unit; give {kind} such as '{kind.example}', or the key {name}"
+        )
+    return value
+
+
+def _is_plain(key: Any, value: Any, part: type[AsWritten]) -> bool:
+    return key not in part.other_names and not isinstance(value, str)
+
+
+def _fields(data: Mapping[str, Any], part: type[AsWritten]) -> Iterator[tuple[str, Any]]:
+    for key, value in data.items():
+        name = part.other_names.get(key, key)
+        if name != key and name in data:
+            continue
+        twice = [other for other, field in part.other_names.items() if field == key and other in data]
+        yield (
+            name,
+            Unfit(value, f"is given as {twice[0]}, too: leave one of them out")
+            if twice
+            else in_si(key, name, value),
+        )

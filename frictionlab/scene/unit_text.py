@@ -1,0 +1,145 @@
+"""Numbers written as text with a unit, such as ``2 mm/s``, and what they are in SI units.
+
+Conversion is by pint, which is imported where such a text is read. Its registry is made of the units below alone: in
+it an angle has a dimension, so that 60 Hz are 60 cycles a second and never 60 rad/s, and 60 1/s is neither.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from functools import cache
+from typing import Any, NamedTuple
+
+from frictionlab.mistakes.notes import Unfit
+
+DEFINITIONS = """
+nano- = 1e-9 = n-
+micro- = 1e-6 = u- = µ- = μ-
+milli- = 1e-3 = m-
+centi- = 1e-2 = c-
+kilo- = 1e3 = k-
+mega- = 1e6 = M-
+meter = [length] = m = metre
+second = [time] = s
+gram = [mass] = g
+radian = [angle] = rad
+percent = 0.01
+minute = 60 * second = min
+hour = 3600 * second = h
+turn = 6.283185307179586476925286766559005768 * radian
+degree = turn / 360 = deg
+hertz = turn / second = Hz
+revolutions_per_minute = turn / minute = rpm
+newton = kilogram * meter / second ** 2 = N
+standard_gravity = 9.80665 * meter / second ** 2 = g_0
+tonne = 1000 * kilogram = t
+inch = 0.0254 * meter = in
+foot = 0.3048 * meter = ft
+pound = 0.45359237 * kilogram = lb
+pound_force = pound * standard_gravity = lbf
+"""
+ALLOWED = (
+    "m, s, min, h, g, t, N, Hz, rpm, rad, deg, %, g_0, in, ft, lb and lbf, with n, u, m, c, k or M before them, "
+    "and their products and quotients"
+)
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
+_FACTOR = r"(?:[^\W\d_]+(?:_0)?|%|°)(?:(?:\^|\*\*)?-?[1-9]|[⁻]?[¹²³])?"
+_TEXT = re.compile(
+    rf"\s*(?P<number>{NUMBER})\s*(?P<unit>(?:1?\s*/\s*)?{_FACTOR}(?:\s*[*·/]\s*{_FACTOR}|\s+{_FACTOR})*)\s*"
+)
+_POWER = re.compile(r"(?<=[^\W\d_]|%|°)(?:\^|\*\*)?(-?[1-9])")
+_PLAIN = str.maketrans("⁻¹²³·", "-123*")
+
+
+class Kind(NamedTuple):
+    """What a number is: a word for it, its unit and how a person writes one."""
+
+    word: str
+    unit: str
+    example: str
+
+    def __str__(self) -> str:
+        """With the unit."""
+        return f"{self.word} [{self.unit}]" if self.unit else self.word
+
+
+KINDS = [
+    Kind("a speed", "m/s", "2 mm/s"),
+    Kind("a length", "m", "5 um"),
+    Kind("a frequency", "rad/s", "60 Hz"),
+    Kind("a mass", "kg", "0.5 kg"),
+    Kind("a force", "N", "20 N"),
+    Kind("a stiffness", "N/m", "5 kN/m"),
+    Kind("a damping coefficient", "N s/m", "5 N s/m"),
+    Kind("an acceleration", "m/s^2", "3 m/s^2"),
+    Kind("an unbalance, mass times length", "kg m", "3 kg mm"),
+    Kind("an angle", "deg", "90 deg"),
+    Kind("a stiffness per force", "1/m", "40 1/mm"),
+    Kind("a time over a length", "s/m", "0.1 s/m"),
+    Kind("a time", "s", "2 s"),
+    Kind("one over a time (Hz and rpm count cycles, rad/s angles)", "1/s", "1 1/s"),
+    Kind("a number without a dimension", "", "30 %"),
+]
+
+
+def in_units(text: str, unit: str) -> float | Unfit:
+    """The number that a text with a unit is in this one; what is wrong with it where it is none."""
+    example = kind_of(unit).example
+    if not (read := _TEXT.fullmatch(text)):
+        return Unfit(text, f"must be a number, or text with a unit such as {example}")
+    try:
+        number = Fraction(read["number"]) * _factor(read["unit"], unit)
+        return float(number)
+    except _Wrong as problem:
+        return Unfit(text, f"'{text.strip()}' {problem}")
+    except OverflowError:
+        return Unfit(text, "must be a finite number")
+
+
+def kind_of(unit: str) -> Kind:
+    """What a number in this unit is."""
+    return next((kind for kind in KINDS if kind.unit == unit), Kind("a number", unit, f"2 {unit}"))
+
+
+class _Wrong(ValueError):
+    """A unit that is unknown or of another kind, as the end of a sentence."""
+
+
+@cache
+def _factor(given: str, wanted: str) -> Fraction:
+    """By which a number in a unit is multiplied to be in another. Raises _Wrong."""
+    import pint
+
+    try:
+        unit = _parsed(given)
+    except pint.UndefinedUnitError as problem:
+        names = [problem.unit_names] if isinstance(problem.unit_names, str) else problem.unit_names
+        raise _Wrong(f"has the unknown unit {' and '.join(map(repr, names))}; allowed: {ALLOWED}") from None
+    try:
+        return _registry().convert(Fraction(1), unit, _parsed(wanted))
+    except pint.DimensionalityError:
+        raise _Wrong(f"is {_kind_of(unit, given)}; give {kind_of(wanted)}{_such_as(wanted)}") from None
+
+
+def _such_as(unit: str) -> str:
+    return f" such as {kind_of(unit).example}"
+
+
+def _kind_of(unit: Any, given: str) -> str:
+    """What a number in a unit is, in words."""
+    own = unit.dimensionality
+    return next((str(kind) for kind in KINDS if _parsed(kind.unit).dimensionality == own), f"in {given}")
+
+
+def _parsed(unit: str) -> Any:
+    """The unit as pint has it. Raises pint.UndefinedUnitError."""
+    plain = _POWER.sub(r"**\1", unit.translate(_PLAIN)).replace("%", "percent").replace("°", "degree")
+    return _registry().parse_units(f"1{plain.strip()}" if plain.strip().startswith("/") else plain)
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(DEFINITIONS.strip().splitlines(), non_int_type=Fraction, cache_folder=None)

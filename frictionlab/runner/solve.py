@@ -35,7 +35,7 @@ def solve(chunk: Chunk) -> list[Part]:
 
 def parts(chunk: Chunk, pieces: list[Piece]) -> list[Part]:
     """Answered pieces as rows of the table."""
-    return [_part(chunk, piece) for piece in pieces]
+    return [part for piece in pieces for part in _parts(chunk, piece)]
 
 
 def answer(chunk: Chunk) -> list[Piece]:
@@ -150,7 +150,8 @@ def _given(numbers: Floats | None, nothing: Floats) -> Floats:
     return nothing if numbers is None else numbers
 
 
-def _part(chunk: Chunk, piece: Piece) -> Part:
+def _parts(chunk: Chunk, piece: Piece) -> list[Part]:
+    """A piece in one; where a column of it raises an arithmetic error every point by itself, solved anew."""
     rows = chunk.rows[piece.places]
     try:
         scenes = chunk.scenes.taken(piece.places)
@@ -162,11 +163,13 @@ def _part(chunk: Chunk, piece: Piece) -> Part:
         text = text_columns(piece.answers)
         if "floquet" in asked and piece.answers.multipliers is not None:
             text["reason"] = _noted(text["reason"], piece.answers.multipliers().reason)
-        return Part(rows, text, numbers, _kept(chunk, piece))
+        return [Part(rows, text, numbers, _kept(chunk, piece))]
     except BrokenPlugin:
         raise
     except (Exception, SystemExit) as problem:
-        return Part(rows, text_columns(_failed(len(rows), problem)), {}, {})
+        if _numerical(problem) and len(rows) > 1:
+            return [part for place in piece.places for part in parts(chunk, _solved(chunk, [place]))]
+        return [Part(rows, text_columns(_failed(len(rows), problem)), {}, {})]
 
 
 def text_columns(answers: Answers) -> dict[str, list[str]]:

@@ -241,3 +241,33 @@ def test_the_command_finds_the_columns_of_its_option(tmp_path: Path, capsys: Any
     assert cli.main(["report", str(out)]) == 0
     assert cli.main(["run", str(file), "-o", str(out), "--columns", "flouqet"]) == 2
     assert "did you mean 'floquet'?" in capsys.readouterr().err
+
+
+def test_a_column_that_raises_at_one_point_leaves_the_others_their_numbers(monkeypatch):
+    from frictionlab.orbit import read
+
+    whole = read.read_columns
+
+    def read_columns(scenes, *rest):
+        if any(scene.belt_speed == 20.0 for scene in scenes):
+            raise np.linalg.LinAlgError("Array must not contain infs or NaNs")
+        return whole(scenes, *rest)
+
+    monkeypatch.setattr(read, "read_columns", read_columns)
+    scene = fl.Scene(**LINE)
+    table = fl.curve(scene, fl.Coulomb(mu=0.4), belt_speed=[5.0, 20.0, 30.0], columns=["energies"])
+
+    assert list(table["status"]) == ["ok", "failed", "ok"]
+    assert "LinAlgError" in table["reason"][1]
+    assert np.isfinite(table["energy_friction"][[0, 2]]).all()
+
+
+def test_a_motion_without_a_derivative_has_its_other_columns():
+    """Elasto-plastic bristles that yield nearly at their limit, at V_lin: no finite monodromy."""
+    drive = fl.Drive(unbalance=10, frequency=1)
+    scene = fl.Scene(damping_ratio=0.1, normal_load=1, belt_speed=5, drive=drive)
+    law = fl.ElastoPlastic(mu_kinetic=0.4, stiffness=40, damping=0.0, breakaway_ratio=0.991609)
+    table = fl.curve(scene, law, belt_speed=[40.0, 49.999999, 50.0, 60.0], columns="all")
+
+    assert set(table["status"]) == {"ok"}
+    assert table["mean_friction"].to_numpy()[1:] == pytest.approx(0.4, abs=1e-9)

@@ -293,7 +293,7 @@ class SteadyStates:
             i: ClosedMotion(float(self.belt_speeds[i]), state, matrix)
             for i, (state, matrix) in enumerate(zip(self.states, self.matrices, strict=True))
             if self.status[i] == "ok" and self.spans[i] == 1
-            if state is not None and matrix is not None and matrix.any()
+            if state is not None and matrix is not None and matrix.any() and np.isfinite(matrix).all()
         }
         for i, one in zip(motions, sharpened(self.problem, list(motions.values())), strict=True):
             modulus[i], error[i], reason[i] = one

@@ -174,9 +174,7 @@ class Piecewise(NamedTuple):
         """Of a constant and one sine, in closed form: near its turning points a rounded zero is half as exact."""
         (frequency, phasor), level = self.waves[0], float(self.middle[0])
         size, far = abs(phasor), abs(float(self.middle[0]))
-        if (
-            size - far <= 2.0 * EPSILON * size
-        ):  # where it only touches zero its size is known to rounding alone
+        if far >= size:
             return Crossings(np.empty(0), np.empty(0))
         half = 2.0 * math.asin(math.sqrt(0.5 * (size - far) / size))
         peak = -math.copysign(0.5 * math.pi, level) - cmath.phase(phasor)

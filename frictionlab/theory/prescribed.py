@@ -83,8 +83,7 @@ def mean_direction(slip: Piecewise, normal_load: Piecewise) -> MeanDirection:
     share = normal_load.integral(start, stop, k) / slip.period
     rests = slip.at_rest()[k]
     side = np.where(rests, 0.0, np.sign(slip.at(middle, k)[0]))
-    heavy = float(np.abs(normal_load.middle).max() + normal_load.size())
-    unsure = heavy * float(zeros.unsure.sum()) / slip.period
+    unsure = normal_load.size() * float(zeros.unsure.sum()) / slip.period
     mean = -math.fsum((side * share).tolist())
     return MeanDirection(mean, 2.0 * unsure + 16.0 * EPSILON, math.fsum(share[rests].tolist()))
 

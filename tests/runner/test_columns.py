@@ -94,7 +94,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     watched(PeriodicProblem, "orbits", "orbits")
     watched(PeriodicProblem, "multipliers", "multipliers")
     watched(_Curve, "_orbits", "orbits")
-    plain = PeriodicProblem._called
+    plain = PeriodicProblem.called
 
     def wanted(self: PeriodicProblem, *given: Any, **named: Any) -> Any:
         asked = next(each for each in given if isinstance(each, continuation.Wanted))
@@ -102,7 +102,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
         counted["differentiated"] += asked.matrices
         return plain(self, *given, **named)
 
-    monkeypatch.setattr(PeriodicProblem, "_called", wanted)
+    monkeypatch.setattr(PeriodicProblem, "called", wanted)
     return counted
 
 

@@ -13,7 +13,7 @@ from frictionlab.results.state import SteadyState
 COULOMB = fl.Coulomb(mu=0.4)
 GENTLE = fl.Stribeck(mu_kinetic=0.39, mu_static=0.4)
 STEEP = fl.Stribeck(mu_kinetic=0.2, mu_static=0.4)
-S11 = fl.Stribeck(mu_kinetic=0.2, mu_static=0.4, stribeck_exponent=1.0)
+TWO_STATES = fl.Stribeck(mu_static=0.8, mu_kinetic=0.2, stribeck_speed=0.1, viscosity=0.01)
 DAHL = fl.Dahl(mu=0.4, stiffness=40.0)
 FULL = {"damping_ratio": 0.1, "normal_load": 10.0, "belt_speed": 5.0}
 DRIVE = fl.Drive(unbalance=10.0, frequency=1.0)
@@ -77,11 +77,12 @@ def test_starts_are_told_with_their_distance_and_time() -> None:
 
 
 def test_other_states_are_told() -> None:
-    falls = {"damping_ratio": 0.01, "drive": fl.Drive(unbalance=0.2, frequency=1.3), "belt_speed": 0.3}
+    weak = fl.Drive(amplitude=0.05, frequency=3.0)
+    falls = {"damping_ratio": 0.01, "normal_load": 1.0, "drive": weak, "belt_speed": 0.6}
     held = {"drive": fl.Drive(unbalance=2.0, frequency=1.0), "belt_speed": 0.0}
     chosen = state(COULOMB, **held, initial=fl.Initial(x=1.0))
 
-    assert [state(S11, **falls).unique, state(COULOMB, **held).unique] == ["no", "no"]
+    assert [state(TWO_STATES, **falls).unique, state(COULOMB, **held).unique] == ["no", "no"]
     assert state(COULOMB, "shooting", **held).unique == "no"
     assert (chosen.status, chosen.unique) == ("ok", "no")
     assert "unique: " not in chosen.model

@@ -284,7 +284,10 @@ class Notes:
 
     def number(self, value: Any, path: Path) -> float | None:
         """The value as a finite number; None, noted, if it is not one."""
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
+        if isinstance(value, Unfit):
+            got = f", got {value_text(value)}" if value.what.startswith("must be ") else ""
+            self.add(path, f"{value.what}{got}")
+        elif isinstance(value, bool) or not isinstance(value, (int, float)):
             self.add(path, f"must be a number, got {value_text(value)}")
         elif not math.isfinite(value):
             self.add(path, f"must be a finite number, got {value_text(value)}")

@@ -291,6 +291,10 @@ _WANTED |= {"bool": "true or false"}
 """By what the name of an error begins with."""
 
 
+_WITH_UNIT = re.compile(r"\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[^\W\d].*")
+_UNITS = " (units go with a scene in SI units: scene.dimensional)"
+
+
 def _value_mistake(error: Any, text_of: Callable[[Any], str]) -> str:
     """An error in a single value as a sentence."""
     given = text_of(error["input"])
@@ -306,5 +310,6 @@ def _value_mistake(error: Any, text_of: Callable[[Any], str]) -> str:
     wanted = next((what for start, what in _WANTED.items() if error["type"].startswith(start)), None)
     message = _message(error) if wanted is None else f"must be {wanted}"
     if message.startswith("must be "):
-        return f"{message}, got {given}"
+        with_unit = message == "must be a number" and _WITH_UNIT.fullmatch(str(error["input"]))
+        return f"{message}, got {given}{_UNITS if with_unit else ''}"
     return message[:1].lower() + message[1:]

@@ -32,6 +32,7 @@ degree = turn / 360 = deg
 hertz = turn / second = Hz
 revolutions_per_minute = turn / minute = rpm
 newton = kilogram * meter / second ** 2 = N
+joule = newton * meter = J
 standard_gravity = 9.80665 * meter / second ** 2 = g_0
 tonne = 1000 * kilogram = t
 inch = 0.0254 * meter = in
@@ -40,7 +41,7 @@ pound = 0.45359237 * kilogram = lb
 pound_force = pound * standard_gravity = lbf
 """
 ALLOWED = (
-    "m, s, min, h, g, t, N, Hz, rpm, rad, deg, %, g_0, in, ft, lb and lbf, with n, u, m, c, k or M before them, "
+    "m, s, min, h, g, t, N, J, Hz, rpm, rad, deg, %, g_0, in, ft, lb and lbf, with n, u, m, c, k or M before them, "
     "and their products and quotients"
 )
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
@@ -78,6 +79,7 @@ KINDS = [
     Kind("a stiffness per force", "1/m", "40 1/mm"),
     Kind("a time over a length", "s/m", "0.1 s/m"),
     Kind("a time", "s", "2 s"),
+    Kind("an energy", "J", "2 mJ"),
     Kind("one over a time (Hz and rpm count cycles, rad/s angles)", "1/s", "1 1/s"),
     Kind("a number without a dimension", "", "30 %"),
 ]

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from frictionlab import columns
 from frictionlab.mistakes.notes import Notes, Path, did_you_mean, value_text
 from frictionlab.mistakes.validation import checked_value, placed, record_at
+from frictionlab.scene.as_written import in_si
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.unit_text import in_units
 from frictionlab.study.parts import Expectation
+from frictionlab.study.written import column_of
 
 EXPECTATION_KEYS = (
     *("where", "column", "equals", "below", "above", "within"),
@@ -24,7 +27,8 @@ class Table:
     """The columns of the table of a study: text inputs with their values, number inputs, results, swept inputs.
 
     words: the words and waveforms of the scene, with their values. The values of a text column are None where
-    mistakes leave them uncertain; belt_speed: the column of the belt speed, nondimensional or in SI units.
+    mistakes leave them uncertain; belt_speed: the column of the belt speed, nondimensional or in SI units; units: of
+    the parameters of laws, where the scene is in SI units.
     """
 
     texts: Mapping[str, tuple[str, ...] | None]
@@ -33,6 +37,7 @@ class Table:
     words: Mapping[str, tuple[str, ...] | None]
     swept: tuple[str, ...] = ()
     belt_speed: str = columns.BELT_SPEED
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
 def expectations(given: Any, table: Table, notes: Notes) -> tuple[Expectation, ...]:
@@ -61,20 +66,33 @@ def _where(given: Any, path: Path, table: Table, notes: Notes) -> dict[str, str 
     """The input columns and values that select rows."""
     where: dict[str, str | float] = {}
     for key, value in (notes.mapping(given, path) or {}).items():
+        name = column_of(key)
         if key in table.texts:
             found: str | float | None = _known_text(value, (*path, key), table.texts[key], notes)
         elif key in table.words:
             found = _word_of_scene(value, (*path, key), table.words[key], notes)
-        elif key in table.numbers:
-            found = _number(value, (*path, key), notes)
+        elif name in table.numbers:
+            found = _number(_written(key, name, value, table), (*path, key), notes)
         else:
             names = (*table.texts, *table.numbers, *table.words)
             hint = did_you_mean(key, names)
             notes.on_key((*path, key), "is no input column of this study's table", hint)
             continue
         if found is not None:
-            where[key] = found
+            where[name] = found
     return where
+
+
+def _written(key: str, column: str, value: Any, table: Table) -> Any:
+    """A number of an input or result, in SI units written as text with a unit, too."""
+    if column in table.units:
+        return in_units(value, table.units[column]) if isinstance(value, str) else value
+    in_the_scales_of_the_scene = column.startswith("scene.") and not column.startswith("scene.dimensional.")
+    return (
+        value
+        if in_the_scales_of_the_scene
+        else in_si(key.rpartition(".")[2], column.rpartition(".")[2], value)
+    )
 
 
 def _word_of_scene(value: Any, path: Path, known: tuple[str, ...] | None, notes: Notes) -> str | None:
@@ -161,6 +179,10 @@ def _comparison(given: dict[str, Any], path: Path, table: Table, notes: Notes) -
     chosen = [key for key in _COMPARISONS if key in given]
     if len(chosen) != 1:
         notes.add(path, f"give exactly one of equals, below and above, got {' and '.join(chosen) or 'none'}")
+    if column in columns.SI:
+        given = given | {
+            key: in_si(column, column, given[key]) for key in (*chosen, "within") if key in given
+        }
     said: dict[str, Any] = {key: notes.number(given[key], (*path, key)) for key in chosen}
     if "within" in given or "equals" in given:
         said["within"] = _positive(given, "within", path, notes)

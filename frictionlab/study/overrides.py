@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from frictionlab.mistakes.notes import Note, Path, StudyError, did_you_mean
+from frictionlab.mistakes.notes import Note, Path, StudyError, did_you_mean, dotted
+from frictionlab.study.written import column_of
 from frictionlab.study.yaml_source import Source, read_text
 
 _RANGE = ("start", "stop", "num", "spacing", "within")
@@ -59,7 +60,9 @@ class _Override:
     def _sweep(self, rest: str) -> Path:
         """A swept path is a single key that contains points; the parts of a range are keys below it."""
         key, _, part = rest.rpartition(".")
-        return ("sweep", key, part) if part in _RANGE and key in self._under("sweep") else ("sweep", rest)
+        swept = {column_of(each): each for each in map(str, self._under("sweep"))}
+        given = swept.get(column_of(key))
+        return ("sweep", given, part) if part in _RANGE and given is not None else ("sweep", rest)
 
     def _under(self, key: str) -> Any:
         found = self._source.tree.get(key)
@@ -85,9 +88,19 @@ class _Override:
             return self._refuse(path, f"there is no item [{path[-1]}]")
         if isinstance(path[-1], str) and not isinstance(at, dict):
             return self._refuse(path, "there is no mapping to set it in")
+        if isinstance(at, dict):
+            self._leave_out_others(at, path)
         at[path[-1]] = value
         self._forget(path)
         self._source.origins[path] = self._origin
+
+    def _leave_out_others(self, at: dict[str, Any], path: Path) -> None:
+        """Remove other keys of the same value: ``belt_speed`` beside ``belt_speed_m_per_s``."""
+        above = path[:-1] if path[0] == "scene" else ()
+        column = column_of(dotted((*above, path[-1])))
+        for other in [key for key in at if key != path[-1] and column_of(dotted((*above, key))) == column]:
+            del at[other]
+            self._forget((*path[:-1], other))
 
     def _stepped(self, at: Any, path: Path, step: str | int) -> Any:
         """The value one step down; a mapping that the study lacks is added."""

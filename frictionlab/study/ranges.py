@@ -72,6 +72,8 @@ class SweepRange(_Ends):
         return (self.start, *inner, self.stop)
 
 
+ENDS = "start", "stop"
+"""The keys of its ends."""
 WITHIN = "within"
 """The key of a range out of which belt speeds are chosen as a run goes."""
 FINEST = 10.0

@@ -22,6 +22,7 @@ from frictionlab.study.parts import LIMIT_KEY, SCHEMA, LawChoice, MethodChoice, 
 from frictionlab.study.possible import note_impossible_points
 from frictionlab.study.sweep_targets import swept_paths
 from frictionlab.study.sweeps import Sweeps, read_sweeps
+from frictionlab.study.written import column_of, read_law_numbers, scene_is_in_si, units_of_law
 from frictionlab.study.yaml_source import Source
 
 STUDY_KEYS = (
@@ -68,6 +69,7 @@ class _StudyReader:
         self._keys()
         brought = self._bring(self._tree)
         self._known = brought.laws
+        read_law_numbers(self._tree, self._known)
         sweep = self._sweep()
         laws, methods = self._laws(), self._methods()
         scene = (
@@ -101,6 +103,8 @@ class _StudyReader:
 
     def _sweep(self) -> Sweeps:
         found = read_sweeps(self._tree, self._known, self._notes)
+        for name, path in found.written.items():
+            self._source.also_at((*path[:-1], name), path)
         for missing, sweep in found.stand_ins.items():
             if sweep in self._source.origins:
                 self._source.origins[missing] = self._source.origins[sweep]
@@ -123,7 +127,7 @@ class _StudyReader:
                 if path[2] == name and law.get(STATIC) is None:
                     return FRICTION
             return f"laws.{label_of(law)}.{path[2]}"
-        return ".".join(map(str, path))
+        return column_of(".".join(map(str, path)))
 
     def _laws(self) -> tuple[LawChoice, ...]:
         if "laws" not in self._tree:
@@ -182,10 +186,11 @@ class _StudyReader:
         words = _words(values, sweep.sweep)
         numbers = tuple(name for name in inputs if name not in words)
         swept = swept_paths(self._tree)
-        given = self._tree.get("scene")
-        in_si = isinstance(given, Mapping) and "dimensional" in given
-        speed = columns.belt_speed(inputs) if in_si else columns.BELT_SPEED
-        return Table(texts, numbers, tuple(columns.results(inputs)), words, swept, speed)
+        if not scene_is_in_si(self._tree):
+            return Table(texts, numbers, tuple(columns.results(inputs)), words, swept)
+        units = {f"law.{name}": unit for law in classes for name, unit in units_of_law(law).items()}
+        speed = columns.belt_speed(inputs)
+        return Table(texts, numbers, tuple(columns.results(inputs)), words, swept, speed, units)
 
 
 def _words(

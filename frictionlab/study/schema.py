@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from typing import Any
 
 from pydantic import BaseModel, TypeAdapter
 
 from frictionlab import columns, registry
-from frictionlab.mistakes.validation import nested
+from frictionlab.mistakes.validation import nested, number_paths
 from frictionlab.registry.records import description, meaning
 from frictionlab.scene.as_written import AsWritten, unit_of
 from frictionlab.scene.scene import Scene
@@ -18,7 +19,7 @@ from frictionlab.study import reader
 from frictionlab.study.axes import FRICTION, LINKED
 from frictionlab.study.figure_options import FigureOptions
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA
-from frictionlab.study.ranges import SpeedRange, SweepRange
+from frictionlab.study.ranges import ENDS, SpeedRange, SweepRange
 from frictionlab.study.study import SECONDS_PER_POINT
 
 _KEYS = {
@@ -63,6 +64,8 @@ _WORD_OR_NUMBER: dict[str, Any] = {
 }
 """What a sweep of a scene runs over, and what selects rows of its table."""
 _TEXT = {"type": "string"}
+_WITH_UNIT = _TEXT | {"pattern": r"^\s*[-+]?[0-9.]"}
+"""A number and its unit, in a scene in SI units."""
 _POSITIVE: dict[str, Any] = {"type": "number", "exclusiveMinimum": 0}
 _SPEEDS = (
     "belt speeds: a list, a range, or start, stop and within, between which they are chosen as the run goes"
@@ -154,11 +157,20 @@ def _allow_texts(record: type[BaseModel], fields: dict[str, Any]) -> None:
     """Let the numbers of a part in SI units be texts with units, under keys without a unit, too."""
     if not issubclass(record, AsWritten):
         return
-    for name in [name for name in fields if unit_of(name) is not None]:
-        fields[name] = {"anyOf": [fields[name], _TEXT]}
+    _or_text(fields, [name for name in fields if unit_of(name) is not None])
     for key, name in record.other_names.items():
         example = kind_of(unit_of(name) or "").example
-        fields[key] = _TEXT | {"description": f"{meaning(record, name)}; text with a unit such as {example}"}
+        fields[key] = _WITH_UNIT | {
+            "description": f"{meaning(record, name)}; text with a unit such as {example}"
+        }
+
+
+def _or_text(fields: dict[str, Any], names: Iterable[str]) -> None:
+    """Let the numbers of these names be texts with units, too."""
+    for name in names:
+        number = {key: value for key, value in fields[name].items() if key not in ("description", "default")}
+        beside = {key: fields[name][key] for key in ("description", "default") if key in fields[name]}
+        fields[name] = {**beside, "anyOf": [number, _WITH_UNIT]}
 
 
 def _first_paragraph(record: type[BaseModel]) -> str:
@@ -183,7 +195,10 @@ def _study_schema(schema: Any) -> Any:
 
 
 def _laws(laws: registry.Laws, definitions: dict[str, Any]) -> list[dict[str, Any]]:
-    return [_kind(name, _record(laws.named(name), definitions)) for name in laws.usable()]
+    made = {name: _record(laws.named(name), definitions) for name in laws.usable()}
+    for name, record in made.items():
+        _or_text(record.get("properties", {}), number_paths(laws.named(name)))
+    return [_kind(name, record) for name, record in made.items()]
 
 
 def _methods(definitions: dict[str, Any]) -> list[dict[str, Any]]:
@@ -206,6 +221,8 @@ def _sweep() -> dict[str, Any]:
     listed = {"type": "array", "minItems": 1, "uniqueItems": True, "items": _WORD_OR_NUMBER}
     ranged = _record(SweepRange, {}) | {"required": ["start", "stop", "num"]}
     chosen = _record(SpeedRange, {}) | {"required": ["start", "stop", "within"]}
+    for each in (ranged, chosen):
+        _or_text(each["properties"], ENDS)
     values = {"oneOf": [listed, ranged]}
     together = {"type": "array", "minItems": 1, "items": _WORD_OR_NUMBER}
     entry = {
@@ -232,13 +249,14 @@ def _expectations() -> list[dict[str, Any]]:
     where = {"type": "object", "additionalProperties": _WORD_OR_NUMBER}
     shared: dict[str, Any] = {"where": where, "because": _TEXT}
     numeric = [name for name in (*columns.RESULTS, *columns.SI) if name not in columns.TEXT]
-    column = {"column": {"enum": numeric}, "within": _POSITIVE}
+    column = {"column": {"enum": numeric}, "within": {"anyOf": [_POSITIVE, _WITH_UNIT]}}
+    number = {"anyOf": [_NUMBER, _WITH_UNIT]}
     statuses = [status for status in columns.STATUSES if status != "killed"]
     pair = {"type": "array", "minItems": 2, "maxItems": 2, "uniqueItems": True, "items": _TEXT}
     return [
-        _closed_object({**shared, **column, "equals": _NUMBER}, ["column", "equals", "within"]),
-        _closed_object({**shared, **column, "below": _NUMBER}, ["column", "below"]),
-        _closed_object({**shared, **column, "above": _NUMBER}, ["column", "above"]),
+        _closed_object({**shared, **column, "equals": number}, ["column", "equals", "within"]),
+        _closed_object({**shared, **column, "below": number}, ["column", "below"]),
+        _closed_object({**shared, **column, "above": number}, ["column", "above"]),
         _closed_object({**shared, "status": {"enum": statuses}}, ["status"]),
         _closed_object({**shared, "max_difference": pair, "below": _POSITIVE}, ["max_difference", "below"]),
         *(_shape(shared, measure) for measure in columns.SHAPES),

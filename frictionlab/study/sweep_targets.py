@@ -10,12 +10,13 @@ from pydantic import BaseModel
 
 from frictionlab import registry
 from frictionlab.mistakes.notes import Notes, Path, did_you_mean, number_text
-from frictionlab.mistakes.validation import number_paths, record_at, value_paths
+from frictionlab.mistakes.validation import field_name, number_paths, record_at, value_paths
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
 from frictionlab.study.axes import FRICTION, LINKED, STATIC
 from frictionlab.study.choices import label_of
 from frictionlab.study.parts import coefficient_of
+from frictionlab.study.written import column_of
 
 _GROUPS = (
     ("unbalance", "amplitude"),
@@ -39,6 +40,10 @@ class Target:
     def is_number(self) -> bool:
         """Whether it is a number, of which ranges are made, and no word."""
         return self.key in number_paths(self.record)
+
+    def is_given(self, within: dict[str, Any]) -> bool:
+        """Whether a part of a study gives it, under whichever key."""
+        return any(field_name(self.record, key) == self.key for key in within)
 
 
 class Targets:
@@ -139,11 +144,12 @@ class Targets:
             if within is None:
                 self._notes.on_key(path, f"the study has no {name}")
             return None
-        if other := _alias_given(within, steps[-1]):
+        if (record := record_at(Scene, tuple(steps[:-1]))) is None:
+            return None
+        if other := _alias_given(within, steps[-1], record):
             self._notes.on_key(path, f"{name} gives {other}, so {steps[-1]} cannot be swept")
             return None
-        record = record_at(Scene, tuple(steps[:-1]))
-        return Target(parent, steps[-1], record) if record else None
+        return Target(parent, steps[-1], record)
 
     def _of_law(self, key: str, path: Path) -> Target | None:
         label, _, parameter = key.removeprefix("laws.").rpartition(".")
@@ -173,16 +179,17 @@ class Targets:
                 what = f"{parameter} of the law '{label}' is not one number: {advice}"
             self._notes.on_key(path, what, did_you_mean(parameter, number_paths(law)))
             return None
-        if other := _alias_given(value_at(self._tree, at), parameter):
+        if other := _alias_given(value_at(self._tree, at), parameter, law):
             self._notes.on_key(path, f"the law '{label}' gives {other}, so {parameter} cannot be swept")
             return None
         return Target(at, parameter, law)
 
 
-def _alias_given(within: dict[str, Any], key: str) -> str | None:
+def _alias_given(within: dict[str, Any], key: str, record: type[BaseModel]) -> str | None:
     """An alternative to ``key``, such as amplitude for unbalance, if the study gives that one."""
     group = next((names for names in _GROUPS if key in names), ())
-    return None if key in within else next((name for name in group if name in within), None)
+    given = {field_name(record, each): each for each in within}
+    return None if key in given else next((given[name] for name in group if name in given), None)
 
 
 def swept_paths(tree: dict[str, Any]) -> tuple[str, ...]:
@@ -190,7 +197,7 @@ def swept_paths(tree: dict[str, Any]) -> tuple[str, ...]:
     given = tree.get("sweep")
     entries = given.get(LINKED) if isinstance(given, dict) else None
     lists = [given, *(entries if isinstance(entries, list) else ())]
-    return tuple(key for each in lists if isinstance(each, dict) for key in each if key != LINKED)
+    return tuple(column_of(key) for each in lists if isinstance(each, dict) for key in each if key != LINKED)
 
 
 def value_at(tree: Any, path: Path) -> Any:

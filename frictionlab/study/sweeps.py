@@ -13,21 +13,23 @@ from frictionlab.columns import BELT_SPEEDS
 from frictionlab.mistakes.notes import Notes, Path, number_text, value_text
 from frictionlab.mistakes.validation import build_record, checked_value, placed, wrong_value
 from frictionlab.study.axes import LINKED, GridValue
-from frictionlab.study.ranges import WITHIN, SpeedRange, SweepRange
+from frictionlab.study.ranges import ENDS, WITHIN, SpeedRange, SweepRange
 from frictionlab.study.sweep_targets import Target, Targets, value_at
+from frictionlab.study.written import column_of, number_written, scene_is_in_si
 
 
 @dataclass
 class Sweeps:
     """The sweeps of a study, the ranges and the links among them.
 
-    stand_ins: where first values stand in for what the study left out.
+    stand_ins: where first values stand in for what the study left out. written: where each path is swept.
     """
 
     sweep: dict[str, tuple[GridValue, ...]] = field(default_factory=dict)
     ranges: dict[str, SweepRange | SpeedRange] = field(default_factory=dict)
     links: tuple[tuple[str, ...], ...] = ()
     stand_ins: dict[Path, Path] = field(default_factory=dict)
+    written: dict[str, Path] = field(default_factory=dict)
 
 
 def read_sweeps(tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> Sweeps:
@@ -48,23 +50,26 @@ class _SweepReader:
     def __init__(self, tree: dict[str, Any], laws: registry.Laws, notes: Notes) -> None:
         self._tree, self._notes = tree, notes
         self._targets = Targets(tree, laws, notes)
+        self._in_si = scene_is_in_si(tree)
         self.found = Sweeps()
 
     def read(self, key: str, values: Any, path: Path, linked: bool = False) -> None:
         """One list or range, of a path by itself or of one among those of a linked entry."""
-        targets = self._targets.at(key, path)
-        if key in self.found.sweep:
-            self._notes.on_key(path, f"{key} is swept already")
+        name = column_of(key)
+        targets = self._targets.at(name, path)
+        if name in self.found.sweep:
+            self._notes.on_key(path, f"{name} is swept already")
             return
         first = targets[0] if targets else None
+        values = self._numbers(values, first, key)
         read = _read_values(values, first, path, self._notes, unique=not linked)
-        if isinstance(read, SpeedRange) and (linked or key not in BELT_SPEEDS):
+        if isinstance(read, SpeedRange) and (linked or name not in BELT_SPEEDS):
             what = "belt speeds alone are chosen so, where no others are linked to them; give num"
             self._notes.on_key((*path, WITHIN), what)
             return
         checked, others = read, targets[1:]  # the first target has read each value of a list
         if not isinstance(read, tuple):
-            self.found.ranges[key] = read
+            self.found.ranges[name] = read
             checked, others = read.ends, targets  # ends decide whether all values between are allowed
         for target, (index, value) in itertools.product(others, enumerate(checked)):
             if wrong := wrong_value(target.record, target.key, value):
@@ -72,7 +77,22 @@ class _SweepReader:
         built = _built(read, path, self._notes)
         for target in targets:
             _stand_in(self._tree, target, built, self.found.stand_ins, path)
-        self.found.sweep[key] = built
+        self.found.sweep[name] = built
+        self.found.written[name] = path
+
+    def _numbers(self, given: Any, target: Target | None, key: str) -> Any:
+        """The values of a sweep, or the ends of its range, those written as text with a unit as numbers."""
+        if target is None or not self._in_si:
+            return given
+        key = key.rpartition(".")[2]
+        if isinstance(given, list):
+            return [number_written(target.record, key, target.key, each) for each in given]
+        if not isinstance(given, dict):
+            return given
+        return {
+            name: number_written(target.record, key, target.key, each) if name in ENDS else each
+            for name, each in given.items()
+        }
 
     def read_linked(self, given: Any) -> None:
         """The entries of lists that advance together."""
@@ -95,7 +115,7 @@ class _SweepReader:
             for key, values in lists.items():
                 self.read(key, values, (*path, key), linked=True)
             if not self._notes.below(path):
-                self._check_entry({key: self.found.sweep[key] for key in lists}, path)
+                self._check_entry({name: self.found.sweep[name] for name in map(column_of, lists)}, path)
 
     def _check_entry(self, lists: dict[str, tuple[GridValue, ...]], path: Path) -> None:
         sizes = {key: len(values) for key, values in lists.items()}
@@ -125,7 +145,7 @@ def _stand_in(
 ) -> None:
     """Complete a scene or law with the first of the swept values, which need not be given a second time."""
     within = value_at(tree, target.parent)
-    if not isinstance(within, dict) or target.key in within:
+    if not isinstance(within, dict) or target.is_given(within):
         return
     likely = [*values, *((1.0, 0.5) if target.is_number else ())]  # shares are below one
     good = [value for value in likely if wrong_value(target.record, target.key, value) is None]

@@ -55,6 +55,12 @@ class Source:
         """The lines of the text."""
         return _LINE_END.split(self.text)
 
+    def also_at(self, path: Path, given: Path) -> None:
+        """Let a path stand where another one, and what is below it, is given."""
+        for places in (self.keys, self.values, self.origins):
+            for at in [each for each in places if each[: len(given)] == given]:
+                places.setdefault((*path, *at[len(given) :]), places[at])  # type: ignore[arg-type]
+
     def located(self, notes: Iterable[Note]) -> list[Mistake]:
         """The notes as mistakes, in the order of the file, those of the command line last."""
         found = dict.fromkeys(self._located(note) for note in notes)

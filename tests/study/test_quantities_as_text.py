@@ -1,0 +1,115 @@
+"""Sweeps, expectations, laws and ``--set`` of a study in SI units: texts with units, keys without."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import frictionlab as fl
+from frictionlab.study import StudyError, parse_study
+
+HERE = "scene.dimensional."
+BODY = {
+    "mass": "0.5 kg",
+    "stiffness": "5 kN/m",
+    "damping": "5 N s/m",
+    "length": "5 um",
+    "normal_load": "20 N",
+}
+SHAKEN = {"velocity_amplitude": "2 mm/s"}
+
+
+def study(**told: Any) -> dict[str, Any]:
+    laws = [
+        {"kind": "dahl", "mu": "30 %", "presliding_length": "1 um"},
+        {
+            "kind": "stribeck",
+            "mu_kinetic": 0.3,
+            "mu_static": 0.4,
+            "stribeck_speed": "1 mm/s",
+            "viscosity": "2 s/m",
+        },
+    ]
+    scene = {"dimensional": {**BODY, "belt_vibration": SHAKEN}}
+    sweep = {
+        f"{HERE}belt_speed": {"start": "0.5 mm/s", "stop": "20 mm/s", "num": 40},
+        "linked": [
+            {
+                f"{HERE}belt_vibration.frequency": ["60 Hz", "1 kHz"],
+                f"{HERE}normal_load": ["20 N", "3e-2 kN"],
+            },
+            {"laws.dahl.presliding_length": ["1 um", "2 µm"], "laws.dahl.mu": [0.3, "40 %"]},
+        ],
+    }
+    where = {f"{HERE}belt_speed": "1 mm/s", "law.presliding_length": "1 um"}
+    expect = [{"where": where, "column": "mean_friction_N", "equals": "6000 mN", "within": "1 N"}]
+    return {"schema": 1, "scene": scene, "laws": laws, "sweep": sweep, "expect": expect} | told
+
+
+def in_numbers() -> dict[str, Any]:
+    numbers = study()
+    numbers["laws"][0] |= {"mu": 0.3, "presliding_length": 1e-6}
+    numbers["laws"][1] |= {"stribeck_speed": 1e-3, "viscosity": 2}
+    numbers["sweep"] = {
+        f"{HERE}belt_speed_m_per_s": {"start": 0.0005, "stop": 0.02, "num": 40},
+        "linked": [
+            {
+                f"{HERE}belt_vibration.frequency_rad_per_s": [376.9911184307752, 6283.185307179587],
+                f"{HERE}normal_load_N": [20, 30],
+            },
+            {"laws.dahl.presliding_length": [1e-6, 2e-6], "laws.dahl.mu": [0.3, 0.4]},
+        ],
+    }
+    where = {f"{HERE}belt_speed_m_per_s": 0.001, "law.presliding_length": 1e-6}
+    numbers["expect"] = [{"where": where, "column": "mean_friction_N", "equals": 6, "within": 1}]
+    return numbers
+
+
+def test_a_study_of_texts_is_that_of_its_numbers() -> None:
+    texts, numbers = parse_study(study()), parse_study(in_numbers())
+
+    assert texts.to_yaml() == numbers.to_yaml()
+    assert texts.digest() == numbers.digest()
+    assert parse_study(texts.resolved()) == texts
+
+
+def test_a_table_has_the_numbers_under_the_keys_with_their_units() -> None:
+    sweep = {f"{HERE}belt_speed": ["5 mm/s", "0.6 cm/s"]}
+    laws = [{"kind": "coulomb", "mu": 0.3}]
+    scene = {"dimensional": {**BODY, "drive": {"amplitude": "0 N", "frequency": "60 Hz"}}}
+    run = fl.run({"schema": 1, "scene": scene, "laws": laws, "sweep": sweep})
+
+    assert [*run.table[f"{HERE}belt_speed_m_per_s"]] == [0.005, 0.006]
+    assert [*run.table["mean_friction_N"]] == pytest.approx([6, 6])
+
+
+@pytest.mark.parametrize(
+    ("override", "said"),
+    [
+        (f"sweep.{HERE}belt_speed=[1 mm/s, 2 mm]", "belt_speed[1]: '2 mm' is a length [m]; give a speed [m/s]"),
+        (f"sweep.{HERE}belt_speed=[1 mm/s, 1e3 um/s]", "belt_speed[1]: 0.001 is in the list twice"),
+        (f"sweep.{HERE}belt_speed.stop=6", "belt_speed.stop: 6 has no unit; give a speed [m/s] such as '2 mm/s'"),
+        (f"sweep.{HERE}belt_speed.stop=1 um/s", "belt_speed.stop: must be > start = 0.0005, got 1e-06"),
+        (f"{HERE}belt_speed=1 mm/s", f"the study sweeps {HERE}belt_speed_m_per_s: set"),
+        (f"{HERE}mass=1", f"{HERE}mass: 1 has no unit; give a mass"),
+        (f"sweep.{HERE}gravity=[1 g_0]", "scene.dimensional gives normal_load, so gravity_m_per_s2 cannot be swept"),
+        ("laws.stribeck.stribeck_speed=1 um", "laws[1].stribeck_speed: '1 um' is a length [m]; give a speed [m/s]"),
+        ("expect[0].equals=1 m", "expect[0].equals: '1 m' is a length [m]; give a force [N]"),
+        ("expect[0].where={law.presliding_length: 1 N}", "where.law.presliding_length: '1 N' is a force [N]; give a"),
+        ("scene={damping_ratio: 0, normal_load: 1, belt_speed: 1 m/s}", "(units go with a scene in SI units: scene."),
+    ],
+)  # fmt: skip
+def test_a_wrong_text_is_told_under_the_key_that_was_written(override: str, said: str) -> None:
+    with pytest.raises(StudyError) as caught:
+        parse_study(study(), [override])
+
+    assert said in str(caught.value)
+
+
+def test_an_override_takes_the_place_of_the_same_value_under_its_other_key() -> None:
+    overrides = [f"{HERE}mass_kg=0.6", f"sweep.{HERE}belt_speed_m_per_s=[0.001, 0.002]"]
+    found = parse_study(study(expect=[]), overrides)
+
+    assert found.scene.values()["dimensional.mass_kg"] == 0.6
+    assert found.sweep[f"{HERE}belt_speed_m_per_s"] == (0.001, 0.002)

@@ -185,6 +185,9 @@ def _shown(value: Any) -> str:
     return repr(value) if isinstance(value, str) else PYTHON.text_of(value)
 
 
+_MISSING = "required key is missing"
+
+
 class _Told:
     """The mistakes of values that a record refuses, as notes.
 
@@ -204,8 +207,9 @@ class _Told:
         unknown = [each["loc"] for each in errors if each["type"] == "extra_forbidden"]
         there = {self._misspelt(loc) for loc in unknown}
         for error in errors:
-            if error["type"] == "missing":
-                told = "" if error["loc"] in there else "required key is missing"
+            wanted = str(getattr(error["input"], "what", ""))
+            if error["type"] == "missing" or wanted.startswith(_MISSING):
+                told = "" if error["loc"] in there else wanted or _MISSING
             else:
                 told = "" if error["loc"] in unknown else self._mistake(error)
             if told:

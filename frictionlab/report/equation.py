@@ -128,10 +128,29 @@ def _coefficients(n: _Numbers, axis: int) -> tuple[Markup, Markup, Markup]:
     """Of acceleration, velocity and place."""
     part = "" if axis == 1 else "transverse."
     if n.in_si:
-        names = "mass_kg", f"{part}damping_N_s_per_m", f"{part}stiffness_N_per_m"
-        return n.product(names[0]), n.product(names[1]), n.product(names[2])
+        return n.product("mass_kg"), _dashpot(n, part), n.product(*_spring(n, part))
     natural = [] if axis == 1 else ["transverse.natural_frequency"]
     return Markup("1"), n.product(f"{part}damping_ratio", *natural, factor=2.0), n.product(*natural, *natural)
+
+
+def _spring(n: _Numbers, part: str) -> tuple[str, ...]:
+    """The numbers whose product its stiffness is."""
+    given = f"{part}stiffness_N_per_m"
+    natural = f"{part}natural_frequency_rad_per_s"
+    return (given,) if n.has(given) else ("mass_kg", natural, natural)
+
+
+def _dashpot(n: _Numbers, part: str) -> Markup:
+    """In SI units; of a damping ratio twice that and the square root of stiffness and mass."""
+    given, ratio = f"{part}damping_N_s_per_m", f"{part}damping_ratio"
+    if n.has(given):
+        return n.product(given)
+    spring = _spring(n, part)
+    if len(spring) > 1:
+        return n.product(ratio, *spring[:2], factor=2.0)
+    if n.fixed(spring[0]) is None or n.fixed("mass_kg") is None:
+        return _times(n.product(ratio, factor=2.0), Markup("√({})").format(n.product(*spring, "mass_kg")))
+    return n.product(ratio, factor=2.0 * math.sqrt((n.fixed(spring[0]) or 0.0) * (n.fixed("mass_kg") or 0.0)))
 
 
 def _times(factor: Markup, what: Markup) -> Markup:
@@ -207,8 +226,22 @@ def _slip_of_mass(n: _Numbers, axis: int) -> Markup:
     turned = _along(n, part, axis) if n.has(part) else None
     if turned is None:
         return told
-    size = "velocity_amplitude_m_per_s" if n.in_si else "velocity_amplitude"
-    return told + Markup(" {} {}{}").format(_MINUS, _wave(n, part, size), turned)
+    return told + Markup(" {} {}{}").format(_MINUS, _times(_velocity(n, part), _form(n, part)), turned)
+
+
+def _velocity(n: _Numbers, part: str) -> Markup:
+    """The velocity amplitude of what shakes."""
+    ratio = f"{part}.frequency_ratio"
+    angular = [*([ratio] if n.has(ratio) else []), n.frequency]
+    if n.has(f"{part}.displacement_amplitude_m"):
+        return n.product(f"{part}.displacement_amplitude_m", *angular)
+    acceleration = f"{part}.acceleration_amplitude_m_per_s2"
+    if not n.has(acceleration):
+        return n.product(f"{part}.velocity_amplitude{'_m_per_s' if n.in_si else ''}")
+    numbers = [n.fixed(path) for path in angular]
+    if any(each is None for each in numbers):
+        return Markup("({}) / ({})").format(n.product(acceleration), n.product(*angular))
+    return n.product(acceleration, factor=1.0 / math.prod(each or 1.0 for each in numbers))
 
 
 def _less(n: _Numbers, path: str) -> Markup:

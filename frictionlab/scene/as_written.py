@@ -25,9 +25,13 @@ _WITHOUT_SUFFIX = {"phase": "deg", "direction": "deg", "amplitude": "", "damping
 
 
 class AsWritten(ScenePart):
-    """A part in SI units; other_names: the keys without a unit behind them, and the fields they give."""
+    """A part in SI units; other_names: the keys without a unit behind them, and the fields they give.
+
+    one_of: names of one and the same thing, of which exactly one is given.
+    """
 
     other_names: ClassVar[Mapping[str, str]] = {}
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = ()
 
     if TYPE_CHECKING:  # every number may be text, and its key without a unit
 
@@ -41,9 +45,12 @@ class AsWritten(ScenePart):
     @model_validator(mode="before")
     @classmethod
     def _numbers_in_si(cls, data: Any) -> Any:
-        if not isinstance(data, Mapping) or all(_is_plain(key, value, cls) for key, value in data.items()):
+        if not isinstance(data, Mapping):
             return data
-        return dict(_fields(data, cls))
+        found = dict(_fields(data, cls))
+        for names in cls.one_of:
+            _one_of(found, names)
+        return found
 
 
 def without_unit(name: str) -> str:
@@ -86,8 +93,14 @@ def in_si(key: str, name: str, value: Any) -> Any:
     return value
 
 
-def _is_plain(key: Any, value: Any, part: type[AsWritten]) -> bool:
-    return key not in part.other_names and not isinstance(value, str)
+def _one_of(data: dict[str, Any], names: tuple[str, ...]) -> None:
+    """Put in what is wrong where not exactly one of the names is given."""
+    given = [name for name in names if data.get(name) is not None]
+    if not given:
+        others = " or ".join(map(without_unit, names[1:]))
+        data[names[0]] = Unfit(None, f"required key is missing (or {others})")
+    for name in given[1:]:
+        data[name] = Unfit(data[name], f"leave it out where {without_unit(given[0])} is given")
 
 
 def _fields(data: Mapping[str, Any], part: type[AsWritten]) -> Iterator[tuple[str, Any]]:

@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, ClassVar, get_type_hints
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, ClassVar, Self, get_type_hints
 
 from pydantic import create_model, model_validator
 
@@ -27,7 +28,18 @@ from frictionlab.scene.parts import (
     Transverse,
 )
 from frictionlab.scene.rules import problems_of_parts
+from frictionlab.scene.springs_in_si import (
+    DASHPOT,
+    SHAKING,
+    SPRING,
+    damping_ratio_of,
+    own_length,
+    stiffness_of,
+    time_of,
+    velocity_of,
+)
 from frictionlab.scene.units import SUFFIXES, Units, dimensions
+from frictionlab.scene.waveforms import SINE
 
 STANDARD_GRAVITY = 9.81
 
@@ -62,16 +74,39 @@ def key_in_si(part: type[ScenePart], name: str) -> str:
     return name if dimension is None else f"{name}_{SUFFIXES[dimension]}"
 
 
-def _in_si(part: type[ScenePart], example: str) -> Any:
-    """The SI form of a part that has no keys of its own in SI units."""
+class _Shaken(PartInSI):
+    """What shakes with one velocity, displacement or acceleration.
+
+    velocity_amplitude_m_per_s [m/s], >= 0: of its velocity; or instead, of a sine,
+    displacement_amplitude_m [m], >= 0: of its displacement, the velocity's over the circular frequency; or instead
+    acceleration_amplitude_m_per_s2 [m/s^2], >= 0: of its acceleration, the velocity's times it.
+    """
+
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SHAKING,)
+    velocity_amplitude_m_per_s: NonNegative | None = None
+    displacement_amplitude_m: NonNegative | None = None
+    acceleration_amplitude_m_per_s2: NonNegative | None = None
+
+    @model_validator(mode="after")
+    def _a_sine(self) -> Self:
+        waveform = getattr(self, "waveform", None)
+        for name in SHAKING[1:]:
+            if getattr(self, name) is not None and waveform not in (None, SINE):
+                raise ValueError(f"{name}: of a sine alone: give velocity_amplitude with this waveform")
+        return self
+
+
+def _in_si(part: type[ScenePart], example: str, base: type[PartInSI] = PartInSI) -> Any:
+    """The SI form of a part that has no keys of its own in SI units, but for those of its base."""
     kinds = get_type_hints(part, include_extras=True)
     fields: dict[str, Any] = {
-        key_in_si(part, name): (kinds[name], ... if field.is_required() else field.default)
+        key: (kinds[name], ... if field.is_required() else field.default)
         for name, field in part.model_fields.items()
+        if (key := key_in_si(part, name)) not in base.model_fields
     }
     name = f"Dimensional{part.__name__}"
     said = _documented(part, name, example)
-    made = create_model(name, __base__=PartInSI, __module__=__name__, __doc__=said, **fields)
+    made = create_model(name, __base__=base, __module__=__name__, __doc__=said, **fields)
     made.nondimensional, made.alternatives = part, part.alternatives
     return made
 
@@ -96,7 +131,7 @@ else:
     DimensionalDrive = _in_si(Drive, "amplitude_N=20, waveform='square', frequency_rad_per_s=300")
     DimensionalLoad = _in_si(Load, "unbalance_kg_m=0.01, frequency_ratio=2")
     DimensionalBeltVibration = _in_si(
-        BeltVibration, "velocity_amplitude_m_per_s=0.02, frequency_rad_per_s=300"
+        BeltVibration, "displacement_amplitude_m=5e-06, frequency_rad_per_s=300", _Shaken
     )
     DimensionalNormalLoadVariation = _in_si(NormalLoadVariation, "amplitude=0.3, frequency_rad_per_s=300")
     DimensionalInitial = _in_si(Initial, "x_m=0.001")
@@ -105,8 +140,10 @@ else:
 class DimensionalTransverse(PartInSI):
     """The motion of the same mass along x2, across the belt.
 
-    stiffness_N_per_m [N/m], > 0: K_2, of the spring across the belt.
-    damping_N_s_per_m [N s/m], >= 0: C_2, of the dashpot across the belt.
+    stiffness_N_per_m [N/m], > 0: K_2, of the spring across the belt; or instead
+    natural_frequency_rad_per_s [rad/s], > 0: of the mass on it.
+    damping_N_s_per_m [N s/m], >= 0: C_2, of the dashpot across the belt; or instead
+    damping_ratio [-], >= 0: of the motion across it.
     load: the force across the belt; none where left out.
 
     >>> import frictionlab as fl
@@ -116,8 +153,11 @@ class DimensionalTransverse(PartInSI):
 
     nondimensional: ClassVar[type[ScenePart]] = Transverse
 
-    stiffness_N_per_m: Positive
-    damping_N_s_per_m: NonNegative
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SPRING, DASHPOT)
+    stiffness_N_per_m: Positive | None = None
+    natural_frequency_rad_per_s: Positive | None = None
+    damping_N_s_per_m: NonNegative | None = None
+    damping_ratio: NonNegative | None = None
     load: DimensionalLoad | None = None
 
 
@@ -125,9 +165,13 @@ class Dimensional(AsWritten):
     """A body on a moving belt, shaken, in SI units.
 
     mass_kg [kg], > 0: M.
-    stiffness_N_per_m [N/m], > 0: K_1, of the spring along the belt.
-    damping_N_s_per_m [N s/m], >= 0: C_1, of the dashpot along the belt.
-    length_m [m], > 0: L, the length scale of the nondimensional columns; no result in SI units depends on it.
+    stiffness_N_per_m [N/m], > 0: K_1, of the spring along the belt; or instead
+    natural_frequency_rad_per_s [rad/s], > 0: omega_1, of the mass on it.
+    damping_N_s_per_m [N s/m], >= 0: C_1, of the dashpot along the belt; or instead
+    damping_ratio [-], >= 0: of the motion along it.
+    length_m [m], > 0: L, the length scale of the nondimensional columns; no result in SI units depends on it. Left
+    out, it is the largest amplitude without friction, of each load and of the belt's vibration as a sine of its size;
+    normal load over stiffness where nothing shakes.
     gravity_m_per_s2 [m/s^2], > 0: the normal load is the weight; 9.81 where normal_load_N is left out.
     normal_load_N [N], > 0: the normal load, instead of gravity_m_per_s2.
     belt_speed_m_per_s [m/s]: V_b.
@@ -148,10 +192,13 @@ class Dimensional(AsWritten):
     Source: Sulollari, van Dalen & Cabboi, Eq. 2.
     """
 
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SPRING, DASHPOT)
     mass_kg: Positive
-    stiffness_N_per_m: Positive
-    damping_N_s_per_m: NonNegative
-    length_m: Positive
+    stiffness_N_per_m: Positive | None = None
+    natural_frequency_rad_per_s: Positive | None = None
+    damping_N_s_per_m: NonNegative | None = None
+    damping_ratio: NonNegative | None = None
+    length_m: Positive | None = None
     gravity_m_per_s2: Positive | None = None
     normal_load_N: Positive | None = None
     belt_speed_m_per_s: Finite
@@ -172,16 +219,24 @@ class Dimensional(AsWritten):
     def _one_scene(self) -> Dimensional:
         both = self.gravity_m_per_s2 is not None and self.normal_load_N is not None
         twice = ["gravity_m_per_s2: leave it out where normal_load_N is given"] if both else []
-        problems = [*twice, *problems_of_parts(self), *self._out_of_range()]
+        problems = [*twice, *problems_of_parts(self)]
+        if not problems:
+            self._fill_length()
+            problems = [*self._out_of_range()]
         if problems:
             raise ValueError("; ".join(problems))
         return self
+
+    def _fill_length(self) -> None:
+        if self.length_m is None:
+            with suppress(ZeroDivisionError, OverflowError):
+                vars(self)["length_m"] = own_length(self)
 
     def _out_of_range(self) -> Iterator[str]:
         """Values in wrong units whose nondimensional numbers overflow or vanish."""
         try:
             numbers = [*self.scales, *_numbers(self.scaled())]
-        except (ZeroDivisionError, OverflowError):
+        except (ZeroDivisionError, OverflowError, TypeError):
             numbers = [math.inf]
         if not all(map(math.isfinite, numbers)) or min(*self.scales, self.scaled()["normal_load"]) <= 0.0:
             yield "length_m: these values have no nondimensional numbers: check their units"
@@ -189,8 +244,15 @@ class Dimensional(AsWritten):
     @property
     def scales(self) -> Units:
         """L, 1/omega_1, K_1 L and M."""
-        time = math.sqrt(self.mass_kg / self.stiffness_N_per_m)
-        return Units(self.length_m, time, self.stiffness_N_per_m * self.length_m, self.mass_kg)
+        length, mass = self.length_m or math.nan, self.mass_kg
+        return Units(length, time_of(self, mass), stiffness_of(self, mass) * length, mass)
+
+    @property
+    def frequency(self) -> float:
+        """Of the drive, or of what else gives it [rad/s]; 1 where nothing does."""
+        parts: tuple[Any, ...] = (self.drive, self.belt_vibration, self.normal_load_variation)
+        found = (part.frequency_rad_per_s for part in parts if part is not None)
+        return next((float(each) for each in found if each is not None), 1.0)
 
     @property
     def load(self) -> float:
@@ -202,23 +264,24 @@ class Dimensional(AsWritten):
 
     def scaled(self) -> dict[str, Any]:
         """The nondimensional scene as plain nested values."""
-        scales, stiffness, across = self.scales, self.stiffness_N_per_m, self.transverse
+        scales, mass, across = self.scales, self.mass_kg, self.transverse
+        belt: Any = self.belt_vibration
         found: dict[str, Any] = {
             name: part.scaled(scales) for name, part in self if isinstance(part, PartInSI)
         }
         if across is not None:
             found["transverse"] |= {
-                "natural_frequency": math.sqrt(across.stiffness_N_per_m / stiffness),
-                "damping_ratio": self._damping_ratio(across.damping_N_s_per_m, across.stiffness_N_per_m),
+                "natural_frequency": math.sqrt(stiffness_of(across, mass) / stiffness_of(self, mass)),
+                "damping_ratio": damping_ratio_of(across, mass),
             }
+        if belt is not None:
+            velocity = velocity_of(belt, self.frequency * (belt.frequency_ratio or 1.0))
+            found["belt_vibration"]["velocity_amplitude"] = velocity / scales.velocity
         return found | {
-            "damping_ratio": self._damping_ratio(self.damping_N_s_per_m, stiffness),
+            "damping_ratio": damping_ratio_of(self, mass),
             "normal_load": self.load / scales.force,
             "belt_speed": self.belt_speed_m_per_s / scales.velocity,
         }
-
-    def _damping_ratio(self, damping: float, stiffness: float) -> float:
-        return damping / (2.0 * math.sqrt(stiffness * self.mass_kg))
 
 
 def _numbers(tree: dict[str, Any]) -> Iterator[float]:

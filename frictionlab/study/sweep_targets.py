@@ -13,15 +13,17 @@ from frictionlab.mistakes.notes import Notes, Path, did_you_mean, number_text
 from frictionlab.mistakes.validation import field_name, number_paths, record_at, value_paths
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
+from frictionlab.scene.springs_in_si import DASHPOT, SHAKING, SPRING
 from frictionlab.study.axes import FRICTION, LINKED, STATIC
 from frictionlab.study.choices import label_of
 from frictionlab.study.parts import coefficient_of
-from frictionlab.study.written import column_of
+from frictionlab.study.written import column_of, scene_is_in_si
 
 _GROUPS = (
     ("unbalance", "amplitude"),
     ("unbalance_kg_m", "amplitude_N"),
     ("gravity_m_per_s2", "normal_load_N"),
+    *(SPRING, DASHPOT, SHAKING),
     ("stiffness", "presliding_length", "contact_stiffness"),
     ("damping", "contact_damping"),
 )
@@ -61,7 +63,8 @@ class Targets:
 
     @cached_property
     def _sweepable(self) -> list[str]:
-        paths = [f"scene.{path}" for path in value_paths(Scene)]
+        own = scene_is_in_si(self._tree)
+        paths = [f"scene.{path}" for path in value_paths(Scene) if path.startswith("dimensional.") == own]
         for label, index in self._labels.items():
             kind = self._tree["laws"][index].get("kind")
             if kind in self._laws.names():

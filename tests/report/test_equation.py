@@ -81,6 +81,20 @@ def test_si_units_have_mass_and_springs_in_them() -> None:
     assert letters_sentence(_study(IN_SI)).endswith("forces are in N, lengths in m, t in s.")
 
 
+def test_springs_and_vibrations_by_their_other_numbers_are_those_of_the_equation() -> None:
+    body = {"mass_kg": 3, "normal_load_N": 25, "belt_speed_m_per_s": 0.1, "damping_ratio": 0.1}
+    natural, stiff = {"natural_frequency_rad_per_s": 10}, {"stiffness_N_per_m": 300}
+    shaken = {"belt_vibration": {"displacement_amplitude_m": 0.01, "frequency_rad_per_s": 20}}
+    pushed = {"belt_vibration": {"acceleration_amplitude_m_per_s2": 4, "frequency_rad_per_s": 20}}
+    swept = {"dimensional__belt_vibration__frequency": ["1 Hz", "2 Hz"]}
+
+    wanted = ["3 Ẍ1 + 6 Ẋ1 + 300 X1 + 25 T1 = 0", "v1 = Ẋ1 − 0.1 − 0.2 sin(20 t)"]
+    assert told({"dimensional": body | natural | shaken}) == wanted
+    assert told({"dimensional": body | stiff | pushed}) == wanted
+    assert told({"dimensional": body | stiff | shaken}, **swept)[1] == "v1 = Ẋ1 − 0.1 − 0.01 ω sin(ω t)"
+    assert told({"dimensional": body | stiff | pushed}, **swept)[1] == "v1 = Ẋ1 − 0.1 − (4) / (ω) sin(ω t)"
+
+
 def test_a_normal_load_and_a_belt_that_vary_are_told() -> None:
     scene = LINE | {"normal_load_variation": {"amplitude": 0.5, "frequency_ratio": 2}}
     scene |= {"belt_vibration": {"velocity_amplitude": 2, "phase": -90}}

@@ -341,7 +341,10 @@ def without(body: dict[str, Any], *keys: str) -> dict[str, Any]:
     ("body", "said"),
     [
         (BODY | {"mass_kg": -1}, "scene.dimensional.mass_kg: must be > 0, got -1"),
-        (without(BODY, "length_m"), "scene.dimensional.length_m: required key is missing"),
+        (
+            without(BODY, "stiffness_N_per_m"),
+            "scene.dimensional.stiffness_N_per_m: required key is missing (or natural_frequency)",
+        ),
         (
             BODY | {"drive": {"amplitude_N": 1, "unbalance_kg_m": 1, "frequency_rad_per_s": 1}},
             "scene.dimensional.drive: give exactly one of unbalance_kg_m and amplitude_N",
@@ -436,7 +439,7 @@ def test_every_si_value_has_its_word_its_symbol_and_its_unit() -> None:
     from frictionlab.columns import word
     from frictionlab.mistakes.validation import number_paths
 
-    starts, without_unit = "initial.", ("frequency_ratio", "variation.amplitude")
+    starts, without_unit = "initial.", ("frequency_ratio", "variation.amplitude", "damping_ratio")
     for path in number_paths(fl.Dimensional):
         if path.endswith(without_unit):
             assert word(f"scene.dimensional.{path}").endswith("$"), path

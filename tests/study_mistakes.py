@@ -209,7 +209,7 @@ HINTS = [
     ("  scene.belt_speed: {", "  belt_speed: {", "did you mean 'scene.belt_speed'?"),
     ("title", "titel", "did you mean 'title'?"),
     ("kind: coulomb, mu: 0.4", "kind: colomb, mu: 0.4", "did you mean 'coulomb'?"),
-    ("mu: 0.4", "mu: 0.4, mus: 1", "did you mean 'mu'?"),
+    ("mu: 0.4", "mu: 0.4, mus: 1", "did you mean 'mu_static'?"),
     ("methods: [auto", "methods: [autoo", "did you mean 'auto'?"),
     ("laws.soft.mu: [", "laws.sofd.mu: [", "did you mean 'laws.soft.mu'?"),
     ("column: error", "column: Error", "did you mean 'error'?"),

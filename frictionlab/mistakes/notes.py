@@ -117,13 +117,52 @@ def closest(name: str, among: Iterable[str], missing: Iterable[str] = ()) -> str
 
     missing: required names that were not given. One that differs by words at its end is taken first: mu, mu_kinetic.
     """
+    names = list(islice(among, _MOST_NAMES))
+    if (known := _of_the_literature(name, names)) is not None:
+        return known
     for wanted in missing:
         if wanted.startswith(f"{name}_") or name.startswith(f"{wanted}_"):
             return wanted
-    names = list(islice(among, _MOST_NAMES))
     found = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1, cutoff=0.6)
     begun = [n for n in names if n.lower().startswith(f"{name.lower()}_")]
     return next((n for n in names if found and n.lower() == found[0]), begun[0] if len(begun) == 1 else None)
+
+
+def _of_the_literature(name: str, among: Sequence[str]) -> str | None:
+    """The name here of what papers call so, if it is one of these."""
+    plain = name.lower().replace("_", "")
+    for wanted in (ours for theirs, ours in LITERATURE if plain in theirs.split()):
+        exact = [each for each in among if each == wanted]
+        begun = [each for each in among if each.startswith(f"{wanted}_")]
+        if exact or begun:
+            return [*exact, *begun][0]
+    return None
+
+
+LITERATURE = (
+    ("sigma0 k0 kb", "stiffness"),
+    ("sigma1", "damping"),
+    ("sigma2 fv bv", "viscosity"),
+    ("mus mustat mubreak fs ts", "mu_static"),
+    ("muk mud mudyn muc fc fk tc", "mu_kinetic"),
+    ("muk mud mudyn muc fc fk tc", "mu"),
+    ("vs vstribeck vst stribeckvelocity", "stribeck_speed"),
+    ("deltas deltast", "stribeck_exponent"),
+    ("kt kcontact", "contact_stiffness"),
+    ("ct", "contact_damping"),
+    ("zba", "breakaway_ratio"),
+    ("hz frequencyhz freqhz freq f omega w", "frequency"),
+    ("m", "mass"),
+    ("k", "stiffness"),
+    ("c d", "damping"),
+    ("zeta xi beta", "damping_ratio"),
+    ("omega0 omegan f0 fn wn", "natural_frequency"),
+    ("n fn load weight preload", "normal_load"),
+    ("v vb v0 velocity speed", "belt_speed"),
+    ("g", "gravity"),
+    ("step points n count steps", "num"),
+)
+"""Names of papers without underscores, and what they are here; the first that a record has is meant."""
 
 
 def did_you_mean(name: str, among: Iterable[str], missing: Iterable[str] = ()) -> str:

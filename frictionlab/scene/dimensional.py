@@ -10,14 +10,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, ClassVar, Self, get_type_hints
+from typing import TYPE_CHECKING, Any, ClassVar, Self, cast, get_type_hints
 
 from pydantic import create_model, model_validator
 
-from frictionlab.quantities import Finite, NonNegative, Positive
+from frictionlab.quantities import Finite, NonNegative, Positive, given_values
 from frictionlab.scene.as_written import AsWritten
+from frictionlab.scene.changed import changed
 from frictionlab.scene.parts import (
     BeltVibration,
     Drive,
@@ -207,6 +208,18 @@ class Dimensional(AsWritten):
     belt_vibration: DimensionalBeltVibration | None = None
     normal_load_variation: DimensionalNormalLoadVariation | None = None
     initial: DimensionalInitial | None = None
+
+    def with_(self, changes: Mapping[str, Any] | None = None, /, **others: Any) -> Dimensional:
+        """The same body with other values: ``with_({"drive.frequency": "60 Hz"}, mass="2 kg")``; None leaves one out.
+
+        >>> import frictionlab as fl
+        >>> body = {"mass": "1 kg", "stiffness": "400 N/m", "damping": "4 N s/m"}
+        >>> fl.Dimensional(**body, belt_speed="50 mm/s").with_(belt_speed="6 cm/s", damping=None, damping_ratio=0.1)
+        Dimensional(mass_kg=1, stiffness_N_per_m=400, damping_ratio=0.1, belt_speed_m_per_s=0.06)
+
+        Raises WrongValues, TypeError.
+        """
+        return cast(Dimensional, changed(self, given_values(self), changes, others))
 
     @model_validator(mode="before")
     @classmethod

@@ -12,15 +12,14 @@ and under a normal load that changes where the scene says so.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, cast
 
 from pydantic import ValidationError, model_validator
 
-from frictionlab.mistakes.validation import field_path
-from frictionlab.quantities import Finite, NonNegative, Positive, Record, given_values
-from frictionlab.scene.as_written import in_si
+from frictionlab.quantities import Finite, NonNegative, Positive, given_values
 from frictionlab.scene.body import Mass, Motion
+from frictionlab.scene.changed import changed, with_values
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.parts import (
     BeltVibration,
@@ -263,12 +262,9 @@ class Scene(ScenePart):
 
         Raises WrongValues, TypeError.
         """
-        if changes is not None and not isinstance(changes, Mapping):
-            raise TypeError("with_ takes values by name, belt_speed=2, or by path, {'drive.frequency': 2}")
         given = given_values(self)
         tree = given if self.dimensional is None else {"dimensional": given["dimensional"]}
-        changes = {**(changes or {}), **others}
-        return type(self)(**with_values(tree, dict(_as_fields(type(self), changes))))
+        return cast(Scene, changed(self, tree, changes, others))
 
     def checked(self) -> Scene:
         """The same scene, made again from what it was given: raises WrongValues where its values make no scene."""
@@ -288,26 +284,6 @@ class Scene(ScenePart):
         there = self.dimensional.model_copy(update={"belt_speed_m_per_s": belt_speed})
         speed = belt_speed / there.scales.velocity
         return self.model_copy(update={"belt_speed": speed, "dimensional": there})
-
-
-def _as_fields(record: type[Record], changes: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Values by the paths of the fields they are for."""
-    for path, value in changes.items():
-        field = field_path(record, path)
-        yield field, value if field == path else in_si(path, field, value)
-
-
-def with_values(tree: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """A copy of nested values with some replaced, by dotted path."""
-    new = dict(tree)
-    for path, value in values.items():
-        head, _, rest = path.partition(".")
-        held = new.get(head) if rest else None
-        inside = given_values(held) if isinstance(held, Record) else held
-        new[head] = (
-            with_values(inside if isinstance(inside, Mapping) else {}, {rest: value}) if rest else value
-        )
-    return new
 
 
 def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, float | str]:

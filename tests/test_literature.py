@@ -1,0 +1,49 @@
+"""Names that papers use lead to those here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import frictionlab as fl
+from frictionlab.mistakes.notes import WrongValues
+from frictionlab.study import StudyError, parse_study
+
+
+@pytest.mark.parametrize(
+    ("record", "given", "meant"),
+    [
+        (fl.LuGre, "sigma0", "stiffness"),
+        (fl.LuGre, "sigma_0", "stiffness"),
+        (fl.LuGre, "sigma_1", "damping"),
+        (fl.LuGre, "sigma2", "viscosity"),
+        (fl.LuGre, "mus", "mu_static"),
+        (fl.LuGre, "mu_s", "mu_static"),
+        (fl.LuGre, "muk", "mu_kinetic"),
+        (fl.LuGre, "Fc", "mu_kinetic"),
+        (fl.Coulomb, "mu_k", "mu"),
+        (fl.Coulomb, "F_s", "mu_static"),
+        (fl.Stribeck, "vs", "stribeck_speed"),
+        (fl.Jenkins, "k_t", "contact_stiffness"),
+        (fl.DimensionalDrive, "frequency_Hz", "frequency"),
+        (fl.DimensionalDrive, "Hz", "frequency"),
+        (fl.Dimensional, "m", "mass"),
+        (fl.Dimensional, "zeta", "damping_ratio"),
+        (fl.Dimensional, "f_n", "natural_frequency"),
+        (fl.Scene, "zeta", "damping_ratio"),
+        (fl.Scene, "v_b", "belt_speed"),
+    ],
+)
+def test_a_name_of_a_paper_leads_to_ours(record: Any, given: str, meant: str) -> None:
+    with pytest.raises(WrongValues, match=f"did you mean '{meant}'") as caught:
+        record(**{given: 1})
+
+    assert not any(f": {meant}: required" in str(each) for each in caught.value.mistakes)
+
+
+def test_a_range_in_steps_is_asked_for_its_number_of_values() -> None:
+    scene = {"damping_ratio": 0.1, "normal_load": 1, "belt_speed": 1}
+    tree = {"schema": 1, "scene": scene, "laws": [{"kind": "coulomb", "mu": 0.3}]}
+    with pytest.raises(StudyError, match="did you mean 'num'"):
+        parse_study(tree | {"sweep": {"scene.belt_speed": {"start": 1, "stop": 2, "step": 0.1}}})

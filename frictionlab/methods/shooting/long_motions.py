@@ -96,7 +96,9 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
         means = _means(motions)
         open_ = [place for place, motion in motions.items() if motion.end is None]
         enough = max(problem.goal.tolerance, SMALL)
-        if all(place in means and means[place].error <= enough for place in open_):
+        if len(set(means.values())) < 2 and all(
+            place in means and means[place].error <= enough for place in open_
+        ):
             break
     followed.lead_to({place: motion.averaged(means.get(place)) for place, motion in motions.items()})
     followed.seconds += sum(motion.seconds for motion in motions.values())

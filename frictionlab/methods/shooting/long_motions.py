@@ -17,11 +17,11 @@ LENGTHS = 512, 1024, 2048
 """Periods after which motions are averaged: the next length where the error is not small enough yet."""
 FEWEST_AVERAGED = 256
 """Periods below which nothing is averaged: motions whose steps are too many are not followed as far."""
-SMALL = 1e-4
+SMALL_ERROR = 1e-4
 """Error of the mean friction that is small enough, where the tolerance is smaller."""
 REPEATED = 1e-6
 """How near to an earlier one, over its size, a state is where the motion repeats."""
-ALIKE = 1.5
+SAME_MEAN = 1.5
 """Difference of two means, over what their errors together allow at two standard errors, that keeps them one."""
 
 
@@ -95,7 +95,7 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
                 motion.follow(length)
         means = _means(motions)
         open_ = [place for place, motion in motions.items() if motion.end is None]
-        enough = max(problem.goal.tolerance, SMALL)
+        enough = max(problem.goal.tolerance, SMALL_ERROR)
         if len(set(means.values())) < 2 and all(
             place in means and means[place].error <= enough for place in open_
         ):
@@ -127,4 +127,4 @@ def _means(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
 
 
 def _alike(one: LongMean, other: LongMean) -> bool:
-    return abs(one.mean - other.mean) <= ALIKE * math.hypot(one.error, other.error) + REPEATED
+    return abs(one.mean - other.mean) <= SAME_MEAN * math.hypot(one.error, other.error) + REPEATED

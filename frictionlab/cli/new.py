@@ -19,15 +19,16 @@ def new_command() -> None:
 
 @new_command.command("study")
 @click.argument("path", type=options.PATH)
-def study(path: Path) -> None:
+@click.option("--si", "template", flag_value="study_si.yaml", help="A scene in units such as mm/s, Hz and N.")
+def study(path: Path, template: str | None) -> None:
     """Write a commented study to the file PATH, which ``run`` takes as it is. Never replaces a file.
 
     Beside it frictionlab.schema.json is written: by it editors complete and check the study as you type.
     """
-    from frictionlab.scaffold.study import SCHEMA_FILE, new_study, put_schema_beside
+    from frictionlab.scaffold.study import SCHEMA_FILE, TEMPLATE, new_study, put_schema_beside
     from frictionlab.study.schema import schema_text
 
-    file = new_study(path)
+    file = new_study(path, TEMPLATE.with_name(template or TEMPLATE.name))
     print_result(str(file))
     if put_schema_beside(file, f"{schema_text()}\n") is None:
         print_message(

@@ -13,15 +13,15 @@ SCHEMA_FILE = "frictionlab.schema.json"
 """Beside a study, whose first line names it to editors."""
 
 
-def new_study(path: Path) -> Path:
-    """Write the file, with .yaml added where the name has no such ending; where it is.
+def new_study(path: Path, template: Path = TEMPLATE) -> Path:
+    """Write the file, with .yaml added where the name has no such ending; where it is. template: what it says.
 
     Never replaces a file and makes no folder. Raises FolderError, SaveError.
     """
     if path.is_dir():
         raise FolderError(f"{path} is a folder: name the file too, as in {path / 'NAME.yaml'}")
     file = path if path.suffix in ENDINGS else path.with_name(f"{path.name}.yaml")
-    text = TEMPLATE.read_text(encoding="utf-8")
+    text = template.read_text(encoding="utf-8")
     try:
         with file.open("x", encoding="utf-8") as new:
             new.write(text)

@@ -18,11 +18,13 @@ import pandas as pd
 import pytest
 from fake_methods import Fake, breaks_down
 
+import frictionlab as fl
 from frictionlab import cli, registry
 from frictionlab.charts import figures
 from frictionlab.registry.bibliography import read_bibtex
 from frictionlab.runner import api, execute
 from frictionlab.runner.in_use import alone_in
+from frictionlab.study import load_study
 from frictionlab.study.yaml_text import yaml_text
 
 POINTS = [4.0, 13.0, -2.0, 9.0]
@@ -248,6 +250,16 @@ def test_a_new_study_is_written_once_and_runs_as_it_is(frictionlab: Any) -> None
     assert frictionlab("check", "my study.yaml").code == 0
     assert (again.code, again.out) == (2, "")
     assert again.err == "my study.yaml is there already and stays as it is; choose another name\n"
+
+
+def test_a_new_study_in_si_units_is_one(frictionlab: Any) -> None:
+    assert frictionlab("new", "study", "mine", "--si").code == 0
+
+    scene = load_study("mine.yaml").scene
+    assert scene.dimensional is not None
+    assert scene.dimensional.belt_vibration == fl.DimensionalBeltVibration(
+        displacement_amplitude="5 um", frequency="60 Hz"
+    )
 
 
 def test_a_new_study_names_its_schema_to_editors_who_find_it_beside_the_file(frictionlab: Any) -> None:

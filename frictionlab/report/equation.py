@@ -253,8 +253,8 @@ def _less(n: _Numbers, path: str) -> Markup:
 
 def _slip_line(n: _Numbers, axis: int, part: str) -> Markup:
     """A prescribed slip velocity."""
-    wave = _wave(n, part, "velocity_amplitude") if n.has(part) else Markup("")
-    belt = _less(n, "belt_speed") if axis == 1 else Markup("")
+    wave = _times(_velocity(n, part), _form(n, part)) if n.has(part) else Markup("")
+    belt = _less(n, n.path("", "belt_speed")) if axis == 1 else Markup("")
     alone = Markup(belt.removeprefix("+ ").replace(f"{_MINUS} ", _MINUS))
     told = Markup("{} {}").format(wave, belt) if wave else alone
     return Markup("<i>v</i><sub>{}</sub> = {}").format(axis, told)

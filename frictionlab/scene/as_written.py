@@ -48,9 +48,14 @@ class AsWritten(ScenePart):
         if not isinstance(data, Mapping):
             return data
         found = dict(_fields(data, cls))
-        for names in cls.one_of:
+        for names in cls._needed(found):
             _one_of(found, names)
         return found
+
+    @classmethod
+    def _needed(cls, _data: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
+        """Those of ``one_of`` that these values need."""
+        return cls.one_of
 
 
 def without_unit(name: str) -> str:
@@ -97,8 +102,8 @@ def _one_of(data: dict[str, Any], names: tuple[str, ...]) -> None:
     """Put in what is wrong where not exactly one of the names is given."""
     given = [name for name in names if data.get(name) is not None]
     if not given:
-        others = " or ".join(map(without_unit, names[1:]))
-        data[names[0]] = Unfit(None, f"required key is missing (or {others})")
+        others = f" (or {' or '.join(map(without_unit, names[1:]))})" if names[1:] else ""
+        data[names[0]] = Unfit(None, f"required key is missing{others}")
     for name in given[1:]:
         data[name] = Unfit(data[name], f"leave it out where {without_unit(given[0])} is given")
 

@@ -26,9 +26,11 @@ from frictionlab.scene.parts import (
     Load,
     NormalLoadVariation,
     ScenePart,
+    Slip,
     Transverse,
+    TransverseSlip,
 )
-from frictionlab.scene.rules import problems_of_parts
+from frictionlab.scene.rules import problems_of_parts, problems_of_slip
 from frictionlab.scene.springs_in_si import (
     DASHPOT,
     SHAKING,
@@ -128,6 +130,8 @@ if TYPE_CHECKING:
     DimensionalBeltVibration = PartInSI
     DimensionalNormalLoadVariation = PartInSI
     DimensionalInitial = PartInSI
+    DimensionalSlip = PartInSI
+    DimensionalTransverseSlip = PartInSI
 else:
     DimensionalDrive = _in_si(Drive, "amplitude_N=20, waveform='square', frequency_rad_per_s=300")
     DimensionalLoad = _in_si(Load, "unbalance_kg_m=0.01, frequency_ratio=2")
@@ -136,6 +140,10 @@ else:
     )
     DimensionalNormalLoadVariation = _in_si(NormalLoadVariation, "amplitude=0.3, frequency_rad_per_s=300")
     DimensionalInitial = _in_si(Initial, "x_m=0.001")
+    DimensionalSlip = _in_si(Slip, "displacement_amplitude_m=5e-06, frequency_rad_per_s=300", _Shaken)
+    DimensionalTransverseSlip = _in_si(
+        TransverseSlip, "velocity_amplitude_m_per_s=0.02, frequency_rad_per_s=300", _Shaken
+    )
 
 
 class DimensionalTransverse(PartInSI):
@@ -177,6 +185,8 @@ class Dimensional(AsWritten):
     normal_load_N [N], > 0: the normal load, instead of gravity_m_per_s2.
     belt_speed_m_per_s [m/s]: V_b.
 
+    ``slip`` and ``transverse_slip`` prescribe a motion in place of mass, spring, dashpot and loads; normal_load_N is
+    then 1 where it is left out.
     Every number may be text with a unit, its key without one: ``belt_speed="2 mm/s"``, ``frequency="60 Hz"``.
     Leave ``transverse`` out for one degree of freedom.
     Raises WrongValues with every mistake in the values.
@@ -193,8 +203,8 @@ class Dimensional(AsWritten):
     Source: Sulollari, van Dalen & Cabboi, Eq. 2.
     """
 
-    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SPRING, DASHPOT)
-    mass_kg: Positive
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (("mass_kg",), SPRING, DASHPOT)
+    mass_kg: Positive | None = None
     stiffness_N_per_m: Positive | None = None
     natural_frequency_rad_per_s: Positive | None = None
     damping_N_s_per_m: NonNegative | None = None
@@ -205,6 +215,8 @@ class Dimensional(AsWritten):
     belt_speed_m_per_s: Finite
     drive: DimensionalDrive | None = None
     transverse: DimensionalTransverse | None = None
+    slip: DimensionalSlip | None = None
+    transverse_slip: DimensionalTransverseSlip | None = None
     belt_vibration: DimensionalBeltVibration | None = None
     normal_load_variation: DimensionalNormalLoadVariation | None = None
     initial: DimensionalInitial | None = None
@@ -225,20 +237,30 @@ class Dimensional(AsWritten):
     @classmethod
     def _weight_unless_a_load_is_given(cls, data: Any) -> Any:
         if isinstance(data, dict) and not {"normal_load_N", "normal_load", "gravity"} & data.keys():
-            return {"gravity_m_per_s2": STANDARD_GRAVITY, **data}
+            usual = {"normal_load_N": 1.0} if _prescribed(data) else {"gravity_m_per_s2": STANDARD_GRAVITY}
+            return usual | data
         return data
+
+    @classmethod
+    def _needed(cls, data: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
+        return () if _prescribed(data) else cls.one_of
 
     @model_validator(mode="after")
     def _one_scene(self) -> Dimensional:
         both = self.gravity_m_per_s2 is not None and self.normal_load_N is not None
         twice = ["gravity_m_per_s2: leave it out where normal_load_N is given"] if both else []
-        problems = [*twice, *problems_of_parts(self)]
+        problems = [*twice, *(self._of_slip() if self.is_prescribed else problems_of_parts(self))]
         if not problems:
             self._fill_length()
             problems = [*self._out_of_range()]
         if problems:
             raise ValueError("; ".join(problems))
         return self
+
+    def _of_slip(self) -> list[str]:
+        body = "mass_kg", *SPRING, *DASHPOT, "gravity_m_per_s2"
+        stray = [name for name in body if getattr(self, name) is not None]
+        return [f"{name}: leave it out with a prescribed slip" for name in stray] or problems_of_slip(self)
 
     def _fill_length(self) -> None:
         if self.length_m is None:
@@ -248,22 +270,30 @@ class Dimensional(AsWritten):
     def _out_of_range(self) -> Iterator[str]:
         """Values in wrong units whose nondimensional numbers overflow or vanish."""
         try:
-            numbers = [*self.scales, *_numbers(self.scaled())]
+            numbers = [*self.scales[:3], *_numbers(self.scaled())]
         except (ZeroDivisionError, OverflowError, TypeError):
             numbers = [math.inf]
-        if not all(map(math.isfinite, numbers)) or min(*self.scales, self.scaled()["normal_load"]) <= 0.0:
+        if not all(map(math.isfinite, numbers)) or min(*self.scales[:3], self.scaled()["normal_load"]) <= 0.0:
             yield "length_m: these values have no nondimensional numbers: check their units"
 
     @property
     def scales(self) -> Units:
-        """L, 1/omega_1, K_1 L and M."""
+        """L, 1/omega_1, K_1 L and M; of a prescribed slip L, 1/omega and the normal load."""
         length, mass = self.length_m or math.nan, self.mass_kg
+        if mass is None:
+            return Units(length, 1.0 / self.frequency, self.load)
         return Units(length, time_of(self, mass), stiffness_of(self, mass) * length, mass)
+
+    @property
+    def is_prescribed(self) -> bool:
+        """Whether the slip is prescribed and there is no body."""
+        return self.slip is not None or self.transverse_slip is not None
 
     @property
     def frequency(self) -> float:
         """Of the drive, or of what else gives it [rad/s]; 1 where nothing does."""
-        parts: tuple[Any, ...] = (self.drive, self.belt_vibration, self.normal_load_variation)
+        slips = self.slip, self.transverse_slip
+        parts: tuple[Any, ...] = (self.drive, *slips, self.belt_vibration, self.normal_load_variation)
         found = (part.frequency_rad_per_s for part in parts if part is not None)
         return next((float(each) for each in found if each is not None), 1.0)
 
@@ -273,28 +303,35 @@ class Dimensional(AsWritten):
         if self.normal_load_N is not None:
             return self.normal_load_N
         assert self.gravity_m_per_s2 is not None
+        assert self.mass_kg is not None
         return self.mass_kg * self.gravity_m_per_s2
 
     def scaled(self) -> dict[str, Any]:
         """The nondimensional scene as plain nested values."""
         scales, mass, across = self.scales, self.mass_kg, self.transverse
-        belt: Any = self.belt_vibration
         found: dict[str, Any] = {
             name: part.scaled(scales) for name, part in self if isinstance(part, PartInSI)
         }
+        for name in ("belt_vibration", "slip", "transverse_slip"):
+            if (part := getattr(self, name)) is not None:
+                frequency = self.frequency * (getattr(part, "frequency_ratio", None) or 1.0)
+                found[name]["velocity_amplitude"] = velocity_of(part, frequency) / scales.velocity
+        found |= {
+            "normal_load": self.load / scales.force,
+            "belt_speed": self.belt_speed_m_per_s / scales.velocity,
+        }
+        if mass is None:
+            return found
         if across is not None:
             found["transverse"] |= {
                 "natural_frequency": math.sqrt(stiffness_of(across, mass) / stiffness_of(self, mass)),
                 "damping_ratio": damping_ratio_of(across, mass),
             }
-        if belt is not None:
-            velocity = velocity_of(belt, self.frequency * (belt.frequency_ratio or 1.0))
-            found["belt_vibration"]["velocity_amplitude"] = velocity / scales.velocity
-        return found | {
-            "damping_ratio": damping_ratio_of(self, mass),
-            "normal_load": self.load / scales.force,
-            "belt_speed": self.belt_speed_m_per_s / scales.velocity,
-        }
+        return found | {"damping_ratio": damping_ratio_of(self, mass)}
+
+
+def _prescribed(data: Mapping[str, Any]) -> bool:
+    return any(data.get(name) is not None for name in ("slip", "transverse_slip"))
 
 
 def _numbers(tree: dict[str, Any]) -> Iterator[float]:

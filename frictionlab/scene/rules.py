@@ -27,11 +27,12 @@ def problems_of_slip(scene: Any) -> list[str]:
             return [f"{name}: leave it out with a prescribed slip"]
     if scene.transverse_slip is not None and scene.slip is not None and scene.slip.direction is not None:
         return ["slip.direction: leave it out with transverse_slip"]
-    own = scene.transverse_slip.frequency if scene.transverse_slip is not None else None
+    frequency = (scene.slip or scene.transverse_slip).key("frequency")
+    own = getattr(scene.transverse_slip, frequency) if scene.transverse_slip is not None else None
     if scene.slip is not None and own is not None:
-        return ["transverse_slip.frequency: leave it out, slip.frequency holds for both"]
+        return [f"transverse_slip.{frequency}: leave it out, slip.{frequency} holds for both"]
     if scene.slip is None and own is None:
-        return ["transverse_slip.frequency: required where slip is left out"]
+        return [f"transverse_slip.{frequency}: required where slip is left out"]
     given = "slip" if scene.slip is not None else "transverse_slip"
     return [*_problems_of_frequencies(scene, given)] or _problems_of_variation(scene)
 

@@ -43,13 +43,14 @@ def velocity_of(shaking: Any, frequency: float) -> float:
 def own_length(scene: Any) -> float:
     """The length that scales a scene [m] that gives none: the largest amplitude without friction.
 
-    Of each load and of the belt's vibration as a sine of its size; normal load over stiffness where none has a size.
+    Of each load, of the belt's vibration and of a prescribed slip as a sine of its size; normal load over stiffness
+    where none has a size, of a prescribed slip 1 m.
     """
     return max((each for each in _amplitudes(scene) if 0.0 < each < math.inf), default=_at_rest(scene))
 
 
 def _at_rest(scene: Any) -> float:
-    return float(scene.load / stiffness_of(scene, scene.mass_kg))
+    return 1.0 if scene.is_prescribed else float(scene.load / stiffness_of(scene, scene.mass_kg))
 
 
 def _amplitudes(scene: Any) -> Iterator[float]:
@@ -59,9 +60,10 @@ def _amplitudes(scene: Any) -> Iterator[float]:
             omega = scene.frequency * (getattr(load, "frequency_ratio", None) or 1.0)
             force = load.amplitude_N if load.unbalance_kg_m is None else load.unbalance_kg_m * omega**2
             yield force * _compliance(part, scene.mass_kg, omega)
-    if belt is not None:
-        omega = scene.frequency * (belt.frequency_ratio or 1.0)
-        yield velocity_of(belt, omega) / omega
+    for part in (belt, scene.slip, scene.transverse_slip):
+        if part is not None:
+            omega = scene.frequency * (getattr(part, "frequency_ratio", None) or 1.0)
+            yield velocity_of(part, omega) / omega
 
 
 def _compliance(part: Any, mass: float, omega: float) -> float:

@@ -114,6 +114,15 @@ def test_a_normal_load_and_a_belt_that_vary_are_told() -> None:
             {"belt_speed": -0.5, "transverse_slip": {"velocity_amplitude": 2, "frequency": 1}},
             ["v1 = 0.5", "v2 = 2 sin(τ)"],
         ),
+        (
+            {
+                "dimensional": {
+                    "belt_speed": "1 m/s",
+                    "slip": {"displacement_amplitude": "2 m", "frequency": "3 rad/s"},
+                }
+            },
+            ["v1 = 6 sin(3 t) − 1"],
+        ),
     ],
 )
 def test_a_prescribed_slip_is_an_equation_of_its_own(scene: dict[str, Any], wanted: list[str]) -> None:

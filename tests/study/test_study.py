@@ -478,7 +478,7 @@ def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene
     parts = nonsense | dict.fromkeys(shared, nonsense) | {"transverse": nonsense | {"load": nonsense}}
     slips = dict.fromkeys(("slip", "transverse_slip"), nonsense)
     probe = good() | nonsense | {"scene": good()["scene"] | parts | slips}
-    si = good() | {"scene": {"dimensional": parts}}
+    si = good() | {"scene": {"dimensional": parts | slips}}
 
     assert set(_allowed(probe, "zzz")) == set(made["properties"])
     scene = _keys_of(made, made["properties"]["scene"])
@@ -489,7 +489,7 @@ def test_the_schema_and_the_reader_allow_the_same_keys_at_the_top_and_in_a_scene
         for part in [*both, "slip.", "transverse_slip."]
         for key in _allowed(probe, f"scene.{part}zzz")
     }
-    ours = [f"dimensional.{part}" for part in both]
+    ours = [f"dimensional.{part}" for part in (*both, "slip.", "transverse_slip.")]
     assert scene == found | {part + key for part in ours for key in _allowed(si, f"scene.{part}zzz")}
 
 

@@ -1,7 +1,8 @@
 """Bifurcation figures: every state that motions end in, against belt speed.
 
 Above the means, below where the mass is at the start of each drive period. A marker per period of the response, so
-that the figure reads in black and white; motions that do not repeat are pale bars above and pale dots below.
+that the figure reads in black and white; motions that do not repeat are pale bars above, with a dash at their mean
+over a long time, and pale dots below.
 """
 
 from __future__ import annotations
@@ -55,6 +56,10 @@ def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
         some = states[ranges]
         ends = some["mean_low"], some["mean_high"]
         above.vlines(some["belt_speed"], *ends, colors=color, linewidth=width, zorder=1)
+    long = states[states["period"] == 0]
+    above.plot(
+        long["belt_speed"], long["mean_friction"], marker="_", color="0.25", linestyle="none", markersize=4
+    )
     below.plot(wild["belt_speed"], wild["x"], zorder=1, **DOTS)
     for axes, points, column in ((above, states, "mean_friction"), (below, rows, "x")):
         for period, own in points[points["period"] > 0].groupby("period"):

@@ -233,14 +233,6 @@ class Dimensional(AsWritten):
         """
         return cast(Dimensional, changed(self, given_values(self), changes, others))
 
-    @model_validator(mode="before")
-    @classmethod
-    def _weight_unless_a_load_is_given(cls, data: Any) -> Any:
-        if isinstance(data, dict) and not {"normal_load_N", "normal_load", "gravity"} & data.keys():
-            usual = {"normal_load_N": 1.0} if _prescribed(data) else {"gravity_m_per_s2": STANDARD_GRAVITY}
-            return usual | data
-        return data
-
     @classmethod
     def _needed(cls, data: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
         return () if _prescribed(data) else cls.one_of
@@ -251,7 +243,7 @@ class Dimensional(AsWritten):
         twice = ["gravity_m_per_s2: leave it out where normal_load_N is given"] if both else []
         problems = [*twice, *(self._of_slip() if self.is_prescribed else problems_of_parts(self))]
         if not problems:
-            self._fill_length()
+            self._fill()
             problems = [*self._out_of_range()]
         if problems:
             raise ValueError("; ".join(problems))
@@ -262,7 +254,12 @@ class Dimensional(AsWritten):
         stray = [name for name in body if getattr(self, name) is not None]
         return [f"{name}: leave it out with a prescribed slip" for name in stray] or problems_of_slip(self)
 
-    def _fill_length(self) -> None:
+    def _fill(self) -> None:
+        """Put in what was left out: it counts as not given where the body is changed."""
+        if self.normal_load_N is None and self.gravity_m_per_s2 is None:
+            vars(self).update(
+                {"normal_load_N": 1.0} if self.is_prescribed else {"gravity_m_per_s2": STANDARD_GRAVITY}
+            )
         if self.length_m is None:
             with suppress(ZeroDivisionError, OverflowError):
                 vars(self)["length_m"] = own_length(self)

@@ -159,3 +159,11 @@ def test_a_scene_is_changed_under_a_key_without_a_unit() -> None:
     )
     with pytest.raises(WrongValues, match="3 has no unit; give a speed"):
         scene.with_({"dimensional.belt_speed": 3})
+
+
+def test_a_weight_that_was_not_given_gives_way_to_a_load() -> None:
+    body = {key: value for key, value in TEXTS.items() if key != "normal_load"}
+
+    loaded = fl.Scene(dimensional=body).with_({"dimensional.normal_load": "20 N"})
+    assert loaded.dimensional == fl.Dimensional(**NUMBERS)
+    assert fl.Dimensional(**body).gravity_m_per_s2 == 9.81

@@ -9,6 +9,7 @@ from pydantic import BaseModel
 
 from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
+from frictionlab.mistakes.notes import Unfit
 from frictionlab.mistakes.validation import field_path, number_paths
 from frictionlab.scene.as_written import AsWritten, in_si, unit_of_dimension
 from frictionlab.scene.scene import Scene
@@ -38,12 +39,20 @@ def number_written(record: type[BaseModel], key: str, name: str, value: Any) -> 
     """The value of a field of a scene or of a law in SI units: a text with a unit as a number."""
     if issubclass(record, AsWritten):
         return in_si(key, name, value)
-    unit = units_of_law(record).get(name) if issubclass(record, FrictionLaw) else None
-    if unit is None:
+    units = units_of_law(record) if issubclass(record, FrictionLaw) else {}
+    if name not in units:
         return value
     if isinstance(value, list):
         return [number_written(record, key, name, each) for each in value]
-    return in_units(value, unit) if isinstance(value, str) else value
+    return _of_law(value, name, units) if isinstance(value, str) else value
+
+
+def _of_law(text: str, name: str, units: Mapping[str, str]) -> float | Unfit:
+    """The number of a text; of one that is not per unit normal load, where that belongs."""
+    found, contact = in_units(text, units[name]), f"contact_{name}"
+    if isinstance(found, Unfit) and isinstance(in_units(text, units.get(contact, units[name])), float):
+        return Unfit(text, f"{found.what}; {contact} takes what is not per unit normal load")
+    return found
 
 
 def read_law_numbers(tree: Mapping[str, Any], laws: registry.Laws) -> None:

@@ -95,6 +95,8 @@ def test_a_table_has_the_numbers_under_the_keys_with_their_units() -> None:
         (f"{HERE}mass=1", f"{HERE}mass: 1 has no unit; give a mass"),
         (f"sweep.{HERE}gravity=[1 g_0]", "scene.dimensional gives normal_load, so gravity_m_per_s2 cannot be swept"),
         ("laws.stribeck.stribeck_speed=1 um", "laws[1].stribeck_speed: '1 um' is a length [m]; give a speed [m/s]"),
+        ("laws=[{kind: lugre, mu_kinetic: 0.3, stiffness: 5 N/um}]", "; contact_stiffness takes what is not"),
+        ("laws=[{kind: dahl, mu: 0.3, stiffness: 5 N}]", "'5 N' is a force [N]; give a stiffness per force"),
         ("expect[0].equals=1 m", "expect[0].equals: '1 m' is a length [m]; give a force [N]"),
         ("expect[0].where={law.presliding_length: 1 N}", "where.law.presliding_length: '1 N' is a force [N]; give a"),
         ("scene={damping_ratio: 0, normal_load: 1, belt_speed: 1 m/s}", "(units go with a scene in SI units: scene."),

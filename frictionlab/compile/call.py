@@ -22,8 +22,8 @@ from frictionlab.laws.base import FrictionLaw
 
 _config: Any = numba.config
 
-PYTHON_AT_MOST = 2.0
-"""Processor time [s] that a process lets Python spend on a kernel before it compiles it, in 2 to 20 s, once."""
+PYTHON_AT_MOST = 4.0
+"""Processor time [s] that a process lets Python spend on a kernel before it compiles it, in 10 to 20 s, once."""
 
 
 class _Choice:

@@ -15,7 +15,7 @@ from pydantic import model_validator
 from frictionlab.mistakes.notes import Unfit
 from frictionlab.quantities import Dimension
 from frictionlab.scene.parts import ScenePart
-from frictionlab.scene.unit_text import in_units, kind_of
+from frictionlab.scene.unit_text import in_units, quantity_in
 
 _SUFFIX = re.compile(r"_(N_s_per_m|m_per_s2|rad_per_s|N_per_m|m_per_s|kg_m|kg|N|m|J|s)$")
 """What the key of a number, or the name of a result, ends in: its unit."""
@@ -91,7 +91,7 @@ def in_si(key: str, name: str, value: Any) -> Any:
     if isinstance(value, str):
         return in_units(value, unit)
     if key != name and isinstance(value, Real) and not isinstance(value, bool):
-        kind = kind_of(unit)
+        kind = quantity_in(unit)
         return Unfit(
             value, f"{value:.6g} has no unit; give {kind} such as '{kind.example}', or the key {name}"
         )

@@ -33,8 +33,8 @@ from frictionlab.scene.parts import (
 from frictionlab.scene.rules import problems_of_parts, problems_of_slip
 from frictionlab.scene.springs_in_si import (
     DASHPOT,
-    SHAKING,
     SPRING,
+    SWINGS,
     damping_ratio_of,
     own_length,
     stiffness_of,
@@ -85,7 +85,7 @@ class _Shaken(PartInSI):
     acceleration_amplitude_m_per_s2 [m/s^2], >= 0: of its acceleration, the velocity's times it.
     """
 
-    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SHAKING,)
+    one_of: ClassVar[tuple[tuple[str, ...], ...]] = (SWINGS,)
     velocity_amplitude_m_per_s: NonNegative | None = None
     displacement_amplitude_m: NonNegative | None = None
     acceleration_amplitude_m_per_s2: NonNegative | None = None
@@ -93,7 +93,7 @@ class _Shaken(PartInSI):
     @model_validator(mode="after")
     def _a_sine(self) -> Self:
         waveform = getattr(self, "waveform", None)
-        for name in SHAKING[1:]:
+        for name in SWINGS[1:]:
             if getattr(self, name) is not None and waveform not in (None, SINE):
                 raise ValueError(f"{name}: of a sine alone: give velocity_amplitude with this waveform")
         return self

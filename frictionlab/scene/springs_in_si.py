@@ -8,7 +8,7 @@ from typing import Any
 
 SPRING = "stiffness_N_per_m", "natural_frequency_rad_per_s"
 DASHPOT = "damping_N_s_per_m", "damping_ratio"
-SHAKING = "velocity_amplitude_m_per_s", "displacement_amplitude_m", "acceleration_amplitude_m_per_s2"
+SWINGS = "velocity_amplitude_m_per_s", "displacement_amplitude_m", "acceleration_amplitude_m_per_s2"
 """Names of one and the same thing, of which a part gives one."""
 
 
@@ -34,7 +34,7 @@ def damping_ratio_of(part: Any, mass: float) -> float:
 
 def velocity_of(shaking: Any, frequency: float) -> float:
     """The velocity amplitude [m/s] of what shakes at this circular frequency."""
-    velocity, displacement, acceleration = (getattr(shaking, name) for name in SHAKING)
+    velocity, displacement, acceleration = (getattr(shaking, name) for name in SWINGS)
     if velocity is not None:
         return float(velocity)
     return float(displacement * frequency if displacement is not None else acceleration / frequency)

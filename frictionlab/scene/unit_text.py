@@ -65,7 +65,7 @@ class Kind(NamedTuple):
         return f"{self.word} [{self.unit}]" if self.unit else self.word
 
 
-KINDS = [
+QUANTITIES = [
     Kind("a speed", "m/s", "2 mm/s"),
     Kind("a length", "m", "5 um"),
     Kind("a frequency", "rad/s", "60 Hz"),
@@ -87,7 +87,7 @@ KINDS = [
 
 def in_units(text: str, unit: str) -> float | Unfit:
     """The number that a text with a unit is in this one; what is wrong with it where it is none."""
-    example = kind_of(unit).example
+    example = quantity_in(unit).example
     if not (read := _TEXT.fullmatch(text)):
         return Unfit(text, f"must be a number, or text with a unit such as {example}")
     try:
@@ -99,9 +99,9 @@ def in_units(text: str, unit: str) -> float | Unfit:
         return Unfit(text, "must be a finite number")
 
 
-def kind_of(unit: str) -> Kind:
+def quantity_in(unit: str) -> Kind:
     """What a number in this unit is."""
-    return next((kind for kind in KINDS if kind.unit == unit), Kind("a number", unit, f"2 {unit}"))
+    return next((kind for kind in QUANTITIES if kind.unit == unit), Kind("a number", unit, f"2 {unit}"))
 
 
 class _Wrong(ValueError):
@@ -121,17 +121,17 @@ def _factor(given: str, wanted: str) -> Fraction:
     try:
         return _registry().convert(Fraction(1), unit, _parsed(wanted))
     except pint.DimensionalityError:
-        raise _Wrong(f"is {_kind_of(unit, given)}; give {kind_of(wanted)}{_such_as(wanted)}") from None
+        raise _Wrong(f"is {_kind_of(unit, given)}; give {quantity_in(wanted)}{_such_as(wanted)}") from None
 
 
 def _such_as(unit: str) -> str:
-    return f" such as {kind_of(unit).example}"
+    return f" such as {quantity_in(unit).example}"
 
 
 def _kind_of(unit: Any, given: str) -> str:
     """What a number in a unit is, in words."""
     own = unit.dimensionality
-    return next((str(kind) for kind in KINDS if _parsed(kind.unit).dimensionality == own), f"in {given}")
+    return next((str(kind) for kind in QUANTITIES if _parsed(kind.unit).dimensionality == own), f"in {given}")
 
 
 def _parsed(unit: str) -> Any:

@@ -13,7 +13,7 @@ from frictionlab.mistakes.validation import nested, number_paths
 from frictionlab.registry.records import description, meaning
 from frictionlab.scene.as_written import AsWritten, unit_of
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.unit_text import kind_of
+from frictionlab.scene.unit_text import quantity_in
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
 from frictionlab.study.axes import FRICTION, LINKED
@@ -159,7 +159,7 @@ def _allow_texts(record: type[BaseModel], fields: dict[str, Any]) -> None:
         return
     _or_text(fields, [name for name in fields if unit_of(name) is not None])
     for key, name in record.other_names.items():
-        example = kind_of(unit_of(name) or "").example
+        example = quantity_in(unit_of(name) or "").example
         fields[key] = _WITH_UNIT | {
             "description": f"{meaning(record, name)}; text with a unit such as {example}"
         }

@@ -13,7 +13,7 @@ from frictionlab.mistakes.notes import Notes, Path, did_you_mean, number_text
 from frictionlab.mistakes.validation import field_name, number_paths, record_at, value_paths
 from frictionlab.scene.dimensional import Dimensional
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.springs_in_si import DASHPOT, SHAKING, SPRING
+from frictionlab.scene.springs_in_si import DASHPOT, SPRING, SWINGS
 from frictionlab.study.axes import FRICTION, LINKED, STATIC
 from frictionlab.study.choices import label_of
 from frictionlab.study.parts import coefficient_of
@@ -23,7 +23,7 @@ _GROUPS = (
     ("unbalance", "amplitude"),
     ("unbalance_kg_m", "amplitude_N"),
     ("gravity_m_per_s2", "normal_load_N"),
-    *(SPRING, DASHPOT, SHAKING),
+    *(SPRING, DASHPOT, SWINGS),
     ("stiffness", "presliding_length", "contact_stiffness"),
     ("damping", "contact_damping"),
 )

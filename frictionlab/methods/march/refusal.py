@@ -115,7 +115,7 @@ def _against_rates(asked: Request) -> Iterator[str]:
     law = asked.law
     if asked.facts.limited_by_rates and math.isinf(law.largest_rate(1.0)):
         what, use = ("the memory", "shooting") if asked.kind in SEVERAL else ("bristles", "exponential")
-        yield f"stepper rk4 needs a bound on the decay rate of {what}, and this law has none; use {use}"
+        yield f"stepper {asked.stepper} needs a bound on the decay rate of {what}, and this law has none; use {use}"
     if asked.stepper == "sdirk2" and asked.scene.degrees_of_freedom == 0:
         yield "stepper sdirk2 is not needed under a prescribed slip; use exponential, for any stiffness"
     if not asked.facts.bears_jumps and math.isfinite(law.yield_deflection()):

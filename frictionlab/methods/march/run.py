@@ -91,7 +91,7 @@ class MarchRun:
         self.scene, self.law, self.stepper, self.facts = scene, law, stepper, STEPPERS[stepper]
         self.unmoved = scene.degrees_of_freedom == 0
         self.mass: Mass = unmoved_mass(scene) if self.unmoved else scene.mass()
-        self.through_rest = steps_through_rest(scene, law)
+        self.through_rest = steps_through_rest(scene, law, self.facts)
         start = scene.initial
         starts_across = start is not None and (start.x2 != 0.0 or start.velocity2 != 0.0)
         self.straight = straight = along_the_belt(scene, law) and not starts_across
@@ -200,7 +200,9 @@ class MarchRun:
         """The slip speed that steps of this pace can bear."""
         if not self.facts.limited_by_rates:
             return 1e300
-        return fastest_slip(self.law, self.drive_period / pace.steps / lightest_contact(self.scene))
+        return fastest_slip(
+            self.law, self.facts, self.drive_period / pace.steps / lightest_contact(self.scene)
+        )
 
     def _relaxing(self) -> int:
         """Laps in which a drift towards the steady state dies out by a third, at least fifty and at most 2000."""

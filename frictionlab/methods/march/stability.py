@@ -11,7 +11,6 @@ from frictionlab.compile.stack import count_of
 from frictionlab.dynamics.contact import friction_of, rate_of
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.march.steppers import StepperFacts
-from frictionlab.numerics.steppers import rk4
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.theory.linear import velocity_scale
@@ -138,14 +137,14 @@ def memory_stiffness(scene: Scene, law: FrictionLaw) -> Floats:
 # --- steps --------------------------------------------------------------------------------------------------------
 
 
-def stable_decay(law: FrictionLaw) -> float:
-    """Largest stable step of rk4 times decay rate of the memory."""
-    return AGE if law.memory_kind == "scalars" else rk4.DECAY
+def stable_decay(law: FrictionLaw, facts: StepperFacts) -> float:
+    """Largest stable step of a stepper times decay rate of this law's memory."""
+    return min(AGE, facts.decay) if law.memory_kind == "scalars" else facts.decay
 
 
-def fastest_slip(law: FrictionLaw, h: float) -> float:
-    """The slip speed at which the memory decays at the largest rate for which rk4 steps of length h are stable."""
-    low, high, decay = 0.0, 1e12, stable_decay(law)
+def fastest_slip(law: FrictionLaw, facts: StepperFacts, h: float) -> float:
+    """The slip speed at which the memory decays at the largest rate for which steps of length h are stable."""
+    low, high, decay = 0.0, 1e12, stable_decay(law, facts)
     if law.memory_kind == "none":
         return 1e300
     if h * law.largest_rate(high) <= decay:
@@ -175,7 +174,7 @@ def fewest_steps(scene: Scene, law: FrictionLaw, facts: StepperFacts) -> int:
     rate = law.largest_rate(expected_slip(scene)) / lightest_contact(scene)
     if not math.isfinite(rate):
         return 0
-    return math.ceil(MARGIN * lap * max(held / facts.held, rate / stable_decay(law)))
+    return math.ceil(MARGIN * lap * max(held / facts.held, rate / stable_decay(law, facts)))
 
 
 def quickest_when_held(scene: Scene, law: FrictionLaw) -> float:
@@ -187,13 +186,13 @@ def quickest_when_held(scene: Scene, law: FrictionLaw) -> float:
     return max(math.sqrt(stiffness), damping)
 
 
-def steps_through_rest(scene: Scene, law: FrictionLaw) -> float:
-    """Steps per period that rk4 needs where slip comes to rest: friction may be steep there. 0 for laws that say how
-    their one deflection slows down, and for those without memory.
+def steps_through_rest(scene: Scene, law: FrictionLaw, facts: StepperFacts) -> float:
+    """Steps per period that a stepper needs where slip comes to rest: friction may be steep there. 0 for laws that
+    say how their one deflection slows down, and for those without memory.
     """
     if law.memory_kind in ("none", "bristle"):
         return 0.0
     speeds, memory = usual_slip(scene) * SLOW, first_memory(scene, law)
     steepest = max(friction_at_once(law, float(speed), memory) / float(speed) for speed in speeds)
     heaviest = scene.mass().normal_load * shares_of_load(scene)[1]
-    return 2.0 * math.pi / scene.frequency * heaviest * steepest / rk4.DECAY
+    return 2.0 * math.pi / scene.frequency * heaviest * steepest / facts.decay

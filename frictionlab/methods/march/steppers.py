@@ -35,10 +35,10 @@ class StepperFacts(NamedTuple):
     """What is known of a stepper.
 
     kinds: of memory that it steps. keys: of a study, beside ``periods``. order: on smooth motion, by theta.
-    record: its numbers in a run. held: largest stable step times frequency of a mass held by its contact.
-    limited_by_rates: whether the decay of the memory limits steps, too. bears_jumps: whether rates may jump at yield.
-    gridded: whether it meets loads at half steps alone. adaptive: whether it chooses its steps. sticks: whether it
-    knows a mass at rest on the belt.
+    record: its numbers in a run. held: largest stable step times frequency of a mass held by its contact. decay:
+    largest stable step times decay rate of the memory, infinite where that does not limit steps. bears_jumps: whether
+    rates may jump at yield. gridded: whether it meets loads at half steps alone. adaptive: whether it chooses its
+    steps. sticks: whether it knows a mass at rest on the belt.
     """
 
     kinds: tuple[str, ...]
@@ -46,11 +46,16 @@ class StepperFacts(NamedTuple):
     order: Callable[[float], int]
     record: Callable[[Resolution], Stepper]
     held: float = math.inf
-    limited_by_rates: bool = False
+    decay: float = math.inf
     bears_jumps: bool = True
     gridded: bool = False
     adaptive: bool = False
     sticks: bool = False
+
+    @property
+    def limited_by_rates(self) -> bool:
+        """Whether the decay of the memory limits steps, too."""
+        return math.isfinite(self.decay)
 
     def is_blind(self, kind: str) -> bool:
         """Whether it steps over the rest of a law with this kind of memory, which is then chatter about rest."""
@@ -75,7 +80,7 @@ STEPPERS: dict[StepperName, StepperFacts] = {
         lambda _: 4,
         lambda _: Rk4(),
         held=rk4.DECAY,
-        limited_by_rates=True,
+        decay=rk4.DECAY,
         gridded=True,
     ),
     "smoothed": StepperFacts(

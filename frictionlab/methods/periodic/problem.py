@@ -265,9 +265,12 @@ class PeriodicProblem:
         """An orbit of so many periods, from its state."""
         return self._iterate(belt_speed, state, periods, 1e-9)
 
-    def followed_on(self, belt_speed: float, state: Floats, periods: int) -> Transient:
-        """The motion from a state for so many periods, each by itself; fewer where they take too many steps."""
-        how = Follow(1e-7 * self.mass.normal_load, False, True)
+    def followed_on(self, belt_speed: float, state: Floats, periods: int, accuracy: float) -> Transient:
+        """The motion from a state for so many periods, each by itself; fewer where they take too many steps.
+
+        accuracy: of their maps, over the normal load.
+        """
+        how = Follow(accuracy * self.mass.normal_load, constant=False, whole=True)
         return self._follow(belt_speed, state, periods, how, unknown_orbit(self.size))
 
     def mapped(self, belt_speeds: Floats, states: Floats) -> Floats:

@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
 from frictionlab.methods.shooting.attractors import POINTS_KEPT, Attractor, FollowedStarts, orbit_at_the_end
-from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, long_mean
+from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, birkhoff_mean, long_mean
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 
@@ -19,16 +19,19 @@ FEWEST_AVERAGED = 256
 """Periods below which nothing is averaged: motions whose steps are too many are not followed as far."""
 SMALL_ERROR = 1e-4
 """Error of the mean friction that is small enough, where the tolerance is smaller."""
+ACCURACY, FINER = 1e-7, 1e-9
+"""Of the maps of these periods, over the normal load; and of those that tell what they may be off by."""
 REPEATED = 1e-6
 """How near to an earlier one, over its size, a state is where the motion repeats."""
-SAME_MEAN = 1.5
-"""Difference of two means, over what their errors together allow at two standard errors, that keeps them one."""
+SAME_MEAN, LEAST_APART = 1.5, 1e-6
+"""Difference of two means, over what their errors together allow at two standard errors, that keeps them one; and the
+smallest that tells them apart."""
 
 
 class LongMotion:
     """One motion that has not repeated, and the means of its periods since it was followed on.
 
-    sizes: of its states. end: where it leads, once it is known to repeat.
+    start: where it was left before. sizes: of its states. end: where it leads, once it is known to repeat.
     """
 
     def __init__(self, problem: PeriodicProblem, scene: Scene, start: Attractor) -> None:
@@ -41,8 +44,7 @@ class LongMotion:
 
     def follow(self, length: int) -> None:
         """On to so many periods in all, and to its end where it turns out to repeat."""
-        way = self._problem.followed_on(self._scene.belt_speed, self.states[-1], length - len(self.means))
-        self.seconds += way.seconds
+        way = self._way(self.states[-1], length - len(self.means), ACCURACY)
         self.means, self.states = np.concatenate([self.means, way.means]), way.states
         self.sizes = np.concatenate([self.sizes, np.linalg.norm(way.states, axis=1)])
         period = late_period(self.states)
@@ -51,6 +53,21 @@ class LongMotion:
             end, more = orbit_at_the_end(self._problem, self._scene, found)
             self.end = end if end.curve is not None else None
             self.seconds += more
+
+    def off_by_maps(self) -> float:
+        """By how much finer maps change its weighted mean."""
+        way = self._way(self.start.points[-1], len(self.means), FINER)
+        return abs(birkhoff_mean(way.means) - birkhoff_mean(self.means[: len(way.means)]))
+
+    def _way(self, state: Floats, periods: int, accuracy: float) -> Transient:
+        way = self._problem.followed_on(self._scene.belt_speed, state, periods, accuracy)
+        self.seconds += way.seconds
+        return way
+
+    @property
+    def may_go_on(self) -> bool:
+        """Whether it has no end yet, and its steps were not too many for the periods asked for before."""
+        return self.end is None and not 0 < len(self.means) < FEWEST_AVERAGED
 
     @property
     def stays(self) -> bool:
@@ -91,7 +108,7 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
     means: dict[int, LongMean] = {}
     for length in LENGTHS:
         for motion in motions.values():
-            if motion.end is None and len(motion.means) >= FEWEST_AVERAGED * (length > LENGTHS[0]):
+            if motion.may_go_on:
                 motion.follow(length)
         means = _means(motions)
         open_ = [place for place, motion in motions.items() if motion.end is None]
@@ -100,6 +117,7 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
             place in means and means[place].error <= enough for place in open_
         ):
             break
+    means = _with_errors_of_maps(motions, means)
     followed.lead_to({place: motion.averaged(means.get(place)) for place, motion in motions.items()})
     followed.seconds += sum(motion.seconds for motion in motions.values())
 
@@ -126,5 +144,17 @@ def _means(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
     }
 
 
+def _with_errors_of_maps(motions: dict[int, LongMotion], means: dict[int, LongMean]) -> dict[int, LongMean]:
+    """Quasi-periodic means are closer to each other than maps are to the motion: add what finer maps change.
+
+    Chaos leaves more than that.
+    """
+    told = {
+        mean: mean._replace(error=mean.error + 2.0 * motions[place].off_by_maps())
+        for mean, place in {mean: place for place, mean in means.items() if mean.quasi_periodic}.items()
+    }
+    return {place: told.get(mean, mean) for place, mean in means.items()}
+
+
 def _alike(one: LongMean, other: LongMean) -> bool:
-    return abs(one.mean - other.mean) <= SAME_MEAN * math.hypot(one.error, other.error) + REPEATED
+    return abs(one.mean - other.mean) <= SAME_MEAN * math.hypot(one.error, other.error) + LEAST_APART

@@ -117,7 +117,7 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
             place in means and means[place].error <= enough for place in open_
         ):
             break
-    means = _with_errors_of_maps(motions, means)
+    means = with_errors_of_maps(motions, means)
     followed.lead_to({place: motion.averaged(means.get(place)) for place, motion in motions.items()})
     followed.seconds += sum(motion.seconds for motion in motions.values())
 
@@ -144,7 +144,7 @@ def _means(motions: dict[int, LongMotion]) -> dict[int, LongMean]:
     }
 
 
-def _with_errors_of_maps(motions: dict[int, LongMotion], means: dict[int, LongMean]) -> dict[int, LongMean]:
+def with_errors_of_maps(motions: dict[int, LongMotion], means: dict[int, LongMean]) -> dict[int, LongMean]:
     """Quasi-periodic means are closer to each other than maps are to the motion: add what finer maps change.
 
     Chaos leaves more than that.

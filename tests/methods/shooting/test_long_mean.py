@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import frictionlab as fl
-from frictionlab.methods.shooting.long_mean import birkhoff_mean, long_mean
-from frictionlab.methods.shooting.long_motions import drifts, late_period
+from frictionlab.methods.periodic.problem import PeriodicProblem
+from frictionlab.methods.shooting.attractors import Attractor
+from frictionlab.methods.shooting.long_mean import LongMean, birkhoff_mean, long_mean
+from frictionlab.methods.shooting.long_motions import LongMotion, drifts, late_period, with_errors_of_maps
 
 RANDOM = np.random.default_rng(20261126)
 
@@ -145,3 +147,22 @@ def test_what_grows_or_dies_out_in_every_part_drifts():
     assert drifts(rising + wobble)
     assert drifts(-rising + wobble)
     assert not drifts(wobble)
+
+
+def test_a_quasi_periodic_mean_is_not_told_closer_than_its_maps():
+    """A weighted mean repeats to rounding; finer maps move it by more than that."""
+    scene = fl.Scene(
+        damping_ratio=0.1, normal_load=10, belt_speed=5, drive=fl.Drive(unbalance=10, frequency=1)
+    )
+    problem = PeriodicProblem(scene, fl.Stribeck(mu_kinetic=0.3, mu_static=0.4), 1e-8)
+    start = Attractor(0, 0, 0.0, 0.0, None, problem.state_at(5.0, None)[None, :])
+    motion = LongMotion(problem, scene, start)
+    motion.follow(512)
+    steady, wild = LongMean(0.3, 1e-15, True), LongMean(0.2, 1e-3, False)
+    found = with_errors_of_maps({0: motion, 1: motion}, {0: steady, 1: steady, 2: wild})
+
+    assert found[0] is found[1]
+    assert found[0].mean == 0.3
+    assert found[0].error == pytest.approx(1e-15 + 2.0 * motion.off_by_maps())
+    assert 0.0 < motion.off_by_maps() < 1e-5
+    assert found[2] is wild

@@ -286,7 +286,7 @@ ONSETS: dict[str, str] = {
 ATTRACTORS: dict[str, str] = {
     "belt_speed": "of the scene, nondimensional",
     "attractor": "number of the state at this belt speed, from 1",
-    "period": "in drive periods, up to 8; 0 for a motion that does not repeat within so many",
+    "period": "in drive periods, up to 255; 0 for a motion that does not repeat within so many",
     "mean_friction": "mean over the whole period, or over a long time where it does not repeat",
     "error": "bound on its error; two standard errors where it does not repeat",
     "error_kind": "estimated or statistical",

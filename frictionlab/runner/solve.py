@@ -64,9 +64,13 @@ def _solved(chunk: Chunk, places: list[int]) -> list[Piece]:
         raise
     except (Exception, SystemExit) as problem:
         if _numerical(problem) and len(places) > 1:
-            half = len(places) // 2
-            return _solved(chunk, places[:half]) + _solved(chunk, places[half:])
+            return _solved_in_halves(chunk, places)
         return [Piece(places, _failed(len(places), problem))]
+
+
+def _solved_in_halves(chunk: Chunk, places: list[int]) -> list[Piece]:
+    half = len(places) // 2
+    return _solved(chunk, places[:half]) + _solved(chunk, places[half:])
 
 
 def _numerical(problem: BaseException) -> bool:
@@ -151,7 +155,7 @@ def _given(numbers: Floats | None, nothing: Floats) -> Floats:
 
 
 def _parts(chunk: Chunk, piece: Piece) -> list[Part]:
-    """A piece in one; where a column of it raises an arithmetic error every point by itself, solved anew."""
+    """A piece in one; where a column of it raises an arithmetic error, its halves, solved anew."""
     rows = chunk.rows[piece.places]
     try:
         scenes = chunk.scenes.taken(piece.places)
@@ -168,7 +172,7 @@ def _parts(chunk: Chunk, piece: Piece) -> list[Part]:
         raise
     except (Exception, SystemExit) as problem:
         if _numerical(problem) and len(rows) > 1:
-            return [part for place in piece.places for part in parts(chunk, _solved(chunk, [place]))]
+            return parts(chunk, _solved_in_halves(chunk, piece.places))
         return [Part(rows, text_columns(_failed(len(rows), problem)), {}, {})]
 
 

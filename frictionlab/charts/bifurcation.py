@@ -52,11 +52,10 @@ def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
     write_title(figure, heading.title)
     above, below = figure.subplots(2, 1, sharex=True)
     states, wild = rows[rows["point"] == 1], rows[rows["period"] == 0]
-    for ranges, color, width in ((states["period"] == 0, WILD, 2.0), (states["period"] > 1, "0.85", 0.8)):
-        some = states[ranges]
+    long = states[states["period"] == 0]
+    for some, color, width in ((long, WILD, 2.0), (states[states["period"] > 1], "0.85", 0.8)):
         ends = some["mean_low"], some["mean_high"]
         above.vlines(some["belt_speed"], *ends, colors=color, linewidth=width, zorder=1)
-    long = states[states["period"] == 0]
     above.plot(
         long["belt_speed"], long["mean_friction"], marker="_", color="0.25", linestyle="none", markersize=4
     )

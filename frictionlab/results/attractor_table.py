@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from frictionlab.columns import ATTRACTORS
-from frictionlab.methods.base import FoundState
+from frictionlab.methods.base import STATISTICAL, FoundState
 from frictionlab.results.curve_table import curve_inputs
 from frictionlab.results.table import Inputs, inputs
 from frictionlab.study import StudyCurve
@@ -46,7 +46,7 @@ def _row(state: FoundState, point: int, speed: float, number: int) -> dict[str, 
         "period": state.period,
         "mean_friction": state.mean,
         "error": state.error,
-        "error_kind": "" if math.isnan(state.error) else "estimated" if state.period else "statistical",
+        "error_kind": "" if math.isnan(state.error) else "estimated" if state.period else STATISTICAL,
         "share": state.share,
         "mean_low": state.low,
         "mean_high": state.high,

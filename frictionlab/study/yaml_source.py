@@ -59,7 +59,7 @@ class Source:
         """Let a path stand where another one, and what is below it, is given."""
         for places in (self.keys, self.values, self.origins):
             for at in [each for each in places if each[: len(given)] == given]:
-                places.setdefault((*path, *at[len(given) :]), places[at])  # type: ignore[arg-type]
+                places.setdefault((*path, *at[len(given) :]), places[at])  # type: ignore[arg-type]  # of three kinds
 
     def located(self, notes: Iterable[Note]) -> list[Mistake]:
         """The notes as mistakes, in the order of the file, those of the command line last."""

@@ -173,7 +173,7 @@ class Piecewise(NamedTuple):
     def _crossings_of_a_sine(self) -> Crossings:
         """Of a constant and one sine, in closed form: near its turning points a rounded zero is half as exact."""
         (frequency, phasor), level = self.waves[0], float(self.middle[0])
-        size, far = abs(phasor), abs(float(self.middle[0]))
+        size, far = abs(phasor), abs(level)
         if far >= size:
             return Crossings(np.empty(0), np.empty(0))
         half = 2.0 * math.asin(math.sqrt(0.5 * (size - far) / size))

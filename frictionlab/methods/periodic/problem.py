@@ -180,16 +180,14 @@ class PeriodicProblem:
         body = self.body._replace(periods=span)
         return KernelCall(self.kernel, self.law).timed(body, belt_speeds, states, goal, wanted)
 
-    def long_orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None], periods: int) -> Orbits:
-        """The motions from these states over so many periods of all that changes, one for each scene."""
-        places, known = self._known(states)
-        return self._recorded(places, scenes, known, periods)
+    def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None], periods: int = 1) -> Orbits:
+        """The motions from these states, one for each scene; without panels where there is no state.
 
-    def orbits(self, scenes: Sequence[Scene], states: Sequence[Floats | None]) -> Orbits:
-        """The closed orbits from these states, one for each scene; without panels where there is no state."""
+        periods: of everything that changes in time, in each.
+        """
         places, known = self._known(states)
-        if not self.in_lanes(len(places)):
-            return self._recorded(places, scenes, known)
+        if periods > 1 or not self.in_lanes(len(places)):
+            return self._recorded(places, scenes, known, periods)
         accuracy = interpreted(recorded_accuracy)(self.body.normal_load, self.goal)
         call = KernelCall(record_in_lanes, self.law)
         track, ends = call(self.body, belt_speeds_of(scenes)[places], known, accuracy)

@@ -52,6 +52,7 @@ UNDAMPED = "without damping a free oscillation remains, and the state depends on
 HELD_ELASTICALLY = (
     "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
 )
+UNBOUNDED = "at undamped resonance the amplitude may grow without bound"
 NEAR_REST = "; slip near rest in polar coordinates (Radau IIA)"
 BY_ROUNDING = (
     "next to rest two motions hardly approach each other in a period, and rounding alone leaves this error"
@@ -137,9 +138,7 @@ class SteadyStates:
             self.solved_by[i] = problem
             if not found[row]:
                 steps = "" if problem is self.problem else " of implicit steps"
-                said = f"no closed orbit found in {-closed.maps[row]:.0f} period maps{steps}"
-                said += _grows(self.scenes.scene)
-                self._add(i, said)
+                self._add(i, f"no closed orbit found in {-closed.maps[row]:.0f} period maps{steps}")
             elif undamped and self._repeats(curve, row, multipliers[row], problem):
                 self._leave_open(i, UNDAMPED, closed.mean[row], closed.mean[row])
             else:
@@ -194,8 +193,11 @@ class SteadyStates:
         self.unique[i] = NOT_UNIQUE
 
     def judge(self, tolerance: float) -> None:
-        """Say where the error is above the tolerance."""
+        """Say where the error is above the tolerance, and what may keep a motion from any steady state."""
+        resonant = math.isinf(velocity_scale(self.scenes.scene))
         for i, error in enumerate(self.error):
+            if resonant and self.status[i] == "failed":
+                self._add(i, UNBOUNDED)
             if self.status[i] == "ok" and not error <= tolerance and self.error_kind[i] != STATISTICAL:
                 said = f"the error is above the tolerance {tolerance:.1e}"
                 self._add(i, said if self.solved_by[i] is self.problem else f"{said}: {BY_ROUNDING}")
@@ -245,20 +247,13 @@ class SteadyStates:
         return [state if by is problem and length == spans else None for state, by, length in each]
 
     def _orbits(self) -> Orbits:
-        ways = list(dict.fromkeys(self.solved_by))
-        found = [way.orbits(self.scenes, self._states_by(way)) for way in ways]
-        longer = sorted({int(spans) for spans in self.spans if spans > 1})
-        found += [
-            self.problem.long_orbits(self.scenes, self._states_by(self.problem, spans), spans)
-            for spans in longer
-        ]
+        kinds = dict.fromkeys(zip(self.solved_by, self.spans.tolist(), strict=True))
+        found = [way.orbits(self.scenes, self._states_by(way, spans), spans) for way, spans in kinds]
         return reduce(Orbits.and_those_of, found)
 
     def _orbit(self, i: int) -> Orbit | None:
-        scenes, states = [self.scenes[i]], [self.states[i]]
-        if self.spans[i] == 1:
-            return self.solved_by[i].orbits(scenes, states).one(0)
-        found = self.problem.long_orbits(scenes, states, int(self.spans[i])).one(0)
+        made = self.solved_by[i].orbits([self.scenes[i]], [self.states[i]], int(self.spans[i]))
+        found = made.one(0)
         if found is None or self.error_kind[i] != STATISTICAL:
             return found
         return replace(found, periods=READ_OVER)
@@ -351,8 +346,7 @@ class SteadyStates:
             if unique:
                 self.tried[i] = followed.trial
             else:
-                said = f"reached from scene.initial; {describe(reached)}"
-                self.reason[i] = f"{self.reason[i]}; {said}" if self.reason[i] else said
+                self._add(i, f"reached from scene.initial; {describe(reached)}")
                 self.unique[i] = NOT_UNIQUE
             return
         # Where the orbit of one period is known to repel, motions that never repeat are what they seem.
@@ -362,7 +356,7 @@ class SteadyStates:
             and all(one.curve is None and one.average is None for one in reached)
         ):
             stopped = STOPPED if max(one.followed for one in reached) < FEWEST else ""
-            self.reason[i] = f"no steady state found: {describe(reached)}{stopped}{_grows(scene)}"
+            self.reason[i] = f"no steady state found: {describe(reached)}{stopped}"
             return
         lags = (
             f"the {'deflection' if problem.law.memory_kind == 'bristle' else 'memory'} lags behind the slip"
@@ -422,12 +416,6 @@ class SteadyStates:
 def _undamped(scene: Scene) -> bool:
     mass = scene.mass()
     return mass.damping == 0.0 or (scene.transverse is not None and mass.transverse_damping == 0.0)
-
-
-def _grows(scene: Scene) -> str:
-    """What to add where no steady state is found at undamped resonance."""
-    unbounded = math.isinf(velocity_scale(scene))
-    return "; at undamped resonance the amplitude may grow without bound" if unbounded else ""
 
 
 def _at_rest(curve: Curve, row: int) -> bool:

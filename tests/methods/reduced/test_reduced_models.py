@@ -307,7 +307,7 @@ def test_an_error_above_the_tolerance_is_said_and_bounds_are_gone() -> None:
     assert found.reason[1] == ""
     assert 1e-11 < found.error[1] < 1e-9
     with pytest.raises(ValueError, match="its distance to the full answer"):
-        Mdsm(error="bound")  # type: ignore[arg-type]
+        Mdsm(error="bound")  # type: ignore[arg-type]  # what is refused
 
 
 # --- belts that vibrate ---------------------------------------------------------------------------------------------

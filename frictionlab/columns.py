@@ -35,8 +35,11 @@ _UNITS = {
     "velocity": ("m_per_s", "m/s"),
     "energy": ("J", "J"),
     "drive period": ("s", "s"),
+    "length": ("m", "m"),
+    "time": ("s", "s"),
+    "force": ("N", "N"),
 }
-"""The scales of result columns: the end of the name in SI units, and the unit."""
+"""The scales of columns: the end of the name in SI units, and the unit."""
 
 COLUMNS: tuple[Column, ...] = (
     Column("mean_friction", "steady-state mean of the friction coefficient along x1, positive for belt_speed > 0",
@@ -130,6 +133,21 @@ SI: dict[str, InSI] = {
     if each.scale
 }
 """The columns at the end of the table of a scene given in SI units."""
+
+_SCALES = {
+    "velocity": (
+        *("belt_speed", "belt_speed_error", "reversal_end", "reversal_end_error", "velocity"),
+        *("velocity_amplitude", "transverse_velocity_amplitude", "v1", "v2", "slip", "slip_transverse"),
+    ),
+    "length": ("x", "x1", "x2"),
+    "time": ("tau",),
+    "force": ("load", "load_transverse", "normal_load"),
+    "energy": ("work",),
+}
+ALSO_IN_SI: dict[str, tuple[str, str]] = {
+    name: (f"{name}_{_UNITS[scale][0]}", scale) for scale, names in _SCALES.items() for name in names
+}
+"""Of numbers of orbits, curves, onsets, harmonics and attractors their column in SI units, and its scale."""
 
 OF_SHAPE = (
     *("normalized_friction", "velocity_ratio", "velocity_amplitude"),

@@ -5,11 +5,18 @@ from __future__ import annotations
 import inspect
 from dataclasses import dataclass
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 
 from frictionlab.mistakes.as_typed import keywords, typed
 from frictionlab.mistakes.notes import Unfit, python_text
@@ -21,15 +28,35 @@ else:
     _ModelType = type(BaseModel)
 
 
-def _a_number(value: object) -> object:
+class Written(float):
+    """A number that was written as text with a unit: it is in SI units, and has that text.
+
+    Arithmetic makes a plain number of it.
+    """
+
+    text: str
+
+    def __new__(cls, number: float, text: str) -> Written:
+        """The number in SI units, and the text, such as ``2 mm/s``."""
+        made = super().__new__(cls, number)
+        made.text = text
+        return made
+
+    def __getnewargs__(self) -> tuple[float, str]:  # type: ignore[override]
+        """Of which it is made again in another process."""
+        return float(self), self.text
+
+
+def _a_number(value: object, checked: ValidatorFunctionWrapHandler) -> float:
     """Accept real numbers, those of numpy included; refuse values that could only be converted to one."""
     if type(value) is float:  # by far the most, and asking for a Real takes as long as all the rest
-        return value
+        return cast(float, checked(value))
     if isinstance(value, Unfit):
         raise ValueError(value.what)
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError("must be a number")
-    return float(value)
+    number = checked(float(value))
+    return value if isinstance(value, Written) else cast(float, number)
 
 
 def document(kind: Any, text: str) -> None:
@@ -37,7 +64,7 @@ def document(kind: Any, text: str) -> None:
     kind.__doc__ = inspect.cleandoc(text)
 
 
-Finite = Annotated[float, BeforeValidator(_a_number), Field(allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False), WrapValidator(_a_number)]
 document(
     Finite,
     """Any real number, as the parameter of a law; without a dimension.
@@ -54,7 +81,7 @@ document(
     0.375
     """,
 )
-NonNegative = Annotated[float, BeforeValidator(_a_number), Field(allow_inf_nan=False, ge=0)]
+NonNegative = Annotated[float, Field(allow_inf_nan=False, ge=0), WrapValidator(_a_number)]
 document(
     NonNegative,
     """A number of at least 0, as the parameter of a law; without a dimension. Smaller ones raise WrongValues.
@@ -69,7 +96,7 @@ document(
     frictionlab.mistakes.notes.WrongValues: Lubricated: mu: must be >= 0, got -0.1
     """,
 )
-Positive = Annotated[float, BeforeValidator(_a_number), Field(allow_inf_nan=False, gt=0)]
+Positive = Annotated[float, Field(allow_inf_nan=False, gt=0), WrapValidator(_a_number)]
 document(
     Positive,
     """A number above 0, as the parameter of a law; without a dimension. Others raise WrongValues.

@@ -28,10 +28,11 @@ ARROWS = {
         "mistakes": "printable",
         "quantities": "mistakes",
         "columns": "",
+        "units": "mistakes quantities",
         "laws": "quantities",
         "faults": "laws",
         "compile": "faults laws",
-        "scene": "mistakes quantities",
+        "scene": "mistakes quantities units",
         "dynamics": "compile laws quantities scene",
         "orbit": "columns compile dynamics laws quantities scene",
         "numerics": "compile quantities",
@@ -61,7 +62,7 @@ ARROWS = {
         "methods.auto": "laws methods.base methods.exact methods.shooting orbit scene",
         "onsets": "laws methods.base methods.periodic orbit quantities scene theory",
         "registry": "faults laws methods.base mistakes",
-        "study": "columns laws methods.base mistakes printable registry scene",
+        "study": "columns laws methods.base mistakes printable quantities registry scene units",
         "results": "columns laws methods.base orbit quantities registry scene shape study printable theory",
         "runner": (
             "columns compile faults laws methods.base mistakes onsets orbit printable quantities registry "
@@ -102,7 +103,7 @@ OUTSIDE = {
         "hypothesis": "testing",
         "numba": "compile bench.peers",  # the peers' integrators are called with numba's C functions
         "llvmlite": "compile",
-        "pint": "scene.unit_text",
+        "pint": "units.text",
         "flint": "methods.exact.proof",
         "ruamel": "study runner",
         "pandas": "results runner charts report notebook explore cli least_model sensitivity",

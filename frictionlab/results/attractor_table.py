@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from frictionlab.columns import ATTRACTORS
+from frictionlab.columns import ALSO_IN_SI, ATTRACTORS
 from frictionlab.methods.base import STATISTICAL, FoundState
 from frictionlab.results.curve_table import curve_inputs
-from frictionlab.results.table import Inputs, inputs
+from frictionlab.results.derived import beside_in_si
+from frictionlab.results.table import Inputs, inputs, scales_of_row
 from frictionlab.study import StudyCurve
 
 
@@ -21,13 +22,15 @@ def attractor_table(curves: Sequence[StudyCurve], tolerance: float, starts: int)
     given = inputs(curves)
     keys = curve_inputs(given.columns)
     rows = [row for curve in curves for row in _rows(curve, given, keys, tolerance, starts)]
-    return pd.DataFrame(rows, columns=[*keys, *ATTRACTORS])
+    in_si = [ALSO_IN_SI[name][0] for name in ATTRACTORS if name in ALSO_IN_SI and given.scales is not None]
+    return pd.DataFrame(rows, columns=[*keys, *ATTRACTORS, *in_si])
 
 
 def _rows(
     curve: StudyCurve, given: Inputs, keys: Sequence[str], tolerance: float, starts: int
 ) -> Iterator[dict[str, Any]]:
     head = {name: given.columns[name][curve.rows[0]] for name in keys}
+    units = scales_of_row(given, curve.rows[0])
     speeds, places = np.unique(curve.scenes.belt_speeds, return_index=True)
     scenes, law, method = curve.scenes.taken(places), curve.law, curve.method.method
     if method.refusal(scenes[0], law) is not None:
@@ -36,7 +39,8 @@ def _rows(
     for state in method.states(scenes, law, tolerance, starts):
         numbers[state.place] += 1
         for point in range(len(state.x)):
-            yield head | _row(state, point, float(speeds[state.place]), numbers[state.place])
+            own = _row(state, point, float(speeds[state.place]), numbers[state.place])
+            yield head | own | beside_in_si(own, units)
 
 
 def _row(state: FoundState, point: int, speed: float, number: int) -> dict[str, Any]:

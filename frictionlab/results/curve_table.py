@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -15,6 +15,7 @@ from frictionlab.columns import BELT_SPEEDS, CURVES, INPUTS, OF_SHAPE, SCALED
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.laws.memory import BristleLaw
 from frictionlab.quantities import Floats
+from frictionlab.results.derived import beside_in_si
 from frictionlab.results.loads_in_time import loads_of, varies
 from frictionlab.results.table import value_in
 from frictionlab.shape.ends import Loads, Rows, end_of_reversal, start_friction
@@ -47,7 +48,18 @@ def curve_table(table: pd.DataFrame, laws: registry.Laws = registry.INSTALLED_LA
         _measures(_rows(numbers[found[usable[found]]]), _loads(given, laws))
         for found, given in zip(places, inputs, strict=True)
     ]
-    return pd.concat([heads, _frame(read)], axis=1)
+    own = _frame(read)
+    return pd.concat([heads, own, pd.DataFrame(beside_in_si(own, _speed_scales(table, places)))], axis=1)
+
+
+def _speed_scales(table: pd.DataFrame, places: Sequence[Floats]) -> dict[str, Floats]:
+    """Of each curve a belt speed in m/s over the nondimensional one; none where scenes are not given in SI units."""
+    if BELT_SPEEDS[1] not in table:
+        return {}
+    plain, given = (table[name].to_numpy(dtype=float) for name in BELT_SPEEDS)
+    fastest = [found[np.abs(plain[found]).argmax()] for found in places]
+    with np.errstate(invalid="ignore"):
+        return {"velocity": given[fastest] / plain[fastest]}
 
 
 def curve_inputs(columns: Iterable[str]) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from frictionlab.columns import SI
+from frictionlab.columns import ALSO_IN_SI, SI
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
@@ -55,7 +55,7 @@ def _presliding(law: Any) -> float:
 
 
 def si_scales(scene: Scene) -> dict[str, float]:
-    """The units in which the results of a scene given in SI units are to be counted: N, m/s, J, s."""
+    """The units in which the results of a scene given in SI units are to be counted: N, m/s, J, s, m."""
     assert scene.dimensional is not None
     scales = scene.dimensional.scales
     return {
@@ -63,6 +63,9 @@ def si_scales(scene: Scene) -> dict[str, float]:
         "velocity": scales.velocity,
         "energy": scales.energy,
         "drive period": 2.0 * math.pi / scene.frequency * scales.time,
+        "length": scales.length,
+        "time": scales.time,
+        "force": scales.force,
     }
 
 
@@ -70,6 +73,12 @@ def si_columns(found: Mapping[str, Floats], scales: Mapping[str, Floats]) -> dic
     """Results in SI units."""
     told = {name: made for name, made in SI.items() if made.column in found}
     return {name: found[made.column] * scales[made.scale] for name, made in told.items()}
+
+
+def beside_in_si(found: Mapping[str, Any], scales: Mapping[str, Any]) -> dict[str, Any]:
+    """Columns of orbits and their like in SI units, to stand behind them; none without scales."""
+    told = {name: ALSO_IN_SI[name] for name in found if name in ALSO_IN_SI}
+    return {name: found[of] * scales[scale] for of, (name, scale) in told.items() if scale in scales}
 
 
 def force_amplitude(scene: Scene) -> float:

@@ -7,8 +7,9 @@ import pandas as pd
 from frictionlab.columns import BELT_SPEED, HARMONICS
 from frictionlab.quantities import Floats
 from frictionlab.results.curve_table import curve_inputs
+from frictionlab.results.derived import beside_in_si
 from frictionlab.results.part import KeptRows
-from frictionlab.results.table import Inputs
+from frictionlab.results.table import Inputs, scales_of_row
 
 
 def harmonic_table(given: Inputs, harmonics: KeptRows) -> pd.DataFrame:
@@ -25,5 +26,9 @@ def harmonic_table(given: Inputs, harmonics: KeptRows) -> pd.DataFrame:
 
 def _rows(given: Inputs, keys: list[str], row: int, columns: dict[str, Floats]) -> pd.DataFrame:
     head = {name: given.columns[name][row] for name in keys}
-    told = head | {"belt_speed": given.columns[BELT_SPEED][row]} | columns
-    return pd.DataFrame(told | {"harmonic": columns["harmonic"].astype(int)})
+    own = {
+        "belt_speed": given.columns[BELT_SPEED][row],
+        **columns,
+        "harmonic": columns["harmonic"].astype(int),
+    }
+    return pd.DataFrame(head | own | beside_in_si(own, scales_of_row(given, row)))

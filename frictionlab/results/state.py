@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from frictionlab.orbit.harmonics import HarmonicParts
-    from frictionlab.orbit.sample import Samples
 
 
 NAN = float("nan")
@@ -37,13 +36,16 @@ class OrbitOf:
     def _orbit(self) -> Orbit | None:
         return self._make(0)
 
-    def sampled(self, n: int) -> Samples | None:
-        """So many samples of it; None where there is no orbit."""
+    def sampled(self, n: int) -> dict[str, Any] | None:
+        """So many samples of it as columns, in SI units, too, where the scene is; None where there is no orbit."""
         if self._orbit is None:
             return None
         from frictionlab.orbit.sample import sample  # imports numba: only where it is needed
+        from frictionlab.results.derived import beside_in_si, si_scales
 
-        return sample(self._orbit, self._scene, self._law, n)
+        columns = sample(self._orbit, self._scene, self._law, n).columns()
+        scales = {} if self._scene.dimensional is None else si_scales(self._scene)
+        return {**columns, **beside_in_si(columns, scales)}
 
     def harmonics(self, highest: int, across: bool) -> HarmonicParts | None:
         """Its harmonics 0 ... highest along or across the belt; None where there is no orbit."""
@@ -143,7 +145,8 @@ class SteadyState:
     def orbit(self, n: int) -> pd.DataFrame:
         """One period at n equally spaced times, a row each: tau, x1, v1, x2, v2, friction, load, slip, ...
 
-        Columns as in ``orbits.parquet``, in the scales of the scene, x2 and its like zero along a line.
+        Columns as in ``orbits.parquet``, in the scales of the scene, x2 and its like zero along a line; behind them
+        those in SI units, ``tau_s``, ``x1_m``, ``v1_m_per_s``, ..., where the scene is given in them.
 
         >>> import frictionlab as fl
         >>> drive = fl.Drive(unbalance=10, frequency=1)
@@ -155,12 +158,12 @@ class SteadyState:
         Raises ValueError where there is no orbit, saying why.
         """
         count = at_least_one("n", n)
-        samples = None if self.motion is None else self.motion.sampled(count)
-        if samples is None:
+        columns = None if self.motion is None else self.motion.sampled(count)
+        if columns is None:
             raise ValueError(self._no_orbit())
         import pandas as pd  # takes half a second, which a mean alone need not
 
-        return pd.DataFrame(samples.columns())
+        return pd.DataFrame(columns)
 
     def harmonics(self, highest: int, across: bool = False) -> HarmonicParts:
         """Harmonics 0 ... highest of velocity [omega_1 L] and friction [-] along the belt, or across it.

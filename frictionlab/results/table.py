@@ -23,7 +23,7 @@ from frictionlab.columns import (
 )
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.quantities import Floats
-from frictionlab.results.derived import si_columns, si_scales
+from frictionlab.results.derived import beside_in_si, si_columns, si_scales
 from frictionlab.results.part import KeptRows, Part
 from frictionlab.scene.units import scaled_parameters
 from frictionlab.study import StudyCurve
@@ -280,16 +280,28 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
-def orbit_rows(orbits: KeptRows, memories: Sequence[str] = ()) -> pd.DataFrame | None:
+def orbit_rows(
+    orbits: KeptRows, memories: Sequence[str] = (), given: Inputs | None = None, first: int = 0
+) -> pd.DataFrame | None:
     """The kept orbits, one row per sample; ``row`` is the point's place in the table. None without any.
 
     memories: columns of memory to be there whether or not one of these laws remembers so much; NaN where none does.
+    given: of the table from its row ``first`` on; scenes given in SI units have columns in them.
     """
-    frames = [pd.DataFrame({"row": row, **samples}) for row, samples in sorted(orbits.items())]
+    frames = [
+        pd.DataFrame({"row": row, **samples, **beside_in_si(samples, scales_of_row(given, row - first))})
+        for row, samples in sorted(orbits.items())
+    ]
     if not frames:
         return None
     rows = pd.concat(frames, ignore_index=True)
     return rows.reindex(columns=list(dict.fromkeys([*rows.columns, *memories])))
+
+
+def scales_of_row(given: Inputs | None, row: int) -> dict[str, float]:
+    """The units in which results of a row are counted in SI units; none where its scene is not given in them."""
+    found = {} if given is None or given.scales is None else given.scales
+    return {name: float(scales[row]) for name, scales in found.items()}
 
 
 def kept_rows(orbits: pd.DataFrame) -> KeptRows:

@@ -63,7 +63,7 @@ class GatheredTable:
             for table in self._tables(piece):
                 files.add_rows(table)
                 self._counts.update(status_counts(table))
-            orbits = orbit_rows(piece.kept.get("orbits", {}), piece.memories)
+            orbits = orbit_rows(piece.kept.get("orbits", {}), piece.memories, piece.inputs, piece.first)
             harmonics = piece.harmonics() if solving.task.harmonics else None
             files.add_orbits(orbits)
             if harmonics is not None and harmonics.empty:  # columns across the belt are not told of no orbits

@@ -13,6 +13,7 @@ import pandas as pd
 from frictionlab.columns import OF_MULTIPLIERS, OF_REST, ONSETS
 from frictionlab.methods.base import Answers
 from frictionlab.results.curve_table import curve_inputs
+from frictionlab.results.derived import beside_in_si
 from frictionlab.results.table import slice_of
 from frictionlab.runner.chunks import Chunk, Task
 from frictionlab.runner.solve import answer
@@ -42,12 +43,20 @@ def onset_table(study: Study, table: pd.DataFrame) -> pd.DataFrame:
         return _frame([], [], keys)
     points = sum(len(each.rows) for each in curves)
     most = max(_FEWEST, points // _SHARE) // len(curves)
-    found, heads = [], []
+    found, heads, scales = [], [], []
     for each in curves:
         own = _onsets(each, table.iloc[slice_of(each.rows)], study.tolerance, most)
         found += own
         heads += [each.rows.start] * len(own)
-    return _frame(found, heads, keys, table)
+        scales += [_speed_scale(each)] * len(own)
+    onsets = _frame(found, heads, keys, table)
+    units = {} if curves[0].scenes.scene.dimensional is None else {"velocity": np.array(scales)}
+    return onsets.assign(**beside_in_si(onsets, units))
+
+
+def _speed_scale(curve: StudyCurve) -> float:
+    si = curve.scenes.scene.dimensional
+    return 1.0 if si is None else si.scales.velocity
 
 
 def lacks_multipliers(study: Study, table: pd.DataFrame) -> bool:

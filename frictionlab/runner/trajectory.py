@@ -11,6 +11,7 @@ from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.orbit.record import Orbit
 from frictionlab.quantities import at_least_one
+from frictionlab.results.derived import beside_in_si, si_scales
 from frictionlab.runner.arguments import given_law, given_method, given_scene, given_tolerance
 from frictionlab.runner.workers import within
 from frictionlab.scene.scene import Initial, Scene
@@ -33,7 +34,8 @@ def trajectory(
 
     initial: position and velocity at tau = 0; where left out scene.initial, without that the friction-free motion.
     samples: rows a period, evenly spaced, and one at the end. Columns as ``state.orbit(n)``: tau, x1, v1, x2, v2,
-    friction, load, slip, ... tolerance: on the mean of a period; instants of stick and reversal are located.
+    friction, load, slip, ..., of a scene in SI units tau_s, x1_m, v1_m_per_s, ... too.
+    tolerance: on the mean of a period; instants of stick and reversal are located.
 
     >>> import frictionlab as fl
     >>> drive = fl.Drive(unbalance=10, frequency=1)
@@ -68,4 +70,5 @@ def _sampled(scene: Scene, law: FrictionLaw, found: list[Orbit], samples: int) -
         part = pd.DataFrame(sample_at(orbit, scene, law, times if last else times[:-1]).columns())
         rows.append(part.assign(work=part.work + done))
         done += work_of(orbit, scene)
-    return pd.concat(rows, ignore_index=True)
+    motion = pd.concat(rows, ignore_index=True)
+    return motion.assign(**beside_in_si(motion, {} if scene.dimensional is None else si_scales(scene)))

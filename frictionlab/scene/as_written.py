@@ -15,7 +15,7 @@ from pydantic import model_validator
 from frictionlab.mistakes.notes import Unfit
 from frictionlab.quantities import Dimension
 from frictionlab.scene.parts import ScenePart
-from frictionlab.scene.unit_text import in_units, quantity_in
+from frictionlab.units.text import in_units, quantity_in
 
 _SUFFIX = re.compile(r"_(N_s_per_m|m_per_s2|rad_per_s|N_per_m|m_per_s|kg_m|kg|N|m|J|s)$")
 """What the key of a number, or the name of a result, ends in: its unit."""

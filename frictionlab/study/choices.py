@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from frictionlab import registry
 from frictionlab.mistakes.notes import Notes, Path, unknown_name, value_text
 from frictionlab.mistakes.validation import build_record
-from frictionlab.study.parts import LawChoice, MethodChoice
+from frictionlab.study.parts import LawChoice, MethodChoice, plain_values
 
 REMEDIES = {"law": "; install the package that provides it, or list its file under plugins"}
 
@@ -36,7 +36,7 @@ def law_choice(given: Any, path: Path, laws: registry.Laws, notes: Notes) -> Law
     if law is None:
         return None
     laws.check(item.kind, law)
-    return LawChoice(item.label, item.kind, law.model_dump(exclude_none=True, mode="json"), type(law))
+    return LawChoice(item.label, item.kind, plain_values(law), type(law))
 
 
 def method_choice(given: Any, path: Path, notes: Notes) -> MethodChoice | None:

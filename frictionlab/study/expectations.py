@@ -11,9 +11,9 @@ from frictionlab.mistakes.notes import Notes, Path, did_you_mean, value_text
 from frictionlab.mistakes.validation import checked_value, placed, record_at
 from frictionlab.scene.as_written import in_si
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.unit_text import in_units
 from frictionlab.study.parts import Expectation
 from frictionlab.study.written import column_of
+from frictionlab.units.text import in_units
 
 EXPECTATION_KEYS = (
     *("where", "column", "equals", "below", "above", "within"),

@@ -14,7 +14,7 @@ from frictionlab.mistakes.notes import Notes, python_text
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.waveforms import Form
 from frictionlab.study.law_files import StudyLaws
-from frictionlab.study.parts import SCHEMA
+from frictionlab.study.parts import SCHEMA, plain_values
 from frictionlab.study.reader import read_values
 from frictionlab.study.yaml_source import read_mapping
 
@@ -39,7 +39,7 @@ def values_of_objects(
     tree["laws"] = [
         {
             "kind": kind,
-            **law.model_dump(exclude_none=True, mode="json"),
+            **plain_values(law),
             **({"label": label} if label else {}),
         }
         for kind, (label, law) in zip(kinds, labelled, strict=True)

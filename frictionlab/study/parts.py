@@ -11,6 +11,7 @@ from frictionlab import registry
 from frictionlab.laws.base import FrictionLaw
 from frictionlab.methods.base import Method
 from frictionlab.mistakes.notes import number_text
+from frictionlab.quantities import Written
 from frictionlab.scene.waveforms import Form
 from frictionlab.study.axes import STATIC, GridValue
 
@@ -48,6 +49,12 @@ class LawChoice:
         """The entry of a study file."""
         label = {} if self.label == self.kind else {"label": self.label}
         return {"kind": self.kind, **natural(self.parameters), **label}
+
+
+def plain_values(law: FrictionLaw) -> dict[str, Any]:
+    """The parameters of a law as a study gives them; texts with units stay such."""
+    written = {name: value for name, value in law if isinstance(value, Written)}
+    return law.model_dump(exclude_none=True, mode="json") | written
 
 
 def coefficient_of(law: type[FrictionLaw]) -> str:
@@ -115,7 +122,9 @@ class Expectation:
 
 
 def natural(value: Any) -> Any:
-    """The value with whole floats as integers, as a person would write them (and -0.0 as 0)."""
+    """The value with whole floats as integers, as a person would write them (and -0.0 as 0), texts as they were."""
+    if isinstance(value, Written):
+        return value
     if isinstance(value, dict):
         return {key: natural(item) for key, item in value.items()}
     if isinstance(value, Form):

@@ -13,7 +13,6 @@ from frictionlab.mistakes.validation import nested, number_paths
 from frictionlab.registry.records import description, meaning
 from frictionlab.scene.as_written import AsWritten, unit_of
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.unit_text import quantity_in
 from frictionlab.scene.waveforms import SINE, Waveform
 from frictionlab.study import reader
 from frictionlab.study.axes import FRICTION, LINKED
@@ -21,6 +20,7 @@ from frictionlab.study.figure_options import FigureOptions
 from frictionlab.study.parts import LIMIT_KEY, SCHEMA
 from frictionlab.study.ranges import ENDS, SpeedRange, SweepRange
 from frictionlab.study.study import SECONDS_PER_POINT
+from frictionlab.units.text import quantity_in
 
 _KEYS = {
     "schema": "version of the rules that the study is written by",

@@ -191,7 +191,8 @@ class Study(StudyGrid):
         if FRICTION in self.sweep:
             under = {law.label: law.under_friction(self.sweep[FRICTION]) for law in self.laws}
             numbers["friction"] = [[label, list(map(list, each.values()))] for label, each in under.items()]
-        return hashlib.sha256(json.dumps(natural(numbers), sort_keys=True).encode()).hexdigest()
+        plain = natural(json.loads(json.dumps(natural(numbers))))  # a text with a unit is its number
+        return hashlib.sha256(json.dumps(plain, sort_keys=True).encode()).hexdigest()
 
     def _swept(self, path: str) -> Any:
         along = self.ranges.get(path)

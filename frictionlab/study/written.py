@@ -13,9 +13,9 @@ from frictionlab.mistakes.notes import Unfit
 from frictionlab.mistakes.validation import field_path, number_paths
 from frictionlab.scene.as_written import AsWritten, in_si, unit_of_dimension
 from frictionlab.scene.scene import Scene
-from frictionlab.scene.unit_text import in_units
 from frictionlab.scene.units import dimensions
 from frictionlab.study.axes import SCENE
+from frictionlab.units.text import in_units
 
 
 def column_of(path: str) -> str:

@@ -9,9 +9,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from frictionlab.printable import printable
+from frictionlab.quantities import Written
 
 WIDTH = 110
 _PLAIN = re.compile(r"[A-Za-z][\w.()/-]*(?: [\w.()/-]+)*")
+_WITH_UNIT = re.compile(r"[\d.e+-]+ [\w/^* -]+")
 _RESERVED = {"true", "false", "yes", "no", "on", "off", "y", "n", "null", "nan", "inf"}
 
 
@@ -62,6 +64,8 @@ def _flow(value: Any) -> str:
 
 
 def _scalar(value: Any) -> str:
+    if isinstance(value, Written):
+        return value.text if _WITH_UNIT.fullmatch(value.text) else json.dumps(value.text, ensure_ascii=False)
     if isinstance(value, float):
         return _number(value)
     if isinstance(value, str) and _PLAIN.fullmatch(value) and value.lower() not in _RESERVED:

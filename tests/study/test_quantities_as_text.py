@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+import ruamel.yaml
 
 import frictionlab as fl
 from frictionlab.study import StudyError, parse_study
@@ -69,8 +70,10 @@ def in_numbers() -> dict[str, Any]:
 def test_a_study_of_texts_is_that_of_its_numbers() -> None:
     texts, numbers = parse_study(study()), parse_study(in_numbers())
 
-    assert texts.to_yaml() == numbers.to_yaml()
+    assert texts == numbers
     assert texts.digest() == numbers.digest()
+    assert "60 Hz" in texts.to_yaml()
+    assert parse_study(ruamel.yaml.YAML(typ="safe").load(texts.to_yaml())) == numbers
     assert parse_study(texts.resolved()) == texts
 
 

@@ -12,6 +12,7 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from frictionlab.mistakes.notes import Unfit
+from frictionlab.quantities import Written
 
 DEFINITIONS = """
 nano- = 1e-9 = n-
@@ -86,13 +87,17 @@ QUANTITIES = [
 
 
 def in_units(text: str, unit: str) -> float | Unfit:
-    """The number that a text with a unit is in this one; what is wrong with it where it is none."""
+    """The number that a text with a unit is in this one; what is wrong with it where it is none.
+
+    It keeps the text where it has a dimension.
+    """
     example = quantity_in(unit).example
     if not (read := _TEXT.fullmatch(text)):
         return Unfit(text, f"must be a number, or text with a unit such as {example}")
     try:
-        number = Fraction(read["number"]) * _factor(read["unit"], unit)
-        return float(number)
+        number = float(Fraction(read["number"]) * factor_of(read["unit"], unit))
+        shown = f"{read['number']} {read['unit']}"
+        return Written(number, shown) if unit not in ("", "deg") else number
     except _Wrong as problem:
         return Unfit(text, f"'{text.strip()}' {problem}")
     except OverflowError:
@@ -109,7 +114,7 @@ class _Wrong(ValueError):
 
 
 @cache
-def _factor(given: str, wanted: str) -> Fraction:
+def factor_of(given: str, wanted: str) -> Fraction:
     """By which a number in a unit is multiplied to be in another. Raises _Wrong."""
     import pint
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
@@ -92,9 +93,9 @@ class Auto(Method):
         for i in np.flatnonzero(answers.error > tolerance).tolist():
             if status[i] == "ok" and answers.error_kind[i] != STATISTICAL:
                 status[i] = "failed"
-                reason[i] = (
-                    f"{method.name} reaches an error of {answers.error[i]:.1e}, above the tolerance {tolerance:.1e}"
-                )
+                reaches = f"reaches an error of {answers.error[i]:.1e}, above the tolerance {tolerance:.1e}"
+                told = re.search(r"above the tolerance[^:;]*(: [^;]+)", reason[i])
+                reason[i] = f"{method.name} {reaches}{told[1] if told else ''}"
         named = {model: f"{model} (auto: {method.name}, {why})" for model in set(answers.model)}
         model = [named[each] for each in answers.model]
         return replace(answers, status=status, reason=reason, model=model)

@@ -23,6 +23,8 @@ from frictionlab.theory.rest import friction_at_rest
 
 STABLE = 1.0 - 1e-7
 """Largest Floquet multiplier of an orbit that counts as attractive."""
+NO_GROWTH = 1e-6
+"""By how much a multiplier may differ from one by rounding."""
 PLACES_ON_THE_BELT = 6
 """Starts at rest along the way of the belt in a period."""
 POINTS_KEPT = 100
@@ -41,7 +43,8 @@ class Attractor:
 
     low, high: the smallest and the largest mean over one drive period. followed: for how many periods. points: states
     at the starts of the periods of a closed orbit, or at the last ones of another motion [n, size]. average: over a
-    long time, of all motions on one attractor that never repeat; None where nothing has asked for it.
+    long time, of all motions on one attractor that never repeat; None where nothing has asked for it. neutral: a
+    motion that repeats, as others beside it do, for it has no damping.
     """
 
     followed: int
@@ -51,6 +54,7 @@ class Attractor:
     curve: Curve | None
     points: Floats
     average: LongMean | None = None
+    neutral: bool = False
 
     def agrees(self, other: Attractor) -> bool:
         """Whether both have the same mean friction, for the same reason."""
@@ -139,13 +143,27 @@ def closed_orbit(curve: Curve, means: Floats, points: Floats | None = None) -> A
 def starts(scene: Scene, limit: float) -> list[Initial | None]:
     """Starts far from each other: shaken freely, resting on the belt, flung against it, and let go ahead of it.
 
-    limit: force of friction at rest. ``scene.initial``, where it is given, comes first.
+    limit: force of friction at rest. ``scene.initial``, where it is given, comes first. Where the belt would carry
+    the mass for longer than a start is followed before it slips, the others start nearer to where it does.
     """
     given: list[Initial | None] = [] if scene.initial is None else [scene.initial]
-    against = -math.copysign(1.0, scene.belt_speed)
-    flung = Initial(x=against * 2.0 * limit, velocity=against * (abs(scene.belt_speed) + limit))
-    ahead = Initial(x=-against * (limit + force_swing(scene)))
-    return [*given, None, Initial(velocity=scene.belt_speed), flung, ahead]
+    belt, periods = scene.belt_speed, carried_for(scene, limit)
+    side, way = math.copysign(1.0, belt), limit * (FEWEST / periods if MOST < periods < math.inf else 1.0)
+    last = side * (limit - way)
+    shaken = None if way == limit else Initial(x=side * limit)
+    flung = Initial(x=last - side * 2.0 * way, velocity=-side * (abs(belt) + way))
+    ahead = Initial(x=side * (limit + force_swing(scene)))
+    return [*given, shaken, Initial(x=last, velocity=belt), flung, ahead]
+
+
+def carried_for(scene: Scene, limit: float) -> float:
+    """Periods in which the belt carries a mass, held by this force, over both its spring's deflections under it.
+
+    Infinite on a belt at rest.
+    """
+    mass = scene.mass()
+    way = abs(scene.belt_speed) * 2.0 * math.pi / mass.frequency * scene.periods
+    return CLIMBS * limit / mass.stiffness / way if way > 0.0 else math.inf
 
 
 def resting_starts(scene: Scene, limit: float, count: int = PLACES_ON_THE_BELT) -> list[Initial]:
@@ -200,7 +218,12 @@ def follow_all(problem: PeriodicProblem, scene: Scene, candidate: Attractor | No
     followed = FollowedStarts(problem, scene, candidate)
     first, more = all_starts(problem, scene)
     for start in first:
-        followed.follow(start)
+        # motions of too many steps have no mean; a second one is followed for what else there is
+        if (
+            sum(one.curve is None and one.followed < FEWEST and not one.neutral for one in followed.reached)
+            < 2
+        ):
+            followed.follow(start)
     for start in more:
         if not followed.one_orbit():
             break
@@ -299,8 +322,8 @@ def _patience(scene: Scene, law: FrictionLaw, candidate: Attractor | None) -> in
     period = 2.0 * math.pi / mass.frequency
     weakest = mass.damping if scene.load_along_belt_only else min(mass.damping, mass.transverse_damping)
     own = 2.0 * DECAYS / (weakest * period) if weakest > 0.0 else MOST
-    climb = CLIMBS * mass.normal_load * friction_at_rest(law) / mass.stiffness
-    own = max(own, climb / (abs(scene.belt_speed) * period) if scene.belt_speed != 0.0 else 0.0)
+    carried = carried_for(scene, mass.normal_load * friction_at_rest(law))
+    own = max(own, carried if carried < math.inf else 0.0)
     if candidate is None or candidate.curve is None:
         return int(min(max(5 * FEWEST, own), MOST))
     rate = max(-math.log(max(multiplier(candidate.curve), 1e-3)), 1e-9)
@@ -331,9 +354,18 @@ def orbit_at_the_end(problem: PeriodicProblem, scene: Scene, way: Transient) -> 
         orbit = closed_orbit(curve, means, points)
         if orbit is not None:
             return orbit, seconds
+        if curve.closed.found[0] and undamped(scene) and multiplier(curve) < 1.0 + NO_GROWTH:
+            ends = float(means.min()), float(means.max())
+            return Attractor(len(way.means), 0, *ends, None, points, neutral=True), seconds
     last = way.means[len(way.means) // 2 :]
     low, high = float(last.min()), float(last.max())
     return Attractor(len(way.means), 0, low, high, None, way.states[-POINTS_KEPT:]), seconds
+
+
+def undamped(scene: Scene) -> bool:
+    """Whether a free oscillation, along the belt or across it, has no dashpot."""
+    mass = scene.mass()
+    return mass.damping == 0.0 or (scene.transverse is not None and mass.transverse_damping == 0.0)
 
 
 def _shortest(problem: PeriodicProblem, scene: Scene, way: Transient) -> tuple[Curve, int, float]:

@@ -20,14 +20,17 @@ from frictionlab.methods.periodic.problem import PeriodicProblem, largest_modulu
 from frictionlab.methods.periodic.sharpened import ClosedMotion, sharpened
 from frictionlab.methods.shooting.attractors import (
     FEWEST,
+    MOST,
     Attractor,
     FollowedStarts,
     Trial,
+    carried_for,
     closed_orbit,
     describe,
     follow_all,
     multiplier,
     quick_starts,
+    undamped,
 )
 from frictionlab.methods.shooting.long_motions import average_unrepeated
 from frictionlab.orbit.record import Orbit, Orbits
@@ -35,7 +38,7 @@ from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
 from frictionlab.scene.scenes import Scenes, belt_speeds_of
 from frictionlab.theory.linear import velocity_scale
-from frictionlab.theory.rest import can_hold, resting_range, stays_at_rest
+from frictionlab.theory.rest import can_hold, friction_at_rest, resting_range, stays_at_rest
 from frictionlab.theory.uniqueness import ALONE, why_unique
 
 Complexes = NDArray[np.complex128]
@@ -53,6 +56,7 @@ HELD_ELASTICALLY = (
     "the belt is at rest and the bristle is elastic under these loads: the mean depends on the start"
 )
 UNBOUNDED = "at undamped resonance the amplitude may grow without bound"
+CARRIED = "friction holds the mass, and the belt carries it for some {:.0e} drive periods from slip to slip"
 NEAR_REST = "; slip near rest in polar coordinates (Radau IIA)"
 BY_ROUNDING = (
     "next to rest two motions hardly approach each other in a period, and rounding alone leaves this error"
@@ -108,7 +112,7 @@ class SteadyStates:
         self.error_kind = ["estimated"] * n
         self.spans = np.ones(n, np.int64)
         self.whole = (scenes[0].degrees_of_freedom == 2) == isinstance(problem.like, complex)
-        judged_by_multipliers = not problem.goal.contracts or _undamped(scenes[0])
+        judged_by_multipliers = not problem.goal.contracts or undamped(scenes[0])
         self.matrices: list[Floats | None] = [None] * n
         self.wanted = DIFFERENTIATED if judged_by_multipliers else CLOSED
         self.proof = why_unique(scenes[0], problem.law)
@@ -130,7 +134,7 @@ class SteadyStates:
         problem = by or self.problem
         curve, seconds = problem.close(self.scenes.taken(where), state, wanted=self.wanted)
         self.seconds[where] = np.nan_to_num(self.seconds[where]) + seconds / len(where)
-        multipliers, undamped = _multipliers(curve), _undamped(self.scenes.scene)
+        multipliers, remains = _multipliers(curve), undamped(self.scenes.scene)
         closed = curve.closed
         found = closed.found.tolist()
         for row, i in enumerate(where):
@@ -139,7 +143,7 @@ class SteadyStates:
             if not found[row]:
                 steps = "" if problem is self.problem else " of implicit steps"
                 self._add(i, f"no closed orbit found in {-closed.maps[row]:.0f} period maps{steps}")
-            elif undamped and self._repeats(curve, row, multipliers[row], problem):
+            elif remains and self._repeats(curve, row, multipliers[row], problem):
                 self._leave_open(i, UNDAMPED, closed.mean[row], closed.mean[row])
             else:
                 self.reason[i], self.status[i], self.states[i] = "", "ok", curve.states[row]
@@ -194,10 +198,14 @@ class SteadyStates:
 
     def judge(self, tolerance: float) -> None:
         """Say where the error is above the tolerance, and what may keep a motion from any steady state."""
-        resonant = math.isinf(velocity_scale(self.scenes.scene))
+        scene, law = self.scenes.scene, self.problem.law
+        resonant = math.isinf(velocity_scale(scene)) and not can_hold(scene, law)
         for i, error in enumerate(self.error):
             if resonant and self.status[i] == "failed":
                 self._add(i, UNBOUNDED)
+            periods = carried_for(self.scenes[i], self.problem.mass.normal_load * friction_at_rest(law))
+            if MOST < periods < math.inf and self.status[i] != "ok":
+                self._add(i, CARRIED.format(periods * self.problem.common))
             if self.status[i] == "ok" and not error <= tolerance and self.error_kind[i] != STATISTICAL:
                 said = f"the error is above the tolerance {tolerance:.1e}"
                 self._add(i, said if self.solved_by[i] is self.problem else f"{said}: {BY_ROUNDING}")
@@ -349,9 +357,15 @@ class SteadyStates:
                 self._add(i, f"reached from scene.initial; {describe(reached)}")
                 self.unique[i] = NOT_UNIQUE
             return
+        ranges = [(one.low, one.high) if math.isnan(one.mean) else (one.mean, one.mean) for one in reached]
+        low, high = min(ranges)[0], max(high for _, high in ranges)
+        if any(one.neutral for one in reached):
+            others = [one for one in reached if not one.neutral]
+            self._leave_open(i, f"{UNDAMPED}; {describe(others)}" if others else UNDAMPED, low, high)
+            return
         # Where the orbit of one period is known to repel, motions that never repeat are what they seem.
         if (
-            (problem.falls_slowly or _undamped(scene))
+            (problem.falls_slowly or undamped(scene))
             and i not in self.repelling
             and all(one.curve is None and one.average is None for one in reached)
         ):
@@ -362,8 +376,7 @@ class SteadyStates:
             f"the {'deflection' if problem.law.memory_kind == 'bristle' else 'memory'} lags behind the slip"
         )
         why = lags if problem.falls_slowly else "friction falls with speed"
-        ranges = [(one.low, one.high) if math.isnan(one.mean) else (one.mean, one.mean) for one in reached]
-        self._leave_open(i, f"{why}: {describe(reached)}", min(ranges)[0], max(high for _, high in ranges))
+        self._leave_open(i, f"{why}: {describe(reached)}", low, high)
         self.window[i] = max(one.averaged_over for one in reached) * problem.common
 
     def _accept(self, i: int, found: Attractor) -> None:
@@ -411,11 +424,6 @@ class SteadyStates:
         closed = curve.closed
         self.mean.real[places], self.mean.imag[places] = closed.mean[rows], closed.across[rows]
         self.error[places], self.period[places] = closed.error[rows], self.problem.common
-
-
-def _undamped(scene: Scene) -> bool:
-    mass = scene.mass()
-    return mass.damping == 0.0 or (scene.transverse is not None and mass.transverse_damping == 0.0)
 
 
 def _at_rest(curve: Curve, row: int) -> bool:

@@ -8,7 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from frictionlab.methods.periodic.problem import PeriodicProblem, Transient
-from frictionlab.methods.shooting.attractors import POINTS_KEPT, Attractor, FollowedStarts, orbit_at_the_end
+from frictionlab.methods.shooting.attractors import (
+    FEWEST,
+    POINTS_KEPT,
+    Attractor,
+    FollowedStarts,
+    orbit_at_the_end,
+)
 from frictionlab.methods.shooting.long_mean import BLOCKS, LongMean, birkhoff_mean, long_mean
 from frictionlab.quantities import Floats
 from frictionlab.scene.scene import Scene
@@ -67,7 +73,8 @@ class LongMotion:
     @property
     def may_go_on(self) -> bool:
         """Whether it has no end yet, and its steps were not too many for the periods asked for before."""
-        return self.end is None and not 0 < len(self.means) < FEWEST_AVERAGED
+        stopped = self.start.followed < FEWEST or 0 < len(self.means) < FEWEST_AVERAGED
+        return self.end is None and not stopped
 
     @property
     def stays(self) -> bool:
@@ -103,7 +110,7 @@ def average_unrepeated(problem: PeriodicProblem, scene: Scene, followed: Followe
     """Say of every start whose motion did not repeat where it leads over a long time."""
     if not any(one.curve is None and one.average is None for one in followed.reached):
         return
-    places = [place for place, one in enumerate(followed.reached) if one.curve is None]
+    places = [place for place, one in enumerate(followed.reached) if one.curve is None and not one.neutral]
     motions = {place: LongMotion(problem, scene, followed.reached[place]) for place in places}
     means: dict[int, LongMean] = {}
     for length in LENGTHS:

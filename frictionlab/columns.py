@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -149,6 +150,12 @@ ALSO_IN_SI: dict[str, tuple[str, str]] = {
 }
 """Of numbers of orbits, curves, onsets, harmonics and attractors their column in SI units, and its scale."""
 
+IN_SI_UNITS: dict[str, str] = {
+    **{name: _UNITS[made.scale][1] for name, made in SI.items() if made.scale != "load"},
+    **{name: _UNITS[scale][1] for name, scale in ALSO_IN_SI.values()},
+}
+"""Of the columns of results in SI units their unit, but for friction forces, which stay in N."""
+
 OF_SHAPE = (
     *("normalized_friction", "velocity_ratio", "velocity_amplitude"),
     *("reversals", "stick_fraction"),
@@ -216,9 +223,23 @@ SCALED = "law.nondimensional."
 """Prefix of the columns with the nondimensional parameters of a law that is given in SI units."""
 
 
+SHOWN_IN = " in "
+"""Between the name of a column in SI units and the unit in which its numbers are shown."""
+
+
+def without_shown_unit(name: str) -> str:
+    """The name of a column as tables of a run have it."""
+    return name.partition(SHOWN_IN)[0]
+
+
+def is_belt_speed(name: str) -> bool:
+    """Whether a column is the belt speed, in whatever unit."""
+    return without_shown_unit(name) in BELT_SPEEDS
+
+
 def belt_speed(names: Iterable[str]) -> str:
     """The column of the belt speed, in the units in which the scene was given."""
-    return BELT_SPEEDS[1] if BELT_SPEEDS[1] in names else BELT_SPEEDS[0]
+    return next((name for name in names if without_shown_unit(name) == BELT_SPEEDS[1]), BELT_SPEED)
 
 
 SHOWN_IN_PART = "shown in part"
@@ -364,24 +385,24 @@ _NAMES = {  # words, symbol, unit
     "scene.drive.frequency": ("drive frequency", r"\Omega"),
     "scene.drive.unbalance": ("unbalance", r"\alpha"),
     "scene.drive.amplitude": ("load amplitude", "P"),
-    "scene.drive.phase": ("load phase [deg]", r"\varphi_1"),
+    "scene.drive.phase": ("load phase", r"\varphi_1", "deg"),
     "scene.drive.waveform": ("drive waveform", ""),
     "scene.drive.direction": ("drive direction", r"\chi", "deg"),
     "scene.transverse.natural_frequency": ("transverse natural frequency", r"\omega_r"),
     "scene.transverse.damping_ratio": ("transverse damping ratio", r"\beta_2"),
     "scene.transverse.load.unbalance": ("transverse unbalance", r"\alpha_2"),
     "scene.transverse.load.amplitude": ("transverse load amplitude", "P_2"),
-    "scene.transverse.load.phase": ("transverse load phase [deg]", r"\varphi_2"),
+    "scene.transverse.load.phase": ("transverse load phase", r"\varphi_2", "deg"),
     "scene.transverse.load.waveform": ("transverse load waveform", ""),
     "scene.transverse.load.frequency_ratio": ("transverse load frequency ratio", "r_2"),
     "scene.slip.velocity_amplitude": ("slip velocity amplitude", "V_1"),
     "scene.slip.frequency": ("slip frequency", r"\Omega"),
-    "scene.slip.phase": ("slip phase [deg]", r"\varphi_1"),
+    "scene.slip.phase": ("slip phase", r"\varphi_1", "deg"),
     "scene.slip.waveform": ("slip waveform", ""),
     "scene.slip.direction": ("slip direction", r"\chi", "deg"),
     "scene.transverse_slip.velocity_amplitude": ("transverse slip velocity amplitude", "V_2"),
     "scene.transverse_slip.frequency": ("transverse slip frequency", r"\Omega"),
-    "scene.transverse_slip.phase": ("transverse slip phase [deg]", r"\varphi_2"),
+    "scene.transverse_slip.phase": ("transverse slip phase", r"\varphi_2", "deg"),
     "scene.transverse_slip.waveform": ("transverse slip waveform", ""),
     "scene.belt_vibration.velocity_amplitude": ("belt vibration amplitude", r"\hat v_b"),
     "scene.belt_vibration.phase": ("belt vibration phase", r"\varphi_b", "deg"),
@@ -453,6 +474,12 @@ _IN_SI = {  # words, symbol, unit; inputs without the "scene.dimensional." befor
 
 
 _OF_RESULTS: dict[str, tuple[str, ...]] = {
+    "tau": ("time", r"\tau"),
+    "tau_s": ("time", "t", "s"),
+    "x1": ("position", "x_1"),
+    "x1_m": ("position", "X_1", "m"),
+    "v1": ("velocity", r"\dot x_1"),
+    "v1_m_per_s": ("velocity", r"\dot X_1", "m/s"),
     **{each.name: (each.words, each.symbol) for each in COLUMNS if each.words},
     **{
         f"{each.name}_{_UNITS[each.scale][0]}": (
@@ -470,22 +497,36 @@ def symbol(name: str) -> str:
     """The symbol of an input or column in mathtext; its words where it has none, else the last part of its path."""
     entry = _entry(name)
     if not entry:
-        return name.rpartition(".")[2].replace("_", " ")
+        return without_shown_unit(name).rpartition(".")[2].replace("_", " ")
     return f"${entry[1]}$" if entry[1] else entry[0]
 
 
-def word(name: str, longest: int = 80) -> str:
-    """Name, symbol and unit of an input or column, wrapped to lines of at most ``longest`` letters.
+def unit_shown(name: str) -> str:
+    """The unit of an input or column in mathtext; '' where it has none."""
+    shown = name.partition(SHOWN_IN)[2]
+    if not shown:
+        return next(iter(_entry(name)[2:]), "") or IN_SI_UNITS.get(name, "")
+    return re.sub(r"(?:\^|\*\*)(-?\d)", r"$^{\1}$", re.sub(r"\bu(?=[A-Za-z])", "µ", shown))
+
+
+def quantity(name: str, longest: int = 80) -> str:
+    """Name and symbol of an input or column, wrapped to lines of at most ``longest`` letters.
 
     For one without a symbol its words, or the last part of its path.
     """
-    if not (entry := _entry(name)) or not entry[1]:
+    entry = _entry(name)
+    if not entry or not entry[1]:
         return symbol(name)
-    unit = f" [{entry[2]}]" if len(entry) > 2 else ""
-    return f"{textwrap.fill(entry[0], longest)} {symbol(name)}{unit}"
+    return f"{textwrap.fill(entry[0], longest)} {symbol(name)}"
 
 
-def _entry(name: str) -> tuple[str, ...]:
+def word(name: str, longest: int = 80) -> str:
+    """Name, symbol and unit of an input or column."""
+    return f"{quantity(name, longest)} [{unit_shown(name)}]" if unit_shown(name) else quantity(name, longest)
+
+
+def _entry(shown: str) -> tuple[str, ...]:
+    name = without_shown_unit(shown)
     if name.startswith(_LAWS_IN_SI):
         parameter = name.removeprefix(_LAWS_IN_SI)
         return _LAWS[parameter] if parameter in _LAWS else _entry(f"law.{parameter}")

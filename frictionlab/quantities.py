@@ -35,16 +35,22 @@ class Written(float):
     """
 
     text: str
+    si: str
 
-    def __new__(cls, number: float, text: str) -> Written:
-        """The number in SI units, and the text, such as ``2 mm/s``."""
+    def __new__(cls, number: float, text: str, si: str) -> Written:
+        """The number in this SI unit, and the text, such as ``2 mm/s``."""
         made = super().__new__(cls, number)
-        made.text = text
+        made.text, made.si = text, si
         return made
 
-    def __getnewargs__(self) -> tuple[float, str]:  # type: ignore[override]
+    def __getnewargs__(self) -> tuple[float, str, str]:  # type: ignore[override]
         """Of which it is made again in another process."""
-        return float(self), self.text
+        return float(self), self.text, self.si
+
+    @property
+    def unit(self) -> str:
+        """That of the text."""
+        return self.text.partition(" ")[2]
 
 
 def _a_number(value: object, checked: ValidatorFunctionWrapHandler) -> float:

@@ -28,7 +28,7 @@ ARROWS = {
         "mistakes": "printable",
         "quantities": "mistakes",
         "columns": "",
-        "units": "mistakes quantities",
+        "units": "columns mistakes quantities",
         "laws": "quantities",
         "faults": "laws",
         "compile": "faults laws",
@@ -63,16 +63,16 @@ ARROWS = {
         "onsets": "laws methods.base methods.periodic orbit quantities scene theory",
         "registry": "faults laws methods.base mistakes",
         "study": "columns laws methods.base mistakes printable quantities registry scene units",
-        "results": "columns laws methods.base orbit quantities registry scene shape study printable theory",
+        "results": "columns laws methods.base orbit quantities registry scene shape study printable theory units",
         "runner": (
             "columns compile faults laws methods.base mistakes onsets orbit printable quantities registry "
             "results scene study theory"
         ),
         "sensitivity": "laws methods.base methods.periodic mistakes quantities results runner scene study",
-        "charts": "columns printable study",
-        "report": "charts columns printable registry results runner scene study",
+        "charts": "columns printable study units",
+        "report": "charts columns printable quantities registry results runner scene study units",
         "notebook": "charts columns report results runner scene study",
-        "explore": "charts columns report results runner",
+        "explore": "charts columns report results runner units",
         "scaffold": "registry runner",
         "bench": (
             "charts columns compile laws mistakes quantities runner scene study methods.base "
@@ -106,7 +106,7 @@ OUTSIDE = {
         "pint": "units.text",
         "flint": "methods.exact.proof",
         "ruamel": "study runner",
-        "pandas": "results runner charts report notebook explore cli least_model sensitivity",
+        "pandas": "results runner charts report notebook explore cli least_model sensitivity units",
         "xarray": "notebook",
         "pyarrow": "results runner",
         "matplotlib": "charts notebook.comparison bench.charts bench.pictures",  # of comparison the type of a figure

@@ -18,7 +18,15 @@ from matplotlib.lines import Line2D
 
 from frictionlab.charts.sheet import Heading, write_title
 from frictionlab.charts.style import PAGE, blank_figure
-from frictionlab.columns import ATTRACTORS, word
+from frictionlab.columns import (
+    ALSO_IN_SI,
+    BELT_SPEEDS,
+    INPUTS,
+    SHOWN_IN,
+    unit_shown,
+    without_shown_unit,
+    word,
+)
 
 PERIOD_MARKERS: dict[int, tuple[str, str]] = {
     1: ("o", "#000000"),
@@ -35,7 +43,7 @@ DOTS: Any = {"marker": "o", "markersize": 0.9, "mew": 0.0, "ls": "none", "color"
 
 def bifurcations(attractors: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """The rows of each figure, by its name: one for every curve on which anything was found."""
-    inputs = [name for name in attractors.columns if name not in ATTRACTORS]
+    inputs = [name for name in attractors.columns if name in INPUTS or name.startswith(("scene.", "law."))]
     curves = [rows for _, rows in attractors.groupby(inputs, sort=False, dropna=False)] if inputs else []
     if len(curves) == 1:
         return {"bifurcation": curves[0]}
@@ -51,22 +59,29 @@ def _figure(rows: pd.DataFrame, heading: Heading) -> Figure:
     figure = blank_figure(PAGE, 4.6)
     write_title(figure, heading.title)
     above, below = figure.subplots(2, 1, sharex=True)
+    speed, place = (_shown(rows, name) for name in ("belt_speed", "x"))
     states, wild = rows[rows["point"] == 1], rows[rows["period"] == 0]
     long = states[states["period"] == 0]
     for some, color, width in ((long, WILD, 2.0), (states[states["period"] > 1], "0.85", 0.8)):
         ends = some["mean_low"], some["mean_high"]
-        above.vlines(some["belt_speed"], *ends, colors=color, linewidth=width, zorder=1)
-    above.plot(
-        long["belt_speed"], long["mean_friction"], marker="_", color="0.25", linestyle="none", markersize=4
-    )
-    below.plot(wild["belt_speed"], wild["x"], zorder=1, **DOTS)
-    for axes, points, column in ((above, states, "mean_friction"), (below, rows, "x")):
+        above.vlines(some[speed], *ends, colors=color, linewidth=width, zorder=1)
+    above.plot(long[speed], long["mean_friction"], marker="_", color="0.25", linestyle="none", markersize=4)
+    below.plot(wild[speed], wild[place], zorder=1, **DOTS)
+    for axes, points, column in ((above, states, "mean_friction"), (below, rows, place)):
         for period, own in points[points["period"] > 0].groupby("period"):
-            axes.plot(own["belt_speed"], own[column], zorder=3, **_look(int(period)))
+            axes.plot(own[speed], own[column], zorder=3, **_look(int(period)))
     above.set_ylabel(word("mean_friction", 28))
-    below.set(xlabel=word("scene.belt_speed"), ylabel="position $x_1$ at the\nstart of a drive period")
+    axis = BELT_SPEEDS[0] if speed == "belt_speed" else f"{BELT_SPEEDS[1]}{SHOWN_IN}{unit_shown(speed)}"
+    at = f"start of a drive period [{unit_shown(place)}]" if unit_shown(place) else "start of a drive period"
+    below.set(xlabel=word(axis), ylabel=f"position $x_1$ at the\n{at}")
     figure.legend(handles=list(_legend(states)), loc="outside lower center", ncols=7, handlelength=1.0)
     return figure
+
+
+def _shown(rows: pd.DataFrame, name: str) -> str:
+    """The column of a number in the units in which it is shown."""
+    own = {without_shown_unit(each): each for each in rows}
+    return own.get(ALSO_IN_SI[name][0], name)
 
 
 def _look(period: int) -> dict[str, Any]:

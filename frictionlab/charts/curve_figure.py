@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 from frictionlab.charts.curves import LEAST_VISIBLE, CurveData, CurveNumbers, Family, drawn_once
 from frictionlab.charts.looks import WITHOUT_NUMBER, Looks, curve_entries, status_entries
 from frictionlab.charts.marks import OnsetMark, draw_onsets, draw_speed_marks, onset_entries, onsets_on
-from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, scale_alike
+from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, scale_alike, write_heading
 from frictionlab.charts.sweeps import SweptValue, is_logarithmic
-from frictionlab.columns import word
+from frictionlab.columns import unit_shown, word
 from frictionlab.study.figure_options import USUAL_FIGURES, FigureOptions
 
 DEGREES = [1, 1.5, 3, 4.5, 9, 10]  # between ticks of an angle, times a power of ten
@@ -113,7 +113,7 @@ class _Picture:
         axes.set_xlabel(self.of.family.word(abscissa))
         axes.set_ylabel(self.of.words.get(self.column) or word(self.column, 28))
         axes.margins(x=0.02)
-        if word(abscissa).endswith("deg]"):
+        if unit_shown(abscissa) == "deg":
             axes.xaxis.set_major_locator(MaxNLocator(steps=DEGREES))
         if is_logarithmic(np.concatenate([curve.column(abscissa) for curve in curves])):
             axes.set_xscale("log")
@@ -121,7 +121,7 @@ class _Picture:
         self._scale_upwards(curves)
         room = draw_speed_marks(axes, curves, self.of.looks, width) if self.of.family.along_speed else 0.0
         pad = mpl.rcParams["axes.titlepad"] + room
-        axes.set_title(", ".join(each.sentence for each in self.panel), loc="left", pad=pad)
+        write_heading(axes, ", ".join(each.sentence for each in self.panel), width, pad)
         for curve in curves:
             draw_onsets(axes, self.of.onsets_of(curve), self.of.looks.color(curve))
         if self.of.options.inset and self.column == "mean_friction":

@@ -19,7 +19,15 @@ from frictionlab.charts.sweeps import (
     sweep_of,
     swept_columns,
 )
-from frictionlab.columns import BELT_SPEED, BELT_SPEEDS, SCALED, belt_speed, word
+from frictionlab.columns import (
+    BELT_SPEED,
+    SCALED,
+    belt_speed,
+    is_belt_speed,
+    quantity,
+    without_shown_unit,
+    word,
+)
 
 CurveNumbers = NDArray[np.float64]
 MOST_PICTURES = 12  # in which several laws are compared; of more values each law has a picture of its own
@@ -95,7 +103,7 @@ class Family:
     @property
     def along_speed(self) -> bool:
         """Whether belt speed, as given or over V_lin, runs along the axis."""
-        return self.abscissa in (SPEED_RATIO, *BELT_SPEEDS)
+        return self.abscissa == SPEED_RATIO or is_belt_speed(self.abscissa)
 
 
 def family_of(table: pd.DataFrame) -> Family | None:
@@ -127,14 +135,18 @@ def family_by(table: pd.DataFrame, sweep: Sweep, panels: list[str], member: str 
         return None
     linked = {name: linked_with(table, name, sweep.inputs) for name in panels if name != "law"}
     panels = list(dict.fromkeys(each for name in panels for each in (name, *linked.get(name, ()))))
-    words = {name: linked_words(table, name, sweep.inputs) for name in (sweep.along, member) if name}
+    words = {sweep.along: linked_words(table, sweep.along, sweep.inputs)}
+    if member is not None:  # its values are told with their unit
+        words[member] = linked_words(table, member, sweep.inputs, quantity)
     return Family(sweep.along, member, curves_of(table, sweep.along, panels, member), words)
 
 
 def _names_in_si(columns: Iterable[str]) -> dict[str, str]:
     """Names that tell the parameters of a law given in SI units from nondimensional ones: they have a unit."""
-    scaled = [name.removeprefix(SCALED) for name in columns if name.startswith(SCALED)]
-    return {f"law.{name}": f"law.dimensional.{name}" for name in scaled}
+    names = [*columns]
+    scaled = {f"law.{name.removeprefix(SCALED)}" for name in names if name.startswith(SCALED)}
+    given = [name for name in names if without_shown_unit(name) in scaled]
+    return {name: f"law.dimensional.{name.removeprefix('law.')}" for name in given}
 
 
 def _with_one_friction(table: pd.DataFrame) -> pd.DataFrame:
@@ -168,7 +180,7 @@ def curves_of(
         at = 0 if own is None or own.value is None else members.index(own.value)
         place = 0 if apart else laws.index(law), at, methods.index(method)
         rows = rows if rows[abscissa].is_monotonic_increasing else rows.sort_values(abscissa)
-        kinks = kinks_of(rows) if abscissa in BELT_SPEEDS else ()
+        kinks = kinks_of(rows) if is_belt_speed(abscissa) else ()
         curves.append(CurveData(law, method, panel, own, place, rows, kinks))
     seen = list(dict.fromkeys(curve.panel for curve in curves))
     return sorted(curves, key=lambda curve: (_heights(curve), seen.index(curve.panel), curve.place))

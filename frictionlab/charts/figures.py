@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -23,9 +23,10 @@ from frictionlab.charts.shape_figure import ShapeFigure
 from frictionlab.charts.sheet import Heading
 from frictionlab.charts.style import STYLE, write_figure
 from frictionlab.charts.sweeps import plain
-from frictionlab.columns import SI
+from frictionlab.columns import SI, without_shown_unit
 from frictionlab.printable import printable
 from frictionlab.study.figure_options import FORMATS, USUAL_FIGURES, FigureOptions
+from frictionlab.units.shown import ShownUnit, in_shown_units
 
 FIGURES = {
     "mean_friction": ["mean_friction"],
@@ -60,7 +61,8 @@ class Kept(NamedTuple):
 class FigureData:
     """What figures are drawn of: a result table, and of the same run what there is of the rest.
 
-    curves: of ``curves.csv``, with the shapes; attractors: of ``attractors.csv``.
+    curves: of ``curves.csv``, with the shapes; attractors: of ``attractors.csv``. units: in which the numbers of a
+    scene in SI units were written; tables given are then in these.
     """
 
     table: pd.DataFrame
@@ -70,6 +72,13 @@ class FigureData:
     attractors: pd.DataFrame | None = None
     kept: Kept | None = None
     options: FigureOptions = USUAL_FIGURES
+    units: Mapping[str, ShownUnit] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Tables into the units in which they are shown."""
+        for name in ("table", "onsets", "curves", "attractors"):
+            if (table := getattr(self, name)) is not None:
+                object.__setattr__(self, name, in_shown_units(table, self.units))
 
     @cached_property
     def family(self) -> Family | None:
@@ -96,9 +105,14 @@ class FigureData:
         """Those that each of ``FIGURES`` shows, in SI units where the scene is; one without any is not there."""
         shown = {}
         for name, wanted in FIGURES.items() if self.family else ():
-            given = [IN_SI[column] if IN_SI.get(column) in self.table else column for column in wanted]
+            given = [self._shown.get(IN_SI.get(column, ""), column) for column in wanted]
             shown[name] = [column for column in given if self.table[column].notna().any()]
         return {name: columns for name, columns in shown.items() if columns}
+
+    @cached_property
+    def _shown(self) -> dict[str, str]:
+        """The columns of the table by their names without the unit in which they are shown."""
+        return {without_shown_unit(name): name for name in self.table.columns}
 
 
 def draw_figures(
@@ -134,9 +148,11 @@ def figures_of(data: FigureData) -> dict[str, Callable[[], Figure]]:
     """What draws each figure of a run, by its name."""
     found = {} if data.family is None else _of_table(data, data.family)
     if data.kept is not None and data.family is not None:
-        found |= orbit_figures(data.family, data.kept.orbits, data.heading)
+        found |= orbit_figures(data.family, data.kept.orbits, data.heading, data.units)
         if data.kept.harmonics is not None:
-            found |= harmonic_figures(data.kept.harmonics, data.heading, data.options)
+            found |= harmonic_figures(
+                in_shown_units(data.kept.harmonics, data.units), data.heading, data.options
+            )
     if data.attractors is not None:
         found |= bifurcation_figures(data.attractors, data.heading)
     return found

@@ -6,7 +6,7 @@ of harmonics lie along a sweep, a picture for each harmonic.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import zip_longest
@@ -21,18 +21,22 @@ from matplotlib.lines import Line2D
 from frictionlab.charts.curve_figure import CurveFigure
 from frictionlab.charts.curves import MOST_PICTURES, CurveData, CurveNumbers, Family, family_by
 from frictionlab.charts.looks import Looks, curve_entries
-from frictionlab.charts.sheet import Heading, Sheet, part_told, scale_alike
+from frictionlab.charts.sheet import Heading, Sheet, part_told, scale_alike, write_heading
 from frictionlab.charts.sweeps import SweptValue, some_of, sweep_of
-from frictionlab.columns import BELT_SPEED
+from frictionlab.columns import (
+    ALSO_IN_SI,
+    BELT_SPEEDS,
+    belt_speed,
+    unit_shown,
+    without_shown_unit,
+    word,
+)
 from frictionlab.study.figure_options import FigureOptions
+from frictionlab.units.shown import ShownUnit, in_shown_units
 
 MOST_ORBITS, MOST_OF_A_PANEL = 6, 3  # pictures of a figure, and of them along one axis
 MOST_IN_TIME = 4  # points with a picture of velocity and one of friction
-AXES = {
-    "x1": "position $x_1$",
-    "v1": "velocity $\\dot x_1$",
-    "friction": "friction coefficient\nagainst the mass",
-}
+FRICTION_LABEL = "friction coefficient\nagainst the mass"
 PHASE = "x1", "v1"
 KINDS = {
     "hysteresis": [("x1", "friction")],
@@ -41,6 +45,8 @@ KINDS = {
 }
 """Of each figure what its pictures show of a point, along the axis and upwards."""
 HARMONIC = "harmonic"
+_SPEEDS = dict(zip(("belt_speed", ALSO_IN_SI["belt_speed"][0]), BELT_SPEEDS, strict=True))
+"""The belt speeds of harmonics.csv, by the columns of the table."""
 AMPLITUDES = {
     "velocity_harmonics": ("velocity_amplitude", "amplitude of the harmonic\nof the velocity"),
     "friction_harmonics": ("friction_amplitude", "amplitude of the harmonic\nof the friction coefficient"),
@@ -59,9 +65,18 @@ class DrawnOrbit(NamedTuple):
     row: pd.Series
     samples: pd.DataFrame
 
+    def shown(self, name: str) -> str:
+        """The column of a sample in the units in which it is shown, those of the scene where it has others."""
+        own = {without_shown_unit(column): column for column in self.samples}
+        return own.get(ALSO_IN_SI.get(name, ("", ""))[0], name)
+
     def column(self, name: str) -> CurveNumbers:
         """A column of the samples."""
         return self.samples[name].to_numpy(dtype=float)
+
+    def label(self, name: str) -> str:
+        """That of an axis."""
+        return FRICTION_LABEL if name == "friction" else word(self.shown(name))
 
     @property
     def drive_period(self) -> float | None:
@@ -78,14 +93,20 @@ class OrbitPicture(NamedTuple):
 
 
 def orbit_figures(
-    family: Family, orbits: Callable[[Sequence[int]], pd.DataFrame | None], heading: Heading
+    family: Family,
+    orbits: Callable[[Sequence[int]], pd.DataFrame | None],
+    heading: Heading,
+    units: Mapping[str, ShownUnit],
 ) -> dict[str, Callable[[], Figure]]:
-    """What draws those of some points of a table, by its name; none where no orbit is kept. orbits: of rows."""
+    """What draws those of some points of a table, by its name; none where no orbit is kept. orbits: of rows.
+
+    units: in which the numbers of a scene in SI units were written.
+    """
     chosen = list(_chosen(family))
     found = orbits([int(row.name) for _, rows in chosen for _, row in rows])
     if found is None or found.empty:
         return {}
-    samples = {row: _closed(rows) for row, rows in found.groupby("row")}
+    samples = {row: _closed(rows) for row, rows in in_shown_units(found, units).groupby("row")}
     points = []
     for settings, rows in chosen:
         loops = {
@@ -111,7 +132,10 @@ def _draw(
         entries.append(Line2D([], [], label="belt speed", **SPEED_LINE))
     sheet = Sheet.blank(len(pictures), heading, entries + part_told(len(points), total, "points"))
     looks = _looks(every)
-    drawn = [_draw_point(sheet.axes(at), *picture, looks) for at, picture in enumerate(pictures)]
+    drawn = [
+        _draw_point(sheet.axes(at), *picture, looks, sheet.picture_width)
+        for at, picture in enumerate(pictures)
+    ]
     # one scale for friction: that which is constant but for rounding is a level line on it
     scale_alike([axes for axes, (_, kind) in zip(drawn, pictures, strict=True) if kind[1] == "friction"])
     sheet.label_once(drawn)
@@ -175,22 +199,23 @@ def _closed(samples: pd.DataFrame) -> pd.DataFrame:
     return pd.concat([inside, again], ignore_index=True)
 
 
-def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: Looks) -> Axes:
-    """The orbits of a point as a picture."""
+def _draw_point(axes: Axes, point: OrbitPicture, kind: tuple[str, str], looks: Looks, width: float) -> Axes:
+    """The orbits of a point as a picture. width: about [point]."""
     along, upwards = kind
     for loop in point.loops:
-        x, y, label = loop.column(along), loop.column(upwards), AXES.get(along, "time $\\tau$")
+        x, y, label = loop.column(loop.shown(along)), loop.column(loop.shown(upwards)), loop.label(along)
         if along == "tau" and loop.drive_period is not None:
-            x, label = x / loop.drive_period, "drive periods $\\Omega\\tau/2\\pi$"
+            x, label = loop.column("tau") / loop.drive_period, "drive periods $\\Omega\\tau/2\\pi$"
         axes.plot(x, y, **looks.line(loop.curve) | {"marker": ""})
-        axes.set(xlabel=label, ylabel=AXES[upwards])
+        axes.set(xlabel=label, ylabel=loop.label(upwards))
         if kind == PHASE and (period := loop.drive_period) is not None:
             tau = loop.column("tau")[:-1]
             at = np.searchsorted(tau, np.arange(0.0, tau[-1] + 1e-9, period) - 1e-9 * period)
             axes.plot(x[at], y[at], ls="none", color=looks.color(loop.curve), zorder=4, **POINCARE)
     if kind == PHASE:
-        axes.axhline(float(point.loops[0].row[BELT_SPEED]), zorder=0, **SPEED_LINE)
-    axes.set_title(", ".join(setting.sentence for setting in point.settings), loc="left")
+        row = point.loops[0].row
+        axes.axhline(float(row[belt_speed(row.index)]), zorder=0, **SPEED_LINE)
+    write_heading(axes, ", ".join(setting.sentence for setting in point.settings), width)
     return axes
 
 
@@ -205,14 +230,24 @@ def harmonic_figures(
     most = orders[: max(1, MOST_PICTURES * len(orders) // len(family.panels))]
     first = replace(family, curves=[curve for curve in family.curves if dict(curve.panel)[HARMONIC] in most])
     told = part_told(len(most), len(orders), "harmonics")
+    shown = {name: _amplitude(harmonics, *told) for name, told in AMPLITUDES.items()}
     return {
         name: CurveFigure(first, [column], heading, None, options, {column: label}, more=told).draw
-        for name, (column, label) in AMPLITUDES.items()
+        for name, (column, label) in shown.items()
     }
 
 
+def _amplitude(harmonics: pd.DataFrame, column: str, label: str) -> tuple[str, str]:
+    """The column of an amplitude in the units in which it is shown, and its label."""
+    own = {without_shown_unit(name): name for name in harmonics}
+    shown = own.get(ALSO_IN_SI.get(column, ("", ""))[0], column)
+    return shown, f"{label} [{unit_shown(shown)}]" if unit_shown(shown) else label
+
+
 def _family(harmonics: pd.DataFrame) -> Family | None:
-    rows = harmonics[harmonics[HARMONIC] > 0].rename(columns={"belt_speed": BELT_SPEED})
+    names = {without_shown_unit(name): name for name in harmonics}
+    speeds = {names[each]: names[each].replace(each, of) for each, of in _SPEEDS.items() if each in names}
+    rows = harmonics[harmonics[HARMONIC] > 0].rename(columns=speeds)
     rows = rows.assign(status="ok", **{HARMONIC: rows[HARMONIC].astype(float)})
     sweep = sweep_of(rows)
     others = [name for name in sweep.inputs if name != sweep.along]

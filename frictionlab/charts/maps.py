@@ -34,7 +34,7 @@ from frictionlab.charts.curves import (
 from frictionlab.charts.looks import LEGEND_MARKS, joined_methods, status_entries
 from frictionlab.charts.sheet import NO_HEADING, Heading, Sheet, abreast, part_told
 from frictionlab.charts.sweeps import BESIDE, is_logarithmic, linked_words, shortened, some_of, sweep_of
-from frictionlab.columns import BELT_SPEEDS, word
+from frictionlab.columns import is_belt_speed, word
 
 LEAST_VALUES = 5  # of both numbers: fewer are told apart by lines
 MOST_SEPARATE = 12  # values of a number beside belt speed that are lines; more are a map
@@ -115,7 +115,7 @@ class MapFigure:
 
     @property
     def _along_speed(self) -> bool:
-        return self.over[0] in BELT_SPEEDS and SPEED_RATIO in self.table
+        return is_belt_speed(self.over[0]) and SPEED_RATIO in self.table
 
     def _name(self, picture: CurveData) -> str:
         methods = [(each.method, *each.same) for each in self.pictures]
@@ -142,7 +142,7 @@ def map_of(table: pd.DataFrame) -> MapFigure | None:
     """
     sweep = sweep_of(table)
     numbers = sweep.numbers
-    if sweep.along in BELT_SPEEDS:
+    if sweep.along is not None and is_belt_speed(sweep.along):
         others = [name for name in numbers if name != sweep.along]
         numbers = [*(name for name in others if table[name].nunique() > MOST_SEPARATE), sweep.along]
     return _figure(table, sweep.inputs, numbers)

@@ -15,7 +15,7 @@ from frictionlab.charts.curves import CurveData, Family, drawn_once
 from frictionlab.charts.looks import Looks
 from frictionlab.charts.sheet import Heading, Sheet, part_told
 from frictionlab.charts.sweeps import BESIDE, shortened, some_of
-from frictionlab.columns import BELT_SPEEDS, CURVES, word
+from frictionlab.columns import CURVES, is_belt_speed, word
 from frictionlab.printable import with_error
 
 MOST_SHAPES = 12
@@ -45,7 +45,7 @@ class ShapeFigure:
     @classmethod
     def of(cls, family: Family, curves: pd.DataFrame, heading: Heading) -> ShapeFigure | None:
         """That of a table; None where no curve has a verdict. curves: of ``curves.csv``."""
-        if family.abscissa not in BELT_SPEEDS or "shape_start" not in curves:
+        if not is_belt_speed(family.abscissa) or "shape_start" not in curves:
             return None
         looks = Looks(drawn_once(family.curves, ["mean_friction"]))
         chords = [(curve, chord_of(curve, curves, family.abscissa)) for curve in looks.curves]

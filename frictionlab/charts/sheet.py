@@ -89,6 +89,16 @@ def write_title(figure: Figure, title: str) -> int:
     return len(lines)
 
 
+def write_heading(axes: Axes, words: str, width: float, pad: float | None = None) -> None:
+    """Write above a picture what it is of, in lines that fit its width [point]; pad: the room below it [point]."""
+    lines, size = [""], float(axes.title.get_fontsize())
+    for part in words.split(", "):
+        longer = f"{lines[-1]}, {part}" if lines[-1] else part
+        fits = not lines[-1] or text_width(axes.figure, longer, size) <= width / PICTURE_SHARE
+        lines = [*lines[:-1], longer] if fits else [*lines, part]
+    axes.set_title(",\n".join(lines), loc="left", pad=pad)
+
+
 def _add_legend(figure: Figure, entries: Sequence[Any], title: str | None) -> int:
     """Below the pictures, in as many columns as fit, its entries running down them; the lines it takes."""
     if not entries:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from pandas.api.types import is_numeric_dtype
 
-from frictionlab.columns import SHOWN_IN_PART, belt_speed, given, leading, word
+from frictionlab.columns import SHOWN_IN_PART, belt_speed, given, leading, quantity, unit_shown, word
 
 T = TypeVar("T")
 POINTS_OF_A_CURVE = 8  # belt speeds; with fewer no shape is read, and what takes more values says more
@@ -32,17 +32,17 @@ class SweptValue(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The value alone."""
+        """The value alone, with its unit."""
         if isinstance(self.value, str):
             return shortened(self.value, LONGEST_LABEL)
-        return "" if self.value is None else f"{self.value:.5g}"
+        return "" if self.value is None else f"{self.value:.5g} {unit_shown(self.name)}".rstrip()
 
     @property
     def sentence(self) -> str:
         """The title of a picture: what is the same along its curves."""
         if self.name == "law":
             return self.text
-        return f"no {word(self.name)}" if self.value is None else f"{word(self.name)} = {self.text}"
+        return f"no {quantity(self.name)}" if self.value is None else f"{quantity(self.name)} = {self.text}"
 
 
 class Sweep(NamedTuple):
@@ -80,9 +80,11 @@ def swept_columns(table: pd.DataFrame) -> list[str]:
     return swept if SHOWN_IN_PART in table.attrs else leading(swept, table)
 
 
-def linked_words(table: pd.DataFrame, name: str, swept: Sequence[str]) -> str:
+def linked_words(
+    table: pd.DataFrame, name: str, swept: Sequence[str], told: Callable[[str], str] = word
+) -> str:
     """An input in words, with those of the scene that change together with it."""
-    return ", with ".join(map(word, (name, *linked_with(table, name, swept))))
+    return ", with ".join(map(told, (name, *linked_with(table, name, swept))))
 
 
 def linked_with(table: pd.DataFrame, name: str, swept: Sequence[str]) -> list[str]:

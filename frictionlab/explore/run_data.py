@@ -14,11 +14,12 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 from frictionlab.charts.curves import CurveData, Family, family_of
-from frictionlab.columns import BELT_SPEEDS, word
+from frictionlab.columns import is_belt_speed, word
 from frictionlab.report.markup import html
 from frictionlab.results.loads_in_time import scene_of
 from frictionlab.runner.errors import FolderError
 from frictionlab.runner.saved import Saved
+from frictionlab.units.shown import in_shown_units
 
 RATIOS = "velocity_ratio", "normalized_friction"
 Quantity = tuple[str, str]
@@ -27,7 +28,7 @@ Quantity = tuple[str, str]
 
 def run_data(saved: Saved) -> dict[str, Any]:
     """The curves of a run as numbers, words and None, for JSON. Raises FolderError where it has none."""
-    family = family_of(saved.table)
+    family = family_of(in_shown_units(saved.table, saved.study.units))
     if family is None:
         raise FolderError(f"{saved.folder}: its study sweeps no number, so there is no curve to explore")
     swept = _swept(family)
@@ -154,7 +155,7 @@ def page_scene(curve: CurveData, abscissa: str) -> PageScene | None:
 
     It solves a body along the belt, damped, under one sine, with one coefficient of sliding friction.
     """
-    if abscissa not in BELT_SPEEDS or any(name not in curve.rows for name in RATIOS):
+    if not is_belt_speed(abscissa) or any(name not in curve.rows for name in RATIOS):
         return None
     scene = scene_of(curve.rows.iloc[0].to_dict())
     load = 0.0 if scene.drive is None else scene.drive.size(scene.frequency)

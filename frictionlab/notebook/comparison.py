@@ -159,7 +159,9 @@ class Comparison:
         study = self.study
         asked = figure_options(study.figures.resolved() | options, tuple(law.label for law in study.laws))
         marked = self.onsets if onsets else None
-        data = FigureData(whole(self.table), study.title, marked, self.curves, options=asked)
+        data = FigureData(
+            whole(self.table), study.title, marked, self.curves, options=asked, units=study.units
+        )
         return figure_of(data, figure)
 
     def save(self, folder: str | PathLike[str]) -> Path:
@@ -181,7 +183,10 @@ class Comparison:
         from frictionlab.report.page import write_report
 
         saved = saved_as(with_onsets(save_run(self.run, Path(folder), self.seconds)))
-        data = FigureData(saved.table, saved.title, saved.onsets, saved.curves, options=saved.study.figures)
+        study = saved.study
+        data = FigureData(
+            saved.table, saved.title, saved.onsets, saved.curves, options=study.figures, units=study.units
+        )
         draw_figures(data, saved.folder / "figures")
         write_report(saved, data)
         return saved.folder

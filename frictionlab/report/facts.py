@@ -18,6 +18,7 @@ from frictionlab.report.tables import Cell, settings
 from frictionlab.results.pairs import Difference, method_pairs
 from frictionlab.results.table import swept_inputs
 from frictionlab.runner.saved import Saved
+from frictionlab.units.shown import in_shown_units
 
 
 class CurveRows(NamedTuple):
@@ -46,10 +47,10 @@ class Facts:
     saved: Saved
     drawn: FigureData | None = None
 
-    @property
+    @cached_property
     def table(self) -> pd.DataFrame:
-        """The result table."""
-        return self.saved.table
+        """The result table, in the units in which it is shown."""
+        return in_shown_units(self.saved.table, self.saved.study.units)
 
     @property
     def speed(self) -> str:
@@ -64,7 +65,8 @@ class Facts:
     @cached_property
     def figures(self) -> FigureData:
         """What its figures of the table are drawn of."""
-        return self.drawn or FigureData(self.table, options=self.saved.study.figures)
+        study = self.saved.study
+        return self.drawn or FigureData(self.saved.table, options=study.figures, units=study.units)
 
     @cached_property
     def method_pairs(self) -> list[Difference]:
@@ -83,6 +85,7 @@ class Facts:
 
     def curves_of(self, table: pd.DataFrame) -> list[CurveRows]:
         """Those of a table of this run, told apart by what is swept."""
+        table = in_shown_units(table, self.saved.study.units)
         told = [name for name in self.swept if name in table]
         groups = table.groupby(["law", "method", *told], sort=False, dropna=False)
         return [

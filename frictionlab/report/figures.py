@@ -13,9 +13,10 @@ from pandas import DataFrame
 from frictionlab.charts.bifurcation import bifurcations
 from frictionlab.charts.curves import Family
 from frictionlab.charts.figures import OTHER_FIGURES
+from frictionlab.quantities import Written
 from frictionlab.report.facts import Facts
 from frictionlab.report.markup import symbol_html, unit_html, word_html
-from frictionlab.report.question import values_listed
+from frictionlab.report.question import given_of, values_listed
 from frictionlab.report.tables import joined_values, setting
 from frictionlab.results.words import counted
 
@@ -124,8 +125,14 @@ def _lines(family: Family) -> Iterator[Markup]:
 def _held_and_missing(run: Facts) -> Iterator[Markup]:
     """The values of the scene that are the same in every point; how many points have no number but a mark."""
     study = run.saved.study
-    values = {f"scene.{path}": value for path, value in study.scene.given_values().items()}
-    if fixed := [setting(name, value) for name, value in values.items() if name not in study.sweep]:
+    fixed = [
+        Markup("{} = {}").format(symbol_html(name), value.text)
+        if isinstance(value, Written)
+        else setting(name, value)
+        for name, value in given_of(study).items()
+        if name not in study.sweep
+    ]
+    if fixed:
         yield Markup("Held fixed: {}").format(Markup(", ").join(fixed))
     counts = {status.replace("_", " "): count for status, count in run.saved.counts.items() if status != "ok"}
     if told := [f"{counted(count, 'point')} {status}" for status, count in counts.items()]:

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
-from frictionlab.columns import RESULTS, SI
+from frictionlab.columns import IN_SI_UNITS, RESULTS, SI, without_shown_unit
 from frictionlab.printable import MOST_DIGITS, with_error
 from frictionlab.report.facts import Facts, whose
 from frictionlab.report.markup import symbol_html, unit_html
@@ -98,16 +98,21 @@ def whole_grid(run: Facts) -> Grid | None:
     table = run.table
     if len(table) > FEW_ROWS:
         return None
-    in_si = [name for name in SI if name in table]
+    shown = {without_shown_unit(name): name for name in table}
+    in_si = [name for name in SI if name in shown]
     names = [*RESULTS, *in_si]
     left = {*TOLD_ELSEWHERE, *map(_error_of, names), *(SI[name].column for name in in_si)}
     points = [row for _, row in table.iterrows()]
     rows: list[list[Cell]] = []
     for name in names:
-        if (name == "mean_friction" or name not in left) and table[name].notna().any():
+        if (name == "mean_friction" or name not in left) and table[shown[name]].notna().any():
             symbol, words = symbol_html(name), name.replace("_", " ")
+            if name in IN_SI_UNITS:
+                words = f"{SI[name].column.replace('_', ' ')} [{unit_html(shown[name]).strip()}]"
             quantity = words if str(symbol) == words else Markup("{} {}").format(words, symbol)
-            rows.append([quantity, *(_written(row, name) for row in points)])
+            rows.append(
+                [quantity, *(_written(row, shown[name], shown.get(_error_of(name))) for row in points)]
+            )
     told = [Markup("{} by {}, {}").format(row["law"], row["method"], place_of(run, row)) for row in points]
     return grid("Every number found", ["quantity", *told], rows)
 
@@ -119,8 +124,8 @@ def _error_of(name: str) -> str:
     return f"{name.removesuffix('_J')}_error_J" if name.endswith("_J") else f"{name}_error"
 
 
-def _written(row: pd.Series, name: str) -> str:
-    value, error = row[name], row.get(_error_of(name))
+def _written(row: pd.Series, name: str, of_error: str | None) -> str:
+    value, error = row[name], None if of_error is None else row[of_error]
     if isinstance(value, str):
         return value
     return with_error(value, error, MOST_DIGITS if error is None or pd.isna(error) else MOST_OF_A_POINT)

@@ -9,11 +9,10 @@ from html.entities import html5
 
 from markupsafe import Markup, escape
 
-from frictionlab.columns import symbol, word
+from frictionlab.columns import symbol, unit_shown, word
 
 _RENAMED = {"varphi": "phi", "varepsilon": "epsilon"}  # what TeX calls so
 _ACCENTS = {"bar": "\u0304", "hat": "\u0302", "dot": "\u0307", "tilde": "\u0303"}
-_UNIT = re.compile(r"\[(.*)\]")
 _LEVELS = {"_": "sub", "^": "sup"}
 _TOKEN = re.compile(
     r"\\mathrm\{(?P<upright>[^}]*)\}"
@@ -36,8 +35,7 @@ def word_html(name: str) -> Markup:
 @cache
 def unit_html(name: str) -> Markup:
     """The unit of an input or column with a space before it; nothing where it has none."""
-    found = _UNIT.search(word(name))
-    return html(f" {found[1]}") if found else Markup("")
+    return html(f" {unit_shown(name)}") if unit_shown(name) else Markup("")
 
 
 def html(text: str) -> Markup:

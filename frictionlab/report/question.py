@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
-from frictionlab.columns import symbol, word
+from frictionlab.columns import SHOWN_IN, symbol, without_shown_unit, word
 from frictionlab.report.markup import html, symbol_html
 from frictionlab.report.sources import law_text, method_text
 from frictionlab.report.tables import Cell, Grid, grid, number
@@ -19,6 +19,7 @@ from frictionlab.scene.waveforms import SINE, as_fraction
 from frictionlab.study import GridValue, Study
 from frictionlab.study.axes import FRICTION
 from frictionlab.study.ranges import SpeedRange
+from frictionlab.units.shown import ShownUnit
 
 MOST_LISTED = 8
 """Values of a sweep that are listed one by one; of more, the ends and how many."""
@@ -130,18 +131,35 @@ def units_sentence(scene: Scene) -> str:
 
 def scene_grid(study: Study) -> Grid:
     """Every value of the scene, but for what swept ones run over."""
-    values = {f"scene.{path}": value for path, value in study.scene.given_values().items()}
     rows = [
-        [*_named(name), "swept" if study.sweep.get(name) is not None else number(value)]
-        for name, value in values.items()
+        [
+            *_named(shown_name(study, name)),
+            "swept" if study.sweep.get(name) is not None else shown_number(study, name, value),
+        ]
+        for name, value in given_of(study).items()
     ]
     return grid("The scene", ["quantity", "symbol", "value"], rows)
+
+
+def given_of(study: Study) -> dict[str, Any]:
+    """The values of the scene by their columns."""
+    return {f"scene.{path}": value for path, value in study.scene.given_values().items()}
+
+
+def shown_name(study: Study, name: str) -> str:
+    """The name of an input with the unit in which its numbers were written."""
+    return f"{name}{SHOWN_IN}{study.units[name].unit}" if name in study.units else name
+
+
+def shown_number(study: Study, name: str, value: Any) -> str:
+    """The value of an input in that unit."""
+    return number(value / study.units[name].size if name in study.units else value)
 
 
 def _named(name: str) -> list[Cell]:
     """The words of an input and its symbol; its path where it has none."""
     if not symbol(name).startswith("$"):
-        inside = name.removeprefix("scene.").removeprefix("dimensional.")
+        inside = without_shown_unit(name).removeprefix("scene.").removeprefix("dimensional.")
         return [inside.replace(".", " ").replace("_", " "), ""]
     return [html(" ".join(word(name).replace(symbol(name), "", 1).split())), symbol_html(name)]
 
@@ -188,11 +206,14 @@ def sweep_grid(study: Study) -> Grid:
     for axis in study.axes:
         first, *_ = axis.values
         for path, values in axis.values.items():
-            name, told, along = _sweep_name(study, path), values_listed(values), study.ranges.get(path)
+            scale = study.units.get(_column(path), ShownUnit("")).size
+            shown = [value / scale if isinstance(value, float) else value for value in values]
+            name, told, along = _sweep_name(study, path), values_listed(shown), study.ranges.get(path)
             if path != first:
                 name = Markup("{}, together with {}").format(name, _sweep_name(study, first))
             if isinstance(along, SpeedRange):
-                told = f"{number(along.start)} … {number(along.stop)}, {CHOSEN.format(number(along.within))}"
+                ends = number(along.start / scale), number(along.stop / scale)
+                told = f"{ends[0]} … {ends[1]}, {CHOSEN.format(number(along.within))}"
             rows.append([name, path, told])
     return grid("The sweep: every combination of these is a point", ["quantity", "key", "values"], rows)
 
@@ -200,8 +221,14 @@ def sweep_grid(study: Study) -> Grid:
 def _sweep_name(study: Study, path: str) -> Cell:
     if path == FRICTION:
         return "friction coefficient of every law"
+    shown = shown_name(study, _column(path))
     if path.startswith("scene."):
-        return html(word(path))
-    owner, _, name = path.rpartition(".")
-    group = "law" if study.scene.dimensional is None else "law.dimensional"
-    return Markup("{} of {}").format(html(word(f"{group}.{name}")), owner.removeprefix("laws."))
+        return html(word(shown))
+    if study.scene.dimensional is not None:
+        shown = shown.replace("law.", "law.dimensional.", 1)
+    return Markup("{} of {}").format(html(word(shown)), path.rpartition(".")[0].removeprefix("laws."))
+
+
+def _column(path: str) -> str:
+    """The column of what is swept."""
+    return path if path.startswith("scene.") else f"law.{path.rpartition('.')[2]}"

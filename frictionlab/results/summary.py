@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from frictionlab.columns import SHOWN_IN
 from frictionlab.printable import PLUS_MINUS, with_error
 from frictionlab.results.expectations import Verdict
 from frictionlab.results.run import Run
 from frictionlab.results.table import swept_inputs, whole
 from frictionlab.results.words import counted, in_words
+from frictionlab.scene.as_written import without_unit
+from frictionlab.units.shown import in_shown_units
 
 RowArrays = Mapping[str, np.ndarray]
 """Columns of some rows of a table."""
@@ -43,7 +46,7 @@ MOST_REASONS = 10
 
 def summary(run: Run) -> str:
     """What a run found, for reading: curves, reasons, verdicts."""
-    table = whole(run.to_show)
+    table = in_shown_units(whole(run.to_show), run.study.units)
     told = ", ".join(f"{count} {status}" for status, count in run.counts.items())
     parts = [
         [run.study.title] if run.study.title else [],
@@ -89,7 +92,7 @@ def _model_lines(table: pd.DataFrame) -> list[str]:
 
 def _curve_line(inputs: dict[str, Any], rows: RowArrays, models: dict[str, int]) -> tuple[str, ...]:
     law, method = str(inputs.pop("law")), str(inputs.pop("method"))
-    where = ", ".join(f"{_brief(name)} {in_words(x)}" for name, x in inputs.items() if x == x)
+    where = ", ".join(_setting(name, x) for name, x in inputs.items() if x == x)
     errors = rows["error"][~np.isnan(rows["error"])]
     error = f"{errors.max():.1e}" if len(errors) else ""
     used = ", ".join(
@@ -116,9 +119,10 @@ def mean_span(
     return to.join(dict.fromkeys(told))
 
 
-def _brief(name: str) -> str:
-    """An input without what all inputs of a scene begin with."""
-    return name.removeprefix("scene.").removeprefix("dimensional.")
+def _setting(name: str, value: Any) -> str:
+    """An input with its value, without what all inputs of a scene begin with."""
+    brief, _, unit = name.removeprefix("scene.").removeprefix("dimensional.").partition(SHOWN_IN)
+    return f"{without_unit(brief)} {in_words(value)} {unit}" if unit else f"{brief} {in_words(value)}"
 
 
 def statuses(rows: RowArrays | pd.DataFrame) -> str:

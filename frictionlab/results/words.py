@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from frictionlab.quantities import Written
+
 
 def in_words(value: object) -> str:
-    """A number to six digits; anything else as it is."""
+    """A number to six digits, one written with a unit as it was; anything else as it is."""
+    if isinstance(value, Written):
+        return value.text
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 

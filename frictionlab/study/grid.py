@@ -33,6 +33,7 @@ from frictionlab.study.axes import (
 )
 from frictionlab.study.parts import LawChoice, MethodChoice
 from frictionlab.study.ranges import SpeedRange, SweepRange
+from frictionlab.units.shown import ShownUnit, units_written
 
 
 @dataclass(frozen=True)
@@ -209,6 +210,17 @@ class StudyGrid:
                 si = scenes.scene.dimensional
                 found.add((law, None if si is None else si.scales, scenes.scene.normal_load))
         return {_in_scene(*each) for each in found}
+
+    @cached_property
+    def units(self) -> dict[str, ShownUnit]:
+        """The units in which numbers of a scene in SI units and of its laws were written, by columns of the table."""
+        values: dict[str, Any] = {f"{SCENE}{path}": each for path, each in self.scene.given_values().items()}
+        for law in self.laws:
+            values |= {f"law.{name}": value for name, value in law.parameters.items()}
+        for path, swept in self.sweep.items():
+            name = path if path.startswith(SCENE) else f"law.{path.rpartition('.')[2]}"
+            values[name] = self.ranges[path].start if path in self.ranges else swept[0]
+        return units_written(values)
 
     @cached_property
     def axes(self) -> tuple[Axis, ...]:

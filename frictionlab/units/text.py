@@ -97,7 +97,7 @@ def in_units(text: str, unit: str) -> float | Unfit:
     try:
         number = float(Fraction(read["number"]) * factor_of(read["unit"], unit))
         shown = f"{read['number']} {read['unit']}"
-        return Written(number, shown) if unit not in ("", "deg") else number
+        return Written(number, shown, unit) if unit not in ("", "deg") else number
     except _Wrong as problem:
         return Unfit(text, f"'{text.strip()}' {problem}")
     except OverflowError:

@@ -41,7 +41,7 @@ def told(
     """The three sentences of a run with these rows."""
     table = pd.concat(rows, ignore_index=True)
     account = {"expect": [{"passed": passed, "sentence": "x"} for passed in verdicts]}
-    study = cast("Study", SimpleNamespace(tolerance=1e-8))
+    study = cast("Study", SimpleNamespace(tolerance=1e-8, units={}))
     saved = Saved(Path(), study, table, pd.DataFrame(curves) if curves else None, account)
     assert saved.verdicts == [Verdict(passed, "x") for passed in verdicts]
     return [" ".join(str(each.striptags()).split()) for each in sentences(Facts(saved))]
